@@ -74,6 +74,16 @@ def test_the_ground_of_a_body_has_the_road_in_one_piece():
     assert start == pytest.approx(1000 + one.axis.project(Point(line.coords[0])))
 
 
+@pytest.mark.parametrize("line", [
+    [(20, 2), (580, 2)], [(20, 0), (580, 0)],       # along the terrain's edge
+    [(200, 95), (400, 95), (400, 2), (300, 2), (300, 80), (200, 80)]])      # a bend there
+def test_a_road_at_the_edge_of_the_terrain(line):
+    one = corridor_of(line)
+    window, found, start = corridor.around(one, 290, 105, 310, 125)
+    assert box(*run_helpers_extent(one.clip(window))).covers(found) and found.length > 50
+    assert start == pytest.approx(1000 + one.axis.project(Point(found.coords[0])))
+
+
 def test_bodies_that_share_more_than_a_tenth_are_one():
     def slip(left, width):
         base = np.full((10, 40), np.nan)
@@ -120,14 +130,19 @@ def test_several_bodies_against_an_own_integral(capacity):
     peaks = np.exp(np.linspace(np.log(100.0), np.log(900.0), 6001))
     rates = np.exp(np.interp(np.log(peaks), np.log(found.peaks), np.log(found.rate.rates)))
     each = capacity.reshape(-1, 3)
-    independent = dependent = 0.0
+    independent = dependent = least = most = 0.0
     for a, step in zip(np.sqrt(peaks[:-1] * peaks[1:]), rates[:-1] - rates[1:]):
         fails = each < a
         independent += step * (1 - np.prod(1 - fails.mean(axis=0) * p))
         dependent += step * (fails * p).max(axis=1).mean()
+        least += step * max(fails.mean(axis=0) * p)
+        most += step * min(1.0, sum(fails.mean(axis=0) * p))
     fails = each < 900.0
     independent += rates[-1] * (1 - np.prod(1 - fails.mean(axis=0) * p))
     dependent += rates[-1] * (fails * p).max(axis=1).mean()
+    least += rates[-1] * max(fails.mean(axis=0) * p)
+    most += rates[-1] * min(1.0, sum(fails.mean(axis=0) * p))
+    assert rate.least == pytest.approx(least, rel=2e-3) and rate.most == pytest.approx(most, rel=2e-3)
     assert rate.independent == pytest.approx(independent, rel=2e-3)
     assert rate.dependent == pytest.approx(dependent, rel=2e-3)
     assert rate.counts == rate.independent > rate.dependent
@@ -140,6 +155,17 @@ def test_the_chain_of_a_site_lies_between(capacity):
     value = float(chain.frequency(capacity, found.rate, found.peaks, runs, np.zeros(1)).total.value[0])
     rate = Yearly(found).of([1, 2, 3], [0.75, 0.25, 0.5])
     assert rate.dependent < value < rate.independent
+
+
+def test_bodies_that_exclude_each_other_are_within_the_bounds():
+    """Of each two strengths one makes one body fail and the other the other: more often than independent ones."""
+    one = np.tile([[[50.0, np.inf]], [[np.inf, 50.0]]], (512, 1, 1))
+    rate = Yearly(of_capacity(one)).of([1, 2], [1.0, 1.0])
+    assert rate.dependent == pytest.approx(rate.most) == pytest.approx(1e-2)        # these samples say so themselves
+    assert rate.independent == pytest.approx(0.75e-2) and rate.least == pytest.approx(0.5e-2)
+    other = Yearly(of_capacity(np.sort(one, axis=0))).of([1, 2], [1.0, 1.0])        # the same fragilities
+    assert other.dependent == pytest.approx(0.5e-2) and other.counts == pytest.approx(0.75e-2)
+    assert other.most == pytest.approx(1e-2)
 
 
 def test_a_fragility_without_a_hazard_is_refused(capacity):
@@ -254,8 +280,8 @@ def test_a_year_of_a_stretch(two, capacity, monkeypatch):
     year = found["stretches"][0]["per_year"]
     assert year["counts"] == yearly.of([1, 2], [0.75, 0.5]).counts == year["independent"]
     low, high = zip(*(hazard.share_bounds(k, 4) for k in (3, 2)))
-    assert year["high"] == pytest.approx(yearly.of([1, 2], [float(one) for one in high]).independent)
-    assert year["low"] == pytest.approx(yearly.of([1, 2], [float(one) for one in low]).dependent)
+    assert year["high"] == pytest.approx(yearly.of([1, 2], [float(one) for one in high]).most)
+    assert year["low"] == pytest.approx(yearly.of([1, 2], [float(one) for one in low]).least)
     assert found["bodies"][0]["per_year"]["blocks"] == pytest.approx(
         0.75 * found["bodies"][0]["per_year"]["fails"], rel=1e-3)
     said = []
@@ -306,6 +332,21 @@ def test_zones_of_shares(two, capsys):
                 assert area.area == pytest.approx(one["area_m2"] - rings * CELL ** 2 / 2) and area.is_valid
     assert {one["class"] for _, one in found} == {zones.AT_LEAST, zones.UNSURE}
     assert about["per_year"] is False and about["runs"] == 8
+
+
+def test_beside_the_zones_runs_may_not_tell(two, capsys, capacity, monkeypatch):
+    """Four runs of which none comes leave a share of 0.53, and of the frequencies of all bodies that of their sum."""
+    none = float(hazard.share_bounds(0, 4)[1])
+    for words, said in (("0.9", False), ("0.9,0.5", True)):
+        status, out, err = zones_of(two[0], capsys, "--zones", words, "--overwrite")
+        assert status == 0 and ("where no run comes" in out and f"{none:.2g}" in out) is said, out
+    about = yaml.safe_load((two[0] / "zones/zones.yaml").read_text())
+    assert about["unreached_at_most"] == pytest.approx(none)
+    with_fragility(two, capacity, monkeypatch)
+    assert zones_of(two[0], capsys, "--zones", "1/1000", "--overwrite")[0] == 0
+    most = Yearly(of_capacity(capacity[:, :, :2])).of([1, 2], [none, none]).most
+    about = yaml.safe_load((two[0] / "zones/zones.yaml").read_text())
+    assert about["unreached_at_most"] == pytest.approx(1 - math.exp(-most))
 
 
 def test_zones_have_a_style(two, capsys):
@@ -367,7 +408,8 @@ def test_every_example_of_zones_runs(two, capsys, monkeypatch, command):
 @pytest.mark.parametrize("words, said", [
     (["--zones", "0.1,0.5"], ("--zones", "fall", "0.1,0.5")), (["--zones", "1/100,1/100"], ("--zones", "fall")),
     (["--zones", "1.5"], ("--zones", "1.5")), (["--zones", "x"], ("--zones", "x")),
-    (["--zones", "1/0"], ("--zones", "1/0")), (["--thicker", "1"], ("--thicker", "--zones")),
+    (["--zones", "1/0"], ("--zones", "1/0")),
+    (["--zones", "0.5/"], ("--zones", "0.5/")), (["--thicker", "1"], ("--thicker", "--zones")),
     (["--intensity", "speed:1"], ("--intensity", "--zones")),
     (["--zones", "0.5", "--thicker", "-1"], ("--thicker", "-1")),
     (["--zones", "0.5", "--intensity", "height:1"], ("--intensity", "height:1")),
@@ -577,6 +619,32 @@ def test_before_there_are_bodies_choices_may_change(tmp_path):
     assert choices.read(tmp_path / "R").reach == 0.5
 
 
+@pytest.mark.parametrize("name, value", [
+    ("volume", [1.0]), ("volume", []), ("depth", [1.0, 2.0, 3.0]), ("sample", 0), ("keep", -3), ("confined", "maybe"),
+    ("terrain", []), ("corridor", math.nan), ("road", None), ("extra", 1)])
+def test_a_route_yaml_that_was_edited(two, capsys, name, value):
+    path = two[0] / choices.NAME
+    path.write_text(yaml.safe_dump({**yaml.safe_load(path.read_text()), name: value}))
+    status, _, err = zones_of(two[0], capsys, "--zones", "0.5")
+    assert status == 2 and err.count("\n") == 1 and choices.NAME in err and name in err, err
+
+
+def test_no_run_is_no_choice(two, capsys):
+    status, _, err = called(capsys, ["route", str(two[0].parent / "new"), *ROUTE[:-6], "--minutes", "3", "--sample",
+                                     "0"])
+    assert status == 2 and err.count("\n") == 1 and "--sample" in err, err
+
+
+def test_a_study_of_no_road_is_refused(two, capsys):
+    path = two[0] / "bodies/1/ensemble/study.yaml"
+    about = yaml.safe_load(path.read_text())
+    for key in ("stretches", "clearing"):
+        rows = [{**row, key: None} for row in about["runs"]]
+        path.write_text(yaml.safe_dump({**about, "runs": rows}))
+        status, _, err = zones_of(two[0], capsys, "--zones", "0.5")
+        assert status == 2 and err.count("\n") == 1 and "run_0" in err and key in err, err
+
+
 def test_runs_of_other_grids_are_not_counted_together(two):
     write_asc(two[0] / "bodies/1/runs/run_2/run.max_thickness.asc", np.zeros((3, 3)), CELL)
     with pytest.raises(SlopeError) as error:
@@ -602,6 +670,29 @@ def test_zones_of_a_study(two, capsys):
     worth = 1 / sum(one ** 2 for one in weights.values())
     low, high = (float(side) for side in hazard.share_bounds(worth, worth))
     assert (low < 0.4) and entry["at_least_m2"] == 0 and entry["cannot_tell_m2"] == 80 * 25
+
+
+def test_repeats_of_a_point_are_worth_one_run(two, capsys):
+    """Four runs of two points: as two; and a study that has only runs of a condition, which do not count alike."""
+    folder = two[0] / "bodies/1/ensemble"
+    for k in range(4):
+        run_helpers.write_run(blob(20, 30, (4, 14), (5, 10)), 10.0, CELL, str(two[0] / f"bodies/1/runs/run_{k}/run"),
+                              10.0, 20.0)
+    path = folder / "study.yaml"
+    about = yaml.safe_load(path.read_text())
+    for points, of_all in ((4, 1250), (2, 0)):
+        for k, row in enumerate(about["runs"]):
+            row["set"] = {"rolling": str(k % points)}
+        path.write_text(yaml.safe_dump(about))
+        assert zones_of(folder, capsys, "--zones", "0.4", "--overwrite")[0] == 0
+        found = yaml.safe_load((folder / "zones/zones.yaml").read_text())
+        assert found["zones"][0]["at_least_m2"] == of_all
+        assert found["unreached_at_most"] == pytest.approx(float(hazard.share_bounds(0, points)[1]))
+    for row in about["runs"]:
+        row["batch"] = 1
+    path.write_text(yaml.safe_dump(about))
+    status, _, err = zones_of(folder, capsys, "--zones", "0.4", "--overwrite")
+    assert status == 2 and err.count("\n") == 1 and "ensemble" in err, err
 
 
 def test_a_folder_of_something_else(tmp_path, monkeypatch, capsys):

@@ -83,6 +83,9 @@ def run_zones(args: Request, zones_: str) -> None:
         print(f"{one['quantity']} > {one['exceeds']:g}, {'per year' if about['per_year'] else 'of the runs'} at least "
               f"{one['probability']:.4g}: {one['at_least_m2']:,.0f} m2, and {one['cannot_tell_m2']:,.0f} m2 of which "
               f"{about['runs']} runs cannot tell")
+    if about["unreached_at_most"] >= wanted[-1]:
+        print(f"where no run comes it may be up to {about['unreached_at_most']:.2g}: beside the zones {about['runs']} "
+              "runs do not show less than they ask for")
     print(f"written to {folder}: zones.gpkg zones.yaml")
 
 

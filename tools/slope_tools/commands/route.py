@@ -123,6 +123,8 @@ def run(args: Request) -> None:
                 tell("\n".join(runs.listed(several)))
                 return
             failed = runs.make(several, tell)
+            if any(all(run.error for run in one.todo) for one in several):      # nothing is known of that body
+                raise SlopeError(folder, f"runs of {len(failed)} bodies failed: {failed[0]}")
             found = results.make(choices, ground, folder, table)
             page.write(choices, ground, folder, found, warn)
     except OSError as error:

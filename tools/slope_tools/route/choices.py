@@ -73,6 +73,10 @@ class Choices(NamedTuple):
 def schema() -> Dict[str, Any]:
     """Of route.yaml: the choices."""
     fields = {name: of_hint(hint) for name, hint in get_type_hints(Choices).items()}
+    fields.update(terrain=schemas.listed(schemas.TEXT, 1), keep=schemas.COUNT, sample=schemas.COUNT,
+                  confined={"enum": ["yes", "no", "unknown"]})
+    for name in ("volume", "depth"):
+        fields[name] = {**schemas.listed(schemas.NUMBER, 2, null=True), "maxItems": 2}
     needed = {"slope_route": {"enum": [VERSION]}, **{name: fields.pop(name) for name in NEEDED}}
     return {**schemas.mapping(needed), "properties": {**needed, **fields}, "additionalProperties": False}
 
@@ -158,7 +162,7 @@ def same(name: str, one: Any, other: Any) -> bool:
 def check(found: Choices) -> None:
     """The numbers that nothing else checks."""
     numbers: Dict[str, Optional[float]] = {name: getattr(found, name) for name in (
-        "road_width", "corridor", "density", "below", "balls", "minutes")}
+        "road_width", "corridor", "density", "below", "sample", "balls", "minutes")}
     for name, value in numbers.items():
         if value is not None and not value > 0:
             raise SlopeError(option(name), "must be > 0", f"{value:g}")

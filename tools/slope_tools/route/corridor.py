@@ -112,6 +112,15 @@ def searches(corridor: Corridor) -> Iterator[Tuple[Window, BaseGeometry]]:
             yield corridor.window(xlo - room, ylo - room, xhi + room, yhi + room), ground
 
 
+def inside(corridor: Corridor, window: Window) -> BaseGeometry:
+    """A window without the cells at its edge; where that is the terrain's own edge, nothing ends there."""
+    rows, columns = corridor.raster.z.shape
+    xlo, ylo, xhi, yhi = geometry.extent(corridor.clip(window))
+    left, bottom, right, top = (corridor.cell * (-1 if at_edge else 1) for at_edge in (
+        window.left == 0, window.bottom == rows, window.right == columns, window.top == 0))
+    return box(xlo + left, ylo + bottom, xhi - right, yhi - top)
+
+
 def around(corridor: Corridor, xlo: float, ylo: float, xhi: float, yhi: float) -> Tuple[Window, LineString, float]:
     """The ground for the runs of a body (its box): as far as the corridor reaches around it and the road below it.
 
@@ -124,10 +133,10 @@ def around(corridor: Corridor, xlo: float, ylo: float, xhi: float, yhi: float) -
     while True:
         area = area.intersection(whole).envelope
         window = corridor.window(*area.bounds)
-        inner = geometry.box_of(corridor.clip(window)).buffer(-corridor.cell)
+        inner = inside(corridor, window)
         ends = [corridor.axis.project(Point(point)) for part in geometry.parts_of(
             corridor.axis.intersection(inner)) for point in (part.coords[0], part.coords[-1])]
         line = substring(corridor.axis, min(ends), max(ends))
-        if inner.buffer(1e-6).covers(line) or area.equals(whole):
+        if inner.buffer(1e-6).covers(line):
             return window, line, corridor.start + min(ends)
         area = area.union(line.buffer(2 * corridor.cell)).envelope      # the road leaves the ground and comes back

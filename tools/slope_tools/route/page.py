@@ -38,9 +38,9 @@ def sentences(found: Mapping[str, Any]) -> List[str]:
         return [text, f"the largest chance that a body which fails blocks the road is {100 * route['share']:.0f} % "
                 f"(body {route['body']}); how often they fail is not known (--fragility)"]
     one = route["per_year"]
-    return [text, f"the route is blocked {one['counts']:.2g} times per year (90 % of the runs: {one['low']:.2g} to "
-            f"{one['high']:.2g}): {one['independent']:.2g} if the bodies are independent, {one['dependent']:.2g} if "
-            "all have the strength of one sample; the larger counts"]
+    return [text, f"the route is blocked {one['counts']:.2g} times per year: {one['independent']:.2g} if the bodies "
+            f"are independent, {one['dependent']:.2g} if all have the strength of one sample; the larger counts; "
+            f"bounds of the runs (90 %), for any dependence: {one['low']:.2g} to {one['high']:.2g}"]
 
 
 def write(choices: Choices, corridor: Corridor, folder: Path, found: Mapping[str, Any], warn) -> None:
@@ -75,7 +75,8 @@ def doubts(choices: Choices, found: Mapping[str, Any]) -> Iterator[str]:
     if choices.sample < 8:
         low = hazard.share_bounds(choices.sample, choices.sample)[0]
         yield (f"{choices.sample} runs of a body that all block the road tell no more than a share of {100 * low:.0f} "
-               "%: --sample adds more to those that are there")
+               f"%, and where none does it may be up to {100 * (1 - low):.0f} %: --sample adds more to those that are "
+               "there")
 
 
 def drawn(corridor: Corridor, found: Mapping[str, Any], yearly: bool) -> Iterator[Dict[str, str]]:
@@ -88,7 +89,7 @@ def drawn(corridor: Corridor, found: Mapping[str, Any], yearly: bool) -> Iterato
         yield {"uri": map_of(corridor, found, yearly, part.bounds, Span(corridor.start + low, corridor.start + high)),
                "caption": f"km {km(corridor.start + low)} to {km(corridor.start + high)}. The road in the colours of "
                + ("how often per year it is blocked" if yearly else "the largest share of a body's runs that block it")
-               + "; white: no run does. Bodies with their numbers; hollow: left out, cannot reach the road."}
+               + "; white: no run does, which so few runs may miss. Bodies with their numbers; hollow: left out."}
 
 
 def map_of(corridor: Corridor, found: Mapping[str, Any], yearly: bool, bounds, along: Span) -> str:
@@ -172,4 +173,5 @@ def left_out(found: Mapping[str, Any]) -> Dict[str, Any]:
     rows = [[one["body"], km(one["chainage_m"]), f"{one['factor']:.3f}", cell(one["volume_m3"]), one["why_not"]]
             for one in found["left_out"]]
     return table("Left out", ["body", "km", "factor of safety", "volume m3", "why"], rows,
-                 "Bodies that may fail and cannot reach the road, by known mobility.")
+                 "Bodies that may fail and by known mobility do not come to the road; no number has them. Those of "
+                 "which some known events go so far can: a smaller --reach, in another folder, takes them in.")

@@ -24,19 +24,20 @@ class Source(NamedTuple):
     weights: np.ndarray             # of the runs, their sum is 1
     failed: int                     # runs that gave nothing
     offset: Tuple[float, float]     # east, north of the runs' local 0 0
+    effect: float = 1.0             # how many runs are worth one: those of a point
 
     @property
     def worth(self) -> float:
-        """How many runs of one weight these are worth."""
-        return float(1 / (self.weights ** 2).sum())
+        """How many independent runs of one weight these are worth."""
+        return float(1 / (self.weights ** 2).sum()) / self.effect
 
     def bounds(self, share: float) -> Tuple[float, float]:
         """Of a share of the runs."""
-        return bounds(round(float(share), DIGITS), round(self.worth, DIGITS), self.failed)
+        return bounds(round(float(share), DIGITS), round(self.worth, DIGITS), self.failed / self.effect)
 
 
 @functools.lru_cache(maxsize=None)
-def bounds(share: float, number: float, failed: int) -> Tuple[float, float]:
+def bounds(share: float, number: float, failed: float) -> Tuple[float, float]:
     low, high = hazard.share_bounds(share * number, number, failed)      # type: ignore[arg-type]
     return float(low), float(high)
 
@@ -60,8 +61,8 @@ def combined(sources: Sequence[Source], shares_: Sequence[float], yearly: Option
     best = int(np.argmax([yearly.of([number], [share]).counts for number, share in zip(numbers, shares_)]))
     found = yearly.of(numbers, shares_)
     return Combined(shares_[best], numbers[best], low[best], high[best], {
-        **found._asdict(), "counts": found.counts, "low": min(yearly.of(numbers, low)),
-        "high": yearly.of(numbers, high).counts})
+        "independent": found.independent, "dependent": found.dependent, "counts": found.counts,
+        "low": yearly.of(numbers, low).least, "high": yearly.of(numbers, high).most})
 
 
 class Reached(NamedTuple):

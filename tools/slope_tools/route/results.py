@@ -7,7 +7,7 @@ from rasterio.features import shapes
 from shapely.geometry import LineString, shape
 from shapely.ops import unary_union
 
-from .. import disk, provenance
+from .. import disk, provenance, schemas
 from ..case import run_folders
 from ..deposits.axis import SAME, Axis, Span, merged
 from ..errors import SlopeError
@@ -16,7 +16,7 @@ from ..seismic import fragility_files
 from ..survey import geopackage, rasters
 from ..survey.geopackage import Layer
 from ..tables import road_runs
-from ..tables.study_file import read_study
+from ..tables.study_file import WHAT, read_study
 from . import reached, runs, search
 from .choices import Choices
 from .corridor import Corridor
@@ -26,6 +26,9 @@ from .yearly import Yearly
 RESULTS, MAP, LAYERS = "results.yaml", "governing.tif", "route.gpkg"
 STRETCHES, BODIES, PIECES = "stretches.csv", "bodies.csv", "pieces.csv"
 FILES = (RESULTS, MAP, LAYERS, STRETCHES, BODIES, PIECES)
+BLOCKED = schemas.mapping({      # of a run beside a road
+    "stretches": schemas.listed(schemas.mapping(schemas.numbers("from", "to", "passable_width"))),
+    "clearing": schemas.mapping(schemas.numbers("road_width", "blocked_length")), "remove_on_road_m3": schemas.NUMBER})
 NUMBERS = ("length", "passable_width", *road_runs.SUMS)
 
 
@@ -52,6 +55,8 @@ def read_body(folder: Path, about: Mapping[str, Any]) -> BodyRuns:
     output = place / runs.STUDY
     rows = read_study(output / "study.yaml")["runs"]
     done = [row for row in rows if row["status"] == "finished"]
+    for row in done:
+        schemas.check(row, BLOCKED, f"{output / 'study.yaml'}: run {row['run']}", WHAT)
     prefixes = [run_folders.prefix_of(run_folders.summary_of(output, row)) for row in done]
     source = Source(about["body"], prefixes, np.full(len(done), 1 / len(done)), len(rows) - len(done),
                     rasters.read_place(place / "terrain.asc").offset)

@@ -73,7 +73,7 @@ def make(choices: Choices, corridor: Corridor, folder: Path, lmp: Path, ranks: i
 
 def table_of(folder: Path) -> Dict[str, Any]:
     """What bodies.yaml of a route says."""
-    return schemas.load(folder / TABLE, WHAT, schemas.mapping({"bodies": schemas.listed(BODY), "left_out":
+    return schemas.load(folder / TABLE, WHAT, schemas.mapping({"bodies": schemas.listed(BODY, 1), "left_out":
                                                                schemas.listed(BODY)}))
 
 

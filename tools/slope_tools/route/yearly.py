@@ -1,13 +1,15 @@
 """How often per year at least one of several bodies does something, of which each does it with a share of its runs.
 
-The bodies of an earthquake fail together or not, and how they depend is not known: two limits are worked out, and the
-larger counts. Independent: each body has a strength of its own, so that at a peak acceleration a
+The bodies of an earthquake fail together or not, and how they depend is not known: two cases are worked out, and the
+larger one counts. Independent: each body has a strength of its own, so that at a peak acceleration a
 
     P(a) = 1 - (1 - f_1(a) p_1) (1 - f_2(a) p_2) ...
 
 with the fragilities f and the shares p. Dependent: all have the strength of one sample, and of the bodies that have
-failed at a the largest share counts. The frequency is the integral of P over the hazard curve, with what is below its
-first peak not counted, and what is above its last one counted as the last: as seismic/chain.py does.
+failed at a the largest share counts. Neither is a bound: whatever the dependence, P(a) is at least the largest one of
+f_1 p_1, f_2 p_2 ..., and at most their sum, or 1 (Boole, Frechet). The frequency is the integral of P over the hazard
+curve, with what is below its first peak not counted, and what is above its last one counted as the last: as
+seismic/chain.py does.
 """
 from typing import NamedTuple, Sequence
 
@@ -20,13 +22,15 @@ STEPS = 2001        # peaks between the first and the last one of the hazard cur
 
 
 class Rate(NamedTuple):
-    """Per year."""
+    """Per year; least and most: for any dependence."""
     independent: float
     dependent: float
+    least: float
+    most: float
 
     @property
     def counts(self) -> float:
-        return max(self)
+        return max(self.independent, self.dependent)
 
 
 class Yearly:
@@ -36,7 +40,7 @@ class Yearly:
         if found.rate is None:
             raise SlopeError("--fragility", "must be of slope fragility with --hazard, for frequencies per year",
                              found.folder)
-        self.names, self.rate = [int(one) for one in found.bodies], found.rate
+        self.names, self.rate = found.bodies, found.rate
         first, last = float(self.rate.peaks[0]), float(self.rate.peaks[-1])
         peaks = np.geomspace(first, last, STEPS)
         each = found.capacity.reshape(-1, len(self.names))
@@ -51,11 +55,15 @@ class Yearly:
 
     def of(self, bodies: Sequence[int], shares: Sequence[float]) -> Rate:
         """bodies: their numbers; shares: of their runs."""
-        index = [self.names.index(one) for one in bodies]
+        index = [self.names.index(str(one)) for one in bodies]
         p = np.asarray(shares, float)
-        independent = float(self.weights @ (1 - np.prod(1 - self.fails[:, index] * p, axis=1)))
+        each = self.fails[:, index] * p
+        independent, least, most = (float(self.weights @ at) for at in (
+            1 - np.prod(1 - each, axis=1), each.max(axis=1), np.minimum(each.sum(axis=1), 1)))
         order = np.argsort(self.capacity[:, index], axis=1)
         rates = np.take_along_axis(self.fail_rate[:, index], order, axis=1)
         largest = np.maximum.accumulate(p[order], axis=1)
         until = np.concatenate([rates[:, 1:], np.zeros((len(rates), 1))], axis=1)
-        return Rate(independent, float((largest * (rates - until)).sum(axis=1).mean()))
+        dependent = float((largest * (rates - until)).sum(axis=1).mean())
+        both = independent, dependent       # of the samples one by one, the others of steps of the curve
+        return Rate(*both, min(least, *both), max(most, *both))

@@ -1,8 +1,9 @@
 """Zones: where something is exceeded with at least a probability, per year or of the runs, as polygons.
 
 Of a cell the bounds of the probability (the runs', 90 %) decide: both at least P, and the cell is in the zone; one on
-either side, and the runs cannot tell. Cells that no run reaches are in neither. Polygons follow the cells; each corner
-is cut at half a cell, which moves the edge by less than that.
+either side, and the runs cannot tell. Cells that no run reaches are in neither, which does not say that the probability
+is less there: unreached() is what so few runs leave possible. Polygons follow the cells; each corner is cut at half a
+cell, which moves the edge by less than that.
 """
 import math
 from pathlib import Path
@@ -47,7 +48,8 @@ def probabilities(text: str) -> List[float]:
     """Those of --zones, each less than the one before."""
     rule = "must be probabilities > 0 and < 1 that fall, such as 1/100,1/1000,1/5000 or 0.5,0.1"
     try:
-        found = [float(over) / float(under or 1) for over, _, under in (one.partition("/") for one in text.split(","))]
+        found = [float(over) / float(under if mark else 1)
+                 for over, mark, under in (one.partition("/") for one in text.split(","))]
     except (ValueError, ZeroDivisionError):
         found = []
     if not found or not all(0 < one < 1 for one in found) or any(b >= a for a, b in zip(found[:-1], found[1:])):
@@ -89,11 +91,14 @@ def ground_of(name: str, warn) -> Ground:
     known = ((study.about.get("ensemble") or {}).get("known_events") or {}).get("weights")
     rows = [row for row in study.about["runs"] if row["status"] == "finished" and (
         row["run"] in known if known else not row.get("batch"))]
+    if not rows:
+        raise SlopeError(study.folder, "must have finished runs that are counted alike, or have weights")
     prefixes = [run_folders.prefix_of(run_folders.summary_of(study.folder, row)) for row in rows]
     weights = np.array([known[row["run"]] if known else 1.0 for row in rows])
     run = deposit.read(str(prefixes[0]), None, warn)
     failed = sum(row["status"] != "finished" for row in study.about["runs"])
-    return Ground(run.raster, [Source(1, prefixes, weights / weights.sum(), failed, run.raster.offset)], None)
+    effect = 1.0 if known else len(rows) / len({str(row["set"]) for row in rows})
+    return Ground(run.raster, [Source(1, prefixes, weights / weights.sum(), failed, run.raster.offset, effect)], None)
 
 
 def check(ground: Ground, wanted: Sequence[float], name: object) -> None:
@@ -126,6 +131,15 @@ def bounds(one, ground: Ground) -> Tuple[float, float]:
         return 0.0, 0.0
     by_number = {source.body: source for source in ground.sources}
     found = reached.combined([by_number[number] for number, _ in one], [share for _, share in one], ground.yearly)
+    return probable(found)
+
+
+def unreached(ground: Ground) -> float:
+    """The upper bound of the probability where no run of any body comes."""
+    return probable(reached.combined(ground.sources, [0.0] * len(ground.sources), ground.yearly))[1]
+
+
+def probable(found: reached.Combined) -> Tuple[float, float]:
     if found.per_year is None:
         return found.low, found.high
     return 1 - math.exp(-found.per_year["low"]), 1 - math.exp(-found.per_year["high"])
@@ -163,7 +177,7 @@ def about(ground: Ground, several: Sequence[Zones], wanted: Sequence[float]) -> 
     """What zones.yaml says."""
     area = float(ground.raster.transform.a) ** 2
     return {"per_year": ground.yearly is not None, "crs": ground.raster.crs and crs_name(ground.raster.crs),
-            "runs": sum(len(one.prefixes) for one in ground.sources), "zones": [
+            "runs": sum(len(one.prefixes) for one in ground.sources), "unreached_at_most": unreached(ground), "zones": [
                 {"quantity": zones.limit.quantity, "exceeds": zones.limit.value, "probability": probability,
                  "at_least_m2": float((classes == 1).sum()) * area,
                  "cannot_tell_m2": float((classes == 2).sum()) * area}
