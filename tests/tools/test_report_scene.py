@@ -581,7 +581,7 @@ def test_limits_of_a_run(plain):
     assert list(found) == ["Known events", "Chance", "Size of the balls", "Time step", "Varied", "The body",
                            "The mass", "The ground"]
     assert "not tried" in found["Time step"]
-    assert found["Known events"].startswith("No set of known events covers a volume of")
+    assert "of landslides of this volume and height" in found["Known events"]
     assert found["Chance"].startswith("Unknown") and found["Varied"].startswith("Nothing")
     # balls of 1 m, of which each stands for a cube: 6/pi of its volume
     assert "1.00 m³ of ground, a cube of 1.00 m" in found["The mass"] and "Dry" in found["The mass"]

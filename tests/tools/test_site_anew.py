@@ -24,6 +24,7 @@ from tiny_collapse import LMP, processes_in
 from slope_tools import cli, disk, programs
 from slope_tools.animation import film
 from slope_tools.case import decks
+from slope_tools.deposits import score_run
 from slope_tools.errors import SlopeError
 from slope_tools.plots import site_map
 from slope_tools.releases import release_chart
@@ -552,7 +553,17 @@ def test_the_report_is_written_though_the_score_fails(gis, monkeypatch):  # noqa
     path.write_text(yaml.safe_dump(about))
     (gis / "mine" / "score").mkdir()
     (gis / "mine" / "score" / "score.yaml").write_text("of other runs\n")
+    outline = (gis / "mine" / "observed.csv").read_text()
     (gis / "mine" / "observed.csv").write_text("no outline\n")
-    study = in_process(gis, "study", "mine")
+    study = in_process(gis, "study", "mine", "--paper")
     assert study.returncode == 2 and study.stderr.splitlines()[-1].startswith("slope study: mine/observed.csv: "), study
+    assert not (gis / "mine" / "runs").exists()     # said before anything is run
+    (gis / "mine" / "observed.csv").write_text(outline)
+
+    def fails(*_):
+        raise SlopeError("mapped", "must fit")
+
+    monkeypatch.setattr(score_run, "make", fails)
+    study = in_process(gis, "study", "mine", "--paper")
+    assert study.returncode == 2 and study.stderr.splitlines()[-1].startswith("slope study: mapped: "), study
     assert (gis / "mine" / "report.html").exists() and not (gis / "mine" / "score").exists()

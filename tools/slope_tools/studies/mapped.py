@@ -13,7 +13,9 @@ from ..case import run_folders
 from ..deposits import deposit, score
 from ..findings import Finding
 from ..mobility import run_length
+from ..sites.site_folder import TERRAIN
 from ..sites.site_layers import OBSERVED
+from ..survey import rasters
 from ..tables import study_table
 
 OVERLAP, BEYOND = study_table.MAPPED        # columns of the table of runs
@@ -24,6 +26,13 @@ def of_site(site: Optional[Path]) -> Optional[Path]:
     """The mapped deposit of a site's folder: its outline, or its thickness; None without one."""
     files = [site / f"{OBSERVED}{suffix}" for suffix in (".csv", ".tif")] if site else []
     return next((one for one in files if one.is_file()), None)
+
+
+def check(site: Path) -> None:
+    """Raise SlopeError unless the mapped deposit of a site, if it has one, can be compared with its runs."""
+    path = of_site(site)
+    if path:
+        score.read_observed(path, rasters.read_asc_local(site / TERRAIN), score.THRESHOLD, False)
 
 
 def compare(path: Optional[Path], output: Path, rows: Sequence[Dict[str, Any]],

@@ -23,7 +23,7 @@ from ..tables import energy
 from ..tables.size_error import SizeErrors, WHAT
 from ..tables.step_check import HALF, QUANTITY, Step
 from ..tables.study_file import read_study
-from . import results, size_study, study
+from . import mapped, results, size_study, study
 from .sensitivity import quantities
 from .setup import Road, Setup
 
@@ -108,6 +108,7 @@ def check(folder: Path, choices: Choices) -> None:
         if before.get(name, digest) != digest:
             raise SlopeError(folder / name, f"must not have changed since {site_deck.NAME} was made from it: "
                              f"`slope site {quote(str(folder))}` rebuilds the deck")
+    mapped.check(folder)
 
 
 def warnings_of(folder: Path) -> List[Finding]:
