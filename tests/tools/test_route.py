@@ -645,6 +645,21 @@ def test_a_study_of_no_road_is_refused(two, capsys):
         assert status == 2 and err.count("\n") == 1 and "run_0" in err and key in err, err
 
 
+def test_a_body_without_a_finished_run(two, capsys, monkeypatch):
+    """The error is that of its runs."""
+    from slope_tools.route import runs
+    program = two[0] / "lmp"
+    program.write_text("#!/bin/sh\nexit 1\n")
+    program.chmod(0o755)
+    (two[0] / "bodies/2/ensemble/study.yaml").unlink()
+    todo = type("Run", (), {"error": "exit status 1"})
+    monkeypatch.setattr(runs, "make_site", lambda *rest: None)
+    monkeypatch.setattr(runs, "asked_of", lambda *rest: runs.Asked(None, None, None, [todo]))
+    monkeypatch.setattr(runs, "make", lambda *rest: ["body 2: 4 of 4 runs failed"])
+    status, _, err = called(capsys, ["route", str(two[0]), "--lmp", str(program)])
+    assert status == 2 and err.count("\n") == 1 and "body 2: 4 of 4 runs failed" in err, err
+
+
 def test_runs_of_other_grids_are_not_counted_together(two):
     write_asc(two[0] / "bodies/1/runs/run_2/run.max_thickness.asc", np.zeros((3, 3)), CELL)
     with pytest.raises(SlopeError) as error:

@@ -50,8 +50,7 @@ class Yearly:
         self.weights = ends + np.concatenate([[0.0], ends[:-1]])        # trapezoids
         self.weights[-1] += rates[-1]
         self.capacity = each
-        with np.errstate(invalid="ignore"):     # at which rate each body fails, in each sample
-            self.fail_rate = np.where(each < last, self.rate.at(np.clip(each, first, last)), 0.0)
+        self.fail_rate = self.rate.exceeds(each)        # of each sample
 
     def of(self, bodies: Sequence[int], shares: Sequence[float]) -> Rate:
         """bodies: their numbers; shares: of their runs."""

@@ -149,9 +149,7 @@ def weights(capacity: np.ndarray, peaks: np.ndarray, rate: Optional[Hazard] = No
     Bodies that fail together count each; the sum is 1. All are 0 if none ever fails.
     """
     if rate is not None:
-        last = rate.peaks[-1]
-        with np.errstate(invalid="ignore"):
-            each = np.where(capacity < last, rate.at(np.clip(capacity, rate.peaks[0], last)), 0.0).mean(axis=(0, 1))
+        each = rate.exceeds(capacity).mean(axis=(0, 1))
     else:
         each = np.array([(capacity < peak).mean(axis=(0, 1)) for peak in peaks]).mean(axis=0)
     return each / each.sum() if each.sum() > 0 else each

@@ -204,6 +204,11 @@ class Hazard(NamedTuple):
         with np.errstate(divide="ignore"):
             return np.exp(np.interp(np.log(peak), np.log(self.peaks), np.log(self.rates)))
 
+    def exceeds(self, capacity: np.ndarray) -> np.ndarray:
+        """How often a peak exceeds each capacity: those below the first one never, those above the last one as it."""
+        with np.errstate(invalid="ignore"):
+            return np.where(capacity < self.peaks[-1], self.at(np.clip(capacity, self.peaks[0], self.peaks[-1])), 0.0)
+
 
 class Frequency(NamedTuple):
     """How often a body fails, per year."""
@@ -218,8 +223,7 @@ def frequency(capacity: np.ndarray, hazard: Hazard, peaks: np.ndarray) -> Freque
     Peaks below the curve's first are not counted; those above its last count as the last.
     """
     first, last = hazard.peaks[0], hazard.peaks[-1]
-    counted = np.where(capacity < last, hazard.at(np.maximum(capacity, first)), 0.0)
-    total = banded(replicates(counted).reshape(REPLICATES, -1).mean(axis=1))
+    total = banded(replicates(hazard.exceeds(capacity)).reshape(REPLICATES, -1).mean(axis=1))
     ends = np.unique(np.concatenate([[first], peaks[(peaks > first) & (peaks < last)], [last]]))
     parts = [(float(a), float(b), float((hazard.at(np.clip(capacity, a, b)) - hazard.at(b)).mean()))
              for a, b in zip(ends[:-1], ends[1:])]
