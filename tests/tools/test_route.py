@@ -219,6 +219,15 @@ def test_stretches_and_bodies(two):
     assert [(row["stretch"], row["body"]) for row in rows] == [("1", "1"), ("1", "2"), ("2", "2")]
 
 
+def test_runs_under_a_condition_are_not_of_the_sample(two):
+    path = two[0] / "bodies/1/ensemble/study.yaml"
+    about = yaml.safe_load(path.read_text())
+    about["runs"][3]["batch"] = 1
+    path.write_text(yaml.safe_dump(about))
+    found, _ = made(*two)
+    assert (found["bodies"][0]["runs"], found["bodies"][0]["share_blocked"]) == (3, pytest.approx(2 / 3))
+
+
 def test_who_hits_what(two):
     found, ground = made(*two)
     folder = two[0]

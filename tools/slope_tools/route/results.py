@@ -53,7 +53,8 @@ class BodyRuns(NamedTuple):
 def read_body(folder: Path, about: Mapping[str, Any]) -> BodyRuns:
     place = runs.folder_of(folder, about["body"])
     output = place / runs.STUDY
-    rows = read_study(output / "study.yaml")["runs"]
+    # runs that `slope study bodies/N` added under a condition do not count as those of the sample
+    rows = [row for row in read_study(output / "study.yaml")["runs"] if not row.get("batch")]
     done = [row for row in rows if row["status"] == "finished"]
     for row in done:
         schemas.check(row, BLOCKED, f"{output / 'study.yaml'}: run {row['run']}", WHAT)

@@ -96,7 +96,7 @@ def ground_of(name: str, warn) -> Ground:
     prefixes = [run_folders.prefix_of(run_folders.summary_of(study.folder, row)) for row in rows]
     weights = np.array([known[row["run"]] if known else 1.0 for row in rows])
     run = deposit.read(str(prefixes[0]), None, warn)
-    failed = sum(row["status"] != "finished" for row in study.about["runs"])
+    failed = sum(row["status"] != "finished" and bool(known or not row.get("batch")) for row in study.about["runs"])
     effect = 1.0 if known else len(rows) / len({str(row["set"]) for row in rows})
     return Ground(run.raster, [Source(1, prefixes, weights / weights.sum(), failed, run.raster.offset, effect)], None)
 
