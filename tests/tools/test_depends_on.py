@@ -27,7 +27,7 @@ from slope_tools.sites import site_choices
 CHOSEN = {"set", "vary", "levels", "sample", "fit", "paper", "design", "seed", "repeat", "converge", "runs",
           "fragility"}
 FOLLOWED = {"deck", "lmp"}              # dependencies.py
-PLACE = {"output", "overwrite", "help", "dry_run"}      # where to, or no run
+PLACE = {"output", "overwrite", "help", "dry_run", "all_columns"}       # where to, what is shown, or no run
 ONE_RESULT = {"np", "jobs", "launcher", "engine", "slurm"}      # how it is run: the same but for rounding
 # computed from the runs, each time that the command is given
 ANEW = {"road", "road_width", "road_from", "blocked", "lane", "clearing", "loosening", "cut_angle", "mesh", "local",
@@ -125,7 +125,7 @@ def test_every_option_is_said(command):
 # --- environment variables ---
 
 PROGRAM = {"LMP", "LAMMPS_PLUGIN_PATH", "LD_LIBRARY_PATH"}      # by what they lead to
-SAME = {"SLOPE_KERNEL", "OMP_NUM_THREADS"}   # of one result, but for rounding
+SAME = {"SLOPE_KERNEL", "OMP_NUM_THREADS", "COMP_LINE"}   # of one result, but for rounding; a shell completes words
 
 
 def test_every_environment_variable_is_guarded():
