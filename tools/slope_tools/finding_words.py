@@ -51,8 +51,9 @@ WORDS: Dict[str, Union[str, Words]] = {
     "no sizes": Words("the effect of smaller balls is unknown", LIMIT,
                       "What smaller balls in the model would change is unknown."),
     "few balls high": Words("{name} is {height:#.3g} m high, {balls:.2g} of the model's balls: the loads on it are "
-                            "those of single balls, and rough", LIMIT, "{name} is {balls:.2g} of the model's balls high: the forces on it are those of "
-                                   "single balls, and rough."),
+                            "those of single balls, and rough", LIMIT,
+                            "{name} is {balls:.2g} of the model's balls high: the forces on it are those of single "
+                            "balls, and rough."),
     "cut below ground": Words("{percent:.0f} % of it ({volume:,.6g} m3 in the run {run}) lies where the cut surface is "
                               "below the ground before the collapse. The hillside is about as steep as the cut of "
                               "{angle:g} degrees there, or steeper, so that all of the deposit on it is counted; a "
