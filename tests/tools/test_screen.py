@@ -13,10 +13,10 @@ from run_helpers import run_command
 
 from slope_tools import cli
 from slope_tools.commands import polygon, run_arguments
-from slope_tools.report import document, warnings as report_warnings
+from slope_tools.findings import Finding, entries
+from slope_tools.report import document, structures_part, warnings as report_warnings
 from slope_tools.report.page import ENDS, MOST_ROWS, Page
-from slope_tools.tables import study_table
-from slope_tools.findings import Finding
+from slope_tools.tables import judged, study_table
 
 CELLS = {"rolling": "0.05", "released": "17,522", "wall s": "1,234", "deg": "22.1", "99 % within m": "123.4",
          "length m": "130.2", "farthest ball m": "155.1", "end": "at rest", "to remove": "12,345",
@@ -120,12 +120,16 @@ def test_a_fault_of_the_page_is_no_bad_input(tmp_path, monkeypatch, capsys):
 
 # --- the page ---
 
-def test_that_a_road_has_no_crs_is_said_beside_the_maps_not_in_red():
+def test_that_a_road_has_no_crs_is_said_beside_the_maps_not_in_red(monkeypatch):
     sizes = "sizes of balls"
     several = [Finding("no CRS", {"file": "road.csv", "coordinates": "local"}, (), part) for part in ("", sizes)]
     several.append(Finding("size error", {"why": "too few runs"}, (), sizes))
-    data = SimpleNamespace(rows=[], finished=[], warnings=lambda: several)
-    assert report_warnings.of_study(data) == [("red", "sizes of balls: the size error is unknown: too few runs")]
+    for module, name in ((judged, "of_runs"), (judged, "limits"), (judged, "of_logs"),
+                         (report_warnings, "below_ground"), (structures_part, "coarse_walls")):
+        monkeypatch.setattr(module, name, lambda *_: [])
+    data = SimpleNamespace(judged=[], repeats=[], study={"conservative": None, "warnings": entries(several)})
+    found = report_warnings.listed(report_warnings.findings(data, None), {})
+    assert [(level, text.count("size error")) for level, text in found] == [("warning", 1)]
 
 
 @pytest.mark.parametrize("number", [MOST_ROWS, 96])
