@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.collections import LineCollection
 from shapely.ops import substring
 
-from .. import disk, provenance
+from .. import digits, disk, provenance
 from ..deposits.axis import Axis, Span
 from ..drawing import figures, maps, palettes
 from ..drawing.figures import plt
@@ -21,7 +21,6 @@ PAGE = "route.html"
 ALONG = 4000.0      # m of the road in a map
 KM = "{:.3f}"
 LEAST = 1e-6        # per year: the lower end of the colours
-BIG = "{:,.3g}"
 
 
 def km(metres: float) -> str:
@@ -48,7 +47,8 @@ def write(choices: Choices, corridor: Corridor, folder: Path, found: Mapping[str
     yearly = choices.fragility is not None
     content = {
         "title": choices.name or folder.absolute().name, "client": choices.client, "author": choices.author,
-        "made": provenance.now(), "mark": document.mark(folder), "sentences": sentences(found), "how": how(choices),
+        "made": provenance.now(), "mark": document.mark(folder), "how": how(choices),
+        "sentences": [f"{text[0].upper()}{text[1:]}." for text in sentences(found)],
         "warnings": list(doubts(choices, found)), "maps": list(drawn(corridor, found, yearly)),
         "tables": [stretches(found, yearly), bodies(found, yearly), left_out(found)],
         "footer": f"{document.MADE_BY.replace('report', 'route')}, SLOPE {provenance.version()}; all numbers: "
@@ -126,8 +126,8 @@ def table(title: str, heads: List[str], rows: List[List[Any]], caption: str) -> 
     return {"id": title.lower().replace(" ", "_"), "title": title, "heads": heads, "rows": rows, "caption": caption}
 
 
-def cell(value, form: str = BIG) -> str:
-    return "-" if value is None else form.format(value)
+def cell(value, form: str = "") -> str:
+    return "-" if value is None else form.format(value) if form else digits.rounded(value, 3)
 
 
 def often(one: Mapping[str, Any], yearly: bool) -> List[str]:
