@@ -1,16 +1,16 @@
 """The number of a study: the larger of the paper's and an ensemble's, a floor, withheld, or nothing; by hand."""
-import sys
+import os
+from types import SimpleNamespace
 
 import pytest
+import yaml
 
-from run_helpers import TOOLS
-
-sys.path.insert(0, str(TOOLS))
-
-from slope_tools import disk  # noqa: E402  (after the path is set)
-from slope_tools.statistics import answer  # noqa: E402
-from slope_tools.statistics.answer import Code, Ensemble, Kind, Paper, Road, Source, Withheld  # noqa: E402
-from slope_tools.statistics.withheld import Kind as Rule  # noqa: E402
+from slope_tools import disk
+from slope_tools.commands import study
+from slope_tools.statistics import answer
+from slope_tools.statistics.answer import Code, Ensemble, Kind, Paper, Road, Source, Withheld
+from slope_tools.statistics.withheld import Kind as Rule
+from slope_tools.tables import answered
 
 STOPPED = answer.Reason(Code.TERRAIN, {"share": 0.12, "path_m": 900.0})
 
@@ -93,3 +93,48 @@ def test_what_study_yaml_says():
     assert about["ensemble"] == {"volume_m3": None, "far": 0.08, "withheld": []}
     assert about["road"]["reached"] == [0.5, 0.6] and about["reasons"][1] == {
         "code": "terrain ends", "numbers": {"share": 0.12, "path_m": 900.0}}
+
+
+# --- which study governs ---
+
+def written(path, headline, at):
+    path.parent.mkdir(exist_ok=True)
+    path.write_text(yaml.safe_dump({"headline": headline, "study": {}}))
+    os.utime(path, (at, at))
+
+
+def test_a_headline_of_both_governs_only_while_both_have_it(tmp_path):
+    paper, other, weighted = tmp_path / "study", tmp_path / "ensemble", ensemble()
+    of_both = answer.of(Paper(700.0), weighted, road(0.5, 0.6)).about()
+    assert of_both["source"] == "ensemble"
+    for name, at in ((paper, 200), (other, 100)):
+        written(name / "study.yaml", of_both, at)
+    assert answered.governing(paper, other) == other
+    written(paper / "study.yaml", answer.of(Paper(800.0), None, None).about(), 300)     # study --paper since
+    assert answered.governing(paper, other) == paper
+
+
+@pytest.mark.parametrize("fails, merged", [(True, 0), (False, 1)])
+def test_an_older_result_is_not_merged_where_all_runs_failed(tmp_path, monkeypatch, fails, merged):
+    for name in ("study", "ensemble"):
+        written(tmp_path / name / "study.yaml", None, 100)
+    calls = []
+
+    def runs(name, failed):
+        if failed:
+            raise study.RunsFailed(tmp_path, "all runs failed")
+        written(tmp_path / name / "study.yaml", None, 200)
+        return SimpleNamespace(failed=None)
+
+    monkeypatch.setattr(study.site_study, "run", lambda *_: runs("study", False))
+    monkeypatch.setattr(study, "run_deck", lambda _: runs("ensemble", fails))
+    monkeypatch.setattr(study, "of_ensemble", lambda *_: None)
+    monkeypatch.setattr(study, "write_report", lambda *_, **__: None)
+    monkeypatch.setattr(study.answered, "of_both", lambda *paths: calls.append(paths))
+    asked = study.Request(deck=tmp_path)
+    if fails:
+        with pytest.raises(study.RunsFailed):
+            study.run_both(asked, 4)
+    else:
+        study.run_both(asked, 4)
+    assert len(calls) == merged

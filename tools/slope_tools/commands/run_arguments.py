@@ -38,7 +38,6 @@ class Engine(Program):
     np: int = option("MPI ranks of each run (default 1)", default=1, metavar="N")
     jobs: Optional[int] = option("runs at a time (default: as many as the cores of this machine allow)", metavar="J")
     dry_run: bool = flag("only list the runs")
-    all_columns: bool = flag("show all columns of the tables on the screen, also those for which it has no room")
     anew: bool = flag(
         "make finished runs again that are of another program, deck or data than the present ones (default: refuse "
         "them)")
@@ -66,6 +65,7 @@ class Runs(road_arguments.Clearing, Engine):
         "rise of the cut surface from the road's edges, degrees (default 30); see `slope volume`", metavar="DEG")
     mesh: Optional[float] = option("side of the mesh cells of that volume, m (default 10)", metavar="SIZE")
     local: bool = flag("the road is in local metres, not in a CRS")
+    all_columns: bool = flag("show all columns of the tables on the screen, also those for which it has no room")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -126,6 +126,8 @@ def run_folder(args: Request) -> None:
 def run_both(args: Request, points: int) -> None:
     """The paper's study and the ensemble of a site, the number that both give, and a report of each."""
     site = args.deck
+    both = [site / name / "study.yaml" for name in (site_study.STUDY, site_study.ENSEMBLE)]
+    before = [written(path) for path in both]
     paper = site_study.run(site, setup_of(args), known_study.BESIDE)
     failed = paper.failed
     try:
@@ -134,8 +136,9 @@ def run_both(args: Request, points: int) -> None:
         failed = failed or error
     if args.dry_run:
         return
-    both = [site / name / "study.yaml" for name in (site_study.STUDY, site_study.ENSEMBLE)]
-    found = answered.of_both(*both) if all(path.is_file() for path in both) else None
+    # where all runs of one failed there may be an older result of it
+    new = all(written(path) not in (None, old) for path, old in zip(both, before))
+    found = answered.of_both(*both) if new else None
     governs = answered.governing(*(path.parent for path in both)).name
     for name in (site_study.STUDY, site_study.ENSEMBLE):
         if name != governs and (site / name / "study.yaml").is_file():
@@ -146,6 +149,11 @@ def run_both(args: Request, points: int) -> None:
         write_report(site / governs, site / "report.html")
     if failed:
         raise failed
+
+
+def written(path: Path) -> Optional[int]:
+    """When a file was written; None: there is none."""
+    return path.stat().st_mtime_ns if path.is_file() else None
 
 
 def say(folder, method, others=False):

@@ -56,8 +56,9 @@ def governing(paper: Path, ensemble: Path) -> Path:
     there = [one for one in (ensemble, paper) if (one / "study.yaml").is_file()]
     if len(there) < 2:
         return there[0] if there else paper
-    said = schemas.load(ensemble / "study.yaml", "what `slope study` wrote", SCHEMA).get("headline")
-    if said and said["paper"]:
+    said, of_paper = (schemas.load(one / "study.yaml", "what `slope study` wrote", SCHEMA).get("headline")
+                      for one in (ensemble, paper))
+    if said and said == of_paper:       # of both, entered by of_both()
         return paper if said["source"] == "paper" else ensemble
     return max(there, key=lambda one: (one / "study.yaml").stat().st_mtime)      # not of one command
 
