@@ -95,6 +95,12 @@ def test_what_study_yaml_says():
         "code": "terrain ends", "numbers": {"share": 0.12, "path_m": 900.0}}
 
 
+def test_the_volume_is_the_one_that_the_study_shows():
+    best = {"volume_m3": 21700.6, "rounded": {"volume_m3": 21710.0}, "withheld": []}
+    assert answered.paper_of({"conservative": best}) == Paper(21710.0, [])
+    assert answered.paper_of({"conservative": {**best, "volume_m3": None}}).volume is None
+
+
 # --- which study governs ---
 
 def written(path, headline, at):

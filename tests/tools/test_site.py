@@ -183,7 +183,8 @@ def test_both_studies_give_one_number(done, tmp_path, monkeypatch, capsys):
     assert paper["study"]["known"] == {"set": None, "confined": "unknown"} and both["study"]["known"] == {
         "set": None, "left_out": [], "confined": "unknown"}
     found = both["headline"]
-    assert found == paper["headline"] and found["paper"]["volume_m3"] == paper["conservative"]["volume_m3"]
+    assert found == paper["headline"] and found["paper"]["volume_m3"] == (
+        paper["conservative"]["volume_m3"] and paper["conservative"]["rounded"]["volume_m3"])
     low, high = found["road"]["reached"]
     assert 0 < low <= high <= 1 and found["road"]["passed"][1] <= high
     assert found["road"]["near_m"] < found["road"]["far_m"]

@@ -19,9 +19,12 @@ def of_study(about: Mapping[str, Any], road: Optional[Road]) -> Optional[Answer]
 
 
 def paper_of(about: Mapping[str, Any]) -> Optional[Paper]:
-    """Its conservative volume, if it has one."""
+    """Its conservative volume, if it has one, rounded up as it is shown."""
     best = about.get("conservative")
-    return Paper(best["volume_m3"], rules(best.get("withheld") or ())) if best else None
+    if not best:
+        return None
+    shown = None if best["volume_m3"] is None else (best.get("rounded") or best)["volume_m3"]
+    return Paper(shown, rules(best.get("withheld") or ()))
 
 
 def ensemble_of(about: Mapping[str, Any]) -> Optional[Ensemble]:
