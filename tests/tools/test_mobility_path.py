@@ -223,7 +223,7 @@ def test_where_a_run_lies(known):
     assert known.length_at(1e-6, "confined") is None and known.in_range
 
 
-@pytest.mark.parametrize("depth, slope, words", [(1.0, STEEP, ["volume, 0.03"]), (20.0, 0.05, ["height, "])])
+@pytest.mark.parametrize("depth, slope, words", [(1.0, STEEP, ["volume, 3"]), (20.0, 0.05, ["height, "])])
 def test_out_of_range(depth, slope, words):
     mass = disc(terrain(lambda x, y: 3000 - slope * x), (300, 600), depth)
     found = exceedance.of_body(mass, SET)

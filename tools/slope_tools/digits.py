@@ -61,6 +61,11 @@ def prefix(largest: float) -> Tuple[float, str]:
     return next(((factor, name) for factor, name in PREFIXES if largest >= factor), PREFIXES[-1])
 
 
+def volume(value: float) -> str:
+    """A volume with its unit, for messages: 33,885 m3, 4.52 million m3."""
+    return f"{rounded(value / MILLION)} million m3" if value >= MILLION else f"{rounded(value)} m3"
+
+
 def place(value: float) -> str:
     """A coordinate in m, to a decimetre."""
     return f"{value:.1f}"

@@ -10,6 +10,7 @@ from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
+from .. import digits
 from . import fall_path
 from .body import Body
 from .fall_path import FallPath
@@ -145,8 +146,8 @@ def outside(mobility: Mobility) -> List[str]:
     lines = []
     low, high = law.volumes
     if not low <= mobility.volume <= high:
-        lines.append(f"no set of known events covers this volume, {mobility.volume:.4g} million m3: those of the set "
-                     f"have {low:g} to {high:g}")
+        lines.append(f"no set of known events covers this volume, {digits.volume(1e6 * mobility.volume)}: those of the "
+                     f"set have {low:g} to {high:g} million m3")
     low, high = law.falls
     median = mobility.length_at(HALF)
     fall = float(np.interp(path.length[-1] if median is None else median, path.length, path.fall))

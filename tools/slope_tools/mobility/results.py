@@ -7,7 +7,7 @@ from shapely.geometry import LineString
 from shapely.geometry.base import BaseGeometry
 
 from .. import disk
-from ..digits import rounded
+from ..digits import rounded, volume
 from ..findings import Finding, entries
 from ..provenance import version
 from ..survey import geopackage
@@ -132,7 +132,7 @@ def words(found: Found, source: Source, road: Optional[AtRoad]) -> List[str]:
     """What the user reads."""
     counts, path = found.decides, found.decides.path
     x, y, z = path.crown
-    lines = [f"{rounded(counts.volume)} million m3, crown at {x:.1f} {y:.1f}, elevation {z:.1f} m",
+    lines = [f"{volume(1e6 * counts.volume)}, crown at {x:.1f} {y:.1f}, elevation {z:.1f} m",
              f"fall path of {rounded(path.length[-1], 4)} m, down to {rounded(path.fall[-1], 4)} m below the crown, "
              + path.end]
     for one in found.each:
