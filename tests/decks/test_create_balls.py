@@ -1,7 +1,6 @@
 """create_balls: the balls of a surface as atoms, the same ones on any number of ranks."""
 
 import math
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -182,41 +181,6 @@ region          ball sphere 20 20 15 10 units box
 region          soil intersect 2 ground ball units box
 """ + "\n".join(commands), tmp_path, np=2)
     assert log.count("Create_balls: ") == len(commands)
-
-
-BAD = [
-    ("2 0.5 2000", "0 0.5 2000", "type must be 1 to 2 (the atom types of the box), got 0"),
-    ("2 0.5 2000", "3 0.5 2000", "type must be 1 to 2 (the atom types of the box), got 3"),
-    ("2 0.5 2000", "x 0.5 2000", "Create_balls type must be a whole number below 2^31, got x"),
-    ("2 0.5 2000", "2 -1 2000", "Create_balls diameter must be > 0, got -1"),
-    ("2 0.5 2000", "2 0 2000", "Create_balls diameter must be > 0, got 0"),
-    ("2 0.5 2000", "2 thick 2000", "Create_balls diameter must be a finite number, got thick"),
-    ("2 0.5 2000", "2 0.5 0", "Create_balls density must be > 0, got 0"),
-    ("2 0.5 2000", "2 0.5 heavy", "Create_balls density must be a finite number, got heavy"),
-    ("2 0.5 2000 surface ball lower spacing 0.5", "2 0.5",
-     "Create_balls needs TYPE DIAMETER DENSITY and surface or file, got 2 arguments"),
-    ("spacing 0.5", "spacing 0.5 write out.txt",
-     "Create_balls keyword must be spacing, origin, pattern, angle, sink, sunk, smallest, inside or outside, got "
-     "write"),
-    ("atom_style      sphere", "atom_style      atomic",
-     "Create_balls atom_style must have radius and mass per atom, as sphere has, got atomic"),
-    ("create_box      2 box", "", "Create_balls before the simulation box is defined"),
-    ("-6 6 -6 6 0 12", "-6 6 -6 6 2 12",
-     "Create_balls balls must lie in the simulation box (below its upper faces), got "),
-]
-
-
-def test_bad_input_ends_with_one_line(tmp_path):
-    def check(k):
-        good, bad, message = BAD[k]
-        path = tmp_path / str(k)
-        path.mkdir()
-        assert good in deck()
-        run_deck(deck().replace(good, bad), path, expect_error=message)
-        assert not (path / "balls.dump").exists()
-
-    with ThreadPoolExecutor(4) as pool:      # a run of LAMMPS sleeps half a second in MPI_Init
-        list(pool.map(check, range(len(BAD))))
 
 
 def test_balls_outside_the_box_are_counted_and_located(tmp_path):

@@ -150,16 +150,6 @@ def test_restart_refuses_another_ground(tmp_path):
         run_deck(AGAIN.format(out="a", ground=ground, pit=33.7), tmp_path, np=2, expect_error=other)
 
 
-# --- what must stay, what must fit ---
-
-
-def test_regions_must_stay(tmp_path):
-    write_asc(tmp_path / "ground.asc", heights(), 0.0, 0.0, 2.0)
-    for gone in ("region pit delete\nrun 1", "region pit delete\nregion pit block 30 40 20 30 -20 50 units box\nrun 1"):
-        run_deck(deck() + gone + "\n", tmp_path, expect_error=(
-            "Fix wall/gran/balls wall: region pit must not change"))
-
-
 def test_a_raster_beyond_the_free_memory_ends_all_ranks(tmp_path):
     with open(tmp_path / "large.asc", "w") as out:
         out.write("ncols 20000\nnrows 20000\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2 3\n")

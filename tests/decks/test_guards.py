@@ -247,11 +247,6 @@ def test_forces_that_are_scaled(tmp_path):
         neigh="pair_coeff * * zero")
 
 
-def test_wall_type_without_coefficients(tmp_path):
-    run(tmp_path, expect_error="Fix wall/gran/balls: pair_coeff 1 2 is not set (moving type 1, wall type 2)",
-        types="1 1")
-
-
 def test_force_that_is_no_number(tmp_path):
     run(tmp_path, expect_error="velocity or force that is not finite at step 50", steps=100,
         extra="variable huge equal 1e308*(step==50)\nfix push ball addforce v_huge v_huge 0\n"

@@ -410,58 +410,7 @@ def test_examples_of_the_page(tmp_path):
     assert table(log)[1, 1][2:6] == pytest.approx([1.19e6, 0.3217, 0.3439, 0.48], rel=1e-3)  # mass ball is the last
 
 
-# --- bad input ---
-
-
-STIFF = "pair_coeff * * stiffness 1e6 1e6"
-
-
-@pytest.mark.parametrize("coeff, message", [
-    (f"{STIFF} restitution 0", "Pair gran/restitution restitution must be > 0 and <= 1, got 0"),
-    (f"{STIFF} restitution 1.2", "Pair gran/restitution restitution must be > 0 and <= 1, got 1.2"),
-    (f"{STIFF} restitution -0.5", "restitution must be > 0 and <= 1, got -0.5"),
-    (f"{STIFF} restitution nan", "restitution"),
-    (f"{STIFF} restitution 0.5 friction 90", "friction must be >= 0 and < 90 degrees, got 90"),
-    (f"{STIFF} restitution 0.5 friction -1", "friction must be >= 0 and < 90 degrees, got -1"),
-    (f"{STIFF} restitution 0.5 damping 1 1", "exactly one of restitution and damping is required, got both"),
-    (STIFF, "exactly one of restitution and damping is required, got neither"),
-    (f"{STIFF} damping -1 1", "damping must be >= 0 (cn), got -1"),
-    (f"{STIFF} damping 1 -2", "damping must be >= 0 (ct), got -2"),
-    ("pair_coeff * * restitution 0.5", "pair_coeff * *: stiffness kn kt is required"),
-    ("pair_coeff * * stiffness 0 1e6 restitution 0.5", "stiffness must be > 0 (kn), got 0"),
-    ("pair_coeff * * stiffness 1e6 -1 restitution 0.5", "stiffness must be >= 0 (kt), got -1"),
-    ("pair_coeff * * stiffness inf 1 restitution 0.5", "stiffness: value 1 must be a finite number, got inf"),
-    ("pair_coeff * * stiffness stiff 1 restitution 0.5",
-     "Pair gran/restitution stiffness: value 1 must be a finite number, got stiff"),
-    (f"{STIFF} restitution", "Pair gran/restitution restitution: value 1 is missing"),
-    (f"{STIFF} damping 10", "Pair gran/restitution damping: value 2 is missing"),
-    (f"{STIFF} restitution 0.5 rolling -0.1", "rolling must be >= 0, got -0.1"),
-    (f"{STIFF} restitution 0.5 rolling_spring -1 0", "rolling_spring must be >= 0 (kr), got -1"),
-    (f"{STIFF} restitution 0.5 rolling_spring 1 -1", "rolling_spring must be >= 0 (cr), got -1"),
-    (f"{STIFF} restitution 0.5 viscosity 3", "pair_coeff: unknown keyword viscosity, must be stiffness"),
-    ("pair_coeff 1 4 stiffness 1e6 1e6 restitution 0.5", "4"),
-    ("pair_coeff 1 1 stiffness 1e6 1e6 restitution 0.5", "pair_coeff 1 2 is not set"),
-    ("", "pair coeffs are not set"),
-])
-def test_bad_pair_coeff(tmp_path, coeff, message):
-    collide(tmp_path, coeff=coeff or "# pair_coeff: none", expect_error=message)
-
-
-@pytest.mark.parametrize("style, message", [
-    ("mass reduced", "Pair gran/restitution mass must be pair or ball, got reduced"),
-    ("limit_damping maybe", "limit_damping must be no or yes, got maybe"),
-    ("rolling_radius half", "rolling_radius must be ball or reduced, got half"),
-    ("gamma 3", "unknown keyword gamma, must be mass, limit_damping"),
-    ("scheme euler", "scheme must be exact or plain, got euler"),
-    ("mass", "mass: value missing"),
-])
-def test_bad_pair_style(tmp_path, style, message):
-    collide(tmp_path, style=style, expect_error=message)
-
-
-def test_unset_pair_coeff_of_a_wall_type(tmp_path):
-    collide(tmp_path, "wall", coeff="pair_coeff 1 1 stiffness 1e6 1e6 restitution 0.5",
-            expect_error="Fix wall/gran/balls: pair_coeff 1 3 is not set (moving type 1, wall type 3)")
+# --- bad input; the rest is in test_wrong_input.py ---
 
 
 def test_unset_pair_coeff_of_balls_to_come(tmp_path):
@@ -470,18 +419,6 @@ def test_unset_pair_coeff_of_balls_to_come(tmp_path):
             extra="region above block -0.5 0.5 -0.5 0.5 0.5 0.9\n"
                   "fix rain all deposit 5 3 100 12345 region above",
             expect_error="pair_coeff 1 3 is not set")
-
-
-def test_ghost_velocities_off(tmp_path):
-    collide(tmp_path, extra="comm_modify vel no",
-            expect_error="Pair gran/restitution requires ghost velocities: comm_modify vel yes")
-
-
-def test_atoms_without_radius(tmp_path):
-    run_deck("units si\natom_style atomic\ncomm_modify vel yes\nregion box block 0 1 0 1 0 1\ncreate_box 1 box\n"
-             "create_atoms 1 single 0.5 0.5 0.5\nmass 1 1.0\npair_style gran/restitution\n"
-             "pair_coeff 1 1 stiffness 1e6 1e6 restitution 0.5\nrun 0\n", tmp_path,
-             expect_error="Pair gran/restitution requires balls: atom_style must be sphere, got atomic")
 
 
 RESTING = """

@@ -119,19 +119,6 @@ create_balls 1 1.0 2600 surface ground upper spacing 1.0 origin 0.5 0.5 {filters
     assert counts[1] == 91 and counts[1] + counts[2] == counts[0]
 
 
-def test_a_box_without_end(tmp_path):
-    (tmp_path / "road.csv").write_text(SQUARE)
-    run_deck("""
-units si
-atom_style sphere
-boundary f f f
-region road polygon road.csv
-create_box 1 road
-lattice sc 1
-create_atoms 1 region road units box
-""", tmp_path, expect_error="Region polygon road has no end in z: the simulation box needs one")
-
-
 def test_no_smooth_wall(tmp_path):
     (tmp_path / "road.csv").write_text(SQUARE)
     run_deck(deck() + """
@@ -144,32 +131,15 @@ run 1
              "wall/gran/balls")
 
 
-@pytest.mark.parametrize("np_, content, message", [
-    (2, None, "Region polygon: cannot read road.csv: No such file or directory"),
-    (1, "0,0\n1,1\n", "Region polygon: road.csv, line 1: a ring must have at least 3 points, got 2"),
-    (1, "0,0\n10,10\n10,0\n{,10\n", "Region polygon: road.csv, line 4: must be 2 numbers, x,y, got {,10"),
-    (2, "0,0\n10,10\n10,0\n0,10\n", "Region polygon: road.csv, line 1: a ring must not cross or touch itself, "
-     "the edges from lines 1 and 3 meet at 5,5"),
+@pytest.mark.parametrize("content, message", [
+    (None, "Region polygon: cannot read road.csv: No such file or directory"),
+    ("0,0\n10,10\n10,0\n{,10\n", "Region polygon: road.csv, line 4: must be 2 numbers, x,y, got {,10"),
 ])
-def test_bad_files(tmp_path, np_, content, message):
-    """A bad file ends the run on all ranks with one line, and does not hang."""
+def test_bad_files(tmp_path, content, message):
+    """A bad file ends the run on all ranks with one line, and does not hang; one rank: test_wrong_input.py."""
     if content is not None:
         (tmp_path / "road.csv").write_text(content)
-    run_deck(deck(), tmp_path, np=np_, expect_error=message, timeout=60)
-
-
-@pytest.mark.parametrize("options, message", [
-    ("units lattice", "Region polygon units must be box, got lattice"),
-    ("open 1", "Region polygon cannot have open faces"),
-])
-def test_bad_options(tmp_path, options, message):
-    (tmp_path / "road.csv").write_text(SQUARE)
-    run_deck(deck(f"region road polygon road.csv {options}"), tmp_path, expect_error=message)
-
-
-def test_missing_file_name(tmp_path):
-    run_deck("region road polygon\n", tmp_path,
-             expect_error="Region polygon: file name is missing")
+    run_deck(deck(), tmp_path, np=2, expect_error=message, timeout=60)
 
 
 def test_what_slope_polygon_writes(tmp_path):

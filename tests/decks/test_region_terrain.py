@@ -120,33 +120,14 @@ GOOD = "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n"
 @pytest.mark.parametrize("content, message", [
     (None, "Region terrain: cannot read bad.asc: No such file or directory"),
     ("", "Region terrain: bad.asc is empty"),
-    (GOOD + "1 2\n3\n", "Region terrain: bad.asc, line 7: only 3 of 4 values (2 rows x 2 columns)"),
     (GOOD + "1 2\n3 4 5\n", "Region terrain: bad.asc, line 7: more than 4 values"),
     (GOOD + "1 2\n3 x{y\n", "Region terrain: bad.asc, line 7: height must be a number, got x{y"),
 ])
 def test_bad_files(tmp_path, content, message):
-    """A bad file ends the run on all ranks with one line, and does not hang."""
+    """A bad file ends the run on all ranks with one line, and does not hang; one rank: test_wrong_input.py."""
     if content is not None:
         (tmp_path / "bad.asc").write_text(content)
     run_deck(deck(file="bad.asc"), tmp_path, np=2, expect_error=message, timeout=60)
-
-
-@pytest.mark.parametrize("options, message", [
-    ("depth 0", "Region terrain depth must be > 0, got 0"),
-    ("depth -1.5", "Region terrain depth must be > 0, got -1.5"),
-    ("headroom -1", "Region terrain headroom must be > 0, got -1"),
-    ("headroom", "Region terrain headroom: value is missing"),
-    ("units lattice", "Region terrain units must be box, got lattice"),
-    ("open 1", "Region terrain cannot have open faces"),
-])
-def test_bad_options(tmp_path, options, message):
-    write_asc(tmp_path / "ground.asc", np.full((3, 3), 7.0))
-    run_deck(deck(options=options), tmp_path, expect_error=message)
-
-
-def test_missing_file_name(tmp_path):
-    run_deck("region ground terrain\n", tmp_path,
-             expect_error="Region terrain: file name is missing")
 
 
 def test_doc_examples(tmp_path):

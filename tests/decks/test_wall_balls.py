@@ -338,15 +338,6 @@ def test_restart_after_clear(tmp_path):
     assert difference(trajectory(tmp_path)[11:], trajectory(tmp_path, "again.txt")) < 1e-9
 
 
-def test_restart_with_other_balls(tmp_path):
-    run_deck(held(tmp_path) + "run 100\nwrite_restart mid.restart\n", tmp_path)
-    again = RESTART.format(id="ground", gravity="0 0 -1", every=50, steps=100)
-    for other in ("0 -0.05 0\n", "0 -0.05 0\n0 0.06 0\n"):
-        (tmp_path / "floor.xyz").write_text(other)
-        run_deck(again, tmp_path,
-                 expect_error="Fix wall/gran/balls ground: the restart file was written with other fixed balls")
-
-
 def test_restart_with_balls_of_another_build(tmp_path):
     """Balls lie on the edges of the fix's cells: a last bit sorts them otherwise, and springs must find their balls."""
     rail = [(x, y, 0.0) for x in (-0.3, 0.0, 0.3) for y in (-0.05, 0.05)]
@@ -451,23 +442,6 @@ def test_delete_balls(tmp_path):
     run_deck(make_deck(tmp_path, **settings, before="delete_balls moving overlap 0.05") + "run 1\n", tmp_path, np=2)
 
 
-@pytest.mark.parametrize("command, message", [
-    ("delete_balls moving overlap", "Delete_balls needs GROUP overlap FRACTION, got 2 arguments"),
-    ("delete_balls nobody overlap 0.1", "Delete_balls group must exist, got nobody"),
-    ("delete_balls moving overlap 1.0", "Delete_balls overlap must be >= 0 and < 1 (of the radius), got 1.0"),
-    ("delete_balls moving overlap -0.1", "Delete_balls overlap must be >= 0 and < 1 (of the radius), got -0.1"),
-    ("unfix ground\ndelete_balls moving overlap 0.1", "Delete_balls requires a fix wall/gran/balls before it"),
-])
-def test_bad_delete_balls(tmp_path, command, message):
-    run_deck(make_deck(tmp_path, before=command), tmp_path, expect_error=message)
-
-
-def test_delete_balls_leaves_none(tmp_path):
-    ball = [dict(x=0.0, y=0.0, z=0.5 * D, d=D, v=(0, 0, 0))]
-    run_deck(make_deck(tmp_path, balls=ball, positions=[(0.0, 0.0, 0.0)], before="delete_balls all overlap 0.05"),
-             tmp_path, expect_error="Delete_balls: no ball of group all is left")
-
-
 # --- output ---
 
 
@@ -513,42 +487,3 @@ pair_coeff * * stiffness 1e7 1e7 restitution 0.5
     removed = [int(line.split()[1]) for line in log.splitlines() if line.startswith("Delete_balls:")]
     assert len(removed) == 2 and removed[0] > 0
     assert (tmp_path / "field.xyz").read_text().count("\n") > 100
-
-
-# --- bad input ---
-
-
-@pytest.mark.parametrize("fix, message", [
-    ("wall/gran/balls 3 0.1 file floor.xyz",
-     "Fix wall/gran/balls ground type must be 1 to 2 (the atom types of the box), got 3"),
-    ("wall/gran/balls 0 0.1 file floor.xyz", "type must be 1 to 2 (the atom types of the box), got 0"),
-    ("wall/gran/balls 2 0 file floor.xyz", "diameter must be > 0, got 0"),
-    ("wall/gran/balls 2 -0.1 file floor.xyz", "diameter must be > 0, got -0.1"),
-    ("wall/gran/balls 2 0.1 file floor.xyz colour red", "keyword must be inside, outside or write, got colour"),
-    ("wall/gran/balls 2 0.1 file nowhere.xyz", "cannot read nowhere.xyz: No such file"),
-    ("wall/gran/balls 2 0.1 plane", "needs surface or file, got plane"),
-    ("wall/gran/balls 2 0.1", "Fix wall/gran/balls ground: needs TYPE DIAMETER and surface or file, got 2 arguments"),
-])
-def test_bad_fix(tmp_path, fix, message):
-    deck = make_deck(tmp_path).replace(f"wall/gran/balls 2 {D} file floor.xyz", fix)
-    run_deck(deck + "run 1\n", tmp_path, expect_error=message)
-
-
-@pytest.mark.parametrize("text, message", [
-    ("0 0 0\n0 0\n", "floor.xyz, line 2: must be 3 numbers, x y z, got 0 0"),
-    ("0 0 0\n0 zero 0\n", "floor.xyz, line 2: must be 3 numbers, x y z, got 0 zero 0"),
-    ("# nothing\n", "file floor.xyz holds no balls"),
-])
-def test_bad_file(tmp_path, text, message):
-    deck = make_deck(tmp_path)
-    (tmp_path / "floor.xyz").write_text(text)
-    run_deck(deck + "run 1\n", tmp_path, expect_error=message)
-
-
-def test_other_pair_style(tmp_path):
-    deck = make_deck(tmp_path)
-    start, end = deck.index("pair_style"), deck.index("timestep")
-    deck = deck[:start] + "pair_style gran/hooke 1e5 NULL 50 NULL 0.5 1\npair_coeff * *\n" + deck[end:]
-    run_deck(deck + "run 1\n", tmp_path,
-             expect_error="Fix wall/gran/balls ground: requires pair_style gran/restitution, which holds its "
-             "coefficients")

@@ -99,7 +99,6 @@ TABLE = {
         1 1 stiffness 1e6 1e6 restitution -> restitution: value 1 is missing
         1 1 stiffness 1e6 1e6 restitution 0 -> restitution must be > 0 and <= 1, got 0
         1 1 stiffness 1e6 1e6 restitution 1.2 -> restitution must be > 0 and <= 1, got 1.2
-        1 1 stiffness 1e6 1e6 restitution nan -> restitution: value 1 must be a finite number, got nan
         1 1 stiffness 1e6 1e6 restitution 0.5 damping 1 1 -> pair_coeff 1 1: exactly one of restitution and damping is
         1 1 stiffness 1e6 1e6 damping 1 -> damping: value 2 is missing
         1 1 stiffness 1e6 1e6 damping -1 0 -> damping must be >= 0 (cn), got -1
@@ -108,7 +107,6 @@ TABLE = {
         1 1 stiffness 1e6 0 damping 1 2.5 -> pair_coeff 1 1: ct must be 0 where kt is 0, got 2.5: give the contact a
         1 1 stiffness 1e6 1e6 restitution 0.5 friction 90 -> friction must be >= 0 and < 90 degrees, got 90
         1 1 stiffness 1e6 1e6 restitution 0.5 friction -1 -> friction must be >= 0 and < 90 degrees, got -1
-        1 1 stiffness 1e6 1e6 restitution 0.5 friction steep -> friction: value 1 must be a finite number, got steep
         1 1 stiffness 1e6 1e6 restitution 0.5 rolling -0.1 -> rolling must be >= 0, got -0.1
         1 1 stiffness 1e6 1e6 restitution 0.5 rolling inf -> rolling: value 1 must be a finite number, got inf
         1 1 stiffness 1e6 1e6 restitution 0.5 rolling_spring 1 -> rolling_spring: value 2 is missing
@@ -130,12 +128,6 @@ TABLE = {
         + 1.0 file balls.txt -> type must be a whole number below 2^31, got +
         2+ 1.0 file balls.txt -> type must be a whole number below 2^31, got 2+
         2 x file balls.txt -> diameter must be a finite number, got x
-        2 nan file balls.txt -> diameter must be a finite number, got nan
-        2 inf file balls.txt -> diameter must be a finite number, got inf
-        2 1e999 file balls.txt -> diameter must be a finite number, got 1e999
-        2 1.0.0 file balls.txt -> diameter must be a finite number, got 1.0.0
-        2 1e file balls.txt -> diameter must be a finite number, got 1e
-        2 5- file balls.txt -> diameter must be a finite number, got 5-
         2 0 file balls.txt -> diameter must be > 0, got 0
         2 -1 file balls.txt -> diameter must be > 0, got -1
         2 1.0 plane ground -> needs surface or file, got plane
@@ -150,9 +142,6 @@ TABLE = {
         2 1.0 surface ground upper spacing 0 -> spacing must be > 0, got 0
         2 1.0 surface ground upper spacing -1 -> spacing must be > 0, got -1
         2 1.0 surface ground upper spacing x -> spacing must be a finite number, got x
-        2 1.0 surface ground upper spacing 1-2 -> spacing must be a finite number, got 1-2
-        2 1.0 surface ground upper spacing nan -> spacing must be a finite number, got nan
-        2 1.0 surface ground upper spacing inf -> spacing must be a finite number, got inf
         2 1.0 surface ground upper spacing 1e-9 -> : spacing must give fewer than 2^31 balls, got 6.4e+19 with 1e-09
         2 1.0 surface ground upper spacing 1 origin 1 -> origin must be followed by x y, got 1 of 2 values
         2 1.0 surface ground upper spacing 1 origin 1 x -> origin y must be a finite number, got x
@@ -162,8 +151,6 @@ TABLE = {
         2 1.0 surface ground upper spacing 1 sink -0.5 -> sink must be 0 or at least 0.05 (0.05 diameters), got -0.5
         2 1.0 surface ground upper spacing 1 sink 0.04 -> sink must be 0 or at least 0.05 (0.05 diameters), got 0.04
         2 1.0 surface ground upper spacing 1 sink x -> sink must be a finite number, got x
-        2 1.0 surface ground upper spacing 1 sink nan -> sink must be a finite number, got nan
-        2 1.0 surface ground upper spacing 1 sink inf -> sink must be a finite number, got inf
         2 1.0 surface ground upper spacing 1 sink 1 -> : sink must be < 1, so that the balls lie above the bottom of reg
         2 1.0 surface ground upper spacing 1 sink 1e99 -> : sink must be < 1, so that the balls lie above the bottom of
         2 1.0 surface block lower spacing 1 sink 2.5 -> : sink must be < 2, so that the balls lie above the bottom of th
@@ -207,11 +194,8 @@ TABLE = {
         deep.asc -> : deep.asc with depth and headroom must have an extent within +-1e+12, got x 0 to 2, y 0 to 1, z
         ground.asc depth -> depth: value is missing
         ground.asc depth x -> depth must be a finite number, got x
-        ground.asc depth 1.0.0 -> depth must be a finite number, got 1.0.0
         ground.asc depth 0 -> depth must be > 0, got 0
         ground.asc depth -1 -> depth must be > 0, got -1
-        ground.asc depth nan -> depth must be a finite number, got nan
-        ground.asc depth inf -> depth must be a finite number, got inf
         ground.asc depth 1e300 -> : ground.asc with depth and headroom must have an extent within +-1e+12, got x 0 to
         ground.asc headroom 0 -> headroom must be > 0, got 0
         ground.asc headroom 1e999 -> headroom must be a finite number, got 1e999
@@ -251,23 +235,18 @@ TABLE = {
         -> needs TYPE DIAMETER DENSITY and surface or file, got 0 arguments
         3 1.0 2000 -> needs TYPE DIAMETER DENSITY and surface or file, got 3 arguments
         x 1.0 2000 file balls.txt -> type must be a whole number below 2^31, got x
-        1.5 1.0 2000 file balls.txt -> type must be a whole number below 2^31, got 1.5
         0 1.0 2000 file balls.txt -> type must be 1 to 3 (the atom types of the box), got 0
         4 1.0 2000 file balls.txt -> type must be 1 to 3 (the atom types of the box), got 4
-        4294967297 1.0 2000 file balls.txt -> type must be a whole number below 2^31, got 4294967297
         3 x 2000 file balls.txt -> diameter must be a finite number, got x
-        3 1e 2000 file balls.txt -> diameter must be a finite number, got 1e
         3 0 2000 file balls.txt -> diameter must be > 0, got 0
-        3 nan 2000 file balls.txt -> diameter must be a finite number, got nan
-        3 1e999 2000 file balls.txt -> diameter must be a finite number, got 1e999
         3 1.0 x file balls.txt -> density must be a finite number, got x
         3 1.0 -1 file balls.txt -> density must be > 0, got -1
-        3 1.0 inf file balls.txt -> density must be a finite number, got inf
         3 1.0 2000 lattice sc -> needs surface or file, got lattice
         3 1.0 2000 file missing.txt -> : cannot read missing.txt: No such file or directory
         3 1.0 2000 file outside.txt -> balls must lie in the simulation box (below its upper faces), got 1 of 1
         3 1.0 2000 file two.txt -> : two.txt, line 2: must be 3 numbers, x y z, got 1 2
         3 1.0 2000 file balls.txt write a.txt -> keyword must be inside or outside, got write
+        3 1.0 2000 surface ground upper spacing 1 write a.txt -> keyword must be spacing, origin, pattern, angle, sink,
         3 1.0 2000 surface ground upper -> surface needs a spacing, got none
         3 1.0 2000 surface ground upper spacing 0 -> spacing must be > 0, got 0
         3 1.0 2000 surface ground upper spacing 1 sink -1 -> sink must be 0 or at least 0.05 (0.05 diameters), got -1
@@ -281,22 +260,16 @@ TABLE = {
         nobody overlap 0.0 -> group must exist, got nobody
         soil touching 0.0 -> keyword must be overlap, got touching
         soil overlap x -> overlap must be a finite number, got x
-        soil overlap 0.0.1 -> overlap must be a finite number, got 0.0.1
         soil overlap -0.1 -> overlap must be >= 0 and < 1 (of the radius), got -0.1
         soil overlap 1 -> overlap must be >= 0 and < 1 (of the radius), got 1
-        soil overlap nan -> overlap must be a finite number, got nan
-        soil overlap inf -> overlap must be a finite number, got inf
         """,
     ("deposit", "fix deposit soil deposit/grid", "Fix deposit/grid"): """
         -> needs Nevery Nfreq cell S terrain REGION output PREFIX
         10 -> needs Nevery Nfreq cell S terrain REGION output PREFIX
         10 20 -> keyword cell is missing
         x 20 cell 1 -> Nevery must be a whole number below 2^31, got x
-        1-0 20 cell 1 -> Nevery must be a whole number below 2^31, got 1-0
-        1.5 20 cell 1 -> Nevery must be a whole number below 2^31, got 1.5
         0 20 cell 1 -> Nevery must be >= 1, got 0
         -1 20 cell 1 -> Nevery must be >= 1, got -1
-        4294967297 20 cell 1 -> Nevery must be a whole number below 2^31, got 4294967297
         10 15 cell 1 -> Nfreq must be 0 or a multiple of Nevery 10, got 15
         10 -10 cell 1 -> Nfreq must be 0 or a multiple of Nevery 10, got -10
         10 x cell 1 -> Nfreq must be a whole number below 2^31, got x
@@ -305,10 +278,7 @@ TABLE = {
         10 20 cell 1.0 terrain ground -> keyword output is missing
         10 20 cell -> cell: value 1 is missing
         10 20 cell x -> cell must be a finite number, got x
-        10 20 cell 1e1e1 -> cell must be a finite number, got 1e1e1
         10 20 cell 0 -> cell must be > 0, got 0
-        10 20 cell nan -> cell must be a finite number, got nan
-        10 20 cell inf -> cell must be a finite number, got inf
         10 20 cell 1e-4 terrain ground output out -> cell must give at most 2147483647 cells, got 6400000000 cells, they
         10 20 cell 1 terrain nowhere output out -> terrain region nowhere does not exist
         10 20 cell 1 terrain road output out -> terrain region road must have an upper boundary, got INF
@@ -332,7 +302,6 @@ TABLE = {
         10 20 series maybe -> series must be yes or no, got maybe
         10 20 extent 0 8 0 -> extent: value 4 is missing
         10 20 extent 0 8 0 x -> extent must be a finite number, got x
-        10 20 extent nan 8 0 8 -> extent must be a finite number, got nan
         10 20 cell 1 terrain ground output out extent 8 0 0 8 -> extent must have xlo < xhi and ylo < yhi, got 8 0 0 8
         10 20 cell 1 terrain ground output out extent 0 9 0 8 -> extent must lie in that of region ground, 0 8 0 8
         10 20 color red -> : unknown keyword color, must be cell, terrain, output, bulk, extent, motion, window or
@@ -348,7 +317,6 @@ TABLE = {
         none.txt -> : none.txt: must hold at least 2 lines t ax ay az, got 0
         motion.txt scale -> scale: value is missing
         motion.txt scale x -> scale must be a finite number, got x
-        motion.txt scale 1.0.0 -> scale must be a finite number, got 1.0.0
         motion.txt start inf -> start must be a finite number, got inf
         motion.txt color red -> : unknown keyword color, must be scale or start
         """,
