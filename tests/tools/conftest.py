@@ -1,7 +1,28 @@
 """Fixtures of several tests of the tools."""
+import shlex
+
 import pytest
 
 import tiny_collapse
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    """The test's folder, in which it works."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture
+def slope(here, request, capsys, monkeypatch):
+    """slope(ARGUMENTS): run `slope COMMAND ARGUMENTS` in the test's folder, with COMMAND of its file, if it has one.
+
+    Gives status, stdout, stderr.
+    """
+    from run_helpers import called
+    monkeypatch.setenv("LMP", tiny_collapse.LMP)
+    command = getattr(request.module, "COMMAND", "")
+    return lambda arguments: called(capsys, shlex.split(f"{command} {arguments}"))
 
 
 @pytest.fixture

@@ -1,12 +1,13 @@
 """Runs of fix deposit/grid made by hand, for the tests of the commands that evaluate them."""
+import importlib
 import json
 import math
 import os
+import re
 import shlex
 from pathlib import Path
 
 import numpy as np
-import pytest
 import yaml
 from rasterio.crs import CRS
 from shapely.geometry import mapping
@@ -73,12 +74,15 @@ def called(capsys, words):
     return status, *capsys.readouterr()
 
 
+def examples(command, package="slope_tools.commands"):
+    """The examples on a command's page and in its help, without its name: not what has the syntax."""
+    page = (TOP / "doc" / "src" / f"tool_{command}.rst").read_text(encoding="ascii")
+    text = (page + importlib.import_module(f"{package}.{command}").EPILOG).replace("\\\n", " ")
+    found = [line for line in re.findall(rf"^ +tools/slope {command} (.*)", text, re.M) if "keyword" not in line]
+    assert len(found) >= 4
+    return found
+
+
 def run_command(command, arguments, capsys):
     """Run `slope COMMAND ARGUMENTS`; gives status, stdout, stderr."""
     return called(capsys, [command, *shlex.split(arguments)])
-
-
-@pytest.fixture
-def here(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    return tmp_path

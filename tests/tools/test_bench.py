@@ -1,7 +1,6 @@
 """tools/slope bench, and the inputs that it writes for other codes: all of them must run the same collapse."""
 import csv
 import os
-import re
 import shlex
 import sys
 from pathlib import Path
@@ -10,21 +9,15 @@ import numpy as np
 import pytest
 import yaml
 
-from run_helpers import TOP, here, run_command  # noqa: F401
+from run_helpers import TOP, examples
 from tiny_collapse import LMP
 
 sys.path.insert(0, str(TOP / "tests"))
 
-from other_codes import bench as bench_command, bench_report, bench_runs, bench_scenes, peers  # noqa: E402
+from other_codes import bench_report, bench_runs, bench_scenes, peers  # noqa: E402
 
+COMMAND = "bench"
 SMALL = "--quick --balls 300 --steps 40 --runs 1"
-
-
-@pytest.fixture
-def slope(here, capsys, monkeypatch):  # noqa: F811
-    """Run `slope bench ARGUMENTS` in the test's folder; gives status, stdout, stderr."""
-    monkeypatch.setenv("LMP", LMP)
-    return lambda arguments: run_command("bench", arguments, capsys)
 
 
 def test_every_code_runs_the_same_collapse(slope):
@@ -157,13 +150,7 @@ def test_a_run_that_fails_is_one_line(slope, monkeypatch):
         "slope bench: bench/granular/log.scene: pair granular, rolling sds did not end well, got ERROR: Unrecognized")
 
 
-def examples():
-    text = (TOP / "doc" / "src" / "tool_bench.rst").read_text(encoding="ascii")
-    return [*re.findall(r"^ +tools/slope bench ((?!keyword).*)", text, re.MULTILINE),
-            *re.findall("tools/slope bench (.*)", bench_command.EPILOG)]
-
-
-@pytest.mark.parametrize("command", examples())
+@pytest.mark.parametrize("command", examples("bench", "other_codes"))
 def test_every_example_of_the_page_and_the_help_is_understood(slope, monkeypatch, command):
     """They would take minutes: here the plan is made, and not run."""
     plans = []

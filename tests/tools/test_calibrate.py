@@ -1,5 +1,4 @@
 """tools/slope calibrate: twin experiments on a stand-in and on small collapses, resuming, regions, words, bad input."""
-import csv
 import os
 import re
 import shlex
@@ -18,7 +17,7 @@ import yaml
 import twins
 from messages import is_one
 from run_helpers import called
-from tiny_collapse import LMP, TOP, write_case
+from tiny_collapse import TOP, loaded, write_case
 
 from slope_tools.deposits import travel_shares
 from slope_tools.errors import SlopeError
@@ -224,7 +223,6 @@ def test_the_ledger_keeps_what_was_decided(tmp_path):
 @pytest.fixture
 def here(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("LMP", LMP)
     deck = write_case(tmp_path / "case")
     Path("case/road.csv").write_text("13,0\n18,0\n18,24\n13,24\n")
     terrain = rasters.read(Path("case/terrain.asc"))
@@ -235,23 +233,10 @@ def here(tmp_path, monkeypatch):
     return tmp_path
 
 
-@pytest.fixture
-def slope(here, capsys):
-    """Run `slope ARGUMENTS` in the test's folder; gives status, stdout, stderr."""
-    def run(arguments):
-        return called(capsys, shlex.split(arguments))
-    return run
-
-
 def truth(slope, values="--set friction=20 --set rolling=0.1"):
     """The mapped deposit: that of a run with hidden values and another lattice, as a GeoTIFF."""
     assert slope(f"study case/in.tiny {values} --set xoffset=0.4 --exceed 0.1 -o truth")[0] == 0
     Path("truth/envelope_thickness.tif").rename("mapped.tif")
-
-
-def load():
-    with open("out/calibrate.csv", encoding="ascii") as lines:
-        return yaml.safe_load(Path("out/calibrate.yaml").read_text()), list(csv.DictReader(lines))
 
 
 WORDS = "--vary friction=5:40 --vary rolling=0:0.4"
@@ -272,7 +257,7 @@ def test_a_calibration_of_small_collapses_goes_on_after_a_kill(slope, here):
     status, out, err = slope(words)
     assert status == 0, err
     assert "runs are finished already" in out and "10 of 16 runs: friction " in out
-    about, table = load()
+    about, table = loaded("calibrate")
     assert len(table) == 16 and [{name: row[name] for name in ("friction", "rolling")} for row in table][:10] == decided
     assert [row["repeat"] for row in table[:4]] == ["base", "xoffset 0.2"] * 2
     names = [entry["name"] for entry in about["targets"]]
@@ -307,7 +292,7 @@ def test_a_calibration_of_small_collapses_goes_on_after_a_kill(slope, here):
     # more runs are added; what was finished is kept
     before = {path: path.stat().st_mtime_ns for path in Path("out").glob("*/finished.yaml")}
     status, out, err = slope(words.replace("--runs 16", "--runs 18"))
-    assert status == 0 and len(load()[1]) == 18, err
+    assert status == 0 and len(loaded("calibrate")[1]) == 18, err
     assert all(path.stat().st_mtime_ns == stamp for path, stamp in before.items())
     status, _, err = slope(words)
     assert status == 2 and "--runs: must be at least what out/calibrate.ledger.yaml has, 18, got 16" in err
@@ -347,7 +332,7 @@ def test_numbers_alone_with_a_failing_run(slope, here):
     status, out, err = slope(f"calibrate case/in.tiny --front 14 --area 180 --road-volume 40 --road case/road.csv "
                              f"--local {WORDS} --tolerance area=0.2 --runs 12 --set steps=300 -o out")
     assert status == 0, err
-    about, table = load()
+    about, table = loaded("calibrate")
     assert [entry["tolerance"] for entry in about["targets"]] == pytest.approx([0.05 * 14, 0.2 * 180, 0.05 * 40])
     failed = [row for row in table if row["status"] == "failed"]
     assert failed and all(float(row["friction"]) > 37 and row["score"] == "" for row in failed)
@@ -387,7 +372,7 @@ def test_outlines(slope, here):
     status, out, err = slope(f"calibrate case/in.tiny --observed outline.csv --local {WORDS} --runs 8 --set steps=200 "
                              "-o out")
     assert status == 0, err
-    about, _ = load()
+    about, _ = loaded("calibrate")
     assert [entry["name"] for entry in about["targets"]] == [
         "lack of overlap", "50 % of the area within", "90 % of the area within", "99 % of the area within", "area"]
     assert about["targets"][-1]["observed"] == pytest.approx(144)

@@ -3,7 +3,6 @@ import numpy as np
 import pytest
 from scipy import stats
 
-import run_helpers  # noqa: F401  (finds slope_tools)
 
 from slope_tools.seismic import chain, fragility
 

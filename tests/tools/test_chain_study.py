@@ -10,6 +10,7 @@ import yaml
 
 from run_helpers import called
 from test_fragility import SOIL, slips  # noqa: F401  (a fixture)
+from tiny_collapse import rows_of
 
 from slope_tools import programs
 from slope_tools.commands import study
@@ -43,8 +44,7 @@ def about():
 
 
 def rows(name):
-    with open(f"mine/ensemble/{name}", newline="") as lines:
-        return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(lines)]
+    return rows_of(f"mine/ensemble/{name}", float)
 
 
 @needs_lmp

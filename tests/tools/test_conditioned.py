@@ -1,6 +1,5 @@
 """tools/slope study --sample --mobility: bounds of weighted curves, weighted maps, an ensemble of small collapses."""
 import csv
-import shlex
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +10,6 @@ from scipy import stats
 
 import known_twins as twins
 from messages import is_one
-from run_helpers import called
 from tiny_collapse import read_asc
 
 from slope_tools import cli
@@ -22,6 +20,7 @@ from slope_tools.report.numbers import Numbers
 from slope_tools.statistics.hazard import weighted
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
+COMMAND = "study case/in.tiny"
 LONGER = 1.9
 LEVELS = np.array([5e3, 2e4, 4e4, 7e4])     # m3
 
@@ -141,11 +140,10 @@ def write_set(path):
 
 
 @pytest.fixture
-def slope(tiny_case, capsys):
-    """Run `slope study case/in.tiny ARGUMENTS` in the test's folder; gives status, stdout, stderr."""
+def here(tiny_case):
     Path("case/road.csv").write_text("13,0\n18,0\n18,24\n13,24\n")
     write_set("small.csv")
-    return lambda arguments: called(capsys, ["study", "case/in.tiny", *shlex.split(arguments)])
+    return tiny_case
 
 
 def test_an_ensemble_is_weighted(slope, capsys):

@@ -3,7 +3,7 @@ import math
 
 import numpy as np
 import pytest
-from run_helpers import here, write_run  # noqa: F401  (here is a fixture)
+from run_helpers import write_run
 
 from slope_tools.deposits import connected, deposit
 
@@ -11,7 +11,7 @@ CELL = 2.0
 
 
 @pytest.fixture
-def found(here):  # noqa: F811
+def found(here):
     """A function: what is found in a raster (rows from the north) over ground at height 5; top at 0 0 35."""
     def make(thickness, threshold=0.1, top=(0.0, 0.0, 35.0), base=5.0):
         write_run(thickness, base, CELL, travel={"top": list(top)} if top else {})

@@ -13,12 +13,12 @@ import numpy as np
 import pytest
 import yaml
 
-from run_helpers import called
-from tiny_collapse import DECK, LMP, TOP, processes_in, read_asc, serial, write_case
+from tiny_collapse import LMP, TOP, edit, processes_in, read_asc, serial, write_case
 
 from slope_tools.case import logs, restarts, run_folders
 from slope_tools.runs import jobs
 
+COMMAND = "study"
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 PROGRAM = [sys.executable, str(TOOLS / "slope")]
 # Rounding differs after a restart, and in a collapse it grows: measured here by a factor of 30 in 200 steps. The runs
@@ -60,21 +60,9 @@ def here(tmp_path, monkeypatch):
 
 def make(folder):
     """The case, with a deck that can be continued."""
-    deck = DECK
-    for old, new in EDITS:
-        assert old in deck
-        deck = deck.replace(old, new)
-    write_case(folder / "case").write_text(deck)
+    edit(write_case(folder / "case"), *sum(EDITS, ()))
     (folder / "gate").write_text(GATE)
     (folder / "gate").chmod(0o755)
-
-
-@pytest.fixture
-def slope(here, capsys):
-    """Run `slope study ARGUMENTS` in the test's folder; gives status, stdout, stderr."""
-    def run(arguments):
-        return called(capsys, ["study", *shlex.split(arguments)])
-    return run
 
 
 def arguments(np=1, output="out"):
@@ -250,12 +238,6 @@ def test_a_restart_file_of_the_end_is_not_taken(slope, here):
 
 
 # --- another run ---
-
-def edit(path, old, new):
-    text = Path(path).read_text()
-    assert old in text
-    Path(path).write_text(text.replace(old, new))
-
 
 @pytest.mark.parametrize("change, why", [
     (lambda cut: edit("case/in.tiny", "restitution 0.1", "restitution 0.2"), "it was started with another in.tiny"),

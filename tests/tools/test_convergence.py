@@ -1,5 +1,4 @@
 """tools/slope sensitivity --converge: the fit against numbers by hand, its intervals, the command, the size error."""
-import csv
 import math
 import shlex
 import statistics
@@ -12,6 +11,7 @@ import yaml
 from scipy import stats
 
 from run_helpers import called
+from tiny_collapse import edit, rows_of
 
 from slope_tools.errors import SlopeError
 from slope_tools.statistics import convergence
@@ -213,24 +213,13 @@ def test_a_volume_that_falls_with_the_balls(tmp_path, means, field, falls):
 @pytest.fixture
 def slope(tiny_case, capsys):
     """Run `slope COMMAND case/in.tiny ARGUMENTS` in the test's folder; gives status, stdout, stderr."""
-    deck = tiny_case / "case" / "in.tiny"
-    text = deck.read_text()
-    for old, new in (("index 150", "index 300\nvariable  d index 1.0\nvariable  field_d index 1.0\n"
-                      "variable  xoffset index 0.0"), ("sc 1.0", "sc ${d} origin ${xoffset} 0 0"),
-                     ("diameter 1.0", "diameter ${d}"), ("balls 2 1.0", "balls 2 ${d}"),
-                     ("balls 3 1.0", "balls 3 ${field_d}"), ("timestep    0.002", "timestep    0.001")):
-        assert old in text
-        text = text.replace(old, new)
-    deck.write_text(text)
+    edit("case/in.tiny", "index 150", "index 300\nvariable  d index 1.0\nvariable  field_d index 1.0\n"
+         "variable  xoffset index 0.0", "sc 1.0", "sc ${d} origin ${xoffset} 0 0", "diameter 1.0", "diameter ${d}",
+         "balls 2 1.0", "balls 2 ${d}", "balls 3 1.0", "balls 3 ${field_d}", "timestep    0.002", "timestep    0.001")
 
     def run(arguments, command="sensitivity"):
         return called(capsys, [command, "case/in.tiny", *shlex.split(arguments)])
     return run
-
-
-def read(path):
-    with open(path, encoding="ascii") as table:
-        return list(csv.DictReader(table))
 
 
 def test_sizes_that_did_not_finish_leave_no_older_fit(tmp_path, monkeypatch):
@@ -251,12 +240,12 @@ def test_the_command_fits_what_its_runs_gave(slope):
     status, out, err = slope(words.replace("0.7", "0.7,1"))
     assert status == 0 and "6 of 9 runs are finished already" in out, err
     about = yaml.safe_load(Path("out/converge.yaml").read_text())
-    runs = read("out/converge_runs.csv")
+    runs = rows_of("out/converge_runs.csv")
     assert [(run["d"], run["field_d"], run["xoffset"]) for run in runs] == [
         (d, "0.9", offset) for d in ("1.25", "0.7", "1") for offset in ("0.0", "0.3", "0.6")]
     assert about["study"]["variable"] == "d" and about["study"]["base"]["field_d"] == "0.9"
     assert "d" not in about["study"]["base"] and about["study"]["repeat"] == {"xoffset": ["0.3", "0.6"]}
-    table = read("out/converge.csv")
+    table = rows_of("out/converge.csv")
     for name, key in (("released_m3", "released"), ("centroid_m", None)):
         values = {d: [float(run[name]) for run in runs if run["d"] == d] for d in ("1.25", "1", "0.7")}
         if key:
@@ -298,7 +287,7 @@ def test_what_a_repeat_does_not_change_counts_once(slope):
 def test_a_failed_size_is_told_and_the_others_are_fitted(slope):
     status, _, err = slope("--converge d=1.25,1,30 --set steps=100 --of centroid_m -o out")
     assert status == 2 and "1 of 3 runs failed: steps_100_d_30: " in err
-    assert [row["d"] for row in read("out/converge.csv")] == ["1.25", "1.0", "0"]
+    assert [row["d"] for row in rows_of("out/converge.csv")] == ["1.25", "1.0", "0"]
 
 
 @pytest.mark.parametrize("arguments, message", [

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import yaml
 
-from run_helpers import TOP, here, run_command  # noqa: F401
+from run_helpers import TOP, examples
 from tiny_collapse import LMP
 
 sys.path.insert(0, str(TOP / "tests"))
@@ -20,11 +20,7 @@ from other_codes import crosscheck as crosscheck_command, crosscheck_cases as cr
 from slope_tools.errors import SlopeError  # noqa: E402
 
 
-@pytest.fixture
-def slope(here, capsys, monkeypatch):  # noqa: F811
-    """Run `slope crosscheck ARGUMENTS` in the test's folder; gives status, stdout, stderr."""
-    monkeypatch.setenv("LMP", LMP)
-    return lambda arguments: run_command("crosscheck", arguments, capsys)
+COMMAND = "crosscheck"
 
 
 def checks():
@@ -68,7 +64,7 @@ def test_a_disagreement_is_exit_status_2(slope, monkeypatch):
         "stays still", "slides without rotating", "rotates without sliding"}
 
 
-def test_final_numbers_of_a_deck(here):  # noqa: F811
+def test_final_numbers_of_a_deck(here):
     """Positions, velocities and coefficients of inputs/20 with coarse balls."""
     deck = TOP / "inputs" / "20_embankment" / "in.embankment"
     scene = crosscheck.scene_of(Path(LMP), deck, {"d": 6, "rolling": 0.05}, here / "deck")
@@ -125,13 +121,7 @@ def test_bad_input_is_one_line(slope, arguments, message):
     assert os.listdir() == ["file"]
 
 
-def examples():
-    text = (TOP / "doc" / "src" / "tool_crosscheck.rst").read_text(encoding="ascii")
-    return [*re.findall(r"^ +tools/slope crosscheck ((?!keyword).*)", text, re.MULTILINE),
-            *re.findall("tools/slope crosscheck (.*)", crosscheck_command.EPILOG)]
-
-
-@pytest.mark.parametrize("command", examples())
+@pytest.mark.parametrize("command", examples("crosscheck", "other_codes"))
 def test_every_example_of_the_page_and_the_help_is_understood(slope, monkeypatch, command):
     """They would take minutes: here no case is run."""
     done = []

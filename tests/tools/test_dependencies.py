@@ -10,7 +10,7 @@ import pytest
 import yaml
 
 from run_helpers import called, write_sidecar
-from tiny_collapse import LMP, read_asc, write_stl
+from tiny_collapse import LMP, edit, read_asc, write_stl
 
 from slope_tools.case import decks
 from slope_tools.runs import dependencies
@@ -29,12 +29,6 @@ def slope(here, capsys):
     def run(more=""):
         return called(capsys, ["study", *shlex.split(f"case/in.tiny --set rolling=0 --set steps=10 -o out {more}")])
     return run
-
-
-def edit(path, old, new):
-    text = Path(path).read_text()
-    assert old in text, path
-    Path(path).write_text(text.replace(old, new))
 
 
 def higher(path):

@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 from scipy import stats
 
-import run_helpers  # noqa: F401  (sets the path)
 import known_twins as twins
 
 from slope_tools.ensembles import known_events, known_influence

@@ -12,7 +12,6 @@ from pathlib import Path
 import pytest
 import yaml
 
-import run_helpers  # noqa: F401  (finds slope_tools)
 from tiny_collapse import TOP
 
 from slope_tools.case import data_files, run_folders

@@ -1,9 +1,6 @@
 """tools/slope study --sample: distributions, designs, bounds, indices, and an ensemble of small collapses."""
 import csv
 import math
-import os
-import shlex
-import sys
 import types
 from pathlib import Path
 
@@ -14,19 +11,16 @@ import yaml
 from scipy import stats
 
 from messages import is_one
-from run_helpers import called
-from tiny_collapse import TOP, read_asc
+from tiny_collapse import loaded, read_asc
 
-TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
-sys.path.insert(0, str(TOOLS))
-
-from slope_tools import cli  # noqa: E402
-from slope_tools.case import deck_ranges  # noqa: E402
-from slope_tools.ensembles import ensemble, sample  # noqa: E402
-from slope_tools.report import ensemble_part  # noqa: E402
-from slope_tools.statistics import designs, distributions, emulator, hazard  # noqa: E402
+from slope_tools import cli
+from slope_tools.case import deck_ranges
+from slope_tools.ensembles import ensemble, sample
+from slope_tools.report import ensemble_part
+from slope_tools.statistics import designs, distributions, emulator, hazard
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
+COMMAND = "study case/in.tiny"
 ROAD = "--road case/road.csv --local"
 
 
@@ -256,18 +250,9 @@ def test_runs_of_a_point_are_left_out_together():
 # --- an ensemble of small collapses ---
 
 @pytest.fixture
-def slope(tiny_case, capsys):
-    """Run `slope study case/in.tiny ARGUMENTS` in the test's folder; gives status, stdout, stderr."""
+def here(tiny_case):
     Path("case/road.csv").write_text("13,0\n18,0\n18,24\n13,24\n")
-
-    def run(arguments):
-        return called(capsys, ["study", "case/in.tiny", *shlex.split(arguments)])
-    return run
-
-
-def load():
-    with open("out/study.csv", encoding="ascii") as lines:
-        return yaml.safe_load(Path("out/study.yaml").read_text()), list(csv.DictReader(lines))
+    return tiny_case
 
 
 def curves():
@@ -285,11 +270,11 @@ WORDS = f"--vary friction=10:40 --vary rolling=triangular:0:0:0.4 --set steps=90
 def test_an_ensemble_grows_and_its_tables_are_those_of_the_runs(slope, blank_pictures):
     status, out, err = slope(f"--sample 6 {WORDS}")
     assert status == 0, err
-    first = load()[1]
+    first = loaded()[1]
     status, out, err = slope(f"--sample 12 {WORDS} --exceed-speed 2")
     assert status == 0 and "6 of 12 runs are finished already" in out, err
     assert "; 5 to go, all by " in out and "ensemble: 12 runs of 12 points" in out
-    about, table = load()
+    about, table = loaded()
     assert [row["run"] for row in table[:6]] == [row["run"] for row in first]
     assert about["conservative"] is None
     found = about["ensemble"]
@@ -371,7 +356,7 @@ def test_repeats_of_points_and_a_list(slope):
     status, _, err = slope("--sample 4 --vary friction=20:40 --vary rolling=list:0,0.3@2 --repeat seed=1 "
                            "--set steps=300 -o out")
     assert status == 0, err
-    about, table = load()
+    about, table = loaded()
     assert [row["seed"] for row in table] == ["0", "1"] * 4 and {row["rolling"] for row in table} == {"0", "0.3"}
     assert about["ensemble"]["points"] == 4 and about["ensemble"]["of"] == "distance_99_m"
     assert about["ensemble"]["finished"] == 8
@@ -382,7 +367,7 @@ def test_a_failed_run_is_kept_out_and_counted(slope):
     deck.write_text(deck.read_text().replace("group       soil", 'if "${friction} > 34" then "nonsense"\n'
                                              "group       soil"))
     status, out, err = slope(f"--sample 8 --vary friction=10:40 --set steps=300 {ROAD} -o out")
-    about, table = load()
+    about, table = loaded()
     failed = [row["status"] for row in table].count("failed")
     assert status == 2 and failed == sum(float(row["friction"]) > 34 for row in table) > 0
     assert f"slope study: out: {failed} of 8 runs failed: steps_300_friction_" in err.splitlines()[-1]

@@ -1,6 +1,5 @@
 """tools/slope export: every raster of a run, with its values, place and CRS; and the base of a run that has one."""
 import os
-import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -10,22 +9,15 @@ import pytest
 import rasterio
 import yaml
 
-from run_helpers import (CRS_M, EAST, NORTH, TOP, here, run_command, write_asc, write_run,  # noqa: F401
-                         write_sidecar)
+from run_helpers import CRS_M, EAST, NORTH, write_asc, write_run, write_sidecar, examples
 from tiny_collapse import LMP, read_asc, write_case
 
 from slope_tools.case import run_folders
-from slope_tools.commands import export as export_command
 from slope_tools.deposits import deposit
 from slope_tools.errors import SlopeError
 
+COMMAND = "export"
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
-
-
-@pytest.fixture
-def slope(here, capsys):  # noqa: F811
-    """Run `slope export ARGUMENTS`, in the test's folder; gives status, stdout, stderr."""
-    return lambda arguments: run_command("export", arguments, capsys)
 
 
 def write_rasters(prefix="run", cell=2.5):
@@ -75,7 +67,7 @@ def test_every_raster_in_the_coordinates_of_the_survey(slope):
 @pytest.mark.parametrize("study", ["conservative: null\nlargest: {front_m: {run: two}}",      # of an older version
                                    "conservative: null\nfarthest: two\nlargest: {front_m: {run: one}}",
                                    "conservative: {run: two}\nfarthest: one\nlargest: {front_m: {run: one}}"])
-def test_a_run_by_its_folder_or_one_of_its_files(slope, here, study):  # noqa: F811
+def test_a_run_by_its_folder_or_one_of_its_files(slope, here, study):
     """They are the rasters of the prefix; of a study those of its governing run, which is said."""
     for run in ("one", "two"):
         Path("mine/study", run).mkdir(parents=True)
@@ -109,7 +101,7 @@ def test_an_older_run_has_no_base(slope):
     assert not Path("run.export/run.base.tif").exists()
 
 
-def test_a_run_of_the_deck(slope, here):  # noqa: F811
+def test_a_run_of_the_deck(slope, here):
     """What fix deposit/grid writes is what is exported; the base is the ground with the scar."""
     write_case(here)
     subprocess.run([LMP, "-in", "in.tiny", "-var", "steps", "50"], check=True, stdout=subprocess.DEVNULL)
@@ -136,7 +128,7 @@ def test_a_run_of_the_deck(slope, here):  # noqa: F811
     ("finer", "finer.max_speed.asc: must have the grid of the run's thickness"),
     ("broken", "broken.arrival.asc: line 7: must hold numbers with a decimal point, got 'never'"),
 ])
-def test_bad_input_is_one_line(slope, here, arguments, message):  # noqa: F811
+def test_bad_input_is_one_line(slope, here, arguments, message):
     write_sidecar(40, 60, 2.5)
     Path("empty").mkdir()
     for prefix in ("run", "finer", "broken"):
@@ -152,7 +144,7 @@ def test_bad_input_is_one_line(slope, here, arguments, message):  # noqa: F811
 
 # --- the base, of all commands that read a run ---
 
-def test_the_base_of_a_run(here):  # noqa: F811
+def test_the_base_of_a_run(here):
     values = write_rasters()
     found = deposit.read("run", None, lambda text: None)
     assert np.array_equal(found.base, values["base"], equal_nan=True)
@@ -166,7 +158,7 @@ def test_the_base_of_a_run(here):  # noqa: F811
     (lambda base: np.where(np.isnan(base), 50, base), "run.base.asc: row 4 column 5: must be run.surface.asc less "),
     (lambda base: base[1:], "run.base.asc: must have the grid of run.thickness.asc"),
 ])
-def test_a_base_of_another_run(here, change, message):  # noqa: F811
+def test_a_base_of_another_run(here, change, message):
     values = write_rasters()
     write_asc("run.base.asc", change(values["base"]), 2.5)
     with pytest.raises(SlopeError) as error:
@@ -176,16 +168,11 @@ def test_a_base_of_another_run(here, change, message):  # noqa: F811
 
 # --- the page ---
 
-def doc_examples():
-    text = (TOP / "doc" / "src" / "tool_export.rst").read_text(encoding="ascii").replace("\\\n", " ")
-    return re.findall(r"^ +tools/slope export ((?!PREFIX).*)", text, re.MULTILINE)
-
-
-EXAMPLES = [*doc_examples(), *re.findall("tools/slope export (.*)", export_command.EPILOG)]
+EXAMPLES = examples("export")
 
 
 @pytest.mark.parametrize("command", [one for one in EXAMPLES if "--zones" not in one])      # these: test_route.py
-def test_every_example_of_the_page_and_the_help_runs(slope, here, command):  # noqa: F811
+def test_every_example_of_the_page_and_the_help_runs(slope, here, command):
     write_sidecar(40, 60, 2.5)
     write_rasters("embankment")
     for folder in ("study/rolling_0.05", "mine/study/rolling_0"):

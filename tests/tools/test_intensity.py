@@ -8,7 +8,7 @@ import pytest
 import yaml
 
 from run_helpers import called
-from tiny_collapse import LMP, write_case
+from tiny_collapse import LMP, edit, write_case
 
 from slope_tools import cli, errors
 from slope_tools.tables import combinations, intensity
@@ -24,14 +24,9 @@ def slope(arguments, capsys):
 
 def write_quake(folder):
     """The small collapse, pushed to the road by peak/100 m/s, from a lattice that can be moved."""
-    deck = write_case(folder)
-    text = deck.read_text()
-    text = text.replace("variable  steps    index 150", "variable  steps    index 600\nvariable  peak index 0\n"
-                        "variable  xoffset index 0\nvariable  push equal -v_peak/100")
-    text = text.replace("lattice     sc 1.0", "lattice     sc 1.0 origin ${xoffset} 0 0")
-    text = text.replace("neighbor    0.2 bin", "velocity    soil set ${push} 0 0\nneighbor    0.2 bin")
-    assert text.count("${push}") == 1 and text.count("origin ${xoffset}") == 1
-    deck.write_text(text)
+    edit(write_case(folder), "index 150", "index 600\nvariable  peak index 0\nvariable  xoffset index 0\n"
+         "variable  push equal -v_peak/100", "lattice     sc 1.0", "lattice     sc 1.0 origin ${xoffset} 0 0",
+         "neighbor    0.2 bin", "velocity    soil set ${push} 0 0\nneighbor    0.2 bin")
 
 
 # --- probabilities ---

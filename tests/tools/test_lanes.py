@@ -19,7 +19,7 @@ from affine import Affine
 from shapely.affinity import translate
 from shapely.geometry import LineString, Polygon, box, shape
 
-from run_helpers import (CRS_M, EAST, NORTH, TOP, centres, here, run_command, write_geojson, write_run,  # noqa: F401
+from run_helpers import (CRS_M, EAST, NORTH, TOP, centres, run_command, write_geojson, write_run,
                          write_sidecar)
 
 import test_site
@@ -243,7 +243,7 @@ def test_an_axis_with_bends_is_divided_without_gaps_and_overlaps():
 # --- the command ---
 
 @pytest.fixture
-def slope(here, capsys, monkeypatch):  # noqa: F811
+def slope(here, capsys, monkeypatch):
     """Run `slope volume ARGUMENTS`, without its map; gives status, stdout, stderr."""
     monkeypatch.setattr(volume_files, "draw", lambda path, *_: path.touch())
     return lambda arguments: run_command("volume", arguments, capsys)
@@ -406,7 +406,7 @@ def test_a_line_of_any_format_is_the_same_road(slope, name, text):
     assert found[0]["volume"] == found[1]["volume"]
 
 
-def test_a_road_that_is_written_is_read_as_the_same_line(here):  # noqa: F811
+def test_a_road_that_is_written_is_read_as_the_same_line(here):
     write_sidecar(40, 40, 2.0)
     place = gridded(GROUNDS["level"], 2.0)._replace(offset=(EAST, NORTH))
     asked = roads.Asked(6.0)
@@ -469,7 +469,7 @@ def test_stretches_of_a_study_are_unions_with_shares_and_quantiles():
     ("--road line.geojson --road-width 4 --axis line.geojson", "--axis: must not be given with --road-width"),
     ("--road line.geojson --road-width none", "argument --road-width: must be a finite number, got 'none'"),
 ])
-def test_bad_input_is_one_line(slope, here, arguments, message):  # noqa: F811
+def test_bad_input_is_one_line(slope, here, arguments, message):
     write_run(patches(), 0.0, 2.0)
     write_geojson("line.geojson", LineString([(40, 0), (40, 80)]))
     write_geojson("far.geojson", LineString([(40, 10), (40, 90)]))
@@ -488,7 +488,7 @@ def test_bad_input_is_one_line(slope, here, arguments, message):  # noqa: F811
 
 # --- site, study, report, mobility: through LAMMPS ---
 
-def test_a_study_of_a_line_is_that_of_the_polygon_and_is_reported(here):  # noqa: F811
+def test_a_study_of_a_line_is_that_of_the_polygon_and_is_reported(here):
     """Two runs of a tiny collapse: volumes are the same; stretches, lane and hours are on the page, with bands."""
     write_case(here / "case")
     (here / "line.csv").write_text("15,0\n15,24\n")

@@ -1,14 +1,10 @@
 """Known events and their relation: against the figures found for the set beforehand, and wrong sets."""
-import sys
 
 import pytest
 
-from run_helpers import TOOLS
 
-sys.path.insert(0, str(TOOLS))
-
-from slope_tools.errors import SlopeError  # noqa: E402  (after the path is set)
-from slope_tools.mobility import events, relation  # noqa: E402
+from slope_tools.errors import SlopeError
+from slope_tools.mobility import events, relation
 
 ALL = events.read()
 

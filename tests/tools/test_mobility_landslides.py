@@ -10,11 +10,11 @@ from shapely.geometry import box
 from run_helpers import TOP
 from test_mobility_path import RADIUS, STEEP, disc, hillside, terrain
 
-from slope_tools.digits import rounded  # noqa: E402
-from slope_tools.errors import SlopeError  # noqa: E402
-from slope_tools.mobility import body, exceedance, fall_path, known, landslides, results, road  # noqa: E402
-from slope_tools.releases import release  # noqa: E402
-from slope_tools.survey import rasters  # noqa: E402
+from slope_tools.digits import rounded
+from slope_tools.errors import SlopeError
+from slope_tools.mobility import body, exceedance, fall_path, known, landslides, results, road
+from slope_tools.releases import release
+from slope_tools.survey import rasters
 
 EMBANKMENT = TOP / "inputs" / "20_embankment"
 ROW = landslides.named()

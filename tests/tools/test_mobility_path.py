@@ -1,7 +1,6 @@
 """The fall path against closed forms, the probabilities on it against the t distribution, and slope mobility."""
 import csv
 import math
-import re
 import shutil
 from pathlib import Path
 
@@ -14,15 +13,14 @@ from rasterio.crs import CRS
 from scipy import stats
 from shapely.geometry import LineString, Point, box
 
-from run_helpers import TOP, here, run_command, write_asc, write_geojson  # noqa: F401  (here: a fixture)
+from run_helpers import TOP, run_command, write_asc, write_geojson, examples
 
-from slope_tools.commands import mobility as mobility_command  # noqa: E402
-from slope_tools.errors import SlopeError  # noqa: E402
-from slope_tools.mobility import body, charts, events, exceedance, fall_path, known as known_events  # noqa: E402
-from slope_tools.mobility import relation, results, road  # noqa: E402
-from slope_tools.releases import release  # noqa: E402
-from slope_tools.survey import rasters  # noqa: E402
-from slope_tools.survey.rasters import Raster  # noqa: E402
+from slope_tools.errors import SlopeError
+from slope_tools.mobility import body, charts, events, exceedance, fall_path, known as known_events
+from slope_tools.mobility import relation, results, road
+from slope_tools.releases import release
+from slope_tools.survey import rasters
+from slope_tools.survey.rasters import Raster
 
 ALL = events.read()
 SET = relation.of_events(ALL)
@@ -256,7 +254,7 @@ def test_the_frank_slide():
 # --- the command ---
 
 @pytest.fixture
-def place(here, capsys, monkeypatch):       # noqa: F811
+def place(here, capsys, monkeypatch):
     """terrain.asc, a plane; P, a disc on it; gives a call of slope mobility that draws no pictures."""
     for name in ("draw_map", "draw_profile"):
         monkeypatch.setattr(charts, name, lambda path, *rest: Path(path).write_bytes(b""))
@@ -398,12 +396,7 @@ def test_bad_input_is_one_line(place, text, more, words):
     assert not Path("out").exists()
 
 
-def examples():
-    text = (TOP / "doc" / "src" / "tool_mobility.rst").read_text(encoding="ascii")
-    return re.findall(r"^ +tools/slope mobility ((?!TERRAIN|SITE).*)", text + mobility_command.EPILOG, re.MULTILINE)
-
-
-@pytest.mark.parametrize("command", examples())
+@pytest.mark.parametrize("command", examples("mobility"))
 def test_every_example_of_the_page_and_the_help_runs(place, command):
     write_geojson("release.geojson", Point(300, 300).buffer(RADIUS))
     write_geojson("road.geojson", box(1500, 0, 1520, 590))

@@ -7,12 +7,12 @@ from shapely.geometry import LineString, Point
 
 from test_mobility_path import SET, disc, hillside
 
-from slope_tools.digits import three  # noqa: E402
-from slope_tools.mobility import exceedance, known as known_events  # noqa: E402
-from slope_tools.mobility.results import percent  # noqa: E402
-from slope_tools.plots import known_reach  # noqa: E402
-from slope_tools.report import mobility_part  # noqa: E402
-from slope_tools.report.numbers import Numbers  # noqa: E402
+from slope_tools.digits import three
+from slope_tools.mobility import exceedance, known as known_events
+from slope_tools.mobility.results import percent
+from slope_tools.plots import known_reach
+from slope_tools.report import mobility_part
+from slope_tools.report.numbers import Numbers
 
 
 def case(lengths, volume=0.78e6, study=True, scar=1, **about):

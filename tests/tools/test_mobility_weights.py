@@ -1,16 +1,12 @@
 """Weights of runs by known events: on stand-ins whose lengths follow from three variables, smoothly or with a jump."""
-import sys
 
 import numpy as np
 import pytest
 
-from run_helpers import TOOLS
 
-sys.path.insert(0, str(TOOLS))
-
-import known_twins as twins  # noqa: E402  (after the path is set)
-from slope_tools.mobility import weights  # noqa: E402
-from slope_tools.statistics import designs  # noqa: E402
+import known_twins as twins
+from slope_tools.mobility import weights
+from slope_tools.statistics import designs
 
 RUNS = 100
 

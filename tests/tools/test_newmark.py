@@ -4,7 +4,6 @@ import pytest
 from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
 
-import run_helpers  # noqa: F401  (finds slope_tools)
 
 from slope_tools.slips import newmark
 

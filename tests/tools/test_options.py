@@ -8,7 +8,6 @@ from typing import List, Optional
 
 import pytest
 
-import run_helpers  # noqa: F401  (finds slope_tools)
 
 from slope_tools import cli, options
 

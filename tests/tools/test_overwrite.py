@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from shapely.geometry import box
 
-from run_helpers import here, run_command, write_asc, write_geojson, write_run  # noqa: F401
+from run_helpers import run_command, write_asc, write_geojson, write_run
 
 from slope_tools import disk
 from slope_tools.errors import SlopeError
@@ -21,7 +21,7 @@ def standing(sources, overwrite=False):
     return True
 
 
-def test_only_the_result_of_the_same_sources_is_replaced(here):     # noqa: F811
+def test_only_the_result_of_the_same_sources_is_replaced(here):
     assert standing(["road.csv"])
     Path("out").mkdir()
     Path("out/mine.txt").write_text("of the user\n")
@@ -47,7 +47,7 @@ def test_only_the_result_of_the_same_sources_is_replaced(here):     # noqa: F811
     ("polygon", "a.csv --terrain a.asc --local -o out.csv", None, "out.csv"),
     ("score", "run --observed a.geojson --local -o out", "run --observed b.geojson --local -o out", "out/score.csv"),
     ("export", "run -o out", None, "out/run.surface.tif")])
-def test_of_a_command(here, capsys, command, words, other, made):     # noqa: F811
+def test_of_a_command(here, capsys, command, words, other, made):
     for name in "ab":
         write_asc(f"{name}.asc", np.full((8, 8), 3.0), 2.5)
         write_geojson(f"{name}.geojson", box(2, 2, 12, 12))

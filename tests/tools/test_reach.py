@@ -4,7 +4,6 @@ import math
 import numpy as np
 import pytest
 
-import run_helpers  # noqa: F401  (the path)
 
 from slope_tools.deposits import reach
 

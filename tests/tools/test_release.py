@@ -16,24 +16,17 @@ from rasterio.crs import CRS
 from shapely.affinity import rotate
 from shapely.geometry import Point, Polygon, box, mapping
 
-from run_helpers import (CRS_M, EAST, NORTH, TOP, here, run_command, write_asc,  # noqa: F401  (here: a fixture)
-                         write_geojson)
+from run_helpers import CRS_M, EAST, NORTH, TOP, write_asc, write_geojson, examples
 
 from slope_tools import findings
-from slope_tools.commands import release as release_command
 from slope_tools.drawing import maps
 from slope_tools.releases import release_area, release_bodies, release_chart, release_slbl, release_solve
 from slope_tools.survey import polygons, rasters
 
+COMMAND = "release"
 DATA = next((folder for folder in (top / "shared" / "data" for top in TOP.parents) if folder.is_dir()), TOP / "none")
 FRANK, S1000 = DATA / "frank", DATA / "s1000"
 NAMES = ["r.slip.asc", "r.slip.yaml", "r.depth.asc", "r.depth.yaml", "r.png", "r.yaml", "r.deck.txt"]
-
-
-@pytest.fixture
-def slope(here, capsys):        # noqa: F811
-    """Run `slope release ARGUMENTS` in a folder of its own; gives status, stdout, stderr."""
-    return lambda arguments: run_command("release", arguments, capsys)
 
 
 @pytest.fixture
@@ -338,7 +331,7 @@ def test_a_steep_head_on_coarse_cells_is_no_wall():
     assert release_solve.wall(cut, cut > 0) == cut[np.abs(y) == 4].max() > 3
 
 
-def test_the_files(slope, here):        # noqa: F811
+def test_the_files(slope, here):
     _, _, z = terrain(hill)
     digits = z + np.random.default_rng(1).uniform(-1e-6, 1e-6, z.shape)     # more than a millimetre has
     digits[0, 0] = digits[3, 5] = np.nan
@@ -369,7 +362,7 @@ def test_the_files(slope, here):        # noqa: F811
     assert f"mean slope {about['body']['mean_slope']:.1f} degrees" in out
 
 
-def test_numbers_come_before_files(slope, monkeypatch, here):       # noqa: F811
+def test_numbers_come_before_files(slope, monkeypatch, here):
     def full(path, *rest):
         raise OSError(28, "No space left on device")
     terrain(hill)
@@ -463,31 +456,6 @@ def test_two_surveys_over_different_datums(slope, no_picture, shift):
     assert (f"after.asc lies 0.6 m {'below' if shift > 0 else 'above'} the terrain" in err) == bool(shift)
 
 
-def test_pits_in_the_release_area(refused):
-    def height(x, y):
-        z = hill(x, y)
-        z[np.hypot(x - 121, y - 101) < 3] = 0.0
-        return z
-    terrain(height)
-    polygon(box(60, 60, 160, 140))
-    refused("t.asc --polygon p.csv --depth 5", "p.csv: the ground in it must have no pits: 9 cells of 0 m lie ",
-            "--nodata 0 makes them NODATA, with --fill 9 they are filled (slope terrain, slope site), got the first at "
-            "east ")
-
-
-def test_a_hole_names_what_fills_it(refused):
-    def height(x, y):
-        z = hill(x, y)
-        z[np.hypot(x - 121, y - 101) < 3] = np.nan
-        z[:, -12:] = np.nan
-        return z
-    terrain(height)
-    polygon(box(60, 60, 160, 140))
-    refused("t.asc --polygon p.csv --depth 5", "--fill 9 of slope terrain and site fills this hole, got NODATA at east")
-    polygon(box(180, 60, 220, 140))
-    refused("t.asc --polygon p.csv --depth 5", "it goes on to the edge, where --fill does not fill: take a larger ")
-
-
 def test_a_scar_on_another_grid_and_in_another_crs(body):
     dent = (lambda x, y: 12 * np.clip(1 - ((x - 120) / 40) ** 2 - ((y - 100) / 30) ** 2, 0, None))
     terrain(ramp(30))
@@ -538,17 +506,12 @@ def test_nodata_beside_a_scar_of_coarse_cells_costs_no_volume(body, kind, sign, 
 
 def test_a_scar_that_is_none(refused):
     terrain(ramp(30))
-    terrain(ramp(30, top=501), "higher.asc")
-    refused("t.asc --scar higher.asc", "higher.asc: must be lower than the terrain (are the surveys before and after "
-            "exchanged?) somewhere")
     terrain(lambda x, y: np.where(np.hypot(x - 120, y - 100) < 30, -3.0, 0.0), "change.asc")
-    refused("t.asc --scar change.asc --scar-is depth", "change.asc: must hold depths >= 0", "--scar-is change",
-            "got -3")
     refused("t.asc --scar change.asc --scar-is change --least 4", "somewhere, by --least 4 m")
     terrain(ramp(30), "away.asc", offset=(EAST + 5000, NORTH))
     refused("t.asc --scar away.asc", "away.asc: must overlap the terrain")
     refused("t.asc --scar none.asc", "none.asc: must be an existing file")
-    refused("t.asc --scar higher.asc --volume 100", "--volume: must not be given with --scar")
+    refused("t.asc --scar change.asc --volume 100", "--volume: must not be given with --scar")
     terrain(ramp(30, top=499), "lower.asc")
     refused("t.asc --scar lower.asc", "lower.asc: must stay at least 2 cells away from NODATA and from the edge of "
             "t.asc", "--least D")
@@ -583,17 +546,10 @@ def test_layers_of_a_gis_are_the_same_body(body):
 
 def test_layers_that_do_not_fit(refused):
     terrain(hill)
-    write_geojson("metres.geojson", box(60, 60, 160, 140))
-    refused("t.asc --polygon metres.geojson --depth 5", "metres.geojson: coordinates in EPSG:4326 must be longitude")
-    write_geojson("far.geojson", box(139, 35, 139.01, 35.01))
-    refused("t.asc --polygon far.geojson --depth 5", "far.geojson: must overlap the terrain")
     with fiona.open("p.shp", "w", driver="ESRI Shapefile", schema={"geometry": "Polygon", "properties": {}}) as out:
         out.write({"geometry": mapping(box(60, 60, 160, 140)), "properties": {}})
     refused("t.asc --polygon p.shp --depth 5", "p.shp: must have a CRS", "got none")
-    terrain(hill, "plain.asc", crs=None, offset=(0, 0))
-    write_geojson("p.geojson", box(EAST + 60, NORTH + 60, EAST + 160, NORTH + 140), crs=CRS_M)
-    refused("plain.asc --polygon p.geojson --depth 5", "plain.asc: must have a CRS", "got none")
-    refused("t.asc --polygon p.geojson --depth 5 --assign-crs EPSG:0", "--assign-crs: must be a CRS such as EPSG:6677")
+    refused("t.asc --polygon p.shp --depth 5 --assign-crs EPSG:0", "--assign-crs: must be a CRS such as EPSG:6677")
 
 
 def test_bad_input(refused):
@@ -601,9 +557,7 @@ def test_bad_input(refused):
     polygon(box(60, 60, 160, 140))
     refused("t.asc --polygon p.csv", "--depth: must be given for --shape sphere, or --volume")
     refused("t.asc --depth 5", "--polygon: must be given, unless --scar")
-    refused("t.asc --polygon p.csv --depth -3", "--depth: must be > 0, got -3")
     refused("t.asc --polygon p.csv --volume 0", "--volume: must be > 0, got 0")
-    refused("t.asc --polygon p.csv --depth 5 --volume 9", "not allowed with argument")
     refused("t.asc --polygon p.csv --shape plane --depth 5", "--dip: must be given for a plane")
     refused("t.asc --polygon p.csv --dip 95", "--dip: must be > 0 and < 90 degrees, got 95")
     refused("t.asc --polygon p.csv --dip 30 --direction 400", "--direction: must be a compass bearing", "got 400")
@@ -623,23 +577,16 @@ def test_bad_input(refused):
     refused("t.asc --polygon p.csv --depth 5 -o t", "-o: must be another name: t.yaml belongs to an input")
 
 
-@pytest.mark.parametrize("geometry, parts", [
-    (box(300, 60, 400, 140), ["p.csv: must overlap the terrain"]),
-    (box(200, 60, 300, 140), ["p.csv: must stay at least 2 cells away from NODATA and from the edge of t.asc",
-                              "got its edge at east "]),
-    (box(20, 60, 80, 140), ["p.csv: must stay at least 2 cells away from NODATA and from the edge of t.asc",
-                            f"got NODATA at east {EAST + 47:.1f} north "]),
-    (box(100, 60, 104, 64), ["p.csv: must hold at least 9 centres of the cells of t.asc, which are 2 m", "got 4"]),
-    (box(60, 60, 90, 140).union(box(100, 60, 160, 140)), ["p.csv: must be one polygon for --shape sphere", "got 2"]),
-    (box(160, 20, 230, 60), ["p.csv: the ground in it must fall by at least 1 degree, got", "flat"])])
-def test_a_polygon_at_a_bad_place(refused, geometry, parts):
+def test_a_polygon_beside_nodata(refused):
+    """Its place is said; other bad places are in test_wrong_inputs.py."""
     def height(x, y):
         z = np.where(x < 150, 0.6 * x, 90.0)
         z[np.hypot(x - 47, y - 97) < 1] = np.nan
         return z
     terrain(height)
-    polygon(geometry)
-    refused("t.asc --polygon p.csv --depth 5", *parts)
+    polygon(box(20, 60, 80, 140))
+    refused("t.asc --polygon p.csv --depth 5", "p.csv: must stay at least 2 cells away from NODATA and from the edge",
+            f"got NODATA at east {EAST + 47:.1f} north ")
 
 
 def test_flat_ground_for_every_shape(refused):
@@ -746,15 +693,8 @@ def test_the_output_on_the_page(slope, no_picture):
     assert f"   {slope('terrain.asc --polygon release.csv --volume 1e9 -o release')[2]}" in page
 
 
-def doc_examples():
-    text = (TOP / "doc" / "src" / "tool_release.rst").read_text(encoding="ascii").replace("\\\n", "")
-    text += release_command.EPILOG
-    return re.findall(r"^ +tools/slope release ((?!TERRAIN).*)", text, re.MULTILINE)
-
-
-@pytest.mark.parametrize("command", doc_examples())
+@pytest.mark.parametrize("command", examples("release"))
 def test_every_example_of_the_page_and_the_help_runs(slope, no_picture, command):
-    assert len(doc_examples()) >= 9
     terrain(hill, "terrain.asc")
     terrain(hill, "t.asc")
     terrain(hill, "before.asc")
@@ -775,7 +715,7 @@ def test_every_example_of_the_page_and_the_help_runs(slope, no_picture, command)
         assert status == 0 and "volume" in out and "wrote" in out, err
 
 
-def test_contours_below_the_sea_are_solid_and_their_labels_stand_upwards(here):     # noqa: F811
+def test_contours_below_the_sea_are_solid_and_their_labels_stand_upwards(here):
     """A ridge that runs from south to north: its contours come down as they go up, and matplotlib dashes those < 0."""
     x, y = np.meshgrid(np.arange(60.0), np.arange(60.0))
     figure, axes = maps.plt.subplots()

@@ -1,14 +1,12 @@
 """tools/slope study --repeat: which runs are made, the headline over them, what is called a trend, rest and travel."""
 import csv
-import shlex
 import statistics
 from pathlib import Path
 
 import pytest
-import yaml
 
 from messages import is_one
-from run_helpers import called
+from tiny_collapse import edit, loaded
 
 from slope_tools import schemas
 from slope_tools.case import run_folders
@@ -20,31 +18,17 @@ from slope_tools.statistics import headline
 from slope_tools.tables import combinations, quantities, study_file, study_table
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
+COMMAND = "study case/in.tiny"
 ROAD = "--road case/road.csv --local"
 
 
 @pytest.fixture
-def slope(tiny_case, capsys):
-    """Run `slope study case/in.tiny ARGUMENTS` in the test's folder; gives status, stdout, stderr."""
-    deck = tiny_case / "case" / "in.tiny"
-    text = deck.read_text()
-    for old, new in (("index 150", "index 150\nvariable  xoffset index 0.0\nvariable  seed index 0\n"
-                      "variable  unused index 1"), ("sc 1.0", "sc 1.0 origin ${xoffset} 0 0"),
-                     ("overlap 0.0", 'overlap 0.0\nif "${seed} > 0" then "displace_atoms soil random 1e-6 1e-6 1e-6 '
-                      '${seed} units box"')):
-        assert old in text
-        text = text.replace(old, new)
-    deck.write_text(text)
+def here(tiny_case):
+    edit("case/in.tiny", "index 150", "index 150\nvariable  xoffset index 0.0\nvariable  seed index 0\n"
+         "variable  unused index 1", "sc 1.0", "sc 1.0 origin ${xoffset} 0 0", "overlap 0.0",
+         'overlap 0.0\nif "${seed} > 0" then "displace_atoms soil random 1e-6 1e-6 1e-6 ${seed} units box"')
     Path("case/road.csv").write_text("13,0\n18,0\n18,24\n13,24\n")
-
-    def run(arguments):
-        return called(capsys, ["study", "case/in.tiny", *shlex.split(arguments)])
-    return run
-
-
-def load():
-    with open("out/study.csv", encoding="ascii") as lines:
-        return yaml.safe_load(Path("out/study.yaml").read_text()), list(csv.DictReader(lines))
+    return tiny_case
 
 
 def test_repeats_are_made_for_each_combination_and_the_headline_is_theirs(slope):
@@ -53,7 +37,7 @@ def test_repeats_are_made_for_each_combination_and_the_headline_is_theirs(slope)
     # one more repeat: what is finished is kept
     status, out, err = slope(words + " --repeat seed=7")
     assert status == 0 and "4 of 6 runs are finished already" in out, err
-    about, table = load()
+    about, table = loaded()
     assert [row["run"] for row in table] == [f"rolling_{rolling}_steps_700{more}" for rolling in ("0", "0.3")
                                              for more in ("", "_xoffset_0.3", "_seed_7")]
     assert [(row["rolling"], row["xoffset"], row["seed"]) for row in table[3:]] == [
@@ -97,7 +81,7 @@ def test_what_a_repeat_does_not_change_counts_once(slope):
     """A variable that the deck does not use: the runs are one, and chance is not known."""
     status, out, err = slope(f"--set rolling=0,0.3 --repeat unused=2,3 --equally-good unused {ROAD} -o out")
     assert status == 0, err
-    best = load()[0]["conservative"]
+    best = loaded()[0]["conservative"]
     assert best["kind"] == "largest of 2 runs; chance unknown" and best["repeats"] == 1
     same, = (one for one in best["doubts"] if one["kind"] == "no effect")
     assert same["runs"][0] == "rolling_0_unused_2"
@@ -108,7 +92,7 @@ def test_a_failed_repeat_leaves_the_others(slope):
     deck.write_text(deck.read_text().replace("group       soil", 'if "${seed} == 2" then "nonsense"\ngroup       soil'))
     status, _, err = slope(f"--set rolling=0,0.3 --repeat seed=1,2,3 {ROAD} -o out")
     assert status == 2 and "2 of 8 runs failed: rolling_0_seed_2" in err
-    about, _ = load()
+    about, _ = loaded()
     assert [entry["repeats"] for entry in about["combinations"]] == [3, 3]
     one, = (one for one in about["warnings"] if one["kind"] == "failed")
     assert len(one["runs"]) == 2 and one["numbers"]["of"] == 8
@@ -119,7 +103,7 @@ def test_a_failed_repeat_leaves_the_others(slope):
 def test_without_a_road_there_are_means_and_no_headline(slope):
     status, out, err = slope("--set rolling=0 --repeat xoffset=0.3 -o out")
     assert status == 0, err
-    about, _ = load()
+    about, _ = loaded()
     assert about["conservative"] is None and about["combinations"][0]["centroid_m"]["scatter"] > 0
     assert "remove_m3" not in about["combinations"][0] and "mean and scatter" in out
 
@@ -320,7 +304,7 @@ def test_a_run_that_is_cut_is_not_at_rest_and_the_study_says_so(slope):
     """After two steps nothing is fast yet: the end at the duration counts alone."""
     status, _, err = slope(f"--set rolling=0,0.3 --set steps=2 {ROAD} -o out")
     assert status == 0
-    about, table = load()
+    about, table = loaded()
     assert [(row["at_rest"], row["moving"]) for row in table] == [("no", "no")] * 2
     assert table[0]["end"].startswith("stopped at its duration; 0 % of the volume")
     assert "not at rest at the end, 2 of them stopped at their duration: stopped at its duration; " in err
@@ -334,7 +318,7 @@ def test_a_run_that_its_deck_halts_is_at_rest_unless_it_moves(slope, step, at_re
     halt = f"variable s equal step\nfix rest soil halt 2 v_s >= {step} error continue\n"
     deck.write_text(deck.read_text().replace("run         ", f"{halt}run         "))
     assert slope("--set rolling=0 -o out")[0] == 0
-    [row] = load()[1]
+    [row] = loaded()[1]
     assert (row["stop_reason"], row["at_rest"]) == ("halted", at_rest) and row["end"].startswith(end)
     assert float(row["stop_time_s"]) == pytest.approx(0.002 * step)
 

@@ -24,13 +24,13 @@ import run_helpers
 import test_export
 from run_helpers import TOOLS, called, write_asc
 
-from slope_tools.errors import SlopeError  # noqa: E402
-from slope_tools.route import choices, corridor, page as route_page, results, search, zones  # noqa: E402
-from slope_tools.route.yearly import Yearly  # noqa: E402
-from slope_tools.seismic import chain, fragility  # noqa: E402
-from slope_tools.seismic.fragility_files import Fragility  # noqa: E402
-from slope_tools.statistics import hazard  # noqa: E402
-from slope_tools.survey import geopackage  # noqa: E402
+from slope_tools.errors import SlopeError
+from slope_tools.route import choices, corridor, page as route_page, results, search, zones
+from slope_tools.route.yearly import Yearly
+from slope_tools.seismic import chain, fragility
+from slope_tools.seismic.fragility_files import Fragility
+from slope_tools.statistics import hazard
+from slope_tools.survey import geopackage
 
 LMP = os.environ.get("LMP")
 needs_lmp = pytest.mark.skipif(not LMP, reason="needs the LAMMPS program (LMP)")

@@ -6,7 +6,7 @@ import pytest
 from affine import Affine
 from shapely.geometry import LineString
 
-from run_helpers import here, write_asc, write_run  # noqa: F401  (here is a fixture)
+from run_helpers import write_asc, write_run
 from test_mobility_path import STEEP
 
 from slope_tools.deposits import deposit as deposits
@@ -100,7 +100,7 @@ def test_without_a_path_it_is_straight():
     assert run_length.of_deposit(deposit((205, 305, 305, 305, 50.0)), None) is None       # nowhere thicker than 0.1 m
 
 
-def test_of_a_run(here):        # noqa: F811
+def test_of_a_run(here):
     """The path of its own body, from its terrain: a valley that bends; read once for all runs of a body."""
     rows, columns = 120, 120
     x, y = np.meshgrid(CELL * (np.arange(columns) + 0.5), CELL * (rows - 0.5 - np.arange(rows)))

@@ -1,8 +1,6 @@
 """tools/slope score: areas, run-outs and volumes by hand, rasters on other grids, places, bad input."""
-import csv
 import math
 import os
-import re
 from pathlib import Path
 
 import numpy as np
@@ -13,13 +11,13 @@ from affine import Affine
 from shapely.affinity import rotate, translate
 from shapely.geometry import MultiPolygon, Point, Polygon, box
 
-from run_helpers import (BULK, CRS_M, EAST, NORTH, TOP, centres, here, run_command, write_asc,  # noqa: F401
-                         write_geojson, write_run, write_sidecar)
+from run_helpers import BULK, CRS_M, EAST, NORTH, centres, examples, write_asc, write_geojson, write_run, write_sidecar
+from tiny_collapse import rows_of
 
 from slope_tools import disk
-from slope_tools.commands import score as score_command
 from slope_tools.deposits import score
 
+COMMAND = "score"
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 
 
@@ -27,12 +25,6 @@ pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreference
 def no_map(monkeypatch):
     """The map, which takes most of the time, is left out."""
     monkeypatch.setattr(score, "draw", lambda path, *_: path.touch())
-
-
-@pytest.fixture
-def slope(here, capsys):  # noqa: F811
-    """Run `slope score ARGUMENTS`, in the test's folder; gives status, stdout, stderr."""
-    return lambda arguments: run_command("score", arguments, capsys)
 
 
 @pytest.fixture
@@ -61,8 +53,7 @@ def write_tif(path, z, transform, crs=CRS_M, nodata=-9999.0):
 
 
 def rows(path="out/score.csv"):
-    with open(path, newline="", encoding="ascii") as lines:
-        return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(lines)]
+    return rows_of(path, float)
 
 
 # --- areas ---
@@ -279,7 +270,7 @@ def test_files_and_warnings(slope):
     ("run --observed mapped.tif -o mapped.tif", "-o: must be a folder, got mapped.tif"),
     ("run --observed run.summary.yaml", "run.summary.yaml: must be polygons that GDAL can read"),
 ])
-def test_bad_input_is_one_line(slope, no_map, here, arguments, message):  # noqa: F811
+def test_bad_input_is_one_line(slope, no_map, here, arguments, message):
     write_sidecar(40, 60, 2.5)
     write_run(square(), 0.0, 2.5)
     place = Affine(2.5, 0, EAST, 0, -2.5, NORTH + 100)
@@ -296,7 +287,7 @@ def test_bad_input_is_one_line(slope, no_map, here, arguments, message):  # noqa
     assert sorted(here.rglob("*")) == before
 
 
-def test_a_command_that_fails_at_the_end_changes_nothing(scored, slope, monkeypatch, here):  # noqa: F811
+def test_a_command_that_fails_at_the_end_changes_nothing(scored, slope, monkeypatch, here):
     write_run(square(), 0.0, 2.5)
     scored(box(40, 30, 80, 60))
     before = {path: path.read_bytes() for path in here.rglob("*") if path.is_file()}
@@ -312,12 +303,7 @@ def test_a_command_that_fails_at_the_end_changes_nothing(scored, slope, monkeypa
 
 # --- the page ---
 
-def doc_examples():
-    text = (TOP / "doc" / "src" / "tool_score.rst").read_text(encoding="ascii").replace("\\\n", " ")
-    return re.findall(r"^ +tools/slope score ((?!PREFIX).*)", text, re.MULTILINE)
-
-
-@pytest.mark.parametrize("command", [*doc_examples(), *re.findall("tools/slope score (.*)", score_command.EPILOG)])
+@pytest.mark.parametrize("command", examples("score"))
 def test_every_example_of_the_page_and_the_help_runs(slope, no_map, command):
     write_sidecar(40, 60, 2.5)
     write_sidecar(40, 60, 2.5, "dem.asc")

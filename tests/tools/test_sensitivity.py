@@ -1,7 +1,5 @@
 """tools/slope sensitivity: one variable at a time; scatter, effects and the sentence against numbers by hand."""
-import csv
 import math
-import shlex
 import shutil
 import statistics
 from pathlib import Path
@@ -9,32 +7,23 @@ from pathlib import Path
 import pytest
 import yaml
 
-from run_helpers import called
+
+from tiny_collapse import edit, rows_of
 
 from slope_tools.studies import sensitivity
 from slope_tools.tables import quantities
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
+COMMAND = "sensitivity case/in.tiny"
 T = 4.302652729911275       # t(0.975) of three runs
 ROAD = "--road case/road.csv --local"
 
 
 @pytest.fixture
-def slope(tiny_case, capsys):
-    """Run `slope sensitivity case/in.tiny ARGUMENTS` in the test's folder; gives status, stdout, stderr."""
-    deck = tiny_case / "case" / "in.tiny"
-    text = deck.read_text().replace("variable  steps    index 150", "variable  steps    index 900\n"
-                                    "variable  xoffset  index 0.0")
-    deck.write_text(text.replace("lattice     sc 1.0", "lattice     sc 1.0 origin ${xoffset} 0 0"))
-
-    def run(arguments):
-        return called(capsys, ["sensitivity", "case/in.tiny", *shlex.split(arguments)])
-    return run
-
-
-def rows():
-    with open("out/sensitivity.csv", encoding="ascii") as table:
-        return list(csv.DictReader(table))
+def here(tiny_case):
+    edit("case/in.tiny", "index 150", "index 900\nvariable  xoffset  index 0.0",
+         "lattice     sc 1.0", "lattice     sc 1.0 origin ${xoffset} 0 0")
+    return tiny_case
 
 
 def test_one_variable_at_a_time_against_the_scatter_of_equivalent_runs(slope):
@@ -45,7 +34,7 @@ def test_one_variable_at_a_time_against_the_scatter_of_equivalent_runs(slope):
     # the values of the base run are not run again
     names = ["rolling_0.05", "rolling_0.05_friction_10", "rolling_0.05_friction_50", "rolling_0.05_cell_0.5",
              "rolling_0.05_xoffset_0.25", "rolling_0.05_xoffset_0.5"]
-    found = rows()
+    found = rows_of("out/sensitivity.csv")
     assert [row["run"] for row in found] == names
     assert [row["kind"] for row in found] == ["base"] + 3 * ["vary"] + 2 * ["repeat"]
     assert found[1]["base_value"] == "30" and found[1]["value"] == "10"
@@ -80,7 +69,7 @@ def test_one_variable_at_a_time_against_the_scatter_of_equivalent_runs(slope):
     assert status == 0 and "6 of 7 runs are finished already" in out, err
     assert Path(f"out/{names[0]}/finished.yaml").read_bytes() == before
     status, out, err = slope(words + " --of front_m")
-    assert status == 0 and out.count("started") == 0 and "effect_of_front_m" in rows()[0], err
+    assert status == 0 and out.count("started") == 0 and "effect_of_front_m" in rows_of("out/sensitivity.csv")[0], err
 
 
 def test_what_is_clear_depends_on_the_number_of_equivalent_runs():
@@ -95,14 +84,14 @@ def test_without_repeats_the_scatter_is_said_to_be_unknown(slope):
     status, out, err = slope(f"--levels rolling=0.2 --set steps=100 {ROAD} -o out")
     assert status == 0, err
     assert "without --repeat its scatter is unknown" in out
-    assert [row["clear_of_remove_m3"] for row in rows()] == ["", ""]
+    assert [row["clear_of_remove_m3"] for row in rows_of("out/sensitivity.csv")] == ["", ""]
 
 
 def test_a_failed_run_is_told_and_the_others_are_collected(slope):
     shutil.copy("case/terrain.asc", "case/same.asc")
     status, _, err = slope(f"--levels terrain=same.asc,none.asc --set steps=100 {ROAD} -o out")
     assert status == 2 and "steps_100_terrain_none.asc: ERROR: Region terrain" in err
-    assert [row["value"] for row in rows()] == ["", "same.asc"]
+    assert [row["value"] for row in rows_of("out/sensitivity.csv")] == ["", "same.asc"]
 
 
 @pytest.mark.parametrize("arguments, message", [

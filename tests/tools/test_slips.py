@@ -3,9 +3,8 @@ import numpy as np
 import pytest
 from affine import Affine
 
-import run_helpers  # noqa: F401  (finds slope_tools)
 
-from slope_tools.slips import bishop, columns
+from slope_tools.slips import bishop, chart, columns
 from slope_tools.slips.bishop import Strengths
 from slope_tools.survey.rasters import Raster
 
@@ -93,3 +92,14 @@ def test_what_is_connected_and_what_is_not_below_ground():
     kept = columns.largest(ridges, columns.base_of(ridges, (23.0, 15.0, 40.0), 30.5))
     x = columns.centres(ridges)[0]
     assert 5 < np.ptp(x[kept]) < 19       # one ridge of several below
+
+
+def test_the_map_of_a_search_has_all_that_was_searched(tmp_path, monkeypatch):
+    """50 x 20 m: x from west to east, y from south to north."""
+    def save(figure, *_, **__):
+        shown.extend((*figure.axes[0].get_xlim(), *figure.axes[0].get_ylim()))
+    shown = []
+    monkeypatch.setattr(chart.pictures, "save", save)
+    raster = ground(lambda x: 10 + x / 2, 100, 40)
+    chart.draw(tmp_path / "a.png", raster, np.ones((40, 100)), [], [], "a search")
+    assert shown == [0, 50, 0, 20]

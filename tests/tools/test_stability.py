@@ -1,5 +1,4 @@
 """slope stability: what find_slip finds on the embankments of Scoops3D, and what is said of it."""
-import csv
 import os
 import subprocess
 from pathlib import Path
@@ -14,6 +13,7 @@ import run_helpers
 import test_depends_on
 from run_helpers import called, write_asc
 from test_slips import CASES
+from tiny_collapse import rows_of
 
 from slope_tools.commands import stability
 from slope_tools.slips import bishop, bodies, columns, doubts
@@ -38,8 +38,7 @@ def ran(capsys, words):
 
 
 def table(folder="slips"):
-    with open(f"{folder}/stability.csv", newline="") as source:
-        return [{name: float(value) for name, value in row.items()} for row in csv.DictReader(source)]
+    return rows_of(f"{folder}/stability.csv", float)
 
 
 @needs_lmp

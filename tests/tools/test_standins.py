@@ -6,17 +6,13 @@ of 10 m lies what the wedge has there. The ensemble has the same law with an exp
 knows; how far its runs go has nothing to do with the events. Stated before anything was run: 15 to 20 of 20 within the
 band of 5 to 95 %, and its upper end at most 4 times its middle (median of the stand-ins half of whose runs reach it).
 """
-import sys
 
 import numpy as np
 
-from run_helpers import TOOLS
 
-sys.path.insert(0, str(TOOLS))
-
-from slope_tools.ensembles import conditioned  # noqa: E402  (after the path is set)
-from slope_tools.mobility import events, relation, weights  # noqa: E402
-from slope_tools.statistics import designs  # noqa: E402
+from slope_tools.ensembles import conditioned
+from slope_tools.mobility import events, relation, weights
+from slope_tools.statistics import designs
 
 RELATION = relation.of_events(events.read())
 NUMBER, RUNS, ROAD = 20, 64, 10.0

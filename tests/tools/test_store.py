@@ -1,5 +1,4 @@
 """The folder of the runs: each is known by the values of its deck's variables, made once, and again when asked."""
-import shlex
 import shutil
 from pathlib import Path
 from types import SimpleNamespace
@@ -7,7 +6,6 @@ from types import SimpleNamespace
 import pytest
 import yaml
 
-from run_helpers import called
 from tiny_collapse import LMP
 
 from slope_tools.runs import jobs, store
@@ -19,12 +17,6 @@ LONG = {f"a_variable_with_a_long_name_{k}": "0.123456789" for k in range(8)}
 @pytest.fixture
 def here(tiny_case):
     return tiny_case
-
-
-@pytest.fixture
-def slope(here, capsys):
-    """Run `slope ARGUMENTS`; gives status, stdout, stderr."""
-    return lambda arguments: called(capsys, shlex.split(arguments))
 
 
 def make(chosen, name=None, deck="in.tiny", done=True, **defaults):

@@ -10,7 +10,7 @@ import pytest
 import yaml
 
 from run_helpers import called
-from tiny_collapse import LMP, write_case, write_stl
+from tiny_collapse import LMP, edit, write_case, write_stl
 
 from slope_tools import cli, digits, errors
 from slope_tools.plots import figure_structures
@@ -36,12 +36,8 @@ def slope(arguments, capsys):
 
 def write_structures(folder):
     """The small collapse above a wall at x 12 to 13, a post that nothing reaches, and a line at x 11."""
-    deck = write_case(folder)
-    text = deck.read_text().replace("index 150", "index 900\nvariable  wall index 1")
-    for old, new in (("neighbor    0.2 bin", ADDED), ("run         ${steps}", LINE)):
-        assert text.count(old) == 1
-        text = text.replace(old, new)
-    deck.write_text(text)
+    edit(write_case(folder), "index 150", "index 900\nvariable  wall index 1", "neighbor    0.2 bin", ADDED,
+         "run         ${steps}", LINE)
     write_stl(folder / "wall.stl", (12, 1, -1), (13, 23, 2))
     write_stl(folder / "post.stl", (2, 11, -1), (3, 12, 2))
     (folder / "fence.csv").write_text("11 23\n11 1\n")

@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 from scipy import optimize
 
-import run_helpers  # noqa: F401  (finds slope_tools)
 
 from slope_tools.seismic import chain, together
 from slope_tools.seismic.together import Steps

@@ -3,29 +3,24 @@ import csv
 import gzip
 import math
 import os
-import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 import yaml
 
-from run_helpers import TOP, here, run_command  # noqa: F401
+from run_helpers import examples
 
 from slope_tools import disk
-from slope_tools.commands import travel as travel_command
 from slope_tools.deposits import travel
+
+
+COMMAND = "travel"
 
 
 @pytest.fixture
 def no_picture(monkeypatch):
     monkeypatch.setattr(travel, "draw", lambda path, *_: path.touch())
-
-
-@pytest.fixture
-def slope(here, capsys):  # noqa: F811
-    """Run `slope travel ARGUMENTS`, in the test's folder; gives status, stdout, stderr."""
-    return lambda arguments: run_command("travel", arguments, capsys)
 
 
 @pytest.fixture
@@ -248,7 +243,7 @@ def test_columns_by_name_and_the_last_snapshot(travelled):
     assert travelled("u.dump")["along"]["all"]["max"] == 104
 
 
-def test_lines_that_end_as_those_of_windows(slope, no_picture):  # noqa: F811
+def test_lines_that_end_as_those_of_windows(slope, no_picture):
     good = Path(write("good.dump", FOUR)).read_bytes()
     Path("windows.dump").write_bytes(b"ITEM: TIMESTEP\r\n0\r\n" + good.replace(b"\n", b"\r\n"))
     slope("good.dump -o good")
@@ -309,7 +304,7 @@ def test_one_place_for_all_balls(slope):
     ("ragged.dump", "ragged.dump: line 12: must have 6 columns, got 5"),
     ("twice.dump", "twice.dump: must have each ball once at step 100, got id 2 2 times"),
 ])
-def test_bad_input_is_one_line(slope, no_picture, here, arguments, message):  # noqa: F811
+def test_bad_input_is_one_line(slope, no_picture, here, arguments, message):
     good = Path(write("good.dump", FOUR)).read_text()
     write("notype.dump", FOUR, columns="id x y z")
     write("other.dump", FOUR, first=11)
@@ -329,7 +324,7 @@ def test_bad_input_is_one_line(slope, no_picture, here, arguments, message):  # 
     assert sorted(here.rglob("*")) == before
 
 
-def test_a_command_that_fails_at_the_end_changes_nothing(travelled, slope, monkeypatch, here):  # noqa: F811
+def test_a_command_that_fails_at_the_end_changes_nothing(travelled, slope, monkeypatch, here):
     write("a.dump", FOUR)
     travelled("a.dump")
     before = {path: path.read_bytes() for path in here.rglob("*") if path.is_file()}
@@ -345,13 +340,8 @@ def test_a_command_that_fails_at_the_end_changes_nothing(travelled, slope, monke
 
 # --- the page ---
 
-def doc_examples():
-    text = (TOP / "doc" / "src" / "tool_travel.rst").read_text(encoding="ascii").replace("\\\n", " ")
-    return re.findall(r"^ +tools/slope travel ((?!DUMP).*)", text, re.MULTILINE)
-
-
-@pytest.mark.parametrize("command", [*doc_examples(), *re.findall("tools/slope travel (.*)", travel_command.EPILOG)])
-def test_every_example_of_the_page_and_the_help_runs(slope, no_picture, here, command):  # noqa: F811
+@pytest.mark.parametrize("command", examples("travel"))
+def test_every_example_of_the_page_and_the_help_runs(slope, no_picture, here, command):
     for name in ("embankment.00044000", "rest.1", "rest.2", "start.1", "start.2"):
         write(f"{name}.dump", [(1, -1, 2), (2, 3, 1)])
     for pattern in ("rest.*.dump", "start.*.dump"):      # as the shell does

@@ -1,15 +1,13 @@
 """tools/slope verify: what it judges, writes and says; on claims made up here and a program that stands for lmp."""
 import csv
-import re
 import types
 from pathlib import Path
 
 import pytest
 import yaml
 
-from run_helpers import TOP, here, run_command  # noqa: F401
+from run_helpers import run_command, examples
 
-from slope_tools.commands import verify as verify_command
 from slope_tools.errors import SlopeError
 from slope_tools.validation import verification
 from slope_tools.validation.verification import claims
@@ -33,7 +31,7 @@ def claim(name="bounce", e=0.25, broken=0.3, **more):
 
 
 @pytest.fixture
-def slope(here, capsys, monkeypatch):  # noqa: F811
+def slope(here, capsys, monkeypatch):
     """Run `slope verify ARGUMENTS` on claims; gives status, stdout, stderr."""
     lmp = here / "lmp"
     lmp.write_text(LMP)
@@ -234,12 +232,7 @@ def test_frames(tmp_path):
 
 # --- the page ---
 
-def doc_examples():
-    text = (TOP / "doc" / "src" / "tool_verify.rst").read_text(encoding="ascii")
-    return re.findall(r"^ +tools/slope verify ((?!keyword).*)", text, re.MULTILINE)
-
-
-@pytest.mark.parametrize("command", [*doc_examples(), *re.findall("tools/slope verify (.*)", verify_command.EPILOG)])
+@pytest.mark.parametrize("command", examples("verify"))
 def test_every_example_of_the_page_and_the_help_runs(slope, command):
     command = command.replace("11_column_collapse", "01_restitution")
     status, _, err = slope(command)

@@ -18,23 +18,17 @@ from shapely.affinity import rotate, translate
 from shapely.geometry import LineString, MultiPolygon, Point, Polygon, box, shape
 from shapely.ops import unary_union
 
-from run_helpers import (BULK, CRS_M, EAST, NORTH, TOP, centres, here, run_command, write_asc,  # noqa: F401
-                         write_geojson, write_run, write_sidecar)
+from run_helpers import (BULK, CRS_M, EAST, NORTH, TOP, centres, examples, write_asc, write_geojson, write_run,
+                         write_sidecar)
 
 from slope_tools import disk, geometry
-from slope_tools.commands import volume as volume_command
 from slope_tools.deposits import cut, deposit, volume, volume_files
 from slope_tools.survey import rasters
 
+COMMAND = "volume"
 LMP = os.environ.get("LMP", str(TOP / "build" / "lmp"))
 TAN30 = math.tan(math.radians(30))
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
-
-
-@pytest.fixture
-def slope(here, capsys):  # noqa: F811
-    """Run `slope volume ARGUMENTS`, in the test's folder; gives status, stdout, stderr."""
-    return lambda arguments: run_command("volume", arguments, capsys)
 
 
 @pytest.fixture
@@ -185,7 +179,7 @@ def test_islands_and_several_roads(cleared):
     assert cleared(two)["volume"]["remove"] == pytest.approx(40 * (3 * 30 + 4 * wedge(3, 40, TAN30)), rel=1e-9)
 
 
-def lmp_run(here, slope_, columns, layers):  # noqa: F811
+def lmp_run(here, slope_, columns, layers):
     """The deposit of balls of 1 m, placed one by one: a box of columns x 8 x layers, on a plane that rises along x."""
     rows, width = 16, 40
     x, _ = centres(rows, width, 1.0)
@@ -205,7 +199,7 @@ def lmp_run(here, slope_, columns, layers):  # noqa: F811
 
 
 @pytest.mark.parametrize("slope_", [0.0, 0.25])
-def test_balls_placed_by_hand(here, cleared, slope_):  # noqa: F811
+def test_balls_placed_by_hand(here, cleared, slope_):
     """Through LAMMPS: two layers of balls of 1 m stand for a box 20 x 8 x 2 m; the road lies askew to the cells."""
     count = lmp_run(here, slope_, range(6, 26), 2)
     about = cleared(box(8.3, 0, 14.1, 16), "--mesh 3")
@@ -457,7 +451,7 @@ def test_a_crs_without_a_number_gives_degrees(slope, no_map):
     assert south == pytest.approx(36 + NORTH / 110950, abs=5e-3)
 
 
-def test_without_a_terrain_there_is_a_warning(slope, here):  # noqa: F811
+def test_without_a_terrain_there_is_a_warning(slope, here):
     write_run(strip(), 0.0, 2.5)
     write_geojson("road.geojson", box(90, 0, 110, 200))
     status, _, err = slope("run --road road.geojson --mesh 10 --local")
@@ -471,7 +465,7 @@ def test_without_a_terrain_there_is_a_warning(slope, here):  # noqa: F811
     assert (status, err) == (0, "")
 
 
-def test_the_folder_may_be_this_one_or_another_with_files(cleared, slope, here):  # noqa: F811
+def test_the_folder_may_be_this_one_or_another_with_files(cleared, slope, here):
     write_run(strip(), 0.0, 2.5)
     cleared(box(90, 0, 110, 200))
     (here / "out" / "mine.txt").touch()
@@ -537,7 +531,7 @@ def test_a_cut_angle_that_looks_like_a_tangent_is_asked_about(slope, angle, aske
     ("run --road road.geojson --mesh 10 -o none/out", "-o: must be in an existing folder, got none/out"),
     ("run --road road.geojson --mesh ten", "argument --mesh: must be a finite number, got 'ten'"),
 ])
-def test_bad_input_is_one_line(slope, no_map, here, arguments, message):  # noqa: F811
+def test_bad_input_is_one_line(slope, no_map, here, arguments, message):
     write_sidecar(80, 100, 2.5)
     write_sidecar(10, 10, 2.5, "other.asc")
     write_run(strip(), 0.0, 2.5)
@@ -592,7 +586,7 @@ def test_a_run_that_still_moved_or_lost_mass_is_warned_of(cleared, slope):
     assert slope("run --road road.geojson --local --mesh 10")[2].count("slope volume: warning: ") == 3
 
 
-def test_a_command_that_fails_at_the_end_changes_nothing(cleared, slope, monkeypatch, here):  # noqa: F811
+def test_a_command_that_fails_at_the_end_changes_nothing(cleared, slope, monkeypatch, here):
     write_run(strip(), 0.0, 2.5)
     cleared(box(90, 0, 110, 200))
     before = {path: path.read_bytes() for path in here.rglob("*") if path.is_file()}
@@ -608,13 +602,7 @@ def test_a_command_that_fails_at_the_end_changes_nothing(cleared, slope, monkeyp
 
 # --- the page ---
 
-def doc_examples():
-    text = (TOP / "doc" / "src" / "tool_volume.rst").read_text(encoding="ascii").replace("\\\n", " ")
-    return re.findall(r"^ +tools/slope volume ((?!PREFIX).*)", text, re.MULTILINE)
-
-
-@pytest.mark.parametrize("command", [
-    *doc_examples(), volume_command.EPILOG.split("tools/slope volume ")[1].split("\n")[0]])
+@pytest.mark.parametrize("command", examples("volume"))
 def test_every_example_of_the_page_and_the_help_runs(slope, no_map, command):
     write_sidecar(80, 100, 2.5)
     write_sidecar(80, 100, 2.5, "dem.asc")

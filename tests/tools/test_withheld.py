@@ -1,9 +1,7 @@
 """When the conservative volume is withheld: each rule alone, none, and several; the words; what left before a road."""
 import argparse
-import os
 import re
 import shlex
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -11,17 +9,14 @@ import pytest
 from affine import Affine
 from shapely.geometry import box
 
-TOP = Path(__file__).resolve().parents[2]
-sys.path.insert(0, os.environ.get("SLOPE_TOOLS", str(TOP / "tools")))
-
-from slope_tools import cli  # noqa: E402
-from slope_tools.deposits import left  # noqa: E402
-from slope_tools.statistics import withheld  # noqa: E402
-from slope_tools.statistics.withheld import Facts, Kind  # noqa: E402
-from slope_tools.survey.rasters import Raster  # noqa: E402
-from slope_tools.tables import combinations, usable, withheld_words  # noqa: E402
-from slope_tools.tables.usable import Events  # noqa: E402
-from slope_tools.tables.withheld_words import Case  # noqa: E402
+from slope_tools import cli
+from slope_tools.deposits import left
+from slope_tools.statistics import withheld
+from slope_tools.statistics.withheld import Facts, Kind
+from slope_tools.survey.rasters import Raster
+from slope_tools.tables import combinations, usable, withheld_words
+from slope_tools.tables.usable import Events
+from slope_tools.tables.withheld_words import Case
 
 GOOD = Facts(volume=5000.0, on_road=3000.0, ball=10.0, runs=20, failed=0, moving=0, left=0.0, length=900.0,
              median=800.0)

@@ -1,10 +1,12 @@
 """A collapse of 350 balls that runs in a second: deck, terrain and road for the tests of study and report."""
+import csv
 import functools
 import os
 import subprocess
 from pathlib import Path
 
 import numpy as np
+import yaml
 
 TOP = Path(__file__).resolve().parents[2]
 LMP = os.environ.get("LMP", str(TOP / "build" / "lmp"))
@@ -113,3 +115,23 @@ def processes_in(folder):
         except OSError:
             continue
     return found
+
+
+def edit(path, *texts):
+    """Replace texts of a file, which it must have: old, new, old, new, ..."""
+    text = Path(path).read_text()
+    for old, new in zip(texts[::2], texts[1::2]):
+        assert old in text, (path, old)
+        text = text.replace(old, new)
+    Path(path).write_text(text)
+
+
+def rows_of(path, kind=str):
+    """Rows of a CSV file, {column: value}."""
+    with open(path, newline="", encoding="utf-8") as lines:
+        return [{key: kind(value) for key, value in row.items()} for row in csv.DictReader(lines)]
+
+
+def loaded(name="study"):
+    """What out/NAME.yaml has, and the rows of out/NAME.csv."""
+    return yaml.safe_load(Path(f"out/{name}.yaml").read_text()), rows_of(f"out/{name}.csv")
