@@ -9,7 +9,15 @@ from typing import List, Optional
 import pytest
 
 
+from run_helpers import called
+
 from slope_tools import cli, options
+
+
+@pytest.mark.parametrize("command", ["report", "study", "terrain"])
+def test_help_has_units_and_an_example(command, capsys):
+    status, out, _ = called(capsys, [command, "--help"])
+    assert status == 0 and "units: metres" in out and f"\n  tools/slope {command} " in out
 
 
 @pytest.mark.parametrize("text, value", [("1", 1), ("007", 7), ("1000000", 1000000), ("1000000000", 10 ** 9)])

@@ -1,6 +1,5 @@
 """Structures, control lines, road and cut on the maps and in the section of a report; palettes; results of nothing."""
 import re
-import sys
 from types import SimpleNamespace
 
 import numpy as np
@@ -10,15 +9,13 @@ from shapely.geometry import box
 
 from run_helpers import TOOLS
 
-sys.path.insert(0, str(TOOLS))
-
-from slope_tools.drawing import figures, palettes  # noqa: E402
-from slope_tools.plots import (figure_charts, figure_maps, figure_structures, obstacles,  # noqa: E402
+from slope_tools.drawing import figures, palettes
+from slope_tools.plots import (figure_charts, figure_maps, figure_structures, obstacles,
                                section as report_section)
-from slope_tools.plots.known_reach import KnownReach, Mark  # noqa: E402
-from slope_tools.report import charts, structures_part  # noqa: E402
-from slope_tools.statistics import hazard  # noqa: E402
-from slope_tools.survey.rasters import Raster  # noqa: E402
+from slope_tools.plots.known_reach import KnownReach, Mark
+from slope_tools.report import charts, structures_part
+from slope_tools.statistics import hazard
+from slope_tools.survey.rasters import Raster
 
 
 def box_of(low, high):

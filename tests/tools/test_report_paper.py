@@ -2,7 +2,6 @@
 import re
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -12,13 +11,11 @@ import yaml
 from run_helpers import TOOLS, called
 from tiny_collapse import LMP, write_case
 
-sys.path.insert(0, str(TOOLS))
-
-from slope_tools import cli  # noqa: E402
-from slope_tools.animation import view  # noqa: E402
-from slope_tools.drawing import figures  # noqa: E402
-from slope_tools.errors import SlopeError  # noqa: E402
-from slope_tools.report import document, paper  # noqa: E402
+from slope_tools import cli
+from slope_tools.animation import view
+from slope_tools.drawing import figures
+from slope_tools.errors import SlopeError
+from slope_tools.report import document, paper
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 looked_at = pytest.mark.skipif(not (paper.browser() and shutil.which("pdftoppm")),

@@ -1,6 +1,5 @@
 """The line that a mass took: around a bend, from dumps, without stray balls; and where the section of a report goes."""
 import os
-import sys
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -9,14 +8,12 @@ import pytest
 from affine import Affine
 from shapely.geometry import LineString, Point
 
+from slope_tools.deposits import flow_path
+from slope_tools.plots import section as report_section
+from slope_tools.survey.rasters import Raster
+
 TOP = Path(__file__).resolve().parents[2]
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
-sys.path.insert(0, str(TOOLS))
-
-from slope_tools.deposits import flow_path  # noqa: E402
-from slope_tools.plots import section as report_section  # noqa: E402
-from slope_tools.survey.rasters import Raster  # noqa: E402
-
 CELL = 2.0
 CENTRE = LineString([(20, 180), (100, 180), (100, 20)])     # of a channel with a bend of 90 degrees
 

@@ -1,7 +1,6 @@
 """The pictures of slope report: nothing overlaps at any shape of site, classes that suit the deposit, exaggeration."""
 import itertools
 import os
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -10,15 +9,13 @@ from affine import Affine
 from rasterio.crs import CRS
 from shapely.geometry import box
 
+from slope_tools.drawing import figures
+from slope_tools.plots import figure_charts, figure_maps, sheets
+from slope_tools.plots.figure_charts import Convergence, Series
+from slope_tools.survey.rasters import Raster
+
 TOP = Path(__file__).resolve().parents[2]
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
-sys.path.insert(0, str(TOOLS))
-
-from slope_tools.drawing import figures  # noqa: E402
-from slope_tools.plots import figure_charts, figure_maps, sheets  # noqa: E402
-from slope_tools.plots.figure_charts import Convergence, Series  # noqa: E402
-from slope_tools.survey.rasters import Raster  # noqa: E402
-
 LONG = "Thickness of the deposit at the end of a run with a name that is longer than most sheets of paper are wide"
 RUN = "rolling 0.050000001, friction 27.5, restitution 0.48, field_e 0.12, spacing 1.25, quiet 0.0003, seed 1234567"
 # rows, columns, cell, local corner: a usual site, a flume, a gully down the map, a steep corner, one of many digits

@@ -7,7 +7,6 @@ import os
 import re
 import shutil
 import subprocess
-import sys
 import time
 from pathlib import Path
 
@@ -18,14 +17,12 @@ from scipy.interpolate import RegularGridInterpolator
 
 from tiny_collapse import LMP, TOP, height, read_asc, write_case, write_stl
 
+from slope_tools import cli
+from slope_tools.animation import film, frames, scene, view
+from slope_tools.plots.ground import Ground, box_of
+from slope_tools.report.data import Data
+
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
-sys.path.insert(0, str(TOOLS))
-
-from slope_tools import cli  # noqa: E402
-from slope_tools.animation import film, frames, scene, view  # noqa: E402
-from slope_tools.plots.ground import Ground, box_of  # noqa: E402
-from slope_tools.report.data import Data  # noqa: E402
-
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 library = pytest.mark.skipif(view.library() is None, reason="libjs-three is not installed")
 

@@ -791,11 +791,6 @@ def test_the_program_itself(here):
     assert (done.returncode, done.stderr) == (0, "") and done.stdout.endswith("\nregion ground terrain out.asc\n")
 
 
-def test_help_has_units_and_an_example(slope):
-    status, out, _ = slope("--help")
-    assert status == 0 and "units: metres" in out and "\n  tools/slope terrain " in out
-
-
 @pytest.mark.parametrize("command", [one for one in examples("terrain") if "FG-GML" not in one])  # these: test_fggml
 def test_every_example_of_the_page_and_the_help_runs(slope, here, command):
     z, transform = degrees_survey(200)
