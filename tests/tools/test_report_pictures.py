@@ -156,6 +156,16 @@ def check_overlap_is_found(figure):
         check_layout(figure)
 
 
+def test_the_outline_of_a_mapped_raster_is_that_of_its_cells(drawn):
+    layers = site("usual")[0]
+    mask = np.zeros(layers.raster.z.shape, bool)
+    mask[10:20, 30:50] = True       # of 60 rows; cells of 2.5 m
+    axes = figures.plt.figure().add_subplot()
+    figure_maps.draw_mapped(axes, layers._replace(mapped=mask))
+    points = np.concatenate([path.vertices for one in axes.collections for path in one.get_paths()])
+    assert [*points.min(axis=0), *points.max(axis=0)] == pytest.approx([75, 100, 125, 125])
+
+
 def test_an_overlap_would_be_found(drawn):
     layers, thickness = site("usual")
     figure_maps.value_map(layers, thickness, LONG, "m", [0.1, 1, 40], "YlOrBr", figures.FULL)

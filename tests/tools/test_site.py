@@ -28,6 +28,7 @@ from slope_tools.deposits import volume_files
 from slope_tools.ensembles import farther
 from slope_tools.releases import release_chart
 from slope_tools.sites import site_budget, site_choices, site_deck, site_warnings
+from slope_tools.sites.site import numbers as site_numbers
 from slope_tools.errors import SlopeError
 from slope_tools.plots import site_map
 from slope_tools.tables import answered
@@ -423,6 +424,15 @@ def test_the_size_of_the_balls_comes_from_the_budget():
     assert more.balls / some.balls == pytest.approx(10 ** 0.75, rel=0.3)     # time goes with balls^(4/3)
     small = budget(memory=1.0)
     assert 0.97 < small.gigabytes <= 1.0 and small.balls == pytest.approx((0.5 - 0.06) / 800e-9, rel=0.03)
+
+
+def test_the_run_time_in_the_deck_is_that_of_one_run():
+    """Set-up, and what balls and steps cost: 15 s in steps of 0.25 sqrt(m/k), k = 3.92 GN/m for 2.5 m and 47 m/s."""
+    choices = site_choices.complete({"terrain": {"files": ["dem.tif"]}})
+    choices["model"].update(speed=47.0, density=2000.0)
+    trial = site_budget.Trial(800, 3.5, 15.0, True, 13.0, 1e-7, 0.5, 2.0, 0.0)
+    step = 0.25 * (2000 * np.pi / 6 * 2.5 ** 3 / 3.92e9) ** 0.5
+    assert site_numbers(choices, trial, budget(number=2240)).run_seconds == pytest.approx(0.5 + 15 / step * 2240 * 1e-7)
 
 
 def test_a_second_trial_tells_how_long_most_runs_take():
