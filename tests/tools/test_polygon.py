@@ -240,6 +240,11 @@ def test_a_written_file_is_an_input_again(written, slope):
     assert polygons.read_local("b.csv", nowhere).equals_exact(here_, 0)
 
 
+def test_a_zero_has_no_sign(here):
+    polygons.write("a.csv", Polygon([(-1e-9, 1), (5, 1), (5, 4)]), rasters.read_place("t.asc"))
+    assert Path("a.csv").read_text().endswith("\n0.0,1.0\n5.0,1.0\n5.0,4.0\n")
+
+
 def test_raster_and_place_are_the_same(here):
     Path("a.wkt").write_text(moved(ROAD).wkt)
     found = [polygons.read_local("a.wkt", read("t.asc")) for read in (rasters.read_asc_local, rasters.read_place)]
