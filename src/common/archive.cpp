@@ -156,6 +156,27 @@ void Archive::list(const std::string &name, std::vector<double> &values)
     put(values.data(), values.size() * sizeof(double));
 }
 
+void Archive::lines(const std::string &name, std::vector<std::string> &texts)
+{
+  std::vector<double> bytes;
+  for (const std::string &line : texts) {
+    bytes.insert(bytes.end(), line.begin(), line.end());
+    bytes.push_back('\n');
+  }
+  list(name, bytes);
+  if (!reads()) return;
+  texts.clear();
+  std::string line;
+  for (const double byte : bytes) {
+    if (!(byte >= -128.0 && byte < 128.0)) damaged("bytes in " + name + ", got " + text(byte));
+    line += static_cast<char>(byte);
+    if (line.back() != '\n') continue;
+    line.pop_back();
+    texts.push_back(line);
+    line.clear();
+  }
+}
+
 void Archive::same(const std::string &name, double value)
 {
   double found = value;

@@ -28,6 +28,8 @@ class Archive {
 
   void numbers(const std::string &name, double *values, size_t n);
   void list(const std::string &name, std::vector<double> &values);    // as many as there are
+  void lines(const std::string &name,
+             std::vector<std::string> &texts);    // one number for each byte
 
   template <class Record> void records(const std::string &name, std::vector<Record> &records)
   {

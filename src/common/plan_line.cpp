@@ -125,6 +125,6 @@ void PlanLine::cross(const double *from, const double *to, std::vector<Crossing>
                      p[0] + part * (q[0] - p[0]), p[1] + part * (q[1] - p[1]), left ? 1 : -1});
   }
   std::sort(found.begin() + before, found.end(), [](const Crossing &one, const Crossing &two) {
-    return one.share < two.share;
+    return one.passed < two.passed;
   });
 }

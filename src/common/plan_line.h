@@ -20,8 +20,8 @@ namespace Slope {
 class PlanLine {
  public:
   struct Crossing {
-    double share;    // of the path, 0 to 1
-    double along;    // distance from the first point, along the line
+    double passed;    // of the path, 0 to 1
+    double along;     // distance from the first point, along the line
     double x, y;
     int direction;    // 1: forward, -1: back
   };

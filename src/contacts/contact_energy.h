@@ -13,7 +13,6 @@
 #include "contact_list.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace Slope {
 

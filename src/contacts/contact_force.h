@@ -26,9 +26,6 @@
 #include "contact_law.h"
 #include "simd4.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace Slope {
 inline namespace SLOPE_INSTRUCTIONS {
 

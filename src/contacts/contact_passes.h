@@ -17,7 +17,6 @@
 #include "simd4.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <type_traits>

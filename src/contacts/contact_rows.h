@@ -6,7 +6,7 @@
 
 /* In a list of unequal balls each contact has a ContactStep of its own. It depends on sizes and masses alone,
    and solving for it takes longer than the contact's force: it is solved once, when a list meets the contact
-   touching for the first time, and kept as a row of numbers. No LAMMPS. */
+   touching for the first time, and kept as a row of numbers. */
 
 #ifndef SLOPE_CONTACT_ROWS_H
 #define SLOPE_CONTACT_ROWS_H

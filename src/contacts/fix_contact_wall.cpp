@@ -6,7 +6,6 @@
 #include "fix_contact_wall.h"
 
 #include "atom.h"
-#include "comm.h"
 #include "error.h"
 #include "exchange_size.h"
 #include "modify.h"

@@ -14,9 +14,15 @@
 using namespace Slope;
 
 static constexpr int FIRST_CELLS = 128, MOST_CELLS = 3500;    // along the longer side
-static constexpr double FINER = 1.5;
-static constexpr double SAME = 3.0e-4;    // two sums; the finer one is less than half as wrong
+static constexpr double FINER = 1.5;    // cells of a sum, along a side, over those of the last one
+static constexpr double ROUNDING = 1.0e-9;    // of a cell
+static constexpr double SAME = 3.0e-4;        // two sums; the finer one is less than half as wrong
 static constexpr double ENOUGH_FILLED = 20000;    // columns: fewer may agree by chance
+
+// Places of the columns in their cells, from one to the next: 1/g and 1/g^2, g^3 = g + 1 (the plastic number),
+// whose multiples, modulo 1, fill a square evenly (M. Roberts, The unreasonable effectiveness of quasirandom
+// sequences, 2018)
+static constexpr double STEP_X = 0.7548776662466927, STEP_Y = 0.5698402909980532;
 
 enum { X, Y };
 
@@ -32,15 +38,15 @@ static double volume_in_cells(const PlanBox &box, int most,
   enum { VOLUME, FILLED, FIRST, END, NUMBER };
   const double size[2] = {box.hi[X] - box.lo[X], box.hi[Y] - box.lo[Y]};
   const double cell = std::max(size[X], size[Y]) / most;
-  const int nx = static_cast<int>(std::ceil(size[X] / cell - 1.0e-9));
-  const int ny = static_cast<int>(std::ceil(size[Y] / cell - 1.0e-9));
+  const int nx = static_cast<int>(std::ceil(size[X] / cell - ROUNDING));
+  const int ny = static_cast<int>(std::ceil(size[Y] / cell - ROUNDING));
   std::vector<double> rows(static_cast<size_t>(NUMBER) * ny, 0.0);
   for (int j = ranks.me; j < ny; j += ranks.number) {
     double *row = &rows[static_cast<size_t>(NUMBER) * j];
     for (int i = 0; i < nx; i++) {
       const double k = static_cast<double>(j) * nx + i + 1.0;
-      const double x = box.lo[X] + (i + std::fmod(k * 0.7548776662466927, 1.0)) * cell;
-      const double y = box.lo[Y] + (j + std::fmod(k * 0.5698402909980532, 1.0)) * cell;
+      const double x = box.lo[X] + (i + std::fmod(k * STEP_X, 1.0)) * cell;
+      const double y = box.lo[Y] + (j + std::fmod(k * STEP_Y, 1.0)) * cell;
       const double here = x > box.hi[X] || y > box.hi[Y] ? 0.0 : length(x, y);
       if (!(here > 0.0)) continue;
       if (row[FILLED]++ == 0.0) row[FIRST] = i;

@@ -26,7 +26,6 @@ class CrossingLog {
     double volume;    // bulk
     double diameter;
   };
-  static constexpr int NUMBERS = sizeof(Event) / sizeof(double);
 
   struct Way {
     double crossings, balls, volume;    // balls: each counts once
@@ -37,8 +36,8 @@ class CrossingLog {
 
   std::vector<Event> events;    // in any order until sort()
 
-  void
-  sort();    // by time and ball: the same order whatever ranks there were, and if steps are counted anew
+  // by time and ball: the same order whatever ranks there were, and if steps are counted anew
+  void sort();
 
   Way way(int direction) const;
 

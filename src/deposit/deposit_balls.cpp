@@ -263,8 +263,9 @@ DepositSummary::Motion DepositBalls::motion(double threshold, double &moving) co
   for (int i = 0; i < atom->nlocal; i++)
     if (selected(i)) speeds.add(log(std::max(SLOWEST, speed_of(i) / found.largest)), 1.0);
   add_up(world, speeds.weights);
-  const double median = exp(speeds.quantile(0.5));
-  found.median = median > SLOWEST * (1.0 + 0.01) ? found.largest * median : 0.0;
+  const double median = speeds.quantile(0.5);
+  const bool first_bin = median < log(SLOWEST) + 1.5 * speeds.bin();    // holds all that is slower
+  found.median = first_bin ? 0.0 : found.largest * exp(median);
   return found;
 }
 
@@ -302,6 +303,6 @@ std::vector<std::string> DepositLosses::add_up()
   take_here(gone);
   if (gone.number == 0.0 || !must_log()) return {};
   std::vector<Loss> first = gather_records(world, take_notes());
-  share(world, first);
+  broadcast(world, first);
   return lines(first, before);
 }

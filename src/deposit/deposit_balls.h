@@ -51,7 +51,7 @@ class DepositBalls : protected Pointers {
   // of it is no longer there, and went farther
   std::vector<Slope::DepositSummary::Quantile> quantiles(const double *place, double lost) const;
 
-  // all but the shares, of whose volumes: moving: of the balls faster than threshold
+  // all but the shares; moving: volume of the balls faster than threshold
   Slope::DepositSummary::Motion motion(double threshold, double &moving) const;
 
  private:

@@ -48,7 +48,7 @@ double DepositBins::bin(const double *x, double side, double speed, double energ
     place[dim] = wrap(dim, x[dim]);
     cut(dim, place[dim], side, beyond[dim]);
   }
-  if (shares[X].count > 0) add_volume(volume);
+  if (cuts[X].count > 0) add_volume(volume);
   add_centre(place, speed, energy);
   if (beyond[X] == 0.0 && beyond[Y] == 0.0) return 0.0;
   return volume * (1.0 - (1.0 - beyond[X] / side) * (1.0 - beyond[Y] / side));
@@ -60,18 +60,18 @@ double DepositBins::bin(const double *x, double side, double speed, double energ
 
 void DepositBins::add_volume(double volume)
 {
-  for (int l = 0; l < shares[Y].count; l++) {
-    const int j = shares[Y].cell[l];
-    const double strip = volume * shares[Y].part[l];
+  for (int l = 0; l < cuts[Y].count; l++) {
+    const int j = cuts[Y].cell[l];
+    const double strip = volume * cuts[Y].part[l];
     double *volumes = nullptr;
     int column = -1;
-    for (int k = 0; k < shares[X].count; k++) {
-      const int i = shares[X].cell[k];
+    for (int k = 0; k < cuts[X].count; k++) {
+      const int i = cuts[X].cell[k];
       if (BlockOfCells::of_cell(i) != column) {
         column = BlockOfCells::of_cell(i);
         volumes = bins.make(column, BlockOfCells::of_cell(j)).values[VOLUME];
       }
-      volumes[BlockOfCells::index(i, j)] += strip * shares[X].part[k];
+      volumes[BlockOfCells::index(i, j)] += strip * cuts[X].part[k];
     }
   }
 }
@@ -94,18 +94,17 @@ void DepositBins::add_centre(const double *place, double speed, double energy)
 }
 
 /* ----------------------------------------------------------------------
-   a ball's square along one axis: its shares in the cells there, and beyond, the length that is
-   off the grid
+   cuts of a ball's square along one axis, and beyond, the length that is off the grid
 ------------------------------------------------------------------------- */
 
 void DepositBins::cut(int dim, double centre, double side, double &beyond)
 {
   double a = centre - 0.5 * side, b = centre + 0.5 * side;
-  shares[dim].count = 0;
+  cuts[dim].count = 0;
   const size_t most = (size_t) std::min(side * grid.cell_inv, 1.0 * grid.n[dim]) + 6;
-  if (shares[dim].cell.size() < most) {    // two pieces, each with two cut cells
-    shares[dim].cell.resize(most);
-    shares[dim].part.resize(most);
+  if (cuts[dim].cell.size() < most) {    // two pieces, each with two cut cells
+    cuts[dim].cell.resize(most);
+    cuts[dim].part.resize(most);
   }
   beyond = 0.0;
   if (!periodic[dim]) {
@@ -136,7 +135,7 @@ void DepositBins::cut_piece(int dim, double a, double b, double side, double &be
   if (!(from < to)) return;
   beyond -= to - from;
 
-  Shares &found = shares[dim];
+  Cuts &found = cuts[dim];
   const int last = grid.cell_of(dim, to);
   for (int c = grid.cell_of(dim, from); c <= last; c++) {
     const double left = std::max(from, grid.lo[dim] + c * grid.cell);

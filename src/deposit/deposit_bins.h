@@ -132,7 +132,7 @@ class DepositBins {
   const Blocks &blocks() const { return bins; }
 
  private:
-  struct Shares {    // of one ball's square in the cells along one axis
+  struct Cuts {    // of one ball's square by the cells along one axis
     std::vector<int> cell;
     std::vector<double> part;
     int count;
@@ -142,7 +142,7 @@ class DepositBins {
   bool periodic[2];
   double boxlo[2], boxhi[2];
   Blocks bins;
-  Shares shares[2];
+  Cuts cuts[2];
 
   double wrap(int dim, double x) const    // balls leave a periodic box a little
   {

@@ -5,7 +5,6 @@
 
 #include "deposit_options.h"
 
-#include "constants.h"
 #include "deposit_rasters.h"
 #include "elevation_grid.h"
 #include "lammps_compat.h"
@@ -17,24 +16,51 @@
 #include "error.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
 using namespace LAMMPS_NS;
 using Slope::DepositRasters;
 using Slope::PlanGrid;
 
-static constexpr double MOTION = 0.1;        // m/s
 static constexpr double MAXBULK = 1.0e3;     // a ball's square must not be cut by countless cells
 static constexpr double MAXCELL = 1.0e12;    // the area of a cell must be finite
+
+// reads and checks them, one by one
+namespace {
+class Words : public DepositOptions, protected Pointers {
+ public:
+  Words(LAMMPS *, int narg, char **arg);
+
+ private:
+  const int narg;
+  int iarg;
+  char **const arg;
+  bool extent_set;
+  double extent[4];
+
+  const char *text(int k) const;
+  double positive() const;
+  int keyword();
+  int read_bulk();
+  int read_window();
+  int read_series();
+  int read_extent();
+  void check() const;
+  void make_grid();
+};
+}    // namespace
+
+DepositOptions DepositOptions::read(LAMMPS *lmp, int narg, char **arg)
+{
+  return Words(lmp, narg, arg);
+}
 
 /* ----------------------------------------------------------------------
    fix ID group deposit/grid Nevery Nfreq cell S terrain REGION output PREFIX keyword value ...
 ------------------------------------------------------------------------- */
 
-DepositOptions::DepositOptions(LAMMPS *lmp, int narg_in, char **arg_in) :
-    Pointers(lmp), window(0), cell(0.0), motion(MOTION), bulk(Slope::SIMPLE_CUBIC), series(false),
-    narg(narg_in), iarg(5), arg(arg_in), extent_set(false)
+Words::Words(LAMMPS *lmp, int narg_in, char **arg_in) :
+    Pointers(lmp), narg(narg_in), iarg(5), arg(arg_in), extent_set(false)
 {
   if (narg < 5)
     error->all(FLERR, "Fix deposit/grid needs Nevery Nfreq cell S terrain REGION output PREFIX");
@@ -61,7 +87,7 @@ DepositOptions::DepositOptions(LAMMPS *lmp, int narg_in, char **arg_in) :
    value k of the keyword
 ------------------------------------------------------------------------- */
 
-const char *DepositOptions::text(int k) const
+const char *Words::text(int k) const
 {
   if (iarg + k >= narg) error->all(FLERR, "Fix deposit/grid {}: value {} is missing", arg[iarg], k);
   return arg[iarg + k];
@@ -69,7 +95,7 @@ const char *DepositOptions::text(int k) const
 
 /* ---------------------------------------------------------------------- */
 
-double DepositOptions::positive() const
+double Words::positive() const
 {
   const std::string what = std::string("Fix deposit/grid ") + arg[iarg];
   const double value = number_argument(lmp, what, text(1));
@@ -81,7 +107,7 @@ double DepositOptions::positive() const
    the keyword at iarg; returns how many values it has
 ------------------------------------------------------------------------- */
 
-int DepositOptions::keyword()
+int Words::keyword()
 {
   const std::string keyword = arg[iarg];
   if (keyword == "cell") {
@@ -111,7 +137,7 @@ int DepositOptions::keyword()
 
 /* ---------------------------------------------------------------------- */
 
-int DepositOptions::read_bulk()
+int Words::read_bulk()
 {
   if (strcmp(text(1), "region") == 0) {
     body = text(2);
@@ -127,7 +153,7 @@ int DepositOptions::read_bulk()
 
 /* ---------------------------------------------------------------------- */
 
-int DepositOptions::read_window()
+int Words::read_window()
 {
   window = whole_number_argument(lmp, "Fix deposit/grid window", text(1));
   if (window < 1 || window % nevery)
@@ -138,7 +164,7 @@ int DepositOptions::read_window()
 
 /* ---------------------------------------------------------------------- */
 
-int DepositOptions::read_series()
+int Words::read_series()
 {
   if (strcmp(text(1), "yes") != 0 && strcmp(text(1), "no") != 0)
     error->all(FLERR, "Fix deposit/grid series must be yes or no, got {}", text(1));
@@ -148,7 +174,7 @@ int DepositOptions::read_series()
 
 /* ---------------------------------------------------------------------- */
 
-int DepositOptions::read_extent()
+int Words::read_extent()
 {
   for (int k = 0; k < 4; k++)
     extent[k] = number_argument(lmp, "Fix deposit/grid extent", text(k + 1));
@@ -158,7 +184,7 @@ int DepositOptions::read_extent()
 
 /* ---------------------------------------------------------------------- */
 
-void DepositOptions::check() const
+void Words::check() const
 {
   if (cell == 0.0) error->all(FLERR, "Fix deposit/grid keyword cell is missing");
   if (terrain.empty()) error->all(FLERR, "Fix deposit/grid keyword terrain is missing");
@@ -171,7 +197,7 @@ void DepositOptions::check() const
    whole cells cover the extent, from its south-west corner on
 ------------------------------------------------------------------------- */
 
-void DepositOptions::make_grid()
+void Words::make_grid()
 {
   const RegionSurface ground(lmp, "Fix deposit/grid terrain", terrain.c_str(),
                              RegionSurface::UPPER);

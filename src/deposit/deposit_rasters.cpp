@@ -108,9 +108,9 @@ double DepositRasters::moved() const
 
 /* ---------------------------------------------------------------------- */
 
-void DepositRasters::take_snapshot(double time, double share)
+void DepositRasters::take_snapshot(double time, double fraction)
 {
-  if (time > snapshot_time) change = share / (time - snapshot_time);
+  if (time > snapshot_time) change = fraction / (time - snapshot_time);
   for (Block &block : blocks.all())
     std::copy_n(block.values[THICKNESS], CELLS, block.values[SNAPSHOT]);
   snapshot_time = time;

@@ -11,7 +11,6 @@
 #include "deposit_bins.h"
 #include "plan_grid.h"
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -57,8 +56,8 @@ class DepositRasters {
 
   double moved() const;    // volume that went to another cell
 
-  // share: of the released volume, moved since the last snapshot, if there was one
-  void take_snapshot(double time, double share);
+  // fraction: of the released volume, moved since the last snapshot, if there was one
+  void take_snapshot(double time, double fraction);
 
   // --- what the cells hold ---
 

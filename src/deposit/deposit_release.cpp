@@ -82,7 +82,7 @@ std::vector<double> DepositRelease::ground() const
 {
   const Slope::PlanGrid &grid = options.grid;
   const RegionSurface ground(lmp, CALLER, options.terrain.c_str(), RegionSurface::UPPER);
-  auto first_row = [&](int rank) {    // each rank has its share of them
+  auto first_row = [&](int rank) {    // each rank finds some of them
     return static_cast<int>(static_cast<bigint>(grid.n[Y]) * rank / comm->nprocs);
   };
   std::vector<double> mine;

@@ -6,7 +6,6 @@
 #ifndef SLOPE_DEPOSIT_RELEASE_H
 #define SLOPE_DEPOSIT_RELEASE_H
 
-#include "plan_grid.h"
 #include "pointers.h"
 
 #include <string>

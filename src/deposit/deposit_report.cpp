@@ -16,6 +16,8 @@
 #include "timer.h"
 #include "update.h"
 
+#include <algorithm>
+
 using namespace LAMMPS_NS;
 using Slope::DepositRasters;
 using Slope::DepositSummary;
@@ -75,7 +77,13 @@ void DepositReport::write(const std::string &why, const DepositResults &results,
                           const DepositRasters &rasters, const ContactGuards *guards)
 {
   DepositSummary about = summary(why, results);
-  add_guards(about, guards);
+  note_guards(guards);
+  ContactGuards::Found found = before;
+  found.add(last);
+  about.guards = {guards != nullptr, found.deepest, found.energy_growth, found.deep,
+                  found.dangerous_builds};
+  about.warnings = of_guards;
+  about.warnings.insert(about.warnings.end(), warnings.begin(), warnings.end());
   add_lost(about);
   const std::string number = options.series ? std::to_string(update->ntimestep) : std::string();
   on_rank_zero(lmp, "Fix deposit/grid", [&]() {
@@ -130,26 +138,38 @@ DepositSummary DepositReport::summary(const std::string &why, const DepositResul
   return s;
 }
 
-/* ----------------------------------------------------------------------
-   what the guards of the contacts found in all runs, and all warnings so far
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
-void DepositReport::keep_guards()
+void DepositReport::begin_guards()
 {
   before.add(last);
   last = ContactGuards::Found();
 }
 
-void DepositReport::add_guards(DepositSummary &s, const ContactGuards *guards)
+void DepositReport::note_guards(const ContactGuards *guards)
 {
-  if (guards) {
-    last = guards->found();
-    ContactGuards::Found found = before;
-    found.add(last);
-    s.guards = {true, found.deepest, found.energy_growth, found.deep, found.dangerous_builds};
-    s.warnings = guards->warnings;
-  }
-  s.warnings.insert(s.warnings.end(), warnings.begin(), warnings.end());
+  if (!guards) return;
+  last = guards->found();
+  for (const std::string &text : guards->warnings)
+    if (std::find(of_guards.begin(), of_guards.end(), text) == of_guards.end())
+      of_guards.push_back(text);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void DepositReport::archive(Slope::Archive &archive)
+{
+  ContactGuards::Found found = before;
+  found.add(last);
+  archive.number("deepest_contact", found.deepest);
+  archive.number("deep_contacts", found.deep);
+  archive.number("energy_growth", found.energy_growth);
+  archive.number("dangerous_builds", found.dangerous_builds);
+  archive.lines("warnings_of_guards", of_guards);
+  archive.lines("warnings", warnings);
+  if (!archive.reads()) return;
+  before = found;
+  last = ContactGuards::Found();
 }
 
 /* ----------------------------------------------------------------------

@@ -6,6 +6,7 @@
 #ifndef SLOPE_DEPOSIT_REPORT_H
 #define SLOPE_DEPOSIT_REPORT_H
 
+#include "archive.h"
 #include "contact_guards.h"
 #include "deposit_options.h"
 #include "deposit_rasters.h"
@@ -52,8 +53,10 @@ class DepositReport : protected Pointers {
   // files that cannot be written end the run before it begins, not at its end
   void begin_run();
 
-  // at the set-up of a run: the guards of the contacts have begun again
-  void keep_guards();
+  // what the guards of the contacts found: begin at the set-up of a run, which they begin with nothing; note
+  // when it is asked for; nullptr: no such guards
+  void begin_guards();
+  void note_guards(const ContactGuards *);
 
   // why a run ended
   std::string reason() const;
@@ -61,23 +64,24 @@ class DepositReport : protected Pointers {
   // to the screen, the log and the summary
   void warn(const std::string &);
 
-  // all files, or none; rasters: those of rank 0; guards of the contacts, or nullptr
+  // all files, or none; rasters: those of rank 0
   void write(const std::string &reason, const DepositResults &, const Slope::DepositRasters &,
-             const ContactGuards *guards);
+             const ContactGuards *);
+
+  void archive(Slope::Archive &);    // members of a restart file
 
  private:
   const std::string fix_id;
   const DepositOptions &options;
   const class DepositBalls &balls;
-  double limit, limit_set;              // wall time that the run has, when that was known; s
-  std::vector<std::string> warnings;    // so far, on rank 0
-  ContactGuards::Found before,
-      last;    // in the runs before, in this one when files were written last
+  double limit, limit_set;    // wall time that the run has, when that was known; s
+  std::vector<std::string> warnings, of_guards;    // so far, on rank 0
+  ContactGuards::Found before;                     // in the runs before
+  ContactGuards::Found last;                       // in this one, when it was noted last
 
   Slope::PrefixLock lock;    // on rank 0
 
   Slope::DepositSummary summary(const std::string &reason, const DepositResults &) const;
-  void add_guards(Slope::DepositSummary &, const ContactGuards *);
   void add_lost(Slope::DepositSummary &) const;
 };
 

@@ -19,7 +19,10 @@ double DepositSummary::Release::from_cubic() const
   return bulk_factor / SIMPLE_CUBIC - 1.0;
 }
 
-/* ---------------------------------------------------------------------- */
+/* ----------------------------------------------------------------------
+   Some values stand in it twice, as readers of it know both: bulk_factor, released balls, step and time (stop),
+   front and reach_angle (farthest), largest_speed (fast_speed).
+------------------------------------------------------------------------- */
 
 std::string DepositSummary::text() const
 {

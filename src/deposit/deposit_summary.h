@@ -50,9 +50,8 @@ struct DepositSummary {
   struct Reach {
     double distance, angle;
   };
-  struct
-      Quantile {    // this share of the released volume stays within; infinite: unknown, balls were lost
-    double share;
+  struct Quantile {
+    double share;    // of the released volume stays within; infinite: unknown, balls were lost
     Reach reach;
   };
   struct Travel {

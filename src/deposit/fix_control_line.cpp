@@ -26,14 +26,11 @@
 #include "error.h"
 #include "force.h"
 #include "group.h"
-#include "modify.h"
 #include "update.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
-#include <stdexcept>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -102,7 +99,7 @@ void FixControlLine::read_line()
   on_rank_zero(lmp, "Fix control/line", [&]() {
     xy = PlanLine::read(file, in_si(lmp)).xy;
   });
-  share(world, xy);
+  broadcast(world, xy);
   line = PlanLine(xy);
 }
 
@@ -237,14 +234,14 @@ void FixControlLine::note(int i, const double *from, const double *to, const Pla
   const double square = v[X] * v[X] + v[Y] * v[Y] + v[Z] * v[Z];
   const double spin = w[X] * w[X] + w[Y] * w[Y] + w[Z] * w[Z];
   CrossingLog::Event e;
-  e.time = clock.at(update->ntimestep - 1) + c.share * update->dt;
+  e.time = clock.at(update->ntimestep - 1) + c.passed * update->dt;
   e.step = (double) update->ntimestep;
   e.tag = (double) atom->tag[i];
   e.direction = c.direction;
   e.along = c.along;
   e.x[X] = c.x;
   e.x[Y] = c.y;
-  e.x[Z] = from[Z] + c.share * (to[Z] - from[Z]);
+  e.x[Z] = from[Z] + c.passed * (to[Z] - from[Z]);
   std::string changed;
   if (!ground->stands(changed))    // of a run with pre no
     error->one(FLERR, "Fix control/line {}: region {} must not change before the run ends", id,

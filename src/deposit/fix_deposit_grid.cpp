@@ -35,7 +35,7 @@ using Slope::MassLedger;
 typedef DepositResults Result;
 
 static const std::string CALLER = "Fix deposit/grid ";
-static constexpr int VERSION = 6;    // of what restart files hold
+static constexpr int VERSION = 7;    // of what restart files hold
 static constexpr int PER_CELL = DepositRasters::PER_CELL;
 static constexpr double BYTES_PER_CELL = PER_CELL * sizeof(double);
 static constexpr int MOST_CELLS = (MAXSMALLINT - 4096) / static_cast<int>(BYTES_PER_CELL);
@@ -52,9 +52,9 @@ enum { X, Y, Z };
 /* ---------------------------------------------------------------------- */
 
 FixDepositGrid::FixDepositGrid(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), options(lmp, narg, arg), balls(lmp, groupbit, options.bulk),
-    losses(lmp, balls), report(lmp, id, options, balls), results(), started(false), fresh(false),
-    sampled(-1), warned(false), elapsed(0.0), offset(0.0)
+    Fix(lmp, narg, arg), options(DepositOptions::read(lmp, narg, arg)),
+    balls(lmp, groupbit, options.bulk), losses(lmp, balls), report(lmp, id, options, balls),
+    results(), started(false), fresh(false), sampled(-1), warned(false), elapsed(0.0), offset(0.0)
 {
   nevery = options.nevery;
   make_rasters();
@@ -158,7 +158,7 @@ void FixDepositGrid::start()
 void FixDepositGrid::setup(int /*vflag*/)
 {
   set_up = update->ntimestep;
-  report.keep_guards();
+  report.begin_guards();
 
   // first of all set-ups: where the balls lie now they arrived at time 0
 
@@ -288,8 +288,8 @@ void FixDepositGrid::take_snapshot()
 {
   const double time = now();
   if (time - rasters.snapshot_time < (options.window - 0.5) * update->dt) return;
-  const double share = of_rank_zero(rasters.moved()) / results.released.volume;
-  rasters.take_snapshot(time, share);
+  const double fraction = of_rank_zero(rasters.moved()) / results.released.volume;
+  rasters.take_snapshot(time, fraction);
   results.vector[Result::CHANGE] = rasters.change;
 }
 
@@ -308,8 +308,13 @@ void FixDepositGrid::write_files(const std::string &reason)
 {
   if (sampled != update->ntimestep) sample(false);
   results.time = now();
+  report.write(reason, results, rasters, guards());
+}
+
+const ContactGuards *FixDepositGrid::guards() const
+{
   const auto law = PairGranRestitution::of(lmp);
-  report.write(reason, results, rasters, law ? &law->guards : nullptr);
+  return law ? &law->guards : nullptr;
 }
 
 /* ----------------------------------------------------------------------
@@ -352,6 +357,7 @@ void FixDepositGrid::archive(Slope::Archive &archive)
   archive.number("elapsed", time);
   archive.number("snapshot_time", rasters.snapshot_time);
   archive.number("change", rasters.change);
+  report.archive(archive);
   archive.same("numbers_of_a_cell", PER_CELL);
   if (!archive.reads()) return;
   balls.set_bulk(bulk);
@@ -363,6 +369,7 @@ void FixDepositGrid::write_restart(FILE *fp)
 {
   if (started) losses.end_command();
   if (started && (sampled != update->ntimestep || update->whichflag == 0)) sample(false);
+  if (update->whichflag == 1) report.note_guards(guards());    // between runs they begin anew
   if (comm->me > 0) return;
 
   const int nrows = options.grid.n[Y];

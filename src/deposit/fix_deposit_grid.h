@@ -23,7 +23,6 @@ FixStyle(deposit/grid,FixDepositGrid);
 #include "deposit_report.h"
 
 #include <string>
-#include <vector>
 
 namespace LAMMPS_NS {
 
@@ -46,10 +45,8 @@ class FixDepositGrid : public Fix {
   double memory_usage() override;
 
   // for fix control/line
-  double bulk() const
-  {
-    return balls.bulk();
-  }    // bulk volume / volume of a ball; 0: not known yet
+  // bulk volume / volume of a ball; 0: not known yet
+  double bulk() const { return balls.bulk(); }
   const std::string &terrain() const { return options.terrain; }    // region of the ground
 
  private:
@@ -76,7 +73,8 @@ class FixDepositGrid : public Fix {
   void check_balance();
   void take_snapshot();
   void write_files(const std::string &reason);
-  void archive(Slope::Archive &);    // members of a restart file
+  const ContactGuards *guards() const;    // of the contacts; nullptr: another pair style
+  void archive(Slope::Archive &);         // members of a restart file
 
   // --- time since the first set-up, whatever the deck does to steps and time step ---
 

@@ -110,7 +110,7 @@ void BallPlacement::place_file()
   on_rank_zero(lmp, caller, [this]() {
     read_file();
   });
-  share(world, from_file);
+  broadcast(world, from_file);
   find_sums();
   counted = from_file.size();
   if (counted == 0) error->all(FLERR, "{}: file {} holds no balls", caller, arguments.file);
@@ -339,7 +339,7 @@ std::vector<PlacedBall> BallPlacement::all()
   for (int from = 0; from < comm->nprocs; from++) {
     std::vector<PlacedBall> theirs;
     if (from == comm->me) theirs.swap(mine);
-    share(world, theirs, from);
+    broadcast(world, theirs, from);
     together.insert(together.end(), theirs.begin(), theirs.end());
   }
   Slope::in_order(together);

@@ -13,7 +13,6 @@
 #include "ball_sampler.h"
 #include "vector3.h"
 
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>

@@ -6,7 +6,6 @@
 #include "sunk_region.h"
 
 #include "domain.h"
-#include "error.h"
 #include "lammps_compat.h"
 #include "region.h"
 #include "sunk_surface.h"

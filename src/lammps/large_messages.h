@@ -50,7 +50,8 @@ inline void broadcast_bytes(MPI_Comm world, void *data, bigint bytes, int from)
 }
 
 // Collective: the records of one rank, on all of them
-template <typename Record> void share(MPI_Comm world, std::vector<Record> &records, int from = 0)
+template <typename Record>
+void broadcast(MPI_Comm world, std::vector<Record> &records, int from = 0)
 {
   bigint number = records.size();
   MPI_Bcast(&number, 1, MPI_LMP_BIGINT, from, world);

@@ -21,7 +21,6 @@
 #include "error.h"
 
 #include <algorithm>
-#include <exception>
 #include <utility>
 
 using namespace LAMMPS_NS;
@@ -103,7 +102,7 @@ std::unique_ptr<TouchedSurface> SurfaceOptions::read_stl() const
   on_rank_zero(lmp, caller, [&]() {
     stl = StlFile::read(file, scale, move);
   });
-  share(world, stl.triangles);
+  broadcast(world, stl.triangles);
   MPI_Bcast(&stl.rounding, 1, MPI_DOUBLE, 0, world);
   const double n = static_cast<double>(stl.triangles.size());
   std::unique_ptr<TouchedSurface> made;

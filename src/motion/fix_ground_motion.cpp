@@ -9,12 +9,12 @@
 
 #include "fix_ground_motion.h"
 
-#include "lammps_compat.h"
 #include "large_messages.h"
 #include "rank_zero.h"
 #include "requirements.h"
 #include "restart_archive.h"
 #include "style_argument.h"
+#include "style_name.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -25,7 +25,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <stdexcept>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -80,7 +79,7 @@ void FixGroundMotion::read_record()
   on_rank_zero(lmp, "Fix ground/motion", [&]() {
     points = MotionRecord::read(file, scale, in_si(lmp)).list();
   });
-  share(world, points);
+  broadcast(world, points);
   record = MotionRecord(points, scale);
 }
 

@@ -20,7 +20,6 @@ FixStyle(ground/motion,FixGroundMotion);
 #include "run_clock.h"
 
 #include <string>
-#include <vector>
 
 namespace LAMMPS_NS {
 

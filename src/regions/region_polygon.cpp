@@ -69,8 +69,8 @@ void RegPolygon::read(const char *path)
 
   std::vector<double> xy = polygon.xy;
   std::vector<int> sizes = polygon.sizes;
-  share(world, xy);
-  share(world, sizes);
+  broadcast(world, xy);
+  broadcast(world, sizes);
   if (comm->me != 0) polygon = Slope::Polygon(xy, sizes);
 }
 

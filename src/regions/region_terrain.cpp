@@ -11,8 +11,6 @@
 #include "rank_zero.h"
 #include "style_argument.h"
 
-#include <cmath>
-
 using namespace LAMMPS_NS;
 
 static constexpr double DEFAULT_CELLS = 5.0;    // depth and headroom, in cells of the raster

@@ -6,7 +6,6 @@
 
 #include "slip_body.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>

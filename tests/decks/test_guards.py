@@ -39,12 +39,12 @@ WEIGHT = "fix weight ball gravity 9.80665 vector 0 0 -1"
 WALL = "fix floor ball wall/gran/balls 2 1.0 surface ground upper spacing 0.5"
 
 
-def run(tmp_path, expect_error=None, np=1, **settings):
+def run(tmp_path, text=DECK, expect_error=None, np=1, **settings):
     (tmp_path / "flat.asc").write_text("ncols 10\nnrows 10\nxllcorner 0\nyllcorner 0\ncellsize 1\n" + "0 " * 99 + "0\n")
     deck = {"z": 2.0, "atoms": "", "pair": "gran/restitution", "style": "", "types": "* *", "e": 0.5, "k": 1e7,
             "floor": WALL, "move": MOVE, "weight": WEIGHT, "skin": 0.3, "neigh": "", "dt": 2e-3, "extra": "",
             "steps": 1000, **settings}
-    log = run_deck(DECK.format(**deck), tmp_path, np=np, expect_error=expect_error)
+    log = run_deck(text.format(**deck), tmp_path, np=np, expect_error=expect_error)
     if expect_error:
         return log, None
     return warnings_of(log), yaml.safe_load((tmp_path / "out.summary.yaml").read_text())
@@ -116,6 +116,17 @@ def test_findings_of_all_runs(tmp_path, settings, again):
     assert wanted["energy_growth"] > 0.1 or wanted["deep_contacts"] > 1 and wanted["dangerous_builds"] > 1
     _, all_runs = run(tmp_path, **{**settings, "extra": f"run {settings['steps']}{LIFTED}{again}", "steps": 3})
     assert all_runs["guards"] == wanted
+
+
+def test_findings_before_a_restart(tmp_path):
+    """The summary of a run that goes on is that of the uncut one."""
+    settings = {"k": 5e4, "z": 4.0, "skin": 0.001}
+    _, uncut = run(tmp_path, DECK + "write_restart cut.restart\nrun 3\n", steps=500, **settings)
+    assert uncut["guards"]["deep_contacts"] > 1 and len(uncut["warnings"]) > 1
+    begin, end = DECK.index("region      box"), DECK.index("region      ground")
+    again = DECK[:begin] + "read_restart cut.restart\n" + DECK[end:]
+    _, found = run(tmp_path, again, steps=3, **settings)
+    assert found["guards"] == uncut["guards"] and found["warnings"] == uncut["warnings"]
 
 
 FIXED = "create_atoms 2 single 5 5 0\nset type 2 diameter 1.0 density 2500"

@@ -1,5 +1,5 @@
 // gather_records() on several ranks: all records in the order of the ranks, whatever the size of a message;
-// share() and with_largest(): those of one rank on all. Ends with status 1 and a line if not.
+// broadcast() and with_largest(): those of one rank on all. Ends with status 1 and a line if not.
 
 #include "large_messages.h"
 
@@ -46,7 +46,7 @@ int main(int argc, char **argv)
       failed = 1;
     }
   std::vector<Record> last(me == nprocs - 1 ? 7 : 2, Record{1.0 * me, 0.0, {0.5, -1.0, 1.0e300}});
-  share(MPI_COMM_WORLD, last, nprocs - 1);
+  broadcast(MPI_COMM_WORLD, last, nprocs - 1);
   Record most = {1.0 * me, 0.0, {0.5, -1.0, 1.0e300}};
   const double value = with_largest(MPI_COMM_WORLD, me == 0 ? -1.0 : 2.0, most);    // rank 1 is the first of equals
   if (last.size() != 7 || last[6].rank != nprocs - 1 || value != (nprocs > 1 ? 2.0 : -1.0) ||

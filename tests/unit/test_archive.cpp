@@ -15,6 +15,7 @@ struct Members {
   bool on = false;
   double kick[3] = {0.0, -0.0, 3.0};
   std::vector<double> marks;
+  std::vector<std::string> said;
 
   void archive(Archive &a)
   {
@@ -23,6 +24,7 @@ struct Members {
     a.number("on", on);
     a.same("numbers_of_a_contact", 10);
     a.numbers("kick", kick, 3);
+    a.lines("said", said);
     a.list("marks", marks);
   }
 };
@@ -34,6 +36,7 @@ static std::string written()
   m.step = int64_t(1) << 50;
   m.on = true;
   m.marks = {1.0, 2.0, 1e300};
+  m.said = {"", "25 \u00b0"};
   Archive to("wall", 5);
   m.archive(to);
   return to.bytes();
@@ -75,6 +78,7 @@ TEST(Archive, WhatIsReadIsWhatWasWritten)
   EXPECT_EQ(m.kick[2], 3.0);
   EXPECT_TRUE(std::signbit(m.kick[1]));
   EXPECT_EQ(m.marks, (std::vector<double>{1.0, 2.0, 1e300}));
+  EXPECT_EQ(m.said, (std::vector<std::string>{"", "25 \u00b0"}));
   EXPECT_EQ(from.rest(), bytes.data() + bytes.size());
   EXPECT_EQ(Archive::length(bytes.data()), bytes.size());
 }
@@ -86,6 +90,13 @@ TEST(Archive, AnotherVersionOrNone)
   const std::string old(reinterpret_cast<const char *>(list), sizeof(list));
   EXPECT_EQ(Archive::length(old.data()), 0u);
   EXPECT_TRUE(has(problem(old), "data of version 5, got none, or those of an earlier version: start again"));
+}
+
+TEST(Archive, BytesThatAreNone)
+{
+  const std::string bytes = written();
+  for (const double byte : {1e300, -129.0, 128.0, static_cast<double>(NAN)})
+    EXPECT_TRUE(has(problem(with(bytes, bytes.find("said") + 24 + 16, byte)), "must have bytes in said, got ")) << byte;
 }
 
 // a number that the reader must have as well: of another layout

@@ -67,14 +67,14 @@ TEST(PlanLine, ForwardIsFromLeftToRight)
   const Crossings there = cross(north, 1.0, 1.0, 5.0, 3.0);
   ASSERT_EQ(there.size(), 1u);
   EXPECT_EQ(there[0].direction, 1);
-  EXPECT_DOUBLE_EQ(there[0].share, 0.25);
+  EXPECT_DOUBLE_EQ(there[0].passed, 0.25);
   EXPECT_DOUBLE_EQ(there[0].along, 1.5);
   EXPECT_DOUBLE_EQ(there[0].x, 2.0);
   EXPECT_DOUBLE_EQ(there[0].y, 1.5);
   const Crossings back = cross(north, 5.0, 3.0, 1.0, 1.0);
   ASSERT_EQ(back.size(), 1u);
   EXPECT_EQ(back[0].direction, -1);
-  EXPECT_DOUBLE_EQ(back[0].share, 0.75);
+  EXPECT_DOUBLE_EQ(back[0].passed, 0.75);
   EXPECT_DOUBLE_EQ(back[0].along, 1.5);
 }
 
@@ -123,7 +123,7 @@ TEST(PlanLine, TwoPiecesInOneStep)
   ASSERT_EQ(found.size(), 2u);
   EXPECT_EQ(found[0].direction, -1);
   EXPECT_EQ(found[1].direction, 1);
-  EXPECT_LT(found[0].share, found[1].share);
+  EXPECT_LT(found[0].passed, found[1].passed);
   EXPECT_DOUBLE_EQ(found[0].along, 2.0);
   EXPECT_DOUBLE_EQ(found[1].along, 6.0);
   EXPECT_DOUBLE_EQ(hook.length(), 8.0);
