@@ -45,14 +45,15 @@ def run(tmp_path, text=DECK, expect_error=None, np=1, **settings):
             "floor": WALL, "move": MOVE, "weight": WEIGHT, "skin": 0.3, "neigh": "", "dt": 2e-3, "extra": "",
             "steps": 1000, **settings}
     log = run_deck(text.format(**deck), tmp_path, np=np, expect_error=expect_error)
-    if expect_error:
+    if expect_error is not None:
         return log, None
     return warnings_of(log), yaml.safe_load((tmp_path / "out.summary.yaml").read_text())
 
 
 def warnings_of(log):
+    """Ours: newer LAMMPS also tells that there are no fixes with time integration."""
     return [re.sub(r" \(\S+:\d+\)$", "", line.removeprefix("WARNING: ")) for line in log.splitlines()
-            if line.startswith("WARNING: ")]
+            if line.startswith("WARNING: ") and "No fixes with time" not in line]
 
 
 @pytest.mark.parametrize("np", [1, 2])
@@ -249,7 +250,8 @@ def test_spins_that_no_step_follows(tmp_path, spin, told):
 
 @pytest.mark.parametrize("dt, got", [("0", "0"), ("-1e-4", "-0.0001"), ("1e999", "inf")])
 def test_time_that_does_not_go_on(tmp_path, dt, got):
-    run(tmp_path, expect_error=f"needs timestep > 0, got {got}", dt=dt)
+    log, _ = run(tmp_path, expect_error="", dt=dt)
+    assert f"needs timestep > 0, got {got}" in log or "number 1e999" in log    # newer LAMMPS refuses it before
 
 
 def test_forces_that_are_scaled(tmp_path):
