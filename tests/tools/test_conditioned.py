@@ -200,7 +200,7 @@ def test_an_ensemble_is_weighted(slope, capsys):
 
     # a set that does not cover the mass: said, and nothing is weighted
     status, out, err = slope(words.replace("small.csv", "rock_avalanches").replace("'event 3'", "'Frank Slide'"))
-    assert status == 0 and "no set of known events covers this volume" in out
+    assert status == 0 and "the set of known events does not cover this volume" in out
     found = yaml.safe_load(Path("out/study.yaml").read_text())["ensemble"]["known_events"]
     assert found["reached"] is None and "quantities" not in found and not Path("out/weights.csv").exists()
 
@@ -245,8 +245,8 @@ def test_a_report_shows_no_number_where_events_go_beyond_the_runs():
     data = type("Data", (), {"study": {"ensemble": {"known_events": about, "of": "front_m", "confidence": 0.9}}})
     answer = known_part.KnownEvents(data, Numbers(), None).answer()
     assert (answer["number"], answer["unit"]) == ("unknown", "")
-    about.update(reached=None, doubts=["no set of known events covers this volume"])
+    about.update(reached=None, doubts=["the set of known events does not cover this volume"])
     content = known_part.KnownEvents(data, Numbers(), None).content()
-    assert content["lines"] == ["No set of known events covers this volume."] and not content["answer"]
+    assert content["lines"] == ["The set of known events does not cover this volume."] and not content["answer"]
     assert "50 % of the known events" in answer["note"]
     assert answer["parts"][0]["note"].startswith("At least 0 m with 90 %")

@@ -226,7 +226,7 @@ def test_out_of_range(depth, slope, words):
     mass = disc(terrain(lambda x, y: 3000 - slope * x), (300, 600), depth)
     found = exceedance.of_body(mass, SET)
     assert not found.in_range and len(found.outside) == len(words)
-    assert all(f"covers this {word}" in line for word, line in zip(words, found.outside))
+    assert all(f"does not cover this {word}" in line for word, line in zip(words, found.outside))
 
 
 def test_a_road(known):
@@ -334,7 +334,7 @@ def test_out_of_range_is_said(place):
     status, _, err = place("terrain.asc --polygon p.geojson --local --depth 0.5 -o out")
     about = summary()
     assert status == 0 and about["in_range"] is False and err.count("\n") == len(about["warnings"]) == 1
-    assert "no set of known events covers this volume" in err and "0.1 to 498" in err
+    assert "the set of known events does not cover this volume" in err and "0.1 to 498" in err
     assert about["mixture"] is None and about["exceedance_is"] == "landslides"
     _, both = rows()
     assert all(np.isnan(both[f"exceedance_{kind}"]).all() for kind in KINDS[:3])

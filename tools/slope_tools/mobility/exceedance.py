@@ -146,14 +146,14 @@ def outside(mobility: Mobility) -> List[str]:
     lines = []
     low, high = law.volumes
     if not low <= mobility.volume <= high:
-        lines.append(f"no set of known events covers this volume, {digits.volume(1e6 * mobility.volume)}: those of the "
-                     f"set have {low:g} to {high:g} million m3")
+        lines.append("the set of known events does not cover this volume, "
+                     f"{digits.volume(1e6 * mobility.volume)}: it has {low:g} to {high:g} million m3")
     low, high = law.falls
     median = mobility.length_at(HALF)
     fall = float(np.interp(path.length[-1] if median is None else median, path.length, path.fall))
     if len(said) and mobility.curves[mobility.chosen][said[0]] <= HALF:     # before any fall of the set
         fall = min(fall, float(path.fall[max(said[0] - 1, 0)]))
     if not (len(said) and low <= fall <= high):
-        lines.append(f"no set of known events covers this height, {fall:.4g} m where half of them end (or the path "
-                     f"does): those of the set fell {low:g} to {high:g} m")
+        lines.append(f"the set of known events does not cover this height, {fall:.4g} m where half of them end (or "
+                     f"the path does): they fell {low:g} to {high:g} m")
     return lines

@@ -290,7 +290,11 @@ def say_size(choices: Choices, size: Size, found: release.Body, machine: Machine
     tell(f"balls of {size.diameter:g} m: {size.balls:,} of them, the body is {thick[0]:.1f} balls thick on average, "
          f"{thick[1]:.1f} at most")
     tell(f"the ground: scattered balls as large as those of the soil, spacing {choices['model']['spacing']:g}")
-    took = "" if size.seconds is None else f", about {site_budget.duration_text(size.seconds)} if nothing else runs"
+    took = ""
+    if size.seconds is not None and size.most is not None:
+        took = f", about {site_budget.duration_text(size.seconds)} if nothing else runs"
+        if size.most > size.seconds:
+            took += f", {site_budget.duration_text(size.most)} with all that may be added"
     tell(f"the study: {size.text}; {machine.jobs} at a time{took}, {size.gigabytes:.2g} GB")
 
 

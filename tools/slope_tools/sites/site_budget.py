@@ -17,7 +17,7 @@ from ..digits import rounded
 from ..errors import SlopeError
 from .site_choices import Choices, OFFSETS, other_grounds
 
-DEFAULT = 4000          # balls, if no budget is given
+DEFAULT = 2500          # balls, if no budget is given: 15 minutes on two cores
 TRIAL = 800             # balls of the trial run
 FINER = 3               # times as many balls has a second trial run, for a budget of time
 FINER_SHARE = 0.2       # of that budget, which it takes at most
@@ -28,6 +28,7 @@ PER_RUN = 0.06          # GB, program and libraries
 PER_CELL = 16e-9        # GB, two terrains of doubles; the deposit's rasters only cover where balls were
 COLLECT = 1.5           # s of a run's volume and maps: after all runs, one after the other
 REPORT = 15.0           # s of the report
+LONGER = 1.2            # times as many steps takes a run of the ensemble, whose ground may be smooth
 LEDGER = 1.4            # times as long takes a run that keeps account of its energy: that with half the step
 SPEED = 47.0            # m/s for which the paper's stiffness is sufficient
 AIR = 1.2               # margin of the stiffness over the trial run's largest speed
@@ -65,7 +66,8 @@ class Size(NamedTuple):
     diameter: float
     balls: int
     runs: int
-    seconds: Optional[float]    # of the whole study on this machine; None without a trial run
+    seconds: Optional[float]    # of the study on this machine; None without a trial run
+    most: Optional[float]       # with all runs that may be added to it
     gigabytes: float            # of all runs that are active at a time
     text: str                   # the runs in words
 
@@ -151,13 +153,14 @@ def measure(folder: Path, deck: str, lmp: Path) -> Trial:
 
 class Plan(NamedTuple):
     """The runs that `slope study` makes of a site."""
-    parts: List[Tuple[float, int]]      # diameter as a factor of the site's, number of runs
+    parts: List[Tuple[float, int]]      # of the paper's study: diameter as a factor of the site's, number of runs
     half_step: bool                     # and one with half the time step, which is compared by the volume to remove
+    points: int                         # of the ensemble, which may become twice as many
     text: str
 
     @property
     def runs(self) -> int:
-        return sum(runs for _, runs in self.parts)
+        return sum(runs for _, runs in self.parts) + self.points
 
 
 def plan(choices: Choices) -> Plan:
@@ -174,24 +177,24 @@ def plan(choices: Choices) -> Plan:
     if others:
         text += f", {len(others)} other sizes of balls x {each}"
     if points:
-        parts.append((1.0, points))
         text += (f"; {points} runs weighted by known events, and up to as many more where these go farther (study "
                  "--paper leaves them out)")
-    return Plan(parts, bool(choices["road"]["file"]), text)
+    return Plan(parts, bool(choices["road"]["file"]), points, text)
 
 
 def study_seconds(d: float, volume: float, trial: Trial, speed: float, density: float, wanted: Plan,
-                  jobs: int) -> float:
-    """What a study takes on this machine, with balls of diameter d in a body of that volume (m3)."""
-    total, number = 0.0, wanted.runs + wanted.half_step
-    for factor, runs in wanted.parts:
-        size = factor * d
-        steps = trial.typical / time_step(size, speed, density)
-        total += runs * (trial.setup + steps * volume / size ** 3 * trial.cost)
+                  jobs: int) -> Tuple[float, float]:
+    """What a study takes on this machine, with balls of diameter d in a body of that volume (m3); and at most."""
+    def run(size: float, longer: float = 1.0) -> float:
+        steps = longer * trial.typical / time_step(size, speed, density)
+        return trial.setup + steps * volume / size ** 3 * trial.cost
+
+    total = sum(runs * run(factor * d) for factor, runs in wanted.parts)
     if wanted.half_step:
-        steps = LEDGER * 2 * trial.typical / time_step(d, speed, density)
-        total += trial.setup + steps * volume / d ** 3 * trial.cost
-    return total / jobs + COLLECT * number + REPORT
+        total += run(d, 2 * LEDGER)
+    points = wanted.points * (run(d, LONGER) / jobs + COLLECT)
+    least = total / jobs + COLLECT * (wanted.runs - wanted.points + wanted.half_step) + REPORT + points
+    return least, least + points
 
 
 def gigabytes(d: float, volume: float, cells: int, jobs: int) -> float:
@@ -230,7 +233,7 @@ def size(choices: Choices, volume: float, trial: Optional[Trial], jobs: int, cel
     """
     balls, model, wanted = choices["balls"], choices["model"], plan(choices)
 
-    def seconds(d: float) -> float:
+    def seconds(d: float) -> Tuple[float, float]:
         assert trial is not None
         return study_seconds(d, volume, trial, model["speed"], model["density"], wanted, jobs)
 
@@ -242,13 +245,14 @@ def size(choices: Choices, volume: float, trial: Optional[Trial], jobs: int, cel
         if trial is None:
             raise SlopeError("--minutes", "needs a LAMMPS program (LMP, --lmp) to measure this machine, --balls "
                              "does not", f"{balls['minutes']:g}")
-        d = up(fit(balls["minutes"], lambda one: seconds(one) / 60, volume, "--minutes", "minutes"))
+        d = up(fit(balls["minutes"], lambda one: seconds(one)[1] / 60, volume, "--minutes", "minutes"))
     elif balls["memory"]:
         d = up(fit(balls["memory"], lambda one: gigabytes(one, volume, cells, jobs), volume, "--memory", "GB"))
     else:
         balls["number"] = DEFAULT
         d = three_digits((volume / DEFAULT) ** (1 / 3))
-    return Size(d, number_of(choices, volume, d), wanted.runs, trial and seconds(d), gigabytes(d, volume, cells, jobs),
+    least, most = seconds(d) if trial else (None, None)
+    return Size(d, number_of(choices, volume, d), wanted.runs, least, most, gigabytes(d, volume, cells, jobs),
                 wanted.text)
 
 
