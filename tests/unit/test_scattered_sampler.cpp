@@ -254,6 +254,19 @@ TEST(ScatteredSampler, a_hole_in_the_data_is_closed_up_to_its_rim)
     EXPECT_LT(worst_gap(s, Nearest(scatter(10.0, WIDEST, s, seed)), 0.0, 10.0, 0.0, 10.0, 0.7), 1.96);
 }
 
+// each holds a cell of the lattice and is narrower than two balls may be near; most lie between the places that are
+// looked at first
+
+TEST(ScatteredSampler, small_pieces_of_ground_have_a_ball_each)
+{
+  Surface s = plane(20.0, 30.0);
+  const auto whole = s.height;
+  s.height = [=](double x, double y, double &z) {
+    return whole(x, y, z) && std::hypot(std::remainder(x - 1.05, 2.1), std::remainder(y - 1.05, 2.1)) < 0.24;
+  };
+  EXPECT_EQ(scatter(42.0, 1.0, s).size(), 3u * 20 * 20);
+}
+
 TEST(ScatteredSampler, no_curtain_up_to_a_region_above_the_ground)
 {
   Surface s = plane(0.0, 0.0);
