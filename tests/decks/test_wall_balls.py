@@ -179,16 +179,11 @@ def test_the_comparison_sees_a_small_change(tmp_path, reference):
 # --- ranks, order, lists ---
 
 
-@pytest.mark.parametrize("ranks, processors", [(2, "2 1 1"), (2, "1 2 1"), (4, "4 1 1"), (4, "2 2 1"), (4, "2 1 2")])
-def test_ranks(tmp_path, reference, ranks, processors):
-    settings = dict(np=ranks, processors=processors, box=reference["box"])
-    assert difference(reference["one"], run(tmp_path, **settings)) < 1e-9
-    assert difference(reference["crowd"], run(tmp_path, balls=CROWD, **settings)) < 1e-9
-
-
-@pytest.mark.parametrize("ranks, processors", [(1, "* * *"), (4, "2 2 1")])
-def test_newton_off(tmp_path, reference, ranks, processors):
-    settings = dict(np=ranks, processors=processors, newton="off", box=reference["box"])
+@pytest.mark.parametrize("newton, ranks, processors", [
+    ("on", 2, "2 1 1"), ("on", 2, "1 2 1"), ("on", 4, "4 1 1"), ("on", 4, "2 2 1"), ("on", 4, "2 1 2"),
+    ("off", 1, "* * *"), ("off", 4, "2 2 1")])
+def test_ranks(tmp_path, reference, newton, ranks, processors):
+    settings = dict(np=ranks, processors=processors, newton=newton, box=reference["box"])
     assert difference(reference["one"], run(tmp_path, **settings)) < 1e-9
     assert difference(reference["crowd"], run(tmp_path, balls=CROWD, **settings)) < 1e-9
 
@@ -424,13 +419,11 @@ def test_delete_balls(tmp_path):
     volume = math.pi * D ** 3 / 6
     for fraction, removed in ((0.05, 2), (0.1, 1), (0.0, 3), (0.5, 0)):
         log = run_deck(make_deck(tmp_path, **settings, before=f"delete_balls moving overlap {fraction}") +
-                       "print \"left $(atoms)\"\n",
-                       tmp_path)
+                       "print \"left $(atoms)\"\n", tmp_path)
         line = next(line for line in log.splitlines() if line.startswith("Delete_balls:"))
         assert line == (f"Delete_balls: {removed} balls of group moving removed that overlapped fixed balls by more "
                         f"than {fraction:g} of their radius: {removed * volume:.6g} m3 of balls, "
-                        f"{removed * D ** 3:.6g} m3 of "
-                        f"ground at 6/pi; {4 - removed} balls left")
+                        f"{removed * D ** 3:.6g} m3 of ground at 6/pi; {4 - removed} balls left")
         assert f"left {4 - removed}" in log.splitlines()
         share = removed * D ** 3 / (3 * D ** 3 + 0.2 ** 3)
         assert (f"Delete_balls: {100 * share:.0f} % of the volume of group moving is removed" in log) == (share > 0.2)

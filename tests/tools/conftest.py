@@ -26,6 +26,16 @@ def slope(here, request, capsys, monkeypatch):
 
 
 @pytest.fixture
+def succeed(slope):
+    """The same, which must succeed; gives stdout, stderr."""
+    def run(*words):
+        status, out, err = slope(*words)
+        assert status == 0, err
+        return out, err
+    return run
+
+
+@pytest.fixture
 def tiny_case(tmp_path, monkeypatch):
     """A folder to work in, with the tiny collapse in case/ and the program in the environment.
 

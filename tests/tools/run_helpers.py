@@ -64,6 +64,11 @@ def write_geojson(path, *geometries, crs=None):
     return path
 
 
+def warned(about):
+    """{kind: numbers} of the warnings in a YAML file."""
+    return {one["kind"]: one.get("numbers", {}) for one in about["warnings"]}
+
+
 def called(capsys, words):
     """Run `slope WORDS` in this process; gives status, stdout, stderr."""
     capsys.readouterr()

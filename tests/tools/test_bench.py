@@ -20,10 +20,9 @@ COMMAND = "bench"
 SMALL = "--quick --balls 300 --steps 40 --runs 1"
 
 
-def test_every_code_runs_the_same_collapse(slope):
+def test_every_code_runs_the_same_collapse(succeed):
     """From the same state, 40 steps: energy and displacement of the centroid agree; nothing is left unwritten."""
-    status, out, err = slope(f"{SMALL} --only peers")
-    assert status == 0, err
+    out, _ = succeed(f"{SMALL} --only peers")
     about = yaml.safe_load(Path("bench/bench.yaml").read_text())
     installed = [code for code in peers.ALL if code is not peers.Build and not code(LMP).missing()]
     assert list(about["codes"]) == [code.name for code in installed]
@@ -40,19 +39,18 @@ def test_every_code_runs_the_same_collapse(slope):
     assert Path("bench/bench.png").stat().st_size > 10_000
 
 
-def test_two_builds_side_by_side(slope):
+def test_two_builds_side_by_side(succeed):
     """Each code with a program of its own; here copies of one, which run the same steps."""
     for name in "other", "stock":
         Path(name).symlink_to(LMP)
-    status, out, err = slope(f"{SMALL} --only peers --peers build,granular --lmp build=other --lmp granular=stock")
-    assert status == 0, err
+    out, _ = succeed(f"{SMALL} --only peers --peers build,granular --lmp build=other --lmp granular=stock")
     about = yaml.safe_load(Path("bench/bench.yaml").read_text())
     assert list(about["codes"]) == ["slope", "build", "granular"] and "SLOPE, another build" in out
     assert about["same_scene"]["build"] == about["same_scene"]["slope"]
     assert set(about["bench"]["programs_sha256"]) == {"build", "granular"}
 
 
-def test_a_wrong_coefficient_is_noticed(slope, monkeypatch):
+def test_a_wrong_coefficient_is_noticed(succeed, monkeypatch):
     """Negative control: a peer without the slip surface's contact runs another collapse, and the table says so."""
     law = peers.Granular.law
 
@@ -61,15 +59,13 @@ def test_a_wrong_coefficient_is_noticed(slope, monkeypatch):
         return law(self, scene._replace(contacts=wrong))
 
     monkeypatch.setattr(peers.Granular, "law", without_slip)
-    status, out, err = slope(f"{SMALL} --only peers --peers granular --steps 200")
-    assert status == 0, err
+    out, _ = succeed(f"{SMALL} --only peers --peers granular --steps 200")
     assert not yaml.safe_load(Path("bench/bench.yaml").read_text())["same_scene"]["granular"]["same"]
     assert "pair granular, rolling sds ran another collapse" in out
 
 
-def test_terrain_and_throughput(slope):
-    status, _, err = slope(f"{SMALL} --only terrain,throughput")
-    assert status == 0, err
+def test_terrain_and_throughput(succeed):
+    succeed(f"{SMALL} --only terrain,throughput")
     measures = yaml.safe_load(Path("bench/bench.yaml").read_text())["measures"]
     assert set(measures) == {"terrain_time", "terrain_bytes", "terrain_bytes_reported", "throughput"}
     rows = list(csv.DictReader(open("bench/bench.csv", encoding="ascii")))
@@ -83,10 +79,9 @@ def test_terrain_and_throughput(slope):
     assert len(inner) > 20 and all(point in there for point in inner)
 
 
-def test_more_balls_on_one_rank_and_on_two(slope, monkeypatch):
+def test_more_balls_on_one_rank_and_on_two(succeed, monkeypatch):
     monkeypatch.setattr(bench_runs, "MANY", 1000)
-    status, _, err = slope("--only weak --balls 300 --steps 40 --runs 1 --np 2")
-    assert status == 0, err
+    succeed("--only weak --balls 300 --steps 40 --runs 1 --np 2")
     measures = yaml.safe_load(Path("bench/bench.yaml").read_text())["measures"]
     assert set(measures) == {"weak_time", "weak_time_2", "weak_bytes", "weak_bytes_reported"}
     assert all(measures[name]["target"] == "<= 1.3" for name in ("weak_time", "weak_time_2"))

@@ -243,7 +243,7 @@ WORDS = "--vary friction=5:40 --vary rolling=0:0.4"
 
 
 @pytest.mark.long
-def test_a_calibration_of_small_collapses_goes_on_after_a_kill(slope, here):
+def test_a_calibration_of_small_collapses_goes_on_after_a_kill(slope, succeed, here):
     truth(slope)
     words = f"calibrate case/in.tiny --observed mapped.tif {WORDS} --repeat xoffset=0.2 --runs 16 --jobs 2 -o out"
     process = subprocess.Popen([*PROGRAM, *shlex.split(words)], stdout=subprocess.DEVNULL, env={**os.environ})
@@ -254,8 +254,7 @@ def test_a_calibration_of_small_collapses_goes_on_after_a_kill(slope, here):
     process.send_signal(signal.SIGKILL)
     process.wait(20)
     decided = yaml.safe_load(Path("out/calibrate.ledger.yaml").read_text())["points"]
-    status, out, err = slope(words)
-    assert status == 0, err
+    out, _ = succeed(words)
     assert "runs are finished already" in out and "10 of 16 runs: friction " in out
     about, table = loaded("calibrate")
     assert len(table) == 16 and [{name: row[name] for name in ("friction", "rolling")} for row in table][:10] == decided
@@ -325,13 +324,12 @@ def an_ensemble_of_the_region(slope, sets):
         assert not Path("bad").exists()
 
 
-def test_numbers_alone_with_a_failing_run(slope, here):
+def test_numbers_alone_with_a_failing_run(succeed, here):
     deck = Path("case/in.tiny")
     deck.write_text(deck.read_text().replace("group       soil", 'if "${friction} > 37" then "nonsense"\n'
                                              "group       soil"))
-    status, out, err = slope(f"calibrate case/in.tiny --front 14 --area 180 --road-volume 40 --road case/road.csv "
-                             f"--local {WORDS} --tolerance area=0.2 --runs 12 --set steps=300 -o out")
-    assert status == 0, err
+    out, _ = succeed(f"calibrate case/in.tiny --front 14 --area 180 --road-volume 40 --road case/road.csv "
+                     f"--local {WORDS} --tolerance area=0.2 --runs 12 --set steps=300 -o out")
     about, table = loaded("calibrate")
     assert [entry["tolerance"] for entry in about["targets"]] == pytest.approx([0.05 * 14, 0.2 * 180, 0.05 * 40])
     failed = [row for row in table if row["status"] == "failed"]
@@ -366,12 +364,11 @@ def test_chance_is_not_underestimated_by_few_runs():
     assert likeliest < 0.9 < chance < 1.4, (likeliest, chance)
 
 
-def test_outlines(slope, here):
+def test_outlines(succeed, here):
     """An outline has its own targets; that of the run itself is met by it."""
     Path("outline.csv").write_text("14,6\n26,6\n26,18\n14,18\n")
-    status, out, err = slope(f"calibrate case/in.tiny --observed outline.csv --local {WORDS} --runs 8 --set steps=200 "
-                             "-o out")
-    assert status == 0, err
+    succeed(f"calibrate case/in.tiny --observed outline.csv --local {WORDS} --runs 8 --set steps=200 "
+            "-o out")
     about, _ = loaded("calibrate")
     assert [entry["name"] for entry in about["targets"]] == [
         "lack of overlap", "50 % of the area within", "90 % of the area within", "99 % of the area within", "area"]

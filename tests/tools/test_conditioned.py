@@ -146,11 +146,10 @@ def here(tiny_case):
     return tiny_case
 
 
-def test_an_ensemble_is_weighted(slope, capsys):
+def test_an_ensemble_is_weighted(slope, succeed, capsys):
     words = ("--sample 8 --vary friction=2:40 --vary rolling=0:0.3 --set steps=900 --mobility small.csv --unconfined "
              "--except 'event 3' --road case/road.csv --local --exceed 0.1 -o out")
-    status, out, err = slope(words)
-    assert status == 0, err
+    out, _ = succeed(words)
     assert "known events: the runs reach from " in out and "23 events of small.csv" in out
     found = yaml.safe_load(Path("out/study.yaml").read_text())["ensemble"]["known_events"]
     assert found["left_out"] == ["event 3"] and found["path"] == "not laterally confined" and not found["outside"]

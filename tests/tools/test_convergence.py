@@ -230,11 +230,10 @@ def test_sizes_that_did_not_finish_leave_no_older_fit(tmp_path, monkeypatch):
     assert not (tmp_path / "converge.yaml").exists()
 
 
-def test_the_command_fits_what_its_runs_gave(slope):
+def test_the_command_fits_what_its_runs_gave(slope, succeed):
     words = ("--converge d=1.25,0.7 --set field_d=0.9 --repeat xoffset=0.3,0.6 --of released_m3,centroid_m -o out "
              f"{ROAD}")
-    status, out, err = slope(words)
-    assert status == 0, err
+    out, _ = succeed(words)
     assert "it is unknown whether a line holds" in out
     # a value added later: what is finished is kept
     status, out, err = slope(words.replace("0.7", "0.7,1"))
@@ -274,11 +273,10 @@ def test_the_command_fits_what_its_runs_gave(slope):
         float(run["released_m3"]) for run in runs)
 
 
-def test_what_a_repeat_does_not_change_counts_once(slope):
+def test_what_a_repeat_does_not_change_counts_once(succeed):
     deck = Path("case/in.tiny")
     deck.write_text(deck.read_text().replace("variable  xoffset", "variable  seed index 0\nvariable  xoffset"))
-    status, out, err = slope("--converge d=1.25,1 --set steps=100 --repeat seed=1,2 --of centroid_m -o out")
-    assert status == 0, err
+    _, err = succeed("--converge d=1.25,1 --set steps=100 --repeat seed=1,2 --of centroid_m -o out")
     assert "a repeated variable has no effect, to the last digit: left out (steps_100_d_1.25_seed_1; " in err
     sizes = yaml.safe_load(Path("out/converge.yaml").read_text())["quantities"]["centroid_m"]["sizes"]
     assert [size["runs"] for size in sizes] == [1, 1]
@@ -313,12 +311,11 @@ def test_wrong_input_is_one_line(slope, arguments, message):
     assert not Path("out").exists()
 
 
-def test_the_size_error_counts_in_the_conservative_volume(slope):
+def test_the_size_error_counts_in_the_conservative_volume(slope, succeed):
     write_converge("converge.yaml", [(2.0, [79.0, 80.0, 81.0]), (1.0, [89.0, 90.0, 91.0]), (0.5, [95.0, 95.2, 94.8])])
     Path("case/road.csv").write_text("13,0\n18,0\n18,24\n13,24\n")
     words = f"--set rolling=0,0.3 --set steps=700 --repeat xoffset=0.3,0.6 {ROAD} -o out --size-error converge.yaml"
-    status, out, err = slope(words, "study")
-    assert status == 0, err
+    succeed(words, "study")
     best = yaml.safe_load(Path("out/study.yaml").read_text())["conservative"]
     found = SizeErrors(Path("converge.yaml"), "remove_m3").at("1.0")
     assert found.share == pytest.approx(-0.1, abs=0.01)

@@ -204,9 +204,8 @@ def test_snapshots_of_a_longer_run_before_are_noticed():
         os.utime(f"a.{step}.dump", (written, written))
     result = run("a.100.dump", "a.200.dump", "a.300.dump", "-o", "run")
     assert result.returncode == 0 and len(read_pvd("run.pvd")) == 3
-    assert result.stderr == ("dump2vtk: warning: a.300.dump, line 1: step 300 was written before step 200 of a.200.dump"
-                             ", "
-                             "line 1: is it of another run?\n")
+    assert result.stderr == ("dump2vtk: warning: a.300.dump, line 1: step 300 was written before step 200 of "
+                             "a.200.dump, line 1: is it of another run?\n")
     os.utime("a.300.dump", (5010, 5010))
     assert run("a.100.dump", "a.200.dump", "a.300.dump", "-o", "again").stderr == ""
 
@@ -375,49 +374,51 @@ def test_diameter_for_a_dump_without_one():
 GOOD = snapshot(balls(3), 5)
 
 
-BAD_DUMPS = [
-    ("", "a.dump is empty"),
-    ("ncols 3\n", "a.dump, line 1: must begin with ITEM:, as a text dump of LAMMPS does, got ncols 3"),
-    ("\x00\x01\x02binary\n", "a.dump, line 1: must begin with ITEM:, as a text dump of LAMMPS does, got ???binary"),
-    ("x" * 3000000, "a.dump, line 1: must be a line of text, got more than 1048576 characters"),
-    ("\n\n", "a.dump, line 2: must be a LAMMPS dump with ITEM: TIMESTEP, got none"),
-    ("ITEM: TIMESTEP\n0\nITEM: NUMBER OF GRID\n1\n",
-     "a.dump, line 3: must be an item of dump style atom or custom, got ITEM: NUMBER OF GRID"),
-    (GOOD + "1 2\n", "a.dump, line 13: must be an ITEM line, got 1 2"),
-    (GOOD.replace("\n5\n", "\nfive\n"), "a.dump, line 2: TIMESTEP must be a number, got five"),
-    (GOOD.replace("\n5\n", "\n-5\n"), "a.dump, line 2: TIMESTEP must be a whole number >= 0, got -5"),
-    (GOOD.replace("\n3\n", "\n2.5\n"), "a.dump, line 4: NUMBER OF ATOMS must be a whole number >= 0, got 2.5"),
-    (GOOD.replace("0 20", "0 up"), "a.dump, line 7: BOX BOUNDS must be numbers, got up"),
-    (GOOD.replace("ITEM: NUMBER OF ATOMS\n3\n", ""),
-     "a.dump, line 7: ITEM: NUMBER OF ATOMS must stand before ITEM: ATOMS"),
-    (GOOD.replace("ITEM: TIMESTEP\n5\n", ""), "a.dump, line 7: ITEM: TIMESTEP must stand before ITEM: ATOMS"),
-    (snapshot([[1, 2]], columns="x y"),
-     "a.dump, line 9: there must be columns x y z, xu yu zu, xs ys zs or xsu ysu zsu, got x y"),
-    (snapshot([[1, 2, 3]], columns="xs ys zs", box=""),
-     "a.dump, line 5: scaled positions need ITEM: BOX BOUNDS with lo hi or lo hi tilt"),
-    (snapshot([[1, 2, 3, 4]], columns="x y z x"),
-     "a.dump, line 9: columns must have different names, got twice x"),
-    (snapshot([[1, 2, 3], [1, 2]], columns="x y z"), "a.dump, line 11: must have 3 columns, as in line 9, got 2"),
-    (snapshot([[1, 2, 3], [1, 2, 3, 4]], columns="x y z"), "a.dump, line 11: must have 3 columns, as in line 9, got 4"),
-    (snapshot([[1, 2, "3m"]], columns="x y z"), "a.dump, line 10: column z must be a number, got 3m"),
-    (snapshot([[1, "nan", 3]], columns="x y z"), "a.dump, line 10: column y must be finite, got nan"),
-    (snapshot([[1, 2, 3, 1.5]], columns="x y z id"), "a.dump, line 10: column id must be a whole number, got 1.5"),
+def xyz(*rows, columns="x y z", box=BOX):
+    return snapshot(rows, columns=columns, box=box)
+
+
+BAD_DUMPS = [       # a text, and what is said of its lines
+    ("ncols 3\n", "1: must begin with ITEM:, as a text dump of LAMMPS does, got ncols 3"),
+    ("\x00\x01\x02binary\n", "1: must begin with ITEM:, as a text dump of LAMMPS does, got ???binary"),
+    ("x" * 3000000, "1: must be a line of text, got more than 1048576 characters"),
+    ("\n\n", "2: must be a LAMMPS dump with ITEM: TIMESTEP, got none"),
+    ("ITEM: TIMESTEP\n0\nITEM: GRID\n1\n", "3: must be an item of dump style atom or custom, got ITEM: GRID"),
+    (GOOD + "1 2\n", "13: must be an ITEM line, got 1 2"),
+    (GOOD.replace("\n5\n", "\nfive\n"), "2: TIMESTEP must be a number, got five"),
+    (GOOD.replace("\n5\n", "\n-5\n"), "2: TIMESTEP must be a whole number >= 0, got -5"),
+    (GOOD.replace("\n3\n", "\n2.5\n"), "4: NUMBER OF ATOMS must be a whole number >= 0, got 2.5"),
+    (GOOD.replace("0 20", "0 up"), "7: BOX BOUNDS must be numbers, got up"),
+    (GOOD.replace("ITEM: NUMBER OF ATOMS\n3\n", ""), "7: ITEM: NUMBER OF ATOMS must stand before ITEM: ATOMS"),
+    (GOOD.replace("ITEM: TIMESTEP\n5\n", ""), "7: ITEM: TIMESTEP must stand before ITEM: ATOMS"),
+    (xyz([1, 2], columns="x y"), "9: there must be columns x y z, xu yu zu, xs ys zs or xsu ysu zsu, got x y"),
+    (xyz([1, 2, 3], columns="xs ys zs", box=""),
+     "5: scaled positions need ITEM: BOX BOUNDS with lo hi or lo hi tilt"),
+    (xyz([1, 2, 3, 4], columns="x y z x"), "9: columns must have different names, got twice x"),
+    (xyz([1, 2, 3], [1, 2]), "11: must have 3 columns, as in line 9, got 2"),
+    (xyz([1, 2, 3], [1, 2, 3, 4]), "11: must have 3 columns, as in line 9, got 4"),
+    (xyz([1, 2, "3m"]), "10: column z must be a number, got 3m"),
+    (xyz([1, "nan", 3]), "10: column y must be finite, got nan"),
+    (xyz([1, 2, 3, 1.5], columns="x y z id"), "10: column id must be a whole number, got 1.5"),
     # cut short
-    (snapshot(balls(3), 5, count=4), "a.dump, line 12: the snapshot of step 5 is cut short, got 3 of 4 balls"),
-    (snapshot(balls(3), 5, count=10**15) + GOOD,
-     f"a.dump, line 13: the snapshot of step 5 is cut short, got 3 of {10**15} balls"),
-    (GOOD[:-5], "a.dump, line 12: the snapshot of step 5 is cut short, got 2 of 3 balls"),
-    (GOOD[:-1], "a.dump, line 12: the snapshot of step 5 is cut short, got 2 of 3 balls"),
-    (GOOD + "ITEM: TIMESTEP\n", "a.dump, line 13: the file ends in the header of a snapshot, at TIMESTEP"),
-    (GOOD + "ITEM: TIMESTEP\n6\n", "a.dump, line 14: the file ends in the header of a snapshot"),
-    (GOOD + "ITEM: TIMESTEP\n1", "a.dump, line 14: the file ends in the header of a snapshot, at TIMESTEP"),
-]
+    (snapshot(balls(3), 5, count=4), "12: the snapshot of step 5 is cut short, got 3 of 4 balls"),
+    (snapshot(balls(3), 5, count=10**15) + GOOD, f"13: the snapshot of step 5 is cut short, got 3 of {10**15} balls"),
+    (GOOD[:-5], "12: the snapshot of step 5 is cut short, got 2 of 3 balls"),
+    (GOOD[:-1], "12: the snapshot of step 5 is cut short, got 2 of 3 balls"),
+    (GOOD + "ITEM: TIMESTEP\n", "13: the file ends in the header of a snapshot, at TIMESTEP"),
+    (GOOD + "ITEM: TIMESTEP\n6\n", "14: the file ends in the header of a snapshot"),
+    (GOOD + "ITEM: TIMESTEP\n1", "14: the file ends in the header of a snapshot, at TIMESTEP")]
 
 
 @pytest.mark.parametrize("text, message", BAD_DUMPS, ids=range(len(BAD_DUMPS)))
 def test_bad_dump(text, message):
     Path("a.dump").write_text(text)
-    assert bad("a.dump", "-o", "run") == message
+    assert bad("a.dump", "-o", "run") == f"a.dump, line {message}"
+
+
+def test_an_empty_dump():
+    Path("a.dump").touch()
+    assert bad("a.dump", "-o", "run") == "a.dump is empty"
 
 
 def test_the_second_of_two_files_is_bad():

@@ -267,9 +267,8 @@ def curves():
 WORDS = f"--vary friction=10:40 --vary rolling=triangular:0:0:0.4 --set steps=900 --exceed 0.1,0.5 {ROAD} -o out"
 
 
-def test_an_ensemble_grows_and_its_tables_are_those_of_the_runs(slope, blank_pictures):
-    status, out, err = slope(f"--sample 6 {WORDS}")
-    assert status == 0, err
+def test_an_ensemble_grows_and_its_tables_are_those_of_the_runs(slope, succeed, blank_pictures):
+    succeed(f"--sample 6 {WORDS}")
     first = loaded()[1]
     status, out, err = slope(f"--sample 12 {WORDS} --exceed-speed 2")
     assert status == 0 and "6 of 12 runs are finished already" in out, err
@@ -348,14 +347,13 @@ def test_an_ensemble_grows_and_its_tables_are_those_of_the_runs(slope, blank_pic
     assert cli.main(["report", "out"]) == 0 and stays in Path("out/report.html").read_text()
 
 
-def test_repeats_of_points_and_a_list(slope):
+def test_repeats_of_points_and_a_list(succeed):
     deck = Path("case/in.tiny")
     deck.write_text(deck.read_text().replace("index 150", "index 150\nvariable  seed index 0").replace(
         "overlap 0.0", 'overlap 0.0\nif "${seed} > 0" then "displace_atoms soil random 1e-6 1e-6 1e-6 ${seed} units '
         'box"'))
-    status, _, err = slope("--sample 4 --vary friction=20:40 --vary rolling=list:0,0.3@2 --repeat seed=1 "
-                           "--set steps=300 -o out")
-    assert status == 0, err
+    succeed("--sample 4 --vary friction=20:40 --vary rolling=list:0,0.3@2 --repeat seed=1 "
+            "--set steps=300 -o out")
     about, table = loaded()
     assert [row["seed"] for row in table] == ["0", "1"] * 4 and {row["rolling"] for row in table} == {"0", "0.3"}
     assert about["ensemble"]["points"] == 4 and about["ensemble"]["of"] == "distance_99_m"

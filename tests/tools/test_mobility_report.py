@@ -60,6 +60,10 @@ def test_beyond_the_path_is_at_least(known):
     assert f"as far as at least {percent(1 - known.beyond_path())} of rock" in text
 
 
+def test_three_digits():
+    assert [three(value) for value in (0, 0.021249, 16.349, 6129.0)] == ["0", "0.0212", "16.3", "6,130"]
+
+
 @pytest.mark.parametrize("columns, length", [(500, None), (340, None), (150, 1340)])
 def test_a_terrain_that_ends_before_half_of_the_events(columns, length):
     data, ground, numbers = case([900.0])

@@ -16,9 +16,8 @@ from rasterio.crs import CRS
 from shapely.affinity import rotate
 from shapely.geometry import Point, Polygon, box, mapping
 
-from run_helpers import CRS_M, EAST, NORTH, TOP, write_asc, write_geojson, examples
+from run_helpers import CRS_M, EAST, NORTH, TOOLS, TOP, warned, write_asc, write_geojson, examples
 
-from slope_tools import findings
 from slope_tools.drawing import maps
 from slope_tools.releases import release_area, release_bodies, release_chart, release_slbl, release_solve
 from slope_tools.survey import polygons, rasters
@@ -234,7 +233,10 @@ def test_a_sphere_bulges_where_the_ground_does(slope, body):
     found, about = body("t.asc --polygon p.csv --volume 40000")
     assert found["volume"] == pytest.approx(40000, rel=1e-5) and about["sagitta_m"] < 0
     assert "above its chord" in slope("t.asc --polygon p.csv --volume 40000 -o r")[1]
-    assert any("bulges" in line for line in findings.texts(about["warnings"]))
+    assert warned(about) == {"bulges": {"shape": "sphere"}}
+    done = subprocess.run([TOOLS / "slope", "release", *"t.asc --polygon p.csv --volume 40000 -o s".split()],
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=True)
+    assert done.stdout.index("volume ") < done.stdout.index("warning: ")     # in one file, in the order of a terminal
 
 
 def test_a_depth_that_no_sphere_on_bulging_ground_has(refused):
@@ -259,21 +261,21 @@ def test_a_wall_through_one_cell_does_not_jump_over_the_target(body, shape):
 def test_a_plane_that_does_not_come_out_downhill_is_warned_of(body):
     terrain(ramp(30))
     polygon(box(80, 60, 140, 120))
-    for dip, direction, warned in ((25, 270, False), (40, 270, True), (20, 90, True), (25, 330, True),
-                                   (15, 330, False)):
+    for dip, direction, told in ((25, 270, False), (40, 270, True), (20, 90, True), (25, 330, True),
+                                 (15, 330, False)):
         found, about = body(f"t.asc --polygon p.csv --dip {dip} --direction {direction} --depth 3")
-        assert any("cannot slide out" in line for line in findings.texts(about["warnings"])) == warned, (dip, direction)
+        assert ("no way out" in warned(about)) == told, (dip, direction)
 
 
 def test_a_body_in_parts_is_warned_of(body):
     terrain(lambda x, y: 0.5 * x + 12 * np.sin(y / 30), size=(150, 160))
     polygon(Point(150, 150).buffer(60))
     _, about = body("t.asc --polygon p.csv --volume 20000")
-    line, = (line for line in findings.texts(about["warnings"]) if "parts that do not touch" in line)
-    volumes = [float(text.replace(",", "")) for text in re.findall(r"([0-9.,]*[0-9]) (?:and|m3)", line)]
-    assert len(volumes) == 2 and sum(volumes) == pytest.approx(20000, rel=0.02)
+    parts = warned(about)["parts"]
+    volumes = [float(text.replace(",", "")) for text in parts["volumes"].split(" and ")]
+    assert parts["parts"] == len(volumes) == 2 and sum(volumes) == pytest.approx(20000, rel=0.02)
     _, about = body("t.asc --polygon p.csv --volume 90000")
-    assert not any("do not touch" in line for line in findings.texts(about["warnings"]))
+    assert "parts" not in warned(about)
 
 
 def test_a_base_level_below_a_part_of_the_polygon_is_warned_of(body):
@@ -281,12 +283,11 @@ def test_a_base_level_below_a_part_of_the_polygon_is_warned_of(body):
     polygon(box(40, 60, 200, 140))
     found, about = body("t.asc --polygon p.csv --shape slbl --depth 1")
     assert about["curvature_per_m"] < 0
-    line, = findings.texts(about["warnings"])
-    inside = 80 * 40      # cells of 2 m
-    assert "bulges" in line and f"takes {100 * found['cells'] / inside:.0f} % of the polygon" in line
-    assert f"{found['mean_depth']:.3g} m deep on average" in line
+    (kind, numbers), = warned(about).items()
+    assert kind == "little" and "bulges" in numbers["form"] and numbers["depth"] == pytest.approx(found["mean_depth"])
+    assert numbers["percent"] == pytest.approx(100 * found["cells"] / (80 * 40))     # cells of 2 m
     _, about = body("t.asc --polygon p.csv --shape slbl --depth 20")
-    assert about["curvature_per_m"] > 0 and not any("base level" in one for one in findings.texts(about["warnings"]))
+    assert about["curvature_per_m"] > 0 and "little" not in warned(about)
 
 
 def test_a_target_out_of_reach(refused):
@@ -445,13 +446,12 @@ def test_a_closed_hollow_in_a_slip_surface(slope, no_picture):
 
 
 @pytest.mark.parametrize("shift", [-0.6, 0.0, 0.6])
-def test_two_surveys_over_different_datums(slope, no_picture, shift):
+def test_two_surveys_over_different_datums(succeed, no_picture, shift):
     """That the datums are not compared is said; what the two differ by beside the body is, too."""
     terrain(hill)
     terrain(lambda x, y: hill(x, y) - shift - 9 * np.clip(1 - np.hypot(x - 120, y - 100) / 40, 0, None), "after.asc")
     polygon(Point(120, 100).buffer(42))
-    status, out, err = slope("t.asc --scar after.asc --polygon p.csv -o r")
-    assert status == 0, err
+    out, err = succeed("t.asc --scar after.asc --polygon p.csv -o r")
     assert f"vertical datums are not compared, beside the body the two surveys differ by {abs(shift):.2g} m" in out
     assert (f"after.asc lies 0.6 m {'below' if shift > 0 else 'above'} the terrain" in err) == bool(shift)
 
@@ -674,7 +674,7 @@ def test_the_depths_of_s1000(body):
     shallow = f"{shlex.quote(str(S1000 / 'pre_runout_DEM.asc'))} --scar {S1000 / 'landslide_depth.asc'}"
     found, about = body(f"{shallow} --scar-is change")
     assert found["volume"] == pytest.approx(22481, abs=1) and found["largest_depth"] == pytest.approx(15.7, abs=0.05)
-    assert found["cells"] == 30 and any("30 cells" in line for line in findings.texts(about["warnings"]))
+    assert found["cells"] == warned(about)["few cells"]["cells"] == 30
 
 
 # --- the page ---

@@ -77,10 +77,9 @@ def test_repeats_are_made_for_each_combination_and_the_headline_is_theirs(slope)
     assert study_file.read_study(Path("out/study.yaml"))["conservative"] == best
 
 
-def test_what_a_repeat_does_not_change_counts_once(slope):
+def test_what_a_repeat_does_not_change_counts_once(succeed):
     """A variable that the deck does not use: the runs are one, and chance is not known."""
-    status, out, err = slope(f"--set rolling=0,0.3 --repeat unused=2,3 --equally-good unused {ROAD} -o out")
-    assert status == 0, err
+    succeed(f"--set rolling=0,0.3 --repeat unused=2,3 --equally-good unused {ROAD} -o out")
     best = loaded()[0]["conservative"]
     assert best["kind"] == "largest of 2 runs; chance unknown" and best["repeats"] == 1
     same, = (one for one in best["doubts"] if one["kind"] == "no effect")
@@ -100,9 +99,8 @@ def test_a_failed_repeat_leaves_the_others(slope):
     assert {"repeated": "seed", "offsets": "xoffset"} in [one["numbers"] for one in about["conservative"]["doubts"]]
 
 
-def test_without_a_road_there_are_means_and_no_headline(slope):
-    status, out, err = slope("--set rolling=0 --repeat xoffset=0.3 -o out")
-    assert status == 0, err
+def test_without_a_road_there_are_means_and_no_headline(succeed):
+    out, _ = succeed("--set rolling=0 --repeat xoffset=0.3 -o out")
     about, _ = loaded()
     assert about["conservative"] is None and about["combinations"][0]["centroid_m"]["scatter"] > 0
     assert "remove_m3" not in about["combinations"][0] and "mean and scatter" in out

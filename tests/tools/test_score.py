@@ -11,7 +11,8 @@ from affine import Affine
 from shapely.affinity import rotate, translate
 from shapely.geometry import MultiPolygon, Point, Polygon, box
 
-from run_helpers import BULK, CRS_M, EAST, NORTH, centres, examples, write_asc, write_geojson, write_run, write_sidecar
+from run_helpers import (BULK, CRS_M, EAST, NORTH, centres, examples, warned, write_asc, write_geojson, write_run,
+                         write_sidecar)
 from tiny_collapse import rows_of
 
 from slope_tools import disk
@@ -86,14 +87,14 @@ def test_only_what_is_thicker_than_the_threshold_counts(scored):
     assert scored(whole, "--threshold 0.09")["area"]["jaccard"] == 1
     about = scored(whole, "--threshold 2")
     assert about["area"]["jaccard"] == 0 and about["area"]["precision"] is None
-    assert about["runout"]["difference"] is None and "nowhere thicker than 2 m" in about["warnings"][-1]["text"]
+    assert about["runout"]["difference"] is None and warned(about)["nowhere thicker"]["threshold"] == 2
 
 
 def test_mapped_beyond_the_grid_is_not_met(scored):
     write_run(square(), 0.0, 2.5)
     about = scored(box(60, 30, 250, 60))
     assert about["area"] == pytest.approx(areas(1200, 190 * 30, 600))
-    assert "3000 m2 of it lie outside of the grid" in about["warnings"][-1]["text"]
+    assert warned(about)["outside of grid"]["area"] == pytest.approx(3000)
     assert about["runout"]["observed"] > 150
 
 

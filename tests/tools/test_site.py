@@ -19,6 +19,7 @@ from affine import Affine
 from rasterio.warp import transform as warp
 from shapely.geometry import LineString, Polygon, mapping
 
+from run_helpers import called
 from tiny_collapse import LMP, TOP
 
 from slope_tools import cli, programs
@@ -94,6 +95,22 @@ def inside(folder, *words):
     finally:
         os.chdir(back)
     return subprocess.CompletedProcess(words, status, out.getvalue(), err.getvalue())
+
+
+def work_in(folder, patch):
+    """In the folder of the GIS files, without a LAMMPS program, and without the pictures, which take longest."""
+    patch.chdir(folder)
+    patch.delenv("LMP", raising=False)
+    patch.setattr(programs, "BESIDE", folder / "nowhere")
+    for module in (release_chart, site_map):
+        patch.setattr(module, "draw", lambda path, *_: Path(path).write_bytes(b""))
+
+
+@pytest.fixture
+def told(gis, monkeypatch, capsys):
+    """`slope site WORDS` there, in this process; gives status, stdout, stderr."""
+    work_in(gis, monkeypatch)
+    return lambda *words: called(capsys, ["site", *map(str, words)])
 
 
 def make(folder, *words, run=slope, **environment):
@@ -571,39 +588,28 @@ def test_a_layer_without_crs(gis):
     assert os.listdir(gis / "mine") == ["site.yaml"]
 
 
-def in_process(monkeypatch, capsys, folder, *words):
-    """`slope site` without LAMMPS; gives status, stdout, stderr."""
-    monkeypatch.chdir(folder)
-    monkeypatch.delenv("LMP", raising=False)
-    monkeypatch.setattr(programs, "BESIDE", folder / "nowhere")
-    for module in (release_chart, site_map):
-        monkeypatch.setattr(module, "draw", lambda path, *rest: Path(path).write_bytes(b""))
-    status = cli.main(["site", *map(str, words)])
-    return (status, *capsys.readouterr())
-
-
-def test_a_site_that_could_not_be_made_keeps_its_choices(gis, monkeypatch, capsys):
+def test_a_site_that_could_not_be_made_keeps_its_choices(gis, told):
     """site.yaml is left to be changed; the command may be repeated, or the folder made from the changed file."""
     given = ("--terrain", "dem.tif", "--release", "release.geojson", "--shape", "ellipsoid", "--balls", "100", "-o",
              "Damm Fluchth\u00f6rn")
     mine = gis / given[-1]
-    status, out, err = in_process(monkeypatch, capsys, gis, "--depth", "500", *given)
+    status, out, err = told("--depth", "500", *given)
     assert status == 2 and "--depth: must be at most" in err
     assert "site.yaml was kept: change it, then: tools/slope site 'Damm Fluchth\u00f6rn'; or repeat the command" in out
     assert site_choices.read(mine)["release"]["depth"] == 500
     assert "must be at most" in site_choices.found(mine)["failed"]
     (mine / "site.yaml").write_text((mine / "site.yaml").read_text().replace("depth: 500", "depth: 5"))
-    status, out, err = in_process(monkeypatch, capsys, gis, mine.name)
+    status, out, err = told(mine.name)
     assert status == 0 and "then: tools/slope study 'Damm Fluchth\u00f6rn'" in out, err
     assert "failed" not in site_choices.found(mine)
-    status, out, err = in_process(monkeypatch, capsys, gis, "--depth", "4", *given)
+    status, out, err = told("--depth", "4", *given)
     assert status == 2 and "`slope site 'Damm Fluchth\u00f6rn'` rebuilds this one" in err
     shutil.rmtree(mine)
-    assert in_process(monkeypatch, capsys, gis, "--depth", "500", *given)[0] == 2
-    assert in_process(monkeypatch, capsys, gis, "--depth", "5", *given)[0] == 0
+    assert told("--depth", "500", *given)[0] == 2
+    assert told("--depth", "5", *given)[0] == 0
 
 
-def test_files_in_a_crs_that_they_do_not_name(gis, monkeypatch, capsys):
+def test_files_in_a_crs_that_they_do_not_name(gis, told):
     """--assign-crs FILE=EPSG:n, for the elevation model, a polygon, a line, a raster; kept in site.yaml."""
     write_layer(gis / "line.geojson", [(38, 10), (38, 70)], kind=LineString)
     for name in ("release.geojson", "road.geojson", "line.geojson"):
@@ -614,19 +620,19 @@ def test_files_in_a_crs_that_they_do_not_name(gis, monkeypatch, capsys):
     write_dem(gis / "dem.tif", crs="EPSG:6676")
     words = ("--terrain", "dem.tif", "--release", "release.geojson", "--road", "road.geojson", "--line", "line.geojson",
              *BODY, "--balls", "100", "--assign-crs", "EPSG:6677")
-    status, _, err = in_process(monkeypatch, capsys, gis, *words, "-o", "mine")
+    status, _, err = told(*words, "-o", "mine")
     assert status == 2 and "road.geojson: must overlap the terrain" in err
     given = ("--assign-crs", "road.geojson=EPSG:6677", "--assign-crs", "./line.geojson=EPSG:6677")
-    status, out, err = in_process(monkeypatch, capsys, gis, *words, *given, "-o", "mine")
+    status, out, err = told(*words, *given, "-o", "mine")
     assert status == 0 and "road.csv: 1 polygon, 1,280 m2" in out, err
     assert site_choices.read(gis / "mine")["crs"]["assigned"] == {"road.geojson": "EPSG:6677",
                                                                   "line.geojson": "EPSG:6677"}
-    status, out, err = in_process(monkeypatch, capsys, gis, "mine")
+    status, out, err = told("mine")
     assert status == 0 and "road.csv: 1 polygon, 1,280 m2" in out, err
     for word, rule in (("rood.geojson=EPSG:6677", "FILE=EPSG:n must name a file of the site that has coordinates, "
                         "dem.tif, release.geojson, road.geojson, line.geojson, got rood.geojson"),
                        ("road.geojson=6677x", "must be a CRS such as EPSG:6677, got 6677x")):
-        status, _, err = in_process(monkeypatch, capsys, gis, "mine", "--assign-crs", word)
+        status, _, err = told("mine", "--assign-crs", word)
         assert status == 2 and err.count("\n") == 1 and rule in err
 
 
@@ -705,13 +711,9 @@ def test_a_site_has_its_own_choices(tmp_path):
         assert line.endswith(f", got {values[0]}" if values else "is run")
 
 
-def test_without_lammps_the_folder_is_made_and_that_is_said(gis, monkeypatch, capsys):
-    monkeypatch.chdir(gis)
-    monkeypatch.delenv("LMP", raising=False)
-    monkeypatch.setattr(programs, "BESIDE", gis / "nowhere")
-    assert cli.main(["site", "--terrain", "dem.tif", "--release", "release.geojson", *BODY, "--balls", "100", "-o",
-                     "mine"]) == 0
-    assert "no LAMMPS program" in capsys.readouterr().err and (gis / "mine" / "in.site").exists()
+def test_without_lammps_the_folder_is_made_and_that_is_said(gis, told):
+    status, _, err = told("--terrain", "dem.tif", "--release", "release.geojson", *BODY, "--balls", 100, "-o", "mine")
+    assert status == 0 and "no LAMMPS program" in err and (gis / "mine" / "in.site").exists()
 
 
 # --- the page ---

@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections import namedtuple
 from pathlib import Path
 
 import numpy as np
@@ -18,41 +19,29 @@ from affine import Affine
 from shapely.geometry import LineString
 
 from test_site import (BODY, EAST, NORTH, ROAD, TOOLS, gis, inside as in_process, make,  # noqa: F401
-                       refused, slope, write_files, write_layer)
+                       refused, slope, told, work_in, write_files, write_layer)
 from tiny_collapse import LMP, processes_in
 
-from slope_tools import cli, disk, programs
+from slope_tools import cli, disk
 from slope_tools.animation import film
 from slope_tools.case import decks
 from slope_tools.deposits import score_run
 from slope_tools.errors import SlopeError
-from slope_tools.plots import site_map
-from slope_tools.releases import release_chart
 from slope_tools.sites import site, site_choices, site_deck, site_folder, site_warnings
 from slope_tools.studies import site_study
 from slope_tools.studies.setup import Setup
 
 
-def work_in(folder, patch):
-    """In the folder of the GIS files, without a LAMMPS program, and without the pictures, which take longest."""
-    patch.chdir(folder)
-    patch.delenv("LMP", raising=False)
-    patch.setattr(programs, "BESIDE", folder / "nowhere")
-    for module in (release_chart, site_map):
-        patch.setattr(module, "draw", lambda path, *_: Path(path).write_bytes(b""))
+MAPPED = [(25, 25), (60, 25), (60, 55), (25, 55)]
 
 
 @pytest.fixture
-def inside(gis, monkeypatch, capsys):  # noqa: F811
+def inside(told):  # noqa: F811
     """Run `slope site ARGUMENTS` there; gives stdout and stderr."""
-    work_in(gis, monkeypatch)
-
     def run(arguments, status=0):
-        capsys.readouterr()
-        found = cli.main(["site", *shlex.split(arguments)])
-        told = capsys.readouterr()
-        assert found == status, told
-        return told
+        found, out, err = told(*shlex.split(arguments))
+        assert found == status, out + err
+        return namedtuple("Told", "out err")(out, err)
     return run
 
 
@@ -97,17 +86,12 @@ def test_a_users_file_is_not_overwritten(inside, mine):
 
 
 def test_names_of_the_files_are_known_before(inside, mine):
+    """A line called observed is not the mapped deposit."""
     write_layer(mine.parent / "observed.geojson", [(36, 50), (36, 30)], kind=LineString)
-    write_layer(mine.parent / "mapped.geojson", [(25, 25), (60, 25), (60, 55), (25, 55)])
+    write_layer(mine.parent / "mapped.geojson", MAPPED)
     inside("mine --line observed.geojson --observed mapped.geojson")
     assert site_folder.planned(site_choices.read(mine)) == set(site_choices.found(mine)["files"]) == {
         path.name for path in mine.iterdir() if path.name != ".lock"}
-
-
-def test_a_line_called_observed_is_not_the_mapped_deposit(inside, mine):
-    write_layer(mine.parent / "observed.geojson", [(36, 50), (36, 30)], kind=LineString)
-    write_layer(mine.parent / "mapped.geojson", [(25, 25), (60, 25), (60, 55), (25, 55)])
-    inside("mine --line observed.geojson --observed mapped.geojson")
     assert len((mine / "observed.csv").read_text().splitlines()) >= 5
     assert (mine / "observed_2.csv").read_text().splitlines()[1:] == ["36,50", "36,30"]
 
@@ -266,11 +250,8 @@ def test_a_thin_body_is_warned_of_by_its_mean_thickness(mean, largest, words):
     assert words in str(line) and "more balls (--balls, --minutes)" in str(line)
 
 
-def test_a_thick_body_is_not_warned_of():
-    assert site_warnings.of_thickness(3.1, 10.0) == []
-
-
 def test_a_large_body_needs_a_past_event():
+    assert site_warnings.of_thickness(3.1, 10.0) == []
     assert site_warnings.of_volume(9.9e5) == []
     line = str(*site_warnings.of_volume(3.6e7))
     assert "36 million m3" in line and "farther" in line and "slope calibrate" in line
@@ -338,12 +319,12 @@ def test_a_wrong_spacing_in_the_file(mine, model, rule):
 # --- soil and ground ---
 
 def test_options_of_soil_and_ground_reach_the_deck(inside, mine):
-    told = inside("mine --friction 25 --rolling 0 0.07 --slip-friction 5 --spacing 0.5 --density 1600 "
-                  "--field-restitution 0.3").out
+    out = inside("mine --friction 25 --rolling 0 0.07 --slip-friction 5 --spacing 0.5 --density 1600 "
+                 "--field-restitution 0.3").out
     choices = site_choices.read(mine)
     assert choices["study"]["rolling"] == [0, 0.07]
-    assert "friction 25 degrees, on the slip surface 5; rolling resistance 0, 0.07" in told
-    assert "bulk density 1,600 kg/m3" in told
+    assert "friction 25 degrees, on the slip surface 5; rolling resistance 0, 0.07" in out
+    assert "bulk density 1,600 kg/m3" in out
     deck = decks.index_variables(mine / site_deck.NAME)
     wanted = {"friction": 25, "slip": 5, "spacing": 0.5, "field_e": 0.3, "density": 1600 * 6 / math.pi}
     assert {name: float(deck[name]) for name in wanted} == pytest.approx(wanted, rel=1e-4)
@@ -421,7 +402,7 @@ def test_an_end_from_outside_ends_the_trial_run(gis):  # noqa: F811
 
 def test_a_failed_run_leaves_score_and_report_of_the_others(inside, mine, monkeypatch, capsys):
     monkeypatch.setattr(film, "encode", lambda *_: b"")
-    write_layer(mine.parent / "mapped.geojson", [(25, 25), (60, 25), (60, 55), (25, 55)])
+    write_layer(mine.parent / "mapped.geojson", MAPPED)
     inside("mine --observed mapped.geojson --balls 60")
     edit(mine, "study", rolling=[0.05, 0.1], spacing=[], xoffset=[], yoffset=[], sizes=[])
     Path("some").write_text(f"""#!/bin/sh\ncase "$*" in *"rolling 0.1"*) exit 1;; esac\nexec {LMP} "$@"\n""")
@@ -543,7 +524,7 @@ def test_a_mapped_raster_must_lie_on_the_terrain(inside, mine, gis, east, fits):
 
 def test_the_report_is_written_though_the_score_fails(gis, monkeypatch):  # noqa: F811
     monkeypatch.setattr(film, "encode", lambda *_: b"")
-    write_layer(gis / "mapped.geojson", [(25, 25), (60, 25), (60, 55), (25, 55)])
+    write_layer(gis / "mapped.geojson", MAPPED)
     made = make(gis, "--shape", "ellipsoid", "--depth", "5", "--balls", "60", "--observed", "mapped.geojson",
                 run=in_process)
     assert made.returncode == 0, made.stderr

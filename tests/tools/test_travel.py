@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import yaml
 
-from run_helpers import examples
+from run_helpers import examples, warned
 
 from slope_tools import disk
 from slope_tools.deposits import travel
@@ -99,13 +99,12 @@ def test_a_slope_askew_and_its_origin(travelled):
     assert about["across"]["all"]["max"] == pytest.approx(0, abs=1e-8)
 
 
-def test_limits_leave_no_ball_out_of_the_shares(travelled, capsys):
+def test_limits_leave_no_ball_out_of_the_shares(travelled):
     write("a.dump", FOUR)
     about = travelled("a.dump --along 1.5 3.5")
     assert share("along", 1.5) == 0.25 and share("along", 3.5) == 0.75
     assert about["along"]["all"]["max"] == 4
-    assert [one["text"] for one in about["warnings"]] == [
-        "--along 1.5 3.5: 2 of 4 balls lie beyond these limits"]
+    assert warned(about)["beyond limits"] == {"option": "--along", "low": 1.5, "high": 3.5, "outside": 2, "balls": 4}
 
 
 def test_types(travelled):
@@ -147,7 +146,7 @@ def test_travel_and_run_out(travelled):
     Path("rest.dump").write_text(snapshot([(3, 2, 1), (0, 1, 2), (8, 1, 0)], id=[3, 1, 2]))
     about = travelled("rest.dump --start start.dump")
     run, = about["each_run"]
-    assert run["missing"] == 1 and "1 of 4 balls of the start are not there" in about["warnings"][0]["text"]
+    assert run["missing"] == 1 and warned(about)["missing"]["balls"] == 4
     assert [float(row["travel"]) for row in rows("out/balls.csv")] == [1, 8, 3]
     assert [float(row["drop"]) for row in rows("out/balls.csv")] == [3, 6, 4]
     assert float(rows("out/balls.csv")[1]["angle"]) == pytest.approx(math.degrees(math.atan2(6, 8)))
@@ -255,11 +254,10 @@ def test_lines_that_end_as_those_of_windows(slope, no_picture):
     assert slope("word.dump")[2] == "slope travel: word.dump: line 11: y must be a finite number, got 2O\n"
 
 
-def test_moving_balls_are_told(travelled, capsys):
+def test_moving_balls_are_told(travelled):
     write("a.dump", FOUR, columns="id x y z vx vy vz", vx=[0, 0.05, 0, 0.09], vz=[0, 0, -0.11, 0.09])
     about = travelled("a.dump")
-    assert about["each_run"][0]["moving"] == 2
-    assert "a.dump: 2 of 4 balls are faster than 0.1 m/s" in about["warnings"][0]["text"]
+    assert about["each_run"][0]["moving"] == warned(about)["not arrived"]["moving"] == 2
 
 
 # --- files, bad input ---

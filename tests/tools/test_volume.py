@@ -18,7 +18,7 @@ from shapely.affinity import rotate, translate
 from shapely.geometry import LineString, MultiPolygon, Point, Polygon, box, shape
 from shapely.ops import unary_union
 
-from run_helpers import (BULK, CRS_M, EAST, NORTH, TOP, centres, examples, write_asc, write_geojson, write_run,
+from run_helpers import (BULK, CRS_M, EAST, NORTH, TOP, centres, examples, warned, write_asc, write_geojson, write_run,
                          write_sidecar)
 
 from slope_tools import disk, geometry
@@ -353,7 +353,7 @@ def test_ground_that_is_not_known(cleared, slope):
     write_run(thickness, base, 2.5)
     about = cleared(box(120, 0, 149, 200))
     assert about["volume"]["unknown"] == pytest.approx(10 * 10 * 3)
-    assert "without ground" in about["warnings"][-1]["text"]
+    assert warned(about)["no ground"]["volume"] == pytest.approx(10 * 10 * 3)
     with rasterio.open("out/volume.tif") as file:
         assert file.nodata == -9999 and (file.read(1, masked=True).filled(0) >= 0).all()
     write_geojson("road.geojson", box(120, 0, 155, 200))
@@ -465,13 +465,12 @@ def test_without_a_terrain_there_is_a_warning(slope, here):
     assert (status, err) == (0, "")
 
 
-def test_the_folder_may_be_this_one_or_another_with_files(cleared, slope, here):
+def test_the_folder_may_be_this_one_or_another_with_files(cleared, succeed, here):
     write_run(strip(), 0.0, 2.5)
     cleared(box(90, 0, 110, 200))
     (here / "out" / "mine.txt").touch()
     for folder in (".", "out", "out/../new"):
-        status, _, err = slope(f"run --road road.geojson --mesh 10 --local -o {folder}")
-        assert status == 0, err
+        succeed(f"run --road road.geojson --mesh 10 --local -o {folder}")
     assert len(os.listdir("new")) == 9 and len(os.listdir("out")) == 10 and (here / "volume.yaml").exists()
     assert not list(here.rglob(".*"))
 
@@ -491,7 +490,7 @@ def test_part_of_the_road_outside_is_cut_off_with_a_warning(cleared):
     write_run(strip(), 0.0, 2.5)
     about = cleared(box(90, -200, 110, 200))
     assert about["road_area"] == pytest.approx(20 * 200)
-    assert [one["numbers"]["percent"] for one in about["warnings"] if one["kind"] == "cut off"] == pytest.approx([50])
+    assert warned(about)["cut off"]["percent"] == pytest.approx(50)
     assert about["volume"]["remove"] == pytest.approx(40 * (3 * 20 + 2 * wedge(3, 90, TAN30)), rel=1e-9)
 
 
@@ -551,11 +550,6 @@ def test_bad_input_is_one_line(slope, no_map, here, arguments, message):
     assert sorted(here.rglob("*")) == before
 
 
-def broken(path, change):
-    path = Path(path)
-    path.write_text(change(path.read_text()))
-
-
 @pytest.mark.parametrize("name, change, message", [
     ("run.summary.yaml", lambda text: "balls: [", "run.summary.yaml: must be a summary that fix deposit/grid wrote"),
     ("run.summary.yaml", lambda text: text.replace("bulk_factor", "factor"), "must be a summary that fix deposit/grid"),
@@ -571,7 +565,7 @@ def test_broken_files_of_a_run(slope, no_map, name, change, message):
     write_sidecar(80, 100, 2.5)
     write_run(strip(), 0.0, 2.5)
     write_geojson("road.geojson", box(90, 0, 110, 200))
-    broken(name, change)
+    Path(name).write_text(change(Path(name).read_text()))
     status, out, err = slope("run --road road.geojson --mesh 10 --local")
     assert (status, out) == (2, "") and err.count("\n") == 1 and message in err
     assert not Path("run.volume").exists()
@@ -580,9 +574,8 @@ def test_broken_files_of_a_run(slope, no_map, name, change, message):
 def test_a_run_that_still_moved_or_lost_mass_is_warned_of(cleared, slope):
     write_run(strip(), 0.0, 2.5, moving=True, volume={"released": 30100.0, "on_grid": 30000.0, "off_grid": 60.0,
                                                       "lost": 40.0})
-    warnings = [one["text"] for one in cleared(box(90, 0, 110, 200))["warnings"]]
-    assert "run.summary.yaml: the mass was still moving at 12.5 s: these are not final numbers" in warnings
-    assert "run.summary.yaml: 100 m3 of the mass left the grid or the box and are not counted" in warnings
+    about = cleared(box(90, 0, 110, 200))
+    assert warned(about)["moves"]["seconds"] == 12.5 and warned(about)["not counted"]["volume"] == pytest.approx(100)
     assert slope("run --road road.geojson --local --mesh 10")[2].count("slope volume: warning: ") == 3
 
 
