@@ -8,7 +8,9 @@ import shlex
 from pathlib import Path
 
 import numpy as np
+import rasterio
 import yaml
+from affine import Affine
 from rasterio.crs import CRS
 from shapely.geometry import mapping
 
@@ -32,6 +34,14 @@ def write_asc(path, z, cell, xlo=0.0, ylo=0.0):
                   f"cellsize {cell!r}\nNODATA_value -9999\n")
         for row in z:
             out.write(" ".join("-9999" if math.isnan(value) else repr(value) for value in row.tolist()) + "\n")
+
+
+def write_tif(path, z, cell, xlo=EAST, ylo=NORTH, crs=CRS_M, nodata=-9999.0):
+    """A GeoTIFF of z, rows from the north, NaN as NODATA; xlo, ylo: of its south-western corner."""
+    z = np.asarray(z, float)
+    with rasterio.open(path, "w", driver="GTiff", height=len(z), width=len(z[0]), count=1, dtype="float64", crs=crs,
+                       nodata=nodata, transform=Affine(cell, 0, xlo, 0, -cell, ylo + len(z) * cell)) as out:
+        out.write(np.where(np.isnan(z), nodata, z), 1)
 
 
 def write_run(thickness, base, cell, prefix="run", xlo=0.0, ylo=0.0, **summary):

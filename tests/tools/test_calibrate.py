@@ -16,7 +16,7 @@ import yaml
 
 import twins
 from messages import is_one
-from run_helpers import called
+from run_helpers import called, write_tif
 from tiny_collapse import TOP, loaded, write_case
 
 from slope_tools.deposits import travel_shares
@@ -376,9 +376,7 @@ def test_outlines(succeed, here):
 
 
 def test_a_raster_without_a_crs_is_taken_to_be_in_that_of_the_terrain(slope, here):
-    with rasterio.open("mapped.tif", "w", driver="GTiff", width=40, height=24, count=1, dtype="float64",
-                       transform=rasterio.transform.from_origin(-12000.0, 34024.0, 1, 1)) as out:
-        out.write(np.ones((24, 40)), 1)
+    write_tif("mapped.tif", np.ones((24, 40)), 1.0, crs=None)
     status, _, err = slope(f"calibrate case/in.tiny --observed mapped.tif {WORDS} --runs 20 -o out --dry-run")
     assert status == 0 and err.count("\n") == 1
     assert err.startswith("slope calibrate: warning: mapped.tif has no CRS: taken to be in that of the terrain")
@@ -414,11 +412,8 @@ def test_all_runs_failed_is_one_line(slope, here):
     (f"{WORDS} --runs 20 --observed away.csv --local", "away.csv: must overlap the terrain"),
 ])
 def test_wrong_calibrations_are_one_line(slope, here, arguments, message):
-    for name, crs, west in (("far.tif", 6677, 500000.0), ("other.tif", 6678, -12000.0)):
-        with rasterio.open(name, "w", driver="GTiff", width=40, height=24, count=1, dtype="float64",
-                           crs=rasterio.crs.CRS.from_epsg(crs),
-                           transform=rasterio.transform.from_origin(west, 34024.0, 1, 1)) as out:
-            out.write(np.ones((24, 40)), 1)
+    write_tif("far.tif", np.ones((24, 40)), 1.0, xlo=500000.0)
+    write_tif("other.tif", np.ones((24, 40)), 1.0, crs="EPSG:6678")
     Path("away.csv").write_text("900,900\n950,900\n950,950\n")
     status, out, err = slope(f"calibrate case/in.tiny {arguments} -o out")
     assert (status, out) == (2, "") and is_one(err, f"slope calibrate: {message}"), err

@@ -16,7 +16,7 @@ from rasterio.crs import CRS
 from shapely.affinity import rotate
 from shapely.geometry import Point, Polygon, box, mapping
 
-from run_helpers import CRS_M, EAST, NORTH, TOOLS, TOP, warned, write_asc, write_geojson, examples
+from run_helpers import CRS_M, EAST, NORTH, TOOLS, TOP, warned, write_asc, write_geojson, write_tif, examples
 
 from slope_tools.drawing import maps
 from slope_tools.releases import release_area, release_bodies, release_chart, release_slbl, release_solve
@@ -480,9 +480,7 @@ def test_two_surveys_that_agree_but_for_the_millimetre_of_the_terrain(body):
         return ramp(30)(x, y) + 1e-3 * np.sin(x * y)
     x, y, _ = terrain(ground)
     dent = np.where(np.hypot(x - 120, y - 100) < 30, 4.0, 0.0)
-    with rasterio.open("after.tif", "w", driver="GTiff", height=100, width=120, count=1, dtype="float64", crs=CRS_M,
-                       transform=Affine(2, 0, EAST, 0, -2, NORTH + 200)) as out:
-        out.write(ground(x, y) - dent, 1)
+    write_tif("after.tif", ground(x, y) - dent, 2)
     found, _ = body("t.asc --scar after.tif")
     assert found["volume"] == pytest.approx(dent.sum() * 4, rel=1e-4) and found["cells"] == (dent > 0).sum()
 
@@ -494,12 +492,10 @@ def test_nodata_beside_a_scar_of_coarse_cells_costs_no_volume(body, kind, sign, 
     terrain(ramp(30))
     depth = np.full((20, 24), np.nan)
     depth[6:14, 8:17] = sign * np.random.default_rng(4).uniform(1, 9, (8, 9))
-    first = (6, 8) if cropped else (0, 0)
-    part = depth[6:14, 8:17] if cropped else depth
-    with rasterio.open("scar.tif", "w", driver="GTiff", height=part.shape[0], width=part.shape[1], count=1,
-                       dtype="float64", nodata=-9999, crs=CRS_M,
-                       transform=Affine(10, 0, EAST + 10 * first[1], 0, -10, NORTH + 200 - 10 * first[0])) as out:
-        out.write(np.nan_to_num(part, nan=-9999), 1)
+    if cropped:
+        write_tif("scar.tif", depth[6:14, 8:17], 10, EAST + 80, NORTH + 60)
+    else:
+        write_tif("scar.tif", depth, 10)
     found, _ = body(f"t.asc --scar scar.tif --scar-is {kind}")
     assert found["volume"] == pytest.approx(abs(np.nansum(depth)) * 100, rel=1e-4)
 
@@ -515,9 +511,7 @@ def test_a_scar_that_is_none(refused):
     terrain(ramp(30, top=499), "lower.asc")
     refused("t.asc --scar lower.asc", "lower.asc: must stay at least 2 cells away from NODATA and from the edge of "
             "t.asc", "--least D")
-    with rasterio.open("empty.tif", "w", driver="GTiff", height=100, width=120, count=1, dtype="float64", nodata=-9999,
-                       transform=Affine(2, 0, EAST, 0, -2, NORTH + 200)) as out:
-        out.write(np.full((100, 120), -9999.0), 1)
+    write_tif("empty.tif", np.full((100, 120), np.nan), 2, crs=None)
     for kind in ("surface", "depth", "change"):
         refused(f"t.asc --scar empty.tif --scar-is {kind}", "empty.tif: must hold a value, all cells are NODATA")
     polygon(box(10, 10, 40, 40))

@@ -13,13 +13,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import rasterio
 import yaml
-from affine import Affine
 from rasterio.warp import transform as warp
 from shapely.geometry import LineString, Polygon, mapping
 
-from run_helpers import called
+from run_helpers import called, write_tif
 from tiny_collapse import LMP, TOP
 
 from slope_tools import cli, programs
@@ -50,9 +48,7 @@ def height(x):
 def write_dem(path, crs="EPSG:6677", z=None):
     if z is None:
         z = np.broadcast_to(100 + height((np.arange(COLUMNS) + 0.5) * CELL), (ROWS, COLUMNS))
-    with rasterio.open(path, "w", driver="GTiff", width=COLUMNS, height=ROWS, count=1, dtype="float64", crs=crs,
-                       nodata=-9999, transform=Affine(CELL, 0, EAST, 0, -CELL, NORTH + ROWS * CELL)) as out:
-        out.write(z.astype(float), 1)
+    write_tif(path, z, CELL, crs=crs)
 
 
 def write_layer(path, points, crs="EPSG:6677", kind=Polygon):

@@ -15,9 +15,9 @@ import numpy as np
 import pytest
 import rasterio
 import yaml
-from affine import Affine
 from shapely.geometry import LineString
 
+from run_helpers import write_tif
 from test_site import (BODY, EAST, NORTH, ROAD, TOOLS, gis, inside as in_process, make,  # noqa: F401
                        refused, slope, told, work_in, write_files, write_layer)
 from tiny_collapse import LMP, processes_in
@@ -504,16 +504,10 @@ def test_a_folder_without_its_sources(inside, mine, gis, capsys):  # noqa: F811
 
 # --- a mapped deposit that lies elsewhere, and a score that fails ---
 
-def write_mapped(path, east):
-    with rasterio.open(path, "w", driver="GTiff", width=20, height=20, count=1, dtype="float64", crs="EPSG:6677",
-                       nodata=-9999, transform=Affine(2.0, 0, EAST + east, 0, -2.0, NORTH + 60)) as out:
-        out.write(np.ones((20, 20)), 1)
-
-
 @pytest.mark.parametrize("east, fits", [(20, True), (119, True), (121, False), (900000, False)])
 def test_a_mapped_raster_must_lie_on_the_terrain(inside, mine, gis, east, fits):  # noqa: F811
     """Which ends at 120 m."""
-    write_mapped(gis / "mapped.tif", east)
+    write_tif(gis / "mapped.tif", np.ones((20, 20)), 2.0, EAST + east, NORTH + 20)
     before = contents(mine)
     out, err = inside("mine --observed mapped.tif", 0 if fits else 2)
     assert ("observed.tif: thickness" in out) == fits
