@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from run_helpers import run_command, examples
+from run_helpers import TOP, run_command, examples
 
 from slope_tools.errors import SlopeError
 from slope_tools.validation import verification
@@ -230,6 +230,13 @@ def test_frames(tmp_path):
 
 
 # --- the page ---
+
+def test_the_page_holds_every_claim_against_its_present_bound():
+    lines = (TOP / "doc" / "src" / "verification.rst").read_text(encoding="ascii").splitlines()
+    page = {row[0]: tuple(row[2:4]) for row in csv.reader(line.strip() for line in lines if line.startswith('   "'))}
+    for one in verification.all_claims():
+        assert page[one.text + f" ({one.unit})" * bool(one.unit)] == one.bound.texts(), one.name
+
 
 @pytest.mark.parametrize("command", examples("verify"))
 def test_every_example_of_the_page_and_the_help_runs(succeed, command):
