@@ -235,7 +235,8 @@ def test_a_sphere_bulges_where_the_ground_does(slope, body):
     assert "above its chord" in slope("t.asc --polygon p.csv --volume 40000 -o r")[1]
     assert warned(about)["bulges"] == {"shape": "sphere"}
     done = subprocess.run([TOOLS / "slope", "release", *"t.asc --polygon p.csv --volume 40000 -o s".split()],
-                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=True)
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=True,
+                          env={**os.environ, "PYTHONUNBUFFERED": ""})
     assert done.stdout.index("volume ") < done.stdout.index("warning: ")     # in one file, in the order of a terminal
 
 
