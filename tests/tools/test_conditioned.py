@@ -13,15 +13,18 @@ from messages import is_one
 from tiny_collapse import read_asc
 
 from slope_tools import cli
+from slope_tools.deposits import travel_shares
 from slope_tools.ensembles import conditioned, known_events, known_maps
 from slope_tools.mobility import weights
 from slope_tools.report import known_part
 from slope_tools.report.numbers import Numbers
+from slope_tools.sites import site_warnings
 from slope_tools.statistics.hazard import weighted
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 COMMAND = "study case/in.tiny"
 LONGER = 1.9
+LARGE = "are known to run farther than laboratory friction suggests"
 LEVELS = np.array([5e3, 2e4, 4e4, 7e4])     # m3
 
 
@@ -146,7 +149,7 @@ def here(tiny_case):
     return tiny_case
 
 
-def test_an_ensemble_is_weighted(slope, succeed, capsys):
+def test_an_ensemble_is_weighted(slope, succeed, capsys, monkeypatch):
     words = ("--sample 8 --vary friction=2:40 --vary rolling=0:0.3 --set steps=900 --mobility small.csv --unconfined "
              "--except 'event 3' --road case/road.csv --local --exceed 0.1 -o out")
     out, _ = succeed(words)
@@ -168,8 +171,14 @@ def test_an_ensemble_is_weighted(slope, succeed, capsys):
     assert found["added"]["points"] == 4 and len(rows) == 12 and found["runs"] == 12 and (ratio[8:] < 1).all()
     whole = yaml.safe_load(Path("out/study.yaml").read_text())["ensemble"]
     assert (whole["runs"], whole["points"], whole["design"]["points"]) == (8, 8, 8)
+    columns, last = travel_shares.columns, list(csv.DictReader(open("out/study.csv", encoding="ascii")))[-1]
+    monkeypatch.setattr(travel_shares, "columns", lambda summary: {     # the last per cent of an added run left
+        **columns(summary),
+        **({"distance_99_m": None} if summary["travel"]["front"] == pytest.approx(float(last["front_m"])) else {})})
     status, second, err = slope(words)
     assert status == 0 and "more points towards" not in second and "0 to go" not in second, err
+    again_found = yaml.safe_load(Path("out/study.yaml").read_text())["ensemble"]["known_events"]
+    assert set(found["quantities"]) - set(again_found["quantities"]) == {"distance_99_m"}
 
     # curve and map, by hand
     mass = conditioned.masses(again)
@@ -192,16 +201,19 @@ def test_an_ensemble_is_weighted(slope, succeed, capsys):
     plain = "share of known events with a final thickness > 0.1 m"
     assert (bands[f"{plain}, lower bound"] <= bands[plain] + 1e-6).all()
     assert (bands[f"{plain}, upper bound"] >= bands[plain] - 1e-6).all()
+    monkeypatch.setattr(site_warnings, "LARGE", 0.0)
     assert cli.main(["report", "out"]) == 0
     page = Path("out/report.html").read_text()
     capsys.readouterr()
     assert "Weighted by known events" in page and "90 % of known events stay within" in page
+    assert LARGE not in page
 
     # a set that does not cover the mass: said, and nothing is weighted
     status, out, err = slope(words.replace("small.csv", "rock_avalanches").replace("'event 3'", "'Frank Slide'"))
     assert status == 0 and "the set of known events does not cover this volume" in out
     found = yaml.safe_load(Path("out/study.yaml").read_text())["ensemble"]["known_events"]
     assert found["reached"] is None and "quantities" not in found and not Path("out/weights.csv").exists()
+    assert cli.main(["report", "out"]) == 0 and LARGE in Path("out/report.html").read_text()
 
 
 @pytest.mark.parametrize("arguments, message", [

@@ -93,6 +93,10 @@ class Runs:
     def column(self, name: str) -> np.ndarray:
         return np.array([float(row[name]) for row in self.rows])
 
+    def have(self, name: str) -> bool:
+        """A value of all; the distance of the last per cents has none where they left the terrain."""
+        return all(row.get(name) is not None for row in self.rows)
+
     @property
     def places(self) -> np.ndarray:
         return self.sample.places(self.rows)
@@ -136,7 +140,8 @@ def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: S
         return {**about, "reached": None, "doubts": entries(
             [Finding("no event", {"text": text}) for text in found.outside] or [Finding("few lengths")])}
     about.update(reach(runs, found), added=added.about())
-    names = {name: one for name, one in names.items() if name not in NOT_FARTHER and not name.endswith("_deg")}
+    names = {name: one for name, one in names.items()
+             if name not in NOT_FARTHER and not name.endswith("_deg") and runs.have(name)}
     main = [name for name in main if name in names]
     design = runs.design()
     factors = {name: design.effect(runs.column(name)) for name in main} if design else {}

@@ -11,6 +11,7 @@ from . import structures_part
 MOST = 3                # on the first page
 SIDE = 0.5              # of the mass at the most touched edge: another edge with as much is named too
 BESIDE_MAPS = "no CRS"  # the page says so there
+LARGE = "large"
 WEIGHT = {kind: place for place, kind in enumerate(WORDS)}
 
 
@@ -30,7 +31,14 @@ def findings(data, ground) -> List[Finding]:
     kinds = {one.kind for one in of_runs}
     covered = [line for line, those in (("removed", ("bulk factor", "body volume", "balls removed")),
                                         ("lost", ("lost", "lost much"))) if kinds.intersection(those)]
-    return [one for one in (*found, *judged.of_logs(data.judged, covered)) if one.kind != BESIDE_MAPS]
+    beside = {BESIDE_MAPS, LARGE if weighed(data) else None}
+    return [one for one in (*found, *judged.of_logs(data.judged, covered)) if one.kind not in beside]
+
+
+def weighed(data) -> bool:
+    """Whether known events weigh the runs, which makes up for what is known of large masses."""
+    known = ((data.study or {}).get("ensemble") or {}).get("known_events")
+    return bool(known) and known["reached"] is not None
 
 
 def kind_of(said) -> str:
