@@ -1,6 +1,7 @@
 """tools/slope study --sample --mobility: bounds of weighted curves, weighted maps, an ensemble of small collapses."""
 import csv
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from slope_tools.deposits import travel_shares
 from slope_tools.ensembles import conditioned, known_events, known_maps
 from slope_tools.mobility import weights
 from slope_tools.report import known_part
+from slope_tools.report.data import Data
 from slope_tools.report.numbers import Numbers
 from slope_tools.sites import site_warnings
 from slope_tools.statistics.hazard import weighted
@@ -261,3 +263,13 @@ def test_a_report_shows_no_number_where_events_go_beyond_the_runs():
     assert content["lines"] == ["The set of known events does not cover this volume."] and not content["answer"]
     assert "50 % of the known events" in answer["note"]
     assert answer["parts"][0]["note"].startswith("At least 0 m with 90 %")
+
+
+@pytest.mark.parametrize("value, shown", [(2100.0, "b"), (None, "c"), ("absent", "c")])
+def test_the_run_shown_has_the_quantity(value, shown):
+    """Nearest to what 90 % of known events stay within, or the largest; a run that lost it over the edge has none."""
+    quantities = {} if value == "absent" else {"distance_99_m": {"quantiles": [{"share": 0.9, "value": value}]}}
+    runs = [{"run": name, "distance_99_m": one} for name, one in zip("abcd", (1500.0, 2000.0, 2500.0, None))]
+    data = SimpleNamespace(finished=runs, study={"conservative": None, "ensemble": {
+        "of": "distance_99_m", "known_events": {"quantities": {"length_m": {}, **quantities}}}})
+    assert Data.governing(data) == shown

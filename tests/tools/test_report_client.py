@@ -368,8 +368,8 @@ def test_what_the_runs_differ_in_is_said_without_names_of_variables():
         "balls and 1 other setting and, by chance, in how the balls lie at the start.")
     data.study["study"]["method"] = "by the paper's method; the set of known events does not cover this volume, 900 m3"
     assert client_part.basis(data).endswith(
-        "at the start. Known events of this size do not count in them: the set of known events does not cover this volume, "
-        "900 m3.")
+        "at the start. Known events of this size do not count in them: the set of known events does not cover this "
+        "volume, 900 m3.")
     for method in (known_study.WEIGHTED, known_study.BESIDE):
         data.study["study"]["method"] = method
         assert client_part.basis(data).endswith("at the start.")

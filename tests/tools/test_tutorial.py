@@ -15,7 +15,8 @@ pytestmark = pytest.mark.long
 BUILD = Path(os.environ.get("SLOPE_BUILD", TOP / "build"))
 NOT_HERE = ("tools/demo.sh", "FG-GML", "slope sensitivity")     # builds; the user's own file; runs for a minute
 NUMBER = re.compile(r"-?\d[\d,]*(?:\.\d+)?(?:e[+-]?\d+)?")
-OTHERS = re.compile(r" \(\S*\.cpp:\d+\)$| rolling_[\d.]+$|, about \S+ \w+ if nothing else runs(, \S+ \w+ with all that may be added)?")
+OTHERS = re.compile(r" \(\S*\.cpp:\d+\)$| rolling_[\d.]+$|, about \S+ \w+ if nothing else runs"
+                    r"(, \S+ \w+ with all that may be added)?")
 # place in LAMMPS' source; the largest of runs; a time, in the unit that it takes
 ABOUT = 0.2         # chance, between builds
 MACHINE = ".. the numbers of the machine\n\n"      # before a block whose numbers are any

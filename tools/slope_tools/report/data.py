@@ -216,11 +216,12 @@ class Data:
         if ensemble and ensemble["of"]:
             # a quantile is the value of a run
             of = ensemble["of"]
-            known = ((ensemble.get("known_events") or {}).get("quantities") or ensemble["quantities"])[of]["quantiles"]
-            at = {one["share"]: one["value"] for one in known}[0.9]
+            entries = (ensemble.get("known_events") or {}).get("quantities") or ensemble["quantities"]
+            at = {one["share"]: one["value"] for one in entries[of]["quantiles"]}[0.9] if of in entries else None
+            having = [row for row in self.finished if row[of] is not None]      # others lost it over the edge
             if at is None:      # events beyond the runs decide
-                return max(self.finished, key=lambda row: row[of])["run"]
-            return min(self.finished, key=lambda row: abs(row[of] - at))["run"]
+                return max(having, key=lambda row: row[of])["run"]
+            return min(having, key=lambda row: abs(row[of] - at))["run"]
         if not best:
             return travel_shares.farthest(self.finished)["run"]
         return best["run"]

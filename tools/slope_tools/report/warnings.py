@@ -38,7 +38,7 @@ def findings(data, ground) -> List[Finding]:
 def weighed(data) -> bool:
     """Whether known events weigh the runs, which makes up for what is known of large masses."""
     known = ((data.study or {}).get("ensemble") or {}).get("known_events")
-    return bool(known) and known["reached"] is not None
+    return known is not None and known["reached"] is not None
 
 
 def kind_of(said) -> str:
