@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from run_helpers import called
-from test_site import gis  # noqa: F401
+from test_site import gis, told  # noqa: F401
 from test_site_anew import inside, mine, once  # noqa: F401
 from tiny_collapse import LMP
 

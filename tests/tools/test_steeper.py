@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import yaml
 from test_mobility_path import disc, terrain
-from test_site import gis  # noqa: F401
+from test_site import gis, told  # noqa: F401
 from test_site_anew import inside, mine, once  # noqa: F401
 
 from slope_tools.errors import SlopeError
