@@ -435,7 +435,8 @@ def test_the_size_of_the_balls_comes_from_the_budget():
     some, more = budget(minutes=10), budget(minutes=100)
     assert 570 < some.most <= 600 and 5700 < more.most <= 6000      # with all runs that may be added
     assert some.seconds < 0.65 * some.most                          # 64 of 83 runs may be made once more
-    assert more.balls / some.balls == pytest.approx(10 ** 0.75, rel=0.3)     # time goes with balls^(4/3)
+    # time goes with balls^(4/3), where set-up, maps and reports hardly count
+    assert budget(minutes=1000).balls / more.balls == pytest.approx(10 ** 0.75, rel=0.1)
     small = budget(memory=1.0)
     assert 0.97 < small.gigabytes <= 1.0 and small.balls == pytest.approx((0.5 - 0.06) / 800e-9, rel=0.03)
 

@@ -27,7 +27,7 @@ from slope_tools.animation import film
 from slope_tools.case import decks
 from slope_tools.deposits import score_run
 from slope_tools.errors import SlopeError
-from slope_tools.sites import site, site_choices, site_deck, site_folder, site_warnings
+from slope_tools.sites import site, site_budget, site_choices, site_deck, site_folder, site_warnings
 from slope_tools.studies import site_study
 from slope_tools.studies.setup import Setup
 
@@ -200,7 +200,7 @@ def test_another_body_gets_balls_of_its_own(inside, mine):
     second = site_choices.read(mine)
     assert second["balls"]["number"] == first["balls"]["number"] and second["release"]["depth"] is None
     assert second["balls"]["diameter"] < first["balls"]["diameter"] / 1.5
-    assert site_choices.found(mine)["balls"] == pytest.approx(4000, rel=0.02)
+    assert site_choices.found(mine)["balls"] == pytest.approx(site_budget.DEFAULT, rel=0.02)
     for key in ("speed", "duration"):       # a trial run of the other body may have been slower
         edit(mine, "model", **{key: 99.0})
         about = yaml.safe_load((mine / "site.yaml").read_text())
