@@ -11,7 +11,8 @@ import run_helpers
 
 from slope_tools.route import choices, corridor, runs, search  # noqa: E402
 from slope_tools.survey import rasters  # noqa: E402
-from slope_tools.tables.study_table import COLUMNS, MAYBE, ROAD_COLUMNS  # noqa: E402
+from slope_tools.tables.quantities import MAYBE  # noqa: E402
+from slope_tools.tables.study_table import COLUMNS, ROAD_COLUMNS  # noqa: E402
 
 PLACE = {"crs": CRS.from_user_input(run_helpers.CRS_M), "offset": (run_helpers.EAST, run_helpers.NORTH)}
 

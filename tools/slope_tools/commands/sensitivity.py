@@ -13,7 +13,7 @@ from ..options import option, positional, several
 from ..runs import repeats
 from ..studies import study
 from ..studies.sensitivity import OF_ROAD, OF_TRAVEL, collect, plan, quantities
-from ..tables.quantities import NAMES
+from ..tables.quantities import On, keys
 from . import run_arguments
 
 DESCRIPTION = "One variable of a deck at a time: what it does to the volumes, and how far one run can be trusted."
@@ -46,7 +46,7 @@ class Request(run_arguments.Repeats, run_arguments.Runs):
     set: List[str] = several("value of an index variable in the base run (default: the deck's)", metavar="NAME=VALUE")
     of: Optional[str] = option(
         f"quantities to examine (default {OF_ROAD}; {OF_TRAVEL} of --converge without a road), of "
-        f"{', '.join(NAMES)}", metavar="NAME,...")
+        f"{', '.join(keys(On.ASKED))}", metavar="NAME,...")
 
 
 def run(args: Request) -> None:

@@ -15,19 +15,14 @@ from ..deposits import travel_shares
 from ..errors import SlopeError
 from ..findings import Finding, entries, texts
 from ..statistics import emulator, hazard
-from ..tables import quantities, study_table, withheld_words
+from ..tables import quantities, withheld_words
+from ..tables.quantities import On
 from . import ensemble_maps, farther, known_events
 from .sample import Sample
 
 MAPS = "ensemble"           # folder of the maps
 HAZARD, INFLUENCE = "hazard.csv", "influence.csv"
 ON_ROAD = "remove_on_road_m3"
-QUANTITIES = {**quantities.NAMES, "max_thickness_m": ("largest thickness at any time", "m"),
-              "max_speed_m_s": ("largest speed", "m/s"), "stop_time_s": ("end of the run", "s")}
-LENGTH = "length_m"
-# those whose dependence on the variables is looked at
-MAIN = ("remove_m3", ON_ROAD, "beyond_road_m3", "blocked_m", travel_shares.DISTANCE, "length_m", "centroid_m",
-        "thickness_m", "max_speed_m_s")
 FEW = 0.2       # share of failed runs from which on an ensemble is doubted
 
 
@@ -48,9 +43,10 @@ def check_quantity(of: Optional[str], road: bool) -> str:
     """The column of --of, or its default; SlopeError if there is none of that name."""
     if of is None:
         return ON_ROAD if road else travel_shares.DISTANCE
-    if of not in QUANTITIES:
-        raise SlopeError("--of", f"must be one of {', '.join(QUANTITIES)}", of)
-    if of in (*study_table.ROAD_COLUMNS, *study_table.LANE_COLUMNS) and not road:
+    asked = quantities.keys(On.ASKED)
+    if of not in asked:
+        raise SlopeError("--of", f"must be one of {', '.join(asked)}", of)
+    if of in quantities.NEED_ROAD and not road:
         raise SlopeError("--road", f"must be given for {of}")
     return of
 
@@ -66,17 +62,16 @@ def evaluate(order: Order, rows: Sequence[Mapping[str, Any]], output: Path, plac
         return None
     failed = len(planned) - len(finished)
     point = points_of(order.sample, finished)
-    of_quantity = {name: QUANTITIES[name] for name in QUANTITIES
-                   if all(row.get(name) is not None for row in finished)}
-    if LENGTH in of_quantity:
-        of_quantity[LENGTH] = quantities.name_of(LENGTH, finished), "m"
+    of_quantity = {name: (quantities.name_of(name, finished), quantities.ALL[name].unit)
+                   for name in quantities.known(On.ASKED, finished)}
     curves = {name: hazard.curve(column(finished, name), point, failed) for name in of_quantity}
     about: Dict[str, Any] = {
         "design": order.sample.about, "runs": len(planned), "finished": len(finished), "failed": failed,
         "points": len(set(point)), "confidence": hazard.CONFIDENCE, "of": order.of if order.of in curves else None,
-        "quantities": {name: numbers(finished, name, point, failed) for name in of_quantity}}
+        "quantities": {name: {"name": what, "unit": unit, **numbers(column(finished, name), point, failed)}
+                       for name, (what, unit) in of_quantity.items()}}
     places = order.sample.places(finished)
-    main = [name for name in dict.fromkeys((order.of, *MAIN)) if name in of_quantity]
+    main = [name for name in dict.fromkeys((order.of, *quantities.keys(On.INFLUENCE))) if name in of_quantity]
     analyses = {name: emulator.analyse(order.sample.names, places, column(finished, name), point, order.sample.snap)
                 for name in main}
     about["influence"] = {name: one.about() for name, one in analyses.items()}
@@ -106,11 +101,9 @@ def column(finished: Sequence[Mapping[str, Any]], name: str) -> np.ndarray:
 
 # --- numbers ---
 
-def numbers(finished, name: str, point: Sequence[int], failed: int) -> Dict[str, Any]:
-    """Of a quantity: name, unit, mean, deviation, range and quantiles."""
-    values = column(finished, name)
-    what, unit = QUANTITIES[name]
-    return {"name": what, "unit": unit, "mean": float(values.mean()),
+def numbers(values: np.ndarray, point: Sequence[int], failed: int) -> Dict[str, Any]:
+    """Of a quantity: mean, deviation, range and quantiles."""
+    return {"mean": float(values.mean()),
             "standard_deviation": float(values.std(ddof=1)) if len(values) > 1 else None,
             "smallest": float(values.min()), "largest": float(values.max()),
             "quantiles": [one._asdict() for one in hazard.quantiles(values, point, failed)]}

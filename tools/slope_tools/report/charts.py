@@ -7,7 +7,7 @@ from ..plots import figure_charts
 from ..plots.figure_charts import Series
 from ..runs.repeats import key_of
 from ..statistics import headline
-from ..tables.quantities import NAMES, name_of, of_run
+from ..tables.quantities import ALL, REMOVE, name_of
 from .data import is_number
 
 AXIS = {"rolling": "rolling resistance (-)", "friction": "friction angle (degrees)", "restitution": "restitution (-)",
@@ -22,22 +22,6 @@ TERMS = {"rolling": "coefficient of rolling resistance of the balls", "friction"
          "xoffset": "shift along x of the lattice on which the balls start, in lattice spacings",
          "yoffset": "the same along y", "zoffset": "the same along z",
          "seed": "seed of random numbers, such as those that displace the balls at the start"}
-REMOVE = "remove_m3"
-TITLES = {REMOVE: "Volume to remove from the road", "remove_on_road_m3": "Volume on the road",
-          "front_m": "Distance of the farthest ball",
-          travel_shares.DISTANCE: "Distance that 99 % of the volume stays within",
-          "thickness_m": "Largest thickness at the end"}
-
-
-def quantities(data):
-    """{column: what it is} of those that all finished runs have a number of; of a single run, of its summary."""
-    rows = data.finished or [of_run(data.result.summary, data.length())]
-    return {name: label for name, (label, _) in NAMES.items()
-            if all(row.get(name) is not None for row in rows)}
-
-
-def unit(name):
-    return NAMES[name][1]
 
 
 class Charts:
@@ -71,10 +55,10 @@ class Charts:
 
     def title(self, key):
         what = name_of(key, self.data.finished)
-        return TITLES.get(key, what[0].upper() + what[1:])
+        return ALL[key].title or what[0].upper() + what[1:]
 
     def label(self, key):
-        return f"{name_of(key, self.data.finished)} ({unit(key)})"
+        return f"{name_of(key, self.data.finished)} ({ALL[key].unit})"
 
     def bars(self, key):
         rows, title = self.data.finished, self.title(key)

@@ -12,6 +12,7 @@ from ..statistics import headline
 from ..statistics.answer import Code, Kind, Source
 from ..statistics.withheld import Kind as Rule
 from ..tables import combinations, next_step
+from ..tables.quantities import ALL, DISTANCE
 from . import body, mobility_part, road_part, structures_part, warnings
 from .numbers import farthest_of
 
@@ -208,14 +209,14 @@ def of_reach(data, numbers) -> Dict[str, Any]:
     if not values:
         return {**WITHHELD, "title": title,
                 "reasons": ["more than 1 % of the volume left the terrain, farther than anybody knows"]}
-    low, high = (numbers("99 % within", "m", value) for value in (min(values), max(values)))
+    low, high = (numbers.quantity(DISTANCE, value) for value in (min(values), max(values)))
     band = f"{low} to {high} m over {len(values)} runs." if len(values) > 1 else "One run: no band."
     return {"kind": "number", "title": title, "number": high, "unit": "m", "reasons": [], "band": band, "step": None}
 
 
 def reaches(data) -> List[float]:
     """The 99 % distances of all runs; empty where one of them is unknown."""
-    key = travel_shares.DISTANCE
+    key = DISTANCE
     rows = data.finished or [travel_shares.columns(data.result.summary)]
     return [] if any(row.get(key) is None for row in rows) else [row[key] for row in rows]
 
@@ -229,9 +230,10 @@ def sentences(data, ground, numbers, has_road_number: bool) -> List[str]:
     return [text for text in found if text][:3]
 
 
-def span(numbers, what, unit, values) -> str:
-    """The smallest and the largest of values as text with a unit."""
-    low, high = (numbers(what, unit, value) for value in (min(values), max(values)))
+def span(numbers, key, values) -> str:
+    """The smallest and the largest values of a quantity as text with its unit."""
+    low, high = (numbers.quantity(key, value) for value in (min(values), max(values)))
+    unit = ALL[key].unit
     return f"{low} {unit}" if low == high else f"{low} to {high} {unit}"
 
 
@@ -246,8 +248,8 @@ def distance(data, numbers, has_road_number: bool) -> str:
     if not has_road_number:
         front = [row["front_m"] for row in data.finished] or [farthest_of(data.result.summary)[0]]
         return (f"Distances are in plan from the highest point of the body; single blocks go farther, up to "
-                f"{numbers('farthest ball', 'm', max(front))} m in the model.")
-    far = span(numbers, "99 % within", "m", values)
+                f"{numbers.quantity('front_m', max(front))} m in the model.")
+    far = span(numbers, DISTANCE, values)
     return (f"{runs_of(data)} 99 % of the volume stays within {far} of the highest point of the body, in plan.")
 
 
@@ -257,13 +259,13 @@ def road(data, numbers) -> str:
     on = [row["remove_on_road_m3"] for row in data.finished]
     if not max(on) > 0:
         return f"{runs_of(data)} nothing comes to lie on the road."
-    text = (f"On the road itself lie {span(numbers, 'on the road', 'm3', on)}")
+    text = (f"On the road itself lie {span(numbers, 'remove_on_road_m3', on)}")
     blocked = [row["blocked_m"] for row in data.finished if row.get("blocked_m") is not None]
     if blocked and max(blocked) > 0:
-        text += f", over a length of up to {numbers('road blocked', 'm', max(blocked))} m"
+        text += f", over a length of up to {numbers.quantity('blocked_m', max(blocked))} m"
     beyond = [row["beyond_road_m3"] for row in data.finished if row.get("beyond_road_m3") is not None]
     if beyond and max(beyond) > 0:
-        text += f"; beyond it come to lie up to {numbers('beyond the road', 'm3', max(beyond))} m³"
+        text += f"; beyond it come to lie up to {numbers.quantity('beyond_road_m3', max(beyond))} m³"
     return f"{text}."
 
 
@@ -286,8 +288,8 @@ def thickness(data, numbers) -> str:
         value, speed = (data.study["largest"][key]["value"] for key in ("thickness_m", "max_speed_m_s"))
     else:
         value, speed = (data.result.summary["largest"][key] for key in ("thickness", "max_speed"))
-    return (f"The deposit is up to {numbers('largest thickness at the end', 'm', value)} m thick; the "
-            f"fastest part of the mass reaches {numbers('largest speed', 'm/s', speed)} m/s.")
+    return (f"The deposit is up to {numbers.quantity('thickness_m', value)} m thick; the "
+            f"fastest part of the mass reaches {numbers.quantity('max_speed_m_s', speed)} m/s.")
 
 
 def basis(data) -> str:

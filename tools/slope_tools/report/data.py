@@ -12,7 +12,7 @@ from ..deposits import deposit, score, travel_shares
 from ..errors import SlopeError
 from ..schemas import OBJECT, mapping
 from ..survey import rasters
-from ..tables import judged
+from ..tables import judged, quantities
 from ..tables.released import Release
 from ..tables.study_file import read_study
 
@@ -176,6 +176,11 @@ class Data:
         one = self.result
         return self.rows if self.study else [{"run": "", "status": "finished",
                                               **judged.columns(one.summary, one.log)}]
+
+    @property
+    def compared(self):
+        """Rows of the quantities of the finished runs; of a run alone that of its summary."""
+        return self.finished or [{**quantities.of_summary(self.result.summary), **quantities.of_length(self.length())}]
 
     def names(self):
         """Labels of the runs by their folders."""

@@ -7,7 +7,7 @@ from ..deposits import travel_shares
 from ..digits import rounded
 from ..errors import SlopeError
 from ..statistics import headline
-from ..tables.study_table import STOP
+from ..tables.quantities import STOP
 
 CONTENT = List[Tuple[str, str]]
 RESISTANCE = "Resistance of the ground"

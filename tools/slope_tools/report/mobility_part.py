@@ -7,7 +7,8 @@ from typing import Any, Dict, List, NamedTuple, Optional, Sequence, Tuple
 from ..mobility import exceedance
 from ..mobility.landslides import NOT_OF_ROADS, Row
 from ..mobility.results import percent
-from ..studies.mapped import BEYOND, OVERLAP, mass
+from ..studies.mapped import mass
+from ..tables.quantities import BEYOND_MAPPED as BEYOND, LENGTH, OVERLAP
 
 WHAT = "Known events"
 
@@ -49,7 +50,7 @@ def sentence(found: Lies, numbers, label: str) -> str:
     """How far the runs reach, and how many known events end there or before."""
     assert found.mobility is not None
     ends = list(dict.fromkeys((found.lengths[0], found.lengths[-1])))
-    reach = " to ".join(numbers("length along the fall path", "m", length, label) for length in ends)
+    reach = " to ".join(numbers.quantity(LENGTH, length, label) for length in ends)
     law, shares = found.mobility.law, []
     others = law.both if isinstance(law, Row) else ("confined", "unconfined")
     for kind in (found.mobility.chosen, *others):
@@ -102,11 +103,11 @@ def mapped_sentence(data, numbers) -> str:
         return ""
     about = data.study["observed"]
     best = next(row for row in found if row["run"] == about["best"])
-    share = numbers("overlap with the mapped deposit", "1", best[OVERLAP], data.label_of(best))
+    share = numbers.quantity(OVERLAP, best[OVERLAP], data.label_of(best))
     which = f"The best of {len(found)} runs" if len(found) > 1 else "The run"
     text = f"{which} shares {share} of the area that it or the mapped deposit covers (1: the same area)"
     if best[BEYOND] is not None:
-        by = numbers("farther than the mapped deposit", "m", abs(best[BEYOND]), data.label_of(best))
+        by = numbers.quantity(BEYOND, abs(best[BEYOND]), data.label_of(best))
         text += f", and ends {by} m {'beyond' if best[BEYOND] > 0 else 'short of'} its tip"
     lacks = mass(about["volume_m3"], about["released_m3"])
     return f"{text}." + (f" {lacks.text[0].upper()}{lacks.text[1:]}." if lacks else "")

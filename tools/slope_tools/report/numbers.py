@@ -8,7 +8,7 @@ from ..mobility.results import percent
 from ..mobility.run_length import LEAST, OF_99, ON_PATH, OTHERS
 from ..statistics import headline
 from ..tables import withheld_words
-from ..tables.quantities import of_run
+from ..tables.quantities import ALL, KNOWN, LENGTH, REACH, written
 from ..tables.released import over_runs
 
 UNKNOWN = "unknown"
@@ -26,6 +26,17 @@ class Numbers:
             return UNKNOWN
         text = headline.text(value, headline.place_of_digits(value))
         self.rows.append((what, unit, of, text, value))
+        return text
+
+    def quantity(self, key, value, of="", unknown=UNKNOWN):
+        """A quantity of a run, as pages have it."""
+        one = ALL[key]
+        if value is None:
+            return unknown
+        if one.page in ("", KNOWN):
+            return self(one.name, one.unit, value, of)
+        text = written(one.page, value)
+        self.rows.append((one.name, one.unit, of, text, value))
         return text
 
     def mean(self, what, unit, value, scatter, of):
@@ -163,28 +174,28 @@ def travel_card(data, numbers):
         far = largest["front_m"]
         names = {row["run"]: row for row in data.finished}
         who = data.label_of(names[far["run"]])
-        farthest = f"; farthest ball {numbers('farthest ball', unit, far['value'], who)} m, {who}"
+        farthest = f"; farthest ball {numbers.quantity('front_m', far['value'], who)} m, {who}"
         if key not in largest:
             left = any(map(travel_shares.lost, data.finished))
             return {"what": what, "number": UNKNOWN, "unit": "", "note": f"a run {LOST if left else OLD}{farthest}"}
         row = names[largest[key]["run"]]
-        value, angle, name = row[key], row[travel_shares.REACH], data.label_of(row)
-        length = row.get("length_m")
+        value, angle, name = row[key], row[REACH], data.label_of(row)
+        length = row.get(LENGTH)
     else:
-        row = of_run(data.result.summary, data.length())
-        value, angle, name = row[key], row[travel_shares.REACH], ""
-        farthest = f"; farthest ball {numbers('farthest ball', unit, farthest_of(data.result.summary)[0])} m"
-        length = row["length_m"]
+        row = data.compared[0]
+        value, angle, name = row[key], row[REACH], ""
+        farthest = f"; farthest ball {numbers.quantity('front_m', farthest_of(data.result.summary)[0])} m"
+        length = row[LENGTH]
         if value is None:
             volume = data.result.summary["volume"]
             left = volume["lost"] > travel_shares.BEYOND * volume["released"]
             return {"what": what, "number": UNKNOWN, "unit": "", "note": f"a run {LOST if left else OLD}{farthest}"}
     note = ("in plan from the highest released ball, reach angle "
-            f"{numbers('reach angle of 99 %', 'degrees', angle, name)} degrees")
+            f"{numbers.quantity(REACH, angle, name)} degrees")
     if length is not None:
         kind = row.get("length_is") or ON_PATH      # none in older files
         note += f"; {numbers(f'length, {kind}', unit, length, name)} m {kind}"
-    return {"what": what, "number": numbers("99 % within", unit, value, name), "unit": unit,
+    return {"what": what, "number": numbers.quantity(key, value, name), "unit": unit,
             "note": note + farthest + (f". Run: {name}" if name and data.study else "")}
 
 
@@ -203,9 +214,9 @@ def thickness_card(data, numbers):
     else:
         about = data.result.summary["largest"]
         value, ever, speed = (about[key] for key in ("thickness", "max_thickness", "max_speed"))
-    return {"what": "Thickest deposit", "number": numbers("largest thickness at the end", "m", value),
-            "unit": "m", "note": f"at the end; {numbers('largest thickness', 'm', ever)} m in the course of "
-            f"{'a' if data.study else 'the'} run. Fastest ball {numbers('largest speed', 'm/s', speed)} m/s"}
+    return {"what": "Thickest deposit", "number": numbers.quantity("thickness_m", value),
+            "unit": "m", "note": f"at the end; {numbers.quantity('max_thickness_m', ever)} m in the course of "
+            f"{'a' if data.study else 'the'} run. Fastest ball {numbers.quantity('max_speed_m_s', speed)} m/s"}
 
 
 def rest_card(data):

@@ -9,10 +9,11 @@ from ..case import decks
 from ..plots.ground import Ground
 from ..plots.section import Section
 from ..survey.rasters import crs_name
-from ..tables.quantities import NAMES, name_of, of_run
+from ..tables import quantities
+from ..tables.quantities import LENGTH, REMOVE, On
 from . import (body, chain_part, client_part, convergence_part, heading, intensity_part, limits_part, mobility_part,
                road_part)
-from .charts import Charts, REMOVE, TERMS, differences, quantities
+from .charts import Charts, TERMS, differences
 from .data import Data, find_deck
 from .heading import Asked
 from .maps_part import Maps
@@ -23,18 +24,7 @@ from .warnings import findings, listed
 
 # a variable of a deck and the comment on it, which has its unit
 MEANING = re.compile(r"^\s*variable\s+(\w+)\s+index\s.*?#\s*(.*?)\s*$", re.MULTILINE)
-LENGTH = "length_m"     # its head is quantities.name_of()
-# columns of a study's table: head, unit, key
-COLUMNS = (("released", "m3", "released_m3"), ("99 % within", "m", "distance_99_m"),
-           ("reach angle", "deg", "reach_99_deg"), ("", "m", LENGTH),
-           ("farthest ball", "m", "front_m"), ("thickness", "m", "thickness_m"), ("ended at", "s", "stop_time_s"),
-           ("stop angle", "deg", "stop_angle_deg"))
-ROAD_COLUMNS = (("to remove", "m3", "remove_m3"), ("on the road", "m3", "remove_on_road_m3"),
-                ("beyond it", "m3", "beyond_road_m3"), ("road blocked", "m", "blocked_m"))
 MOST_ROWS, ENDS = 40, 12    # of the study's table, and of each end of a longer one
-MEANS = (("to remove", "m3", "remove_m3"), ("on the road", "m3", "remove_on_road_m3"),
-         ("beyond it", "m3", "beyond_road_m3"), ("99 % within", "m", "distance_99_m"),
-         ("", "m", LENGTH), ("centroid moved", "m", "centroid_m"))
 
 
 class Page:
@@ -44,7 +34,7 @@ class Page:
         self.data = Data(asked.folder, asked.shown)
         self.ground = Ground(self.data)
         self.section = Section(self.data, self.ground, asked.section, asked.local)
-        self.reference = read_reference(asked.reference, quantities(self.data)) \
+        self.reference = read_reference(asked.reference, quantities.known(On.ASKED, self.data.compared)) \
             if asked.reference else None
         path, missing = convergence_part.find(asked.converge, self.data)
         self.sizes = path and convergence_part.Sizes(path)
@@ -68,14 +58,14 @@ class Page:
         charts = Charts(data, self.reference, self.picture)
         if self.film_file:
             self.film = film.film(data, self.ground, self.section, maps.layers, self.frames, self.film_file.name)
-        removal = numbers("to remove", "m3", one.row[REMOVE], data.label(one)) if REMOVE in one.row else ""
+        removal = numbers.quantity(REMOVE, one.row[REMOVE], data.label(one)) if REMOVE in one.row else ""
         found = {
             "made": utc(provenance.now()), "study": study, "single": not study, "one": one, "summary": one.summary,
             "label": data.label(one), "settings": data.settings, "repeats": data.repeats,
             "varied": [key for key, several in data.settings.items() if len(several) > 1],
             "warnings": self.warnings, "answer": answer(data, numbers),
             "cards": cards(data, numbers), "travel": travel_rows(data, numbers),
-            "balance": balance(data, numbers), "rows": self.rows(), "columns": self.columns(),
+            "balance": balance(data, numbers), "rows": self.rows(), "columns": list(map(self.head, self.columns())),
             "which_rows": self.which_rows(),
             "means": self.means(), "differences": differences(data, numbers),
             "maps": maps.of_run(), "section": self.picture(*self.section.picture()), "charts": charts.all(),
@@ -113,12 +103,15 @@ class Page:
     # --- tables ---
 
     def columns(self):
-        """Heads of the study's table, without columns that have no value."""
+        """Quantities of the study's table, without those that have no value."""
         data = self.data
-        wanted = COLUMNS + (ROAD_COLUMNS if data.road is not None else ())
         same = len({round(row["released_m3"], 3) for row in data.finished}) == 1
-        return [(name_of(key, data.finished) if key == LENGTH else head, unit, key) for head, unit, key in wanted
-                if any(row.get(key) is not None for row in data.finished) and not (same and key == "released_m3")]
+        return [one for one in quantities.shown_on("page") if any(row.get(one.key) is not None for row in data.finished)
+                and not (same and one.key == "released_m3")]
+
+    def head(self, one):
+        """Head of a quantity in a table: name and unit."""
+        return quantities.name_of(one.key, self.data.finished) if one.key == LENGTH else one.heading, one.unit
 
     def beyond(self):
         """The note below the table on the volume beyond the road; "" without a road."""
@@ -148,7 +141,8 @@ class Page:
                      "bad": row["status"] != "finished" or row["moving"], "error": row.get("error")}
             if row["status"] == "finished":
                 name = data.label_of(row)
-                entry["cells"] = [self.cell(head, unit, key, row, name) for head, unit, key in self.columns()]
+                entry["cells"] = [self.numbers.quantity(one.key, row.get(one.key), name, "-")
+                                  for one in self.columns()]
                 entry["end"], entry["at_rest"] = row.get("end_short", row["end"]), row["at_rest"]
             found.append(entry)
         return found
@@ -158,59 +152,49 @@ class Page:
         rows = self.data.rows
         if len(rows) <= MOST_ROWS:
             return rows
-        key = self.counts()[2]
+        key = self.counts().key
         known = sorted((row for row in self.data.finished if row.get(key) is not None), key=lambda row: row[key])
         return [*known[:ENDS], *known[-ENDS:], *[row for row in rows if row["status"] != "finished"][:ENDS]]
 
     def counts(self):
         """The column by which the runs of a long table are chosen."""
-        columns = {column[2]: column for column in self.columns()}
-        return next(columns[key] for key in (REMOVE, "distance_99_m", "front_m") if key in columns)
+        columns = {one.key: one for one in self.columns()}
+        return next(columns[key] for key in (REMOVE, quantities.DISTANCE, "front_m") if key in columns)
 
     def which_rows(self):
         """What the table says of its runs."""
         if len(self.data.rows) <= MOST_ROWS:
             return "All runs"
         return (f"Of {len(self.data.rows)} runs those with the least and the most in the column "
-                f"\"{self.counts()[0]}\", in its order; study.csv has all")
-
-    def cell(self, head, unit, key, row, name):
-        value = row.get(key)
-        if value is None:
-            return "-"
-        if key == "released_m3":
-            return self.numbers.whole(head, unit, value, name)
-        if key == "stop_time_s":
-            return f"{value:.1f}"
-        return self.numbers(head, unit, value, name)
+                f"\"{self.counts().heading}\", in its order; study.csv has all")
 
     def means(self):
         """Heads and rows of the table over combinations; None without repeats."""
         study = self.data.study
         if not (study and self.data.repeats and study.get("combinations")):
             return None
-        heads = [(name_of(key, self.data.finished) if key == LENGTH else head, unit, key)
-                 for head, unit, key in MEANS if all(key in entry for entry in study["combinations"])]
+        averaged = [quantities.ALL[key] for key in quantities.keys(On.PAGE_MEAN)
+                    if all(key in entry for entry in study["combinations"])]
         varied = [key for key, several in self.data.settings.items() if len(several) > 1]
         rows = []
         for entry in study["combinations"]:
             cells = []
-            for head, unit, key in heads:
-                cells.append(self.numbers.mean(head, unit, entry[key]["mean"], entry[key]["scatter"],
-                                               str(entry["combination"])))
+            for one in averaged:
+                cells.append(self.numbers.mean(one.name, one.unit, entry[one.key]["mean"],
+                                               entry[one.key]["scatter"], str(entry["combination"])))
             best = study["conservative"] and entry["combination"] == study["conservative"]["combination"]
             rows.append({"set": [entry["set"][key] for key in varied], "runs": entry["repeats"], "cells": cells,
                          "best": best})
-        return {"heads": heads, "rows": rows}
+        return {"heads": list(map(self.head, averaged)), "rows": rows}
 
     def reference_tables(self):
         """Numbers from elsewhere: a table for each quantity, with the runs' own range beside them."""
         tables: List[Dict[str, Any]] = []
         if self.reference is None:
             return None
-        own = self.data.finished or [of_run(self.data.result.summary, self.data.length())]
+        own = self.data.compared
         for key, quantity in self.reference.quantities.items():
-            what, unit = NAMES[key]
+            what, unit = quantities.ALL[key].name, quantities.ALL[key].unit
             xs = sorted({x for points in quantity.series.values() for x, _ in points})
             series = [(name, [f"{dict(points)[x]:,.6g}" if x in dict(points) else "-" for x in xs])
                       for name, points in quantity.series.items()]

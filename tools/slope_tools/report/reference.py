@@ -31,12 +31,12 @@ class Reference(NamedTuple):
 
 
 def read(path, available):
-    """The Reference in a file; available: {column: what it is} of the study, with numbers in all runs.
+    """The Reference in a file; available: columns of the study with numbers in all runs.
 
     SlopeError names file, entry and rule; among others where the file has no quantities, or one that the study lacks.
     """
     about = schemas.load(path, WHAT, SCHEMA)
-    unknown = about["quantities"].keys() - available.keys()
+    unknown = about["quantities"].keys() - set(available)
     if unknown:
         raise SlopeError(f"{path}: quantities", "must be columns that all runs have, " + ", ".join(available),
                          ", ".join(sorted(map(str, unknown))))

@@ -16,9 +16,8 @@ from ..mobility import run_length
 from ..sites.site_folder import TERRAIN
 from ..sites.site_layers import OBSERVED
 from ..survey import rasters
-from ..tables import study_table
+from ..tables.quantities import BEYOND_MAPPED as BEYOND, OVERLAP
 
-OVERLAP, BEYOND = study_table.MAPPED        # columns of the table of runs
 SAME_MASS = 0.1         # of the released volume: a mapped deposit that holds so much less or more is not the same mass
 
 

@@ -60,7 +60,7 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
     finished = [row for row in rows if row["status"] == "finished"]
     observed = mapped.compare(mapped.of_site(questions.site), output, rows, [terrain_of(run) for run in todo])
     groups = combinations.grouped(rows)
-    names = combinations.quantities(groups)
+    names = combinations.averaged(groups)
     scatters = combinations.scatters(groups)
     first = next((run for run in todo if not run.error), None)
     written = maps.write(output, terrain_place(first) if first else None)
@@ -219,18 +219,16 @@ def result(run, row, maps, output):
     thickness = run_folders.load_raster(prefix, "thickness")
     maps.add(run.name, thickness, run_folders.load_raster(prefix, "max_thickness"), not row.get("batch"))
     run.log.update()
-    volume, most = summary["volume"], summary["largest"]
+    volume = summary["volume"]
     stays = volume["released"] - volume["off_grid"] - volume["lost"]
     on_grid = float(np.nansum(thickness.z)) * thickness.transform.a ** 2
     base = run_folders.load_raster(prefix, "surface").z - thickness.z
     length = run_length.of_run(deposit.Deposit(str(prefix), thickness, base, summary, None), terrain_of(run))
     row = {**row, "variables": about.get("variables"),
-           study_table.STOP: site_ground.of_variables(about.get("variables")), "ranks": about.get("ranks"),
+           quantities.STOP: site_ground.of_variables(about.get("variables")), "ranks": about.get("ranks"),
            "package": about.get("package"),
-           **quantities.of_run(summary, length), "ball_m3": volume["released"] / summary["balls"]["released"],
-           "on_grid_m3": volume["on_grid"], "residual_m3": volume["residual"],
+           **quantities.of_length(length), "ball_m3": volume["released"] / summary["balls"]["released"],
            "mass_error": (on_grid - stays) / volume["released"],
-           "max_thickness_m": most["max_thickness"], "max_speed_m_s": most["max_speed"],
            **judged.columns(summary, run.log), "change_rate": summary.get("change_rate"),
            "wall_s": marker.get("wall_seconds"), "summary": os.path.relpath(path, output),
            "slope_version": summary["slope_version"], "lammps_version": summary["lammps_version"],

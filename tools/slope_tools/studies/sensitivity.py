@@ -14,7 +14,7 @@ from ..findings import Finding, entries
 from ..runs import jobs
 from ..statistics.headline import Scatter
 from ..tables import judged, study_table
-from ..tables.quantities import NAMES, number
+from ..tables.quantities import ALL, NEED_ROAD, On, keys, number
 from . import results
 from .setup import Setup
 
@@ -34,11 +34,12 @@ class Trial(jobs.Run):
 
 def quantities(wanted: Optional[str], road: bool, converge: bool) -> List[str]:
     """The columns of --of, those of a road only if there is one."""
+    asked = keys(On.ASKED)
     of = (wanted or (OF_ROAD if road or not converge else OF_TRAVEL)).split(",")
     for name in of:
-        if name not in NAMES or of.count(name) > 1:
-            raise SlopeError("--of", f"must be different ones of {', '.join(NAMES)}", wanted)
-        if name in (*study_table.ROAD_COLUMNS, *study_table.LANE_COLUMNS) and not road:
+        if name not in asked or of.count(name) > 1:
+            raise SlopeError("--of", f"must be different ones of {', '.join(asked)}", wanted)
+        if name in NEED_ROAD and not road:
             raise SlopeError("--road", f"must be given for {name} (--of takes others)")
     return of
 
@@ -131,7 +132,7 @@ def is_clear(row, name, about):
 
 def trust(rows, name, about):
     """In plain words: how much a number of one run is worth."""
-    what, unit = NAMES[name]
+    what, unit = ALL[name].name, ALL[name].unit
     mean, deviation = about["mean"], about["standard_deviation"]
     if deviation is None:
         text = f"{what}: {number(mean)} {unit} in the base run; without --repeat its scatter is unknown"
@@ -162,7 +163,7 @@ def share(value, mean, sign=""):
 
 def table(rows, of, scatter, defaults):
     """The CSV over all runs."""
-    columns = (*study_table.COLUMNS, *(study_table.ROAD_COLUMNS if any("remove_m3" in row for row in rows) else ()))
+    columns = study_table.columns_of(rows)
 
     def line(row):
         cells = {**row, "moving": answer(row["moving"]), "at_rest": answer(row["at_rest"])}
@@ -193,7 +194,7 @@ def panels(rows, of, scatter):
         for row in rows:
             if row["variable"]:
                 values.setdefault(row["variable"], []).append((row["value"], row[name]))
-        found.append((*NAMES[name], scatter[name], values))
+        found.append((ALL[name].name, ALL[name].unit, scatter[name], values))
     return found
 
 
@@ -202,7 +203,7 @@ def shown_of(rows, of, scatter, defaults, deck) -> Table:
     for head in ("variable", "base", "value", "released m3"):
         shown.add_column(head, justify="right")
     for name in of:
-        shown.add_column(f"{NAMES[name][0]} {NAMES[name][1]}", justify="right")
+        shown.add_column(f"{ALL[name].name} {ALL[name].unit}", justify="right")
         shown.add_column("against the mean", justify="right")
     for row in rows:
         cells = [row["variable"] or "base", defaults.get(row["variable"], ""), row["value"] or "",

@@ -15,7 +15,7 @@ from ..findings import Finding, entries
 from ..runs import repeats
 from ..statistics import convergence, headline
 from ..tables import combinations, judged, study_table
-from ..tables.quantities import NAMES
+from ..tables.quantities import ALL
 from . import results, study
 from .setup import Setup
 
@@ -57,7 +57,7 @@ def plan(setup: Setup, converge: str, base, repeated) -> Plan:
 def collect(planned: Plan, of, work) -> None:
     """Fit and write what the finished runs tell."""
     setup, settings, repeated, variable, todo = planned
-    names = {name: NAMES[name] for name in of}
+    names = {name: (ALL[name].name, ALL[name].unit) for name in of}
     rows, _ = results.rows_of(setup, todo, results.Maps(()))
     finished = [row for row in rows if row["status"] == "finished"]
     groups = combinations.grouped(rows)

@@ -4,19 +4,14 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence
 
 from .. import disk
 from ..case.settings import as_number
-from ..deposits.travel_shares import DISTANCE, REACH
 from ..findings import Finding, texts
 from ..runs import jobs
 from ..runs.repeats import key_of
 from ..statistics import headline
 from ..statistics.headline import Combination, Scatter
-from . import withheld_words
+from . import quantities, withheld_words
 from .size_error import SizeErrors
 
-# what a combination has a mean of, if all runs have it
-QUANTITIES = {"remove_m3": "to remove", "remove_on_road_m3": "on the road", "beyond_road_m3": "beyond the road",
-              DISTANCE: "99 % within m", REACH: "99 % within deg", "length_m": "length m",
-              "centroid_m": "centroid m", "front_m": "farthest ball m", "released_m3": "released"}
 GROUND = ("pattern", "spacing", "angle")        # variables of decks that make another ground
 # runs that are the same in all of these are one run: two of chance never are
 SAME = ("released_m3", "centroid_m", "front_m", "max_speed_m_s", "remove_m3")
@@ -49,14 +44,14 @@ def grouped(rows: Sequence[Row]) -> List[Group]:
     return list(found.values())
 
 
-def quantities(groups: Sequence[Group]) -> List[str]:
-    """Columns that every run has a number in."""
-    return [name for name in QUANTITIES if all(row.get(name) is not None for group in groups for row in group.rows)]
+def averaged(groups: Sequence[Group]) -> List[str]:
+    """Columns that a combination has a mean of: those that every run has a number in."""
+    return quantities.known(quantities.On.MEAN, (row for group in groups for row in group.rows))
 
 
 def scatters(groups: Sequence[Group]) -> Dict[str, Optional[Scatter]]:
     """The scatter of one run in each column, pooled over the combinations."""
-    return {name: headline.pooled([group.of(name) for group in groups]) for name in quantities(groups)}
+    return {name: headline.pooled([group.of(name) for group in groups]) for name in averaged(groups)}
 
 
 def entries(groups: Sequence[Group], names: Sequence[str]) -> List[Dict[str, Any]]:
@@ -65,7 +60,7 @@ def entries(groups: Sequence[Group], names: Sequence[str]) -> List[Dict[str, Any
     for group in groups:
         entry: Dict[str, Any] = {"combination": group.name, "set": dict(group.set),
                                  "runs": [row["run"] for row in group.rows], "repeats": len(group.rows),
-                                 "stop_angle_deg": group.rows[0].get("stop_angle_deg")}
+                                 quantities.STOP: group.rows[0].get(quantities.STOP)}
         for name in names:
             one = group.of(name)
             entry[name] = {"mean": one.mean, "scatter": one.scatter, "smallest": min(one.volumes.values()),
@@ -104,7 +99,7 @@ def ground(settings: Mapping[str, Sequence[str]], group: Group) -> Optional[str]
     if not names:
         return None
     text = "the ground that governs: " + ", ".join(f"{name} {group.set[name]}" for name in names)
-    degrees = group.rows[0].get("stop_angle_deg")
+    degrees = group.rows[0].get(quantities.STOP)
     if degrees is not None:
         text += f", stop angle {degrees:.1f} degrees"
     return f"{text} (tried: " + "; ".join(f"{name} {', '.join(settings[name])}" for name in names) + ")"

@@ -9,6 +9,7 @@ from ..deposits import rest
 from ..deposits.travel_shares import BEYOND
 from ..findings import Finding, finding, gathered
 from ..sites.site_warnings import of_volume
+from . import quantities
 from .released import Release, release
 
 BALANCE = 1e-9          # of the released volume
@@ -20,10 +21,8 @@ Row = Mapping[str, Any]
 
 def columns(summary: Mapping[str, Any], log) -> Dict[str, Any]:
     """What a row has of a run that is judged, by its summary and its Log."""
-    state, volume, motion = rest.state(summary), summary["volume"], summary["motion"]
-    return {"released_m3": volume["released"], "off_grid_m3": volume["off_grid"], "lost_m3": volume["lost"],
-            "stop_time_s": summary["stop"]["time"], "stop_reason": summary["stop"]["reason"],
-            "moving": summary["moving"], "at_rest": state.at_rest, "end": state.text, "end_short": state.short,
+    state, motion = rest.state(summary), summary["motion"]
+    return {**quantities.of_summary(summary), "at_rest": state.at_rest, "end": state.text, "end_short": state.short,
             "moves_share": state.share, "moving_share": motion["moving_share"], "fast_share": motion.get("fast_share"),
             "fast_volume_m3": motion.get("fast_volume"), "fast_speed_m_s": motion.get("fast_speed"),
             "release": release(summary, [*log.notes, *log.warnings])._asdict(), "log_warnings": log.warnings}

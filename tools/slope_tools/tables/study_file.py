@@ -7,7 +7,8 @@ from ..case import run_folders
 from ..errors import SlopeError
 from ..schemas import ANY, FLAG, MAYBE as PERHAPS, NUMBER, OBJECT, TEXT, listed, mapping, numbers
 from . import answered
-from .study_table import COLUMNS, MAYBE, ROAD_COLUMNS
+from .quantities import MAYBE
+from .study_table import COLUMNS, ROAD_COLUMNS
 
 WHAT = "what `slope study` wrote, of this version (the same command rewrites it, and keeps the runs)"
 HEADLINE = mapping(     # the conservative volume

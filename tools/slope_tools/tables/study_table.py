@@ -1,43 +1,29 @@
 """The tables over all runs of a study, and over its combinations: as a CSV and on the screen."""
-from typing import Any, Dict, List, Tuple
+from typing import List
 
 from rich.table import Table
 
 from .. import disk
-from ..deposits import rest, travel_shares
 from ..mobility.run_length import STRAIGHT
 from ..statistics import headline
-from . import combinations
+from . import combinations, quantities
+from .quantities import KNOWN, OF_ROAD, OF_RUN, REMOVE, On, shown_on, written
 
-COLUMNS = ("released_m3", "on_grid_m3", "off_grid_m3", "lost_m3", "residual_m3", *travel_shares.COLUMNS, "length_m",
-           "length_deg", "front_m", "reach_angle_deg", "centroid_m", "thickness_m", "max_thickness_m",
-           "max_speed_m_s", "stop_time_s", "stop_reason", "moving", "at_rest", "end", "wall_s")
-ROAD_COLUMNS = ("remove_m3", "remove_on_road_m3", "remove_beside_road_m3", "beyond_road_m3", "blocked_m",
-                "axis_thickness_m")
-STOP = "stop_angle_deg"     # of the ground, where it is known
-MAPPED = ("overlap", "beyond_mapped_m")     # against a mapped deposit
-LANE_COLUMNS = ("remove_lane_m3", "lane_hours", "clear_hours")      # of those that are asked for
-MAYBE = (*travel_shares.COLUMNS, "length_m", "length_deg", "wall_s", "beyond_road_m3")     # that may be unknown
+COLUMNS, ROAD_COLUMNS, IF_KNOWN = ([one.key for one in several if On.HIDDEN not in one.on]
+                                   for several in (OF_RUN, OF_ROAD, quantities.IF_KNOWN))
 ANSWER = {True: "yes", False: "no"}
-
-SHOWN: Dict[str, Tuple[str, Any]] = {      # head, format
-    "released_m3": ("released", "{:,.0f}"), "on_grid_m3": ("on grid", "{:,.0f}"), "lost_m3": ("lost", "{:,.0f}"),
-    travel_shares.DISTANCE: ("99 % within m", "{:.1f}"), travel_shares.REACH: ("deg", "{:.1f}"),
-    "length_m": ("length m", "{:.1f}"), "front_m": ("farthest ball m", "{:.1f}"),
-    "stop_time_s": ("stop s", "{:.1f}"), "end_short": ("end", "{}"), "moves_share": ("moves", rest.percent),
-    "wall_s": ("wall s", "{:.0f}")}
-SHOWN_ROAD: Dict[str, Tuple[str, Any]] = {
-    "remove_m3": ("to remove", None), "remove_on_road_m3": ("on the road", None),
-    "beyond_road_m3": ("beyond it", None), "blocked_m": ("blocked m", "{:.0f}")}
 # heads of the columns that a narrow screen lacks first; then it lacks the last ones
-LESS = ("wall s", "deg", "lost", "on grid", "moves", "farthest ball m", "released", "blocked m", "stop s",
-        "99 % within m", "beyond it", "length m", "end", "on the road")
+LESS = [one.on_screen for one in sorted(shown_on("screen"), key=lambda one: one.keeps)]
+
+
+def columns_of(rows) -> List[str]:
+    """Those of every run, and with a road of that."""
+    return [*COLUMNS, *(ROAD_COLUMNS if any(REMOVE in row for row in rows) else ())]
 
 
 def table(settings, repeated, rows, defaults):
     """The CSV over all runs."""
-    columns = [*COLUMNS, *(ROAD_COLUMNS if any("remove_m3" in row for row in rows) else ()),
-               *(key for key in (STOP, *LANE_COLUMNS, *MAPPED) if any(row.get(key) is not None for row in rows)),
+    columns = [*columns_of(rows), *(key for key in IF_KNOWN if any(row.get(key) is not None for row in rows)),
                "status", "error"]
     if any(row.get("length_is") == STRAIGHT for row in rows):
         columns.insert(columns.index("length_deg") + 1, "length_is")
@@ -94,22 +80,20 @@ def runs_shown(settings, rows, scatters, title) -> Table:
     """A line for each run."""
     names, caption = varied(settings)
     shown = Table(title=title, caption=caption)
-    columns = {**SHOWN, **(SHOWN_ROAD if any("remove_m3" in row for row in rows) else {})}
     finished = [row for row in rows if row["status"] == "finished"]
-    columns = {key: column for key, column in columns.items() if any(row[key] is not None for row in finished)}
+    columns = [one for one in shown_on("screen") if any(row.get(one.key) is not None for row in finished)]
     repeated = any(row["repeat"] for row in rows)
     for head in (*names, *(["repeat"] * repeated)):
         shown.add_column(head, justify="right", no_wrap=True)
-    for head, _ in columns.values():
-        shown.add_column(head, justify="right")
+    for one in columns:
+        shown.add_column(one.on_screen, justify="right")
     for row in rows:
         cells = [row["set"][name] for name in names] + [combinations.key_of(row["repeat"])] * repeated
         if row["status"] == "failed":
             cells += ["failed"]
         else:
-            cells += ["-" if row[key] is None else volume(row[key], scatters.get(key)) if form is None else
-                      form(row[key]) if callable(form) else form.format(row[key])
-                      for key, (_, form) in columns.items()]
+            cells += ["-" if row[one.key] is None else volume(row[one.key], scatters.get(one.key))
+                      if one.screen == KNOWN else written(one.screen, row[one.key]) for one in columns]
         shown.add_row(*cells)
     return shown
 
@@ -118,7 +102,7 @@ def combinations_shown(settings, groups, scatters) -> Table:
     """Mean and scatter of each combination, rounded to what is known of one run."""
     names, _ = varied(settings)
     shown = Table(title="mean and scatter (standard deviation of a run) of the repeats; below: over all combinations")
-    for head in (*names, "runs", *(combinations.QUANTITIES[key] for key in scatters)):
+    for head in (*names, "runs", *(quantities.ALL[key].on_screen for key in scatters)):
         shown.add_column(head, justify="right")
 
     def cell(value, deviation, scatter):
