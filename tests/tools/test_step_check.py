@@ -22,6 +22,8 @@ def test_half_the_step_against_the_mean_and_chance(volume, within, words):
     # s is 10, and 8 sqrt(100/64); all repeats are alike, 2 degrees of freedom: t(0.975, 2) s sqrt(1 + 1/3)
     assert entry["chance_m3"] == pytest.approx(4.302653 * 10 * (4 / 3) ** 0.5)
     assert entry["mean_m3"] == 100 and entry["within_chance"] is within and words in entry["text"]
+    assert [(one["kind"], one["text"], one["numbers"]["volume"]) for one in entry["doubts"]] == (
+        [] if within else [("half step", entry["text"], str(int(volume)))])
 
 
 def test_runs_on_another_ground_are_not_compared():

@@ -198,7 +198,8 @@ WORDS: Dict[str, Union[str, Words]] = {
     "other mass": Words("the mapped deposit holds {percent:.0f} % {which} than is released, {mapped:,.0f} m3 of "
                         "{released:,.0f}: thicknesses and volumes cannot agree everywhere", NOTE),
     "not repeated": Words("the scatter is that of {repeated} alone: {offsets} of the deck not repeated", NOTE),
-    "half step": Words("{text}", NOTE),
+    "half step": Words("half the time step, rolling {rolling}: {volume} m3 instead of {mean} to remove{by}; {more} "
+                       "than chance explains, {chance} m3", NOTE),
     "no file of sizes": Words("{file}, from which the study took its size error, does not exist, so there are no "
                               "charts of it; --converge names another place", NOTE),
     "deck of sizes": Words("the size error is that of another deck, {deck}", NOTE),

@@ -99,8 +99,7 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
         best["doubts"] += entries(unseen(repeated, work.defaults))
         if questions.step:
             about["step"] = step_check.compare(questions.step, groups)
-            if about["step"]["within_chance"] is False:
-                best["doubts"].append(Finding("half step", {"text": about["step"]["text"]}).entry())
+            best["doubts"] += about["step"].pop("doubts")
         unknown = about["size_error_unusable"] or ""
         if unknown and questions.sizes and size_error.falls(questions.sizes, "remove_m3"):
             about["size_error_unusable"] = f"{unknown}. The volume falls with the size of the balls: nothing is added"

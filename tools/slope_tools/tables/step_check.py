@@ -2,6 +2,7 @@
 from typing import Any, Dict, NamedTuple, Optional, Sequence
 
 from ..digits import rounded, to_three
+from ..findings import Finding
 from ..statistics import headline
 from .combinations import Group
 
@@ -25,7 +26,7 @@ def compare(step: Step, groups: Sequence[Group]) -> Dict[str, Any]:
     than t s sqrt(1 + 1/n) in 95 % of cases (Hahn and Meeker, Statistical Intervals, 1991, section 4.7).
     """
     entry: Dict[str, Any] = {"step": float(HALF), "rolling": step.rolling, "volume_m3": step.volume, "mean_m3": None,
-                             "chance_m3": None, "within_chance": None, "energy": step.energy}
+                             "chance_m3": None, "within_chance": None, "energy": step.energy, "doubts": []}
     same = next((group for group in groups if group.set.get("rolling") == step.rolling
                  and group.set.get("spacing", step.spacing) == step.spacing), None)
     if step.volume is None or same is None:
@@ -38,16 +39,18 @@ def compare(step: Step, groups: Sequence[Group]) -> Dict[str, Any]:
     if not step.volume and not volumes.mean:
         return {**entry, "chance_m3": 0.0, "within_chance": True,
                 "text": f"{text}nothing to remove, as with the whole step"}
-    text += f"{shown(step.volume)} m3 instead of {shown(volumes.mean)} to remove"
-    if volumes.mean > 0:
-        text += f", {100 * difference / volumes.mean:+.1f} %"
+    by = f", {100 * difference / volumes.mean:+.1f} %" if volumes.mean > 0 else ""
+    text += f"{shown(step.volume)} m3 instead of {shown(volumes.mean)} to remove{by}"
     scatter = headline.scatter_of(parts, volumes) if volumes.mean > 0 else headline.pooled(parts)
     if scatter is None:
         return {**entry, "text": f"{text}; chance unknown"}
     chance = scatter.chance(volumes.runs)
     within = abs(difference) <= chance
-    return {**entry, "chance_m3": chance, "within_chance": within,
-            "text": f"{text}; {'no more' if within else 'more'} than chance explains, {shown(chance)} m3"}
+    numbers = {"rolling": step.rolling, "volume": shown(step.volume), "mean": shown(volumes.mean), "by": by,
+               "more": "no more" if within else "more", "chance": shown(chance)}
+    found = Finding("half step", numbers)
+    return {**entry, "chance_m3": chance, "within_chance": within, "text": found.text,
+            "doubts": [] if within else [found.entry()]}
 
 
 def shown(volume: float) -> str:
