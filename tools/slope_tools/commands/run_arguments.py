@@ -1,23 +1,19 @@
 """Arguments of the commands that run decks."""
 import argparse
 import sys
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Callable, List, Optional, Union
+from typing import Callable, List, Optional, Union
 
 from rich.console import Console
 from rich.table import Table
 
-from ..case.settings import check_settings
-from ..ensembles import known_events
-from ..errors import SlopeError
 from ..findings import printer
 from ..options import Program, flag, number, option, several, whole
-from ..sites import site_choices
 from ..statistics import designs
 from ..studies.setup import Road, Setup
-from ..tables import intensity, study_table
-from . import known_arguments, road_arguments
+from ..tables import study_table
+from . import road_arguments
 
 DECK = "LAMMPS input deck with one fix deposit/grid; the plain files beside it are its data"
 
@@ -98,18 +94,6 @@ class Sample:
     seed: Optional[int] = option("seed of the design (default 1)", metavar="S", type=whole)
 
 
-def condition_of(args: Any) -> Optional[known_events.Condition]:
-    """What --known and its company of a study.Request ask for; SlopeError if some are there without it."""
-    if args.known is not None or args.weigh:
-        site = args.deck.parent if (args.deck.parent / site_choices.NAME).is_file() else None
-        return known_events.check(known_arguments.choice_of(args.known, args.left_out, args.confined, site), args.known,
-                                  args.deck)
-    for name, given in (("--except", args.left_out), ("--confined or --unconfined", args.confined is not None)):
-        if given:
-            raise SlopeError(name, "must be given with --known")
-    return None
-
-
 @dataclass(frozen=True, kw_only=True)
 class Intensity:
     """Of the trigger."""
@@ -119,29 +103,6 @@ class Intensity:
     more_than: Optional[List[float]] = option(
         "volumes on the road, m3, whose probability of exceedance is given at each intensity (default: three round "
         "ones)", metavar="V1,V2,...", type=volumes)
-
-
-# options of one kind of study: whether they go with --sample, and their default
-OF_A_KIND = {"intensity": (False, None), "more_than": (False, ()), "of": (True, None), "known": (True, None),
-             "exceed_speed": (True, "5"),
-             "exceed_energy": (True, "100000"), "design": (True, designs.SOBOL), "seed": (True, 1)}
-
-
-def settle_kind(args: Any, sample: bool) -> Any:
-    """The request with the defaults of a study, with --sample or without; SlopeError on options of the other kind."""
-    defaults = {}
-    for name, (with_sample, default) in OF_A_KIND.items():
-        value = getattr(args, name)
-        if value is None:
-            defaults[name] = default
-        elif with_sample != sample:
-            raise SlopeError(f"--{name.replace('_', '-')}", "must be given with --sample only" if with_sample else
-                             "must not be given with --sample",
-                             ",".join(f"{one:g}" for one in value) if isinstance(value, list) else value)
-    if args.more_than and not intensity.check(args.intensity, check_settings(args.set, args.deck), bool(args.road)):
-        raise SlopeError("--more-than", "needs an intensity (--intensity, or a variable of several values called peak, "
-                         "pga or ...intensity) and --road", ",".join(f"{one:g}" for one in args.more_than))
-    return replace(args, **defaults)
 
 
 def teller(all_columns: bool) -> Callable[[Union[str, Table]], None]:

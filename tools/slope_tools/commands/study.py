@@ -9,26 +9,26 @@ from typing import Any, List, Mapping, Optional
 
 from ..case import decks
 from ..case.settings import check_settings, one_value_each
-from ..ensembles import known_study, sample
+from ..ensembles import known_events, known_study, sample
 from ..errors import SlopeError
 from ..options import flag, option, positional, several
 from ..runs import repeats
 from ..sites import site_choices, site_deck
 from ..sites.site_bodies import VARIABLE
 from ..sites.site_layers import ROAD
-from ..studies import results, site_ground, site_study
-from ..studies.study import RunsFailed, check_thresholds, perform
+from ..studies import results, site_ground, site_study, study
+from ..studies.study import OfAKind, RunsFailed, check_more_than, check_thresholds, perform
 from ..survey import roads
 from ..tables import answer_words, answered, intensity
 from ..tables.size_error import SizeErrors
 from . import known_arguments, road_arguments
-from .run_arguments import DECK, OF_A_KIND, Intensity, Repeats, Runs, Sample, condition_of, settle_kind, setup_of
+from .run_arguments import DECK, Intensity, Repeats, Runs, Sample, setup_of
 
 PAGES = {site_study.STUDY: "paper.html", site_study.ENSEMBLE: "ensemble.html"}     # beside report.html
 THICKNESSES = "0.1,0.5,1"      # of the maps of exceedance, m; the parser has None, as for all that a site refuses
 OF_A_ROAD = ("size_error", "road", *road_arguments.OPTIONS, "cut_angle", "mesh", "local")
 NOT_OF_A_SITE = ("set", "repeat", "vary", "sample", *OF_A_ROAD, "equally_good", "output", "exceed", "left_out",
-                 *OF_A_KIND)
+                 *OfAKind._fields)
 OPTIONS = {"output": "-o", "left_out": "--except"}
 DESCRIPTION = "Run one deck for all combinations of values of its variables, or for an ensemble."
 EPILOG = """\
@@ -175,7 +175,8 @@ def run_deck(args: Request) -> None:
     defaults = decks.index_variables(args.deck)
     many = args.sample is not None or bool(args.vary) or args.fit is not None
     check_fit(args)
-    args = settle_kind(args, sample=many)
+    args = replace(args, **of_a_kind(args).settled(sample=many)._asdict())
+    check_more_than(args.more_than or (), args.intensity, settings, bool(args.road))
     condition = condition_of(args)
     if many:
         return run_ensemble(args, settings, repeated, thresholds, defaults, condition, chain)
@@ -194,6 +195,18 @@ def run_deck(args: Request) -> None:
                                   sizes=args.size_error)
     return perform(setup, {**settings, **repeated}, todo,
                    lambda todo, work: results.collect(setup, questions, todo, work))
+
+
+def of_a_kind(args: Request) -> OfAKind:
+    return OfAKind(*(getattr(args, name) for name in OfAKind._fields))
+
+
+def condition_of(args: Request) -> Optional[known_events.Condition]:
+    """What --known and its company ask for; SlopeError if some are there without it."""
+    site = args.deck.parent if (args.deck.parent / site_choices.NAME).is_file() else None
+    choice = known_arguments.choice_of(args.known, args.left_out, args.confined, site) \
+        if args.known is not None or args.weigh else None
+    return study.condition_of(choice, args.known, args.deck, args.left_out, args.confined)
 
 
 def check_fit(args: Request) -> None:
@@ -246,10 +259,10 @@ def refuse(args: Request, names) -> None:
                              None if first is True else f"{first:g}" if isinstance(first, float) else first)
 
 
-def write_report(study, page, film=True):
+def write_report(folder, page, film=True):
     from ..report import document
     from ..report.heading import Asked
-    print("\n".join(document.write(Asked(study, film=page.with_suffix(".mp4") if film else None), page)))
+    print("\n".join(document.write(Asked(folder, film=page.with_suffix(".mp4") if film else None), page)))
 
 
 def run_site_ensemble(args: Request) -> None:
@@ -298,7 +311,7 @@ def run_ensemble(args: Request, settings, repeated, thresholds, defaults, condit
     if args.fit:
         plan = calibrated.sample(args.fit, args.sample, args.deck, fixed, repeated)
     else:
-        assert args.sample is not None and args.design is not None and args.seed is not None        # settle_kind()
+        assert args.sample is not None and args.design is not None and args.seed is not None        # settled()
         plan = sample.check(args.sample, args.design, args.seed, args.vary, args.deck, fixed,
                             repeated).widened(args.wide)
     levels = ensemble_maps.Thresholds(thresholds, check_thresholds(args.exceed_speed, "--exceed-speed", "speeds"),

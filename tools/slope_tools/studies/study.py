@@ -3,17 +3,21 @@ import argparse
 import contextlib
 import functools
 from pathlib import Path
-from typing import Callable, Optional
+from typing import Callable, NamedTuple, Optional, Sequence
 
 from .. import disk
 from ..case import decks
 from ..case.data_files import data_files
+from ..ensembles import known_events
 from ..errors import SlopeError
 from ..findings import Finding
+from ..mobility import known
 from ..options import number
 from ..programs import find_lmp
 from ..runs import dependencies, jobs, launcher, slurm, store
+from ..statistics import designs
 from ..survey import rasters
+from ..tables import intensity
 from .setup import Road, Setup
 
 
@@ -88,6 +92,50 @@ def failure(output, todo) -> Optional[RunsFailed]:
     more = f" and {len(failed) - 1} more" if len(failed) > 1 else ""
     return RunsFailed(output, f"{len(failed)} of {len(todo)} runs failed: {failed[0].name}{more}: "
                       f"{failed[0].error}") if failed else None
+
+
+# --- what is asked for ---
+
+class OfAKind(NamedTuple):
+    """What goes with one kind of study only; None: not given."""
+    intensity: Optional[str] = None                 # these two not with an ensemble
+    more_than: Optional[Sequence[float]] = None     # m3
+    of: Optional[str] = None                        # these with an ensemble only
+    known: Optional[str] = None
+    exceed_speed: Optional[str] = None              # m/s, J
+    exceed_energy: Optional[str] = None
+    design: Optional[str] = None
+    seed: Optional[int] = None
+
+    def settled(self, sample: bool) -> "OfAKind":
+        """With the defaults, of an ensemble or not; SlopeError on what the other kind has."""
+        for name, value in self._asdict().items():
+            with_sample = name not in ("intensity", "more_than")
+            if value is not None and with_sample != sample:
+                raise SlopeError(f"--{name.replace('_', '-')}", "must be given with --sample only" if with_sample else
+                                 "must not be given with --sample",
+                                 value if isinstance(value, (str, int)) else ",".join(f"{one:g}" for one in value))
+        defaults = OfAKind(None, (), None, None, "5", "100000", designs.SOBOL, 1)
+        return self._replace(**{name: default for name, default in defaults._asdict().items()
+                                if getattr(self, name) is None})
+
+
+def check_more_than(volumes: Sequence[float], variable: Optional[str], settings, road: bool) -> None:
+    """Raise SlopeError if volumes are given that no intensity has; variable: of --intensity."""
+    if volumes and not intensity.check(variable, settings, road):
+        raise SlopeError("--more-than", "needs an intensity (--intensity, or a variable of several values called peak, "
+                         "pga or ...intensity) and --road", ",".join(f"{one:g}" for one in volumes))
+
+
+def condition_of(choice: Optional[known.Choice], named: Optional[str], deck: Path, left_out: Sequence[str],
+                 confined: Optional[str]) -> Optional[known_events.Condition]:
+    """The condition that known events make, None without a choice of them; SlopeError if these say more of none."""
+    if choice:
+        return known_events.check(choice, named, deck)
+    for name, given in (("--except", left_out), ("--confined or --unconfined", confined is not None)):
+        if given:
+            raise SlopeError(name, "must be given with --known")
+    return None
 
 
 # --- what is to be run ---
