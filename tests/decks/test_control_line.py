@@ -260,7 +260,9 @@ def test_a_folder_where_a_file_must_be(tmp_path, monkeypatch, np_, name):
     monkeypatch.setattr(sys.modules[__name__], "run_deck", functools.partial(
         run_deck, expect_error=f"Fix control/line: cannot write {name}: Is a directory"))
     log = fly(tmp_path, [[-1, 0, 8]], [[3, 0, 0]], "0 -9\n0 9\n", "run 500\n", np_=np_)
-    assert "Step" not in log and [path.name for path in tmp_path.glob("out*")] == [name]
+    # mpirun may end the writing rank before that removes its lock file, which the next run takes over
+    left = {path.name for path in tmp_path.glob("out*")} - ({"out.lock"} if np_ > 1 else set())
+    assert "Step" not in log and left == {name}
 
 
 @pytest.mark.parametrize("np_", (1, 2))
