@@ -155,7 +155,7 @@ def test_half_of_them_end_before_any_fall_of_the_set():
     """A path that falls far, but slowly: where the set begins, hardly any event arrives."""
     ground = terrain(lambda x, y: 1000 - 0.06 * x, 500, 60)
     found = known.of_body(disc(ground, (300, 300)), known.choice())
-    assert found.by_set.said.any() and not found.by_set.in_range and "covers this height" in found.by_set.outside[0]
+    assert found.by_set.said.any() and not found.by_set.in_range and "cover this height" in found.by_set.outside[0]
 
 
 def test_a_row_that_is_asked_for():
