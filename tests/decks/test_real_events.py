@@ -204,6 +204,7 @@ def test_zones_of_a_run_against_itself(s1000):
 
 # --- the data, where it is ---
 
+@pytest.mark.long
 def test_the_frank_slide_itself(tmp_path):
     """Balls of 40 m: 36 Mm3 fall from Turtle Mountain and cross the valley."""
     folder = prepare(FRANK, data_of("frank"), tmp_path / "case")
@@ -213,6 +214,7 @@ def test_the_frank_slide_itself(tmp_path):
     assert 1800 < within(summary) < 3800
 
 
+@pytest.mark.long
 def test_the_s1000_slide_itself(tmp_path):
     """Balls of 3 m: 22,481 m3 slide into the channel."""
     folder = prepare(S1000, data_of("s1000"), tmp_path / "case")

@@ -390,6 +390,7 @@ def test_the_canvas_shows_balls_that_move(page, browser):
 
 
 @library
+@pytest.mark.long
 def test_the_canvas_shows_a_wall(page, walled, browser):
     """What is bluish grey, which nothing else is, from above."""
     assert cli.main(["report", str(walled), "--no-film", "-o", str(walled / "drawn.html")]) == 0

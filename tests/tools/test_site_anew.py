@@ -400,6 +400,7 @@ def test_an_end_from_outside_ends_the_trial_run(gis):  # noqa: F811
 
 # --- a study of which a run fails ---
 
+@pytest.mark.long
 def test_a_failed_run_leaves_score_and_report_of_the_others(inside, mine, monkeypatch, capsys):
     monkeypatch.setattr(film, "encode", lambda *_: b"")
     write_layer(mine.parent / "mapped.geojson", MAPPED)
