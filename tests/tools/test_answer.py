@@ -15,10 +15,10 @@ from slope_tools.tables import answered
 STOPPED = answer.Reason(Code.TERRAIN, {"share": 0.12, "path_m": 900.0})
 
 
-def ensemble(upto=0.99, far=0.01, rules=(), values=1000.0, **more):
-    """Quantiles of values * share, unknown above a share."""
-    return Ensemble({share: (values * share, 0.9 * values * share, 1.1 * values * share) if share <= upto
-                     else (None, None, None) for share in (answer.SHARE, *answer.FLOORS)}, far, 800.0,
+def ensemble(far=0.01, rules=(), values=1000.0, **more):
+    """Quantiles of values * share, unknown where known events lie beyond the runs."""
+    return Ensemble({share: (values * share, 0.9 * values * share, 1.1 * values * share) if share <= 1 - far
+                     else (None, None, None) for share in answer.shares(far)}, far, 800.0,
                     [Withheld(rule) for rule in rules], **more)
 
 
@@ -43,17 +43,23 @@ def test_the_larger_of_both():
 
 
 def test_a_floor_where_known_events_lie_beyond_the_runs():
-    found = answer.of(Paper(0.0), ensemble(0.9, 0.08, stopped=STOPPED), road(0.5, 0.6))
-    assert (found.kind, found.volume, found.share, found.high) == (Kind.FLOOR, 900.0, 0.9, None)
+    found = answer.of(Paper(0.0), ensemble(0.08, stopped=STOPPED), road(0.5, 0.6))
+    assert (found.kind, found.volume, found.share, found.high) == (Kind.FLOOR, 920.0, 0.92, None)
     assert codes(found) == [Code.BEYOND, Code.TERRAIN] and found.reasons[0].numbers == {"far": 0.08, "longest_m": 800.0}
-    found = answer.of(Paper(0.0), ensemble(0.3, 0.7), road(0.5, 0.6))
-    assert (found.volume, found.share) == (250.0, 0.25)
+    found = answer.of(Paper(0.0), ensemble(0.7), road(0.5, 0.6))
+    assert (found.volume, found.share) == (300.0, 0.3)
     # the paper's more is a floor, too: what lies beyond is not known
-    found = answer.of(Paper(5000.0), ensemble(0.3, 0.7), road(0.5, 0.6))
+    found = answer.of(Paper(5000.0), ensemble(0.7), road(0.5, 0.6))
     assert (found.kind, found.volume, found.source) == (Kind.FLOOR, 5000.0, Source.PAPER)
     # nor is nothing known at all
-    found = answer.of(None, ensemble(0.0, 0.95, [Rule.MOBILITY]), road(0.5, 0.6))
+    found = answer.of(None, ensemble(1.0, [Rule.MOBILITY]), road(0.5, 0.6))
     assert (found.kind, found.volume, found.share) == (Kind.FLOOR, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("far, shares", [
+    (0.0, [0.95]), (0.05, [0.95]), (0.0501, [0.95, 0.94]), (0.08, [0.95, 0.92]), (0.104, [0.95, 0.89]), (1, [0.95, 0.0])])
+def test_the_floor_is_of_all_that_the_runs_reach(far, shares):
+    assert answer.shares(far) == shares
 
 
 @pytest.mark.parametrize("low, high, kind, said", [
@@ -86,7 +92,7 @@ def test_rules_that_withhold_one_of_both():
 
 
 def test_what_study_yaml_says():
-    about = answer.of(Paper(700.0), ensemble(0.9, 0.08, stopped=STOPPED), road(0.5, 0.6)).about()
+    about = answer.of(Paper(700.0), ensemble(0.08, stopped=STOPPED), road(0.5, 0.6)).about()
     assert disk.plain(about) == about and list(about) == ["kind", "volume_m3", "share", "low_m3", "high_m3", "source",
                                                           "paper", "ensemble", "road", "reasons"]
     assert about["paper"] == {"volume_m3": 700.0, "withheld": []}

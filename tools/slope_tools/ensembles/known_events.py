@@ -151,7 +151,7 @@ def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: S
         name: {"name": names[name][0], "unit": names[name][1],
                "quantiles": [one._asdict() for one in conditioned.quantiles(curve)]} for name, curve in curves.items()}
     about["to_remove"] = [one._asdict() for one in conditioned.quantiles(
-        curves[REMOVE], (answer.SHARE, *answer.FLOORS))] if REMOVE in curves else None
+        curves[REMOVE], answer.shares(about["far"]))] if REMOVE in curves else None
     about["variables"] = {name: variable(runs, k, main) for k, name in enumerate(sample.names)}
     about["influence"] = {name: known_influence.evaluate(runs, name) for name in main[:1]}
     about["doubts"] = entries(doubts(about, runs))

@@ -3,13 +3,13 @@
 The paper's study gives a conservative volume, an ensemble that is weighted by known events the volume that 95 % of
 them stay within. A record of kinds, codes and numbers; words are made of it elsewhere.
 """
+import math
 from enum import Enum
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from .withheld import Kind as Rule
 
 SHARE = 0.95            # of the known events, which stay within the volume
-FLOORS = 0.9, 0.75, 0.5, 0.25, 0.1      # shares whose quantile is a floor, where that of SHARE is unknown
 MANY = 0.1              # of the known events: if more reach a road that no run does, its volume is a floor
 # rules that say of a number that it is small, or that few of the known were run: the other study makes up for them
 HARMLESS = {Rule.BALLS, Rule.MOBILITY}
@@ -98,7 +98,7 @@ class Paper(NamedTuple):
 
 
 class Ensemble(NamedTuple):
-    """A weighted ensemble: (value, low, high) of its quantiles (m3) by share, of SHARE and FLOORS.
+    """A weighted ensemble: (value, low, high) of its quantiles (m3) by share, of shares().
 
     far: share of the known events beyond all runs; longest: m; stopped: why no more runs were added, None: enough were.
     """
@@ -107,6 +107,15 @@ class Ensemble(NamedTuple):
     longest: float
     withheld: Sequence[Withheld] = ()
     stopped: Optional[Reason] = None
+
+
+def shares(far: float) -> List[float]:
+    """Shares of the known events whose quantiles count; far: the share that lies beyond all runs.
+
+    SHARE; where the runs reach less, also what they reach, in whole per cents: its quantile is the floor.
+    """
+    within = math.floor(100 * (1 - far) + 1e-9) / 100
+    return [SHARE] if within >= SHARE else [SHARE, within]
 
 
 class Answer(NamedTuple):
@@ -166,14 +175,10 @@ def of_ensemble(one: Ensemble, road: Optional[Road]) -> Part:
             return Part(Kind.FLOOR, 0.0, 1 - high, reasons=[Reason(Code.NOT_REACHED, road.numbers()), *stopped])
         said = [Reason(Code.ONE_SCATTER, road.numbers())] if high > MANY else []
         return Part(Kind.NUMBER, 0.0, SHARE, 0.0, 0.0, said)
-    for share in (SHARE, *FLOORS):
-        value, low_m3, high_m3 = one.quantiles[share]
-        if value is not None:
-            if share == SHARE:
-                return Part(Kind.NUMBER, value, share, low_m3, high_m3)
-            break
-    else:
-        value, low_m3, share = 0.0, None, 0.0
+    share = max((share for share, (value, _, _) in one.quantiles.items() if value is not None), default=0.0)
+    value, low_m3, high_m3 = one.quantiles.get(share, (0.0, None, None))
+    if share == SHARE:
+        return Part(Kind.NUMBER, value, share, low_m3, high_m3)
     return Part(Kind.FLOOR, value, share, low_m3, None,
                 [Reason(Code.BEYOND, {"far": one.far, "longest_m": one.longest}), *stopped])
 
