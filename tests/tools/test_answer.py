@@ -57,7 +57,8 @@ def test_a_floor_where_known_events_lie_beyond_the_runs():
 
 
 @pytest.mark.parametrize("far, shares", [
-    (0.0, [0.95]), (0.05, [0.95]), (0.0501, [0.95, 0.94]), (0.08, [0.95, 0.92]), (0.104, [0.95, 0.89]), (1, [0.95, 0.0])])
+    (0.0, [0.95]), (0.05, [0.95]), (0.0501, [0.95, 0.94]), (0.08, [0.95, 0.92]), (0.104, [0.95, 0.89]),
+    (1, [0.95, 0.0])])
 def test_the_floor_is_of_all_that_the_runs_reach(far, shares):
     assert answer.shares(far) == shares
 
