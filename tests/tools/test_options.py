@@ -55,6 +55,16 @@ def test_no_option_has_the_words_of_argparse(words, capsys):
     assert ended.value.code == 2 and err.count("\n") == 1 and "must be a whole number" in err and "'1e3'" in err
 
 
+@pytest.mark.parametrize("words, said", [
+    ("verify --only 05 --only 06", "slope verify: --only: must be given once, got 05 and 06"),
+    ("site mine --balls 800 --balls 900", "slope site: --balls: must be given once, got 800 and 900"),
+    ("volume run --road a.csv --road b.csv --mesh 5", "slope volume: --road: must be given once, got a.csv and b.csv")])
+def test_no_value_is_lost_to_a_second_one(words, said, capsys):
+    with pytest.raises(SystemExit) as ended:
+        cli.main(words.split())
+    assert ended.value.code == 2 and capsys.readouterr().err == f"{said}\n"
+
+
 @pytest.mark.parametrize("words, short", [("volume run --road r.csv --mesh 5 --cut 30", "--cut 30"),
                                           ("study in.x --set d=1 -o out --dry", "--dry"),
                                           ("site mine --vol 5", "--vol 5")])

@@ -69,12 +69,24 @@ def declare(parser: argparse.ArgumentParser, kind: Any) -> None:
         if names == ("",):
             add(field.name, **words)
             continue
+        words.setdefault("action", Once)
         if words["default"] is None and not optional:
             words["required"] = True
         names = names or (f"--{field.name.replace('_', '-')}",)
         add(*names, dest=field.name, **words)
         for name, value in also.items():
             add(name, dest=field.name, action="store_const", const=value, help=f"{names[0]} {value}")
+
+
+class Once(argparse.Action):
+    """Store a value; an option that is given again is refused, as its first value would be lost."""
+
+    def __call__(self, parser, namespace, values, option_string=None):
+        given = vars(namespace).setdefault("given", set())
+        if self.dest in given:
+            parser.error(f"{option_string}: must be given once, got {getattr(namespace, self.dest)} and {values}")
+        given.add(self.dest)
+        setattr(namespace, self.dest, values)
 
 
 class Describe(argparse.Action):
