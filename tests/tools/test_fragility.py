@@ -195,6 +195,7 @@ def table(path="out/fragility.csv"):
     return {name: np.array(rows).T for name, rows in found.items()}
 
 
+@pytest.mark.drawn
 def test_two_bodies_two_records_and_a_hazard(slips, capsys):
     status, out, err = ran(capsys, f"slips {SOIL} --peaks 50:1500:50 --record motion.txt "
                            "--record other.txt --displacement 0.05 --sample 512 --hazard hazard.csv -o out")

@@ -41,6 +41,7 @@ def table(folder="slips"):
     return rows_of(f"{folder}/stability.csv", float)
 
 
+@pytest.mark.drawn
 @needs_lmp
 def test_bodies_table_map_and_warnings(low, capsys):
     status, out, err = ran(capsys, f"{LOW} --volume 500 5000 --keep 9 -o slips")
@@ -66,6 +67,7 @@ def test_bodies_table_map_and_warnings(low, capsys):
         == [f"{row['body']:.0f}" for row in rows]
 
 
+@pytest.mark.drawn
 @pytest.mark.long
 @needs_lmp
 def test_ellipsoids_are_not_above_spheres_and_go_on_to_their_fragility(low, capsys):
