@@ -53,7 +53,7 @@ def tiny_case(tmp_path, monkeypatch):
 
 # --- pictures ---
 
-BLANK = {"png": base64.b64decode("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR42mP4DwABAQEAG7buVgAAAABJRU5E"
+BLANK = {"png": base64.b64decode("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGP4DwABAQEAsTj2FAAAAABJRU5E"
                                  "rkJggg=="),
          "svg": b'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 1 1"/>'}
 rendered = False        # whether the test that runs looks at its pictures
