@@ -103,6 +103,20 @@ def blank_in_tests(request):
 
 
 @pytest.fixture
+def fitted_once(monkeypatch):
+    """Emulators of the same runs are fitted once in a test: by the ensemble, by its known events, by a second study."""
+    from slope_tools.statistics import emulator
+    fitted, fit = {}, emulator.validated
+
+    def validated(*arrays):
+        key = tuple(array.tobytes() for array in arrays)
+        if key not in fitted:
+            fitted[key] = fit(*arrays)
+        return fitted[key]
+    monkeypatch.setattr(emulator, "validated", validated)
+
+
+@pytest.fixture
 def blank_pictures(monkeypatch):
     """blank_pictures(): the maps and charts of a report are blank from now on, as drawing takes most of its time."""
     def blank():
