@@ -60,7 +60,7 @@ rendered = False        # whether the test that runs looks at its pictures
 
 
 def pytest_configure(config):
-    config.addinivalue_line("markers", "drawn: the pictures of this test are rendered, as it looks at them")
+    config.addinivalue_line("markers", "drawn: the pictures of this test or file are rendered, as it looks at them")
 
 
 def save_blank():
@@ -86,20 +86,21 @@ def save_blank():
         data_uri.real, figures.data_uri = figures.data_uri, data_uri
 
 
-@pytest.fixture(scope="session", autouse=True)
-def blank_in_fixtures():
-    """Also of what fixtures of a module make."""
+def save_blank_unless_drawn(node):
+    global rendered
     save_blank()
+    rendered = node.get_closest_marker("drawn") is not None
+
+
+@pytest.fixture(scope="module", autouse=True)
+def blank_in_fixtures(request):
+    """What the fixtures of a module make, unless the module has the mark drawn."""
+    save_blank_unless_drawn(request.node)
 
 
 @pytest.fixture(autouse=True)
 def blank_in_tests(request):
-    """But for tests with the mark drawn."""
-    global rendered
-    save_blank()
-    rendered = request.node.get_closest_marker("drawn") is not None
-    yield
-    rendered = False
+    save_blank_unless_drawn(request.node)
 
 
 @pytest.fixture
