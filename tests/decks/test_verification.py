@@ -7,7 +7,7 @@ from test_energy_guard import alarms
 from slope_tools.validation import verification, verify
 
 CLAIMS = [claim for claim in verification.all_claims() if claim.quick]
-# what claims' names begin with that take long; the controls of collapses say what the claims are worth, and find no fault
+# beginnings of the names of claims that take long; controls of collapses say what a claim is worth, and find no fault
 LONG = ("dense_gas",)
 LONG_CONTROLS = (*LONG, "dam_break", "glass", "heap", "ground_direction_travel", "runout")
 

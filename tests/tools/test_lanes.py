@@ -6,8 +6,6 @@ cell, so that each case states the cell that its accuracy takes.
 """
 import csv
 import math
-import os
-import subprocess
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -19,7 +17,7 @@ from affine import Affine
 from shapely.affinity import translate
 from shapely.geometry import LineString, Polygon, box, shape
 
-from run_helpers import (CRS_M, EAST, NORTH, TOP, centres, run_command, write_geojson, write_run,
+from run_helpers import (CRS_M, EAST, NORTH, centres, run_command, write_geojson, write_run,
                          write_sidecar)
 
 import test_site
