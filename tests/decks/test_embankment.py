@@ -85,7 +85,7 @@ def test_balls_on_the_slip_surface_itself_leave_much_out(tmp_path):
     assert left_out(log) == pytest.approx(0.41, abs=0.01) and "sunk" not in log
 
 
-@pytest.mark.parametrize("sizes", [{"d": 4}, {"d": 4, "field_d": 2}, {"d": 2.5, "field_d": 3.5}], ids=str)
+@pytest.mark.parametrize("sizes", [{"d": 4}, {"d": 4, "field_d": 2}, {"d": 4, "field_d": 5.6}], ids=str)
 def test_no_ball_falls_through_the_ground(tmp_path, sizes):
     """Every ball ends on the grid, and above the fixed balls that are close to it in plan."""
     deck = DECK.replace("sink ${sink}", "sink ${sink} write slip.xyz")

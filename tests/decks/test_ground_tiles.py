@@ -125,8 +125,6 @@ run 1000
 
 @pytest.mark.parametrize("np, again", [(1, 2), (2, 1)])
 def test_restart_on_other_ranks(site, np, again):
-    run_deck(deck(out="whole") + "restart 5000 mid.restart\nrun 5000\nrun 1000\n", site, np=np)
-    (site / "mid.restart").unlink(missing_ok=True)
     run_deck(deck(out="whole") + "run 5000\nwrite_restart mid.restart\nrun 1000\n", site, np=np)
     run_deck(AGAIN.format(out="again", ground=SURFACE, pit=33.7), site, np=again)
     whole, found = read_dump(site / "whole.dump")[6000], read_dump(site / "again.dump")[6000]

@@ -33,9 +33,9 @@ SHORT = {
     "13_ground_direction/in.ground_direction": {"wide": 5, "tend": 4},
     "14_repose_walls/in.repose_walls": {"plate": 10, "height": 4, "most": 20},
     "15_axisymmetric/in.axisymmetric": {"radius": 4},
-    "20_embankment/in.embankment": {"d": 4, "duration": 20},
+    "20_embankment/in.embankment": {"d": 4, "duration": 10},
     "21_earthquake/in.earthquake": {"d": 4, "duration": 15},
-    "22_structures/in.structures": {"d": 4, "duration": 15},
+    "22_structures/in.structures": {"d": 4, "duration": 8},
     "16_flume/in.flume": {"length": 0.2, "height": 0.1},
     "17_pyramid/in.pyramid": {"wide": 10, "long": 10, "tend": 25},
     "18_penetration/in.penetration": {"balls": 2842, "time": 0.001, "settle": 0.02},
@@ -100,10 +100,12 @@ def test_closes(tmp_path, deck):
     check(folder, (INPUTS / deck).read_text(), SHORT[deck], BEGIN_END.get(deck, 0.02), deck in OTHERS)
 
 
+@pytest.mark.long
 def test_closes_frank(frank):  # noqa: F811
     check(frank, (frank / "in.frank").read_text(), {"d": 25, "duration": 30})
 
 
+@pytest.mark.long
 def test_closes_s1000(s1000):  # noqa: F811
     folder, _ = s1000
     check(folder, (folder / "in.s1000").read_text(), {"d": 4, "duration": 15})

@@ -75,6 +75,7 @@ def test_left_and_right_are_the_same(run):
     assert 0.2 < at_rest[:, 1].std() < 1.0 and np.abs(at_rest[:, 1]).max() < 4
 
 
+@pytest.mark.long
 def test_the_door_holds_the_rocks(tmp_path):
     """Without the door being taken away nothing arrives."""
     assert "\nunfix           door\n" in DECK
@@ -84,6 +85,7 @@ def test_the_door_holds_the_rocks(tmp_path):
     assert np.abs(at_rest - at_start).max() < 0.05
 
 
+@pytest.mark.long
 def test_the_release_surface_is_what_lets_them_go(tmp_path):
     """A box with a rough floor, and rocks that do not roll: most stay."""
     line = "pair_coeff      1 2 stiffness ${kn} ${kn} restitution ${restitution} friction 0\n"

@@ -1,5 +1,7 @@
 """Fixtures of several tests of the tools."""
+import base64
 import shlex
+import sys
 
 import pytest
 
@@ -47,6 +49,72 @@ def tiny_case(tmp_path, monkeypatch):
     monkeypatch.setenv("LMP", tiny_collapse.LMP)
     tiny_collapse.write_case(tmp_path / "case")
     return tmp_path
+
+
+# --- pictures ---
+
+BLANK = {"png": base64.b64decode("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGP4DwABAQEAsTj2FAAAAABJRU5E"
+                                 "rkJggg=="),
+         "svg": b'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 1 1"/>'}
+rendered = False        # whether the test that runs looks at its pictures
+
+
+def pytest_configure(config):
+    config.addinivalue_line("markers", "drawn: the pictures of this test or file are rendered, as it looks at them")
+
+
+def save_blank():
+    """Figures are made up, and saved blank: rendering takes most of the time of many commands.
+
+    Not before something has imported matplotlib, which takes time, too: the first test that draws may be rendered.
+    """
+    pictures, figures = (sys.modules.get(f"slope_tools.drawing.{name}") for name in ("pictures", "figures"))
+    if pictures and not hasattr(pictures.save, "real"):
+        def save(figure, path, **options):
+            if rendered:
+                return save.real(figure, path, **options)
+            pictures.plt.close(figure)
+            return pictures.disk.write(path, BLANK["png"])
+        save.real, pictures.save = pictures.save, save
+    if figures and not hasattr(figures.data_uri, "real"):
+        def data_uri(figure, kind="png"):
+            if rendered:
+                return data_uri.real(figure, kind)
+            figures.plt.close(figure)
+            mime = {"png": "image/png", "svg": "image/svg+xml"}[kind]
+            return f"data:{mime};base64,{base64.b64encode(BLANK[kind]).decode('ascii')}"
+        data_uri.real, figures.data_uri = figures.data_uri, data_uri
+
+
+def save_blank_unless_drawn(node):
+    global rendered
+    save_blank()
+    rendered = node.get_closest_marker("drawn") is not None
+
+
+@pytest.fixture(scope="module", autouse=True)
+def blank_in_fixtures(request):
+    """What the fixtures of a module make, unless the module has the mark drawn."""
+    save_blank_unless_drawn(request.node)
+
+
+@pytest.fixture(autouse=True)
+def blank_in_tests(request):
+    save_blank_unless_drawn(request.node)
+
+
+@pytest.fixture
+def fitted_once(monkeypatch):
+    """Emulators of the same runs are fitted once in a test: by the ensemble, by its known events, by a second study."""
+    from slope_tools.statistics import emulator
+    fitted, fit = {}, emulator.validated
+
+    def validated(*arrays):
+        key = tuple(array.tobytes() for array in arrays)
+        if key not in fitted:
+            fitted[key] = fit(*arrays)
+        return fitted[key]
+    monkeypatch.setattr(emulator, "validated", validated)
 
 
 @pytest.fixture

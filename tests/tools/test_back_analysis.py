@@ -95,6 +95,7 @@ def table():
         return np.array([[float(value) for value in row.values()] for row in csv.DictReader(source)]).T
 
 
+@pytest.mark.drawn
 def test_a_sphere_its_table_and_its_raster(here, capsys):
     (x, y, z), radius = HIGH[1:3]
     base = columns.base_of(HIGH[0], HIGH[1], radius)

@@ -20,6 +20,7 @@ COMMAND = "bench"
 SMALL = "--quick --balls 300 --steps 40 --runs 1"
 
 
+@pytest.mark.drawn
 def test_every_code_runs_the_same_collapse(succeed):
     """From the same state, 40 steps: energy and displacement of the centroid agree; nothing is left unwritten."""
     out, _ = succeed(f"{SMALL} --only peers")

@@ -242,6 +242,7 @@ def truth(slope, values="--set friction=20 --set rolling=0.1"):
 WORDS = "--vary friction=5:40 --vary rolling=0:0.4"
 
 
+@pytest.mark.drawn
 @pytest.mark.long
 def test_a_calibration_of_small_collapses_goes_on_after_a_kill(slope, succeed, here):
     truth(slope)

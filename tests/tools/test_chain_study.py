@@ -9,10 +9,10 @@ import pytest
 import yaml
 
 from run_helpers import called
-from test_fragility import SOIL, slips  # noqa: F401  (a fixture)
+from test_fragility import SOIL, write_slips
 from tiny_collapse import rows_of
 
-from slope_tools import programs
+from slope_tools import cli, programs
 from slope_tools.commands import study
 from slope_tools.report import chain_part
 from slope_tools.report.numbers import Numbers
@@ -24,15 +24,26 @@ FRAGILITY = f"slips {SOIL} --peaks 50:1500:50 --pseudo-static 1 --sample 256"
 STUDY = "mine --sample 6 --vary rolling=0:0.1 --vary xoffset=0:0.99 --fragility fragility"
 
 
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """A site of two bodies with a road at the toe, and their fragility; the folder."""
+    folder = tmp_path_factory.mktemp("chain")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        write_slips()
+        Path("road.csv").write_text(ROAD)
+        for words in (f"fragility {FRAGILITY} --hazard hazard.csv -o fragility",
+                      "site --terrain terrain.asc --slips slips --road road.csv --balls 60 -o mine"):
+            assert cli.main(words.split()) == 0
+    return folder
+
+
 @pytest.fixture
-def mine(slips, capsys, monkeypatch):  # noqa: F811
-    """A site of two bodies with a road at the toe, their fragility; no report of the study."""
-    Path("road.csv").write_text(ROAD)
-    assert ran(capsys, f"fragility {FRAGILITY} --hazard hazard.csv -o fragility")[0] == 0
-    status, _, err = ran(capsys, "site --terrain terrain.asc --slips slips --road road.csv --balls 60 -o mine")
-    assert status == 0, err
+def mine(made, here, monkeypatch):
+    """The same in the test's folder; no report of the study."""
+    shutil.copytree(made, here, dirs_exist_ok=True)
     monkeypatch.setattr(study, "write_report", lambda *_: None)
-    return slips
+    return here
 
 
 def ran(capsys, words):
@@ -107,15 +118,13 @@ def shown_in_the_report(of):
 
 
 @pytest.fixture
-def bad(slips, capsys, monkeypatch):  # noqa: F811
+def bad(mine, capsys, monkeypatch):
     """Sites of all bodies, of one, and without a road, which nothing is run of; fragilities that do not fit."""
     monkeypatch.delenv("LMP", raising=False)
-    monkeypatch.setattr(programs, "BESIDE", slips / "nowhere")
-    Path("road.csv").write_text(ROAD)
-    for name, words in (("mine", "--road road.csv"), ("one", "--road road.csv --body 1"), ("free", "")):
+    monkeypatch.setattr(programs, "BESIDE", mine / "nowhere")
+    for name, words in (("one", "--road road.csv --body 1"), ("free", "")):
         assert ran(capsys, f"site --terrain terrain.asc --slips slips --balls 60 {words} -o {name}")[0] == 0
-    for name, words in (("fragility", ""), ("strong", "--cohesion 1e6")):
-        assert ran(capsys, f"fragility {FRAGILITY} {words} -o {name}")[0] == 0
+    assert ran(capsys, f"fragility {FRAGILITY} --cohesion 1e6 -o strong")[0] == 0
     for name, file, old in (("moved", fragility_files.ABOUT, "base_sha256: "),
                             ("short", fragility_files.CAPACITIES, "\n1,1,")):
         shutil.copytree("fragility", name)

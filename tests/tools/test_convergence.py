@@ -230,6 +230,7 @@ def test_sizes_that_did_not_finish_leave_no_older_fit(tmp_path, monkeypatch):
     assert not (tmp_path / "converge.yaml").exists()
 
 
+@pytest.mark.drawn
 def test_the_command_fits_what_its_runs_gave(slope, succeed):
     words = ("--converge d=1.25,0.7 --set field_d=0.9 --repeat xoffset=0.3,0.6 --of released_m3,centroid_m -o out "
              f"{ROAD}")

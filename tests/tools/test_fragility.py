@@ -160,10 +160,8 @@ def test_a_hazard_in_another_order_or_unit(tmp_path, text, rule):
         hazard_file.read(tmp_path / "h.csv")
 
 
-@pytest.fixture
-def slips(tmp_path, monkeypatch):
+def write_slips():
     """What find_slip leaves on the embankment of 10 m: two spheres, of which the second lies deeper."""
-    monkeypatch.chdir(tmp_path)
     ground, centre, radius = CASES[0][:3]
     write_asc("terrain.asc", ground.z, 0.5)
     Path("slips").mkdir()
@@ -180,7 +178,12 @@ def slips(tmp_path, monkeypatch):
     Path("motion.txt").write_text("".join(f"{a} {b} 0 {0.3 * b}\n" for a, b in zip(t, x)))
     Path("other.txt").write_text("".join(f"{a} {b} 0 0\n" for a, b in zip(t, noise(seed=9)[1])))
     Path("hazard.csv").write_text("peak,exceedance\n50,1e-2\n200,1e-3\n800,3e-5\n2000,1e-6\n")
-    return tmp_path
+
+
+@pytest.fixture
+def slips(here):
+    write_slips()
+    return here
 
 
 def ran(capsys, words):
@@ -195,6 +198,7 @@ def table(path="out/fragility.csv"):
     return {name: np.array(rows).T for name, rows in found.items()}
 
 
+@pytest.mark.drawn
 def test_two_bodies_two_records_and_a_hazard(slips, capsys):
     status, out, err = ran(capsys, f"slips {SOIL} --peaks 50:1500:50 --record motion.txt "
                            "--record other.txt --displacement 0.05 --sample 512 --hazard hazard.csv -o out")

@@ -278,9 +278,9 @@ def test_a_prediction_with_its_size_error_covers_small_balls():
 def test_differences_of_equal_means_are_called_chance():
     random = np.random.default_rng(5)
     clear = 0
-    for _ in range(100):        # the studentized range takes its time
+    for _ in range(100):
         line = study(random, EQUAL, 0)
-        clear += headline.difference(line, headline.pooled(line)).clear
+        clear += headline.is_clear(line, headline.pooled(line))
     assert clear <= 10          # five, and chance
 
     line = study(random, ONE, 0)

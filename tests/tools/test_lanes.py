@@ -6,8 +6,6 @@ cell, so that each case states the cell that its accuracy takes.
 """
 import csv
 import math
-import os
-import subprocess
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -19,7 +17,7 @@ from affine import Affine
 from shapely.affinity import translate
 from shapely.geometry import LineString, Polygon, box, shape
 
-from run_helpers import (CRS_M, EAST, NORTH, TOP, centres, run_command, write_geojson, write_run,
+from run_helpers import (CRS_M, EAST, NORTH, centres, run_command, write_geojson, write_run,
                          write_sidecar)
 
 import test_site
@@ -38,14 +36,7 @@ from slope_tools.tables import road_runs
 TAN30 = math.tan(math.radians(30))
 WIDTH, LANE = 8.0, 3.5          # m, of the road, of the lane
 SIDE = 80.0                     # m, of the terrain
-PROGRAM = str(TOP / "tools" / "slope")
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
-
-
-def program(*words):
-    """Run slope in a process of its own, with LAMMPS."""
-    return subprocess.run([PROGRAM, *words], env={**os.environ, "LMP": LMP}, capture_output=True, text=True,
-                          check=False)
 
 
 # --- deposits, grounds and roads as functions ---
@@ -488,17 +479,18 @@ def test_bad_input_is_one_line(slope, here, arguments, message):
 
 # --- site, study, report, mobility: through LAMMPS ---
 
-def test_a_study_of_a_line_is_that_of_the_polygon_and_is_reported(here):
+def test_a_study_of_a_line_is_that_of_the_polygon_and_is_reported(here, capsys, monkeypatch):
     """Two runs of a tiny collapse: volumes are the same; stretches, lane and hours are on the page, with bands."""
     write_case(here / "case")
     (here / "line.csv").write_text("15,0\n15,24\n")
     (here / "polygon.csv").write_text("13,0\n17,0\n17,24\n13,24\n")
+    monkeypatch.setenv("LMP", LMP)
+    monkeypatch.setattr(volume_files, "draw", lambda path, *_: path.touch())
     options = "--lane 1.5 --clearing 20 --loosening 1.25 --blocked 0.05"
     abouts = []
     for name, width in (("line", "--road-width 4"), ("polygon", "")):
         words = f"case/in.tiny --set steps=900 --set rolling=0,0.3 --jobs 1 --mesh 4 -o {name} --road {name}.csv"
-        done = program("study", *f"{words} {width} {options}".split())
-        assert done.returncode == 0, done.stderr
+        assert run_command("study", f"{words} {width} {options}", capsys)[0] == 0
         abouts.append(yaml.safe_load(Path(name, "study.yaml").read_text()))
     line, polygon = abouts
     assert line["study"]["road"]["width"] == 4 and polygon["study"]["road"]["width"] is None
@@ -517,8 +509,7 @@ def test_a_study_of_a_line_is_that_of_the_polygon_and_is_reported(here):
         table = list(csv.DictReader(lines))
     assert [float(row["lane_hours"]) for row in table] == [one["lane_hours"] for one in line["runs"]]
 
-    done = program("report", "line")
-    assert done.returncode == 0, done.stderr
+    assert run_command("report", "line", capsys)[0] == 0
     page = Path("line/report.html").read_text(encoding="utf-8")
     assert 'id="road"' in page and "Where the road is blocked" in page
     low, high = (headline.text(value, headline.place_of_digits(value)) for value in hours)
@@ -527,7 +518,7 @@ def test_a_study_of_a_line_is_that_of_the_polygon_and_is_reported(here):
     assert road_part.on_first_page(data, numbers, False) == [
         f"A lane of 1.5 m is open after {low} to {high} hours of one loader of 20 m3/h."]
     assert road_part.on_first_page(data, numbers, True) == [] and "A lane of 1.5 m" not in page     # not at rest
-    reproduced = program("report", "line", "--reproduce").stdout
+    reproduced = run_command("report", "line --reproduce", capsys)[1]
     assert "--road-width 4" in reproduced and "--lane 1.5 --clearing 20 --loosening 1.25" in reproduced
 
 

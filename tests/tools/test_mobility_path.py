@@ -408,6 +408,7 @@ def test_every_example_of_the_page_and_the_help_runs(place, command):
     assert (status, err) == (0, "") and ("--help" in command or "crown at" in out)
 
 
+@pytest.mark.drawn
 def test_pictures(known, tmp_path):
     """Drawn from what is there: with a road, and of a mass that no set covers."""
     mass = disc(hillside(), (300, 300))

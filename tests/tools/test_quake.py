@@ -323,6 +323,7 @@ def exact(motion):
     return v, d
 
 
+@pytest.mark.drawn
 def test_what_is_written_integrates_back(slope):
     three_knet()
     status, out, _ = slope("a.EW a.NS a.UD --peak 300 --band 0.2 20 --azimuth 135 -o motion.txt")

@@ -333,6 +333,7 @@ def test_a_steep_head_on_coarse_cells_is_no_wall():
     assert release_solve.wall(cut, cut > 0) == cut[np.abs(y) == 4].max() > 3
 
 
+@pytest.mark.drawn
 def test_the_files(slope, here):
     _, _, z = terrain(hill)
     digits = z + np.random.default_rng(1).uniform(-1e-6, 1e-6, z.shape)     # more than a millimetre has

@@ -202,6 +202,7 @@ def numbers(path):
 
 # --- one file ---
 
+@pytest.mark.drawn
 @pytest.mark.parametrize("folder, least", [("out", 14), ("repeated", 14), ("one", 7)])
 def test_the_page_needs_nothing_else(drawing_slope, here, folder, least):
     status, out, err = drawing_slope(folder)

@@ -17,7 +17,7 @@ from slope_tools.drawing import figures
 from slope_tools.errors import SlopeError
 from slope_tools.report import document, paper
 
-pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
+pytestmark = [pytest.mark.drawn, pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")]
 looked_at = pytest.mark.skipif(not (paper.browser() and shutil.which("pdftoppm")),
                                reason="no browser that prints, or poppler-utils is not installed")
 DUMP = "dump        view soil custom 75 view.*.dump id diameter x y z vx vy vz\ndump_modify view pad 9\n"

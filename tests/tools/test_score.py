@@ -245,6 +245,7 @@ def test_shares_within(scored):
 
 # --- files, bad input ---
 
+@pytest.mark.drawn
 def test_files_and_warnings(slope):
     write_run(square(), 0.0, 2.5, moving=True)
     write_geojson("observed.geojson", Point(60, 45).buffer(20))

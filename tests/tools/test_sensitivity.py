@@ -26,6 +26,7 @@ def here(tiny_case):
     return tiny_case
 
 
+@pytest.mark.drawn
 def test_one_variable_at_a_time_against_the_scatter_of_equivalent_runs(slope, succeed):
     words = f"--levels friction=10,30,50 --levels cell=0.5 --repeat xoffset=0.0,0.25,0.5 --set rolling=0.05 " \
         f"{ROAD} -o out"

@@ -94,6 +94,7 @@ def test_what_is_connected_and_what_is_not_below_ground():
     assert 5 < np.ptp(x[kept]) < 19       # one ridge of several below
 
 
+@pytest.mark.drawn
 def test_the_map_of_a_search_has_all_that_was_searched(tmp_path, monkeypatch):
     """50 x 20 m: x from west to east, y from south to north."""
     def save(figure, *_, **__):

@@ -1,5 +1,6 @@
 """slope stability: what find_slip finds on the embankments of Scoops3D, and what is said of it."""
 import os
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -15,6 +16,7 @@ from run_helpers import called, write_asc
 from test_slips import CASES
 from tiny_collapse import rows_of
 
+from slope_tools import cli
 from slope_tools.commands import stability
 from slope_tools.slips import bishop, bodies, columns, doubts
 from slope_tools.survey.rasters import Raster
@@ -24,13 +26,43 @@ needs_lmp = pytest.mark.skipif(not LMP, reason="needs the LAMMPS program (LMP)")
 LOW = "terrain.asc --cohesion 3e3 --friction 19.6 --density 2039.43"
 
 
+def write_low(step=1, longer=0):
+    """The embankment of 10 m, which slides to the west, in the coordinates of a survey; every so many cells of 0.5 m,
+
+    and so many rows more, as it is the same all along."""
+    z = np.pad(CASES[0][0].z[::step, ::step], ((longer, 0), (0, 0)), "edge")
+    run_helpers.write_sidecar(*z.shape, 0.5 * step)
+    write_asc("terrain.asc", z, 0.5 * step)
+
+
 @pytest.fixture
-def low(tmp_path, monkeypatch):
-    """The embankment of 10 m, which slides to the west, in the coordinates of a survey."""
-    monkeypatch.chdir(tmp_path)
-    run_helpers.write_sidecar(101, 102, 0.5)
-    write_asc("terrain.asc", CASES[0][0].z, 0.5)
-    return tmp_path
+def low(here):
+    write_low()
+
+
+@pytest.fixture
+def coarse(here):
+    write_low(2, 20)
+
+
+@pytest.fixture(scope="module")
+def searched(tmp_path_factory):
+    """What a search finds above a bedrock that dips along the slope, and across it towards the middle."""
+    folder = tmp_path_factory.mktemp("searched")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        write_low()
+        x, y = columns.centres(CASES[0][0])
+        write_asc("rock.asc", CASES[0][0].z - 2.2 + 0.05 * np.abs(y - 24) + 0.01 * (x - 20), 0.5)
+        assert cli.main(f"stability {LOW} --volume 300 500 --keep 1 --bedrock rock.asc -o slips".split()) == 0
+    return folder
+
+
+@pytest.fixture
+def on_rock(searched, here):
+    """The same, in the test's folder; gives its table."""
+    shutil.copytree(searched, here, dirs_exist_ok=True)
+    return table()
 
 
 def ran(capsys, words):
@@ -41,6 +73,7 @@ def table(folder="slips"):
     return rows_of(f"{folder}/stability.csv", float)
 
 
+@pytest.mark.drawn
 @needs_lmp
 def test_bodies_table_map_and_warnings(low, capsys):
     status, out, err = ran(capsys, f"{LOW} --volume 500 5000 --keep 9 -o slips")
@@ -66,6 +99,7 @@ def test_bodies_table_map_and_warnings(low, capsys):
         == [f"{row['body']:.0f}" for row in rows]
 
 
+@pytest.mark.drawn
 @pytest.mark.long
 @needs_lmp
 def test_ellipsoids_are_not_above_spheres_and_go_on_to_their_fragility(low, capsys):
@@ -91,7 +125,7 @@ def test_ellipsoids_are_not_above_spheres_and_go_on_to_their_fragility(low, caps
 
 
 @needs_lmp
-def test_a_smaller_search_in_the_same_folder(low, capsys):
+def test_a_smaller_search_in_the_same_folder(coarse, capsys):
     """Within a polygon in the coordinates of the survey, with a limit of depth: both are said to bind; on two ranks."""
     part = box(0, 18, 51, 34)
     run_helpers.write_geojson("part.geojson", part, crs=None)
@@ -186,7 +220,7 @@ def several_bodies(site, rows):
 
 
 @needs_lmp
-def test_a_site_of_a_body(low, capsys):
+def test_a_site_of_a_body(coarse, capsys):
     """Its release is the body of that rank, on the terrain where it was found."""
     assert ran(capsys, f"{LOW} --volume 300 5000 --keep 2 -o slips")[0] == 0
     rows = table()
@@ -217,16 +251,6 @@ def test_doubtful_input_is_named():
     assert [one.split(":")[0] for one in found] == ["--cohesion 8", "--density 19", "body 2"]
     assert "no value below 75 % of its cells" in found[2]
     assert not list(stability.warnings_of(0.0, 1900.0, [], [], None))
-
-
-@pytest.fixture
-def on_rock(low, capsys):
-    """What a search finds above a bedrock that dips along the slope, and across it towards the middle."""
-    x, y = columns.centres(CASES[0][0])
-    write_asc("rock.asc", CASES[0][0].z - 2.2 + 0.05 * np.abs(y - 24) + 0.01 * (x - 20), 0.5)
-    status, _, err = ran(capsys, f"{LOW} --volume 200 500 --keep 2 --bedrock rock.asc -o slips")
-    assert status == 0, err
-    return table()
 
 
 SOIL = bishop.Strengths(3e3, np.tan(np.radians(19.6)))
@@ -276,7 +300,7 @@ def test_back_analysis_fragility_and_site_of_a_body_above_a_bedrock(on_rock, cap
 
 @needs_lmp
 def test_flat_ground(low, capsys):
-    write_asc("terrain.asc", np.full((40, 40), 10.0), 0.5)
+    write_asc("terrain.asc", np.full((16, 16), 10.0), 0.5)
     Path("terrain.yaml").unlink()
     status, _, err = ran(capsys, f"{LOW} -o out")
     assert status == 2 and err.count("\n") == 1 and "terrain.asc: must be steep enough" in err

@@ -573,7 +573,7 @@ def test_the_log_is_read_as_it_grows(tmp_path):
 
 def test_a_terminal_gets_a_live_display(here):
     leader, follower = pty.openpty()
-    process = subprocess.Popen([*PROGRAM, "study", "case/in.tiny", "--set", "steps=14000", "--set", "rolling=0,0.1",
+    process = subprocess.Popen([*PROGRAM, "study", "case/in.tiny", "--set", "steps=7000", "--set", "rolling=0,0.1",
                                 "-o", "out", "--jobs", "1"], stdout=subprocess.DEVNULL, stderr=follower,
                                env={**os.environ, "TERM": "xterm", "COLUMNS": "120"})
     os.close(follower)
@@ -589,8 +589,8 @@ def test_a_terminal_gets_a_live_display(here):
     os.close(leader)
     assert process.wait(20) == 0
     text = re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", shown.decode())
-    assert re.search(r"\[1/2\] rolling 0 .*step \d+ of 14000, \d+\.\d\d s +\d\d:\d\d:\d\d", text)
-    assert "[1/2] steps_14000_rolling_0: finished at 28.0 s, wall time" in text
+    assert re.search(r"\[1/2\] rolling 0 .*step \d+ of 7000, \d+\.\d\d s +\d\d:\d\d:\d\d", text)
+    assert "[1/2] steps_7000_rolling_0: finished at 14.0 s, wall time" in text
     assert "0 of 2 finished" in text and "1 waiting" in text
 
 

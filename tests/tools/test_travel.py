@@ -262,6 +262,7 @@ def test_moving_balls_are_told(travelled):
 
 # --- files, bad input ---
 
+@pytest.mark.drawn
 def test_files_and_text(slope):
     write("a.dump", FOUR)
     write("b.dump", [(1, 1, 1)])

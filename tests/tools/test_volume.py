@@ -338,12 +338,12 @@ def test_integral_over_triangles():
 
 
 def test_more_angle_less_volume_and_a_wider_road_more(cleared):
-    thickness, base, road = rough(6)
-    write_run(thickness, base, 2.0)
-    volumes = [cleared(road, f"--mesh 10 --cut-angle {angle}")["volume"]["remove"] for angle in (10, 30, 80)]
+    thickness, base, road = rough(6, 40, 47, 3.0)
+    write_run(thickness, base, 3.0)
+    volumes = [cleared(road, f"--mesh 10 --cut-angle {angle}")["volume"]["remove"] for angle in (30, 50, 80)]
     assert volumes == sorted(volumes, reverse=True)
     assert volumes[-1] > cleared(road)["volume"]["remove_on_road"]
-    assert cleared(road.buffer(1))["volume"]["remove"] > volumes[1]
+    assert cleared(road.buffer(1))["volume"]["remove"] > volumes[0]
 
 
 def test_ground_that_is_not_known(cleared, slope):
@@ -387,7 +387,7 @@ def test_blocked_length_and_profile(cleared):
 
 def test_axis_of_a_curved_road(cleared):
     write_run(np.full((80, 80), 1.0), 0.0, 2.5)
-    arc = LineString([(100 + 80 * math.cos(a), 10 + 80 * math.sin(a)) for a in np.linspace(0.2, math.pi - 0.2, 200)])
+    arc = LineString([(100 + 80 * math.cos(a), 10 + 80 * math.sin(a)) for a in np.linspace(0.2, math.pi - 0.2, 60)])
     axis = cleared(arc.buffer(4, cap_style=2))["axis"]
     assert axis["source"].startswith("middles") and axis["length"] == pytest.approx(arc.length, rel=0.03)
     assert axis["blocked_length"] == axis["length"]

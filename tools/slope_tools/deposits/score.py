@@ -6,7 +6,6 @@ import numpy as np
 from affine import Affine
 
 from .. import disk, geometry
-from ..drawing import maps
 from ..errors import SlopeError
 from ..findings import Finding
 from ..geometry import coverage, extent
@@ -258,6 +257,8 @@ def write_csv(path, run_, mesh, table):
 
 
 def draw(path, run_, simulated, observed, about):
+    from ..drawing import maps      # matplotlib, which a study that draws nothing does not need
+
     raster = run_.raster
     kind = np.where(simulated, np.where(observed.share >= 0.5, 1, 2), np.where(observed.share >= 0.5, 3, 0))
     row, column = np.nonzero(kind > 0)
