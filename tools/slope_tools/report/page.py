@@ -48,7 +48,8 @@ class Page:
                "answer": answers[0], "of_ensemble": answers[1], "cards": cards(data, numbers),
                "map": of_run["deposit"], "section": Picture(*self.section.picture()),
                "view": view.content(data, ground, self.section, self.frames, self.no_frames, self.film.text),
-               "limits": limits_part.section(data, ground, numbers), **self.what()}
+               "place": ground.raster.crs is not None, "limits": limits_part.section(data, ground, numbers),
+               **self.what()}
         sections = [
             *ensemble_part.sections(data, numbers, maps),
             study_part.section(data, numbers, self.reference, maps),

@@ -1,6 +1,9 @@
-"""What the page is made of: sections of blocks, which a part of the page returns and sections.html.j2 draws.
+"""What the page is made of: a part of it takes the runs (data.Data) and returns a Section of blocks, or None.
 
-Whatever stands in them is escaped where it is drawn, except Markup, which is made here alone.
+Blocks are texts and numbers: a table with its caption, pictures and their layout, a list, lines of a file.
+One macro draws any section, each kind of block in one place (sections.html.j2); page.py lists the parts in their order.
+Whatever stands in a block is escaped where it is drawn, except Markup, which is made here alone.
+The first page, the warnings, the cards and the 3-D view are drawn by report.html.j2.
 """
 from typing import Any, NamedTuple, Optional, Sequence, Tuple
 
