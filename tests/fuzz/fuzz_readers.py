@@ -298,8 +298,7 @@ def sizes(path):
     from slope_tools.report import convergence_part as report_convergence, numbers as report_numbers
     found = report_convergence.Sizes(path)
     figure_charts.convergence = lambda *_: ""
-    found.rows(report_numbers.Numbers())
-    found.pictures(lambda *_: None)
+    found.section(report_numbers.Numbers())
 
 
 def reference_of(path):

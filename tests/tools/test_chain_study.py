@@ -106,15 +106,15 @@ def shown_in_the_report(of):
     class Data:
         study, folder = {**of, "chain": {**of["chain"], "withheld": []}}, Path("mine/ensemble")
 
-    pictures = []
-    shown = chain_part.content(Data, Numbers(), lambda *picture: pictures.append(picture) or picture)
-    assert len(pictures) == 1 and pictures[0][0].startswith("data:image/svg")
-    assert len(shown["sentences"]) == len(of["chain"]["more_than_m3"]) and len(shown["parts"]) == chain_part.MOST_ROWS
-    total = sum(float(row["cells"][0]) for row in shown["parts"])
+    *texts, figures, _, parts, _ = chain_part.section(Data, Numbers()).blocks
+    picture, = figures.pictures
+    assert picture.uri.startswith("data:image/svg")
+    assert len(texts) == len(of["chain"]["more_than_m3"]) + 1 and len(parts.rows) == chain_part.MOST_ROWS
+    total = sum(float(row[1]) for row in parts.rows)
     assert total == pytest.approx(of["chain"]["per_year"][0]["value"], rel=0.05)
     Data.study = of
     Data.study["chain"]["withheld"] = ["few balls"]
-    assert chain_part.content(Data, Numbers(), None) is None
+    assert chain_part.section(Data, Numbers()) is None
 
 
 @pytest.fixture

@@ -17,7 +17,7 @@ from slope_tools import cli
 from slope_tools.deposits import travel_shares
 from slope_tools.ensembles import conditioned, known_events, known_maps
 from slope_tools.mobility import weights
-from slope_tools.report import known_part
+from slope_tools.report import ensemble_part
 from slope_tools.report.data import Data
 from slope_tools.report.numbers import Numbers
 from slope_tools.sites import site_warnings
@@ -256,11 +256,13 @@ def test_a_report_shows_no_number_where_events_go_beyond_the_runs():
     about = {"reached": 0.5, "effective": 12.0, "doubts": ["why"], "quantities": {
         "front_m": {"name": "farthest ball", "unit": "m", "quantiles": quantiles}}}
     data = type("Data", (), {"study": {"ensemble": {"known_events": about, "of": "front_m", "confidence": 0.9}}})
-    answer = known_part.KnownEvents(data, Numbers(), None).answer()
+    answer = ensemble_part.KnownEvents(data, Numbers()).answer()
     assert (answer["number"], answer["unit"]) == ("unknown", "")
     about.update(reached=None, doubts=["the set of known events does not cover this volume"])
-    content = known_part.KnownEvents(data, Numbers(), None).content()
-    assert content["lines"] == ["The set of known events does not cover this volume."] and not content["answer"]
+    part = ensemble_part.KnownEvents(data, Numbers())
+    text, maps = part.section(None).blocks
+    assert text.text == "The set of known events does not cover this volume." and not maps.pictures
+    assert part.answer() is None
     assert "50 % of the known events" in answer["note"]
     assert answer["parts"][0]["note"].startswith("At least 0 m with 90 %")
 

@@ -468,8 +468,9 @@ def test_a_report_says_what_the_emulator_is_worth(key):
     entry = {key: "as it is", "variables": {"a": dict.fromkeys(ensemble.emulator.SIGN, 0.5)}}
     study = {"ensemble": {"of": None, "quantities": {"front_m": {"name": "farthest ball"}},
                           "influence": {"front_m": entry}}}
-    part = ensemble_part.Ensemble(types.SimpleNamespace(study=study), None, lambda uri, title, caption: caption)
-    assert part.indices() == ["Sobol indices for farthest ball, with the error of the total ones; as it is."]
+    part = ensemble_part.Ensemble(types.SimpleNamespace(study=study), None)
+    assert [one.caption for one in part.indices()] == [
+        "Sobol indices for farthest ball, with the error of the total ones; as it is."]
 
 
 def test_points_of_the_design_are_found_in_the_rows():

@@ -14,7 +14,7 @@ import test_report
 from tiny_collapse import TOP
 
 from slope_tools import cli
-from slope_tools.report import page
+from slope_tools.report import run_part
 
 made, here, slope = test_report.made, test_report.here, test_report.slope       # its fixtures
 REQUIREMENTS = TOP / "doc" / "src" / "report_requirements.rst"
@@ -58,8 +58,8 @@ def test_settings_have_a_meaning(slope, here):
     _, reader = test_report.read("out/report.html")
     rows = {row[0]: row[1:] for table in reader.tables for row in table if len(row) == 3}
     assert rows["friction"] == ["30", "degrees"] and rows["cell"] == ["1.0", "m"]
-    assert page.with_meanings({"d": "2", "seed (deck's default)": "0"}, "variable  d index 1 # ball, m\n") == [
-        ("d", "2", "ball, m"), ("seed (deck's default)", "0", page.TERMS["seed"])]
+    assert run_part.with_meanings({"d": "2", "seed (deck's default)": "0"}, "variable  d index 1 # ball, m\n") == [
+        ("d", "2", "ball, m"), ("seed (deck's default)", "0", run_part.TERMS["seed"])]
 
 
 def test_provenance_on_the_page(slope, here):
@@ -93,8 +93,9 @@ def test_the_table_names_tests_and_places_that_are_there(what, where, test):
     tree = ast.parse((TOP / "tests" / "tools" / file).read_text(encoding="utf-8"))
     assert name in {node.name for node in tree.body if isinstance(node, ast.FunctionDef)}, what
     if where.startswith("``#"):
-        template = (Path(page.__file__).parent / "report.html.j2").read_text(encoding="utf-8")
-        assert f'id="{where.strip("`#")}"' in template, what
+        place, page = where.strip("`#"), Path(run_part.__file__).parent
+        assert any(f'id="{place}"' in file.read_text(encoding="utf-8") for file in page.glob("*.j2")) or any(
+            f'Section("{place}"' in file.read_text(encoding="utf-8") for file in page.glob("*_part.py")), what
     elif where.startswith("*--"):
         parser = cli.add_command(argparse.ArgumentParser().add_subparsers(), "report", cli.module_of("report", None))
         assert where.strip("*") in parser.format_help().split(), what

@@ -15,7 +15,7 @@ from slope_tools import cli
 from slope_tools.commands import polygon, run_arguments
 from slope_tools.findings import Finding, entries
 from slope_tools.report import document, structures_part, warnings as report_warnings
-from slope_tools.report.page import ENDS, MOST_ROWS, Page
+from slope_tools.report.study_part import ENDS, MOST_ROWS, Runs
 from slope_tools.tables import judged, quantities, study_table
 
 CELLS = {"rolling": "0.05", "released": "17,522", "wall s": "1,234", "reach angle deg": "22.1",
@@ -139,10 +139,10 @@ def test_of_very_many_runs_the_table_has_the_ends(number):
     rows[3].update(status="failed")
     data = SimpleNamespace(rows=rows, finished=[row for row in rows if row["status"] == "finished"])
     page = SimpleNamespace(data=data, counts=lambda: quantities.ALL["remove_m3"])
-    found = Page.in_table(page)
+    found = Runs.in_table(page)
     if number == MOST_ROWS:
-        assert found == rows and Page.which_rows(page) == "All runs"
+        assert found == rows and Runs.which_rows(page) == "All runs"
         return
     left = sorted(volume for k, volume in enumerate(volumes) if k != 3)
     assert [row["remove_m3"] for row in found[:-1]] == [*left[:ENDS], *left[-ENDS:]] and found[-1] is rows[3]
-    assert '96 runs' in Page.which_rows(page) and '"to remove"' in Page.which_rows(page)
+    assert '96 runs' in Runs.which_rows(page) and '"to remove"' in Runs.which_rows(page)

@@ -197,11 +197,10 @@ def test_a_series_of_a_run_without_output(tmp_path):
     (tmp_path / "a.vtp").write_text("<VTKFile><DataArray Name='corners'>0 0 0 0 2 0 0 0 1</DataArray>"
                                     "<DataArray Name='largest_pressure'>5</DataArray></VTKFile>")
     data = SimpleNamespace(result=SimpleNamespace(folder=tmp_path), drawn=[])
-    part = report_structures.Structures(data, None, lambda picture, title, text: title,
-                                        SimpleNamespace(obstacles=Obstacles({}, {})))
-    assert part.pressures(("wall", "a")) == "Largest pressure on wall"
+    part = report_structures.Structures(data, None, SimpleNamespace(obstacles=Obstacles({}, {})))
+    assert part.pressures(("wall", "a")).alt == "Largest pressure on wall"
     data.drawn.append(SimpleNamespace(folder=tmp_path))
-    assert part.forces("wall", [(data.drawn[0], "a")]) == "Force on wall"
+    assert part.forces("wall", [(data.drawn[0], "a")]).alt == "Force on wall"
 
 
 @pytest.mark.parametrize("back", [10, 30])

@@ -1,8 +1,8 @@
 """slope report: one self-contained HTML page on a study or a run, for the screen and for A4 paper.
 
 Order of the work: find the runs and read their results (data.py), find what maps and section share
-(ground.py, section.py), collect warnings and numbers (warnings.py, numbers.py), draw
-(maps_part.py, charts.py), fill the template (page.py), write.
+(ground.py, section.py), collect warnings and numbers (warnings.py, numbers.py), make the
+sections (the parts, in the order of page.py), fill the template, write.
 """
 import argparse
 from dataclasses import dataclass

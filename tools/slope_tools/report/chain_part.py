@@ -1,6 +1,6 @@
 """What a report shows of the chain: how likely which volume reaches the road at a peak acceleration, and per year."""
 import csv
-from typing import Any, Dict, List, Mapping
+from typing import Any, List, Mapping, Optional
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from ..errors import SlopeError
 from ..findings import texts
 from ..plots.ensemble_charts import THOUSANDS
 from ..seismic import chain_files
+from .sections import Cell, Figures, Listing, Picture, Section, Table, Text, strong
 
 MOST_ROWS = 12          # of the contributions; smaller ones are joined
 HOW = ("The runs release one body each. Bodies that fail together in an earthquake have their volumes added, the "
@@ -18,8 +19,8 @@ HOW = ("The runs release one body each. Bodies that fail together in an earthqua
        "strengths, hazard and model, nor what the masses do to each other on their way.")
 
 
-def content(data, numbers, picture):
-    """For the template; None without a chain, or where the volumes of its runs are withheld."""
+def section(data, numbers):
+    """Of a data.Data; None without a chain, or where the volumes of its runs are withheld."""
     about = (data.study or {}).get("chain")
     if not about or about["withheld"]:
         return None
@@ -31,31 +32,36 @@ def content(data, numbers, picture):
     caption = "P(V > v) at a peak acceleration, for volumes v on the road, with bounds of 90 %."
     if about["per_year"]:
         caption += " Right: how often per year a volume is exceeded."
-    return {"sentences": [f"{text[0].upper()}{text[1:]}." for text in chain_files.sentences(about)], "how": HOW,
-            "bodies": bodies(about, numbers), "volumes": [f"{one:,.6g}" for one in about["more_than_m3"]],
-            "parts": parts(about), "doubts": texts(about["doubts"]),
-            "picture": picture(draw(about, per_year(data, about), title), title, caption)}
+    doubts = texts(about["doubts"])
+    return Section("chain", "From the earthquake to the road", [
+        *(Text(strong(f"{text[0].upper()}{text[1:]}.")) for text in chain_files.sentences(about)), Text(HOW),
+        Figures([Picture(draw(about, per_year(data, about), title), title, caption)]),
+        Table("The bodies of slope stability. Share: of the failures in which a body takes part, how many are its.",
+              ["body", Cell("volume", "m3"), "share", "runs", "finished"], bodies(about, numbers)),
+        parts(about), Listing(doubts) if doubts else None])
 
 
-def bodies(about: Mapping[str, Any], numbers) -> List[Dict[str, Any]]:
+def bodies(about: Mapping[str, Any], numbers) -> List[List[Any]]:
     """Rows of the table of bodies."""
-    return [{**one, "volume": "" if one["volume_m3"] is None else
+    return [[one["body"], "" if one["volume_m3"] is None else
              numbers("volume", "m3", one["volume_m3"], f"body {one['body']}"),
-             "share": f"{100 * one['weight']:.2g} %"} for one in about["bodies"]]
+             f"{100 * one['weight']:.2g} %", one["runs"], one["finished"]] for one in about["bodies"]]
 
 
-def parts(about: Mapping[str, Any]) -> List[Dict[str, Any]]:
-    """Rows of the contributions; neighbours are joined to MOST_ROWS at most."""
+def parts(about: Mapping[str, Any]) -> Optional[Table]:
+    """The table of the contributions, neighbours joined to MOST_ROWS at most; None without a hazard curve."""
     if not about["per_year"]:
-        return []
+        return None
     each = [one["contributions"] for one in about["per_year"]]
     groups = np.array_split(np.arange(len(each[0])), min(len(each[0]), MOST_ROWS))
     found = []
     for group in groups:
         low, high = each[0][group[0]]["from_gal"], each[0][group[-1]]["to_gal"]
-        found.append({"peak": f"{low:g} and more" if high is None else f"{low:g} to {high:g}",
-                      "cells": [f"{sum(one[k]['per_year'] for k in group):.2g}" for one in each]})
-    return found
+        found.append([f"{low:g} and more" if high is None else f"{low:g} to {high:g}",
+                      *(f"{sum(one[k]['per_year'] for k in group):.2g}" for one in each)])
+    return Table("Where the annual frequency comes from: contributions by peak acceleration, per year.",
+                 [Cell("peak acceleration", "gal"), *(Cell(f"> {one:,.6g}", "m3") for one in about["more_than_m3"])],
+                 found)
 
 
 def per_year(data, about: Mapping[str, Any]):

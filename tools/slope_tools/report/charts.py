@@ -9,6 +9,7 @@ from ..runs.repeats import key_of
 from ..statistics import headline
 from ..tables.quantities import ALL, REMOVE, name_of
 from .data import is_number
+from .sections import Picture
 
 AXIS = {"rolling": "rolling resistance (-)", "friction": "friction angle (degrees)", "restitution": "restitution (-)",
         "d": "diameter of the balls (m)", "field_d": "diameter of the field balls (m)",
@@ -25,10 +26,10 @@ TERMS = {"rolling": "coefficient of rolling resistance of the balls", "friction"
 
 
 class Charts:
-    """Draws the charts of a data.Data; reference: a reference.Reference or None; picture makes the template's."""
+    """Draws the charts of a data.Data; reference: a reference.Reference or None."""
 
-    def __init__(self, data, reference, picture):
-        self.data, self.reference, self.picture = data, reference, picture
+    def __init__(self, data, reference):
+        self.data, self.reference = data, reference
         self.scatter = (data.study or {}).get("scatter") or {}
 
     def variable(self):
@@ -62,9 +63,9 @@ class Charts:
 
     def bars(self, key):
         rows, title = self.data.finished, self.title(key)
-        return self.picture(figure_charts.bars([self.data.label_of(row) for row in rows], [row[key] for row in rows],
-                                               self.label(key), title, WIDE if key == REMOVE else HALF),
-                            title, f"{title} of every run.")
+        return Picture(figure_charts.bars([self.data.label_of(row) for row in rows], [row[key] for row in rows],
+                                          self.label(key), title, WIDE if key == REMOVE else HALF),
+                       title, f"{title} of every run.")
 
     def chart(self, key, name):
         """A quantity against a variable: a line where the differences are larger than chance."""
@@ -95,9 +96,9 @@ class Charts:
                 others = [Series(who, *zip(*points)) for who, points in own.series.items()]
             levels += own.levels.items()
             caption += f" Grey: {self.reference.title}."
-        return self.picture(figure_charts.chart(series, AXIS.get(name, name), self.label(key), title, others, levels,
-                                                mark, WIDE if key == REMOVE else FULL if own else HALF),
-                            title, caption)
+        return Picture(figure_charts.chart(series, AXIS.get(name, name), self.label(key), title, others, levels,
+                                           mark, WIDE if key == REMOVE else FULL if own else HALF),
+                       title, caption)
 
     def mark(self, name):
         """The point of the conservative volume, and its level where it is more than the point."""

@@ -1,5 +1,6 @@
 """Effect of the size of the balls on the numbers: converge.yaml of `slope sensitivity --converge`, for a report."""
 from pathlib import Path
+from typing import Any, List
 
 from .. import schemas
 from ..errors import SlopeError
@@ -9,6 +10,7 @@ from ..plots.figure_charts import Convergence
 from ..statistics import headline
 from ..tables.size_error import CONVERGE, WHAT
 from .charts import AXIS
+from .sections import Cell, Figures, Picture, Section, Table, marked
 
 FILE = "converge.yaml"
 PLUS = "\N{PLUS-MINUS SIGN}"
@@ -53,7 +55,15 @@ class Sizes:
         self.errors = {name: [(size["value"], size["error_percent"], size["standard_error_percent"])
                               for size in entry["sizes"]] for name, entry in entries.items()}
 
-    def pictures(self, picture):
+    def section(self, numbers):
+        return Section("sizes", "Size of the balls", [
+            Table(f"Value extrapolated to small balls by a line through runs of several values of {self.variable} "
+                  f"({self.deck}), and the error at each size, with its standard error.",
+                  ["quantity", "small balls (95 %)", f"error at {self.variable}"], self.rows(numbers), (0, 2),
+                  style=""),
+            Figures(self.pictures(), "columns")])
+
+    def pictures(self):
         """A chart for each quantity."""
         found = []
         for name, one in self.fits.items():
@@ -63,24 +73,26 @@ class Sizes:
             bars = "; bars: one standard deviation of a run" if any(one.scatter) else ""
             caption = (f"{title}: the line through the means ends at the value for small balls{interval}{bars}; "
                        f"{self.runs} runs of {self.deck}.")
-            found.append(picture(figure_charts.convergence(one, AXIS.get(self.variable, self.variable),
+            found.append(Picture(figure_charts.convergence(one, AXIS.get(self.variable, self.variable),
                                                            f"{what} ({unit})", title), title, caption))
         return found
 
     def rows(self, numbers):
-        """For a table: quantity, unit, value for small balls with interval, and the error at each size."""
-        found = []
+        """Of the table: quantity, value for small balls with interval, and the error at each size."""
+        found: List[List[Any]] = []
         for name, one in self.fits.items():
             what, unit = self.about[name]
             half = None if one.low is None else (one.high - one.low) / 2
             step = headline.place(half / 2) if half else headline.place_of_digits(one.small)
             small = headline.text(one.small, step) + (f" {PLUS} {headline.text(half, step)}" if half else "")
             numbers.rows.append((f"small balls: {what}", unit, "", headline.text(one.small, step), one.small))
-            errors = [f"{size:g}: " + ("unknown" if error is None else f"{error:+.1f} %" + (
-                f" {PLUS} {deviation:.1f}" if deviation is not None else "")) for size, error, deviation in
-                self.errors[name]]
-            note = "" if one.supported is not False else "the line is not supported by its runs"
-            found.append({"what": what, "unit": unit, "small": small, "errors": errors, "note": note})
+            errors = "; ".join(
+                f"{size:g}: " + ("unknown" if error is None else f"{error:+.1f} %" + (
+                    f" {PLUS} {deviation:.1f}" if deviation is not None else ""))
+                for size, error, deviation in self.errors[name])
+            if one.supported is False:
+                errors += "; " + marked("the line is not supported by its runs", "status doubt")
+            found.append([Cell(what, unit), small, errors])
         return found
 
 

@@ -49,7 +49,7 @@ def write(asked: Asked, output: Path) -> List[str]:
     for path, text in {output: html, **tables, **films}.items():
         disk.write(path, text)
     view = ", a 3-D view" if 'id="scene"' in html else ""
-    written = (f"{output}: {len(html) / 1e6:.1f} MB, {page.pictures} pictures{view}; "
+    written = (f"{output}: {len(html) / 1e6:.1f} MB, {html.count('<figure')} pictures{view}; "
                f"{', '.join(map(str, [*tables, *films]))}")
     return [written, *([f"note: {page.film.text}"] if page.film.text and not films else []),
             *(f"{'WARNING' if level == WARNING else level}: {text}" for level, text in page.warnings)]
@@ -89,14 +89,12 @@ def typeset(value):
 def templates(more=Path()):
     """Those beside this file, of the 3-D view and in one more folder, each compiled once."""
     import jinja2
-    import markupsafe
     from ..animation import view
+    from . import sections
     loader = jinja2.FileSystemLoader([Path(__file__).parent, view.HERE, more])
     environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True,
                                      undefined=jinja2.StrictUndefined, finalize=typeset)
-    environment.filters.update(verbatim=markupsafe.escape, percent=lambda value: f"{100 * value:.1f} %",
-                               signed=lambda value: f"{'-' if value < 0 else '+'} {abs(value):,.10g}",
-                               fixed=lambda value, digits=1: f"{value:,.{digits}f}")
+    environment.filters.update(verbatim=sections.verbatim, kind=sections.kind, cell=sections.cell)
     return environment
 
 

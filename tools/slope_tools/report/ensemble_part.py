@@ -1,27 +1,48 @@
-"""What a report shows of an ensemble: how likely the volume is exceeded, which variables matter, maps over all runs."""
+"""What a report shows of an ensemble, by its distributions and as known events weigh it: curves, tables, maps."""
 import csv
 from typing import Any, Dict, List, Mapping, Optional, Sequence
 
 import numpy as np
 
 from ..drawing import figures, palettes
-from ..ensembles import ensemble
+from ..ensembles import ensemble, known_events
 from ..errors import SlopeError
+from ..findings import texts
+from ..mobility.results import percent
 from ..plots import ensemble_charts, figure_maps
 from ..statistics import emulator
 from ..tables import quantities, withheld_words
 from .charts import AXIS
 from .data import is_number
+from .sections import Cell, Figures, Picture, Section, Table, Text
 
 MOST_SCATTER = 4        # variables with a chart of the runs against them
 ODDS = [0.0, 0.05, 0.2, 0.4, 0.6, 0.8, 1.0]
+SHARES = ("50 %", "90 %", "95 %", "99 %")
+
+
+def answer(data, numbers) -> Optional[Dict[str, Any]]:
+    """For the card on top: of the known events where these weigh the runs, else of the runs; None of other studies."""
+    if not (data.study or {}).get("ensemble"):
+        return None
+    mine = Ensemble(data, numbers).answer()
+    known = KnownEvents(data, numbers).answer() if data.study["ensemble"].get("known_events") else None
+    return {**known, "withheld": []} if known and not (mine or {}).get("withheld") else mine
+
+
+def sections(data, numbers, maps) -> List[Section]:
+    """Of an ensemble; maps: a maps_part.Maps."""
+    if not (data.study or {}).get("ensemble"):
+        return []
+    known = [KnownEvents(data, numbers).section(maps)] if data.study["ensemble"].get("known_events") else []
+    return [*known, Ensemble(data, numbers).section(maps)]
 
 
 class Ensemble:
-    """Of a data.Data whose study is an ensemble; numbers writes and keeps them, picture makes the template's."""
+    """Of a data.Data whose study is an ensemble; numbers writes and keeps them."""
 
-    def __init__(self, data, numbers, picture):
-        self.data, self.numbers, self.picture = data, numbers, picture
+    def __init__(self, data, numbers):
+        self.data, self.numbers = data, numbers
         self.about: Mapping[str, Any] = data.study["ensemble"]
         self.of = self.about["of"]
         self.entry = self.about["quantities"].get(self.of) if self.of else None
@@ -58,10 +79,10 @@ class Ensemble:
         return (f"An ensemble of {design['points']} points ({design['kind']}, seed {design['seed']}), "
                 f"{self.about['finished']} runs: {distributions}. It is only as good as these distributions.")
 
-    def content(self):
-        """What the template takes."""
-        return {"answer": self.answer(), "curve": self.curve(), "indices": self.indices(), "scatter": self.scatter(),
-                "table": self.table(), "names": list(self.about["design"]["variables"]), "maps": self.maps()}
+    def section(self, maps) -> Section:
+        return Section("ensemble", "How likely, and what matters", [
+            Figures([self.curve()], "two-thirds"), Figures(self.indices(), "columns"), self.table(),
+            Figures(self.scatter(), "columns"), Figures(draw(self.data, self.about["maps"], maps), "columns")])
 
     # --- charts ---
 
@@ -75,15 +96,15 @@ class Ensemble:
         quantiles = [ensemble_charts.Quantile(*(one[key] for key in ("share", "value", "low", "high")))
                      for one in self.entry["quantiles"]]
         title = f"Hazard curve: {self.entry['name']}"
-        return self.picture(
+        return Picture(
             ensemble_charts.hazard_curve(points[0], points[1], points[2], points[3], quantiles,
                                          f"{self.entry['name']} ({self.entry['unit']})", title),
             title, f"The hazard curve: share of the runs in which the quantity is larger, with its "
             f"{100 * self.about['confidence']:g} % bounds; dots: what 50, 90, 95 and 99 % of the runs stay within.")
 
-    def indices(self) -> List[Dict[str, str]]:
+    def indices(self) -> List[Picture]:
         """A chart for each quantity whose emulator says something, the one that counts first, three at most."""
-        found: List[Dict[str, str]] = []
+        found: List[Picture] = []
         for name, entry in self.about["influence"].items():
             variables = entry["variables"]
             if len(found) == 3 or any(one["total"] is None for one in variables.values()):
@@ -92,8 +113,8 @@ class Ensemble:
             bars = [ensemble_charts.Bar(key, *(one[part] for part in emulator.SIGN)) for key, one in variables.items()]
             text = entry["text"] if "text" in entry else entry["told"]      # the latter in older files
             title = f"What matters: {what}"
-            found.append(self.picture(ensemble_charts.influence(bars, title), title,
-                                      f"Sobol indices for {what}, with the error of the total ones; {text}."))
+            found.append(Picture(ensemble_charts.influence(bars, title), title,
+                                 f"Sobol indices for {what}, with the error of the total ones; {text}."))
         return found
 
     def scatter(self):
@@ -111,47 +132,110 @@ class Ensemble:
             title = f"{what[0].upper()}{what[1:]} against {name}"
             uri = ensemble_charts.against([float(row["set"][name]) for row in rows], [row[self.of] for row in rows],
                                           AXIS.get(name, name), f"{what} ({self.entry['unit']})", title)
-            found.append(self.picture(uri, title, f"{title}: a dot for each run; rank correlation "
-                                                  f"{variables[name]['rank']:+.2f}."))
+            found.append(Picture(uri, title, f"{title}: a dot for each run; rank correlation "
+                                             f"{variables[name]['rank']:+.2f}."))
         return found
 
     def table(self):
-        """Rows of quantities: quantiles, and the variables' indices."""
-        rows = []
+        """Of the quantities: quantiles, and the variables' indices."""
+        names, rows = list(self.about["design"]["variables"]), []
         for name, entry in self.about["quantities"].items():
             found = self.about["influence"].get(name)
             cells = [quantities.number(one["value"]) for one in entry["quantiles"]]
             of_variables = []
-            for key in self.about["design"]["variables"]:
+            for key in names:
                 one = found and found["variables"][key]
                 of_variables.append("" if not one else f"rank {one['rank']:+.2f}" if one["total"] is None else
                                     indices_text(one))
             check = found and found["emulator"]
-            rows.append({"what": entry["name"], "unit": entry["unit"], "cells": cells, "variables": of_variables,
-                         "explains": "" if not check else f"{100 * max(0, check['explained']):.0f} %",
-                         "doubt": bool(check) and check["verdict"] != "good"})
-        return rows
+            explains = Cell(f"{100 * max(0, check['explained']):.0f} %",
+                            style="" if check["verdict"] == "good" else "doubt") if check else ""
+            rows.append([Cell(entry["name"], entry["unit"]), *cells, *of_variables, explains])
+        return Table("The values that the given share of the runs stay within; for each variable its Sobol indices, "
+                     "first order / total \N{PLUS-MINUS SIGN} the error of the total one, or its rank correlation "
+                     "where the emulator is bad. Explained: the share of the variance of left-out runs that the "
+                     "emulator predicts.",
+                     ["quantity", *SHARES, *names, "explained"], rows)
 
-    # --- maps ---
 
-    def maps(self):
-        """How likely the mass is there, and what 90 % of the runs stay within."""
-        found = []
-        for entry in self.about["maps"]:
-            if self.shown(entry):
-                values = self.data.read_map(entry["file"])
-                if (values > 0).any():
-                    found.append((entry, values))
-        return found
+class KnownEvents:
+    """Of a data.Data whose ensemble was made with --known; numbers writes and keeps them."""
 
-    @staticmethod
-    def shown(entry):
-        """Which of the maps are on the page; the others are files."""
-        if "threshold" in entry:
-            return entry["raster"] in ("thickness", "max_speed", "arrival") and (
-                entry["threshold"] > 0 or entry["raster"] == "arrival")
-        return entry["quantile"] == 0.9 and entry["raster"] != "thickness"
+    def __init__(self, data, numbers):
+        self.data, self.numbers = data, numbers
+        whole = data.study["ensemble"]
+        self.about: Mapping[str, Any] = whole["known_events"]
+        self.of, self.confidence = whole["of"], whole["confidence"]
+        self.entry = (self.about.get("quantities") or {}).get(self.of)
 
+    def section(self, maps) -> Section:
+        reached = self.about["reached"] is not None
+        lines = [*([known_events.summary(self.about)] if reached else []), *texts(self.about["doubts"])]
+        blocks: List[Any] = [Text(f"{text[0].upper()}{text[1:]}.") for text in lines]
+        if reached:
+            curve = self.curve()
+            blocks += [*([Figures([curve], "two-thirds")] if curve else []), *self.tables()]
+        return Section("known-events", "Weighted by known events", [
+            *blocks, Figures(draw(self.data, self.about["maps"], maps) if reached else [], "columns")])
+
+    def number(self, what: str, unit: str, value: Optional[float]) -> str:
+        return "unknown" if value is None else self.numbers(f"known events: {what}", unit, value)
+
+    def answer(self):
+        """For the card on top, instead of that of the runs as their distributions have them."""
+        if not self.entry or self.about["reached"] is None:
+            return None
+        what, unit = self.entry["name"], self.entry["unit"]
+        parts = []
+        for one in self.entry["quantiles"]:
+            share = f"{100 * one['share']:g} % of known events stay within"
+            bounds = [None if one[side] is None else self.number(f"{share}, {side}", unit, one[side])
+                      for side in ("low", "high")]
+            note = band(bounds, unit, self.confidence)
+            parts.append({"number": self.number(share, unit, one["value"]), "what": share, "note": note,
+                          "unit": "" if one["value"] is None else unit})
+        shown = next((part for part, one in zip(parts, self.entry["quantiles"]) if one["share"] == 0.9), parts[-1])
+        return {"title": f"{what[0].upper()}{what[1:]}: 90 % of known events stay within", "number": shown["number"],
+                "unit": shown["unit"], "parts": parts, "band": shown["note"],
+                "note": f"The runs reach {percent(self.about['reached'])} of the known events of this volume and "
+                        f"height, and weighted by them say as much as {self.about['effective']:.0f} runs."}
+
+    def curve(self):
+        """The weighted hazard curve."""
+        points = read_curve(self.data.folder / known_events.HAZARD, self.of) if self.entry else None
+        if points is None or not self.entry:
+            return None
+        named = [ensemble_charts.Quantile(*(one[key] for key in ("share", "value", "low", "high")))
+                 for one in self.entry["quantiles"] if one["value"] is not None]
+        title = f"Hazard curve by known events: {self.entry['name']}"
+        uri = ensemble_charts.hazard_curve(points[0], points[1], points[2], points[3], named,
+                                           f"{self.entry['name']} ({self.entry['unit']})", title, "known events")
+        return Picture(uri, title, "The weighted hazard curve: share of known events in which the quantity is "
+                       f"larger, with its {100 * self.confidence:g} % bounds. What the runs do not reach is not "
+                       "shared out: known events beyond the longest run exceed every value.")
+
+    def tables(self) -> List[Table]:
+        """Quantiles of all quantities; which parameters the weighted runs have, and how the first depends on them."""
+        quantiles = [[Cell(entry["name"], entry["unit"]),
+                      *("?" if one["value"] is None else quantities.number(one["value"]) for one in entry["quantiles"])]
+                     for entry in self.about["quantities"].values()]
+        indices = (self.about.get("influence") or {}).get(self.of, {}).get("variables", {})    # none in older files
+        rows = []
+        for name, entry in self.about["variables"].items():
+            rank, one = entry["rank"].get(self.of), indices.get(name)
+            rows.append([name, *map(str, entry["quantiles"]), "-" if rank is None else f"{rank:+.2f}",
+                         indices_text(one) if one and one["total"] is not None else "-"])
+        return [] if not quantiles else [
+            Table("The values that the given share of known events stay within. \"?\": they go beyond the runs.",
+                  ["quantity", *SHARES], quantiles),
+            Table("The parameters of the weighted runs: the values that 5, 50 and 95 % of the weight stay within; the "
+                  "weighted rank correlation of the quantity on top, and its Sobol indices, first order / total "
+                  "\N{PLUS-MINUS SIGN} the error of the total one. Weighted, the parameters depend on each other: what "
+                  "two of them share is in the first index of both and in the total one of neither.",
+                  ["parameter", "5 %", "50 %", "95 %", "rank", "indices"], rows)]
+
+
+# --- of both ---
 
 def band(bounds: Sequence[Optional[str]], unit: str, confidence: float) -> str:
     """The lower and the upper bound (None: unknown), each with its unit."""
@@ -180,11 +264,22 @@ def read_curve(path, quantity: str):
         raise SlopeError(path, f"must be what `slope study --sample` wrote ({error!r})") from error
 
 
-def draw(entries, maps):
-    """The pictures of (entry, values), by a maps_part.Maps."""
+def shown(entry) -> bool:
+    """Which of the maps are on the page; the others are files."""
+    if "threshold" in entry:
+        return entry["raster"] in ("thickness", "max_speed", "arrival") and (
+            entry["threshold"] > 0 or entry["raster"] == "arrival")
+    return entry["quantile"] == 0.9 and entry["raster"] != "thickness"
+
+
+def draw(data, entries, maps) -> List[Picture]:
+    """How likely the mass is there, and what 90 % of the runs stay within, where that is anything."""
     pictures = []
     layers = maps.layers._replace(section=None)
-    for entry, values in entries:
+    for entry in filter(shown, entries):
+        values = data.read_map(entry["file"])
+        if not (values > 0).any():
+            continue
         what = entry["what"]
         title = f"{what[0].upper()}{what[1:]}"
         if "threshold" in entry:
@@ -194,7 +289,7 @@ def draw(entries, maps):
             colours = palettes.BY_RASTER[entry["raster"]]
             uri = figure_maps.value_map(layers, values, title, f"({entry['unit']})", bounds, colours, mask=values > 0)
         bands = f" Its bounds are bands of {entry['bounds']}." if entry["bounds"] else ""
-        pictures.append(maps.picture(uri, title, f"{title}.{bands}"))
+        pictures.append(Picture(uri, title, f"{title}.{bands}"))
     return pictures
 
 

@@ -3,23 +3,27 @@ from ..drawing.figures import HALF
 from ..plots import figure_charts
 from ..plots.figure_charts import Series
 from ..tables.intensity import percent
+from .sections import Figures, Picture, Section, Table
 
 AXIS = {"peak": "peak acceleration (gal)", "pga": "peak acceleration (gal)"}
 MOST_CURVES = 4         # probabilities in the chart
 
 
-def content(data, numbers, picture):
-    """For the template: heads and rows of the table, and the two charts; None without an intensity."""
+def section(data, numbers):
+    """The table and the two charts of a data.Data; None without an intensity."""
     about = (data.study or {}).get("intensity")
     if not about:
         return None
     name = about["variable"]
-    pictures = [volumes(data, about, picture)]
+    pictures = [volumes(data, about)]
     if about["more_than_m3"]:
-        pictures.append(exceedance(about, picture))
-    return {"variable": AXIS.get(name, name), "others": list(about["lines"][0]["set"]),
-            "volumes": [f"{volume:,.6g}" for volume in about["more_than_m3"]], "rows": rows(about, numbers),
-            "confidence": percent(about["confidence"]), "charts": pictures}
+        pictures.append(exceedance(about))
+    heads = [*about["lines"][0]["set"], AXIS.get(name, name), "runs", "mean", "smallest", "largest", "of the released",
+             *(f"P(V > {volume:,.6g})" for volume in about["more_than_m3"])]
+    return Section("intensity", "Volume on the road against the intensity", [
+        Table("Volumes on the road, m3 of ground, and the probability that a volume is exceeded: the share of the "
+              f"equivalent runs, with its {percent(about['confidence'])} confidence interval.", heads,
+              rows(about, numbers), ()), Figures(pictures, "columns")])
 
 
 def rows(about, numbers):
@@ -34,8 +38,7 @@ def rows(about, numbers):
             cells.append(f"{100 * point['share_of_released']:.2g} %")
             cells += [f"{percent(one['probability'])} ({percent(one['low'])} to {percent(one['high'])})"
                       for one in point["exceed"]]
-            found.append({"set": list(line["set"].values()), "at": f"{point['at']:g}", "runs": point["runs"],
-                          "cells": cells})
+            found.append([*line["set"].values(), f"{point['at']:g}", point["runs"], *cells])
     return found
 
 
@@ -44,7 +47,7 @@ def rest_of(line, about):
     return ", ".join(f"{other} {value}" for other, value in line["set"].items() if len(about["lines"]) > 1)
 
 
-def volumes(data, about, picture):
+def volumes(data, about):
     """The volume on the road against the intensity: runs and means, without a common scatter."""
     name, series = about["variable"], []
     for line in about["lines"]:
@@ -52,11 +55,11 @@ def volumes(data, about, picture):
         series.append(Series(rest_of(line, about), [float(row["set"][name]) for row in mine],
                              [row[about["quantity"]] for row in mine]))
     title = "Volume on the road"
-    return picture(figure_charts.chart(series, AXIS.get(name, name), "on the road (m3)", title, width=HALF), title,
+    return Picture(figure_charts.chart(series, AXIS.get(name, name), "on the road (m3)", title, width=HALF), title,
                    f"{title} against {name}; dots: runs, larger dots: their means.")
 
 
-def exceedance(about, picture):
+def exceedance(about):
     """P(V > v) against the intensity, a line for each volume and each combination of the other variables."""
     series = []
     for line in about["lines"]:
@@ -72,5 +75,5 @@ def exceedance(about, picture):
     shown = series[:MOST_CURVES]
     if len(shown) < len(series):
         caption += f" The first {MOST_CURVES} of {len(series)} curves."
-    return picture(figure_charts.chart(shown, AXIS.get(about["variable"], about["variable"]),
+    return Picture(figure_charts.chart(shown, AXIS.get(about["variable"], about["variable"]),
                                        "share of the runs (-)", title, width=HALF), title, caption)

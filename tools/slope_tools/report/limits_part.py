@@ -8,14 +8,19 @@ from ..digits import rounded
 from ..errors import SlopeError
 from ..statistics import headline
 from ..tables.quantities import STOP
+from . import mobility_part
+from .sections import Pairs, Section
 
 CONTENT = List[Tuple[str, str]]
 RESISTANCE = "Resistance of the ground"
 
 
-def content(data, ground, numbers) -> CONTENT:
-    """(what, sentences) of the shown run and of its study."""
-    return [*uncertainty(data, numbers), ("Varied", varied(data)), *resistance(data, ground, numbers), *model(data)]
+def section(data, ground, numbers) -> Section:
+    """Of the shown run and of its study."""
+    return Section("limits", "", [Pairs(
+        [*mobility_part.content(data, ground, numbers), *uncertainty(data, numbers), ("Varied", varied(data)),
+         *resistance(data, ground, numbers), *model(data)],
+        "How uncertain these numbers are, and what is not in them", "limits")])
 
 
 def resistance(data, ground, numbers) -> CONTENT:

@@ -9,6 +9,8 @@ from ..plots import figure_maps, known_reach
 from ..plots.ground import box_of
 from ..survey.rasters import crs_name
 from . import mobility_part
+from .run_part import titled
+from .sections import Figures, Picture, Section, Text
 
 OPEN = " The last class is open: it holds the few thicker cells, most of them in the release."
 
@@ -18,10 +20,10 @@ def square(area: float) -> str:
 
 
 class Maps:
-    """Draws maps; picture(uri, alt, caption) makes what the template takes."""
+    """Draws maps."""
 
-    def __init__(self, data, ground, section, picture):
-        self.data, self.ground, self.picture = data, ground, picture
+    def __init__(self, data, ground, section):
+        self.data, self.ground = data, ground
         crs = ground.raster.crs
         self.crs = crs_name(crs) if crs is not None else ""
         line = section.points
@@ -37,7 +39,7 @@ class Maps:
         more = f" Less than {bounds[0]:g} m is not drawn."
         if len(bounds) > 2 and bounds[-1] > 2 * bounds[-2]:
             more += OPEN
-        return self.picture(
+        return Picture(
             figure_maps.value_map(layers or self.layers, values, title, "thickness (m)", bounds, palettes.THICKNESS,
                                   width, self.crs), alt, caption + more)
 
@@ -48,18 +50,18 @@ class Maps:
         """The maps of the shown run, by name."""
         data, ground, layers, one = self.data, self.ground, self.layers, self.data.result
         whole = geometry.extent(layers.raster)
-        found = {"slip": None, "speed": None, "arrival": None}
+        found: Dict[str, Any] = {"slip": None, "speed": None, "arrival": None}
         found["deposit"] = self.thickness(
             one.thickness, "Thickness of the deposit at the end", "Map of the deposit's thickness at the end",
             f"Final thickness, {digits.three(one.deposit.cell)} m cells."
             + ("" if not data.study else f" Run {data.number(one.name)} of the appendix.")
             + known_reach.words(ground.reach), figures.FULL)
-        found["terrain"] = self.picture(
+        found["terrain"] = Picture(
             figure_maps.terrain_map(layers._replace(shown=whole), layers.shown, self.crs), "Map of the terrain before",
             "Terrain before the collapse, light from the north-west"
             + ("; the black frame is the part that the other maps show." if layers.shown != whole else "."))
         if ground.slip_depth.max() > 0:
-            found["slip"] = self.picture(
+            found["slip"] = Picture(
                 figure_maps.value_map(layers._replace(ground=ground.base), ground.slip_depth, "Slip surface",
                                       "depth below the ground (m)", figures.classes_of(ground.slip_depth),
                                       palettes.DEPTH),
@@ -70,18 +72,29 @@ class Maps:
             "Largest thickness that a cell ever had.")
         speed = ground.max_speed
         if (speed > 0).any():
-            found["speed"] = self.picture(
+            found["speed"] = Picture(
                 figure_maps.value_map(layers, speed, "Largest speed", "speed (m/s)",
                                       figures.even_to_most(speed[speed > 0]), palettes.SPEED, mask=speed > 0),
                 "Map of the largest speed", "Speed of the fastest ball that passed, sampled in the run.")
         known = ground.arrival[np.isfinite(ground.arrival)]
         if known.size and known.max() > 0:
-            found["arrival"] = self.picture(
+            found["arrival"] = Picture(
                 figure_maps.value_map(layers, ground.arrival, "First arrival", "time (s)",
                                       figures.even_to_most(known[known > 0]), palettes.ARRIVAL,
                                       mask=np.isfinite(ground.arrival) & ~ground.release),
                 "Map of the first arrival", "Time at which the first ball arrived.")
         return found
+
+    def section(self, of_run):
+        """The section of the maps of the shown run."""
+        crs, offset = self.ground.raster.crs, self.ground.raster.offset
+        east, north = (f"local {axis} {'-' if by < 0 else '+'} {abs(by):,.10g}" for axis, by in zip("xy", offset)) \
+            if crs is not None else ("", "")
+        return Section("maps", titled("Maps", self.data), [
+            Figures([of_run["terrain"]], "tall"),
+            Figures([of_run[name] for name in ("slip", "max_thickness", "speed", "arrival")], "columns"),
+            Text("The terrain has no coordinate reference system: coordinates are the local metres of the run."
+                 if crs is None else f"Coordinate system {self.crs}: east = {east}, north = {north}.", "soft")])
 
     def removal(self, volume):
         """Map of what `slope volume` says is to be removed; None if that is nothing. volume: of the run, as text."""
@@ -96,7 +109,7 @@ class Maps:
         squares = f", and its volume in m3 in squares of {mesh.transform.a:g} m" if numbered else ""
         more = "" if numbered else (f" The volumes in squares of {mesh.transform.a:g} m are too many to be read here: "
                                     "they are in volume/volume.csv and volume.geojson of the run.")
-        return self.picture(
+        return Picture(
             uri, "Map of the volume to remove",
             "Thickness of the deposit on the road, and beside it above a cut rising at "
             f"{road['cut_angle']:g} degrees from its edges{squares}; together {volume} m3; run: "
@@ -113,7 +126,7 @@ class Maps:
                 f" {len(data.drawn)} of the {len(data.finished)} runs are shown."
             bounds = figures.classes_of(np.array([one.thickness for one in data.drawn]),
                                         np.array([self.ground.source] * len(data.drawn)))
-            found["runs"] = self.picture(
+            found["runs"] = Picture(
                 figure_maps.small_maps(layers, [(data.label(one), one.thickness) for one in data.drawn],
                                        "thickness (m)", bounds, palettes.THICKNESS),
                 "Final thickness of the runs", "Final thickness of the runs." + some)
@@ -130,7 +143,7 @@ class Maps:
             values = data.over_all[entry["file"]]
             single = f" One ball of the model, a cube of {side:.2g} m, is much thicker than that." \
                 if side > 10 * entry["threshold_m"] else ""
-            found["exceedance"].append(self.picture(
+            found["exceedance"].append(Picture(
                 figure_maps.value_map(layers, values, f"Thicker than {entry['threshold_m']:g} m", "share of the runs",
                                       [0.0, 0.2, 0.4, 0.6, 0.8, 1.0], palettes.SHARE, mask=values > 0),
                 f"Share of the runs thicker than {entry['threshold_m']:g} m",

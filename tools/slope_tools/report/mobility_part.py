@@ -9,6 +9,7 @@ from ..mobility.landslides import NOT_OF_ROADS, Row
 from ..mobility.results import percent
 from ..studies.mapped import mass
 from ..tables.quantities import BEYOND_MAPPED as BEYOND, LENGTH, OVERLAP
+from .sections import Cell, Section, Table, Text
 
 WHAT = "Known events"
 
@@ -113,30 +114,30 @@ def mapped_sentence(data, numbers) -> str:
     return f"{text}." + (f" {lacks.text[0].upper()}{lacks.text[1:]}." if lacks else "")
 
 
-def mapped(data, numbers) -> Optional[Dict[str, Any]]:
-    """For the template: lines, and a table of the mapped deposit, the shown run, the best one and all."""
+def mapped(data, numbers) -> Optional[Section]:
+    """The section with a table of the mapped deposit, the shown run, the best one and all; None without any."""
     found = mapped_runs(data)
     if not found:
         return None
     about = data.study["observed"]
     volume, length = about["volume_m3"], about["length_m"]
     by_name = {row["run"]: row for row in found}
-    heads = [("overlap (Jaccard)", ""), ("length", "m"), ("difference", "m")]
+    heads: List[Any] = ["", Cell("overlap (Jaccard)", ""), Cell("length", "m"), Cell("difference", "m")]
     columns = [(OVERLAP, "1"), ("length_m", "m"), (BEYOND, "m")]
     if volume is not None:
-        heads += [("volume of the deposit", "m3"), ("difference", "m3")]
-    mine = ["1", numbers("length of the mapped deposit", "m", length), "-"]
+        heads += [Cell("volume of the deposit", "m3"), Cell("difference", "m3")]
+    mine = ["mapped", "1", numbers("length of the mapped deposit", "m", length), "-"]
     if volume is not None:
         mine += [numbers("volume of the mapped deposit", "m3", volume), "-"]
-    rows = [("mapped", mine)]
+    rows = [mine]
 
-    def cells(several, label):
-        texts = []
+    def row(what, several, label):
+        texts = [what]
         for key, unit in columns:
-            values = [row[key] for row in several if row[key] is not None]
+            values = [one[key] for one in several if one[key] is not None]
             texts.append(range_of(numbers, key.replace("_", " "), unit, values, label) if values else "-")
         if volume is not None:
-            kept = [row["on_grid_m3"] for row in several]
+            kept = [one["on_grid_m3"] for one in several]
             texts.append(range_of(numbers, "volume of the deposit", "m3", kept, label))
             texts.append(range_of(numbers, "volume less that of the mapped deposit", "m3",
                                   [value - volume for value in kept], label))
@@ -146,14 +147,15 @@ def mapped(data, numbers) -> Optional[Dict[str, Any]]:
     for what, name in shown if shown[0][1] != shown[1][1] else [("on the maps, best overlap", shown[0][1])]:
         if name in by_name:
             label = data.label_of(by_name[name])
-            rows.append((f"run {data.number(name)}, {what}", cells([by_name[name]], label)))
+            rows.append(row(f"run {data.number(name)}, {what}", [by_name[name]], label))
     if len(found) > 1:
-        rows.append((f"all {len(found)} runs", cells(found, "")))
+        rows.append(row(f"all {len(found)} runs", found, ""))
     lacks = mass(volume, about["released_m3"])
-    return {"lines": [f"{lacks.text[0].upper()}{lacks.text[1:]}."] if lacks else [], "heads": heads, "rows": rows,
-            "caption": "Overlap: the area that both cover over that which either covers, thicker than "
-                       f"{about['threshold_m']:g} m. Lengths are those of the table of runs; of an outline that to its "
-                       "farthest point. Negative differences: the run ends short, or holds less."}
+    return Section("mapped", "Against the mapped deposit", [
+        Text(f"{lacks.text[0].upper()}{lacks.text[1:]}.") if lacks else None,
+        Table("Overlap: the area that both cover over that which either covers, thicker than "
+              f"{about['threshold_m']:g} m. Lengths are those of the table of runs; of an outline that to its "
+              "farthest point. Negative differences: the run ends short, or holds less.", heads, rows)])
 
 
 def range_of(numbers, what, unit, values, label) -> str:

@@ -2,10 +2,9 @@
 import csv
 import io
 
-from .. import digits, disk
-from ..deposits import rest, travel_shares
-from ..mobility.results import percent
-from ..mobility.run_length import LEAST, OF_99, ON_PATH, OTHERS
+from .. import disk
+from ..deposits import travel_shares
+from ..mobility.run_length import ON_PATH
 from ..statistics import headline
 from ..tables import withheld_words
 from ..tables.quantities import ALL, KNOWN, LENGTH, REACH, written
@@ -232,46 +231,3 @@ def rest_card(data):
                 "status": status}
     return {"what": "At the end of the run", "number": f"{ends[0]['stop_time_s']:.1f}", "unit": "s", "status": status,
             "note": ends[0]["end"] + (", ended by its rest criterion" if worst is None else "")}
-
-
-# --- tables ---
-
-def travel_rows(data, numbers):
-    """Shares of the volume, the length along the fall path and the farthest ball of the shown run: distance, angle."""
-    one = data.result
-    shares = travel_shares.columns(one.summary)
-    rows = []
-    for share in travel_shares.SHARES:
-        keys = f"distance_{share}_m", f"reach_{share}_deg"
-        rows.append((f"{share} % of the volume", *(numbers(f"{share} %: {what}", unit, shares[key])
-                                                   for key, what, unit in zip(keys, ("distance", "reach angle"),
-                                                                              ("m", "degrees")))))
-    found = data.length()
-    if found is not None:
-        lobe = ("length along the fall path" if found.on_path else "straight length, as there is no fall path") + \
-            ", to the farthest lobe of at least"
-        rows.append((f"{lobe} {percent(LEAST)}", numbers("length along the fall path", "m", found.distance),
-                     numbers("length along the fall path: reach angle", "degrees", found.angle)))
-        rows += [(f"{lobe} {percent(least)}", numbers(f"length by lobes of {percent(least)}", "m", length), "")
-                 for least, length in zip(OTHERS, found.others) if abs(length - found.distance) > 1e-6]
-        rows.append(("the same as the crow flies", numbers("straight length", "m", found.straight), ""))
-        check = shares[travel_shares.DISTANCE]
-        rows.append((f"a check of it without a threshold: 99 % over {OF_99:g}",
-                     numbers(f"99 % over {OF_99:g}", "m", check and check / OF_99), ""))
-    distance, angle = farthest_of(one.summary)
-    rows.append(("the one farthest ball", numbers("farthest ball: distance", "m", distance),
-                 numbers("farthest ball: reach angle", "degrees", angle)))
-    return rows
-
-
-def balance(data, numbers):
-    """The release of the shown run, how it ended, and what else a table says of it."""
-    release = next((release for row, release in data.releases()
-                    if row["run"] in ("", data.result.name)), None)
-    one = data.result
-    state = rest.state(one.summary)
-    return {"release": release.text if release else UNKNOWN, "rest": state.text,
-            "status": "rest" if state.at_rest else "moving" if one.summary["moving"] else "doubt",
-            "energy": digits.si(one.summary["largest"]["max_energy"], "J"),
-            "front_at_release": numbers("farthest ball at release", "m", one.summary["travel"]["front_at_release"]),
-            "centroid": numbers("centroid moved", "m", one.summary["travel"]["centroid"])}

@@ -4,6 +4,8 @@ from typing import Dict, List, NamedTuple, Optional, Tuple
 from .. import schemas
 from ..errors import SlopeError
 from ..schemas import NUMBER, TEXT, mapping, named
+from ..tables import quantities
+from .sections import Cell, Section, Table, Text
 
 WHAT = "a file of reference values (see the page on `slope report`)"
 NAME = 80       # letters of a name
@@ -50,3 +52,25 @@ def quantity(entry):
                     {str(name)[:NAME]: sorted((float(x), float(y)) for x, y in points.items())
                      for name, points in entry.get("series", {}).items()},
                     {str(name)[:NAME]: float(value) for name, value in entry.get("levels", {}).items()})
+
+
+def section(reference, data, numbers):
+    """A table for each quantity, with the range of the runs' own beside it; None without a reference."""
+    if reference is None:
+        return None
+    return Section("reference", "Numbers from elsewhere", [
+        Text(f"{reference.title}.{' ' * bool(reference.remark)}{reference.remark}", "soft"),
+        *(table(key, one, data, numbers) for key, one in reference.quantities.items())])
+
+
+def table(key, one, data, numbers):
+    """Of a Quantity: its series and levels."""
+    what, unit = quantities.ALL[key].name, quantities.ALL[key].unit
+    xs = sorted({x for points in one.series.values() for x, _ in points})
+    rows = [[name, *(f"{dict(points)[x]:,.6g}" if x in dict(points) else "-" for x in xs)]
+            for name, points in one.series.items()]
+    rows += [[name, Cell(f"{value:,.6g}", span=len(xs) or 1)] for name, value in one.levels.items()]
+    low, high = (numbers(what, unit, pick(row[key] for row in data.compared)) for pick in (min, max))
+    return Table(f"{what} ({unit}){f' against {one.variable}' if one.variable else ''}; of "
+                 f"{'these runs' if data.study else 'this run'}: {low if low == high else f'{low} to {high}'}",
+                 [one.variable, *(f"{x:g}" for x in xs)] if xs else [], rows, style="keep")

@@ -1,5 +1,5 @@
 """What a report shows of a road: its blocked stretches over the runs, the lane and the hours."""
-from typing import Any, Dict, List, Optional
+from typing import Any, List, Optional
 
 from ..deposits.axis import Span
 from ..deposits.road_axis import axes_of, axis_of
@@ -7,6 +7,7 @@ from ..geometry import box_of
 from ..plots import figure_maps, known_reach
 from ..survey.roads import Asked
 from .ensemble_part import ODDS
+from .sections import Cell, Figures, Picture, Section, Table
 
 # head, unit, number of tables.road_runs
 COLUMNS = (("length", "m", "length"), ("passable", "m", "passable_width"), ("to remove", "m3", "remove"),
@@ -14,8 +15,8 @@ COLUMNS = (("length", "m", "length"), ("passable", "m", "passable_width"), ("to 
            ("until a lane is open", "h", "hours_lane"))
 
 
-def content(data, numbers, maps) -> Optional[Dict[str, Any]]:
-    """What the template takes; None where no run blocks the road, or of older studies."""
+def section(data, numbers, maps) -> Optional[Section]:
+    """Of a data.Data; None where no run blocks the road, or of older studies."""
     about = (data.study or {}).get("stretches")
     if not (about and about["stretches"]):
         return None
@@ -29,13 +30,16 @@ def content(data, numbers, maps) -> Optional[Dict[str, Any]]:
                 (5, 50, 95), one[key])) if key in one else ("", "", "")
             yield f"{middle} ({low} to {high})" if low != high else middle
 
-    lines = [(str(number), [f"{one['from']:,.1f} to {one['to']:,.1f}", *cells(one, f"stretch {number}")])
+    lines = [[str(number), f"{one['from']:,.1f} to {one['to']:,.1f}", *cells(one, f"stretch {number}")]
              for number, one in enumerate(about["stretches"], 1)]
     if len(lines) > 1:
-        lines.append(("all", ["", *cells(about["totals"], "all stretches")]))
+        lines.append(["all", "", *cells(about["totals"], "all stretches")])
     runs = "known events" if about["of_known_events"] else "runs"
-    return {"heads": [("chainage", "m"), ("blocked in", f"% of {runs}"), *((head, unit) for head, unit, _ in columns)],
-            "rows": lines, "caption": caption(asked, about, runs), "map": shares(data, asked, about, runs, maps)}
+    heads: List[Any] = ["stretch", Cell("chainage", "m"), Cell("blocked in", f"% of {runs}"),
+                        *(Cell(head, unit) for head, unit, _ in columns)]
+    return Section("road", "Blocked stretches of the road", [
+        Figures([shares(data, asked, about, runs, maps)], "tall"),
+        Table(caption(asked, about, runs), heads, lines, ())])
 
 
 def caption(asked: Asked, about, runs: str) -> str:
@@ -60,8 +64,8 @@ def shares(data, asked: Asked, about, runs: str, maps):
              for low, high, share in about["shares"] for one in axes_of(axis, asked)]
     layers = maps.layers._replace(section=None, reach=known_reach.NOTHING)
     title = "Where the road is blocked"
-    return maps.picture(figure_maps.road_map(layers, parts, ODDS, title, f"share of the {runs}", maps.crs), title,
-                        f"Share of the {runs} in which the road is blocked, at each of its places.")
+    return Picture(figure_maps.road_map(layers, parts, ODDS, title, f"share of the {runs}", maps.crs), title,
+                   f"Share of the {runs} in which the road is blocked, at each of its places.")
 
 
 def on_first_page(data, numbers, withheld: bool) -> List[str]:

@@ -8,7 +8,7 @@ from .. import digits
 from ..findings import Finding
 from ..plots import figure_structures
 from ..tables import structures
-
+from .sections import Cell, Figures, Picture, Section, Table, Text
 
 FEW = 5             # balls: a structure that is lower is hit by one after another, not by a mass
 LENGTHWISE = "mean_force_n_m"       # the largest lasting force per metre of the structure
@@ -26,28 +26,42 @@ COLUMNS = {
               ("largest energy", "J", "largest_energy_j"))}
 PREFIXED = ("N", "N/m", "N s", "N m", "Pa", "J")     # units that are written with a prefix, beside each number
 
+CAPTIONS = {
+    "structures": "Loads on the structures. A mean over time is that of the mass; the largest force and pressure come "
+                  "from single impacts of the model's balls. The force at the end depends on how the mass came to "
+                  "rest: about 0.5 times the pressure of a fluid of the same weight where it stood before most of its "
+                  "weight came or where the structure gives way, 0.7 to 0.9 where it sank or fell into place, near 3 "
+                  "(the passive pressure) where the mass was stopped by it; it scatters by tens of per cent from run "
+                  "to run where few balls touch.",
+    "lines": "What crossed the lines, forward and back; volumes in m3 of ground. Times and quantiles are of the "
+             "crossings in the direction in which more crossed, each ball with the same weight."}
+
 
 class Structures:
-    """Draws what hit the structures of a data.Data, and what crossed its lines; picture makes the template's."""
+    """Draws what hit the structures of a data.Data, and what crossed its lines."""
 
-    def __init__(self, data, numbers, picture, ground):
-        self.data, self.numbers, self.picture, self.ground = data, numbers, picture, ground
+    def __init__(self, data, numbers, ground):
+        self.data, self.numbers, self.ground = data, numbers, ground
         self.lengths = lengths(ground.obstacles)
         self.runs = data.drawn
 
-    def content(self):
-        """For the template; None without any."""
+    def section(self):
+        """None without any."""
         walls = self.by_name("wall/gran/mesh")
         lines = self.by_name("control/line")
         if not walls and not lines:
             return None
         scatter = structures.scatter_at_rest(self.data.finished) if self.data.study else {}
-        return {"points": self.points(), "coarse": self.coarse(),
-                "scatter": [f"{name}: {100 * share:.2g} % over {runs} runs" for name, (share, runs) in scatter.items()],
-                "structures": self.table("structures"), "lines": self.table("lines"),
-                "forces": [self.forces(name, found) for name, found in walls.items()],
-                "pressures": [one for one in map(self.pressures, self.mine("wall/gran/mesh").items()) if one],
-                "energies": [one for one in (self.energies(name, found) for name, found in lines.items()) if one]}
+        shares = "; ".join(f"{name}: {100 * share:.2g} % over {runs} runs" for name, (share, runs) in scatter.items())
+        points, coarse = "; ".join(self.points()), "; ".join(one.text for one in coarse_walls(self.data, self.ground))
+        more = f" Moments are about (local x y z, m): {points}." * bool(points) + f" {coarse}." * bool(coarse)
+        return Section("structures", "Structures and control lines", [
+            self.table("structures", more), self.table("lines"),
+            Text("Scatter of the force at the end between runs that differ by chance alone: "
+                 f"{shares}.") if shares else None,
+            Figures([self.forces(name, found) for name, found in walls.items()], "columns"),
+            Figures([self.pressures(one) for one in self.mine("wall/gran/mesh").items()], "tall"),
+            Figures([self.energies(name, found) for name, found in lines.items()], "columns")])
 
     def points(self) -> List[str]:
         """The reference points of the moments, as the commands of the shown run have them."""
@@ -57,10 +71,6 @@ class Structures:
                 at = words.index("point") + 1
                 found.append(f"{words[1]} {' '.join(digits.place(float(word)) for word in words[at:at + 3])}")
         return found
-
-    def coarse(self) -> List[str]:
-        """Structures that are not several of the shown run's balls high, with what that means."""
-        return [one.text for one in coarse_walls(self.data, self.ground)]
 
     def mine(self, style):
         return structures.outputs(self.data.result.log.settings, style)
@@ -76,9 +86,9 @@ class Structures:
     def label(self, run):
         return self.data.label(run) if len(self.runs) > 1 else ""
 
-    def table(self, what):
-        """Heads and rows over the runs; None where no run has any."""
-        rows = []
+    def table(self, what, more=""):
+        """Over the runs; None where no run has any."""
+        rows, study = [], self.data.study
         each = [(self.data.number(row["run"]), self.data.label_of(row), row.get(what) or {})
                 for row in self.data.finished] or [
             ("", "", structures.of_run(self.data.result.folder, self.data.result.log.settings)[what])]
@@ -89,9 +99,10 @@ class Structures:
                     numbers = {**numbers, LENGTHWISE: length and numbers["mean_force_n"] / length}
                 cells = [self.cell(f"{name}: {head}", unit, numbers.get(key), label)
                          for head, unit, key in COLUMNS[what]]
-                rows.append({"run": number, "name": name, "cells": cells})
-        heads = [(head, "" if unit in PREFIXED else unit) for head, unit, _ in COLUMNS[what]]
-        return {"heads": heads, "rows": rows} if rows else None
+                rows.append([*([number] if study else []), name, *cells])
+        heads = [*(["run"] if study else []), what[:-1],
+                 *(Cell(head, "" if unit in PREFIXED else unit) for head, unit, _ in COLUMNS[what])]
+        return Table(CAPTIONS[what] + more, heads, rows, (len(heads) - len(COLUMNS[what]) - 1,)) if rows else None
 
     def cell(self, what, unit, value, label):
         """A number of the table, with its unit where that has a prefix."""
@@ -109,9 +120,9 @@ class Structures:
         factor, prefix = digits.prefix(max((force.max(initial=0) for _, _, force in curves)))
         curves = [(label, time, force / factor) for label, time, force in curves]
         title = f"Force on {name}"
-        return self.picture(figure_structures.curves(curves, "time (s)", f"force ({prefix}N)", title), title,
-                            f"{title}, its mean over the preceding {structures.WINDOW:g} s. Single impacts depend on "
-                            "the size of the model's balls; the table has the largest.")
+        return Picture(figure_structures.curves(curves, "time (s)", f"force ({prefix}N)", title), title,
+                       f"{title}, its mean over the preceding {structures.WINDOW:g} s. Single impacts depend on "
+                       "the size of the model's balls; the table has the largest.")
 
     def pressures(self, item):
         """The map of the largest pressure on a structure of the shown run; None where nothing touched it."""
@@ -126,10 +137,10 @@ class Structures:
         top = int(pressure.argmax())
         one, other = corners[top, 1] - corners[top, 0], corners[top, 2] - corners[top, 0]
         area = digits.three(0.5 * float(np.linalg.norm(np.cross(one, other))))
-        return self.picture(figure_structures.pressure_map(corners, pressure, direction, title), title,
-                            f"{title}, of each triangle at any time, seen along the load; grey: never touched. Force "
-                            f"of the model's balls in one step over the triangle's area: {area} m2 where it is "
-                            "largest. Smaller triangles and larger balls make it larger.")
+        return Picture(figure_structures.pressure_map(corners, pressure, direction, title), title,
+                       f"{title}, of each triangle at any time, seen along the load; grey: never touched. Force "
+                       f"of the model's balls in one step over the triangle's area: {area} m2 where it is "
+                       "largest. Smaller triangles and larger balls make it larger.")
 
     def energies(self, name, found):
         """Share of the crossings of a line with more than an energy, of each run, in the direction of the mass."""
@@ -146,10 +157,10 @@ class Structures:
         factor, prefix = digits.prefix(max(energy[-1] for _, energy, _ in curves))
         curves = [(label, energy / factor, share) for label, energy, share in curves]
         title = f"Energies at the line {name}"
-        return self.picture(figure_structures.curves(curves, f"energy of a ball ({prefix}J)", "share with more (-)",
-                                                     title, falling=True), title,
-                            f"{title}: share of the crossings with more than an energy (translation and rotation), in "
-                            "the direction in which more crossed.")
+        return Picture(figure_structures.curves(curves, f"energy of a ball ({prefix}J)", "share with more (-)",
+                                                title, falling=True), title,
+                       f"{title}: share of the crossings with more than an energy (translation and rotation), in "
+                       "the direction in which more crossed.")
 
 
 def coarse_walls(data, ground) -> List[Finding]:

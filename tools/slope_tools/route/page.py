@@ -1,7 +1,7 @@
 """The report on a route: the corridor with its road in the colours of the chance, and tables by stretch and by body."""
 import math
 from pathlib import Path
-from typing import Any, Dict, Iterator, List, Mapping
+from typing import Any, Iterator, List, Mapping
 
 import numpy as np
 from matplotlib.collections import LineCollection
@@ -12,6 +12,7 @@ from ..deposits.axis import Axis, Span
 from ..drawing import figures, maps, palettes
 from ..drawing.figures import plt
 from ..report import document
+from ..report.sections import Picture, Section, Table
 from ..statistics import hazard
 from ..survey.rasters import crs_name
 from .choices import Choices
@@ -50,7 +51,7 @@ def write(choices: Choices, corridor: Corridor, folder: Path, found: Mapping[str
         "made": provenance.now(), "mark": document.mark(folder), "how": how(choices),
         "sentences": [f"{text[0].upper()}{text[1:]}." for text in sentences(found)],
         "warnings": list(doubts(choices, found)), "maps": list(drawn(corridor, found, yearly)),
-        "tables": [stretches(found, yearly), bodies(found, yearly), left_out(found)],
+        "sections": [stretches(found, yearly), bodies(found, yearly), left_out(found)],
         "footer": f"{document.MADE_BY.replace('report', 'route')}, SLOPE {provenance.version()}; all numbers: "
                   "results.yaml, stretches.csv, bodies.csv, pieces.csv; who hits what: governing.tif, route.gpkg"}
     for line in content["warnings"]:
@@ -79,17 +80,19 @@ def doubts(choices: Choices, found: Mapping[str, Any]) -> Iterator[str]:
                "there")
 
 
-def drawn(corridor: Corridor, found: Mapping[str, Any], yearly: bool) -> Iterator[Dict[str, str]]:
+def drawn(corridor: Corridor, found: Mapping[str, Any], yearly: bool) -> Iterator[Picture]:
     """Maps of the corridor, of at most ALONG of its road each."""
     length = corridor.axis.length
     number = max(1, math.ceil(length / ALONG))
     for k in range(number):
         low, high = length * k / number, length * (k + 1) / number
         part = substring(corridor.axis, low, high)
-        yield {"uri": map_of(corridor, found, yearly, part.bounds, Span(corridor.start + low, corridor.start + high)),
-               "caption": f"km {km(corridor.start + low)} to {km(corridor.start + high)}. The road in the colours of "
-               + ("how often per year it is blocked" if yearly else "the largest share of a body's runs that block it")
-               + "; white: no run does, which so few runs may miss. Bodies with their numbers; hollow: left out."}
+        yield Picture(
+            map_of(corridor, found, yearly, part.bounds, Span(corridor.start + low, corridor.start + high)),
+            "map of the corridor", f"km {km(corridor.start + low)} to {km(corridor.start + high)}. The road in the "
+            "colours of "
+            + ("how often per year it is blocked" if yearly else "the largest share of a body's runs that block it")
+            + "; white: no run does, which so few runs may miss. Bodies with their numbers; hollow: left out.")
 
 
 def map_of(corridor: Corridor, found: Mapping[str, Any], yearly: bool, bounds, along: Span) -> str:
@@ -122,8 +125,8 @@ def map_of(corridor: Corridor, found: Mapping[str, Any], yearly: bool, bounds, a
 
 # --- tables ---
 
-def table(title: str, heads: List[str], rows: List[List[Any]], caption: str) -> Dict[str, Any]:
-    return {"id": title.lower().replace(" ", "_"), "title": title, "heads": heads, "rows": rows, "caption": caption}
+def table(title: str, heads: List[str], rows: List[List[Any]], caption: str) -> Section:
+    return Section(title.lower().replace(" ", "_"), title, [Table(caption, heads, rows, ())])
 
 
 def cell(value, form: str = "") -> str:
@@ -139,7 +142,7 @@ def share(one: Mapping[str, Any], name: str) -> List[str]:
     return [f"{100 * one[name]:.0f} %", f"{100 * one['share_low']:.0f} to {100 * one['share_high']:.0f} %"]
 
 
-def stretches(found: Mapping[str, Any], yearly: bool) -> Dict[str, Any]:
+def stretches(found: Mapping[str, Any], yearly: bool) -> Section:
     """Each stretch with the bodies that block it."""
     rows = []
     for one in found["stretches"]:
@@ -156,7 +159,7 @@ def stretches(found: Mapping[str, Any], yearly: bool) -> Dict[str, Any]:
                  "among them.")
 
 
-def bodies(found: Mapping[str, Any], yearly: bool) -> Dict[str, Any]:
+def bodies(found: Mapping[str, Any], yearly: bool) -> Section:
     rows = [[one["body"], one["name"], km(one["chainage_m"]), f"{one['factor']:.3f}", cell(one["volume_m3"]),
              cell(one["depth_m"]), cell(one["known_share"], "{:.2g}"), one["runs"], *share(one, "share_blocked"),
              cell(one["on_road_median_m3"]), cell(one["on_road_most_m3"]),
@@ -169,7 +172,7 @@ def bodies(found: Mapping[str, Any], yearly: bool) -> Dict[str, Any]:
                  "far as the road.")
 
 
-def left_out(found: Mapping[str, Any]) -> Dict[str, Any]:
+def left_out(found: Mapping[str, Any]) -> Section:
     rows = [[one["body"], km(one["chainage_m"]), f"{one['factor']:.3f}", cell(one["volume_m3"]), one["why_not"]]
             for one in found["left_out"]]
     return table("Left out", ["body", "km", "factor of safety", "volume m3", "why"], rows,

@@ -1,0 +1,157 @@
+"""What a report shows of a run alone: its volume balance and travel, what was run, and where that comes from."""
+import datetime
+import re
+from typing import Any, List
+
+from .. import digits, provenance
+from ..case import decks
+from ..deposits import rest, travel_shares
+from ..mobility.results import percent
+from ..mobility.run_length import LEAST, OF_99, OTHERS
+from .charts import TERMS
+from .data import find_deck
+from .numbers import UNKNOWN, farthest_of
+from .sections import Cell, Columns, Heading, Pairs, Section, Table, Verbatim, marked, verbatim
+
+# a variable of a deck and the comment on it, which has its unit
+MEANING = re.compile(r"^\s*variable\s+(\w+)\s+index\s.*?#\s*(.*?)\s*$", re.MULTILINE)
+
+
+def titled(what, data):
+    """A title, with the run where there are several."""
+    return f"{what} of the run {data.label(data.result)}" if data.study else what
+
+
+def balance(data, numbers):
+    """The section on the volume balance, the travel and the end of the shown run."""
+    one, summary = data.result, data.result.summary
+    volume, balls, stop = summary["volume"], summary["balls"], summary["stop"]
+    release = next((release for row, release in data.releases() if row["run"] in ("", one.name)), None)
+    error = (one.deposit.volume - volume["released"] + volume["off_grid"] + volume["lost"]) / volume["released"]
+    volumes = [("released (A)", f"{volume['released']:,.1f} m3"),
+               ("on the grid of the maps (B)", f"{volume['on_grid']:,.1f} m3"),
+               ("off that grid (C)", f"{volume['off_grid']:,.1f} m3"),
+               ("lost, left the simulation box (D)", f"{volume['lost']:,.1f} m3, {balls['lost']:d} balls"),
+               ("residual A - B - C - D", f"{volume['residual']:.1e} m3"),
+               ("thickness x cell area, summed over the raster, less A - C - D", f"{error:.1e} of A"),
+               ("the released mass", f"{balls['released']:d} balls; {release.text if release else UNKNOWN}")]
+    state = rest.state(summary)
+    status = "rest" if state.at_rest else "moving" if summary["moving"] else "doubt"
+    deposit = marked(state.text, f"status {status}")
+    if "change_rate" in summary:
+        deposit += f"; {100 * summary['change_rate']:.2g} % of the volume moves to another cell per second"
+    end = [("end of the run", f"{stop['time']:.2f} s, step {stop['step']:d}, {stop['reason']}"), ("deposit", deposit),
+           ("largest energy of a ball", digits.si(summary["largest"]["max_energy"], "J"))]
+    if guards := summary.get("guards"):
+        growth = f"{100 * guards['energy_growth']:.1g} %"
+        end += [("largest overlap, of the radius", f"{100 * guards['largest_overlap']:.2g} %"),
+                ("growth of energy, of the largest kinetic and spring energy", growth),
+                ("contacts deeper than 10 %, late neighbor lists",
+                 f"{guards['deep_contacts']:d}, {guards['dangerous_builds']:d}")]
+    travel = [*travel_rows(data, numbers), *(
+        (what, numbers(what, "m", summary["travel"][key]), "")
+        for what, key in (("farthest ball at release", "front_at_release"), ("centroid moved", "centroid")))]
+    return Section("balance", titled("Volume balance and travel", data), [Columns([
+        [Pairs(volumes)],
+        [Table("Distance in plan from the highest released ball, and the angle below the horizontal at which it is "
+               "seen from there.", ["of the deposit", Cell("distance", "m"), Cell("reach angle", "deg")], travel,
+               style="keep"), Pairs(end)]])])
+
+
+def travel_rows(data, numbers):
+    """Shares of the volume, the length along the fall path and the farthest ball of the shown run: distance, angle."""
+    one = data.result
+    shares = travel_shares.columns(one.summary)
+    rows = []
+    for share in travel_shares.SHARES:
+        keys = f"distance_{share}_m", f"reach_{share}_deg"
+        rows.append((f"{share} % of the volume", *(numbers(f"{share} %: {what}", unit, shares[key])
+                                                   for key, what, unit in zip(keys, ("distance", "reach angle"),
+                                                                              ("m", "degrees")))))
+    found = data.length()
+    if found is not None:
+        lobe = ("length along the fall path" if found.on_path else "straight length, as there is no fall path") + \
+            ", to the farthest lobe of at least"
+        rows.append((f"{lobe} {percent(LEAST)}", numbers("length along the fall path", "m", found.distance),
+                     numbers("length along the fall path: reach angle", "degrees", found.angle)))
+        rows += [(f"{lobe} {percent(least)}", numbers(f"length by lobes of {percent(least)}", "m", length), "")
+                 for least, length in zip(OTHERS, found.others) if abs(length - found.distance) > 1e-6]
+        rows.append(("the same as the crow flies", numbers("straight length", "m", found.straight), ""))
+        check = shares[travel_shares.DISTANCE]
+        rows.append((f"a check of it without a threshold: 99 % over {OF_99:g}",
+                     numbers(f"99 % over {OF_99:g}", "m", check and check / OF_99), ""))
+    distance, angle = farthest_of(one.summary)
+    rows.append(("the one farthest ball", numbers("farthest ball: distance", "m", distance),
+                 numbers("farthest ball: reach angle", "degrees", angle)))
+    return rows
+
+
+# --- what was run ---
+
+def deck_of(data):
+    """Name and text of the deck of the shown run; texts are empty where it is not known."""
+    deck = find_deck(data.result)
+    name = data.study["study"]["deck"] if data.study else deck.name if deck else data.result.prefix.name
+    return name, deck.read_text(encoding="utf-8", errors="replace") if deck else ""
+
+
+def what_was_run(data):
+    """The section of the deck, its variables, and what the log says of the model."""
+    one, (name, deck) = data.result, deck_of(data)
+    variables = data.study and one.row.get("variables") or one.about.get("variables") or deck_variables(find_deck(one))
+    blocks: List[Any] = []
+    for title, lines, style in (
+            ("Contact coefficients, as the pair style printed them at the start", one.log.table, "keep"),
+            ("Commands of the model, with all variables replaced", one.log.settings, ""),
+            ("Response of LAMMPS", one.log.notes, "wrap")):
+        blocks += [Heading(title), Verbatim("\n".join(lines), style)] if lines else []
+    if variables:
+        blocks += [Heading(titled("Variables", data)), Pairs([
+            (name, verbatim(value), meaning) for name, value, meaning in with_meanings(variables, deck)])]
+    return Section("what", "What was run", [*blocks, Verbatim(deck, folded=f"Deck {name}") if deck else None])
+
+
+def with_meanings(variables, deck):
+    """(name, value, meaning) of variables; the meaning is the deck's comment on them, or a usual one."""
+    comments = dict(MEANING.findall(deck))
+    return [(name, value, comments.get(name.split(" ")[0]) or TERMS.get(name.split(" ")[0], ""))
+            for name, value in variables.items()]
+
+
+def deck_variables(deck):
+    """Index variables of a deck that ran by hand: its defaults, marked as such."""
+    return {f"{name} (deck's default)": value for name, value in decks.index_variables(deck).items()} if deck else {}
+
+
+# --- where it comes from ---
+
+def origin(data, made):
+    """The section of programs, machines and checksums; made: when the report was."""
+    one = data.result
+    summary, about, marker = one.summary, one.about, one.marker
+    packages = sorted({str(row.get("package")) for row in data.finished}) if data.study else []
+    several = len(packages) > 1
+    started, wall = utc(about.get("started")), marker.get("wall_seconds")
+    inputs = (marker.get("inputs") or {}) if find_deck(one) else {}
+    rows = [("SLOPE, as compiled into the program", summary["slope_version"]),
+            ("package (git describe)" + ", all runs" * several,
+             ", ".join(packages) if several else about.get("package")),
+            ("LAMMPS", summary["lammps_version"]), ("SHA-256 of the program", about.get("lmp_sha256")),
+            ("command", about.get("command")), ("MPI ranks, time step", f"{summary['ranks']:d}, {summary['dt']:.4g} s"),
+            ("run", started and f"{started} to {utc(marker.get('finished'))}, wall time {wall} s"),
+            ("machine of the run", of_machine(marker.get("machine"))),
+            ("machine of this report", of_machine(provenance.machine())), ("report", made),
+            *((f"SHA-256 of {file}", digest) for file, digest in inputs.items())]
+    return Section("provenance", "Provenance", [Pairs([row for row in rows if row[1]])])
+
+
+def of_machine(one):
+    return one and f"{one['name']}: {one['processor']}, {one['cores']} cores, {one['system']}"
+
+
+def utc(text):
+    """An ISO time in UTC, to the minute; any other value is returned as it is."""
+    try:
+        return datetime.datetime.fromisoformat(text).astimezone(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M UTC")
+    except (TypeError, ValueError):
+        return text

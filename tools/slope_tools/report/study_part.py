@@ -1,0 +1,127 @@
+"""What a report shows of a study: the table of its runs, means, differences, charts, and the maps over all runs."""
+from ..tables import quantities
+from ..tables.quantities import LENGTH, REMOVE, On
+from .charts import TERMS, Charts, differences
+from .sections import Cell, Figures, Listing, Section, Table, Text
+
+MOST_ROWS, ENDS = 40, 12    # of the study's table, and of each end of a longer one
+VOLUMES = "; volumes in m3 of ground; distances in plan from the highest released ball."
+
+
+def section(data, numbers, reference, maps):
+    """Of a data.Data; None of a run alone."""
+    if not data.study:
+        return None
+    study, charts, one = Runs(data, numbers), Charts(data, reference), data.result
+    table, means, different = study.table(), study.means(), differences(data, numbers)
+    drawn, over_all, first = charts.all(), maps.over_all(), int(charts.has_removal())
+    return Section("study", "Study", [
+        table,
+        Text(f"The same in all runs: {same}.", "soft") if (same := study.same()) else None,
+        Text(f"Variables: {terms}.", "soft") if (terms := study.terms()) else None,
+        means,
+        Listing(different) if different else None,
+        Figures(drawn[:first], "two-thirds") if first and drawn else None,
+        Figures(drawn[first:], "columns"),
+        Figures([maps.removal(numbers.quantity(REMOVE, one.row[REMOVE], data.label(one)) if REMOVE in one.row else "")],
+                "tall"),
+        Figures([over_all["runs"]]), Figures([over_all["envelope"], *over_all["exceedance"]], "columns")])
+
+
+class Runs:
+    """The tables of the runs of a data.Data; numbers writes and keeps their numbers."""
+
+    def __init__(self, data, numbers):
+        self.data, self.numbers = data, numbers
+        self.varied = [key for key, several in data.settings.items() if len(several) > 1]
+
+    def table(self):
+        """For each run its variables, its numbers or why it failed, and whether it is at rest."""
+        data, best, columns = self.data, self.data.study.get("conservative") or {}, self.columns()
+        names = self.varied or list(data.settings)
+        rows, marks = [], []
+        for row in self.in_table():
+            cells = [data.number(row["run"]), *(row["set"][key] for key in names)]
+            if data.repeats:
+                repeat = (row.get("repeat") or {}).items()
+                cells.append(", ".join(f"{name} {value}" for name, value in repeat) or "base")
+            finished = row["status"] == "finished"
+            if finished:
+                name = data.label_of(row)
+                cells += [self.numbers.quantity(one.key, row.get(one.key), name, "-") for one in columns]
+                cells.append(Cell(row.get("end_short", row["end"]), style="" if row["at_rest"] else "doubt"))
+            else:
+                cells.append(Cell(f"failed: {row.get('error')}", style="left", span=len(columns) + 1))
+            rows.append(cells)
+            marks.append(" ".join(["bad"] * (not finished or row["moving"])
+                                  + ["best"] * (bool(best) and finished and row["set"] == best.get("set"))))
+        heads = ["run", *names, *(["repeat"] if data.repeats else []), *map(self.head, columns), "end"]
+        return Table(" ".join(filter(None, [self.which_rows() + VOLUMES, self.beyond()])), heads, rows, (), marks)
+
+    def columns(self):
+        """Quantities of the study's table, without those that have no value."""
+        data = self.data
+        same = len({round(row["released_m3"], 3) for row in data.finished}) == 1
+        return [one for one in quantities.shown_on("page") if any(row.get(one.key) is not None for row in data.finished)
+                and not (same and one.key == "released_m3")]
+
+    def head(self, one):
+        """Head of a quantity in a table: name and unit."""
+        return Cell(quantities.name_of(one.key, self.data.finished) if one.key == LENGTH else one.heading, one.unit)
+
+    def beyond(self):
+        """The note on the volume beyond the road; "" without a road."""
+        if self.data.road is None:
+            return ""
+        if any(row.get("beyond_road_m3") is not None for row in self.data.finished):
+            return ("Beyond it: all of the deposit on the far side of the road. What is cut there is counted in \"to "
+                    "remove\" too: the two overlap and cannot be added.")
+        return ("How much lies beyond the road is unknown, because the road does not divide the grid; a control line "
+                "(slope site --line) counts what passes it.")
+
+    def same(self):
+        """The variables that all runs have the same value of, where others differ."""
+        return ", ".join(f"{name} {values[0]}" for name, values in self.data.settings.items()
+                         if name not in self.varied)
+
+    def terms(self):
+        """What the usual variables mean, of those that the study has."""
+        named = [*self.data.settings, *self.data.repeats]
+        return "; ".join(f"{name}: {TERMS[name]}" for name in dict.fromkeys(named) if name in TERMS)
+
+    def in_table(self):
+        """The runs of the table: of a long one those with the least and the most of what counts, and failed ones."""
+        rows = self.data.rows
+        if len(rows) <= MOST_ROWS:
+            return rows
+        key = self.counts().key
+        known = sorted((row for row in self.data.finished if row.get(key) is not None), key=lambda row: row[key])
+        return [*known[:ENDS], *known[-ENDS:], *[row for row in rows if row["status"] != "finished"][:ENDS]]
+
+    def counts(self):
+        """The column by which the runs of a long table are chosen."""
+        columns = {one.key: one for one in self.columns()}
+        return next(columns[key] for key in (REMOVE, quantities.DISTANCE, "front_m") if key in columns)
+
+    def which_rows(self):
+        """What the table says of its runs."""
+        if len(self.data.rows) <= MOST_ROWS:
+            return "All runs"
+        return (f"Of {len(self.data.rows)} runs those with the least and the most in the column "
+                f"\"{self.counts().heading}\", in its order; study.csv has all")
+
+    def means(self):
+        """The table over combinations; None without repeats."""
+        study, best = self.data.study, self.data.study["conservative"]
+        if not (self.data.repeats and study.get("combinations")):
+            return None
+        averaged = [quantities.ALL[key] for key in quantities.keys(On.PAGE_MEAN)
+                    if all(key in entry for entry in study["combinations"])]
+        rows = [[*(entry["set"][key] for key in self.varied), entry["repeats"],
+                 *(self.numbers.mean(one.name, one.unit, entry[one.key]["mean"], entry[one.key]["scatter"],
+                                     str(entry["combination"])) for one in averaged)]
+                for entry in study["combinations"]]
+        marks = ["best" if best and entry["combination"] == best["combination"] else ""
+                 for entry in study["combinations"]]
+        return Table("Means of the repeats \N{PLUS-MINUS SIGN} the standard deviation of a run.",
+                     [*self.varied, "runs", *map(self.head, averaged)], rows, (), marks)
