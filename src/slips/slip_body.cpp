@@ -137,9 +137,9 @@ void SlipWriter::columns(AtomicFile &file, const SlipSurface &s, const SlipColum
   for (size_t i = 0; i < c.size(); i++) {
     SlipSurface::Slope slope = s.slope(c.dx[i], c.dy[i], c.depth[i]);
     if (c.rocky && !std::isnan(c.slope_x[i])) slope = {c.slope_x[i], c.slope_y[i]};
-    const int length =
-        snprintf(line, sizeof(line), "%.8g,%.8g,%.8g,%.8g,%.8g,%.8g,%.8g,%.8g,%.8g\n", c.dx[i],
-                 c.dy[i], c.depth[i], c.area[i], slope.x, slope.y, c.weight[i], c.arm[i], c.pore[i]);
+    const int length = snprintf(
+        line, sizeof(line), "%.8g,%.8g,%.8g,%.8g,%.8g,%.8g,%.8g,%.8g,%.8g\n", c.dx[i], c.dy[i],
+        c.depth[i], c.area[i], slope.x, slope.y, c.weight[i], c.arm[i], c.pore[i]);
     file.write(line, length);
   }
 }

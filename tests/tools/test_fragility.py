@@ -27,8 +27,9 @@ PRESSURE = 40e3     # weight per area in plan, Pa
 def infinite_slope():
     """One column, as large as the slope; its radius is 1e6 m."""
     one, radius = np.ones(1), 1e6
-    return Body("1", 180.0, Columns(one, one / np.cos(BETA), PRESSURE * one, radius * np.sin(BETA) * one,
-                                    radius * np.cos(BETA) * one, radius * one, np.sin(BETA) * one, np.cos(BETA) * one))
+    slab = Columns(one, one / np.cos(BETA), PRESSURE * one, radius * np.sin(BETA) * one,
+                   radius * np.cos(BETA) * one, radius * one, np.sin(BETA) * one, np.cos(BETA) * one)
+    return Body("1", 180.0, slab, Path(), 100)
 
 
 def drawn(text):

@@ -192,7 +192,8 @@ def warnings_of(curves, peaks, found, pseudo_static, records, hazard):
         if body.cells < FEWEST:
             yield findings.Finding("columns", {"body": body.name, "value": body.cells, "limit": FEWEST})
     for one in curves:
-        standing = one.at_rest * hazard.rates[0] / one.frequency.total.value if one.frequency else 0.0
+        standing = one.at_rest * hazard.rates[0] / one.frequency.total.value \
+            if one.frequency and one.frequency.total.value > 0 else 0.0
         if one.at_rest > 0.01 or standing > 0.05:
             makes = f", which makes {100 * standing:.2g} % of the frequency" if standing > 0.05 else ""
             yield findings.Finding("at rest", {"which": one.title, "percent": 100 * one.at_rest, "makes": makes})

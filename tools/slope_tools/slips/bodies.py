@@ -21,8 +21,8 @@ class Body(NamedTuple):
     name: str               # its rank, 1 is the one with the least factor of safety
     direction: float        # of sliding, degrees counterclockwise from +x
     columns: columns.Columns
-    base: Path = Path()     # the file of its surface
-    cells: int = columns.FEWEST     # of the terrain
+    base: Path              # the file of its surface
+    cells: int              # of the terrain
 
 
 def table_of(path: Path) -> Path:
