@@ -320,6 +320,8 @@ def test_bodies_that_are_kept_are_of_several_slopes(tmp_path):
     assert not any((a & b).any() for k, a in enumerate(bases) for b in bases[:k])
     assert found[0]["factor"] == pytest.approx(least["factor"], rel=1e-6)
     assert [row["factor"] for row in found] == sorted(row["factor"] for row in found)
+    assert [by_the_columns(tmp_path, row, 5000, 25)[0] for row in found] == pytest.approx(
+        [row["factor"] for row in found], rel=1e-7)     # bodies of few cells, where the least number of lines counts
 
 
 def test_bodies_that_are_kept_share_at_most_a_tenth(tmp_path):
