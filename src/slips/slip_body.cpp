@@ -87,17 +87,20 @@ ElevationGrid SlipBodyMaker::base(const SlipSurface &s)
   return heights;
 }
 
-static std::string base_path(const std::string &prefix, size_t rank)
+static std::string path_of(const std::string &prefix, size_t rank, const char *end)
 {
-  return prefix + "." + std::to_string(rank) + ".base.asc";
+  return prefix + "." + std::to_string(rank) + end;
 }
+
+static constexpr char BASE[] = ".base.asc", COLUMNS[] = ".columns.csv";
 
 /* ---------------------------------------------------------------------- */
 
 void SlipWriter::probe(const std::string &prefix, int bodies)
 {
   std::vector<std::string> paths = {prefix + ".slips.csv", prefix + ".factor.asc"};
-  for (int k = 1; k <= bodies; k++) paths.push_back(base_path(prefix, k));
+  for (int k = 1; k <= bodies; k++)
+    for (const char *end : {BASE, COLUMNS}) paths.push_back(path_of(prefix, k, end));
   FileSet::probe(paths);
 }
 
@@ -122,6 +125,25 @@ std::string SlipWriter::table(const std::vector<SlipBody> &bodies)
   return text;
 }
 
+/* ----------------------------------------------------------------------
+   Digits that leave the factor as it is in the table: its rounding is that of one number over the root of
+   their count. A body has thousands of columns, a large one four for each cell of its plan.
+------------------------------------------------------------------------- */
+
+void SlipWriter::columns(AtomicFile &file, const SlipSurface &s, const SlipColumns &c)
+{
+  file.write("dx_m,dy_m,depth_m,area_m2,slope_x,slope_y,weight_n,weight_depth_m,pressure_pa\n");
+  char line[200];
+  for (size_t i = 0; i < c.size(); i++) {
+    SlipSurface::Slope slope = s.slope(c.dx[i], c.dy[i], c.depth[i]);
+    if (c.rocky && !std::isnan(c.slope_x[i])) slope = {c.slope_x[i], c.slope_y[i]};
+    const int length = snprintf(
+        line, sizeof(line), "%.8g,%.8g,%.8g,%.8g,%.8g,%.8g,%.8g,%.8g,%.8g\n", c.dx[i], c.dy[i],
+        c.depth[i], c.area[i], slope.x, slope.y, c.weight[i], c.arm[i], c.pore[i]);
+    file.write(line, length);
+  }
+}
+
 /* ---------------------------------------------------------------------- */
 
 void SlipWriter::write(const std::string &prefix, ElevationGrid least,
@@ -130,8 +152,11 @@ void SlipWriter::write(const std::string &prefix, ElevationGrid least,
   FileSet files;
   files.add(prefix + ".slips.csv").write(table(bodies));
   for (size_t k = 0; k < bodies.size(); k++) {
+    SlipBody body;
+    maker.exact(bodies[k].surface, body);
+    columns(files.add(path_of(prefix, k + 1, COLUMNS)), body.surface, maker.columns());
     const ElevationGrid base = maker.base(bodies[k].surface);
-    base.write(files.add(base_path(prefix, k + 1)));
+    base.write(files.add(path_of(prefix, k + 1, BASE)));
     for (size_t n = 0; n < base.z.size(); n++)
       if (!std::isnan(base.z[n])) least.z[n] = std::fmin(least.z[n], bodies[k].factor);
   }

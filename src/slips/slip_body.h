@@ -67,7 +67,8 @@ class SlipBodyMaker {
   void fill(const SlipSurface &, SlipBody &, double precision);
 };
 
-// The files of bodies, all of them or none: PREFIX.slips.csv, PREFIX.factor.asc, PREFIX.N.base.asc.
+// The files of bodies, all of them or none: PREFIX.slips.csv, PREFIX.factor.asc, PREFIX.N.base.asc,
+// PREFIX.N.columns.csv.
 // Errors are std::runtime_error with one line.
 class SlipWriter {
  public:
@@ -78,6 +79,9 @@ class SlipWriter {
                     SlipBodyMaker &);
 
   static std::string table(const std::vector<SlipBody> &);
+
+ private:
+  static void columns(AtomicFile &, const SlipSurface &, const SlipColumns &);
 };
 
 }    // namespace Slope

@@ -39,6 +39,18 @@ struct SlipSurface {
   double half_x() const { return half(std::cos(direction), std::sin(direction)); }
   double half_y() const { return half(std::sin(direction), std::cos(direction)); }
 
+  // dz/dx and dz/dy at a place in plan from the centre, where the surface is so deep below it
+  struct Slope {
+    double x, y;
+  };
+  Slope slope(double dx, double dy, double depth) const
+  {
+    const double c = std::cos(direction), s = std::sin(direction);
+    const double rise = -(dx * c + dy * s) / (along * along * depth);
+    const double rise_across = beyond(dx * s - dy * c) / (across * across * depth);
+    return {rise_across * s - rise * c, -rise * s - rise_across * c};
+  }
+
   // distance across from the straight part, with sign
   double beyond(double v) const
   {

@@ -75,6 +75,66 @@ def raster(path):
     return numpy.where(values == -9999, numpy.nan, values)[::-1]
 
 
+def by_the_columns(path, row, cohesion, phi, k=(0.0, 0.0)):
+    """Bishop's factor and yield coefficient, by sums of its own over crit.N.columns.csv, and the volume's weight."""
+    with open(path / f"crit.{row['rank']:.0f}.columns.csv", newline="") as lines:
+        read = csv.DictReader(lines)
+        names = read.fieldnames
+        values = numpy.array([[float(value) for value in one.values()] for one in read]).T
+    c = dict(zip(names, values))
+    assert names == ["dx_m", "dy_m", "depth_m", "area_m2", "slope_x", "slope_y", "weight_n", "weight_depth_m",
+                     "pressure_pa"]
+    way = numpy.array([math.cos(math.radians(row["direction"])), math.sin(math.radians(row["direction"]))])
+    u, e = -(c["dx_m"] * way[0] + c["dy_m"] * way[1]), c["depth_m"]
+    rise = -(c["slope_x"] * way[0] + c["slope_y"] * way[1])
+    up = 1 / numpy.sqrt(1 + c["slope_x"] ** 2 + c["slope_y"] ** 2)
+    sine, base, tangent = rise / numpy.hypot(1, rise), c["area_m2"] / up, math.tan(math.radians(phi))
+    lever, of_normal = u * sine + e / numpy.hypot(1, rise), up * (e * rise - u)
+    weight, lift = c["weight_n"], c["pressure_pa"] * base
+
+    def moments(factor, k):
+        m = numpy.maximum(up + sine * tangent / factor, 0.2)
+        normal = ((1 - k[1]) * weight - (cohesion * base - lift * tangent) * sine / factor) / m
+        return (numpy.sum(lever * (cohesion * base + (normal - lift) * tangent)),
+                numpy.sum((1 - k[1]) * weight * u + k[0] * weight * c["weight_depth_m"] + normal * of_normal))
+
+    factor = 1.0
+    for _ in range(100):
+        resisting, driving = moments(factor, k)
+        factor = resisting / driving
+    resisting, driving = moments(1.0, (0.0, k[1]))
+    assert numpy.sum(c["area_m2"]) == pytest.approx(row["area"], rel=1e-7)
+    return factor, (resisting - driving) / numpy.sum(weight * c["weight_depth_m"])
+
+
+@pytest.mark.parametrize("more, k", [
+    (LOW_SPHERE, (0.0, 0.0)), (f"{LOW_SPHERE} seismic 0.1 -0.1 direction 170", (0.1, -0.1)),
+    (f"{LOW_SPHERE} water ru 0.2", (0.0, 0.0)), (f"{LOW_SPHERE} water table water.asc bedrock rock.asc", (0.0, 0.0)),
+    (f"{LOW_SPHERE} layer rock.asc 3000 19.6 2500", (0.0, 0.0)),
+    ("surface ellipsoid 10.25 25.25 54.0 28.9617 0.9 1.2 3 direction 175", (0.0, 0.0))])
+def test_columns_have_the_factor_and_the_yield_coefficient_of_the_table(tmp_path, more, k):
+    """The digits that are printed, but for rounding; the same file on two ranks."""
+    of_10_m(tmp_path)
+    ground = raster(tmp_path / "ground.asc")
+    write_asc(tmp_path / "water.asc", numpy.minimum(ground, 28.0), cell=0.5)
+    write_asc(tmp_path / "rock.asc", ground - 2.5 + 0.02 * numpy.arange(102), cell=0.5)
+    run_deck(deck(more=more), tmp_path)
+    [row] = rows(tmp_path)
+    factor, coefficient = by_the_columns(tmp_path, row, 3000, 19.6, k)
+    assert factor == pytest.approx(row["factor"], rel=1e-7)
+    assert coefficient == pytest.approx(row["yield"], abs=1e-7)
+    written = (tmp_path / "crit.1.columns.csv").read_bytes()
+    run_deck(deck(more=more), tmp_path, np=2)
+    assert (tmp_path / "crit.1.columns.csv").read_bytes() == written
+
+
+def test_a_name_of_columns_that_cannot_be_written_ends_the_command_before_it_begins(tmp_path):
+    of_10_m(tmp_path)
+    (tmp_path / "crit.2.columns.csv").mkdir()
+    run_deck(deck(more="volume 500 5000 keep 2"), tmp_path, expect_error="crit.2.columns.csv")
+    assert sorted(path.name for path in tmp_path.glob("crit*")) == ["crit.2.columns.csv"]
+
+
 def test_the_sphere_of_the_low_embankment(tmp_path):
     of_10_m(tmp_path)
     after = 'print "IN THE DECK $(v_crit_factor:%.5f) $(v_crit_yield:%.5f) ${crit_x} ${crit_y} ${crit_z} ${crit_r}"'
@@ -232,12 +292,14 @@ def test_the_search_finds_the_least_on_any_number_of_ranks(tmp_path):
 
     # the sphere that it says has the factor that it says
 
-    table, log = (tmp_path / "crit.slips.csv").read_bytes(), (tmp_path / "crit.factor.asc").read_bytes()
+    names = ("slips.csv", "factor.asc", "1.base.asc", "1.columns.csv")
+    written = [(tmp_path / f"crit.{name}").read_bytes() for name in names]
+    factor, coefficient = by_the_columns(tmp_path, found[0], 3000, 19.6)
+    assert (factor, coefficient) == pytest.approx((found[0]["factor"], found[0]["yield"]), rel=1e-7, abs=1e-8)
     run_deck(deck(more="surface sphere {x:.10g} {y:.10g} {z:.10g} {radius:.10g}".format(**found[0])), tmp_path)
     assert rows(tmp_path)[0]["factor"] == pytest.approx(found[0]["factor"], rel=1e-5)
     run_deck(deck(more=more), tmp_path, np=2)
-    assert (tmp_path / "crit.slips.csv").read_bytes() == table
-    assert (tmp_path / "crit.factor.asc").read_bytes() == log
+    assert [(tmp_path / f"crit.{name}").read_bytes() for name in names] == written
 
 
 def six_slopes(path):
@@ -263,6 +325,8 @@ def test_bodies_that_are_kept_are_of_several_slopes(tmp_path):
     assert not any((a & b).any() for k, a in enumerate(bases) for b in bases[:k])
     assert found[0]["factor"] == pytest.approx(least["factor"], rel=1e-6)
     assert [row["factor"] for row in found] == sorted(row["factor"] for row in found)
+    assert [by_the_columns(tmp_path, row, 5000, 25)[0] for row in found] == pytest.approx(
+        [row["factor"] for row in found], rel=1e-7)     # bodies of few cells, where the least number of lines counts
 
 
 def test_bodies_that_are_kept_share_at_most_a_tenth(tmp_path):

@@ -7,7 +7,7 @@ import pytest
 import yaml
 
 from run_helpers import called, write_asc
-from test_slips import CASES, embankment, plane
+from test_slips import CASES, embankment, plane, write_columns
 
 from slope_tools.commands import stability_failed
 from slope_tools.slips import back, bishop, columns, failed
@@ -18,7 +18,7 @@ HIGH = CASES[1]
 
 @pytest.mark.parametrize("k, kv, water", [(0.0, 0.0, 0.0), (0.2, -0.1, 0.0), (0.1, 0.0, 0.3)])
 def test_the_factor_is_1_along_the_line(k, kv, water):
-    body = columns.of_surface(*HIGH[:3], 180.0, 1900.0)
+    body = columns.of_sphere(*HIGH[:3], 180.0, 1900.0)
     found = back.line(body, k, kv, water)
     assert found.friction[0] == 0 and found.friction[-1] > 10 and found.cohesion[-1] < 1e-6 * found.cohesion[0]
     assert (np.diff(found.cohesion) < 0).all()
@@ -30,13 +30,13 @@ def test_the_factor_is_1_along_the_line(k, kv, water):
 def test_the_line_goes_through_the_published_strength_over_its_factor():
     """Scoops3D's sphere: F 1.5982 with 41.65 kPa and 15 degrees, so F is 1 with both divided by it."""
     z, centre, radius, c, phi, gamma, factor, _ = HIGH
-    body = columns.of_surface(z, centre, radius, 180.0, gamma / columns.GRAVITY)
+    body = columns.of_sphere(z, centre, radius, 180.0, gamma / columns.GRAVITY)
     assert back.cohesion_of(body, np.tan(np.radians(phi)) / factor)[0] == pytest.approx(c / factor, rel=0.01)
 
 
 def test_the_raster_of_a_sphere_is_the_sphere():
     z, centre, radius = HIGH[:3]
-    exact = columns.of_surface(z, centre, radius, 180.0, 1900.0)
+    exact = columns.of_sphere(z, centre, radius, 180.0, 1900.0)
     base = columns.base_of(z, centre, radius)
     inside = columns.largest(z, base)
     found, size = back.sphere_of(back.points_of(z, base, inside))
@@ -100,7 +100,10 @@ def test_a_sphere_its_table_and_its_raster(here, capsys):
     (x, y, z), radius = HIGH[1:3]
     base = columns.base_of(HIGH[0], HIGH[1], radius)
     write_asc("scar.asc", np.where(columns.largest(HIGH[0], base), base, HIGH[0].z), 0.5)
-    Path("crit.slips.csv").write_text(f"rank,x,y,z,radius,direction,volume\n1,{x},{y},{z},{radius},180,14420\n")
+    area = write_columns("crit.1.columns.csv", *HIGH[:3], 1919.1)
+    volume = columns.of_sphere(*HIGH[:3], 180.0, 1919.1).volume
+    Path("crit.slips.csv").write_text("rank,x,y,z,radius,direction,volume,area\n"
+                                      f"1,{x},{y},{z},{radius},180,{volume},{area}\n")
     write_asc("crit.1.base.asc", base, 0.5)
     found = []
     for name in (f"{x},{y},{z},{radius}", "crit.slips.csv", "scar.asc"):
@@ -109,7 +112,7 @@ def test_a_sphere_its_table_and_its_raster(here, capsys):
         found.append(table())
         assert "sliding to 270.0 degrees" in out
     assert np.interp(15.0, *found[0]) == pytest.approx(41.65e3, rel=0.01)     # its yield coefficient is 0.2939
-    assert found[1] == pytest.approx(found[0], rel=1e-9)
+    assert found[1] == pytest.approx(found[0], rel=1e-6, abs=1e-2)
     assert found[2][1][0] == pytest.approx(found[0][1][0], rel=0.03)
     assert found[2][0][-1] == pytest.approx(found[0][0][-1], rel=0.03)
     about = yaml.safe_load(Path("out/back.yaml").read_text())

@@ -108,7 +108,7 @@ def test_a_file_of_a_site_counts_by_what_is_in_it(tmp_path, section, key, end):
 
 # --- results that are computed each time: their yaml says of what ---
 
-SAID = {"fragility": {"slips", "terrain", "density", "cohesion", "friction", "water", "correlation", "peaks", "record",
+SAID = {"fragility": {"slips", "density", "cohesion", "friction", "water", "correlation", "peaks", "record",
                       "vertical", "displacement", "pseudo_static", "hazard", "sample", "seed"},
         "stability": {"terrain", "cohesion", "friction", "density", "layer", "water", "water_table", "bedrock",
                       "seismic", "volume", "depth", "within", "local", "direction", "method", "shape",

@@ -11,7 +11,7 @@ from scipy import stats
 import test_depends_on
 from run_helpers import called, write_asc
 from test_newmark import noise
-from test_slips import CASES
+from test_slips import CASES, write_columns
 
 from slope_tools.errors import SlopeError
 from slope_tools.seismic import fragility, hazard_file
@@ -27,8 +27,9 @@ PRESSURE = 40e3     # weight per area in plan, Pa
 def infinite_slope():
     """One column, as large as the slope; its radius is 1e6 m."""
     one, radius = np.ones(1), 1e6
-    return Body("1", 180.0, Columns(one, one / np.cos(BETA), PRESSURE * one, radius * np.sin(BETA) * one,
-                                    radius * np.cos(BETA) * one, radius * one, np.sin(BETA) * one, np.cos(BETA) * one))
+    slab = Columns(one, one / np.cos(BETA), PRESSURE * one, radius * np.sin(BETA) * one,
+                   radius * np.cos(BETA) * one, radius * one, np.sin(BETA) * one, np.cos(BETA) * one)
+    return Body("1", 180.0, slab, Path(), 100)
 
 
 def drawn(text):
@@ -130,7 +131,7 @@ def test_annual_frequency_is_the_integral():
 
 # --- the command ---
 
-SOIL = "--terrain terrain.asc --density 2039 --cohesion 3e3:9e3 --friction 22:32"
+SOIL = "--density 2039 --cohesion 3e3:9e3 --friction 22:32"
 
 
 @pytest.mark.parametrize("text", [
@@ -169,9 +170,10 @@ def write_slips():
     for rank, r in ((1, radius), (2, radius + 1.0)):
         base = columns.base_of(ground, centre, r)
         inside = columns.largest(ground, base)
-        volume = columns.of_surface(ground, centre, r, 180.0, 2000.0, inside).volume
+        volume = columns.of_sphere(ground, centre, r, 180.0, 2000.0).volume
         write_asc(f"slips/out.{rank}.base.asc", np.where(inside, base, np.nan), 0.5)
-        rows.append(f"{rank},{centre[0]},{centre[1]},{centre[2]},{r},180,1.1,0.1,{volume},500,3\n")
+        area = write_columns(f"slips/out.{rank}.columns.csv", ground, centre, r, 2000.0)
+        rows.append(f"{rank},{centre[0]},{centre[1]},{centre[2]},{r},180,1.1,0.1,{volume},{area},3\n")
     head = "rank,x,y,z,radius,direction,factor,yield,volume,area,depth\n"
     Path("slips/out.slips.csv").write_text(head + "".join(rows))
     t, x = noise()
@@ -275,7 +277,7 @@ def test_the_share_below_a_peak_is_a_direct_simulation(slips, capsys):
     assert ran(capsys, words + " -o out")[0] == 0
     soil = fragility.Soil(drawn("3e3:9e3"), drawn("22:32"), drawn("0:0.2"))
     ground, centre, radius = CASES[0][:3]
-    body = columns.of_surface(ground, centre, radius, 180.0, 2039.0)
+    body = columns.of_sphere(ground, centre, radius, 180.0, 2039.0)
     k = bishop.yield_coefficient(body, fragility.strengths_of(soil, 16, 1))
     t, x = noise()
     scaled = np.column_stack([x, 0 * x, 0 * x]) * 2.0 / np.abs(x).max()
@@ -292,21 +294,46 @@ def test_the_share_below_a_peak_is_a_direct_simulation(slips, capsys):
     ("--peaks 100:500 --pseudo-static 1 --cohesion lognormal:0:1:1:2", "lognormal must have MEDIAN > 0"),
     ("--peaks 100:500 --pseudo-static 1 --correlation 2", "--correlation: must be from -1 to 1, got 2"),
     ("--peaks 100:500 --pseudo-static 1 --hazard rises.csv", "rises.csv: row 3: must be exceeded less often"),
-    ("--peaks 100:500 --pseudo-static 1 --terrain flat.asc", "must be"),
+    ("--peaks 100:500 --pseudo-static 1 --density 0", "--density: must be > 0 kg/m3, got 0"),
     ("--peaks 100:500 --pseudo-static 1 --sample 10", "--sample: must be from 256"),
 ])
 def test_bad_input_is_one_line(slips, capsys, words, rule):
     Path("rises.csv").write_text("peak,exceedance\n100,1e-2\n200,2e-2\n")
-    write_asc("flat.asc", np.full((101, 102), 40.0), 0.5)
     status, _, err = ran(capsys, f"slips {SOIL} {words} -o out")
     assert status == 2 and err.count("\n") == 1 and rule in err
     assert not Path("out").exists()
 
 
-@pytest.mark.parametrize("up, rule", [(-0.3, "must not be below the surface of body 1 by more than 0.05 m, got 0.3 m"),
-                                      (0.3, "on which body 1 has")])
-def test_a_base_of_another_body(slips, capsys, up, rule):
+def test_density_and_water_are_those_of_the_search_unless_they_are_given(slips, capsys):
+    """With 2000 kg/m3, and below a water table."""
+    words = "--cohesion 3e3:9e3 --friction 22:32 --peaks 100:500 --pseudo-static 1 --sample 256"
+    runs = {"dry": "", "said": "--density 2000 --water 0", "heavy": "--density 2300", "wet": "", "drained": "--water 0"}
+    found = {}
+    for name, more in runs.items():
+        if name == "wet":
+            for rank, radius in ((1, CASES[0][2]), (2, CASES[0][2] + 1.0)):
+                write_columns(f"slips/out.{rank}.columns.csv", *CASES[0][:2], radius, 2000.0, 29.0)
+        assert ran(capsys, f"slips {words} {more} -o {name}")[0] == 0
+        with open(f"{name}/capacities.csv", encoding="ascii") as source:
+            found[name] = np.loadtxt(source, delimiter=",", skiprows=1)[:, 2]
+    assert found["said"] == pytest.approx(found["dry"], rel=1e-6)
+    assert found["drained"] == pytest.approx(found["dry"], rel=1e-6)
+    assert (found["heavy"] < found["dry"]).all() and (found["wet"] < found["dry"]).all()
     ground, centre, radius = CASES[0][:3]
-    write_asc("slips/out.1.base.asc", columns.base_of(ground, centre, radius) + up, 0.5)
+    body = columns.of_sphere(ground, centre, radius, 180.0, 2000.0, np.full(ground.z.shape, 29.0))
+    soil = fragility.Soil(drawn("3e3:9e3"), drawn("22:32"))
+    k = bishop.yield_coefficient(body, fragility.strengths_of(soil, 16, 1))
+    assert found["wet"] == pytest.approx(np.maximum(k, 0) * GRAVITY * 100, rel=1e-5)
+
+
+@pytest.mark.parametrize("change, rule", [
+    (lambda path: path.unlink(), "must be an existing file, which find_slip writes since"),
+    (lambda path: path.write_text("x,y\n1,2\n"), "must be what find_slip wrote"),
+    (lambda path: path.write_text(path.read_text() + "1,2,nan,1,0,0,1,1,0\n"), "must be what find_slip wrote"),
+    (lambda path: path.write_text(path.read_text().rsplit("\n", 3)[0] + "\n"), "must be of the body of out.slips.csv"),
+    (lambda path: path.write_bytes(Path("slips/out.2.columns.csv").read_bytes()), "must be of the body of out.slips")])
+def test_columns_of_an_earlier_version_or_of_another_body(slips, capsys, change, rule):
+    change(Path("slips/out.1.columns.csv"))
     status, _, err = ran(capsys, f"slips {SOIL} --peaks 100:500 --pseudo-static 1 -o out")
-    assert status == 2 and rule in err
+    assert status == 2 and err.count("\n") == 1 and f"slips/out.1.columns.csv: {rule}" in err
+    assert not Path("out").exists()

@@ -29,9 +29,23 @@ CASES = [(embankment(25.0, 10.25, 0.5, (102, 101)), (10.25, 25.25, 54.0), 28.961
           1.5982, 14419.9)]
 
 
+def write_columns(path, raster, centre, radius, density, water=0.0):
+    """PREFIX.N.columns.csv of a sphere, with a column per cell; returns their area. water: the height of its table."""
+    x, y = columns.centres(raster)
+    dx, dy = x - centre[0], y - centre[1]
+    e = np.sqrt(np.maximum(radius ** 2 - dx ** 2 - dy ** 2, 1e-9))
+    kept = columns.largest(raster, np.where(e > 1e-4, centre[2] - e, np.nan))
+    dx, dy, e, top = (one[kept] for one in (dx, dy, e, raster.z))
+    low, area = centre[2] - e, np.full(len(e), raster.transform.a ** 2)
+    rows = np.column_stack([dx, dy, e, area, dx / e, dy / e, density * columns.GRAVITY * area * (top - low),
+                            centre[2] - (top + low) / 2, 1e3 * columns.GRAVITY * np.maximum(water - low, 0)])
+    np.savetxt(path, rows, "%.8g", ",", header=columns.HEAD, comments="")
+    return float(area.sum())
+
+
 @pytest.mark.parametrize("z, centre, radius, c, phi, gamma, factor, volume", CASES, ids=["10m", "20m"])
 def test_spheres_of_scoops3d(z, centre, radius, c, phi, gamma, factor, volume):
-    body = columns.of_surface(z, centre, radius, 180.0, gamma / columns.GRAVITY)
+    body = columns.of_sphere(z, centre, radius, 180.0, gamma / columns.GRAVITY)
     soil = Strengths(c, np.tan(np.radians(phi)))
     assert body.volume == pytest.approx(volume, rel=5e-3)
     assert bishop.factor_of_safety(body, soil)[0] == pytest.approx(factor, rel=5e-3)
@@ -41,7 +55,7 @@ def test_spheres_of_scoops3d(z, centre, radius, c, phi, gamma, factor, volume):
 def test_factor_is_1_at_the_yield_coefficient_of_every_strength(water, vertical):
     z, centre, radius = CASES[1][:3]
     table = np.full(z.z.shape, 22.0) if water == "table" else None
-    body = columns.of_surface(z, centre, radius, 170.0, 1900.0, table=table)
+    body = columns.of_sphere(z, centre, radius, 170.0, 1900.0, table=table)
     c, t = np.random.default_rng(1).uniform([1e3, 0.1], [6e4, 0.7], (200, 2)).T
     soil = Strengths(c, t, 0.0 if table is not None else water)
     k = bishop.yield_coefficient(body, soil, vertical)
@@ -60,7 +74,7 @@ def test_no_friction_on_a_plane_slope_is_the_closed_form():
     beta, radius, height = np.radians(30.0), 16.0, 10.0     # height of the centre above the slope, along its normal
     foot = np.array([20.0, 20.0, 20.0 * np.tan(beta)])
     centre = foot + height * np.array([-np.sin(beta), 0.0, np.cos(beta)])
-    body = columns.of_surface(plane(beta), centre, radius, 180.0, 2000.0)
+    body = columns.of_sphere(plane(beta), centre, radius, 180.0, 2000.0)
     zbar_v = np.pi * (radius ** 2 - height ** 2) ** 2 / 4       # of the cap, about the centre
     v = np.linspace(-1, 1, 200001)[1:-1] * np.sqrt(radius ** 2 - height ** 2)
     ring = np.sqrt(radius ** 2 - v ** 2)        # the cap's arc at v has the angle 2 acos(height / ring)
@@ -75,7 +89,7 @@ def test_dry_cap_without_cohesion_is_the_infinite_slope(k, water):
     beta, radius = np.radians(25.0), 150.0
     height = radius * np.cos(np.radians(5.0))
     centre = np.array([20.0, 20.0, 20.0 * np.tan(beta)]) + height * np.array([-np.sin(beta), 0.0, np.cos(beta)])
-    body = columns.of_surface(plane(beta), centre, radius, 180.0, 1800.0)
+    body = columns.of_sphere(plane(beta), centre, radius, 180.0, 1800.0)
     tan, slope = 0.6, np.tan(beta)
     expected = tan * ((1 - k * slope) - water / np.cos(beta) ** 2) / (slope + k)
     found = bishop.factor_of_safety(body, Strengths(0.0, tan, water), k)[0]
@@ -84,10 +98,21 @@ def test_dry_cap_without_cohesion_is_the_infinite_slope(k, water):
         assert bishop.factor_of_safety(body, Strengths(0.0, tan), 0.0, 0.3)[0] == pytest.approx(found, rel=1e-9)
 
 
+@pytest.mark.parametrize("direction", [180.0, 165.0])
+def test_columns_of_a_file_are_those_of_the_sphere(tmp_path, direction):
+    z, centre, radius = CASES[0][:3]
+    write_columns(tmp_path / "a.1.columns.csv", z, centre, radius, 1900.0, 29.0)
+    found = columns.read(tmp_path / "a.1.columns.csv", direction)
+    expected = columns.of_sphere(z, centre, radius, direction, 1900.0, np.full(z.z.shape, 29.0))
+    assert found.normal is None and expected.normal is None
+    for name in set(columns.Columns._fields) - {"normal", "volume"}:
+        assert getattr(found, name) == pytest.approx(getattr(expected, name), rel=1e-6, abs=1e-5), name
+
+
 def test_what_is_connected_and_what_is_not_below_ground():
     z = CASES[0][0]
     with pytest.raises(columns.SlopeError, match="must be below the ground somewhere"):
-        columns.of_surface(z, (10.0, 25.0, 80.0), 20.0, 180.0, 2000.0)
+        columns.of_sphere(z, (10.0, 25.0, 80.0), 20.0, 180.0, 2000.0)
     ridges = ground(lambda x: 10 + 3 * np.cos(x / 3), 100, 60)
     kept = columns.largest(ridges, columns.base_of(ridges, (23.0, 15.0, 40.0), 30.5))
     x = columns.centres(ridges)[0]

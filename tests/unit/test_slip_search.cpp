@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
@@ -263,7 +264,29 @@ TEST(SlipWriter, FilesHoldTheBodies)
     }
   EXPECT_GT(shallow, 1000);
   EXPECT_GT(only_deep, 100);
-  for (const char *end : {".slips.csv", ".factor.asc", ".1.base.asc", ".2.base.asc"})
+
+  // columns: the whole plan, and the slopes of the sphere
+
+  std::istringstream columns(text_of(prefix + ".2.columns.csv"));
+  std::getline(columns, line);
+  EXPECT_EQ(line,
+            "dx_m,dy_m,depth_m,area_m2,slope_x,slope_y,weight_n,weight_depth_m,pressure_pa");
+  double v[9], area = 0.0;
+  size_t number = 0;
+  for (; std::getline(columns, line); number++) {
+    std::replace(line.begin(), line.end(), ',', ' ');
+    std::istringstream words(line);
+    for (double &value : v) words >> value;
+    ASSERT_TRUE(words && words.eof()) << line;
+    EXPECT_NEAR(v[4], v[0] / v[2], 1e-6);
+    EXPECT_NEAR(v[5], v[1] / v[2], 1e-6);
+    area += v[3];
+  }
+  EXPECT_GT(number, 5000u);
+  EXPECT_NEAR(area, two.area, 1e-7 * two.area);
+
+  for (const char *end : {".slips.csv", ".factor.asc", ".1.base.asc", ".2.base.asc",
+                          ".1.columns.csv", ".2.columns.csv"})
     EXPECT_EQ(std::remove((prefix + end).c_str()), 0);
   EXPECT_EQ(std::remove(folder), 0);    // nothing else was left
 }

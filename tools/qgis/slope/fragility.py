@@ -23,12 +23,11 @@ class Fragility(Algorithm):
     Tables fragility.csv and fragility.yaml, and a picture."""
     options = (
         Option("SLIPS", "", "folder", "Folder of the slip surfaces", needed=True),
-        of("fragility", "terrain", "Terrain of the search", filter="Terrain (*.asc)"),
-        of("fragility", "density", "Density of the ground (kg/m3)"),
+        of("fragility", "density", "Density of the bodies (kg/m3; default: as in the search)", advanced=True),
         of("fragility", "cohesion", "Cohesion (Pa), a number or a distribution"),
         of("fragility", "friction", "Friction angle (degrees), a number or a distribution"),
-        of("fragility", "water", "Pore pressure over the weight per area (-), a number or a distribution",
-           default=None),
+        of("fragility", "water", "Pore pressure over the weight per area (-), a number or a distribution (default: "
+           "the water of the search)"),
         of("fragility", "correlation", "Between cohesion and friction, -1 to 1 (-)", default=None, least=-1.0,
            advanced=True),
         of("fragility", "peaks", "Peak accelerations LO:HI or LO:HI:STEP (gal)"),

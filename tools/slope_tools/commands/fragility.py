@@ -12,16 +12,17 @@ from ..options import Overwrite, flag, option, positional, several, whole
 
 DESCRIPTION = "How likely the bodies of find_slip fail at a peak acceleration."
 EPILOG = """\
-SLIPS: PREFIX.slips.csv of find_slip, or the folder with it; PREFIX.N.base.asc lie beside it. Or the folder of a route.
+SLIPS: PREFIX.slips.csv of find_slip or slope stability, with its other files beside it, or the folder with it. Or the
+folder of a route.
 DIST: a number, or as in `slope study --vary`: LO:HI, uniform:LO:HI, loguniform:LO:HI, triangular:LO:MODE:HI,
 normal:MEAN:DEVIATION:LO:HI, lognormal:MEDIAN:DEVIATION_OF_LN:LO:HI, list:V1@WEIGHT,V2@WEIGHT,...
 MOTION: lines "t ax ay az" (s, m/s2), which `slope quake` makes of a record.
 
 examples:
-  tools/slope fragility slips --terrain terrain.asc --density 1900 --cohesion lognormal:8e3:0.3:1e3:4e4 \\
-      --friction normal:30:3:20:40 --peaks 100:1200:25 --record motion.txt --displacement 0.5 -o fragility
-  tools/slope fragility slips --terrain terrain.asc --density 1900 --cohesion 5e3:15e3 --friction 25:35 \\
-      --peaks 100:1200 --pseudo-static 0.65 --hazard hazard.csv -o fragility
+  tools/slope fragility slips --cohesion lognormal:8e3:0.3:1e3:4e4 --friction normal:30:3:20:40 --peaks 100:1200:25 \\
+      --record motion.txt --displacement 0.5 -o fragility
+  tools/slope fragility slips --cohesion 5e3:15e3 --friction 25:35 --peaks 100:1200 --pseudo-static 0.65 \\
+      --hazard hazard.csv -o fragility
 
 Writes fragility.csv, fragility.yaml and fragility.png, and capacities.csv: from which peak on each sample fails. With
 this folder `slope study SITE --sample N --fragility DIR` says how likely which volume reaches the road.
@@ -31,13 +32,13 @@ this folder `slope study SITE --sample N --fragility DIR` says how likely which 
 @dataclass(frozen=True, kw_only=True)
 class Request(Overwrite):
     slips: Path = positional("what find_slip wrote, or slope route", metavar="SLIPS")
-    terrain: Optional[Path] = option("the terrain of find_slip; not with a route, whose bodies have theirs",
-                                     metavar="TERRAIN.asc")
-    density: float = option("density of the ground, kg/m3", metavar="R")
+    density: Optional[float] = option(
+        "density of the bodies, kg/m3 (default: as in the search); must be given where they were polygons of a route",
+        metavar="R")
     cohesion: str = option("Pa", metavar="DIST")
     friction: str = option("friction angle, degrees; tan:DIST: its tangent", metavar="DIST")
-    water: str = option(
-        "pore pressure over the weight per area, from 0 (default) to below 1", metavar="DIST", default="0")
+    water: Optional[str] = option(
+        "pore pressure over the weight per area, from 0 to below 1 (default: the water of the search)", metavar="DIST")
     correlation: float = option("between cohesion and friction, -1 to 1 (default 0)", metavar="R", default=0.0)
     peaks: str = option("largest horizontal accelerations, gal; without STEP 45 of them", metavar="LO:HI[:STEP]")
     record: List[Path] = several(
@@ -64,7 +65,7 @@ def run(args: Request) -> None:
     check(args)
     soil = soil_of(args)
     hazard = hazard_file.read(args.hazard) if args.hazard else None
-    disk.check_folder(args.output, files.FILES, [args.slips, args.terrain or args.slips], args.overwrite)
+    disk.check_folder(args.output, files.FILES, [args.slips], args.overwrite)
     limit = 0.1 if args.displacement is None else args.displacement
     failure: Any = fragility.PseudoStatic(args.pseudo_static) if args.pseudo_static is not None else \
         fragility.Slide(limit, [motion_file.read(path) for path in args.record], args.vertical)
@@ -87,7 +88,7 @@ def run(args: Request) -> None:
                          "base_sha256": disk.sha256(body.base)} for body in found],
              "peaks": args.peaks, "peaks_gal": peaks.tolist(),
              "hazard_curve": np.column_stack(hazard).tolist() if hazard else None, "slips": args.slips,
-             "terrain": args.terrain, "density": args.density, "cohesion": args.cohesion, "friction": args.friction,
+             "density": args.density, "cohesion": args.cohesion, "friction": args.friction,
              "water": args.water, "correlation": args.correlation, "samples": len(capacity), "seed": args.seed,
              "records": args.record, "vertical": args.vertical,
              "displacement": None if args.pseudo_static is not None else limit,
@@ -97,23 +98,23 @@ def run(args: Request) -> None:
 
 
 def bodies_of(args: Request) -> Any:
-    """The bodies (slips.bodies.Body), on their ground."""
+    """The bodies (slips.bodies.Body)."""
     from ..route import choices, search
     from ..slips import bodies
 
     if (args.slips / choices.NAME).is_file():
-        if args.terrain is not None:
-            raise SlopeError("--terrain", "must not be given with the folder of a route", args.terrain)
-        return [search.columns_of(args.slips, one["body"], args.density)
-                for one in search.table_of(args.slips)["bodies"]]
-    if args.terrain is None:
-        raise SlopeError("--terrain", "must be given, the terrain of find_slip")
-    return bodies.read(args.slips, args.terrain, args.density)
+        found = [search.columns_of(args.slips, one["body"], args.density)
+                 for one in search.table_of(args.slips)["bodies"]]
+    else:
+        found = bodies.read(args.slips, args.density)
+    if args.water is None:
+        return found
+    return [body._replace(columns=body.columns._replace(pressure=None)) for body in found]
 
 
 def check(args: Request) -> None:
     """The numbers, and what goes together."""
-    if not args.density > 0:
+    if args.density is not None and not args.density > 0:
         raise SlopeError("--density", "must be > 0 kg/m3", f"{args.density:g}")
     if not -1 <= args.correlation <= 1:
         raise SlopeError("--correlation", "must be from -1 to 1", f"{args.correlation:g}")
@@ -156,7 +157,7 @@ def soil_of(args: Request):
     return Soil(drawn("--cohesion", args.cohesion, 0.0, 1e8, "Pa"),
                 drawn("--friction", args.friction[4 * tangent:], 0.0, 10.0 if tangent else 89.0,
                       "as a tangent" if tangent else "degrees"),
-                drawn("--water", args.water, 0.0, 0.99, "as a ratio"), tangent, args.correlation)
+                drawn("--water", args.water or "0", 0.0, 0.99, "as a ratio"), tangent, args.correlation)
 
 
 def drawn(option, text, low, high, unit):
@@ -188,10 +189,11 @@ def warnings_of(curves, peaks, found, pseudo_static, records, hazard):
     elif records == 1:
         yield findings.Finding("one record")
     for body in found:
-        if len(body.columns.area) < FEWEST:
-            yield findings.Finding("columns", {"body": body.name, "value": len(body.columns.area), "limit": FEWEST})
+        if body.cells < FEWEST:
+            yield findings.Finding("columns", {"body": body.name, "value": body.cells, "limit": FEWEST})
     for one in curves:
-        standing = one.at_rest * hazard.rates[0] / one.frequency.total.value if one.frequency else 0.0
+        standing = one.at_rest * hazard.rates[0] / one.frequency.total.value \
+            if one.frequency and one.frequency.total.value > 0 else 0.0
         if one.at_rest > 0.01 or standing > 0.05:
             makes = f", which makes {100 * standing:.2g} % of the frequency" if standing > 0.05 else ""
             yield findings.Finding("at rest", {"which": one.title, "percent": 100 * one.at_rest, "makes": makes})

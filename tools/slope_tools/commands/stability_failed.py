@@ -28,6 +28,8 @@ def run(args: Any) -> None:
                    for path in (args.water_table, args.bedrock))
     way = None if args.direction is None else (90.0 - args.direction) % 360.0
     body = failed.read(args.failed, raster, way, args.density, table, rock)
+    if args.water is not None:
+        body = body._replace(columns=body.columns._replace(pressure=None))
     line = back.line(body.columns, horizontal, vertical, ratio)
     far = back.line(body.far, horizontal, vertical, ratio) if body.far else None
     warn, kept = findings.warner("stability")
@@ -36,7 +38,7 @@ def run(args: Any) -> None:
     about = {"terrain": args.terrain, "failed": args.failed, "density": args.density, "seismic": shaking,
              "water": args.water, "water_table": args.water_table,
              "bedrock": args.bedrock, "volume": body.columns.volume,
-             "cells": len(body.columns.area), "bearing": (90.0 - body.direction) % 360.0, "centre": body.centre,
+             "cells": body.cells, "bearing": (90.0 - body.direction) % 360.0, "centre": body.centre,
              "radius": body.radius, "cohesion_without_friction": line.cohesion[0],
              "friction_without_cohesion": line.friction[-1] if line.cohesion[-1] < 1e-6 * line.cohesion[0] else None,
              "warnings": kept}
@@ -57,8 +59,8 @@ def warnings_of(body, line, far):
     """What a reader must know."""
     from ..slips.columns import FEWEST
 
-    if len(body.columns.area) < FEWEST:
-        yield findings.Finding("few columns", {"cells": len(body.columns.area), "limit": FEWEST})
+    if body.cells < FEWEST:
+        yield findings.Finding("few columns", {"cells": body.cells, "limit": FEWEST})
     if far is not None:
         change = far.cohesion[0] / line.cohesion[0] - 1
         if abs(change) > APART:

@@ -1,7 +1,8 @@
 """The bodies along a corridor: searched window by window, or given as polygons; each with ground of its own.
 
 A body has a folder slips/N: terrain.asc, the part of the terrain on which it runs; body.N.base.asc, the ground without
-it; body.slips.csv, its row of find_slip; road.csv, the road there. `slope site --slips` and `slope fragility` take it.
+it; body.slips.csv and body.N.columns.csv, its row and its columns of find_slip; road.csv, the road there. `slope site
+--slips` and `slope fragility` take it.
 """
 import csv
 import json
@@ -41,6 +42,7 @@ class Slip(NamedTuple):
     base: np.ndarray
     factor: float
     row: Optional[Mapping[str, str]] = None
+    columns: Path = Path()  # the file of find_slip that goes with the row
     name: str = ""          # of a body that was given
 
     @property
@@ -143,8 +145,8 @@ def of_window(place: Path, window: Window) -> List[Slip]:
         return []
     with open(table, newline="", encoding="utf-8") as source:
         rows = list(csv.DictReader(source))
-    return [Slip(window, rasters.read(place / f"{PREFIX}.{row['rank']}.base.asc").z, float(row["factor"]), row)
-            for row in rows]
+    return [Slip(window, rasters.read(place / f"{PREFIX}.{row['rank']}.base.asc").z, float(row["factor"]), row,
+                 bodies.columns_file(table, int(row["rank"]))) for row in rows]
 
 
 # --- given ---
@@ -170,7 +172,7 @@ def given(choices: Choices, corridor: Corridor, warn) -> List[Slip]:
             slip = release_files.ground_without(body.raster, body.area, body.slip)
             base = np.where(body.raster.z - slip > 0, slip, np.nan)
             factor = bishop_factor(choices, body.raster, terrain.with_name("base.asc"), slip)
-            new = Slip(window, base, factor, None, name)
+            new = Slip(window, base, factor, name=name)
             for other in found:
                 if shared(new, other) > SHARED:
                     raise SlopeError(choices.bodies, f"must hold bodies that share at most {SHARED:g} of their cells",
@@ -222,7 +224,9 @@ def settled(choices: Choices, corridor: Corridor, place: Path, one: Slip, number
                             exact=True)
     write_line(place / "road.csv", line, raster)
     if one.row:
-        disk.write(place / f"{PREFIX}{bodies.END}", disk.csv_text(one.row, [{**one.row, "rank": str(number)}.values()]))
+        table = place / f"{PREFIX}{bodies.END}"
+        disk.write(table, disk.csv_text(one.row, [{**one.row, "rank": str(number)}.values()]))
+        disk.write(bodies.beside(table, number, bodies.COLUMNS), one.columns.read_bytes())
     depth = np.nan_to_num(raster.z - base)
     x, y = middle(corridor, one)
     return {"body": number, "name": one.name or f"body {number}", "chainage_m": round(corridor.chainage(x, y), 2),
@@ -250,11 +254,13 @@ def reaches(choices: Choices, mass: falling.Body, lane) -> Dict[str, Any]:
     return {"known_share": share, "known_law": found.law.name, "why_not": why}
 
 
-def columns_of(folder: Path, number: int, density: float) -> bodies.Body:
+def columns_of(folder: Path, number: int, density: Optional[float]) -> bodies.Body:
     """A body as `slope fragility` takes it."""
     place = folder / SLIPS / str(number)
     if (place / f"{PREFIX}{bodies.END}").is_file():
-        return bodies.read(place, place / TERRAIN, density)[0]
+        return bodies.read(place, density)[0]
+    if density is None:
+        raise SlopeError("--density", "must be given (kg/m3), as the bodies of this route were polygons")
     path = place / f"{PREFIX}.{number}.base.asc"
     found = failed.of_base(rasters.read_asc_local(place / TERRAIN), path, None, density, None)
-    return bodies.Body(str(number), found.direction, found.columns, path)
+    return bodies.Body(str(number), found.direction, found.columns, path, found.cells)

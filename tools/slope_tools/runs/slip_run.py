@@ -79,7 +79,7 @@ def settle(asked: slip_deck.Asked, raster: rasters.Raster, folder: Path, kept: i
 
 def remove_others(folder: Path, kept: int) -> None:
     """Files of bodies beyond those that were kept: of an earlier search in the same folder."""
-    for path in folder.glob(f"{PREFIX}.*.base.*"):
+    for path in [*folder.glob(f"{PREFIX}.*.base.*"), *folder.glob(f"{PREFIX}.*.columns.csv")]:
         rank = path.name.split(".")[1]
         if rank.isdigit() and int(rank) > kept:
             path.unlink()

@@ -34,15 +34,15 @@ class Strengths(NamedTuple):
 def sums(body: Columns, t: np.ndarray) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The sums a, b and w at each t: of cohesion, weight and water."""
     force = body.weight * (body.base / body.area) if body.pressure is None else body.pressure * body.base
-    normal = np.zeros_like(body.lever) if body.normal is None else body.normal
+    levers = [body.lever] if body.normal is None else [body.lever, body.normal]
     right = np.concatenate([np.stack([lever * body.base * body.sine, lever * body.weight, lever * force * body.sine])
-                            for lever in (body.lever, normal)]).T
+                            for lever in levers]).T
     shear = float(body.lever @ body.base), float(body.lever @ force)
-    found = np.empty((len(t), 6))
+    found = np.zeros((len(t), 6))
     step = max(1, CHUNK // len(body.area))
     for start in range(0, len(t), step):
         part = t[start:start + step, None]
-        found[start:start + step] = (1 / np.maximum(body.cosine + body.sine * part, LEAST_M)) @ right
+        found[start:start + step, :right.shape[1]] = (1 / np.maximum(body.cosine + body.sine * part, LEAST_M)) @ right
     cohesion, weight, water, *of_normal = found.T
     return (shear[0] - t * cohesion + of_normal[0], t * weight - of_normal[1],
             t * (t * water - of_normal[2] - shear[1]))

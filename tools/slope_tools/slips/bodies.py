@@ -1,9 +1,9 @@
-"""The bodies that `find_slip` kept: PREFIX.slips.csv and PREFIX.N.base.asc."""
+"""The bodies that `find_slip` kept: PREFIX.slips.csv, PREFIX.N.base.asc and PREFIX.N.columns.csv."""
 import csv
 import math
 import re
 from pathlib import Path
-from typing import Dict, List, NamedTuple, Sequence, Tuple
+from typing import Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -12,17 +12,17 @@ from ..survey import rasters
 from . import columns
 
 END = ".slips.csv"
-NUMBERS = ("x", "y", "z", "radius", "direction", "volume")
-SAME_BASE = 0.05        # m; a base that is more below the surface is none
-ON_ROCK = 1e-3          # m; where a base is more above the surface it is the bedrock
-SAME_VOLUME = 0.05      # a larger difference means another terrain
+BASE, COLUMNS = ".base.asc", ".columns.csv"
+NUMBERS = ("x", "y", "z", "radius", "direction", "volume", "area")
+SAME_AREA = 1e-6        # rounding of the sum of the columns
 
 
 class Body(NamedTuple):
     name: str               # its rank, 1 is the one with the least factor of safety
     direction: float        # of sliding, degrees counterclockwise from +x
     columns: columns.Columns
-    base: Path = Path()     # the file of its surface
+    base: Path              # the file of its surface
+    cells: int              # of the terrain
 
 
 def table_of(path: Path) -> Path:
@@ -82,7 +82,7 @@ def base_file(path: Path, rank: int) -> Path:
     known = [int(row["rank"]) for row in rows_of(source)]
     if rank not in known:
         raise SlopeError("--body", f"must be one of {source}, {', '.join(map(str, known))}", rank)
-    found = source.with_name(f"{prefix_of(source)}.{rank}.base.asc")
+    found = beside(source, rank, BASE)
     if not found.is_file():
         raise SlopeError(found, "must be an existing file, beside the table")
     return found
@@ -101,44 +101,45 @@ def base_files(path: Path) -> List[Path]:
     return [base_file(path, int(row["rank"])) for row in rows_of(table_of(path))]
 
 
-def prefix_of(table: Path) -> str:
-    return table.name[:-len(END)] if table.name.endswith(END) else table.stem
+def beside(table: Path, rank: int, end: str) -> Path:
+    """A file of a body, beside the table."""
+    prefix = table.name[:-len(END)] if table.name.endswith(END) else table.stem
+    return table.with_name(f"{prefix}.{rank}{end}")
 
 
-def read(path: Path, terrain: Path, density: float) -> List[Body]:
-    """The bodies of a table on their terrain; density kg/m3.
+def columns_file(table: Path, rank: int) -> Path:
+    """PREFIX.N.columns.csv of a body in a table."""
+    found = beside(table, rank, COLUMNS)
+    if not found.is_file():
+        raise SlopeError(found, "must be an existing file, which find_slip writes since 27 November 2026: search again")
+    return found
 
-    Columns have the exact base of the surface within the raster of the body, or the raster where that is higher, on
-    bedrock. SlopeError for another terrain or base.
-    """
+
+def read(path: Path, density: Optional[float] = None) -> List[Body]:
+    """The bodies of a table, or of a folder with one; density as in columns_of()."""
     source = table_of(path)
-    ground = rasters.read_asc_local(terrain)
     found = []
     for row in rows_of(source):
-        rank = f"{row['rank']:g}"
-        file = source.with_name(f"{prefix_of(source)}.{rank}.base.asc")
-        inside, rock = cells_of(ground, row, file)
-        body = columns.of_surface(ground, centre_of(row), row["radius"], row["direction"], density, inside,
-                                  shape=shape_of(row), rock=rock)
-        if not abs(body.volume / row["volume"] - 1) <= SAME_VOLUME:
-            raise SlopeError(terrain, f"must be the terrain of {source.name}, on which body {rank} has "
-                             f"{row['volume']:.5g} m3", f"{body.volume:.5g} m3")
-        found.append(Body(rank, row["direction"], body, file))
+        file = base_file(source, int(row["rank"]))
+        found.append(Body(f"{row['rank']:g}", row["direction"], columns_of(source, row, density), file,
+                          int(mask_of(file).sum())))
     return found
+
+
+def columns_of(table: Path, row: Dict[str, float], density: Optional[float] = None,
+               direction: Optional[float] = None, level: Optional[Callable] = None) -> columns.Columns:
+    """The columns with which find_slip computed the body of a row; without the options as find_slip had it.
+
+    density: kg/m3, of the body as a whole; direction: of sliding; level: of the water, see columns.read().
+    """
+    file = columns_file(table, int(row["rank"]))
+    found = columns.read(file, row["direction"] if direction is None else direction, level)
+    if not abs(found.area.sum() / row["area"] - 1) <= SAME_AREA:
+        raise SlopeError(file, f"must be of the body of {table.name}, which has {row['area']:.8g} m2 in plan",
+                         f"{found.area.sum():.8g} m2")
+    scale = 1.0 if density is None else density * columns.GRAVITY * row["volume"] / found.weight.sum()
+    return found._replace(volume=row["volume"], weight=scale * found.weight)
 
 
 def centre_of(row: Dict[str, float]) -> Tuple[float, float, float]:
     return row["x"], row["y"], row["z"]
-
-
-def cells_of(ground: rasters.Raster, row: Dict[str, float], file: Path):
-    """The mask of a body in PREFIX.N.base.asc, and the heights of the bedrock that cuts it, NaN elsewhere."""
-    base = rasters.read(file)
-    if base.z.shape != ground.z.shape or not base.transform.almost_equals(ground.transform, 1e-6):
-        raise SlopeError(file, "must be on the cells of the terrain")
-    inside = columns.largest(ground, base.z)
-    over = base.z - columns.base_of(ground, centre_of(row), row["radius"], row["direction"], shape_of(row))
-    if not np.nanmin(over[inside]) >= -SAME_BASE:
-        raise SlopeError(file, f"must not be below the surface of body {row['rank']:g} by more than {SAME_BASE:g} m",
-                         f"{-np.nanmin(over[inside]):.3g} m")
-    return inside, np.where(over > ON_ROCK, base.z, np.nan)

@@ -1,9 +1,10 @@
-"""The columns of a body above a sphere, one per cell of the terrain: see doc/src/slip_analysis.rst.
+"""The columns of a body: those that find_slip wrote, or of one that failed one per cell of the terrain.
 
-u is the horizontal distance from the centre against the direction of sliding, v the one across; the base of a sphere is
-e = sqrt(R^2 - u^2 - v^2) below the centre, or where the bedrock is.
+doc/src/slip_analysis.rst has the equations. u is the horizontal distance from the centre against the direction of
+sliding, v the one across; the base of a sphere is e = sqrt(R^2 - u^2 - v^2) below the centre, or where the bedrock is.
 """
-from typing import NamedTuple, Optional, Sequence, Tuple
+from pathlib import Path
+from typing import Callable, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 from scipy import ndimage
@@ -13,7 +14,9 @@ from ..survey.rasters import Raster
 
 GRAVITY = 9.80665       # m/s2
 WATER = 1000.0          # kg/m3
-FEWEST = 50             # columns, below which a factor of safety is rough
+FEWEST = 50             # cells of a body, below which a factor of safety is rough
+LEAST_NORMAL = 1e-6     # lever of the normal force over that of the shear force that is more than rounding
+HEAD = "dx_m,dy_m,depth_m,area_m2,slope_x,slope_y,weight_n,weight_depth_m,pressure_pa"     # of PREFIX.N.columns.csv
 
 
 class Columns(NamedTuple):
@@ -79,25 +82,44 @@ def above(surface: np.ndarray, rock: Optional[np.ndarray]) -> np.ndarray:
     return surface if rock is None else np.where(np.isfinite(surface), np.fmax(surface, rock), np.nan)
 
 
-def of_surface(ground: Raster, centre: Sequence[float], radius: float, direction: float, density: float,
-               inside: Optional[np.ndarray] = None, table: Optional[np.ndarray] = None,
-               shape: Shape = SPHERE, rock: Optional[np.ndarray] = None) -> Columns:
-    """The columns of the body above a surface; direction of sliding in degrees counterclockwise from +x, density kg/m3.
+def read(path: Path, direction: float, level: Optional[Callable] = None) -> Columns:
+    """Of PREFIX.N.columns.csv, without the volume; direction of sliding in degrees counterclockwise from +x.
 
-    inside: mask of the cells of the body (default: its largest connected part); table: heights of the water table,
-    NaN where there is no water. It does not change the density. rock: heights of the bedrock, NaN where there is none.
+    level: the height of another water table over the centre of the surface, of dx and dy.
     """
-    surface = base_of(ground, centre, radius, direction, shape)
+    try:
+        with open(path, encoding="ascii") as lines:
+            head = lines.readline().strip()
+            rows = np.loadtxt(lines, delimiter=",", ndmin=2)
+        if head != HEAD or not len(rows) or not np.isfinite(rows).all() or not (rows[:, 2:4] > 0).all():
+            raise ValueError(f"other columns or values than {HEAD}")
+    except (OSError, ValueError) as error:
+        raise SlopeError(path, f"must be what find_slip wrote ({error})") from None
+    dx, dy, e, area, slope_x, slope_y, weight, depth, pressed = rows.T
+    if level is not None:
+        pressed = pressure(level(dx, dy) + e)
+    dip, across = turned(slope_x, slope_y, direction)
+    return balanced(area, turned(dx, dy, direction)[0], e, dip, across, weight, depth,
+                    pressed if pressed.any() else None)
+
+
+def of_sphere(ground: Raster, centre: Sequence[float], radius: float, direction: float, density: float,
+              table: Optional[np.ndarray] = None, rock: Optional[np.ndarray] = None) -> Columns:
+    """The columns of the largest connected part of what is above a sphere; direction as in read(), density kg/m3.
+
+    table: heights of the water table, NaN where there is no water. It does not change the density. rock: heights of
+    the bedrock, NaN where there is none.
+    """
+    surface = base_of(ground, centre, radius)
     bottom = above(surface, rock)
-    kept = largest(ground, bottom) if inside is None else inside & (ground.z > bottom)
+    kept = largest(ground, bottom)
     u, v = from_axis(ground, kept, centre, direction)
     e = centre[2] - surface[kept]
-    dip, across = u / (shape.along ** 2 * e), shape.beyond(v) / (shape.across ** 2 * e)
+    dip, across = u / e, v / e
     cut = bottom[kept] > surface[kept]
     if rock is not None:
         dip, across = (np.where(cut, *two) for two in zip(dips(slopes(rock, ground), kept, direction), (dip, across)))
-    return balanced(ground, bottom, kept, dip, across, centre, direction, density, table,
-                    turns=shape.along == 1.0 and not cut.any())
+    return of_cells(ground, bottom, kept, dip, across, centre, direction, density, table)
 
 
 def of_raster(ground: Raster, bottom: np.ndarray, kept: np.ndarray, centre: Sequence[float], direction: float,
@@ -108,23 +130,30 @@ def of_raster(ground: Raster, bottom: np.ndarray, kept: np.ndarray, centre: Sequ
     """
     south, east = np.gradient(bottom, abs(ground.transform.a))
     dip, across = dips((south, east), kept, direction)
-    return balanced(ground, bottom, kept, dip, across, centre, direction, density, table)
+    return of_cells(ground, bottom, kept, dip, across, centre, direction, density, table)
 
 
-def balanced(ground: Raster, bottom: np.ndarray, kept: np.ndarray, dip: np.ndarray, across: np.ndarray,
-             centre: Sequence[float], direction: float, density: float, table: Optional[np.ndarray],
-             turns: bool = False) -> Columns:
-    """Columns from the tangents of the dip of their base; turns: all normals of the base meet the axis of moments."""
+def of_cells(ground: Raster, bottom: np.ndarray, kept: np.ndarray, dip: np.ndarray, across: np.ndarray,
+             centre: Sequence[float], direction: float, density: float, table: Optional[np.ndarray]) -> Columns:
+    """The cells of a mask as columns, from the tangents of the dip of their base."""
     top, low = ground.z[kept], bottom[kept]
     u, _ = from_axis(ground, kept, centre, direction)
-    e = centre[2] - low
     area = np.full(len(u), abs(ground.transform.a * ground.transform.e))
+    volume = area * (top - low)
+    return balanced(area, u, centre[2] - low, dip, across, density * GRAVITY * volume, centre[2] - (top + low) / 2,
+                    table if table is None else pressure(table[kept] - low))._replace(volume=float(volume.sum()))
+
+
+def balanced(area: np.ndarray, u: np.ndarray, e: np.ndarray, dip: np.ndarray, across: np.ndarray, weight: np.ndarray,
+             depth: np.ndarray, pressed: Optional[np.ndarray]) -> Columns:
+    """Columns from their places below the axis of moments, and the tangents of the dip of their base."""
     cosine = 1 / np.sqrt(1 + dip ** 2 + across ** 2)
     sine = dip / np.hypot(1, dip)
-    volume = area * (top - low)
-    return Columns(area, area / cosine, density * GRAVITY * volume, u, centre[2] - (top + low) / 2,
-                   u * sine + e / np.hypot(1, dip), sine, cosine, pressure_of(table, kept, low), float(volume.sum()),
-                   None if turns else cosine * (e * dip - u))
+    lever = u * sine + e / np.hypot(1, dip)
+    normal = cosine * (e * dip - u)
+    turns = np.abs(normal).max() <= LEAST_NORMAL * np.abs(lever).max()      # all normals of the base meet the axis
+    return Columns(area, area / cosine, weight, u, depth, lever, sine, cosine, pressed,
+                   normal=None if turns else normal)
 
 
 def slopes(heights: np.ndarray, raster: Raster) -> Tuple[np.ndarray, np.ndarray]:
@@ -159,6 +188,6 @@ def turned(dx, dy, direction: float):
     return -(dx * along[0] + dy * along[1]), dy * along[0] - dx * along[1]
 
 
-def pressure_of(table: Optional[np.ndarray], kept: np.ndarray, low: np.ndarray) -> Optional[np.ndarray]:
-    """Pressure of the water at the base of columns, Pa; None without a water table."""
-    return None if table is None else WATER * GRAVITY * np.nan_to_num(np.maximum(table[kept] - low, 0.0))
+def pressure(below: np.ndarray) -> np.ndarray:
+    """Of water at these depths below its table, Pa; 0 where they are NaN."""
+    return WATER * GRAVITY * np.nan_to_num(np.maximum(below, 0.0))

@@ -8,6 +8,7 @@ import numpy as np
 from ..errors import SlopeError
 from ..survey import rasters
 from ..survey.rasters import Raster
+from ..survey.resampling import sample
 from . import back, bodies, columns
 
 LEAST = 0.05        # m; a thinner column is noise of the raster
@@ -15,6 +16,7 @@ LEAST = 0.05        # m; a thinner column is noise of the raster
 
 class Failed(NamedTuple):
     columns: columns.Columns
+    cells: int                          # of the terrain
     far: Optional[columns.Columns]      # of a raster: the same about a far axis
     direction: float                    # of sliding, degrees counterclockwise from +x
     centre: np.ndarray                  # of the sphere, or a point of the axis of moments
@@ -30,13 +32,27 @@ def numbers(text: str):
     return found if len(found) == 4 and all(map(math.isfinite, found)) and found[3] > 0 else None
 
 
-def of_surface(raster: Raster, centre, radius: float, direction: Optional[float], density: float, table,
-               shape: columns.Shape = columns.SPHERE, rock=None) -> Failed:
-    base = columns.above(columns.base_of(raster, centre, radius, direction or 0.0, shape), rock)
+def of_sphere(raster: Raster, centre, radius: float, direction: Optional[float], density: float, table,
+              rock=None) -> Failed:
+    base = columns.above(columns.base_of(raster, centre, radius), rock)
     inside = columns.largest(raster, base)
     way = back.steepest(raster, base, inside, centre) if direction is None else direction
-    return Failed(columns.of_surface(raster, centre, radius, way, density, inside, table, shape, rock), None, way,
+    return Failed(columns.of_sphere(raster, centre, radius, way, density, table, rock), int(inside.sum()), None, way,
                   np.asarray(centre, float), radius)
+
+
+def of_search(path: Path, raster: Raster, direction: Optional[float], density: float, table) -> Failed:
+    """The first body of find_slip, with the water that it had, or below a table on the terrain's cells."""
+    source = bodies.table_of(path)
+    row = bodies.rows_of(source)[0]
+    x, y, z = centre = bodies.centre_of(row)
+
+    def level(dx, dy):
+        return sample(raster._replace(z=table), x + dx, y + dy) - z
+
+    found = bodies.columns_of(source, row, density, direction, None if table is None else level)
+    return Failed(found, int(bodies.mask_of(bodies.base_file(source, int(row["rank"]))).sum()), None,
+                  row["direction"] if direction is None else direction, np.asarray(centre), row["radius"])
 
 
 def of_base(raster: Raster, path: Path, direction: Optional[float], density: float, table) -> Failed:
@@ -53,7 +69,7 @@ def of_base(raster: Raster, path: Path, direction: Optional[float], density: flo
         return columns.of_raster(raster, base.z, inside, axis, way, density, table)
 
     far = None if math.isinf(radius) else about(back.far_centre(points))
-    return Failed(about(centre), far, way, centre, radius)
+    return Failed(about(centre), int(inside.sum()), far, way, centre, radius)
 
 
 def read(text: str, raster: Raster, direction: Optional[float], density: float,
@@ -61,20 +77,16 @@ def read(text: str, raster: Raster, direction: Optional[float], density: float,
     """The body that BODY names: X,Y,Z,R; the table of find_slip or a folder with it; a raster.
 
     direction: degrees counterclockwise from +x; None: where the weight has the largest moment about the centre. table,
-    rock: heights of the water table, and of the bedrock that cuts a sphere; what find_slip wrote shows its own.
+    rock: heights of the water table, and of the bedrock that cuts a sphere; what find_slip wrote has its own.
     """
     if numbers(text):
         *centre, radius = numbers(text)
-        return of_surface(raster, centre, radius, direction, density, table, rock=rock)
+        return of_sphere(raster, centre, radius, direction, density, table, rock)
     path = Path(text)
     if rock is not None:
         raise SlopeError("--bedrock", "must be given with X,Y,Z,R, as other bodies are as cut", text)
     if path.is_dir() or path.suffix == ".csv":
-        row = bodies.rows_of(bodies.table_of(path))[0]
-        _, rock = bodies.cells_of(raster, row, bodies.base_file(path, int(row["rank"])))
-        return of_surface(raster, bodies.centre_of(row), row["radius"],
-                          row["direction"] if direction is None else direction, density, table, bodies.shape_of(row),
-                          rock)
+        return of_search(path, raster, direction, density, table)
     if not path.is_file():
         raise SlopeError("--failed", "must be X,Y,Z,R of a sphere (m), what find_slip wrote, or a raster of the ground "
                          "without the body", text)
