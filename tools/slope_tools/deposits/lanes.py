@@ -18,6 +18,7 @@ from typing import Callable, List, NamedTuple, Optional, Sequence
 import numpy as np
 import rasterio
 from scipy.optimize import minimize_scalar
+from shapely.geometry import LineString, box
 from shapely.geometry.base import BaseGeometry
 
 from .. import geometry
@@ -53,6 +54,9 @@ def stretches(deposit: Raster, axes: Sequence[Axis], width: float, blocked: floa
     """
     mask, found = deposit.z > blocked, []
     for axis in axes:
+        near = box(*LineString(axis.points).buffer(width).bounds)
+        if not parts_of_mask(mask, deposit.transform, near):        # of many runs: nothing on the road
+            continue
         with rasterio.Env():        # one for all parts
             parts = [(piece, part) for piece in axis.pieces(width / 2)
                      for part in parts_of_mask(mask, deposit.transform, piece.area)]

@@ -1,7 +1,9 @@
 """The axis of a road, and the deposit along it."""
+import functools
 import math
 
 import numpy as np
+from shapely import wkb
 from shapely.affinity import rotate
 from shapely.geometry import LineString, MultiLineString
 
@@ -17,8 +19,14 @@ STRAIGHT = 0.98        # share of the centre line of a straight road that lies i
 def middle(road):
     """The road's middle, and how it was found: the centre line of its smallest rectangle, where that lies in the road,
 
-    else the middles of the road's cross sections, square to the long side of that rectangle.
+    else the middles of the road's cross sections, square to the long side of that rectangle. The runs of a study have one.
     """
+    return _middle(road.wkb)
+
+
+@functools.lru_cache(maxsize=4)
+def _middle(of):
+    road = wkb.loads(of)
     corners = np.array(road.minimum_rotated_rectangle.exterior.coords)[:4]
     sides = np.hypot(*(corners - np.roll(corners, -1, axis=0)).T)
     if sides[0] > sides[1]:

@@ -102,10 +102,10 @@ def of_run(prefix, wanted: Wanted, terrain=None, tell: Callable[[str], None] = l
 def write(found: Removal, folder: Path, picture: bool = True) -> None:
     """Tables, rasters, GeoJSON, map and volume.yaml, all of them or none; found.about gets their names."""
     run, mesh, result, about = found.run, found.mesh, found.result, found.about
-    lanes = found.clearing.mesh
+    cells = volume_files.Cells(run, mesh, result, found.factor, found.clearing.mesh)
     with disk.complete(folder, "volume.yaml") as new:
-        volume_files.write_csv(new / "volume.csv", run, mesh, result, found.factor, lanes)
-        volume_files.write_geojson(new / "volume.geojson", run, mesh, result, found.factor, lanes)
+        volume_files.write_csv(new / "volume.csv", cells)
+        volume_files.write_geojson(new / "volume.geojson", run, mesh, cells)
         rasters.write_geotiff(new / "volume.tif", {"thickness to remove (m)": np.where(
             np.isfinite(run.base) | (run.raster.z > 0), result.removed, np.nan)}, run.raster)
         rasters.write_geotiff(new / "volume_mesh.tif", {"volume to remove (m3)": result.volume},

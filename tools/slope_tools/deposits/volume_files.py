@@ -12,34 +12,45 @@ LABELS = 150           # mesh cells on a map that get their volume written into 
 WGS84 = "EPSG:4326"
 
 
-def rows(run_, mesh, result, factor, lanes):
-    """One dict per listed mesh cell, from the north-west on; lanes: what lanes take of each, None without any."""
-    east, north = run_.raster.offset
-    for row, column in result.listed:
-        x, y = (round(corner, 9) for corner in mesh.corner(row, column))  # 71 * 0.8 is 56.800000000000004
-        values = {"row": row + 1, "column": column + 1, "xlo": x, "ylo": y, "east": x + east, "north": y + north,
-                  "road_area": result.road_area[row, column], "deposit": result.deposit[row, column],
-                  "remove_on_road": result.road[row, column], "remove_beside_road": result.beside[row, column],
-                  "remove": result.volume[row, column]}
+class Cells:
+    """The mesh cells that are listed, from the north-west on: columns of their values; lanes: what lanes take, or None."""
+
+    def __init__(self, run_, mesh, result, factor, lanes):
+        row, column = result.listed.T
+        x, y = np.round(mesh.corner(row, column), 9)        # 71 * 0.8 is 56.800000000000004
+        east, north = run_.raster.offset
+        self.digits = max(6, result.digits)
+        self.columns = {"row": row + 1, "column": column + 1, "xlo": x, "ylo": y, "east": x + east, "north": y + north}
+        self.columns.update({name: of_cells[row, column] for name, of_cells in (
+            ("road_area", result.road_area), ("deposit", result.deposit), ("remove_on_road", result.road),
+            ("remove_beside_road", result.beside), ("remove", result.volume))})
         if factor:
-            values["remove_at_other_bulk_factor"] = round(values["remove"] * factor, result.digits)
+            self.columns["remove_at_other_bulk_factor"] = np.round(self.columns["remove"] * factor, result.digits)
         if lanes is not None:
-            values["remove_lane"] = lanes[row, column]
-        yield {key: value.item() if isinstance(value, np.generic) else value for key, value in values.items()}
+            self.columns["remove_lane"] = lanes[row, column]
+
+    def rows(self):
+        """The values of one cell after the other."""
+        return zip(*(values.tolist() for values in self.columns.values()))
 
 
 def text(value, digits=9):
     """A number in a CSV file; as many digits as it takes for a rounded one."""
-    return value if isinstance(value, int) else np.format_float_positional(round(value, digits), trim="-")
+    if isinstance(value, int):
+        return value
+    value = round(value, digits)
+    short = repr(value)
+    if "e" in short or "n" in short:
+        return np.format_float_positional(value, trim="-")
+    return short.removesuffix(".0")
 
 
-def write_csv(path, run_, mesh, result, factor, lanes=None):
-    found = list(rows(run_, mesh, result, factor, lanes))      # at least one: the road's
-    disk.write(path, disk.csv_text(found[0], ([text(value, max(6, result.digits)) for value in values.values()]
-                                              for values in found)))
+def write_csv(path, cells):
+    disk.write(path, disk.csv_text(cells.columns, ([text(value, cells.digits) for value in values]
+                                                   for values in cells.rows())))      # at least one: the road's
 
 
-def write_geojson(path, run_, mesh, result, factor, lanes=None):
+def write_geojson(path, run_, mesh, cells):
     """Squares of the mesh. With an EPSG number: in that CRS, which the file names as GDAL and QGIS read and write it;
 
     in another CRS: in degrees of WGS 84, which is what GeoJSON means where it names none.
@@ -47,7 +58,7 @@ def write_geojson(path, run_, mesh, result, factor, lanes=None):
     crs = run_.raster.crs
     known = crs is not None and epsg(crs)
     features = []
-    for values in rows(run_, mesh, result, factor, lanes):
+    for values in (dict(zip(cells.columns, row)) for row in cells.rows()):
         x, y = values["east"], values["north"]
         ring = [(x, y), (x + mesh.size, y), (x + mesh.size, y + mesh.size), (x, y + mesh.size), (x, y)]
         if crs is not None and not known:
