@@ -19,7 +19,7 @@ STRAIGHT = 0.98        # share of the centre line of a straight road that lies i
 def middle(road):
     """The road's middle, and how it was found: the centre line of its smallest rectangle, where that lies in the road,
 
-    else the middles of the road's cross sections, square to the long side of that rectangle. The runs of a study have one.
+    else the middles of its cross sections, square to the long side of that rectangle. A study has one road.
     """
     return _middle(road.wkb)
 

@@ -13,7 +13,7 @@ WGS84 = "EPSG:4326"
 
 
 class Cells:
-    """The mesh cells that are listed, from the north-west on: columns of their values; lanes: what lanes take, or None."""
+    """The mesh cells that are listed, from the north-west on, as columns of values; lanes: what lanes take, or None."""
 
     def __init__(self, run_, mesh, result, factor, lanes):
         row, column = result.listed.T
