@@ -23,6 +23,13 @@ CRS_M = "EPSG:6677"               # metres, zone IX of Japan
 EAST, NORTH = -12000.0, 34000.0   # of local 0 0
 
 
+def anew(words, more):
+    """A command's words and more, without those of its options (each with a value) that more gives anew."""
+    old, new = shlex.split(words), shlex.split(more)
+    again = [k for k, word in enumerate(old) if word.startswith("--") and word in new]
+    return shlex.join([word for k, word in enumerate(old) if k not in again and k - 1 not in again] + new)
+
+
 def centres(rows, columns, cell, xlo=0.0, ylo=0.0):
     """x and y of the cell centres, rows from the north."""
     return np.meshgrid(xlo + cell * (np.arange(columns) + 0.5), ylo + cell * (rows - 0.5 - np.arange(rows)))

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import yaml
 
-from run_helpers import TOP, examples
+from run_helpers import TOP, anew, examples
 from tiny_collapse import LMP
 
 sys.path.insert(0, str(TOP / "tests"))
@@ -60,7 +60,7 @@ def test_a_wrong_coefficient_is_noticed(succeed, monkeypatch):
         return law(self, scene._replace(contacts=wrong))
 
     monkeypatch.setattr(peers.Granular, "law", without_slip)
-    out, _ = succeed(f"{SMALL} --only peers --peers granular --steps 200")
+    out, _ = succeed(f"{anew(SMALL, '--steps 200')} --only peers --peers granular")
     assert not yaml.safe_load(Path("bench/bench.yaml").read_text())["same_scene"]["granular"]["same"]
     assert "pair granular, rolling sds ran another collapse" in out
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import yaml
 
-from run_helpers import called
+from run_helpers import anew, called
 from test_fragility import SOIL, write_slips
 from tiny_collapse import rows_of
 
@@ -124,7 +124,7 @@ def bad(mine, capsys, monkeypatch):
     monkeypatch.setattr(programs, "BESIDE", mine / "nowhere")
     for name, words in (("one", "--road road.csv --body 1"), ("free", "")):
         assert ran(capsys, f"site --terrain terrain.asc --slips slips --balls 60 {words} -o {name}")[0] == 0
-    assert ran(capsys, f"fragility {FRAGILITY} --cohesion 1e6 -o strong")[0] == 0
+    assert ran(capsys, f"fragility {anew(FRAGILITY, '--cohesion 1e6')} -o strong")[0] == 0
     for name, file, old in (("moved", fragility_files.ABOUT, "base_sha256: "),
                             ("short", fragility_files.CAPACITIES, "\n1,1,")):
         shutil.copytree("fragility", name)

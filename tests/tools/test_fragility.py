@@ -9,7 +9,7 @@ import yaml
 from scipy import stats
 
 import test_depends_on
-from run_helpers import called, write_asc
+from run_helpers import anew, called, write_asc
 from test_newmark import noise
 from test_slips import CASES, write_columns
 
@@ -299,7 +299,7 @@ def test_the_share_below_a_peak_is_a_direct_simulation(slips, capsys):
 ])
 def test_bad_input_is_one_line(slips, capsys, words, rule):
     Path("rises.csv").write_text("peak,exceedance\n100,1e-2\n200,2e-2\n")
-    status, _, err = ran(capsys, f"slips {SOIL} {words} -o out")
+    status, _, err = ran(capsys, f"slips {anew(SOIL, words)} -o out")
     assert status == 2 and err.count("\n") == 1 and rule in err
     assert not Path("out").exists()
 

@@ -170,5 +170,5 @@ def test_what_is_no_text_keeps_its_letters():
     """A unit is typeset; a picture, whose letters may look like one, is not."""
     import markupsafe
     assert document.typeset("5 m3") == "5 m³" and document.typeset(markupsafe.Markup("/m3+")) == "/m3+"
-    template = (TOOLS / "slope_tools" / "report" / "report.html.j2").read_text(encoding="utf-8")
-    assert "picture.uri|safe" in template and "deck|verbatim" in template
+    template = (TOOLS / "slope_tools" / "report" / "sections.html.j2").read_text(encoding="utf-8")
+    assert "picture.uri|safe" in template and "one.text|verbatim" in template

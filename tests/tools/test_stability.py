@@ -12,7 +12,7 @@ from shapely.geometry import box
 
 import run_helpers
 import test_depends_on
-from run_helpers import called, write_asc
+from run_helpers import anew, called, write_asc
 from test_slips import CASES
 from tiny_collapse import rows_of
 
@@ -197,7 +197,7 @@ def test_doubts_of_places():
 ])
 def test_bad_input_is_one_line(low, capsys, words, rule):
     write_asc("high.asc", CASES[0][0].z + 1, 0.5)
-    status, _, err = ran(capsys, f"{LOW} {words} -o out")
+    status, _, err = ran(capsys, f"{anew(LOW, words)} -o out")
     assert status == 2 and err.count("\n") == 1 and rule in err
     assert not Path("out").exists() and not list(Path().glob(".out*"))
 
