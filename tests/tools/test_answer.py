@@ -48,6 +48,10 @@ def test_a_floor_where_known_events_lie_beyond_the_runs():
     assert codes(found) == [Code.BEYOND, Code.TERRAIN] and found.reasons[0].numbers == {"far": 0.08, "longest_m": 800.0}
     found = answer.of(Paper(0.0), ensemble(0.7), road(0.5, 0.6))
     assert (found.volume, found.share) == (300.0, 0.3)
+    # as files of earlier versions have it
+    found = answer.of_ensemble(Ensemble({0.95: (None, 9.0, None), 0.9: (7.0, 5.0, None), 0.75: (3.0, 2.0, 4.0)}, 0.08,
+                                        800.0), None)
+    assert (found.kind, found.volume, found.share, found.low) == (Kind.FLOOR, 7.0, 0.9, 5.0)
     # the paper's more is a floor, too: what lies beyond is not known
     found = answer.of(Paper(5000.0), ensemble(0.7), road(0.5, 0.6))
     assert (found.kind, found.volume, found.source) == (Kind.FLOOR, 5000.0, Source.PAPER)

@@ -66,7 +66,7 @@ ANEW = "tools/slope site 'my site'{} && tools/slope study 'my site' --anew"
     ({"failed": 5}, DECK, "5 of 20 runs", "the same command again, once the cause of the failures is removed"),
     ({"size": "it is -20 %"}, SITE, "the size error is not trusted: it is -20 %", ANEW.format(" --balls 8800"))])
 def test_the_reason_and_the_command_that_mends_it(changed, case, text, remedy):
-    [entry] = withheld_words.mended(withheld.reasons(GOOD._replace(**changed)), case)
+    [entry] = withheld_words.with_remedies(withheld.reasons(GOOD._replace(**changed)), case)
     assert text in entry["text"] and entry["remedy"] == remedy
 
 
@@ -74,7 +74,7 @@ def test_the_reason_and_the_command_that_mends_it(changed, case, text, remedy):
                                   DECK._replace(variables={"friction": "30", "rolling": "0"})])
 @pytest.mark.parametrize("changed", [{"on_road": 50.0}, {"length": 700.0}, {"left": 0.3}, {"moving": 5}, {"size": "x"}])
 def test_the_commands_are_ones_that_the_tools_take(case, changed):
-    [entry] = withheld_words.mended(withheld.reasons(GOOD._replace(**changed)), case)
+    [entry] = withheld_words.with_remedies(withheld.reasons(GOOD._replace(**changed)), case)
     typed = re.findall(r"tools/slope (?:'[^']*'|[^&;,])*", entry["remedy"])
     assert typed or case.site is None or case.sampled
     for words in map(shlex.split, typed):

@@ -186,10 +186,10 @@ def percentiles(values):
 
 def spread(values):
     """A number of each run, over the runs; what is infinite is unknown."""
-    return {"lowest": told(min(values)), "median": told(np.median(values)), "highest": told(max(values))}
+    return {"lowest": finite(min(values)), "median": finite(np.median(values)), "highest": finite(max(values))}
 
 
-def told(value):
+def finite(value):
     """A number as travel.yaml has it; None if it is infinite."""
     return round(float(value), 9) if math.isfinite(value) else None
 
@@ -237,7 +237,7 @@ def known(one):
     """What each() gave, with None for what is infinite."""
     if "runout" not in one:
         return one
-    shares = [{"share": of["share"], "distance": told(of["distance"]), "reach_angle": told(of["reach_angle"])}
+    shares = [{"share": of["share"], "distance": finite(of["distance"]), "reach_angle": finite(of["reach_angle"])}
               for of in one["runout"]["quantiles"]]
     return {**one, "runout": {**one["runout"], "quantiles": shares}}
 

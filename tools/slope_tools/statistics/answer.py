@@ -114,7 +114,7 @@ def shares(far: float) -> List[float]:
 
     SHARE; where the runs reach less, also what they reach, in whole per cents: its quantile is the floor.
     """
-    within = math.floor(100 * (1 - far) + 1e-9) / 100
+    within = math.floor(100 * (1 - far) + 1e-10) / 100
     return [SHARE] if within >= SHARE else [SHARE, within]
 
 

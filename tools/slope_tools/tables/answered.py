@@ -40,7 +40,7 @@ def ensemble_of(about: Mapping[str, Any]) -> Optional[Ensemble]:
 
 
 def rules(entries) -> List[Withheld]:
-    """Of withheld_words.mended()."""
+    """Of withheld_words.with_remedies()."""
     numbers = ((one, one.get("numbers") or {}) for one in entries)
     return [Withheld(Rule(one["kind"]), of.get("number"), of.get("bound")) for one, of in numbers]
 

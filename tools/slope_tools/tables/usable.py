@@ -73,7 +73,7 @@ def reasons_of_ensemble(rows: Sequence[Row], events: Optional[Events], case: Cas
     """
     finished = [row for row in rows if row["status"] == "finished"]
     largest, on_road = (max(row[key] for row in finished) for key in ("remove_m3", "remove_on_road_m3"))
-    return withheld_words.mended(withheld.reasons(facts(rows, largest, on_road, events)), case)
+    return withheld_words.with_remedies(withheld.reasons(facts(rows, largest, on_road, events)), case)
 
 
 def judge(best: Dict[str, Any], rows: Sequence[Row], events: Optional[Events], case: Case, size: str = "") -> None:
@@ -83,7 +83,7 @@ def judge(best: Dict[str, Any], rows: Sequence[Row], events: Optional[Events], c
     """
     mine = [row["remove_on_road_m3"] for row in rows if row["status"] == "finished" and row["set"] == best["set"]]
     found = withheld.reasons(facts(rows, best["volume_m3"], sum(mine) / len(mine), events, size))
-    best["withheld"], best["zero"] = withheld_words.mended(found, case), None
+    best["withheld"], best["zero"] = withheld_words.with_remedies(found, case), None
     if found:
         best["volume_m3"] = best["rounded"]["volume_m3"] = None
     elif best["volume_m3"] == 0:

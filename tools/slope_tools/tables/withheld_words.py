@@ -86,13 +86,13 @@ def twice(case: Case) -> str:
         return "SECONDS"
 
 
-def mended(found: Sequence[Finding], case: Case) -> List[Dict[str, Any]]:
+def with_remedies(found: Sequence[Finding], case: Case) -> List[Dict[str, Any]]:
     """What study.yaml says of reasons: with what mends each."""
     return entries(one._replace(remedy=remedy(one, case)) for one in found)
 
 
 def lines(withheld: Sequence[Mapping[str, Any]]) -> List[str]:
-    """What stands in the place of the number, of mended()."""
+    """What stands in the place of the number, of with_remedies()."""
     return [f"{UNUSABLE}:", *(f"  {text}" for text in texts(withheld))]
 
 
