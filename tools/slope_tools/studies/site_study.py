@@ -77,7 +77,9 @@ def run(folder: Path, engine: Setup, method: str) -> Done:
 
     failed: Optional[Exception] = None
     try:
-        study.perform(setup, {**settings, **repeated}, [*todo, *(planned.todo if planned else ()), *half], collect)
+        # the longest first: a long run that starts last leaves the other cores idle
+        first = [*half, *sorted(planned.todo if planned else (), key=lambda one: float(one.chosen["d"]))]
+        study.perform(setup, {**settings, **repeated}, [*first, *todo], collect)
     except study.RunsFailed:
         failed = study.failure(setup.output, todo)      # what is said of the others is with their results
         if failed and all(one.error for one in todo):
