@@ -78,6 +78,17 @@ def test_both_sums_are_what_they_say():
         assert together.rank_by_rank(bodies, VOLUMES) == pytest.approx(chance, abs=2e-4)
 
 
+def test_the_largest_sum_is_not_exceeded():
+    """Not by a rounding either: v - a may be less than b though v is a + b."""
+    rng = np.random.default_rng(9)
+    for number in (2, 3):
+        for _ in range(200):
+            bodies = [Steps(np.sort(rng.gamma(2.0, 60.0, 4))[::-1], (np.arange(4) + 1) / 4) for _ in range(number)]
+            largest = np.array([sum(one.volumes[0] for one in bodies)])
+            for of in (together.independent, together.rank_by_rank):
+                assert of(bodies, largest)[0] == 0 < of(bodies, largest * (1 - 1e-12))[0]
+
+
 def test_many_runs_are_thinned_out_to_the_unfavourable_side(monkeypatch):
     rng = np.random.default_rng(6)
     bodies = [Steps(np.sort(rng.gamma(2.0, 60.0, n))[::-1], (np.arange(n) + 1) / n) for n in (37, 41, 43)]

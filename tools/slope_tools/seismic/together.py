@@ -37,11 +37,15 @@ def rank_by_rank(bodies: Sequence[Steps], volumes: np.ndarray) -> np.ndarray:
 
 def independent(bodies: Sequence[Steps], volumes: np.ndarray) -> np.ndarray:
     """P(V > v) if no body knows of the others."""
-    total, weights = np.zeros(1), np.ones(1)
-    for one in bodies[:-1]:
-        total, weights = rounded_up(np.add.outer(total, one.volumes).ravel(),
-                                    np.outer(weights, np.diff(one.shares, prepend=0.0)).ravel())
-    return np.array([min((above(bodies[-1], volume - total) * weights).sum(), 1.0) for volume in volumes])
+    sums, weights = np.zeros(1), np.ones(1)
+    for one in bodies:
+        sums, weights = rounded_up(sums, weights)
+        # added up as by those who ask for the largest sum, which rounding then does not exceed
+        sums = np.add.outer(sums, one.volumes).ravel()
+        weights = np.outer(weights, np.diff(one.shares, prepend=0.0)).ravel()
+    order = np.argsort(-sums, kind="stable")
+    shares = np.concatenate([[0.0], np.cumsum(weights[order])])
+    return np.minimum(shares[np.searchsorted(-sums[order], -volumes, "left")], 1.0)
 
 
 def rounded_up(values: np.ndarray, weights: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:

@@ -76,10 +76,11 @@ def run(folder: Path, engine: Setup, method: str) -> Done:
         results.collect(setup, questions, todo, work)
 
     failed: Optional[Exception] = None
+    of_sizes = planned.todo if planned else ()
     try:
         # the longest first: a long run that starts last leaves the other cores idle
-        first = [*half, *sorted(planned.todo if planned else (), key=lambda one: float(one.chosen["d"]))]
-        study.perform(setup, {**settings, **repeated}, [*first, *todo], collect)
+        first = [*half, *sorted(of_sizes, key=lambda one: float(one.chosen["d"]))]
+        study.perform(setup, {**settings, **repeated}, [*todo, *of_sizes, *half], collect, first=first)
     except study.RunsFailed:
         failed = study.failure(setup.output, todo)      # what is said of the others is with their results
         if failed and all(one.error for one in todo):

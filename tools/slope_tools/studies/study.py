@@ -21,10 +21,10 @@ from ..tables import intensity
 from .setup import Road, Setup
 
 
-def perform(setup: Setup, settings, todo, collect, begin=None):
+def perform(setup: Setup, settings, todo, collect, begin=None, first=()):
     """Run what is not finished of todo, then collect(todo, work); RunsFailed after that if a run failed.
 
-    begin: called once the folder is there, before the first run.
+    begin: called once the folder is there, before the first run; first: runs of todo that are made before the others.
     """
     files = data_files(setup.deck, settings)
     if setup.road:
@@ -39,7 +39,8 @@ def perform(setup: Setup, settings, todo, collect, begin=None):
         work.store.admit(todo)
         if begin:
             begin()
-        work.do(todo)
+        once = store.once(todo)     # of runs that share a folder the first in todo is made
+        work.do([*(run for run in first if run in once), *todo])
         collect(todo, work)
     error = failure(setup.output, todo)
     if error:
