@@ -17,7 +17,7 @@ from ..digits import rounded
 from ..errors import SlopeError
 from .site_choices import Choices, OFFSETS, other_grounds
 
-DEFAULT = 2000          # balls, if no budget is given: 12 to 18 minutes on two cores for a rock avalanche of 6 million m3
+DEFAULT = 2000          # balls, if no budget is given: 12 to 18 minutes on two cores for 6 million m3 of rock
 TRIAL = 800             # balls of the trial run
 FINER = 3               # times as many balls has a second trial run, for a budget of time
 FINER_SHARE = 0.2       # of that budget, which it takes at most
