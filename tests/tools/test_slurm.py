@@ -2,6 +2,7 @@
 import csv
 import getpass
 import os
+import re
 import shlex
 import shutil
 import socket
@@ -178,7 +179,12 @@ exec {tiny_collapse.LMP} "$@"
     (here / "begin").touch()
     out, err = process.communicate(timeout=500)
     assert process.returncode == 0, err
-    assert out.count("task") == 14 and len(list((here / "out" / ".slurm").glob("*.runs"))) >= 2
+
+    # both that were cancelled are submitted again; under load another one, too, whose status comes late
+    tasks = re.findall(r"\] (\S+): .*task (\d+) of Slurm's array (\d+)", out)
+    of = {f"{array}_{task}": name for name, task, array in tasks}
+    again = [name for name, _, array in tasks if array != tasks[0][2]]
+    assert {of[running[0]], of[waiting[-1]]} <= set(again) and len(tasks) - len(again) == 12
     assert cli.main(shlex.split(f"{lists} -o local")) == 0
     assert table("out") == table("local") and len(table("out")) == 12
     assert not states()
