@@ -146,11 +146,13 @@ def test_why_no_more_are_added(tmp_path):
             Code.TERRAIN, {"share": path.share, "path_m": path.length})
     assert farther.Added(tmp_path, planned()).propose(u, lengths, beyond, farther.End(1e5, far - 0.03)) is not None
     assert stopped(farther.Added(tmp_path, planned()), runs=7).code is Code.FEW
-    u[0] = 0, 0, 1          # the corner where the longest run is
+    u[0] = 0, 0, 1          # the corner where the longest run is: one may be that by chance
+    assert farther.Added(tmp_path, planned()).propose(u, response(u)[0], beyond, PATH) is not None
+    u[:2] = 0, 0, 1
     found = stopped(farther.Added(tmp_path, planned()), lengths=response(u)[0])
     assert found.code is Code.RANGE and found.numbers["ends"].startswith("a 0.0")
     assert "range" in answer_words.text(found) and "a 0.0" in answer_words.text(found)
-    u[0] = 0.5
+    u[:2] = 0.5
     added = farther.Added(tmp_path, planned())
     for _ in range(8):
         assert len(added.propose(u, lengths, beyond, PATH).points) == 8
@@ -184,9 +186,11 @@ def test_runs_are_added_beyond_the_bounds(tmp_path):
     assert batch.box[0][0] == pytest.approx(-0.2) and batch.box[0][1] <= 0.1
     values = [float(one["a"]) for one in batch.points]
     assert min(values) < 0 and min(values) >= -0.2
-    u[:4, 0] = -0.2
-    lengths[:4], beyond[:4] = 10 ** (3 + 0.2 * 1.2), 0.2
+    u[:8, 0] = -0.2
+    lengths[:8], beyond[:8] = 10 ** (3 + 0.2 * 1.2), 0.2
     lengths[0] *= 1.1
+    assert added.propose(u, lengths, beyond, PATH) is not None      # that one may be by chance
+    lengths[1] *= 1.1
     assert added.propose(u, lengths, beyond, PATH) is None
     assert added.stopped == (Code.RANGE, {"ends": "a -0.20"})
 

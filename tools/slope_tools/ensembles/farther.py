@@ -115,7 +115,7 @@ class Added:
             self.stopped = Reason(Code.RUNS, {"points": self.number})
         else:
             found = Longer(places, lengths, self.sample)
-            box = found.box if found.number else None
+            box = found.box if found.more else None
             if box is None:
                 self.stopped = Reason(Code.RANGE, {"ends": self.ends(found.box)})
         if box is None:
@@ -156,11 +156,11 @@ class Added:
 
 
 class Longer:
-    """Where runs are expected to be the longest: a box around it; number: of places where they are longer than all so
-    far, of CLOUD.
+    """Where runs are expected to be the longest: a box around the places, of CLOUD, where they are longer than all so far.
 
     Expected is the emulator's mean and a deviation: its own, as it knows little in corners without runs, with chance,
-    as the longest run may owe its length to it.
+    as the longest run may owe its length to it. more: whether any place is expected to be longer than all runs but one,
+    as that one may be far longer by chance.
     """
 
     def __init__(self, places: np.ndarray, lengths: np.ndarray, sample: Sample):
@@ -172,8 +172,10 @@ class Longer:
         cloud = sample.snap(least + (most - least) * designs.points(designs.SOBOL, len(least), CLOUD, emulator.SEED))
         mean, deviation = fitted.spread(cloud)
         expected = mean + np.hypot(deviation, fitted.noise)
-        self.number = int((expected > np.log10(max(lengths))).sum())
-        best = cloud[np.argsort(-expected, kind="stable")[:min(max(self.number, FEW), MANY)]]
+        longest, second = np.log10(lengths[order[:2]])
+        self.more = bool(expected.max() > second)
+        number = int((expected > longest).sum())
+        best = cloud[np.argsort(-expected, kind="stable")[:min(max(number, FEW), MANY)]]
         low = np.maximum(np.floor(best.min(axis=0) / STEP) * STEP, least)
         high = np.minimum(np.ceil(best.max(axis=0) / STEP) * STEP, most)
         self.box = [[0.0, 1.0] if isinstance(one, distributions.Listed) else [round(float(a), 6), round(float(b), 6)]
