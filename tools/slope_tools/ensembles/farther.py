@@ -156,11 +156,11 @@ class Added:
 
 
 class Longer:
-    """Where runs are expected to be the longest: a box around the places, of CLOUD, where they are longer than all so far.
+    """Where runs are expected to be the longest: a box around the places where they are longer than all so far.
 
-    Expected is the emulator's mean and a deviation: its own, as it knows little in corners without runs, with chance,
-    as the longest run may owe its length to it. more: whether any place is expected to be longer than all runs but one,
-    as that one may be far longer by chance.
+    Of CLOUD places; expected is the emulator's mean and a deviation: its own, as it knows little in corners without
+    runs, with chance, as the longest run may owe its length to it. more: whether any place is expected to be longer
+    than all runs but one, as that one may be far longer by chance.
     """
 
     def __init__(self, places: np.ndarray, lengths: np.ndarray, sample: Sample):
