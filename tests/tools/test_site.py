@@ -226,6 +226,14 @@ def test_the_report_of_a_sites_folder(done, tmp_path):
     assert "slope study bare" in found.stderr and [path.name for path in bare.iterdir()] == ["site.yaml"]
 
 
+def test_the_longest_runs_begin_first(done):
+    """Half the step, then the finest balls; those of the study's own keep their names."""
+    begun = [line.split()[1].rstrip(":") for line in done[2].splitlines() if line.endswith(": started")]
+    assert len(begun) == 20 and begun[0].startswith("rolling_0.05_step_0.5")
+    fine = [float(name.split("_d_")[1].split("_")[0]) for name in begun if "_d_" in name]
+    assert len(fine) == 6 and fine == sorted(fine) and all("_d_" in name for name in begun[1:7])
+
+
 def test_the_study_is_resumed(done, monkeypatch):
     monkeypatch.setattr(study_command, "write_report", lambda *_: None)
     monkeypatch.setattr(volume_files, "draw", lambda path, *_: path.touch())
