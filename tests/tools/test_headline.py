@@ -7,7 +7,8 @@ import pytest
 from scipy import stats
 
 from slope_tools.statistics import headline
-from slope_tools.statistics.headline import Combination, Headline, Scatter, SizeError
+from slope_tools.statistics.headline import Combination, Headline, Scatter
+from slope_tools.statistics.size_effect import Effect, effect
 
 STUDIES = 400
 REPEATS = 3
@@ -240,37 +241,42 @@ def test_with_unequal_numbers_of_runs_the_least_known_may_govern():
 
 # --- the size of the balls ---
 
-def test_the_size_part_leads_to_the_value_for_small_balls():
-    """Runs at -10 % of the value for small balls, without any scatter: the headline is that value."""
-    best = headline.headline(combinations((90, 90)), {"a": SizeError(-0.1, 0.0)})
-    assert (best.mean, best.chance) == (90, 0) and best.volume == pytest.approx(100)
-    assert headline.headline(combinations((90,)), {"a": SizeError(-0.1)}).volume == pytest.approx(100)
-    # too large: nothing is taken off
-    assert headline.headline(combinations((110, 110)), {"a": SizeError(0.1, 0.0)}).volume == 110
+def test_a_fine_run_that_brings_more_than_chance_raises_the_headline():
+    """By hand: four runs of mean 100, s 2; the fine run may lie t s sqrt(1 + 1/4) above them, 3.182 x 2 x 1.118 = 7.12."""
+    coarse = Combination("a", {"1": 98.0, "2": 102.0, "3": 98.0, "4": 102.0})
+    scatter = headline.pooled([coarse])
+    most = 3.182446 * scatter.deviation * math.sqrt(1.25)
+    for fine, added in ((100 + most + 0.01, 0.01 * (most + 0.01)), (100 + most - 0.01, 0.0), (80.0, 0.0)):
+        found = effect(coarse, fine, scatter, ball=1.0)
+        assert found.ratio and found.chance == pytest.approx(most) and found.clear is (added > 0)
+        assert found.added(1.0) == pytest.approx(added)
+    found = effect(coarse, 130.0, scatter, ball=1.0)
+    alone, raised = headline.headline([coarse]), headline.headline([coarse], found.added)
+    assert alone.size is None and raised.volume == pytest.approx(1.3 * alone.volume)
+    assert raised.size == pytest.approx(0.3 * alone.volume) and raised.mean == alone.mean
 
 
-def test_the_uncertainty_of_the_size_error_adds_to_chance_as_squares():
-    found = headline.size_part(mean=80.0, chance=3.0, error=SizeError(-0.2, half=0.032))
-    assert found == pytest.approx(20 + 5 - 3)           # half is 80 x 0.032/0.64 = 4, and 3, 4, 5 is a right triangle
-    assert headline.size_part(80.0, None, SizeError(-0.2, half=0.032)) == pytest.approx(20 + 4)
-    assert headline.size_part(120.0, 3.0, SizeError(0.2, half=0.048)) == 0
+@pytest.mark.parametrize("mean, fine, ball, ratio, value, added", [
+    (0.0, 50.0, 1.0, False, 0.0, 50.0),         # from zero
+    (8.0, 20.0, 1.0, False, 100.0, 12.0),       # fewer than ten balls, before and after
+    (20.0, 8.0, 1.0, False, 100.0, 0.0),
+    (20.0, 30.0, 1.0, True, 100.0, 50.0),
+    (0.5, 0.75, None, True, 10.0, 5.0)])        # a length
+def test_an_effect_of_few_balls_is_a_difference(mean, fine, ball, ratio, value, added):
+    found = effect(Combination("a", {"1": mean}), fine, None, ball)
+    assert found.chance is None and found.clear is None and found.ratio is ratio
+    assert found.added(value) == pytest.approx(added)
 
 
-def test_a_coarse_combination_may_govern_by_its_size_error():
-    best = headline.headline(combinations((100,), (95,)), {"a": SizeError(-0.01), "b": SizeError(-0.2)})
-    assert best.combination == "b" and best.volume == pytest.approx(95 / 0.8)
-
-
-def test_a_prediction_with_its_size_error_covers_small_balls():
-    """The next run with small balls lies below all parts together, although the error is known with its own scatter."""
+def test_equal_runs_are_rarely_raised():
+    """A fine run of the same mean and scatter lies above chance in one of forty studies."""
     random = np.random.default_rng(4)
-    below, small, share, uncertain = 0, 16000.0, -0.08, 0.02
+    raised = 0
     for _ in range(1000):
-        coarse = study(random, [mean * (1 + share) / EQUAL[0] * small for mean in ONE], 0)
-        error = SizeError(random.normal(share, uncertain), 1.96 * uncertain)
-        best = headline.headline(coarse, {one.name: error for one in coarse})
-        below += random.normal(small, DEVIATION) < best.volume
-    assert 0.95 <= below / 1000 <= 0.995
+        several = study(random, EQUAL, 0)
+        found = effect(several[1], random.normal(EQUAL[1], DEVIATION), headline.scatter_of(several, several[1]), 1.0)
+        raised += found.added(1.0) > 0
+    assert 0.005 <= raised / 1000 <= 0.045
 
 
 # --- differences ---
@@ -330,7 +336,7 @@ def test_rounded_parts_add_up_and_are_never_too_small():
     random = np.random.default_rng(6)
     for _ in range(200):
         best = headline.headline(study(random, random.uniform(0, 20000, 3), 0.3),
-                                 {f"rolling {k}": SizeError(-0.05, 0.02) for k in range(3)})
+                                 Effect(100.0, 3, 105.0, 1.0, True).added)
         parts = best.rounded()
         assert parts["volume"] == pytest.approx(parts["mean"] + parts["chance"] + parts["size"], abs=1e-6)
         assert best.volume - 1e-9 <= parts["volume"] <= best.volume + 3 * best.place + 1e-9

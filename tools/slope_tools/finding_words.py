@@ -168,14 +168,12 @@ WORDS: Dict[str, Union[str, Words]] = {
     # of a study
     "ranks": "{runs} runs of {ranks} ranks at a time on {cores} cores: they slow each other down",
     "no effect": Words("a repeated variable has no effect, to the last digit: left out", NOTE),
-    "size error unknown": "the size error is unknown: {why}",
     # why the number of a study is withheld
     "balls on the road": "on the road lies the volume of {balls}, fewer than {bound:g}",
     "known events": "no run reaches {bound} m, as half of known events of this volume and height do; {longest}",
     "left the terrain": "{percent:.2g} % of the released volume left the terrain before or beside the road, more than "
                         "{most:g} %",
     "runs not at rest or failed": "{number} of {bound} runs failed or are not at rest at the end, more than {most:g} %",
-    "size error": "the size error is not trusted: {why}",
     # caveats on the volume to remove
     "single run": Words("nothing was varied: it comes from a single run", NOTE),
     "end of range": Words("it lies at the end of the range of {variable}, {low:g} to {high:g}", NOTE),
@@ -200,10 +198,6 @@ WORDS: Dict[str, Union[str, Words]] = {
     "not repeated": Words("the scatter is that of {repeated} alone: {offsets} of the deck not repeated", NOTE),
     "half step": Words("half the time step, rolling {rolling}: {volume} m3 instead of {mean} to remove{by}; {more} "
                        "than chance explains, {chance} m3", NOTE),
-    "no file of sizes": Words("{file}, from which the study took its size error, does not exist, so there are no "
-                              "charts of it; --converge names another place", NOTE),
-    "deck of sizes": Words("the size error is that of another deck, {deck}", NOTE),
-    "base of sizes": Words("the size error was found with {other}", NOTE),
     # on an ensemble, one by known events, a chain
     "failed points": Words("{failed} of {runs} runs failed: the estimates exclude them, and the bounds allow any value "
                            "for them{wide}", NOTE),

@@ -16,17 +16,16 @@ from ..runs import repeats
 from ..sites import site_choices, site_deck
 from ..sites.site_bodies import VARIABLE
 from ..sites.site_layers import ROAD
-from ..studies import results, site_ground, site_study, study
+from ..studies import fine_runs, results, site_ground, site_study, study
 from ..studies.study import OfAKind, RunsFailed, check_more_than, check_thresholds, perform
 from ..survey import roads
 from ..tables import answer_words, answered, intensity
-from ..tables.size_error import SizeErrors
 from . import known_arguments, road_arguments
 from .run_arguments import DECK, Intensity, Repeats, Runs, Sample, setup_of
 
 PAGES = {site_study.STUDY: "paper.html", site_study.ENSEMBLE: "ensemble.html"}     # beside report.html
 THICKNESSES = "0.1,0.5,1"      # of the maps of exceedance, m; the parser has None, as for all that a site refuses
-OF_A_ROAD = ("size_error", "road", *road_arguments.OPTIONS, "cut_angle", "mesh", "local")
+OF_A_ROAD = ("road", *road_arguments.OPTIONS, "cut_angle", "mesh", "local")
 NOT_OF_A_SITE = ("set", "repeat", "vary", "sample", *OF_A_ROAD, "equally_good", "output", "exceed", "left_out",
                  *OfAKind._fields)
 OPTIONS = {"output": "-o", "left_out": "--except"}
@@ -80,9 +79,10 @@ class Request(Sample, known_arguments.Known, Repeats, Intensity, Runs):
         "the road at a peak acceleration, and per year", metavar="FOLDER")
     paper: bool = flag(
         "of a site: the paper's method alone, the largest volume over the rolling resistances")
-    size_error: Optional[Path] = option(
-        "converge.yaml of `slope sensitivity --converge`: its error at the size of these balls counts in the "
-        "conservative volume", metavar="FILE")
+    fine: Optional[str] = option(
+        "one more run with balls so many times smaller, at the values in the middle, which tells what their size "
+        "changes; of a deck with a variable d (default no; of a site what site.yaml says, else 2)",
+        choices=("2", "3", "no"))
     exceed: Optional[str] = option("thicknesses of the maps of exceedance, m (default 0.1,0.5,1)", metavar="T1,T2,...")
     exceed_speed: Optional[str] = option(
         "speeds of the maps of exceedance of an ensemble, m/s (default 5)", metavar="V1,V2,...")
@@ -128,7 +128,7 @@ def run_both(args: Request, points: int) -> None:
     site = args.deck
     both = [site / name / "study.yaml" for name in (site_study.STUDY, site_study.ENSEMBLE)]
     before = [written(path) for path in both]
-    paper = site_study.run(site, setup_of(args), known_study.BESIDE)
+    paper = site_study.run(site, setup_of(args), known_study.BESIDE, args.fine)
     failed = paper.failed
     try:
         run_deck(of_ensemble(replace(args, sample=points, known=None, weigh=True), known_study.WEIGHTED))
@@ -184,17 +184,12 @@ def run_deck(args: Request) -> None:
         raise SlopeError("--set", "must be given, or --sample with --vary")
     todo = repeats.plan(args.output, settings, repeated, defaults)
     intensity.check(args.intensity, settings, bool(args.road))
-    errors = None
-    if args.size_error:
-        if not args.road:
-            raise SlopeError("--size-error", "needs --road: it is the error of the volume to remove", args.size_error)
-        errors = SizeErrors(args.size_error, "remove_m3")
-        errors.check(settings, defaults)
     setup = setup_of(args)
-    questions = results.Questions(settings, repeated, thresholds, errors, None, args.intensity, args.more_than or (),
-                                  sizes=args.size_error)
-    return perform(setup, {**settings, **repeated}, todo,
-                   lambda todo, work: results.collect(setup, questions, todo, work))
+    fine = fine_runs.in_the_middle(setup, fine_runs.factor_of(args.fine), settings, defaults)
+    questions = results.Questions(settings, repeated, thresholds, None, args.intensity, args.more_than or (),
+                                  fine=fine[0] if fine else None)
+    return perform(setup, {**settings, **repeated}, [*todo, *fine],
+                   lambda _, work: results.collect(setup, questions, todo, work), first=fine)
 
 
 def of_a_kind(args: Request) -> OfAKind:
@@ -241,7 +236,7 @@ def chain_of(args: Request):
 
 def run_site(args: Request, method: str) -> None:
     """The standard study of a site's folder, and the report."""
-    done = site_study.run(args.deck, setup_of(args), method)
+    done = site_study.run(args.deck, setup_of(args), method, args.fine)
     if done.study:
         write_report(done.study, args.deck / "report.html")
     if done.failed:
@@ -283,6 +278,7 @@ def of_ensemble(args: Request, method="") -> Request:
     road = {name: about[roads.KEYS[field]] for name, field in road_arguments.OPTIONS.items()}
     road.update(road=site / ROAD, cut_angle=about["cut_angle"], mesh=about["mesh"])
     return replace(args, deck=site / site_deck.NAME, site=site, method=method,
+                   fine=args.fine or str(choices["study"]["fine"] or "no"),
                    output=args.output or site / site_study.ENSEMBLE,
                    wide={} if args.vary or args.fit or args.fragility else known_study.WIDE,
                    vary=args.vary or ([] if args.fit else chances(choices) if args.fragility
@@ -303,9 +299,6 @@ def run_ensemble(args: Request, settings, repeated, thresholds, defaults, condit
     from ..studies import farther_runs
     if args.sample is None and args.fit is None:
         raise SlopeError("--sample", "must be given with --vary: how many runs")
-    if args.size_error:
-        raise SlopeError("--size-error", "must not be given with --sample: an ensemble has no conservative volume",
-                         args.size_error)
     fixed = one_value_each(settings, "--set", "--vary")
     plan: sample.Sample
     if args.fit:
@@ -322,13 +315,18 @@ def run_ensemble(args: Request, settings, repeated, thresholds, defaults, condit
     sample.check_growth(setup.output, plan)
     several = sample.settings_of(todo)
     order = ensemble.Order(plan, of, levels, condition, condition and farther.Added(setup.output, plan))
-    questions = results.Questions(several, repeated, thresholds, None, order, site=args.site, method=args.method,
+    questions = results.Questions(several, repeated, thresholds, order, site=args.site, method=args.method,
                                   chain=chain)
 
     def collect(todo, work):
+        fine = fine_runs.of_median_length(setup, fine_runs.factor_of(args.fine), todo, defaults)
+        work.store.admit(fine)
         if condition:
-            farther_runs.make(setup, order, fixed, repeats.chances_of(repeated, {**defaults, **fixed}), todo, work)
-        results.collect(setup, questions._replace(settings=sample.settings_of(todo)), todo, work)
+            farther_runs.make(setup, order, fixed, repeats.chances_of(repeated, {**defaults, **fixed}), todo, work,
+                              fine)
+        work.do(fine)
+        results.collect(setup, questions._replace(settings=sample.settings_of(todo), fine=fine[0] if fine else None),
+                        todo, work)
 
     perform(setup, {**sample.all_values(several, plan), **repeated}, todo, collect,
             begin=lambda: sample.keep(setup.output, plan))

@@ -260,43 +260,27 @@ def draw_series(axes, one, colour, named):
 
 
 class Convergence(NamedTuple):
-    """Means over sizes, and the line through them; the value at size 0 with its 95 % interval (None: unknown)."""
+    """Means over sizes."""
     sizes: Sequence[float]
     means: Sequence[float]
     scatter: Sequence[Optional[float]]      # standard deviation of a run of each size
-    small: float
-    slope: float
-    low: Optional[float]
-    high: Optional[float]
-    supported: Optional[bool]
 
 
 def convergence(found, x_label, y_label, title, width=HALF):
-    """Means against the size of the balls, the line through them and its end."""
+    """Means against the thickness in balls, or another size."""
     with plt.rc_context(STYLE):
         sheet = Sheet(width)
         deviations = np.array([one or 0.0 for one in found.scatter])
         means_ = np.asarray(found.means, float)
-        every = np.concatenate([[0.0], means_ + deviations, means_ - deviations, [found.small],
-                                [value for value in (found.low, found.high) if value is not None]])
+        every = np.concatenate([[0.0], means_ + deviations, means_ - deviations])
         axes, grid, left = value_panel(sheet, every, y_label, title, width, 1.7)
         end = 1.05 * max(found.sizes)
-        line = {"color": COLOURS[0], "lw": 1.2, "ls": "-" if found.supported is not False else ":"}
-        axes.plot([0, end], [found.small, found.small + end * found.slope], **line)
-        dots = {"color": COLOURS[1], "marker": "o", "ms": 4.5, "ls": ""}
+        dots = {"color": COLOURS[1], "marker": "o", "ms": 4.5, "lw": 0.9}
         axes.errorbar(found.sizes, means_, deviations, fmt="none", ecolor=COLOURS[1], elinewidth=0.9, capsize=2.5)
         axes.plot(found.sizes, means_, **dots)
-        square = {"color": COLOURS[0], "marker": "s", "ms": 5, "ls": ""}
-        axes.plot([0], [found.small], clip_on=False, zorder=5, **square)
-        if found.low is not None:
-            axes.errorbar([0], [found.small], [[found.small - found.low], [found.high - found.small]], fmt="none",
-                          ecolor=COLOURS[0], elinewidth=1.1, capsize=3, zorder=5)[2][0].set_clip_on(False)
         label_axes(sheet, axes, grid, left, x_label, ticks(0, end, 6), (0, end))
-        entries = [Entry("means", dots),
-                   Entry("line" if found.supported is not False else "line, not supported by the runs", line),
-                   Entry("small balls" + (", 95 % interval" if found.low is not None else ""),
-                         square)]
-        place_entries(sheet, entries, left, left, sheet.bottom + 0.05)
+        place_entries(sheet, [Entry("means; bars: one standard deviation of a run", dots)], left, left,
+                      sheet.bottom + 0.05)
         return figures.data_uri(sheet.finish(), "svg")
 
 

@@ -47,8 +47,7 @@ RULES = {
     Rule.BALLS: "fewer than ten of the model's balls come to lie on the road, which are single blocks and no volume",
     Rule.MOBILITY: f"no run goes as far as half of {WHO}",
     Rule.LEFT: "a part of the mass left the elevation model before it came to the road, and is not counted",
-    Rule.RUNS: "more than a tenth of the runs failed, or had not come to rest when they ended",
-    Rule.SIZE: "the runs do not tell what smaller balls in the model would change"}
+    Rule.RUNS: "more than a tenth of the runs failed, or had not come to rest when they ended"}
 
 
 def of_headline(data, numbers) -> Optional[Dict[str, Any]]:
@@ -167,6 +166,10 @@ def reason(code: Code, of: Mapping[str, Any]) -> str:
         return f"{of['points']:g} runs were added towards longer ones, and no more"
     if code is Code.FEW:
         return "the runs are too few to tell which settings go farther"
+    if code is Code.SIZE:
+        return (f"the finest of the model's balls are {of['balls_thick']:.2g} over the thickness of the body; with "
+                f"smaller ones, {of['balls']:.2g} or more, volumes grew by a factor of {of['middle']:.2f} "
+                f"({of['low']:.2f} to {of['high']:.2f}) in {of['cases']} cases")
     text = RULES[Rule(of["rule"])]
     return text if of["source"] == Source.PAPER.value else f"{text} (runs weighted by known events)"
 

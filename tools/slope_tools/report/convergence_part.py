@@ -1,104 +1,76 @@
 """Effect of the size of the balls on the numbers: converge.yaml of `slope sensitivity --converge`, for a report."""
-from pathlib import Path
-from typing import Any, List
+from typing import Any, Dict, List
 
 from .. import schemas
 from ..errors import SlopeError
-from ..findings import Finding
 from ..plots import figure_charts
 from ..plots.figure_charts import Convergence
+from ..schemas import ABOVE_0, FLAG, MAYBE, NUMBER, TEXT, listed, mapping, named
 from ..statistics import headline
-from ..tables.size_error import CONVERGE, WHAT
 from .charts import AXIS
 from .sections import Cell, Figures, Picture, Section, Table, marked
 
 FILE = "converge.yaml"
-PLUS = "\N{PLUS-MINUS SIGN}"
+WHAT = "a converge.yaml of `slope sensitivity --converge`, of this version"
+NAME: Dict[str, Any] = {**TEXT, "minLength": 1}
+CONVERGE = mapping({
+    "study": mapping({"variable": TEXT, "deck": TEXT, "finished": NUMBER}),
+    "quantities": named(mapping({
+        "name": NAME, "unit": TEXT, "resolved": FLAG,
+        "sizes": listed(mapping({"value": ABOVE_0, "mean": NUMBER, "scatter": MAYBE, "balls_thick": MAYBE}), 1)}), 1)})
 
 
-def find(asked, data):
-    """The file, or None: what --converge names, itself or its folder; else what the study took its size error from.
-
-    With the warning that there is none where the study names it, or None.
-    """
-    if asked:
-        path = asked / FILE if asked.is_dir() else asked
-        if not path.is_file():
-            raise SlopeError("--converge", f"must be {WHAT}, or its folder", asked)
-        return path, None
-    size = ((data.study or {}).get("conservative") or {}).get("size") or {}
-    if not size.get("file"):
-        return None, None
-    named = Path(str(size["file"]))
-    for path in (data.folder / named, named):       # older files name it from where `slope study` was called
-        if path.is_file():
-            return path, None
-    return None, Finding("no file of sizes", {"file": str(data.folder / named)})
+def find(asked):
+    """The file that --converge names, itself or by its folder; None without it."""
+    if not asked:
+        return None
+    path = asked / FILE if asked.is_dir() else asked
+    if not path.is_file():
+        raise SlopeError("--converge", f"must be {WHAT}, or its folder", asked)
+    return path
 
 
 class Sizes:
-    """The fits in a file."""
+    """The quantities in a file."""
 
     def __init__(self, path):
-        self.path = path
         about = schemas.load(path, WHAT, CONVERGE)
-        study, entries = about["study"], about["quantities"]
+        study, self.entries = about["study"], about["quantities"]
         self.variable, self.deck, self.runs = study["variable"], study["deck"], study["finished"]
-        for name, entry in entries.items():
-            one = entry["small_balls"]
-            ends = [one[side] for side in ("low", "high") if one[side] is not None]
-            if len(ends) == 1 or ends and not ends[0] <= one["value"] <= ends[1]:
-                raise SlopeError(path, f"must be {WHAT}: quantities: {name}: small_balls must have a value between low "
-                                 "and high, or neither of these")
-        self.fits = {name: fit(entry) for name, entry in entries.items()}
-        self.about = {name: (entry["name"], entry["unit"]) for name, entry in entries.items()}
-        self.errors = {name: [(size["value"], size["error_percent"], size["standard_error_percent"])
-                              for size in entry["sizes"]] for name, entry in entries.items()}
 
     def section(self, numbers):
         return Section("sizes", "Size of the balls", [
-            Table(f"Value extrapolated to small balls by a line through runs of several values of {self.variable} "
-                  f"({self.deck}), and the error at each size, with its standard error.",
-                  ["quantity", "small balls (95 %)", f"error at {self.variable}"], self.rows(numbers), (0, 2),
-                  style=""),
+            Table(f"Means of runs of several values of {self.variable} ({self.deck}). Nothing is said of smaller balls "
+                  "than the smallest here.",
+                  ["quantity", f"mean at {self.variable}", "resolved"], self.rows(numbers), (0,), style=""),
             Figures(self.pictures(), "columns")])
 
     def pictures(self):
         """A chart for each quantity."""
         found = []
-        for name, one in self.fits.items():
-            what, unit = self.about[name]
-            title = f"{what[0].upper()}{what[1:]} against {self.variable}"
-            interval = "" if one.low is None else ", with its 95 % interval"
-            bars = "; bars: one standard deviation of a run" if any(one.scatter) else ""
-            caption = (f"{title}: the line through the means ends at the value for small balls{interval}{bars}; "
-                       f"{self.runs} runs of {self.deck}.")
-            found.append(Picture(figure_charts.convergence(one, AXIS.get(self.variable, self.variable),
-                                                           f"{what} ({unit})", title), title, caption))
+        for entry in self.entries.values():
+            what, unit, sizes = entry["name"], entry["unit"], entry["sizes"]
+            thick = all(size["balls_thick"] is not None for size in sizes)
+            label = "balls over the thickness of the body" if thick else AXIS.get(self.variable, self.variable)
+            title = f"{what[0].upper()}{what[1:]} against the {'size of the balls' if thick else self.variable}"
+            one = Convergence([size["balls_thick" if thick else "value"] for size in sizes],
+                              [size["mean"] for size in sizes], [size["scatter"] for size in sizes])
+            found.append(Picture(figure_charts.convergence(one, label, f"{what} ({unit})", title), title,
+                                 f"{title}; {self.runs} runs of {self.deck}."))
         return found
 
     def rows(self, numbers):
-        """Of the table: quantity, value for small balls with interval, and the error at each size."""
+        """Of the table: quantity, the mean at each size, whether it is resolved."""
         found: List[List[Any]] = []
-        for name, one in self.fits.items():
-            what, unit = self.about[name]
-            half = None if one.low is None else (one.high - one.low) / 2
-            step = headline.place(half / 2) if half else headline.place_of_digits(one.small)
-            small = headline.text(one.small, step) + (f" {PLUS} {headline.text(half, step)}" if half else "")
-            numbers.rows.append((f"small balls: {what}", unit, "", headline.text(one.small, step), one.small))
-            errors = "; ".join(
-                f"{size:g}: " + ("unknown" if error is None else f"{error:+.1f} %" + (
-                    f" {PLUS} {deviation:.1f}" if deviation is not None else ""))
-                for size, error, deviation in self.errors[name])
-            if one.supported is False:
-                errors += "; " + marked("the line is not supported by its runs", "status doubt")
-            found.append([Cell(what, unit), small, errors])
+        for entry in self.entries.values():
+            texts = []
+            for size in entry["sizes"]:
+                text = headline.text(size["mean"], headline.place(size["scatter"]) if size["scatter"] else
+                                     headline.place_of_digits(size["mean"]))
+                numbers.rows.append((f"{entry['name']} at {self.variable} {size['value']:g}", entry["unit"], "", text,
+                                     size["mean"]))
+                thick = size["balls_thick"]
+                texts.append(f"{size['value']:g}{f' ({thick:.1f} balls thick)' if thick is not None else ''}: {text}")
+            found.append([Cell(entry["name"], entry["unit"]), "; ".join(texts),
+                          "yes" if entry["resolved"] else marked("no", "status doubt")])
         return found
-
-
-def fit(entry):
-    """The Convergence of a quantity."""
-    sizes, small = entry["sizes"], entry["small_balls"]
-    return Convergence([size["value"] for size in sizes], [size["mean"] for size in sizes],
-                       [size["scatter"] for size in sizes], small["value"], entry["slope"]["value"], small["low"],
-                       small["high"], entry["supported"])

@@ -72,13 +72,9 @@ def uncertainty(data, numbers) -> CONTENT:
         found = ["Unknown: no run was repeated, and equivalent runs may differ by several percent (study --repeat)."] \
             if not (study and study.get("ensemble")) else []
     chance = [("Chance", " ".join(found))] if found else []
-    unusable = study and study.get("size_error_unusable")
-    if unusable and not (best and best["size_m3"] is not None):
-        chance.append(("Size of the balls",
-                       f"The effect of smaller balls was measured, but is not usable: {unusable}"))
-    elif best and best["size_m3"] is None or not study:
-        chance.append(("Size of the balls", "The effect of smaller balls is unknown "
-                                            "(sensitivity --converge, study --size-error)."))
+    size = (study or {}).get("size")
+    chance.append(("Size of the balls", f"{size['text'][0].upper()}{size['text'][1:]}." if size else
+                   "What smaller balls change is not known (study --fine 2)."))
     step = (study or {}).get("step")
     chance.append(("Time step", f"{step['text'][0].upper()}{step['text'][1:]}." if step else
                    "What half the time step changes was not tried (the study of a site does, or --set step=0.5)."))

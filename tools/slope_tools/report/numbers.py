@@ -102,7 +102,7 @@ def answer(data, numbers):
     else:
         parts.append({"sign": "+", "number": UNKNOWN, "what": "chance",
                       "note": "no run was repeated (study --repeat seed=..., xoffset=...)"})
-    parts.append(size_part(best, part("size_m3"), data.study.get("size_error_unusable")))
+    parts.append(size_part(data.study.get("size"), part("size_m3")))
     title = "Conservative volume to remove from the road" if predicted else \
         f"Volume to remove from the road: {best['kind']}"
     return {"number": part("volume_m3"), "title": title, "parts": parts, "predicted": predicted, "road": road,
@@ -122,26 +122,12 @@ def below_ground(data, numbers):
             "before the collapse.")
 
 
-def size_part(best, number, unusable=None):
-    """What the size of the balls adds; unusable: why a measured error is not used, a text."""
-    size = best.get("size") or {}
+def size_part(size, number):
+    """What smaller balls add; size: of study.yaml, None where none were tried."""
     if number is None:
         return {"sign": "+", "number": UNKNOWN, "what": "size of the balls",
-                "note": f"measured, but not usable: {unusable}" if unusable else
-                        "not measured (sensitivity --converge, study --size-error)"}
-    note = f"at {size.get('variable')} {size.get('value')}"
-    if disk.is_number(size.get("error_percent")):
-        side = "small" if size["error_percent"] < 0 else "large"
-        note += f" the volume is {abs(size['error_percent']):.3g} % too {side}"
-        if disk.is_number(size.get("half_percent")):
-            note += f" (\N{PLUS-MINUS SIGN} {size['half_percent']:.2g} percentage points)"
-        share = size["error_percent"] / 100
-        if -1 < share < 0:
-            lacking = best["mean_m3"] / (1 + share) - best["mean_m3"]
-            texts = [headline.text(value, best["place_m3"]) for value in (lacking, max(0, best["size_m3"] - lacking))]
-            note += (f": mean/(1 - {-share:.3g}) - mean = {texts[0]} m3, and {texts[1]} m3 by which its uncertainty "
-                     "increases the part of chance")
-    return {"sign": "+", "number": number, "what": "size of the balls", "note": note}
+                "note": size["text"] if size else "not tried (study --fine 2)"}
+    return {"sign": "+", "number": number, "what": "size of the balls", "note": size["text"]}
 
 
 def cards(data, numbers):

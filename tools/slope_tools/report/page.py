@@ -25,9 +25,9 @@ class Page:
         self.section = Section(self.data, self.ground, asked.section, asked.local)
         self.reference = reference.read(asked.reference, quantities.known(On.ASKED, self.data.compared)) \
             if asked.reference else None
-        path, missing = convergence_part.find(asked.converge, self.data)
+        path = convergence_part.find(asked.converge)
         self.sizes = path and convergence_part.Sizes(path)
-        self.findings = [*findings(self.data, self.ground), *([missing] if missing else [])]
+        self.findings = findings(self.data, self.ground)
         self.warnings = listed(self.findings, self.data.names())
         self.numbers = Numbers()
         self.heading = heading.heading(asked.folder, {name: getattr(asked, name) for name in heading.FIELDS})

@@ -81,7 +81,7 @@ def asked_of(choices: Choices, place: Path, engine: Setup) -> Asked:
     thresholds = list(site_study.THRESHOLDS)
     order = ensemble.Order(plan, ensemble.check_quantity(None, True),
                            ensemble_maps.Thresholds(thresholds, [5.0], [1e5]))
-    questions = results.Questions(sample.settings_of(todo), {}, thresholds, None, order, site=place)
+    questions = results.Questions(sample.settings_of(todo), {}, thresholds, order, site=place)
     return Asked(setup, questions, plan, todo)
 
 

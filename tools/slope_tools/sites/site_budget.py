@@ -168,14 +168,16 @@ def plan(choices: Choices) -> Plan:
     study, points = choices["study"], choices["study"]["points"]
     each = 1 + sum(len(study[name]) for name in OFFSETS)
     grounds = other_grounds(choices)
-    others = [float(factor) for factor in study["sizes"] if factor != 1]       # balls of the site's size are there
-    parts = [(1.0, each * len(study["rolling"]) + len(grounds)), *((factor, each) for factor in others)]
+    fine = study["fine"] not in ("no", False)
+    parts = [(1.0, each * len(study["rolling"]) + len(grounds))]
+    if fine:        # one of the paper's study, one of the ensemble
+        parts.append((1 / study["fine"], 1 + (points > 0)))
     text = (f"{sum(runs for _, runs in parts)} runs: {len(study['rolling'])} rolling resistances x {each} lattice "
             "positions")
     if grounds:
         text += f", {len(grounds)} on other grounds"
-    if others:
-        text += f", {len(others)} other sizes of balls x {each}"
+    if fine:
+        text += f", {'2' if points else '1'} with balls of 1/{study['fine']} of the diameter"
     if points:
         text += (f"; {points} runs weighted by known events, and up to as many more where these go farther (study "
                  "--paper leaves them out)")
@@ -197,9 +199,11 @@ def study_seconds(d: float, volume: float, trial: Trial, speed: float, density: 
     return least, least + points
 
 
-def gigabytes(d: float, volume: float, cells: int, jobs: int) -> float:
-    """The memory of all runs that are active at a time."""
-    return jobs * (PER_RUN + PER_CELL * cells + PER_BALL * volume / d ** 3)
+def gigabytes(d: float, volume: float, cells: int, jobs: int, wanted: Plan) -> float:
+    """The memory of all runs that are active at a time, of which one is the fine run."""
+    finest = min(factor for factor, _ in wanted.parts)
+    balls = volume / d ** 3
+    return jobs * (PER_RUN + PER_CELL * cells) + PER_BALL * balls * (jobs - 1 + finest ** -3)
 
 
 def fit(budget: float, cost: Callable[[float], float], volume: float, option: str, unit: str) -> float:
@@ -247,12 +251,12 @@ def size(choices: Choices, volume: float, trial: Optional[Trial], jobs: int, cel
                              "does not", f"{balls['minutes']:g}")
         d = up(fit(balls["minutes"], lambda one: seconds(one)[1] / 60, volume, "--minutes", "minutes"))
     elif balls["memory"]:
-        d = up(fit(balls["memory"], lambda one: gigabytes(one, volume, cells, jobs), volume, "--memory", "GB"))
+        d = up(fit(balls["memory"], lambda one: gigabytes(one, volume, cells, jobs, wanted), volume, "--memory", "GB"))
     else:
         balls["number"] = DEFAULT
         d = three_digits((volume / DEFAULT) ** (1 / 3))
     least, most = seconds(d) if trial else (None, None)
-    return Size(d, number_of(choices, volume, d), wanted.runs, least, most, gigabytes(d, volume, cells, jobs),
+    return Size(d, number_of(choices, volume, d), wanted.runs, least, most, gigabytes(d, volume, cells, jobs, wanted),
                 wanted.text)
 
 

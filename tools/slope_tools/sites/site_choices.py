@@ -42,6 +42,9 @@ DERIVED = (("balls", "diameter"), ("balls", "number"), ("model", "speed"), ("mod
 # keys of model in older sites, whose ground was a plan grid of one diameter; their decks keep it
 RETIRED = ("field_diameter", "field_ratio")
 
+# keys that older versions had, and that have no meaning any more
+DROPPED = {"study": ("sizes",)}
+
 # sections that `slope study` and the report read when they run, except for files, of which the folder has copies
 READ_LATER = ("project", "road", "study", "known")
 Choices = Dict[str, Any]        # {section: {key: value}}, complete
@@ -93,6 +96,14 @@ def without_old_ground(given: Choices) -> Choices:
     return {**given, "model": model}
 
 
+def without_dropped(given: Any) -> Any:
+    """What a file holds, without the keys that have no meaning any more."""
+    if not isinstance(given, dict):
+        return given
+    return {name: {key: value for key, value in entries.items() if key not in DROPPED.get(name, ())}
+            if isinstance(entries, dict) else entries for name, entries in given.items()}
+
+
 def widest() -> float:
     """The largest spacing of the ground's balls, in diameters: through a wider one balls fall."""
     return schema()["properties"]["model"]["properties"]["spacing"]["maximum"]
@@ -136,7 +147,7 @@ def read(folder: Path) -> Choices:
     path = folder / NAME
     if not path.is_file():
         raise SlopeError(folder, f"must be a folder with {NAME}, which slope site makes")
-    given = disk.parse_yaml(path, WHAT)
+    given = without_dropped(disk.parse_yaml(path, WHAT))
     check(without_old_ground(given) if isinstance(given, dict) else given, str(path))
     return with_files(complete(given), lambda name: os.path.normpath(folder / name))
 

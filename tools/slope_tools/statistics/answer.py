@@ -38,6 +38,7 @@ class Code(Enum):
     RANGE = "range ends"
     RUNS = "no more runs"
     FEW = "too few runs"
+    SIZE = "size of balls"
     RULE = "rule"
 
 
@@ -92,21 +93,27 @@ class Withheld(NamedTuple):
 
 
 class Paper(NamedTuple):
-    """The conservative volume (m3) of the paper's study; None where it is withheld."""
+    """The conservative volume (m3) of the paper's study; None where it is withheld.
+
+    size: why smaller balls than those of its fine run may bring more; None: they do not, or none were tried.
+    """
     volume: Optional[float]
     withheld: Sequence[Withheld] = ()
+    size: Optional[Reason] = None
 
 
 class Ensemble(NamedTuple):
     """A weighted ensemble: (value, low, high) of its quantiles (m3) by share, of shares().
 
     far: share of the known events beyond all runs; longest: m; stopped: why no more runs were added, None: enough were.
+    size: as of Paper.
     """
     quantiles: Mapping[float, Tuple[Optional[float], Optional[float], Optional[float]]]
     far: float
     longest: float
     withheld: Sequence[Withheld] = ()
     stopped: Optional[Reason] = None
+    size: Optional[Reason] = None
 
 
 def shares(far: float) -> List[float]:
@@ -156,7 +163,7 @@ class Part(NamedTuple):
 def of_paper(one: Paper, beside: bool) -> Optional[Part]:
     """beside: an ensemble stands beside it, which makes up for HARMLESS rules; None: those alone withhold it."""
     if one.volume is not None:
-        return Part(Kind.NUMBER, one.volume)
+        return number(Part(Kind.NUMBER, one.volume), one.size)
     grave = [rule for rule in one.withheld if not (beside and rule.rule in HARMLESS)]
     if not grave:
         return None
@@ -178,9 +185,16 @@ def of_ensemble(one: Ensemble, road: Optional[Road]) -> Part:
     share = max((share for share, (value, _, _) in one.quantiles.items() if value is not None), default=0.0)
     value, low_m3, high_m3 = one.quantiles.get(share, (0.0, None, None))
     if share == SHARE:
-        return Part(Kind.NUMBER, value, share, low_m3, high_m3)
+        return number(Part(Kind.NUMBER, value, share, low_m3, high_m3), one.size)
     return Part(Kind.FLOOR, value, share, low_m3, None,
                 [Reason(Code.BEYOND, {"far": one.far, "longest_m": one.longest}), *stopped])
+
+
+def number(part: Part, size: Optional[Reason]) -> Part:
+    """A number, which is a floor where smaller balls may bring more; nothing stays nothing."""
+    if size is None or not part.volume:
+        return part
+    return part._replace(kind=Kind.FLOOR, high=None, reasons=[size])
 
 
 def of(paper: Optional[Paper], ensemble: Optional[Ensemble], road: Optional[Road]) -> Optional[Answer]:

@@ -10,7 +10,7 @@ in m3 of ground (bulk); every function is pure.
 """
 import math
 from dataclasses import dataclass
-from typing import Dict, List, Optional, Sequence, Tuple
+from typing import Callable, Dict, List, Optional, Sequence, Tuple
 
 from scipy import stats
 
@@ -68,18 +68,8 @@ class Scatter:
 
 
 @dataclass(frozen=True)
-class SizeError:
-    """The error of a volume due to balls of one size: (V(d) - V0)/V0, V0 that of small balls.
-
-    half: half the width of its 95 % interval, a share of V0 too; None if it is not known.
-    """
-    share: float
-    half: Optional[float] = None
-
-
-@dataclass(frozen=True)
 class Headline:
-    """volume = mean + chance + size (m3); chance is None without repeats, size None if it is unknown."""
+    """volume = mean + chance + size (m3); chance is None without repeats, size None without smaller balls."""
     volume: float
     mean: float
     chance: Optional[float]
@@ -213,32 +203,20 @@ def odd_one(combinations: Sequence[Combination], name: str) -> Optional[Tuple[fl
 
 # --- the headline ---
 
-def size_part(mean: float, chance: Optional[float], error: SizeError) -> float:
-    """What must be added (m3) for the size of the balls, 0 if they make the volume too large.
+def headline(combinations: Sequence[Combination], added: Optional[Callable[[float], float]] = None) -> Headline:
+    """The volume that the next run stays below, and its parts; added: what smaller balls add to a volume (m3).
 
-    The volume of small balls is mean/(1 + e): the difference is added as it is. Its uncertainty (half the 95 %
-    interval) is independent of chance: the two are combined by the root of the sum of squares, and the excess of that
-    over the chance is added.
-    """
-    lacking = mean / (1 + error.share) - mean
-    half = 0.0 if error.half is None else abs(mean) * error.half / (1 + error.share) ** 2
-    alone = chance or 0.0
-    return max(0.0, lacking + math.hypot(alone, half) - alone)
-
-
-def headline(combinations: Sequence[Combination], errors: Optional[Dict[str, SizeError]] = None) -> Headline:
-    """The volume that the next run stays below, and its parts; errors: {combination: error of its size}.
-
-    The combination with the largest sum of mean, chance and size governs; with equal numbers of runs and balls of one
-    size that is the one with the largest mean. If several means are about the same, the largest is high by chance, so
-    the headline is conservative (see the page on `slope study`).
+    The combination with the largest sum of mean and chance governs; with equal numbers of runs that is the one with the
+    largest mean. If several means are about the same, the largest is high by chance, so the headline is conservative
+    (see the page on `slope study`).
     """
     found: List[Headline] = []
     for one in combinations:
         scatter = scatter_of(combinations, one)
         chance = scatter.chance(one.runs) if scatter else None
-        size = size_part(one.mean, chance, errors[one.name]) if errors else None
-        found.append(Headline(one.mean + (chance or 0.0) + (size or 0.0), one.mean, chance, size, one.name, one.runs,
+        volume = one.mean + (chance or 0.0)
+        size = added(volume) if added else None
+        found.append(Headline(volume + (size or 0.0), one.mean, chance, size, one.name, one.runs,
                               sum(other.runs for other in combinations), scatter))
     return max(found, key=lambda each: each.volume)
 

@@ -21,7 +21,6 @@ class Kind(str, Enum):
     MOBILITY = "known events"
     LEFT = "left the terrain"
     RUNS = "runs not at rest or failed"
-    SIZE = "size error"
 
 
 class Facts(NamedTuple):
@@ -35,7 +34,6 @@ class Facts(NamedTuple):
     left: float                     # share of the released volume that left before or beside the road, the largest
     length: Optional[float]         # m, of the longest run; None: no run has one
     median: Optional[float]         # m, length that half of known events exceed; None: no set covers the mass
-    size: str = ""                  # why the size error is not trusted; "": it is, or was not measured
 
 
 # --- rules ---
@@ -70,11 +68,7 @@ def unfinished(facts: Facts) -> Optional[Finding]:
                                      "most": 100 * UNFINISHED})
 
 
-def size_error(facts: Facts) -> Optional[Finding]:
-    return Finding(Kind.SIZE.value, {"why": facts.size}) if facts.size and facts.volume > 0 else None
-
-
-RULES = (few_balls, short, left, unfinished, size_error)
+RULES = (few_balls, short, left, unfinished)
 
 
 def reasons(facts: Facts) -> List[Finding]:

@@ -10,15 +10,15 @@ from .setup import Setup
 
 
 def make(setup: Setup, order: Order, fixed: Mapping[str, str], chances: Sequence[Dict[str, str]],
-         todo: List[repeats.Repeat], work: jobs.Work) -> None:
+         todo: List[repeats.Repeat], work: jobs.Work, beside: Sequence[repeats.Repeat] = ()) -> None:
     """Add runs to todo, which were made, until they reach far enough or Added.propose has no more.
 
-    fixed, chances: of all runs, see sample.plan.
+    fixed, chances: of all runs, see sample.plan; beside: runs that are made with the first ones added.
     """
     added, rows = order.added, rows_of(setup, todo)
     assert added and order.condition
     for k in range(len(added.batches)):
-        rows += batch(setup, order, fixed, chances, todo, work, k)
+        rows += batch(setup, order, fixed, chances, todo, work, k, beside)
     while True:
         finished = [row for row in rows if row["status"] == "finished"]
         if not finished:
@@ -34,11 +34,12 @@ def make(setup: Setup, order: Order, fixed: Mapping[str, str], chances: Sequence
             return
         setup.tell(added.line(new, runs.lengths, runs.beyond))
         added.keep()
-        rows += batch(setup, order, fixed, chances, todo, work, len(added.batches) - 1)
+        rows += batch(setup, order, fixed, chances, todo, work, len(added.batches) - 1, beside)
 
 
 def batch(setup: Setup, order: Order, fixed: Mapping[str, str], chances: Sequence[Dict[str, str]],
-          todo: List[repeats.Repeat], work: jobs.Work, k: int) -> List[Dict[str, Any]]:
+          todo: List[repeats.Repeat], work: jobs.Work, k: int,
+          beside: Sequence[repeats.Repeat] = ()) -> List[Dict[str, Any]]:
     """Make the runs of a batch and add them to todo; their rows."""
     assert order.added
     more = repeats.with_repeats(setup.runs, [{**fixed, **one} for one in order.added.batches[k].points], chances,
@@ -46,7 +47,7 @@ def batch(setup: Setup, order: Order, fixed: Mapping[str, str], chances: Sequenc
     for one in more:
         one.batch = k + 1
     work.store.admit(more)
-    work.do(more)
+    work.do([*beside, *more])
     todo += more
     return rows_of(setup, more)
 

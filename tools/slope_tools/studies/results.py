@@ -12,12 +12,12 @@ from ..deposits import left, travel_shares
 from ..ensembles import ensemble, known_study
 from ..findings import Finding, entries, finding
 from ..runs import repeats
+from ..runs.repeats import Repeat
 from ..seismic import chain_files
 from ..sites import site_choices
 from ..survey import rasters, roads
-from ..tables import (answered, combinations, intensity, judged, quantities, road_runs, size_error, step_check,
+from ..tables import (answered, combinations, fine_run, intensity, judged, quantities, road_runs, step_check,
                       structures, study_table, usable, withheld_words)
-from ..tables.size_error import SizeErrors
 from ..tables.study_maps import Maps
 from . import mapped, site_ground
 from .setup import Road, Setup
@@ -31,14 +31,12 @@ class Questions(NamedTuple):
     settings: Mapping[str, Sequence[str]]           # of --set: choices
     repeated: Mapping[str, Sequence[str]]           # of --repeat: chance
     thresholds: Sequence[float]                     # m, of the maps of exceedance
-    errors: Optional[SizeErrors] = None             # by the size of the balls
     order: Any = None                               # the ensemble.Order that the runs were made for, None of lists
     intensity: Optional[str] = None                 # variable that is one; None: the one that is called so
     more_than: Sequence[float] = ()                 # m3, volumes exceeded at each intensity
     notes: Sequence[Any] = ()                       # warnings of what was before the study, which go into its results
-    size_error_unusable: Optional[str] = None       # why the size error, which was to be measured, is not used
     site: Optional[Path] = None                     # folder of the site whose study it is
-    sizes: Optional[Path] = None                    # converge.yaml of the runs with balls of several sizes
+    fine: Optional[Repeat] = None                   # the run with smaller balls; None: none was asked for
     step: Optional[step_check.Step] = None          # the run with half the time step
     method: str = ""                                # of a site's study, in words
     chain: Optional[chain_files.Chain] = None       # of an ensemble: how likely its bodies fail in an earthquake
@@ -46,7 +44,7 @@ class Questions(NamedTuple):
 
 def collect(setup: Setup, questions: Questions, todo, work) -> None:
     """Table, maps and study.yaml over all runs that finished."""
-    settings, repeated, thresholds, errors, order = questions[:5]
+    settings, repeated, thresholds, order = questions[:4]
     output, deck = setup.output, setup.deck
     if order and all(run.error for run in todo):
         return      # study.perform says so
@@ -75,36 +73,28 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
                   "collected": provenance.now(), "machine": provenance.machine()},
         "largest": {key: largest(finished, key) for key in keys if finished},
         "farthest": travel_shares.farthest(finished)["run"] if finished else None,
-        "conservative": None, "size_error_unusable": questions.size_error_unusable, "ensemble": None, "step": None,
+        "conservative": None, "size": None, "ensemble": None, "step": None,
         "scatter": {name: known and {"deviation": known.deviation, "degrees_of_freedom": known.degrees_of_freedom}
                     for name, known in scatters.items()},
         "combinations": combinations.entries(groups, names), **written, "observed": observed,
         "warnings": entries(warnings), "runs": rows}
     if setup.road and finished:
         about["study"]["road"] = write_road(output, setup.road, first, thickness)
+    if questions.fine and finished:
+        from . import fine_runs
+        about["size"] = fine_run.evaluate(fine_runs.compared(setup, questions.fine, rows, None if order else groups))
     if order:
         about["ensemble"] = ensemble.evaluate(order, rows, output, first and terrain_place(first), maps.problem)
         case = case_of(setup, questions, finished[0])._replace(sampled=True)
         about["ensemble"]["withheld"] = usable.reasons_of_ensemble(rows, events, case) if setup.road else []
     elif setup.road and finished:
-        distrust = untrusted(errors, groups)
-        trusted = None if distrust else errors
-        about["size_error_unusable"] = questions.size_error_unusable or distrust
-        best = about["conservative"] = combinations.conservative(settings, rows, groups, trusted)
-        if trusted:
-            # from the folder of study.yaml, so that both may move together
-            best["size"]["file"] = os.path.relpath(trusted.path.resolve(), output.resolve())
-            best["doubts"] += entries(trusted.doubts(deck.name, {**work.defaults, **best["set"]},
-                                                     [*settings, *repeated], about["study"]["road"]))
+        best = about["conservative"] = combinations.conservative(
+            settings, rows, groups, fine_run.read_effect(about["size"], quantities.REMOVE))
         best["doubts"] += entries(unseen(repeated, work.defaults))
         if questions.step:
             about["step"] = step_check.compare(questions.step, groups)
             best["doubts"] += about["step"].pop("doubts")
-        unknown = about["size_error_unusable"] or ""
-        if unknown and questions.sizes and size_error.falls(questions.sizes, "remove_m3"):
-            about["size_error_unusable"] = f"{unknown}. The volume falls with the size of the balls: nothing is added"
-            unknown = ""
-        usable.judge(best, rows, events, case_of(setup, questions, finished[0]), unknown)
+        usable.judge(best, rows, events, case_of(setup, questions, finished[0]))
     about["headline"] = (said := answered.of_study(about, events and events.road(finished))) and said.about()
     if setup.road and finished:
         known = (about["ensemble"] or {}).get("known_events") or {}
@@ -138,6 +128,8 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
         setup.tell("\n".join(combinations.describe(about["conservative"])))
         if about["step"]:
             setup.tell(about["step"]["text"])
+    if about["size"]:
+        setup.tell(f"size of the balls: {about['size']['text']}")
     if about["ensemble"]:
         setup.tell("\n".join(ensemble.describe(about["ensemble"])))
         setup.tell(f"{output / ensemble.HAZARD}, {output / ensemble.INFLUENCE}: all curves and indices; "
@@ -148,13 +140,6 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
         setup.tell("\n".join(chain_files.describe(about["chain"], output)))
     for entry in [*(written["envelope"] or {}).values(), *(written["exceedance"] or ())]:
         setup.tell(f"{output / entry['file']}: {entry['what']}")
-
-
-def untrusted(errors: Optional[SizeErrors], groups) -> Optional[str]:
-    """Why a size error does not count, None where it does, or where there is none."""
-    if errors is None:
-        return None
-    return "; ".join(errors.distrust(str(group.rows[0]["variables"][errors.variable]) for group in groups)) or None
 
 
 def known_of(setup: Setup, questions: Questions) -> Mapping[str, Any]:
@@ -289,19 +274,27 @@ def beyond(thickness, released, road):
     return float(sum((share * thickness.z).sum() for share in shares[:-1]) * thickness.transform.a ** 2)
 
 
-def on_body(thickness, released, road, ball_m3) -> float:
-    """Area (m2) of the road (local metres) on the body; 0 if it meets the rim only.
+def body_of(released, raster, ball_m3):
+    """Mask of the cells of the body: those that middles of its balls are in (released), and what lies between them.
 
-    released: mask of the cells that the middles of its balls, each for ball_m3 of ground, are in; those between them
-    count. The rim is a cell and half a ball wide.
+    raster: whose cells they are; ball_m3: of ground, for which each ball stands.
     """
-    from scipy.ndimage import binary_closing, binary_erosion
+    from scipy.ndimage import binary_closing
+    near = math.ceil(ball_m3 ** (1 / 3) / raster.transform.a)
+    rows, columns = released.shape
+    return binary_closing(np.pad(released, near), iterations=near)[near:near + rows, near:near + columns]
+
+
+def on_body(thickness, released, road, ball_m3) -> float:
+    """Area (m2) of the road (local metres) on the body; 0 if it meets the rim only, a cell and half a ball wide.
+
+    released, ball_m3: see body_of().
+    """
+    from scipy.ndimage import binary_erosion
     from .. import geometry
     cell = thickness.transform.a
-    ball = ball_m3 ** (1 / 3) / cell
-    near, rim = math.ceil(ball), 1 + math.ceil(ball / 2)
+    body, rim = body_of(released, thickness, ball_m3), 1 + math.ceil(ball_m3 ** (1 / 3) / cell / 2)
     rows, columns = released.shape
-    body = binary_closing(np.pad(released, near), iterations=near)[near:near + rows, near:near + columns]
     lines = np.arange(columns + 1.0), np.arange(rows + 1.0)
     share = sum(geometry.coverage(part, *lines)[0] for part in geometry.polygons_of(geometry.to_index(road, thickness)))
     if not (share * binary_erosion(body, iterations=rim)).any():

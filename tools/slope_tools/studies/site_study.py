@@ -1,34 +1,31 @@
-"""The standard study of a site: sizes of balls, half the step, rolling resistances, repeats, the mapped deposit.
+"""The standard study of a site: a fine run, half the step, rolling resistances, repeats, the mapped deposit.
 
-Order of the work: plan all runs, make them (study), the error of the size (size_study), what half the step changes, the
-study with both (results), the score of the run that the answer rests on. The same call resumes it.
+Order of the work: plan all runs, make them (study), what the fine run and half the step change, the study with both
+(results), the score of the run that the answer rests on. The same call resumes it.
 """
 import shutil
 from pathlib import Path
 from shlex import quote
-from typing import Dict, Iterable, List, NamedTuple, Optional, Sequence, Tuple
+from typing import Dict, Iterable, List, NamedTuple, Optional
 
 from .. import schemas
 from ..case import decks, run_folders
 from ..errors import SlopeError
 from ..findings import Finding, finding
 from ..runs import repeats
-from ..schemas import FINDINGS, mapping
+from ..schemas import FINDINGS
 from ..sites import ground, site_choices, site_deck, site_warnings
-from ..sites.site_budget import three_digits
 from ..sites.site_choices import Choices, OFFSETS, other_grounds
 from ..sites.site_layers import OBSERVED, ROAD
 from ..survey.roads import Asked
 from ..tables import energy
-from ..tables.size_error import SizeErrors, WHAT
 from ..tables.step_check import HALF, QUANTITY, Step
 from ..tables.study_file import read_study
-from . import mapped, results, size_study, study
-from .sensitivity import quantities
+from . import fine_runs, mapped, results, study
 from .setup import Road, Setup
 
 # folders in the site's
-SIZES, STUDY, SCORE, ENSEMBLE = "sizes", "study", "score", "ensemble"
+STUDY, SCORE, ENSEMBLE = "study", "score", "ensemble"
 LEDGER = "ledger"       # a deck's variable
 THRESHOLDS = (0.1, 0.5, 1.0)        # m, of the maps of exceedance
 
@@ -44,11 +41,11 @@ class Done(NamedTuple):
     failed: Optional[Exception]             # what failed beside it, to be raised once the report is there
 
 
-def run(folder: Path, engine: Setup, method: str) -> Done:
+def run(folder: Path, engine: Setup, method: str, asked: Optional[str] = None) -> Done:
     """Make or continue all runs of a site, and their results.
 
-    engine: how the runs are made; its deck, output and road do not count; method: of the study, in words. Raises
-    SlopeError on bad input, and if no run of the study finished.
+    engine: how the runs are made; its deck, output and road do not count; method: of the study, in words; asked: of
+    --fine. Raises SlopeError on bad input, and if no run of the study finished.
     """
     choices = site_choices.read(folder)
     check(folder, choices)
@@ -65,22 +62,19 @@ def run(folder: Path, engine: Setup, method: str) -> Done:
     todo = repeats.plan(setup.runs, settings, repeated, variables, others)
     if others:
         settings["spacing"] = list(dict.fromkeys([*settings["spacing"], *(one["spacing"] for one in others)]))
-    planned, why = size_runs(setup._replace(output=folder / SIZES), several["sizes"], middle, repeated, variables)
     half = half_steps(setup, middle, variables) if setup.road else []
+    fine = fine_runs.in_the_middle(setup, fine_runs.factor_of(asked, choices), {"rolling": [middle]}, variables)
 
     def collect(_, work):
-        found = sizes(planned, variables, work) if planned else unusable(setup, why) if why else NOT_ASKED
-        questions = results.Questions(settings, repeated, THRESHOLDS, found.errors, size_error_unusable=found.unusable,
-                                      notes=(*warnings_of(folder), *found.warnings), site=folder, sizes=found.path,
+        questions = results.Questions(settings, repeated, THRESHOLDS, notes=warnings_of(folder), site=folder,
+                                      fine=fine[0] if fine else None,
                                       step=step_of(setup, half[0], middle, variables) if half else None, method=method)
         results.collect(setup, questions, todo, work)
 
     failed: Optional[Exception] = None
-    of_sizes = planned.todo if planned else ()
     try:
         # the longest first: a long run that starts last leaves the other cores idle
-        first = [*half, *sorted(of_sizes, key=lambda one: float(one.chosen["d"]))]
-        study.perform(setup, {**settings, **repeated}, [*todo, *of_sizes, *half], collect, first=first)
+        study.perform(setup, {**settings, **repeated}, [*todo, *fine, *half], collect, first=[*fine, *half])
     except study.RunsFailed:
         failed = study.failure(setup.output, todo)      # what is said of the others is with their results
         if failed and all(one.error for one in todo):
@@ -127,56 +121,6 @@ def grounds(choices: Choices, variables: Dict[str, str]) -> List[Dict[str, str]]
         if ground.SEED in variables else []
 
 
-class Sizes(NamedTuple):
-    """What the runs with balls of several sizes found."""
-    errors: Optional[SizeErrors]
-    warnings: Sequence[Finding]      # of these runs
-    unusable: Optional[str]         # why there are no errors although they were to be measured
-    path: Optional[Path] = None     # converge.yaml, with the means of all sizes
-
-
-NOT_ASKED = Sizes(None, (), None)
-
-
-def size_runs(setup: Setup, factors: Sequence[float], rolling: str, repeated: Dict[str, List[str]],
-              variables: Dict[str, str]) -> Tuple[Optional[size_study.Plan], str]:
-    """The runs with balls of several sizes, or why there are none although they were asked for."""
-    if len(factors) < 2:
-        return None, ""
-    diameter = float(variables["d"])
-    values = words(diameter if factor == 1 else three_digits(factor * diameter) for factor in factors)
-    try:
-        return size_study.plan(setup, "d=" + ",".join(values), {"rolling": rolling}, repeated), ""
-    except SlopeError as error:
-        return None, str(error)
-
-
-def sizes(planned: size_study.Plan, variables: Dict[str, str], work) -> Sizes:
-    """The error that these runs find."""
-    setup = planned.setup
-    failed = study.failure(setup.output, planned.todo)
-    if failed:
-        setup.warn(finding(str(failed))._replace(part="sizes of balls"))
-    try:
-        size_study.collect(planned, quantities(None, setup.road is not None, True), work)
-    except SlopeError as error:
-        return unusable(setup, str(error))
-    path = setup.output / "converge.yaml"
-    if not setup.road:
-        return NOT_ASKED
-    if not path.is_file():
-        return unusable(setup, "too few of its runs finished")
-    said = [finding(one)._replace(part="sizes of balls")
-            for one in schemas.load(path, WHAT, mapping({}, warnings=FINDINGS)).get("warnings") or ()]
-    try:
-        errors = SizeErrors(path, "remove_m3")
-        errors.check({}, variables)
-    except SlopeError as error:
-        why = "its runs do not tell what small balls give"
-        return unusable(setup, str(error), why)._replace(warnings=said, path=path)
-    return Sizes(errors, said, None, path)
-
-
 def half_steps(setup: Setup, rolling: str, variables: Dict[str, str]) -> List[repeats.Repeat]:
     """One run with half the time step, which keeps account of its energy, too, unless the deck is of a version that
     cannot."""
@@ -192,11 +136,6 @@ def step_of(setup: Setup, run_: repeats.Repeat, rolling: str, variables: Dict[st
     prefix = run_folders.prefix_of(run_folders.summary_of(setup.output, row))
     return Step(rolling, row[QUANTITY], energy=energy.read(Path(f"{prefix}.{energy.SUFFIX}"))
                 if LEDGER in variables else None, spacing=variables.get("spacing"))
-
-
-def unusable(setup: Setup, why: str, shortly: str = "") -> Sizes:
-    setup.warn(Finding("size error unknown", {"why": why}))
-    return Sizes(None, (), shortly or why)
 
 
 def scored(folder: Path, setup: Setup) -> None:

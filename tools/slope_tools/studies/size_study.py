@@ -1,6 +1,6 @@
-"""slope sensitivity --converge: runs with balls of several sizes, the value for small balls and the error of each size.
+"""slope sensitivity --converge: runs with balls of several sizes, and whether halving them changes more than chance.
 
-Order of the work: plan sizes and repeats (repeats.py), run them as `slope study` does (study.py, jobs.py), fit
+Order of the work: plan sizes and repeats (repeats.py), run them as `slope study` does (study.py, jobs.py), compare
 (convergence.py), write converge.yaml, converge.csv, converge_runs.csv and the chart (convergence_chart.py).
 """
 from typing import Dict, List, Mapping, NamedTuple, Sequence
@@ -14,9 +14,9 @@ from ..errors import SlopeError
 from ..findings import Finding, entries
 from ..runs import repeats
 from ..statistics import convergence, headline
-from ..tables import combinations, judged, study_table
+from ..tables import combinations, fine_run, judged, study_table
 from ..tables.quantities import ALL
-from . import results, study
+from . import fine_runs, results, study
 from .setup import Setup
 
 OPTION = "--converge"
@@ -43,9 +43,10 @@ def plan(setup: Setup, converge: str, base, repeated) -> Plan:
     for value in values:
         number = as_number(value)
         if not (isinstance(number, float) and 0 < number < float("inf")):
-            raise SlopeError(OPTION, f"must give numbers > 0 for {variable}, which tends to 0", value)
+            raise SlopeError(OPTION, f"must give numbers > 0 for {variable}", value)
     if len(values) < 2:
-        raise SlopeError(OPTION, "must give two values at least, and three to see whether a line holds", converge)
+        raise SlopeError(OPTION, "must give two values at least, and three, each half of the one before, to see what "
+                         "is resolved", converge)
     for other, option in ((base, "--set"), (repeated, "--repeat")):
         if variable in other:
             raise SlopeError(OPTION, f"must not name a variable of {option}", variable)
@@ -55,13 +56,13 @@ def plan(setup: Setup, converge: str, base, repeated) -> Plan:
 
 
 def collect(planned: Plan, of, work) -> None:
-    """Fit and write what the finished runs tell."""
+    """Compare and write what the finished runs tell."""
     setup, settings, repeated, variable, todo = planned
     names = {name: (ALL[name].name, ALL[name].unit) for name in of}
     rows, _ = results.rows_of(setup, todo, results.Maps(()))
     finished = [row for row in rows if row["status"] == "finished"]
     groups = combinations.grouped(rows)
-    if len(groups) < 2:     # no line; perform() names the run that failed
+    if len(groups) < 2:     # nothing to compare; perform() names the run that failed
         (setup.output / "converge.yaml").unlink(missing_ok=True)       # of runs before these
         return
     for name in of:
@@ -72,101 +73,76 @@ def collect(planned: Plan, of, work) -> None:
     same = [row["run"] for group in groups for row in group.same]
     if same:
         warnings.append(Finding("no effect", runs=same))
-    fits = {}
-    for name in of:
-        fits[name] = convergence.fit([(float(group.set[variable]), list(group.of(name).volumes.values()))
-                                      for group in groups])
-    sentences = {name: convergence.words(fit, variable, names[name][0], names[name][1], writer(fit))
-                 for name, fit in fits.items()}
+    balls = [fine_runs.depth_of(setup, group.rows[0]) / float(group.set[variable]) if variable == fine_run.VARIABLE
+             else None for group in groups]
+    found = {name: convergence.compare([(float(group.set[variable]), list(group.of(name).volumes.values()))
+                                        for group in groups], balls) for name in of}
+    sentences = {name: convergence.words(one, variable, *names[name], writer(one)) for name, one in found.items()}
     base = {**work.defaults, **{name: several[0] for name, several in settings.items() if name != variable}}
     base.pop(variable)
     about = {"study": {"deck": setup.deck.name, "variable": variable, "values": settings[variable], "base": base,
                        "repeat": repeated, "runs": len(rows), "finished": len(finished), "ranks": work.ranks,
                        "package": work.package, "collected": provenance.now(), "machine": provenance.machine(),
                        "road": setup.road.about() if setup.road else None},
-             "quantities": {name: entry(fit, names[name], sentences[name]) for name, fit in fits.items()},
+             "quantities": {name: entry(one, names[name], sentences[name]) for name, one in found.items()},
              "warnings": entries(warnings)}
     for one in warnings:
         setup.warn(one)
     setup.output.mkdir(exist_ok=True)
-    disk.write(setup.output / "converge.csv", table(fits, variable))
+    disk.write(setup.output / "converge.csv", table(found, variable))
     disk.write(setup.output / "converge_runs.csv", study_table.table(settings, repeated, rows, work.defaults))
     disk.write(setup.output / "converge.yaml", disk.yaml_text(
-        f"slope sensitivity --converge: a line V0 + b {variable} through the values; volumes in m3 of ground (bulk), "
-        "lengths in m", about))
+        f"slope sensitivity --converge: values of {variable}; volumes in m3 of ground (bulk), lengths in m", about))
     from ..tables import convergence_chart
     convergence_chart.draw(
-        setup.output / "converge.png", variable, [(*names[name], fits[name], [
+        setup.output / "converge.png", variable, [(*names[name], found[name], [
             (float(group.set[variable]), row[name]) for group in groups for row in group.rows]) for name in of],
         f"{setup.deck.name}: {len(finished)} runs, {len(groups)} values of {variable}")
-    setup.tell(shown_of(fits, variable, names, setup.deck.name))
+    setup.tell(shown_of(found, variable, names, setup.deck.name))
     setup.tell(", ".join(str(setup.output / f"converge.{kind}") for kind in ("yaml", "csv", "png"))
                + f", {setup.output / 'converge_runs.csv'}: all numbers, the chart, and the runs")
     setup.tell("\n".join(text for several in sentences.values() for text in several))
 
 
-def writer(fit):
-    """A function that writes a value rounded to what is known, by the standard error of the value for small balls."""
-    error = fit.small.standard_error
-    step = headline.place(error) if error else headline.place_of_digits(fit.small.value)
+def writer(found: convergence.Convergence):
+    """A function that writes a value rounded to what is known, by the largest scatter of a run."""
+    scatter = max((size.scatter or 0.0 for size in found.sizes), default=0.0)
+    step = headline.place(scatter) if scatter else headline.place_of_digits(found.sizes[0].mean)
     return lambda value: headline.text(value, step)
 
 
-def percent(share):
-    return None if share is None else 100 * share
-
-
-def entry(fit, name, sentences):
+def entry(found: convergence.Convergence, name, sentences):
     """What converge.yaml says of a quantity."""
-    def estimate(one):
-        return one and {"value": one.value, "standard_error": one.standard_error}
-
-    low, high = fit.interval or (None, None)
     return {
-        "name": name[0], "unit": name[1],
-        "small_balls": {**estimate(fit.small), "low": low, "high": high, "degrees_of_freedom": fit.degrees_of_freedom},
-        "slope": estimate(fit.slope), "covariance": fit.covariance, "quantile": fit.quantile,
-        "scatter": {"at_1": fit.scatter, "exponent": fit.exponent},
-        "lack_of_fit": fit.lack and {"ratio": fit.lack[0], "probability": fit.lack[1]}, "supported": fit.supported,
-        "parabola": fit.curved and {"small_balls": estimate(fit.curved_small), "clear": fit.curve_is_clear},
-        "errors_known": fit.known,
+        "name": name[0], "unit": name[1], "resolved": found.resolved,
         "sizes": [{"value": size.d, "runs": size.runs, "mean": size.mean, "scatter": size.scatter,
-                   "fitted": size.fitted, "error_percent": percent(size.error),
-                   "standard_error_percent": percent(size.standard_error)}
-                  for size in fit.sizes],
+                   "balls_thick": size.balls} for size in found.sizes],
+        "halvings": [{"from": one.coarse.d, "to": one.fine.d, "difference": one.difference, "chance": one.chance}
+                     for one in found.halvings],
         "words": sentences}
 
 
-def table(fits, variable):
-    """The CSV: a row per quantity and size; the last of a quantity is that of small balls, at 0."""
+def table(found, variable):
+    """The CSV: a row per quantity and size, with the difference from the size that was halved."""
     rows = []
-    for name, fit in fits.items():
-        for size in fit.sizes:
-            rows.append([name, size.d, size.runs, size.mean, size.scatter, size.fitted, fit.line_at(size.d)[1],
-                         percent(size.error), percent(size.standard_error)])
-        rows.append([name, 0, None, None, None, fit.small.value, fit.small.standard_error, 0 if fit.known else None,
-                     None])
-    return disk.csv_text(["quantity", variable, "runs", "mean", "scatter", "fitted", "standard_error",
-                          "error_percent", "standard_error_percent"], rows)
+    for name, one in found.items():
+        halved = {each.fine.d: each for each in one.halvings}
+        for size in one.sizes:
+            each = halved.get(size.d)
+            rows.append([name, size.d, size.balls, size.runs, size.mean, size.scatter, each and each.coarse.d,
+                         each and each.difference, each and each.chance])
+    return disk.csv_text(["quantity", variable, "balls_thick", "runs", "mean", "scatter", "halved_from", "difference",
+                          "chance"], rows)
 
 
-def shown_of(fits, variable, names, deck) -> Table:
-    shown = Table(title=f"{deck}: a line in {variable}; errors against its value at 0, with standard errors")
-    heads = [head for name in fits for head in (" ".join(names[name]), "error")]
-    for head in (variable, "runs", *heads):
+def shown_of(found, variable, names, deck) -> Table:
+    shown = Table(title=f"{deck}: means at several values of {variable}; s: standard deviation of a run")
+    for head in (variable, "balls thick", "runs", *(" ".join(names[name]) for name in found)):
         shown.add_column(head, justify="right")
-    for k, size in enumerate(next(iter(fits.values())).sizes):
-        cells = [f"{size.d:g}", str(size.runs)]
-        for fit in fits.values():
-            one, write = fit.sizes[k], writer(fit)
-            cells.append(write(one.mean) + (f" s {write(one.scatter)}" if one.scatter is not None else ""))
-            cells.append("-" if one.error is None else f"{100 * one.error:+.1f} %" + (
-                f" +- {100 * one.standard_error:.1f}" if one.standard_error is not None else ""))
+    for k, size in enumerate(next(iter(found.values())).sizes):
+        cells = [f"{size.d:g}", "-" if size.balls is None else f"{size.balls:.1f}", str(size.runs)]
+        for one in found.values():
+            mine, write = one.sizes[k], writer(one)
+            cells.append(write(mine.mean) + (f" s {write(mine.scatter)}" if mine.scatter is not None else ""))
         shown.add_row(*cells)
-    cells = ["0", ""]
-    for fit in fits.values():
-        write, error = writer(fit), fit.small.standard_error
-        cells += [write(fit.small.value) + (f" +- {write(error)}" if error is not None else ""), ""]
-    shown.add_section()
-    shown.add_row(*cells)
     return shown

@@ -5,8 +5,10 @@ from typing import Any, Dict, List, Mapping, Optional
 from .. import disk, schemas
 from ..schemas import OBJECT, mapping
 from ..statistics import answer
-from ..statistics.answer import Answer, Ensemble, Paper, Reason, Road, Withheld
+from ..statistics.answer import Answer, Code, Ensemble, Paper, Reason, Road, Withheld
 from ..statistics.withheld import Kind as Rule
+from . import fine_run
+from .quantities import REMOVE
 
 TITLE = "slope study: volumes in m3 of ground (bulk), lengths in m, times in s"
 SCHEMA = mapping({}, conservative=mapping({}, null=True), ensemble=mapping({}, null=True),
@@ -24,7 +26,7 @@ def paper_of(about: Mapping[str, Any]) -> Optional[Paper]:
     if not best:
         return None
     shown = None if best["volume_m3"] is None else (best.get("rounded") or best)["volume_m3"]
-    return Paper(shown, rules(best.get("withheld") or ()))
+    return Paper(shown, rules(best.get("withheld") or ()), size_of(about))
 
 
 def ensemble_of(about: Mapping[str, Any]) -> Optional[Ensemble]:
@@ -33,10 +35,24 @@ def ensemble_of(about: Mapping[str, Any]) -> Optional[Ensemble]:
     one = whole.get("known_events") or {}
     if not one.get("to_remove"):
         return None
-    stopped = (one.get("added") or {}).get("stopped")
-    return Ensemble({each["share"]: (each["value"], each["low"], each["high"]) for each in one["to_remove"]},
-                    one["far"], one["longest_m"], rules(whole.get("withheld") or ()),
-                    Reason.read(stopped) if stopped else None)
+    stopped, effect = (one.get("added") or {}).get("stopped"), fine_run.read_effect(about.get("size") or {}, REMOVE)
+
+    def raised(value: Optional[float]) -> Optional[float]:
+        return value if value is None or effect is None else value + effect.added(value)
+
+    quantiles = {each["share"]: (raised(each["value"]), raised(each["low"]), raised(each["high"]))
+                 for each in one["to_remove"]}
+    return Ensemble(quantiles, one["far"], one["longest_m"], rules(whole.get("withheld") or ()),
+                    Reason.read(stopped) if stopped else None, size_of(about))
+
+
+def size_of(about: Mapping[str, Any]) -> Optional[Reason]:
+    """Why smaller balls may bring more than its fine run showed; None: they do not, or there is no such run."""
+    size = about.get("size") or {}
+    if not size.get("open"):
+        return None
+    growth = size["open"]["growth"].get(REMOVE) or {}
+    return Reason(Code.SIZE, {"balls_thick": size["open"]["balls_thick"], **growth})
 
 
 def rules(entries) -> List[Withheld]:

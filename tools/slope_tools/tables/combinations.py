@@ -9,8 +9,8 @@ from ..runs import jobs
 from ..runs.repeats import key_of
 from ..statistics import headline
 from ..statistics.headline import Combination, Scatter
+from ..statistics.size_effect import Effect
 from . import quantities, withheld_words
-from .size_error import SizeErrors
 
 GROUND = ("pattern", "spacing", "angle")        # variables of decks that make another ground
 # runs that are the same in all of these are one run: two of chance never are
@@ -109,12 +109,13 @@ FEW = 0.05      # of the largest volume of runs that differ by chance alone: les
 STANDS = 0.1    # of the largest travel of the centroid among them: less, and the slope did not fail
 
 
-def conservative(settings, rows, groups: Sequence[Group], errors: Optional[SizeErrors] = None) -> Dict[str, Any]:
-    """The entry of the conservative volume in study.yaml: its parts, what it is based on, its caveats (doubts)."""
+def conservative(settings, rows, groups: Sequence[Group], effect: Optional[Effect] = None) -> Dict[str, Any]:
+    """The entry of the conservative volume in study.yaml: its parts, what it is based on, its caveats (doubts).
+
+    effect: of smaller balls on it.
+    """
     parts = [group.of("remove_m3") for group in groups]
-    sizes = {group.name: errors.at(str(group.rows[0]["variables"][errors.variable])) for group in groups} \
-        if errors else None
-    best = headline.headline(parts, sizes)
+    best = headline.headline(parts, effect and effect.added)
     governing = next(group for group in groups if group.name == best.combination)
     largest = max(governing.rows, key=lambda row: row["remove_m3"])
     volumes = [row["remove_m3"] for row in governing.rows]
@@ -126,7 +127,7 @@ def conservative(settings, rows, groups: Sequence[Group], errors: Optional[SizeE
         value = {group.name: group.set[name] for group in line}
         differences.append({"variable": name, "largest_at": value[found.largest], "smallest_at": value[found.smallest],
                             "by_m3": found.by, "chance_m3": found.chance, "clear": found.clear})
-    scatter, size = best.scatter, sizes and sizes[best.combination]
+    scatter = best.scatter
     return {
         "volume_m3": best.volume, "mean_m3": best.mean, "chance_m3": best.chance, "size_m3": best.size,
         "rounded": {f"{name}_m3": value for name, value in best.rounded().items()}, "place_m3": best.place,
@@ -139,10 +140,6 @@ def conservative(settings, rows, groups: Sequence[Group], errors: Optional[SizeE
         "starts_m3": [min(volumes), max(volumes)] if len(volumes) > 1 else None,
         # the run whose maps represent it
         "run": largest["run"], "remove_m3": largest["remove_m3"],
-        "size": size and errors and {
-            "file": str(errors.path), "variable": errors.variable,
-            "value": str(governing.rows[0]["variables"][errors.variable]), "error_percent": 100 * size.share,
-            "half_percent": None if size.half is None else 100 * size.half},
         "differences": differences,
         "doubts": [one.entry() for one in doubts(settings, rows, groups, best, differences)],
         "withheld": [], "zero": None}       # see usable.judge
@@ -236,7 +233,7 @@ def describe(best: Mapping[str, Any]) -> List[str]:
                 f"{best['repeats']} runs ({best['label'] or best['combination']}) + {number(parts['chance'])}, chance "
                 f"(s {number(best['scatter_m3'])}, {best['degrees_of_freedom']:.3g} degrees of freedom)")
         text += (f" + {number(parts['size'])}, size of the balls" if parts["size"] is not None
-                 else "; the size of the balls is not in it")
+                 else "; what smaller balls would change is not known")
     lines = [text, *starts(best), *([best["zero"]["text"]] if best["zero"] else []),
              *([best["ground"]] if best.get("ground") else [])]
     for entry in best["differences"]:

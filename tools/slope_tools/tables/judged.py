@@ -114,10 +114,7 @@ KINDS = {"failed", "in motion", "moving", "lost much", "lost", "bulk factor", "b
 def limits(study: Optional[Mapping[str, Any]], repeats: bool) -> List[Finding]:
     """What no run of a study, or a run alone, can tell; repeats: whether runs were repeated."""
     sampled = study and study.get("ensemble")
-    best: Any = study and study["conservative"]
     found = [] if repeats or sampled else [Finding("no repeats")]
-    # where the size error is why there is no number, the number's place says so
-    if not (sampled or best and (best["size_m3"] is not None
-                                 or study and study.get("size_error_unusable") and best.get("withheld"))):
+    if not (study and (study.get("size") or {}).get("run")):
         found.append(Finding("no sizes"))
     return [*found, Finding("slip assumed")]

@@ -8,7 +8,6 @@ from ..sites import site_choices
 from ..sites.site_budget import duration_text
 from ..statistics.answer import Code
 from ..statistics.withheld import Kind as Rule
-from .withheld_words import FINER
 
 MORE = 2            # times the runs, where more are needed
 
@@ -68,8 +67,8 @@ def step_of(made: Made, code: Code, of: Mapping[str, Any]) -> Optional[Step]:
     if rule is Rule.LEFT:
         return Step(*larger_terrain(made), made.seconds)
     mine = next((one for one in made.withheld if one["kind"] == rule.value), None)
-    words = {Rule.BALLS: "smaller balls in the model", Rule.SIZE: "smaller balls in the model",
-             Rule.RUNS: "more time for the mass to come to rest", Rule.MOBILITY: "runs with less resistance"}
+    words = {Rule.BALLS: "smaller balls in the model", Rule.RUNS: "more time for the mass to come to rest",
+             Rule.MOBILITY: "runs with less resistance"}
     return Step(words[rule], mine["remedy"], times(made, rule, of)) if mine else None
 
 
@@ -83,7 +82,7 @@ def first_remedy(made: Made) -> Optional[Step]:
 def times(made: Made, rule: Rule, of: Mapping[str, Any]) -> Optional[float]:
     """Seconds of the study once more: steps are in proportion to the balls' diameter."""
     whole = made.seconds
-    factor = {Rule.RUNS: 2.0, Rule.SIZE: FINER ** (4 / 3)}.get(rule, 1.0)
+    factor = 2.0 if rule is Rule.RUNS else 1.0
     if rule is Rule.BALLS:
         factor = (of["bound"] / max(of["number"] or 0.0, 1.0)) ** (4 / 3) if of["bound"] else 1.0
     return None if whole is None else factor * whole

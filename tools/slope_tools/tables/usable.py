@@ -53,17 +53,16 @@ def longest(rows: Sequence[Row]) -> Optional[float]:
     return max((row["length_m"] for row in rows if row.get("length_m") is not None), default=None)
 
 
-def facts(rows: Sequence[Row], volume: float, on_road: float, events: Optional[Events], size: str = "") -> Facts:
+def facts(rows: Sequence[Row], volume: float, on_road: float, events: Optional[Events]) -> Facts:
     """Of the rows of a study with a road, of which one finished at least.
 
-    volume, on_road: the number that is to be used, and its part on the road itself, m3; size: why the size error is
-    not trusted.
+    volume, on_road: the number that is to be used, and its part on the road itself, m3.
     """
     finished = [row for row in rows if row["status"] == "finished"]
     return Facts(volume, on_road, min(row["ball_m3"] for row in finished), len(rows), len(rows) - len(finished),
                  sum(not row["at_rest"] for row in finished),
                  max(row["left_before_road_m3"] / row["released_m3"] for row in finished),
-                 longest(finished), events and events.median, size)
+                 longest(finished), events and events.median)
 
 
 def reasons_of_ensemble(rows: Sequence[Row], events: Optional[Events], case: Case) -> List[Dict[str, Any]]:
@@ -76,13 +75,13 @@ def reasons_of_ensemble(rows: Sequence[Row], events: Optional[Events], case: Cas
     return withheld_words.with_remedies(withheld.reasons(facts(rows, largest, on_road, events)), case)
 
 
-def judge(best: Dict[str, Any], rows: Sequence[Row], events: Optional[Events], case: Case, size: str = "") -> None:
+def judge(best: Dict[str, Any], rows: Sequence[Row], events: Optional[Events], case: Case) -> None:
     """Add to the entry of the conservative volume why it is withheld, and if it is 0, what that is worth.
 
     A volume that is withheld is None there, so that no reader takes it for one.
     """
     mine = [row["remove_on_road_m3"] for row in rows if row["status"] == "finished" and row["set"] == best["set"]]
-    found = withheld.reasons(facts(rows, best["volume_m3"], sum(mine) / len(mine), events, size))
+    found = withheld.reasons(facts(rows, best["volume_m3"], sum(mine) / len(mine), events))
     best["withheld"], best["zero"] = withheld_words.with_remedies(found, case), None
     if found:
         best["volume_m3"] = best["rounded"]["volume_m3"] = None

@@ -9,7 +9,6 @@ from ..mobility.results import percent
 from ..statistics.withheld import BALLS, CONFIDENCE, Kind, exceeded_at_most
 
 UNUSABLE = "not usable as a conservative volume"
-FINER = 8               # times the balls: half their diameter
 MARGIN = 1.1            # of the balls: chance
 
 
@@ -27,8 +26,6 @@ def remedy(reason: Finding, case: Case) -> str:
     """The command that mends it."""
     if reason.kind == Kind.BALLS:
         return finer(case, BALLS / max(reason.numbers["number"], 1.0))
-    if reason.kind == Kind.SIZE:
-        return finer(case, FINER)
     if reason.kind == Kind.MOBILITY:
         return mobile(case)
     if reason.kind == Kind.LEFT:

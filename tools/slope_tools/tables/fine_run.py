@@ -1,0 +1,89 @@
+"""The effect of the size of the balls on the numbers of a study: its fine run against the runs with the same values."""
+from typing import Any, Callable, Dict, Mapping, NamedTuple, Optional, Sequence
+
+from ..digits import rounded, to_three
+from ..runs.repeats import key_of
+from ..statistics.headline import Combination, Scatter
+from ..statistics.size_effect import RESOLVED, Effect, effect
+from . import quantities, size_family
+from .quantities import On
+
+Row = Mapping[str, Any]
+VARIABLE = "d"                  # of a deck: the diameter of the balls, m
+VOLUMES = {"m3"}                # units of quantities of which ten balls count
+
+
+class Fine(NamedTuple):
+    """A fine run and the coarse ones that are otherwise the same; row: None where it failed, why says so."""
+    row: Optional[Row]
+    coarse: Sequence[Row]
+    depth: float                # m, mean thickness of the body
+    scatter: Callable[[str], Optional[Scatter]]     # of a coarse run in a column of the study's table; None: not known
+    why: str = ""
+
+
+def evaluate(fine: Fine) -> Dict[str, Any]:
+    """The entry of study.yaml; its effects are {column: of_effect()}, its text a sentence without its full stop."""
+    if fine.row is None or not fine.coarse:
+        why = fine.why or "no run with the same values finished"
+        return {"run": None, "effects": {}, "open": None, "text": f"not tried: {why}"}
+    ball = max(row["ball_m3"] for row in fine.coarse)
+    d, coarse_d = (float(row["variables"][VARIABLE]) for row in (fine.row, fine.coarse[0]))
+    effects = {}
+    for key in quantities.known(On.MEAN, [fine.row, *fine.coarse]):
+        volumes = Combination(key, {key_of(row["repeat"]): float(row[key]) for row in fine.coarse})
+        effects[key] = effect(volumes, float(fine.row[key]), fine.scatter(key),
+                              ball if quantities.ALL[key].unit in VOLUMES else None)
+    balls = fine.depth / d
+    found = {"run": fine.row["run"], "d": d, "balls_thick": balls, "coarse_d": coarse_d,
+             "coarse_balls_thick": fine.depth / coarse_d, "coarse_runs": [row["run"] for row in fine.coarse],
+             "effects": {key: of_effect(one) for key, one in effects.items()},
+             "open": None if balls >= RESOLVED else open_of(balls, effects)}
+    return {**found, "text": words(found)}
+
+
+def of_effect(one: Effect) -> Dict[str, Any]:
+    """As study.yaml has it."""
+    return {**one._asdict(), "difference": one.difference, "clear": one.clear}
+
+
+def read_effect(about: Optional[Mapping[str, Any]], key: str) -> Optional[Effect]:
+    """That of a column in an entry of study.yaml; None where it is not known."""
+    one = (about or {}).get("effects", {}).get(key)
+    return one and Effect(*(one[name] for name in Effect._fields))
+
+
+def open_of(balls: float, effects: Mapping[str, Effect]) -> Dict[str, Any]:
+    """By which factors known cases grew from so many balls of thickness, for each column that they know."""
+    return {"balls_thick": balls, "growth": {key: size_family.growth(balls, size_family.COLUMN[key])._asdict()
+                                             for key in effects if key in size_family.COLUMN}}
+
+
+# --- words ---
+
+def words(found: Mapping[str, Any]) -> str:
+    """What the fine run says of the volume to remove, else of the length; and what is left open."""
+    key = next((one for one in (quantities.REMOVE, quantities.LENGTH, quantities.DISTANCE) if one in found["effects"]),
+               None)
+    sizes = (f"balls of {found['d']:.3g} m ({found['balls_thick']:.2g} of them thick) instead of "
+             f"{found['coarse_d']:.3g} m ({found['coarse_balls_thick']:.2g})")
+    if key is None:
+        return f"{sizes}: nothing to compare"
+    one, what = found["effects"][key], quantities.ALL[key]
+    change = f"{rounded(to_three(one['fine']))} instead of {rounded(to_three(one['coarse']))} {what.unit}"
+    if one["clear"] is None:
+        chance = "chance is not known"
+    else:
+        more = "more than" if one["clear"] else "no more than"
+        chance = f"{more} chance explains, {rounded(to_three(one['chance']))} {what.unit}"
+    return f"{sizes}: {what.name} {change}; {chance}" + (f". {open_words(found['open'], key)}" if found["open"] else "")
+
+
+def open_words(open_: Mapping[str, Any], key: str) -> str:
+    """What balls that are smaller still may change."""
+    growth = open_["growth"].get(key)
+    if growth is None:
+        return f"What smaller balls change is not known: {RESOLVED:g} balls of thickness would show it"
+    return (f"From {open_['balls_thick']:.2g} balls of thickness to {growth['balls']:.2g} or more it grew by a factor "
+            f"of {growth['middle']:.2f} ({growth['low']:.2f} to {growth['high']:.2f}) in {growth['cases']} cases that "
+            "were run so far")
