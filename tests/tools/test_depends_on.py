@@ -23,14 +23,14 @@ from slope_tools.sites import site_choices
 # --- options of the commands that make runs ---
 
 # values of variables: the name of a run's folder
-CHOSEN = {"set", "vary", "levels", "sample", "fit", "paper", "design", "seed", "repeat", "converge", "runs",
+CHOSEN = {"set", "fine", "vary", "levels", "sample", "fit", "paper", "design", "seed", "repeat", "converge", "runs",
           "fragility"}
 FOLLOWED = {"deck", "lmp"}              # dependencies.py
 PLACE = {"output", "overwrite", "help", "dry_run", "all_columns"}       # where to, what is shown, or no run
 ONE_RESULT = {"np", "jobs", "launcher", "engine", "slurm"}      # how it is run: the same but for rounding
 # computed from the runs, each time that the command is given
 ANEW = {"road", "road_width", "road_from", "blocked", "lane", "clearing", "loosening", "cut_angle", "mesh", "local",
-        "intensity", "more_than", "of", "exceed", "exceed_speed", "exceed_energy", "size_error", "equally_good",
+        "intensity", "more_than", "of", "exceed", "exceed_speed", "exceed_energy", "equally_good",
         "observed", "front", "front_is", "area", "road_volume", "tolerance", "threshold", "known", "confined",
         "left_out"}
 AGAIN = {"anew"}        # which runs are made, not how
@@ -61,11 +61,11 @@ TRIAL = {"lmp", "jobs"}                         # what the trial run finds is wr
 LATER = {("project", "name"), ("project", "client"), ("project", "author"), ("road", "cut_angle"), ("road", "mesh"),
          *(("road", key) for key in ("width", "from", "blocked", "lane", "clearing", "loosening")),
          ("study", "rolling"), ("study", "spacing"), ("study", "points"), ("known", "set"), ("known", "confined"),
-         ("study", "xoffset"), ("study", "yoffset"), ("study", "zoffset"), ("study", "sizes")}
+         ("study", "xoffset"), ("study", "yoffset"), ("study", "zoffset"), ("study", "fine")}
 KEYS = [(section, key) for section, about in site_choices.sections() for key in about["properties"]]
 NOT_FILES = {("terrain", "crs"), ("terrain", "assign_crs"), ("terrain", "z_unit"), ("release", "shape"),
              ("release", "scar_is"), ("project", "name"), ("project", "client"), ("project", "author"),
-             ("known", "set"), ("known", "confined")}
+             ("known", "set"), ("known", "confined"), ("study", "fine")}
 
 
 def test_every_option_of_a_site_is_a_choice():

@@ -257,7 +257,7 @@ def test_what_no_run_tells_is_on_the_first_page_alone():
     assert [one.kind for one in found] == ["no repeats", "no sizes", "slip assumed"]
     assert warnings.listed(found, {}) == [] and len(warnings.first_page(found, ground_of())) == 3
     found = warnings.findings(data_of(rows, repeats={"seed": ["1"]}, study={
-        "conservative": {"size_m3": 3.0, "doubts": []}, "warnings": []}), ground_of())
+        "conservative": {"doubts": []}, "size": {"run": "d_1"}, "warnings": []}), ground_of())
     assert [one.kind for one in found] == ["slip assumed"]
 
 

@@ -5,14 +5,11 @@ What it says of the size of the balls: tables/fine_run.
 import statistics
 from typing import Any, Dict, List, Mapping, Optional, Sequence
 
-from ..case import run_folders
 from ..case.settings import as_number
 from ..errors import SlopeError
 from ..runs import repeats
 from ..runs.repeats import Repeat
-from ..statistics import headline
-from ..tables.combinations import Group
-from ..tables.fine_run import VARIABLE, Fine
+from ..tables.fine_run import VARIABLE
 from ..tables.study_maps import Maps
 from . import results
 from .setup import Setup
@@ -55,33 +52,6 @@ def of_median_length(setup: Setup, factor: Any, todo: Sequence[Repeat], defaults
     nearest = min((one for one in first if one.name in lengths), key=lambda one: abs(lengths[one.name] - median))
     known = {**defaults, **nearest.combination}
     return smaller(setup.runs, nearest.combination, int(factor), known.get(VARIABLE, "none"))
-
-
-def compared(setup: Setup, fine: Repeat, rows: Sequence[Mapping[str, Any]], groups: Optional[Sequence[Group]]) -> Fine:
-    """The fine run beside the rows with the same values; groups: of a study with repeats, None of an ensemble."""
-    if fine.error:
-        return Fine(None, (), 0.0, lambda key: None, f"{fine.name}: {fine.error}")
-    [row], _ = results.rows_of(setup, [fine], Maps(()), pictures=False)
-    coarse = [one for one in rows if one["status"] == "finished"
-              and all(row["variables"][name] == one["variables"][name] for name in one["set"] if name != VARIABLE)]
-    same = next((group for group in groups or () if coarse and group.set == coarse[0]["set"]), None)
-    coarse = same.rows if same else [one for one in coarse if not one["repeat"]]
-
-    def scatter(key: str) -> Optional[headline.Scatter]:
-        if same is None:
-            return None
-        parts = [group.of(key) for group in groups or ()]
-        mine = parts[(groups or ()).index(same)]
-        return headline.scatter_of(parts, mine) if mine.mean > 0 else headline.pooled(parts)
-
-    return Fine(row, coarse, depth_of(setup, coarse[0]) if coarse else 0.0, scatter)
-
-
-def depth_of(setup: Setup, row: Mapping[str, Any]) -> float:
-    """Mean thickness (m) of the body that a run released: its volume over its area in plan."""
-    arrival = run_folders.load_raster(run_folders.prefix_of(run_folders.summary_of(setup.output, row)), "arrival")
-    area = results.body_of(arrival.z == 0, arrival, row["ball_m3"]).sum() * arrival.transform.a ** 2
-    return row["released_m3"] / float(area)
 
 
 def factor_of(asked: Optional[str], choices: Optional[Dict[str, Any]] = None) -> Any:

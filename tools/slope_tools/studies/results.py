@@ -15,6 +15,7 @@ from ..runs import repeats
 from ..runs.repeats import Repeat
 from ..seismic import chain_files
 from ..sites import site_choices
+from ..statistics import headline
 from ..survey import rasters, roads
 from ..tables import (answered, combinations, fine_run, intensity, judged, quantities, road_runs, step_check,
                       structures, study_table, usable, withheld_words)
@@ -81,8 +82,7 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
     if setup.road and finished:
         about["study"]["road"] = write_road(output, setup.road, first, thickness)
     if questions.fine and finished:
-        from . import fine_runs
-        about["size"] = fine_run.evaluate(fine_runs.compared(setup, questions.fine, rows, None if order else groups))
+        about["size"] = fine_run.evaluate(compared(setup, questions.fine, rows, None if order else groups))
     if order:
         about["ensemble"] = ensemble.evaluate(order, rows, output, first and terrain_place(first), maps.problem)
         case = case_of(setup, questions, finished[0])._replace(sampled=True)
@@ -140,6 +140,35 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
         setup.tell("\n".join(chain_files.describe(about["chain"], output)))
     for entry in [*(written["envelope"] or {}).values(), *(written["exceedance"] or ())]:
         setup.tell(f"{output / entry['file']}: {entry['what']}")
+
+
+def compared(setup: Setup, fine: Repeat, rows: Sequence[Mapping[str, Any]],
+             groups: Optional[Sequence[combinations.Group]]) -> fine_run.Fine:
+    """The fine run beside the rows with the same values; groups: of a study with repeats, None of an ensemble."""
+    if fine.error:
+        return fine_run.Fine(None, (), 0.0, lambda key: None, f"{fine.name}: {fine.error}")
+    [row], _ = rows_of(setup, [fine], Maps(()), pictures=False)
+    coarse = [one for one in rows if one["status"] == "finished"
+              and all(row["variables"][name] == one["variables"][name]
+                      for name in one["set"] if name != fine_run.VARIABLE)]
+    same = next((group for group in groups or () if coarse and group.set == coarse[0]["set"]), None)
+    coarse = same.rows if same else [one for one in coarse if not one["repeat"]]
+
+    def scatter(key: str) -> Optional[headline.Scatter]:
+        if same is None:
+            return None
+        parts = [group.of(key) for group in groups or ()]
+        mine = parts[(groups or ()).index(same)]
+        return headline.scatter_of(parts, mine) if mine.mean > 0 else headline.pooled(parts)
+
+    return fine_run.Fine(row, coarse, depth_of(setup, coarse[0]) if coarse else 0.0, scatter)
+
+
+def depth_of(setup: Setup, row: Mapping[str, Any]) -> float:
+    """Mean thickness (m) of the body that a run released: its volume over its area in plan."""
+    arrival = run_folders.load_raster(run_folders.prefix_of(run_folders.summary_of(setup.output, row)), "arrival")
+    area = body_of(arrival.z == 0, arrival, row["ball_m3"]).sum() * arrival.transform.a ** 2
+    return row["released_m3"] / float(area)
 
 
 def known_of(setup: Setup, questions: Questions) -> Mapping[str, Any]:

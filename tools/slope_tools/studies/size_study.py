@@ -16,7 +16,7 @@ from ..runs import repeats
 from ..statistics import convergence, headline
 from ..tables import combinations, fine_run, judged, study_table
 from ..tables.quantities import ALL
-from . import fine_runs, results, study
+from . import results, study
 from .setup import Setup
 
 OPTION = "--converge"
@@ -73,7 +73,7 @@ def collect(planned: Plan, of, work) -> None:
     same = [row["run"] for group in groups for row in group.same]
     if same:
         warnings.append(Finding("no effect", runs=same))
-    balls = [fine_runs.depth_of(setup, group.rows[0]) / float(group.set[variable]) if variable == fine_run.VARIABLE
+    balls = [results.depth_of(setup, group.rows[0]) / float(group.set[variable]) if variable == fine_run.VARIABLE
              else None for group in groups]
     found = {name: convergence.compare([(float(group.set[variable]), list(group.of(name).volumes.values()))
                                         for group in groups], balls) for name in of}
