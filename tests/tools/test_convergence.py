@@ -198,8 +198,7 @@ def test_a_fine_run_of_a_deck_raises_the_conservative_volume(slope, succeed):
 
 
 def test_a_deck_without_a_diameter_has_no_fine_run(slope):
-    Path("case/in.tiny").write_text(Path("case/in.tiny").read_text().replace("variable  d index 1.0", "variable  q index 1.0")
-                                    .replace("${d}", "${q}"))
+    edit("case/in.tiny", "variable  d index 1.0", "variable  q index 1.0", "${d}", "${q}")
     status, _, err = slope(f"--set rolling=0 {ROAD} -o out --fine 2", "study")
     assert status == 2 and "--fine: must be of a deck whose variable d is the diameter of the balls" in err
     assert not Path("out").exists()

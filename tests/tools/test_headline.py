@@ -242,7 +242,7 @@ def test_with_unequal_numbers_of_runs_the_least_known_may_govern():
 # --- the size of the balls ---
 
 def test_a_fine_run_that_brings_more_than_chance_raises_the_headline():
-    """By hand: four runs of mean 100, s 2; the fine run may lie t s sqrt(1 + 1/4) above them, 3.182 x 2 x 1.118 = 7.12."""
+    """By hand: the fine run may lie t s sqrt(1 + 1/4) above four runs, t 3.182."""
     coarse = Combination("a", {"1": 98.0, "2": 102.0, "3": 98.0, "4": 102.0})
     scatter = headline.pooled([coarse])
     most = 3.182446 * scatter.deviation * math.sqrt(1.25)
