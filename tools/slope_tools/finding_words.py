@@ -83,6 +83,9 @@ WORDS: Dict[str, Union[str, Words]] = {
                          "these heights, and the cells in metres?",
     "stretched": "a metre in {crs} is {metres:.3f} m on the ground: choose a local CRS",
     "CRS of terrain": "{file} has no CRS: taken to be in that of the terrain{remedy}",
+    "local raster": "{file} has neither origin nor CRS: taken to be in the terrain's local metres",
+    "survey raster": "{file} has neither origin nor CRS: taken to be in coordinates of the survey; --local if it is in "
+                     "the terrain's local metres",
     "datums": "tiles of {datums} are mixed and not converted: {what} may differ where they meet",
     "cut to input": "--bounds reaches beyond the input, {extent}: cut to it",
     "outside": "{file}: {percent:.2g} % of the area lies outside of {terrain}",
@@ -132,7 +135,10 @@ WORDS: Dict[str, Union[str, Words]] = {
     # of a slope's stability: bodies of a search, one that failed, fragility
     "in kPa": "--cohesion {value:g}: is it in Pa? Values in kPa are a thousand times smaller",
     "in kN": "--density {value:g}: is it in kg/m3? Values in kN/m3 are about a hundred times smaller",
-    "bedrock": "body {body}: --bedrock has no value below {percent:.2g} % of its cells",
+    "bedrock": "body {body}: --bedrock has no value below {percent:.3g} % of its cells",
+    "water table": "body {body}: --water-table has no value below {percent:.3g} % of its cells, which are dry",
+    "layer": "body {body}: --layer {file} has no value below {percent:.3g} % of its cells, which are of the strength "
+             "above",
     "columns": "body {body} has {value:.0f} cells of the terrain, fewer than {limit:g}: its numbers are rough",
     "terrain": "body {body} is within {limit:g} cells of the edge of the terrain or of cells without a height: a "
                "larger terrain may have a lower factor",

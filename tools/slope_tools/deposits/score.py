@@ -3,13 +3,11 @@ import math
 from typing import List, NamedTuple, Optional, Tuple
 
 import numpy as np
-from affine import Affine
 
 from .. import disk, geometry
 from ..errors import SlopeError
-from ..findings import Finding
 from ..geometry import coverage, extent
-from ..survey import polygons, rasters
+from ..survey import beside, polygons
 from ..survey.crs import same_crs
 from ..survey.rasters import Raster, crs_name
 from . import reach
@@ -38,13 +36,9 @@ def read_observed(path, raster, threshold, local, warn=None):
     if path.suffix.lower() not in RASTERS:
         polygon = polygons.read_local(path, raster, local)
         return from_polygon(polygon, raster)
-    mapped = rasters.read_asc_local(path) if path.suffix == ".asc" else rasters.read(path)
-    if mapped.crs is None and raster.crs is not None and not local:
-        mapped = mapped._replace(crs=raster.crs)
-        if warn:
-            warn(Finding("CRS of terrain", {"file": str(path),
-                                            "remedy": " (--local if it is in the run's local metres)"}))
-    return from_raster(path, mapped, raster, threshold, local)
+    mapped = beside.read(path, raster, local=beside.Local(local), warn=warn,
+                         remedy=" (--local if it is in the run's local metres)")
+    return from_raster(path, mapped, raster, threshold)
 
 
 def from_polygon(polygon, raster):
@@ -57,17 +51,15 @@ def from_polygon(polygon, raster):
     return Observed(share, None, points, polygon, max(0, polygon.area - inside.area), 0.0)
 
 
-def from_raster(path, mapped, raster, threshold, local):
+def from_raster(path, mapped, raster, threshold):
     """A mapped raster of thickness on the run's grid: what each of its cells holds goes to the cells it shares."""
     t = mapped.transform
     if t.b or t.d or t.a <= 0 or t.e >= 0:
         raise SlopeError(path, "must be a raster with rows from west to east and columns from north to south")
-    if local:
-        mapped = mapped._replace(crs=raster.crs, offset=raster.offset)
-    elif raster.crs is None and mapped.crs is not None:
+    if raster.crs is None and mapped.crs is not None:
         raise SlopeError("--terrain", "must have a CRS, so that both can be brought together (--local if the mapped "
                          "deposit is in the run's local metres)", "none")
-    elif not same_crs(mapped.crs, raster.crs):
+    if not same_crs(mapped.crs, raster.crs):
         raise SlopeError(path, f"must be in the CRS of the run, {crs_name(raster.crs)} (gdalwarp -t_srs reprojects)",
                          crs_name(mapped.crs))
     thickness = np.nan_to_num(mapped.z, nan=0.0)
@@ -76,7 +68,7 @@ def from_raster(path, mapped, raster, threshold, local):
         row, column = wrong[0]
         raise SlopeError(f"{path}: row {row + 1} column {column + 1}", "must be a thickness >= 0",
                          f"{thickness[row, column]:g}")
-    there = Affine.translation(*np.subtract(mapped.offset, raster.offset)) * t  # to the run's local metres
+    there = beside.in_local(mapped, raster)
     to_index = ~raster.transform * there
     shape = raster.z.shape
     x = to_index.c + to_index.a * np.arange(thickness.shape[1] + 1)

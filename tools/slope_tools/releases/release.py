@@ -171,7 +171,7 @@ def from_scar(wanted: Wanted, scar: release_scar.Scar, geometry):
     row, column = area.corner
     part = depth[row:row + area.z.shape[0], column:column + area.z.shape[1]]
     return area, area.z - part, {"shape": "scar", "scar": wanted.scar, "scar_is": scar.kind, "least": wanted.least,
-                                 "beside_m": release_scar.beside(scar, inside)}
+                                 "beside_m": release_scar.off_beside(scar, inside)}
 
 
 def from_shape(wanted: Wanted, raster, geometry):

@@ -13,7 +13,7 @@ from typing import Any, Dict, Iterator, List, Mapping, Optional, Tuple
 
 import yaml
 
-from .. import disk, schemas
+from .. import disk, schemas, written_yaml
 from ..errors import SlopeError
 from ..survey import vectors
 from ..survey.crs import as_crs
@@ -239,7 +239,7 @@ def text(choices: Choices, found_: Dict[str, Any], folder: Path) -> str:
     lines += [f"  {line}" for line in yaml.safe_dump(disk.plain(found_), sort_keys=False, allow_unicode=True,
                                                      width=1000).splitlines()]
     whole = "\n".join(lines) + "\n"
-    check(disk.load_yaml(whole), NAME)
+    check(written_yaml.load(whole), NAME)
     return whole
 
 
