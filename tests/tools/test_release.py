@@ -12,6 +12,7 @@ import pytest
 import rasterio
 import yaml
 from affine import Affine
+from matplotlib.figure import Figure
 from rasterio.crs import CRS
 from shapely.affinity import rotate
 from shapely.geometry import Point, Polygon, box, mapping
@@ -714,7 +715,7 @@ def test_every_example_of_the_page_and_the_help_runs(slope, no_picture, command)
 def test_contours_below_the_sea_are_solid_and_their_labels_stand_upwards(here):
     """A ridge that runs from south to north: its contours come down as they go up, and matplotlib dashes those < 0."""
     x, y = np.meshgrid(np.arange(60.0), np.arange(60.0))
-    figure, axes = maps.plt.subplots()
+    axes = Figure().add_subplot()
     axes.imshow(x, extent=(0, 60, 0, 60))
     maps.contours(axes, -5 * np.abs(x - 30 + 3 * np.sin(y / 9)), (0, 60, 0, 60), 10.0)
     turned = [text.get_rotation() for text in axes.texts]
@@ -723,4 +724,3 @@ def test_contours_below_the_sea_are_solid_and_their_labels_stand_upwards(here):
     assert all(-maps.STANDING <= angle < 180 - maps.STANDING for angle in turned)
     dashes = [style for lines in axes.collections for style in lines.get_linestyles()]
     assert dashes and all(pattern is None for _, pattern in dashes)
-    maps.plt.close(figure)

@@ -123,6 +123,23 @@ def check_names(words):
                              disk.shown(place) if disk.is_utf8(word) else None)
 
 
+def forget_matplotlibrc():
+    """Leave out a user's settings of matplotlib, of which wrong ones stop or clutter its import.
+
+    drawing.pictures has those that count; a script that uses the package keeps its own.
+    """
+    os.environ.pop("MPLBACKEND", None)
+    os.environ["MATPLOTLIBRC"] = os.devnull
+    if os.path.isfile("matplotlibrc"):      # in the current folder it goes first
+        here = os.open(".", os.O_RDONLY)
+        try:
+            os.chdir("/")
+            importlib.import_module("matplotlib")
+        finally:
+            os.fchdir(here)
+            os.close(here)
+
+
 def main(argv=None):
     """Run one subcommand on argv (default: the command line); the status is 0, 1 (a bug), 2 (bad input) or 130."""
     argv = sys.argv[1:] if argv is None else argv
@@ -152,6 +169,7 @@ def main(argv=None):
     shown = warnings.showwarning
     try:
         check_names(argv)
+        forget_matplotlibrc()
         warnings.showwarning = lambda message, *_, **__: findings.printer(args.command)(str(message))     # of libraries
         args.run(args)
     except SlopeError as error:

@@ -249,7 +249,7 @@ def write_csv(path, run_, mesh, table):
 
 
 def draw(path, run_, simulated, observed, about):
-    from ..drawing import maps      # matplotlib, which a study that draws nothing does not need
+    from ..drawing import maps, pictures        # matplotlib, which a study that draws nothing does not need
 
     raster = run_.raster
     kind = np.where(simulated, np.where(observed.share >= 0.5, 1, 2), np.where(observed.share >= 0.5, 3, 0))
@@ -265,17 +265,18 @@ def draw(path, run_, simulated, observed, about):
     shown = maps.window(raster, *bounds)
     area = about["area"]
     jaccard = "none" if area["jaccard"] is None else f"{area['jaccard']:.3f}"
-    figure, axes = maps.relief(raster, run_.base, shown, f"{about['prefix']}: Jaccard {jaccard}, thicker than "
-                                                         f"{about['threshold']:g} m")
-    classes = {1: ("tab:green", "both"), 2: ("tab:orange", "simulated only"), 3: ("tab:blue", "mapped only")}
-    values, where = maps.part(raster, kind, shown)
-    colours = maps.ListedColormap([colour for colour, _ in classes.values()])
-    axes.imshow(np.ma.masked_equal(values, 0), cmap=colours, vmin=0.5, vmax=3.5, alpha=0.65, extent=where,
-                interpolation="nearest")
-    for colour, name in classes.values():
-        axes.plot([], [], "s", color=colour, alpha=0.65, label=name)
-    if observed.polygon is not None:
-        maps.outline(axes, observed.polygon, color="black", linewidth=1.0, label="mapped outline")
-    axes.plot(*about["runout"]["from"], "k^", markersize=6, label=about["runout"]["from_source"].split(": ")[-1])
-    axes.legend(loc="upper right", fontsize=8)
-    maps.save(figure, path)
+    with pictures.settings():
+        figure, axes = maps.relief(raster, run_.base, shown, f"{about['prefix']}: Jaccard {jaccard}, thicker than "
+                                                             f"{about['threshold']:g} m")
+        classes = {1: ("tab:green", "both"), 2: ("tab:orange", "simulated only"), 3: ("tab:blue", "mapped only")}
+        values, where = maps.part(raster, kind, shown)
+        colours = maps.ListedColormap([colour for colour, _ in classes.values()])
+        axes.imshow(np.ma.masked_equal(values, 0), cmap=colours, vmin=0.5, vmax=3.5, alpha=0.65, extent=where,
+                    interpolation="nearest")
+        for colour, name in classes.values():
+            axes.plot([], [], "s", color=colour, alpha=0.65, label=name)
+        if observed.polygon is not None:
+            maps.outline(axes, observed.polygon, color="black", linewidth=1.0, label="mapped outline")
+        axes.plot(*about["runout"]["from"], "k^", markersize=6, label=about["runout"]["from_source"].split(": ")[-1])
+        axes.legend(loc="upper right", fontsize=8)
+        maps.save(figure, path)

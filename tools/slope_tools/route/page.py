@@ -5,12 +5,12 @@ from typing import Any, Iterator, List, Mapping
 
 import numpy as np
 from matplotlib.collections import LineCollection
+from matplotlib.colors import LogNorm, Normalize
 from shapely.ops import substring
 
 from .. import digits, disk, provenance
 from ..deposits.axis import Axis, Span
-from ..drawing import figures, maps, palettes
-from ..drawing.figures import plt
+from ..drawing import figures, maps, palettes, pictures
 from ..report import document
 from ..report.sections import Picture, Section, Table
 from ..statistics import hazard
@@ -100,14 +100,14 @@ def map_of(corridor: Corridor, found: Mapping[str, Any], yearly: bool, bounds, a
     room = corridor.reach
     shown = maps.window(raster, (bounds[0] - room, bounds[1] - room, bounds[2] + room, bounds[3] + room))
     axis = Axis(np.asarray(corridor.axis.coords), corridor.start)
-    with plt.rc_context({**figures.STYLE, "figure.constrained_layout.use": False}):
+    with pictures.settings({**figures.STYLE, "figure.constrained_layout.use": False}):
         figure, axes = maps.relief(raster, raster.z, shown, "")
         maps.outline(axes, corridor.road, color="black", lw=0.4)
         axes.plot(*np.asarray(corridor.axis.coords)[:, :2].T, color="white", lw=2.2)
         here = [one for one in found["pieces"] if one["to"] > along.low and one["from"] < along.high]
         lines = [np.asarray(axis.line(Span(max(one["from"], axis.s[0]), min(one["to"], axis.s[-1]))).coords)[:, :2]
                  for one in here]
-        norm = plt.matplotlib.colors.LogNorm(LEAST, 1.0) if yearly else plt.Normalize(0, 1)
+        norm = LogNorm(LEAST, 1.0) if yearly else Normalize(0, 1)
         values = np.array([max(one["per_year"]["counts"], LEAST) if yearly else one["share"] for one in here])
         coloured = axes.add_collection(LineCollection(lines, cmap=palettes.PATH, norm=norm, linewidths=3.2,
                                                       array=values))
