@@ -57,8 +57,8 @@ def site(here):
 def draw(words, **environment):
     """The pictures of a command, by name."""
     Path("o").mkdir(exist_ok=True)
-    done = subprocess.run([TOOLS / "slope", *words.split(), "--overwrite"], capture_output=True, text=True, check=False,
-                          env={**os.environ, **environment})
+    done = subprocess.run([TOOLS / "slope", *words.split(), "--overwrite"], env={**os.environ, **environment},
+                          capture_output=True, text=True, check=False)
     assert done.returncode == 0 and "matplotlib" not in done.stderr and "Traceback" not in done.stderr, done.stderr
     found = {str(path): path.read_bytes() for path in Path("o").rglob("*.png")}
     assert found
@@ -113,10 +113,11 @@ assert plt.get_fignums() == [mine.number]
 @pytest.mark.drawn
 def test_a_script_keeps_its_settings_and_gets_the_same_picture(site):
     expected = draw(RELEASE)["o/r.png"]
-    words = RELEASE.removeprefix("release ").replace("o/r", "o/script")
+    Path("o/r.png").unlink()
+    words = f"{RELEASE.removeprefix('release ')} --overwrite"
     subprocess.run([sys.executable, "-c", SCRIPT.replace("WORDS", words)], check=True,
                    env={**os.environ, "PYTHONPATH": str(TOOLS)})
-    assert Path("o/script.png").read_bytes() == expected
+    assert Path("o/r.png").read_bytes() == expected
 
 
 def test_drawing_outside_of_the_settings_is_found():

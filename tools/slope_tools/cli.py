@@ -19,7 +19,7 @@ import warnings
 from pathlib import Path
 
 from . import disk, options, findings
-from .errors import SlopeError
+from .errors import SlopeError, not_imported
 from .provenance import version
 
 COMMANDS = {
@@ -53,6 +53,7 @@ RENAMED = {
     "calibrate": {"--volume": "--road-volume"}, "sensitivity": {"--vary": "--levels"},
     "report": {"--project": "--name"}, "bench": {"--repeat": "--runs"},
 }
+WITHOUT_PLACES = {"quake", "verify", *IN_TESTS}      # no file of theirs has a CRS
 TESTS = Path(__file__).resolve().parents[2] / "tests"
 
 
@@ -160,7 +161,12 @@ def main(argv=None):
     findings.as_json = "--progress=json" in before or ("--progress", "json") in zip(before, before[1:])
     for name, summary in every.items():
         if name == asked:
-            add_command(commands, name, module_of(name, parser), help=summary)
+            try:
+                module = module_of(name, parser)
+            except ImportError as error:
+                say("error", name, not_imported(error))
+                return 2
+            add_command(commands, name, module, help=summary)
         else:
             commands.add_parser(name, help=summary)
     if completes:
@@ -170,12 +176,17 @@ def main(argv=None):
     try:
         check_names(argv)
         forget_matplotlibrc()
+        if asked not in WITHOUT_PLACES:
+            importlib.import_module(f"{__package__}.survey.proj").require_database()
         warnings.showwarning = lambda message, *_, **__: findings.printer(args.command)(str(message))     # of libraries
         args.run(args)
     except SlopeError as error:
         if args.debug:
             traceback.print_exc()
         say("error", asked, error)
+        return 2
+    except ImportError as error:
+        say("error", asked, not_imported(error))
         return 2
     except MemoryError as error:
         say("error", asked, f"not enough memory: {error}")
