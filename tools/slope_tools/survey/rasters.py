@@ -21,7 +21,7 @@ from rasterio.errors import CRSError, NotGeoreferencedWarning, RasterioError
 from rich.console import Console
 from rich.progress import track
 
-from .. import disk, schemas
+from .. import disk, schemas, streams
 from ..errors import SlopeError
 from ..schemas import COUNT, TEXT, mapping, numbers
 from .marks import Scale, cells_of, text
@@ -53,7 +53,7 @@ class Raster(NamedTuple):
 
 def progress(steps, what, total=None):
     """Iterate over steps behind a progress bar on stderr, which shows only on a terminal."""
-    if not sys.stderr.isatty():
+    if not streams.is_terminal(sys.stderr):
         return steps
     return track(steps, what, total, console=Console(stderr=True), transient=True)
 
