@@ -36,7 +36,8 @@ def is_made():
 
 
 @pytest.mark.parametrize("before, closed", [
-    ("", ">&-"), ("", "2>&-"), ("", ">&- 2>&-"), ("", "<&- >&- 2>&-"), ("--debug", "2>&-"), ("--progress json", "2>&-")])
+    ("", ">&-"), ("", "2>&-"), ("", ">&- 2>&-"), ("", "<&- >&- 2>&-"), ("--debug", "2>&-"),
+    ("--progress json", "2>&-")])
 def test_a_closed_stream_is_none(before, closed):
     status, out, err = shell(f"{before} {TERRAIN} {closed}")
     assert (status, err) == (0, "") and is_made()

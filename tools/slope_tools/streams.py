@@ -1,4 +1,4 @@
-"""Standard output and standard error of the program, which a service may close, `| head` leaves and a full disk refuses.
+"""Standard output and error of the program, which a service may close, `| head` leaves and a full disk refuses.
 
 None of that ends the work: what cannot be written is dropped, runs go on, files are complete, and the exit status says
 it at the end.

@@ -127,7 +127,8 @@ def check_line(path, line: LineString, within, start: float) -> None:
     def chainage(length):
         return f"{1000 * start + length:.1f} m"
     if not line.is_simple:
-        crossed = min((Point(one.coords[-1]) for one in unary_union(line).geoms), key=line.project)
+        noded = unary_union(line)
+        crossed = min((Point(one.coords[-1]) for one in getattr(noded, "geoms", [noded])), key=line.project)
         raise SlopeError(path, "must be a line that does not cross itself; it does at the chainage "
                          f"{chainage(line.project(crossed))}", numbers(crossed.coords[0]))
     outside = line.difference(box(*within).buffer(SLACK))
