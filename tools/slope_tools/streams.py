@@ -7,7 +7,7 @@ import io
 import os
 import select
 import sys
-from typing import Optional, Tuple
+from typing import Optional, Tuple, cast
 
 NAMES = {"stdout": "standard output", "stderr": "standard error"}
 
@@ -19,7 +19,7 @@ class Stream(io.FileIO):
     def write(self, data):
         while self.failure is None:
             try:
-                done = super().write(data)
+                done = cast(Optional[int], super().write(data))
             except OSError as error:
                 self.failure = error
             else:

@@ -36,7 +36,7 @@ def joined(lines):
 
 
 def once(lines):
-    """Lines with what is drawn more than once, there and back among others, drawn once; which share of the length it is.
+    """Lines with what is drawn more than once, or there and back, drawn once; which share of the length that is.
 
     They have the direction of the first of the lines there.
     """
