@@ -15,7 +15,7 @@ from typing import Any, Callable, List, Mapping, NamedTuple, Optional, Sequence,
 import fiona
 from rasterio.crs import CRS
 from shapely.errors import ShapelyError
-from shapely.geometry import shape
+from shapely.geometry import Polygon, shape
 
 from ..errors import SlopeError
 from ..findings import Finding
@@ -98,6 +98,7 @@ def read(name: object, kind: str, warn: Callable[[Finding], Any] = ignore) -> Fo
                 raise SlopeError(where.path, f"must have the named layer, one of {some(layers)}", where.layer)
             layer = where.layer if where.layer is not None else only_layer(opened, layers, kind, where.path)
             with fiona.open(opened, layer=layer) as data:
+                is_drawing = data.driver == "DXF"
                 raw = [(f"{where.path}: feature {feature['id']}", feature["geometry"], dict(feature["properties"]))
                        for feature in data]
                 crs = CRS.from_wkt(data.crs_wkt) if data.crs_wkt else None
@@ -108,6 +109,8 @@ def read(name: object, kind: str, warn: Callable[[Finding], Any] = ignore) -> Fo
         raise SlopeError(where.path, f"must be {what} that GDAL can read: GeoJSON, shapefile, or another format of it "
                          f"({str(error).replace(opened, where.path)})") from error
     features = [(place, shaped(place, geometry, kind)) for place, geometry, _ in raw if geometry is not None]
+    if is_drawing and kind == "Polygon":
+        features = [(place, closed(geometry)) for place, geometry in features]
     if raw and not features:
         raise SlopeError(where.path, f"must hold {what}, none of its features has a geometry", len(raw))
     empty = len(raw) - len(features)
@@ -148,6 +151,12 @@ def shaped(where: str, geometry: Any, kind: str):
         return shape(geometry)
     except (ShapelyError, ValueError, TypeError, AttributeError, NotImplementedError) as error:
         raise SlopeError(where, f"must be a {kind.lower()} ({error})") from error
+
+
+def closed(geometry: Any):
+    """A closed line, as which drawings have areas, as a polygon; another geometry as it is."""
+    is_ring = geometry.geom_type == "LineString" and len(geometry.coords) > 3 and geometry.is_ring
+    return Polygon(geometry.coords) if is_ring else geometry
 
 
 def only_layer(opened: str, layers: List[str], kind: str, path: str) -> str:
