@@ -332,7 +332,7 @@ def test_a_task_beyond_the_array_leaves_nothing(stand_ins, monkeypatch):
     script = next((Path("out") / engine.FOLDER).glob("*.sh")).resolve()
     Path("empty").mkdir()
     monkeypatch.setenv("SLURM_ARRAY_TASK_ID", "5")
-    subprocess.run(["bash", script], cwd="empty", check=True)
+    subprocess.run(["bash", script], cwd="empty", check=False)
     assert not list(Path("empty").iterdir())
 
 
