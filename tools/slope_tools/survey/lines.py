@@ -9,7 +9,7 @@ from shapely.ops import linemerge, unary_union
 
 from ..errors import SlopeError
 from ..findings import Finding
-from . import polygons, text_points, vectors
+from . import polygons, text_points, vectors, well_known
 from .crs import require_degrees, same_crs, transform
 from .rasters import crs_name
 
@@ -66,6 +66,9 @@ def read_local(path, raster, local, what="line", advice=None, crs=None, warn=vec
     vectors.require_file(path)
     text_ = polygons.read_text(path)
     own = raster.crs
+    if text_ is not None:
+        text_, named = well_known.plain(path, text_)
+        crs = crs or (None if local else named)
     if text_ is None:
         found = vectors.read(path, "Line", warn)
         own = None if local or crs else found.known_crs(path, (advice or polygons.ADVICE).wrong_crs)

@@ -20,7 +20,7 @@ from shapely.validation import explain_validity
 from .. import disk
 from ..errors import SlopeError
 from ..geometry import extent, numbers, polygons_of
-from . import text_points, vectors
+from . import text_points, vectors, well_known
 from .crs import require_degrees, same_crs
 from .text_points import FARTHEST
 from .rasters import crs_name
@@ -30,8 +30,7 @@ CUT = 1e-3         # m, between the halves of a cut geometry in another CRS
 DIGITS = 6     # decimals of a written coordinate, m: beyond them is the noise of origins and projections
 HEAD = "local metres:"       # in the first line of what write() wrote
 PLACE = re.compile(rf"^# {HEAD} .+", re.MULTILINE)
-WKT = re.compile(r"(?:(?:MULTI|COMPOUND)?(?:POLYGON|LINESTRING|POINT|CURVE|SURFACE)|GEOMETRYCOLLECTION|LINEARRING|"
-                 r"CURVEPOLYGON|CIRCULARSTRING|TRIANGLE|TIN)\s*(?:Z|M|ZM)?\s*(?:\(|EMPTY)", re.IGNORECASE)
+WKT = re.compile(well_known.KINDS, re.IGNORECASE)
 
 
 class Advice(NamedTuple):
@@ -69,6 +68,9 @@ def read_local(path, raster, local=False, crs=None, advice=ADVICE, warn=vectors.
 
 def _read_local(path, raster, local, crs, advice, warn):
     text = read_text(path)
+    if text is not None:
+        text, named = well_known.plain(path, text)
+        crs = crs or (None if local else named)
     if text is None:
         polygons, own = _read_layer(path, warn, None if local or crs else advice)
     elif WKT.match(re.sub("#.*", "", text).lstrip()):

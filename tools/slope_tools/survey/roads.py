@@ -16,7 +16,7 @@ from shapely.ops import unary_union
 from .. import disk
 from ..errors import SlopeError
 from ..geometry import extent, numbers
-from . import lines, polygons, vectors
+from . import lines, polygons, vectors, well_known
 
 ARCS = 45       # pieces of a quarter of a circle, outside of bends
 SLACK = 1e-5    # m, beyond the terrain; written coordinates are rounded
@@ -112,6 +112,7 @@ def is_line(path) -> bool:
     """Whether a file holds lines and no polygon, or is a CSV of too few points for one."""
     try:
         text = polygons.read_text(path)
+        text = None if text is None else well_known.plain(path, text)[0]
         geometry = unary_union([one for _, one in vectors.read(path, "Line").features]) if text is None else \
             lines.text_geometry(path, text)[0]
         if text is not None and not polygons.WKT.match(re.sub("#.*", "", text).lstrip()):
