@@ -727,6 +727,26 @@ def test_a_body_alone_is_that_of_a_site(slope, capsys, monkeypatch):
 
 @pytest.mark.long
 @needs_lmp
+def test_a_lane_later_is_evaluated_without_new_runs(slope, capsys):
+    """Of a body without strengths; page, tables and the body's own site have it."""
+    slides([((40, 45), 4.0)])
+    words = [word for word in ROUTE if word not in ("--cohesion", "9e3", "--friction", "30", "--lane", "4")]
+    status, out, err = route_of(capsys, *words)
+    assert status == 0 and "factor of safety" not in out, err
+    runs_ = {path: path.stat().st_mtime for path in Path("R/bodies").glob("*/runs/*/finished.yaml")}
+    [before] = csv.DictReader(Path("R/stretches.csv").read_text().splitlines())
+    assert len(runs_) == 3 and before["remove_lane_50"] == before["factor"] == ""
+    assert route_of(capsys, "--lane", "4", "--name", "Later")[0] == 0
+    assert {path: path.stat().st_mtime for path in runs_} == runs_
+    [after] = csv.DictReader(Path("R/stretches.csv").read_text().splitlines())
+    assert 0 < float(after["remove_lane_50"]) < float(after["remove_50"]) == float(before["remove_50"])
+    site = yaml.safe_load(Path("R/bodies/1/site.yaml").read_text())
+    assert site["road"]["lane"] == 4 and site["project"]["name"].startswith("Later, ")
+    assert "its runs are evaluated" not in route_of(capsys)[1]
+
+
+@pytest.mark.long
+@needs_lmp
 def test_killed_at_random(slope):
     """Five times, then to the end: the same numbers as at once."""
     def begun(folder):
