@@ -18,7 +18,7 @@ import traceback
 import warnings
 from pathlib import Path
 
-from . import disk, options, findings
+from . import disk, findings, options, streams
 from .errors import SlopeError, not_imported
 from .provenance import version
 
@@ -194,9 +194,6 @@ def main(argv=None):
     except KeyboardInterrupt:
         say("error", asked, "interrupted")
         return 130
-    except BrokenPipeError:         # `slope ... | head`: nobody reads on
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 141
     except Exception as error:
         if args.debug:
             raise
@@ -207,3 +204,21 @@ def main(argv=None):
     finally:
         warnings.showwarning = shown
     return 0
+
+
+def program():
+    """main() on the streams of streams.replace(): the status is 141 where a reader went away, as of `slope ... | head`,
+    and 2 where what was to be said could not be written for another reason, such as a full disk."""
+    try:
+        status = main()
+    except SystemExit as ended:     # argparse's: --help, or words that are wrong
+        status = ended.code
+    failed = streams.failure()
+    if status or failed is None:
+        return status
+    name, error = failed
+    if isinstance(error, BrokenPipeError):
+        return 141
+    say("error", next((word for word in sys.argv[1:] if word in {**COMMANDS, **IN_TESTS}), "slope"),
+        f"{name}: {error.strerror}")
+    return 2

@@ -90,6 +90,9 @@ WORDS: Dict[str, Union[str, Words]] = {
     "cut to input": "--bounds reaches beyond the input, {extent}: cut to it",
     "outside": "{file}: {percent:.2g} % of the area lies outside of {terrain}",
     "no geometry": "{feature} has no geometry ({without} of {features} have none): left out",
+    "no line": "{file}: {kinds} in it, where a line is asked for: left out",
+    "drawn twice": "{file}: {percent:.3g} % of the length of its lines is drawn more than once, or there and back: "
+                   "taken once",
     "file name": "{file}: LAMMPS cannot read {characters} in the name of a file: rename it before it goes into a deck",
     "swapped": "--release and --road may be swapped, the road lies above the release area: {grounds}",
     # of a body

@@ -21,10 +21,10 @@ examples: the rasters of a run, for QGIS; of a site, its governing run; of a run
   tools/slope export mine
   tools/slope export study/rolling_0.05/embankment --terrain terrain.asc -o gis
 
-zones of a study or a route: polygons in which a mass thicker than 0.5 m has at least these probabilities, per year
-where a route has a hazard, else as shares of the runs; classes of intensity against return periods:
+zones of a study or a route: polygons in which a mass thicker than 0.5 m has at least these probabilities, shares of the
+runs, or per year where a route has a hazard (1/100,1/1000,1/5000); classes of intensity against them:
   tools/slope export mine --zones 0.9,0.5,0.1 --thicker 0.5
-  tools/slope export route --zones 1/100,1/1000,1/5000 --intensity speed:1,5 -o zones
+  tools/slope export route --zones 0.5,0.1 --intensity speed:1,5 -o zones
 
 Writes PREFIX.thickness.tif and so on, and export.yaml; with --zones zones.gpkg, with a style for QGIS, and zones.yaml.
 """
@@ -70,11 +70,13 @@ def run_zones(args: Request, zones_: str) -> None:
     limits = zones.limits(0.1 if args.thicker is None else args.thicker, args.intensity)
     own = Path(args.prefix, "zones") if Path(args.prefix).is_dir() else Path(f"{args.prefix}.zones")
     folder = args.output or own
-    disk.check_folder(folder, ["zones.gpkg", "zones.yaml"], [args.prefix], args.overwrite)
+    disk.check_folder(folder)
     ground = zones.ground_of(args.prefix, findings.printer("export"))
-    zones.check(ground, wanted, args.prefix)
+    zones.check(ground, wanted, args.prefix, zones_)
+    asked = zones.asked(ground, zones_, limits)
+    disk.check_folder(folder, ["zones.gpkg", "zones.yaml"], [args.prefix, asked], args.overwrite)
     several = [zones.of(ground, limit, wanted) for limit in limits]
-    about: Dict[str, Any] = {"of": args.prefix, **zones.about(ground, several, wanted)}
+    about: Dict[str, Any] = {"of": args.prefix, "asked": asked, **zones.about(ground, several, wanted)}
     with disk.complete(folder, "zones.yaml") as new:
         geopackage.write(new / "zones.gpkg", {zones.LAYER: zones.layer(ground, several, wanted)}, ground.raster,
                          {zones.LAYER: zones.style(several, wanted, about["per_year"])})

@@ -151,7 +151,7 @@ def stretches(found: Mapping[str, Any], yearly: bool) -> Section:
                 ("length", 1), ("remove", 1), ("remove", 2), ("remove_lane", 1), ("passable_width", 1),
                 ("hours_lane", 1), ("hours", 1))]
             rows.append([one["stretch"], f"{km(one['from'])} to {km(one['to'])}", *often(one, yearly), by["body"],
-                         f"{by['factor']:.2f}", *share(by, "share"), *numbers])
+                         cell(by["factor"], "{:.2f}"), *share(by, "share"), *numbers])
     heads = ["stretch", "km", *(["blocked, per year", "90 %"] if yearly else []), "body", "factor of safety",
              "share of its runs", "90 %", "blocked m", "to remove m3", "95 % of the runs", "for a lane m3",
              "passable m", "hours, lane", "hours"]
@@ -160,7 +160,7 @@ def stretches(found: Mapping[str, Any], yearly: bool) -> Section:
 
 
 def bodies(found: Mapping[str, Any], yearly: bool) -> Section:
-    rows = [[one["body"], one["name"], km(one["chainage_m"]), f"{one['factor']:.3f}", cell(one["volume_m3"]),
+    rows = [[one["body"], one["name"], km(one["chainage_m"]), cell(one["factor"], "{:.3f}"), cell(one["volume_m3"]),
              cell(one["depth_m"]), cell(one["known_share"], "{:.2g}"), one["runs"], *share(one, "share_blocked"),
              cell(one["on_road_median_m3"]), cell(one["on_road_most_m3"]),
              *([f"{one['per_year']['fails']:.2g}", f"{one['per_year']['blocks']:.2g}"] if yearly else [])]
@@ -173,7 +173,7 @@ def bodies(found: Mapping[str, Any], yearly: bool) -> Section:
 
 
 def left_out(found: Mapping[str, Any]) -> Section:
-    rows = [[one["body"], km(one["chainage_m"]), f"{one['factor']:.3f}", cell(one["volume_m3"]), one["why_not"]]
+    rows = [[one["body"], km(one["chainage_m"]), cell(one["factor"], "{:.3f}"), cell(one["volume_m3"]), one["why_not"]]
             for one in found["left_out"]]
     return table("Left out", ["body", "km", "factor of safety", "volume m3", "why"], rows,
                  "Bodies that may fail and by known mobility do not come to the road; no number has them. Those of "
