@@ -1,7 +1,6 @@
 """tools/slope study --sample --mobility: bounds of weighted curves, weighted maps, an ensemble of small collapses."""
 import csv
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,11 +13,11 @@ from messages import is_one
 from tiny_collapse import read_asc
 
 from slope_tools import cli
+from slope_tools.case import run_folders
 from slope_tools.deposits import travel_shares
 from slope_tools.ensembles import conditioned, known_events, known_maps
 from slope_tools.mobility import weights
 from slope_tools.report import ensemble_part
-from slope_tools.report.data import Data
 from slope_tools.report.numbers import Numbers
 from slope_tools.sites import site_warnings
 from slope_tools.statistics.hazard import weighted
@@ -272,6 +271,6 @@ def test_the_run_shown_has_the_quantity(value, shown):
     """Nearest to what 90 % of known events stay within, or the largest; a run that lost it over the edge has none."""
     quantities = {} if value == "absent" else {"distance_99_m": {"quantiles": [{"share": 0.9, "value": value}]}}
     runs = [{"run": name, "distance_99_m": one} for name, one in zip("abcd", (1500.0, 2000.0, 2500.0, None))]
-    data = SimpleNamespace(finished=runs, study={"conservative": None, "ensemble": {
-        "of": "distance_99_m", "known_events": {"quantities": {"length_m": {}, **quantities}}}})
-    assert Data.governing(data) == shown
+    about = {"conservative": None, "runs": runs, "ensemble": {
+        "of": "distance_99_m", "known_events": {"quantities": {"length_m": {}, **quantities}}}}
+    assert run_folders.governing(about) == shown
