@@ -111,6 +111,57 @@ def test_events_before_the_shortest_run_may_leave_more_on_a_road(shortest):
         assert band.high - band.low >= mass.early.sum() and band.high < 0.55
 
 
+LAW = stats.lognorm(0.3, scale=1300)
+GAPPED = np.concatenate([np.linspace(700, 1200, 40), np.linspace(1500, 2600, 24)])      # 39 to 68 % end in the gap
+
+
+@pytest.mark.parametrize("share", [0.1, 0.3, 0.385, 0.4, 0.5, 0.65, 0.7, 0.9])
+@pytest.mark.parametrize("values", [GAPPED, 5e3 + 2 * GAPPED, 2e4 - 3 * GAPPED, np.full(64, 7.0)])
+def test_a_quantile_in_a_gap_is_no_number(share, values):
+    """Of the length it holds the known one; others have it where they depend on what ends in the gap."""
+    found = weights.of_lengths(GAPPED, LAW.sf(GAPPED))
+    (low, high, _), = found.gaps
+    assert (low, high) == (1200, 1500)
+    mass = conditioned.masses(found)
+    assert [one.sum() for one in mass.either] == pytest.approx([mass.share.sum()] * 2)
+    one, = conditioned.quantiles(conditioned.curve(values, mass), [share], values, mass)
+    falling = values[0] > values[-1]
+    inside = LAW.cdf(1200) < (1 - share - mass.far if falling else share) < LAW.cdf(1500)
+    assert (one.gap is not None) == (bool(inside) and np.ptp(values) > 0)
+    if one.gap:
+        ends = sorted(np.interp([1200, 1500], GAPPED, values))
+        assert one.gap == pytest.approx(ends) and one.value == ends[1] and one.low <= ends[0]
+        assert one.high is None or one.high >= ends[1]
+        if values is GAPPED:
+            assert one.gap[0] < LAW.ppf(share) < one.gap[1]
+
+
+def test_without_a_gap_there_is_no_either():
+    lengths = LAW.ppf(np.linspace(0.01, 0.99, 64))
+    mass = conditioned.masses(weights.of_lengths(lengths, LAW.sf(lengths)))
+    assert mass.either is None
+    assert all(one.gap is None for one in conditioned.quantiles(conditioned.curve(lengths, mass), (0.5,), lengths, mass))
+
+
+@pytest.mark.parametrize("gap", [(1888.0, 2950.0), None])
+def test_words_of_a_quantile_in_a_gap(gap):
+    """Console, card, table and numbers have both ends, and no single value."""
+    one = {"share": 0.5, "value": 2950.0, "low": 1500.0, "high": 3100.0, "gap": gap}
+    line = known_events.quantile_text(one, "m")
+    assert ("between 1,888 and 2,950 m" in line) == bool(gap) and ("stay within" in line) != bool(gap)
+    assert ensemble_part.cell_of(one) == ("1,888 to 2,950" if gap else "2,950")
+    about = {"reached": 0.9, "effective": 12.0, "doubts": [], "variables": {}, "quantities": {
+        "length_m": {"name": "length", "unit": "m", "quantiles": [one]}}}
+    data = type("Data", (), {"study": {"ensemble": {"known_events": about, "of": "length_m", "confidence": 0.9}}})
+    numbers = Numbers()
+    part = ensemble_part.KnownEvents(data, numbers)
+    shown, = part.answer()["parts"]
+    assert shown["number"] == ("1,890 to 2,950" if gap else "2,950")
+    assert ("no run ends" in shown["note"]) == bool(gap) and "Between 1,500 m" in shown["note"]
+    assert sum("gap" in row[0] for row in numbers.rows) == (2 if gap else 0)
+    assert part.tables()[0].rows[0][1] == ("1,888 to 2,950" if gap else "2,950")
+
+
 def test_runs_that_reach_no_event_say_nothing():
     mass = conditioned.masses(weights.of_lengths([2000, 2000], [0.4, 0.4]))
     curve = conditioned.curve([1.0, 2.0], mass)
