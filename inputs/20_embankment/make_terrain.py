@@ -1,8 +1,9 @@
 #!/usr/bin/python3
-"""Makes terrain.asc of this case: an embankment above a road, drawn from the paper's scale.
+"""Makes terrain.asc of this case: an embankment above a road.
 
-The elevation data of the site are not public, so this is a reconstruction: plane faces and a
-gentle valley, heights in metres on a 2.5 m grid. x runs from the fields up to the plateau,
+The elevation data of the site (Geospatial Information Authority of Japan, free after
+registration) are not shipped, and the paper's text has no dimensions of the face: these are ours.
+Plane faces and a gentle valley, heights in metres on a 2.5 m grid. x runs from the fields up to the plateau,
 y along the road. Run it in this folder; it overwrites terrain.asc.
 """
 import numpy as np

@@ -36,8 +36,8 @@ class Masses:
 
     share: of the known events that each run stands for, with those before the shortest run; far: of those beyond the
     longest; order: of the runs by length; effective: number of runs of equal weight; window: runs, see weights.Weights;
-    early: what of share stands for the events before the shortest run; either: share if those that end in gaps, where no
-    run does, count as the run before, and as the one after; None without gaps.
+    early: what of share stands for the events before the shortest run; either: share if those that end in gaps, where
+    no run does, count as the run before, and as the one after; None without gaps.
     """
     share: np.ndarray
     far: float
@@ -132,7 +132,10 @@ def quantiles(found: hazard.Curve, shares: Sequence[float] = hazard.SHARES, valu
     # a curve may begin just below its runs
     levels = np.maximum(found.values, min(found.values[1], 0.0))
     sides = found.share, found.low, found.high
-    several = [Quantile(share, *(first_within(levels, one, 1 - share) for one in sides)) for share in shares]
+    several = []
+    for share in shares:
+        value, low, high = (first_within(levels, one, 1 - share) for one in sides)
+        several.append(Quantile(share, value, low, high))
     if mass is None or mass.either is None:
         return several
     given = np.asarray(values, float)

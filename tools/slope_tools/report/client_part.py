@@ -79,7 +79,7 @@ def in_gap(data, about: Mapping[str, Any], numbers) -> str:
         return ""
     low, high = (numbers(f"{REMOVE.lower()}, {end} of the gap where no run ends", "m3", value)
                  for end, value in zip(("begin", "end"), gap))
-    return f" No run ends where these known events do: it is between {low} m3 and {high} m3, of which the larger counts."
+    return f" No run ends where these known events do: between {low} m3 and {high} m3, of which the larger counts."
 
 
 # --- what stands in the place of the number ---
@@ -282,8 +282,8 @@ def distance(data, numbers, has_road_number: bool) -> str:
     far = span(numbers, DISTANCE, values)
     known = weighted(data, numbers, DISTANCE)
     if known:
-        return (f"In {percent(SHARE)} of known events 99 % of the volume stays within {known} of the highest point of the "
-                f"body, in plan; in single runs, {ALIKE}, within {far}.")
+        return (f"In {percent(SHARE)} of known events 99 % of the volume stays within {known} of the highest point of "
+                f"the body, in plan; in single runs, {ALIKE}, within {far}.")
     return f"{runs_of(data)} 99 % of the volume stays within {far} of the highest point of the body, in plan."
 
 

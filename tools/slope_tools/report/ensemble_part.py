@@ -215,7 +215,7 @@ class KnownEvents:
         points = read_curve(self.data.folder / known_events.HAZARD, self.of) if self.entry else None
         if points is None or not self.entry:
             return None
-        named = [ensemble_charts.Quantile(*(one[key] for key in ("share", "value", "low", "high")), one.get("gap"))
+        named = [ensemble_charts.Quantile(one["share"], one["value"], one["low"], one["high"], one.get("gap"))
                  for one in self.entry["quantiles"] if one["value"] is not None]
         title = f"Hazard curve by known events: {self.entry['name']}"
         uri = ensemble_charts.hazard_curve(points[0], points[1], points[2], points[3], named,
@@ -227,11 +227,10 @@ class KnownEvents:
 
     def tables(self) -> List[Table]:
         """Quantiles of all quantities; which parameters the weighted runs have, and how the first depends on them."""
-        quantiles = [[Cell(entry["name"], entry["unit"]),
-                      *map(cell_of, entry["quantiles"])]
-                     for entry in self.about["quantities"].values()]
+        quantiles: List[Any] = [[Cell(entry["name"], entry["unit"]), *map(cell_of, entry["quantiles"])]
+                                for entry in self.about["quantities"].values()]
         indices = (self.about.get("influence") or {}).get(self.of, {}).get("variables", {})    # none in older files
-        rows = []
+        rows: List[Any] = []
         for name, entry in self.about["variables"].items():
             rank, one = entry["rank"].get(self.of), indices.get(name)
             rows.append([name, *map(str, entry["quantiles"]), "-" if rank is None else f"{rank:+.2f}",
