@@ -3,14 +3,17 @@
 inputs/15_axisymmetric: a column of radius r0 and height a r0 on a flat floor. The front is the outermost ring of one
 diameter with at least 30 % of a layer, a layer being a ball per square diameter; the run-out is (front - r0)/r0.
 """
+from typing import NamedTuple, Sequence
+
 import numpy as np
 
-from .claims import Claim, Control, Near, Run
+from .claims import AtMost, Claim, Control, Near, Run
 
 CASE = "15_axisymmetric"
 DECK = Run("15_axisymmetric/in.axisymmetric")
 D = 0.01                # m
 COVER = 0.3
+COVERS = 0.1, COVER, 0.5        # other shares of a layer that might be called the front
 
 
 def lube(a):
@@ -24,11 +27,11 @@ def size(start):
     return np.round(np.hypot(x, y).max() + 0.5), np.round(np.ptp(z) + 0.5)
 
 
-def front_of(balls):
+def front_of(balls, cover=COVER):
     """Radius of the front, in diameters."""
     counts = np.bincount(np.floor(np.hypot(balls["x"][0], balls["y"][0]) / D).astype(int))
     layers = counts / (np.pi * (2 * np.arange(len(counts)) + 1))
-    return np.flatnonzero(layers >= COVER).max() + 1
+    return np.flatnonzero(layers >= cover).max() + 1
 
 
 def tops(balls):
@@ -53,15 +56,61 @@ def profile(balls, radius):
     return (rings + 0.5) / radius, [height[np.floor(away) == ring].mean() / radius for ring in rings]
 
 
-def runout_of(start, end):
+def runout_of(start, end, cover=COVER):
     """(front - r0)/r0, from the balls before and after."""
     radius, _ = size(start)
-    return (front_of(end) - radius) / radius
+    return (front_of(end, cover) - radius) / radius
+
+
+def frames_of(result):
+    """The balls of a run before and after."""
+    return tuple(result.frames(f"cylinder.{when}.dump") for when in ("start", "end"))
 
 
 def runout(result):
     """The same, of a run."""
-    return runout_of(*(result.frames(f"cylinder.{when}.dump") for when in ("start", "end")))
+    return runout_of(*frames_of(result))
+
+
+# --- the limit of many balls ---
+
+class Line(NamedTuple):
+    """Run-out over radius A + B d/r0 of columns of equal balls; error: standard error of A."""
+    limit: float
+    slope: float
+    error: float = 0.0
+
+    def at(self, radius):
+        """Of a column of a radius, in diameters."""
+        return self.limit + self.slope / radius
+
+
+def line_of(radii: Sequence[float], runouts: Sequence[float]) -> Line:
+    """Through run-outs of columns of several radii (in diameters), three of them at least, two of which differ."""
+    inverse, values = 1 / np.asarray(radii, float), np.asarray(runouts, float)
+    terms = np.stack([np.ones_like(inverse), inverse], axis=1)
+    found, *_ = np.linalg.lstsq(terms, values, rcond=None)
+    variance = ((values - terms @ found) ** 2).sum() / (len(values) - 2)
+    return Line(*map(float, found), float(np.sqrt(variance * np.linalg.inv(terms.T @ terms)[0, 0])))
+
+
+def line(*results, cover=COVER) -> Line:
+    """Of runs."""
+    frames = [frames_of(result) for result in results]
+    return line_of([size(start)[0] for start, _ in frames], [runout_of(*one, cover) for one in frames])
+
+
+def limit(*results):
+    """Its A."""
+    return line(*results).limit
+
+
+def from_line(published: Line):
+    """What tells how far the farthest run is from a line that was published, in rings of one diameter."""
+    def rings(*results):
+        radii = [size(frames_of(result)[0])[0] for result in results]
+        return max(abs(runout(result) - published.at(radius)) * radius for result, radius in zip(results, radii))
+    return rings
 
 
 GLASS = DECK(friction=21.8, rolling=0.033, e=0.45)      # of inputs/14_repose_walls
