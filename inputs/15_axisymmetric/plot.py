@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """Run-out of cylinders that have collapsed: plot.py OUT...  (names that the deck was given as out)
 
-Prints a, run-out and height over the radius, and the run-out measured by Lube et al.; then, of columns of one a and several
-radii, the limit A of run-out = A + B d/r0 with its standard error, and A by other definitions of the front; writes
-axisymmetric.png. Names with "glass" and "plane" (smooth floor) in them are drawn as such.
+Prints a, run-out and height over the radius, and the run-out measured by Lube et al.; then, of columns of one a and
+several radii, the limit A of run-out = A + B d/r0 with its standard error, and A by other definitions of the front;
+writes axisymmetric.png. Names with "glass" and "plane" (smooth floor) in them are drawn as such.
 """
 import sys
 from pathlib import Path
@@ -44,8 +44,8 @@ def main(names):
                  for cover in case.COVERS}
         line = lines[case.COVER]
         others = ", ".join(f"{lines[cover].limit:.2f} at {100 * cover:g} % of a layer" for cover in case.COVERS)
-        print(f"{material}{floor}, a {a_:g}: limit {line.limit:.3f} +- {line.error:.3f} ({others}), B {line.slope:.2f}, "
-              f"of {len(radii)} columns; at r0 32 d {line.at(32):.2f}")
+        print(f"{material}{floor}, a {a_:g}: limit {line.limit:.3f} +- {line.error:.3f} ({others}), "
+              f"B {line.slope:.2f}, of {len(radii)} columns; at r0 32 d {line.at(32):.2f}")
     left.plot([], [], "ko", ms=4, label="SLOPE, larger: more balls")
     left.plot([], [], "ks", ms=4, label="smooth floor")
     left.set(xlabel="height / radius of the column, a", ylabel="run-out / radius", xlim=(0, None), ylim=(0, None))

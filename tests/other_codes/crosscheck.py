@@ -17,8 +17,9 @@ from slope_tools.runs import jobs
 from . import peers
 from .crosscheck_cases import PEERS, Work, bounce, collapse, rolling, slide_roll
 from .crosscheck_report import report
+from .crosscheck_table import table
 
-DESCRIPTION = "The same scenes in other codes: bounce, slide, roll, rolling resistance, a collapse."
+DESCRIPTION = "The same scenes in other codes: bounce, slide, roll, rolling resistance, a collapse, the paper's table."
 EPILOG = """\
 units: metres, seconds, m3 of ground (bulk).
 
@@ -29,7 +30,7 @@ example: a minute and a half; with balls of 2.5 m instead of 4 m, some minutes; 
 
 Writes DIR/crosscheck.csv, DIR/crosscheck.yaml, DIR/crosscheck.png, and the input of every code in a folder of its own.
 """
-CASES = {"bounce": bounce, "slide_roll": slide_roll, "rolling": rolling, "collapse": collapse}
+CASES = {"bounce": bounce, "slide_roll": slide_roll, "rolling": rolling, "collapse": collapse, "table": table}
 
 
 @dataclass(frozen=True, kw_only=True)

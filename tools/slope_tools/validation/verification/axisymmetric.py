@@ -91,13 +91,14 @@ def line_of(radii: Sequence[float], runouts: Sequence[float]) -> Line:
     terms = np.stack([np.ones_like(inverse), inverse], axis=1)
     found, *_ = np.linalg.lstsq(terms, values, rcond=None)
     variance = ((values - terms @ found) ** 2).sum() / (len(values) - 2)
-    return Line(*map(float, found), float(np.sqrt(variance * np.linalg.inv(terms.T @ terms)[0, 0])))
+    error = np.sqrt(variance * np.linalg.inv(terms.T @ terms)[0, 0])
+    return Line(float(found[0]), float(found[1]), float(error))
 
 
 def line(*results, cover=COVER) -> Line:
     """Of runs."""
     frames = [frames_of(result) for result in results]
-    return line_of([size(start)[0] for start, _ in frames], [runout_of(*one, cover) for one in frames])
+    return line_of([size(start)[0] for start, _ in frames], [runout_of(start, end, cover) for start, end in frames])
 
 
 def limit(*results):

@@ -1,0 +1,147 @@
+"""The paper's table in several codes: what is to be removed, lies on the road and beyond, at three rolling resistances.
+
+Each code runs the same starts and the same fixed balls, three of them at each rolling resistance. One way of evaluation
+serves all codes: the places of the balls at the end go back into the deck, whose fix deposit/grid makes the rasters
+that `slope volume` reads. The variance of a volume is taken in proportion to its mean, by all runs together; of the
+difference of two means there is an interval, and a verdict by a bound that is stated beforehand.
+"""
+import math
+import re
+from typing import Any, Dict, List, NamedTuple, Optional, Sequence
+
+import numpy as np
+from scipy import stats
+
+from slope_tools import disk
+from slope_tools.deposits import volume
+from slope_tools.errors import SlopeError
+from . import peer_runs
+from .crosscheck_cases import INPUTS, OTHER_ROLLING as OTHER_LAW, START, Check, road_corners
+
+DECK = INPUTS / "20_embankment" / "in.embankment"
+ROAD = INPUTS / "20_embankment" / "road.csv"
+ROLLING = 0.0, 0.05, 0.10
+STARTS = 0.0, 0.25, 0.5         # of the lattice, in spacings: the repeats
+SECONDS = 15.0                  # all have come to rest
+AGREE = 0.05                    # of the volume: an interval within it agrees
+CONFIDENCE = 0.95               # of all three intervals of a quantity and a code together
+QUANTITIES = "to remove", "on the road", "beyond"
+FILE = "table.csv"
+
+
+class Difference(NamedTuple):
+    """Of the means of two codes, as a share of the second: with its interval."""
+    share: float
+    low: float
+    high: float
+
+    @property
+    def verdict(self) -> str:
+        if -AGREE <= self.low and self.high <= AGREE:
+            return "agrees"
+        return "differs" if self.low > AGREE or self.high < -AGREE else "cannot tell"
+
+
+def differences(mine: Sequence[Sequence[float]], other: Sequence[Sequence[float]]) -> List[Difference]:
+    """Of a code against another, whose volumes (m3) at each rolling resistance are rows of repeats."""
+    rows = [np.asarray(row, float) for row in (*mine, *other)]
+    free = sum(len(row) - 1 for row in rows)
+    # variance of a run over its mean
+    ratio = sum(float(((row - row.mean()) ** 2).sum()) / row.mean() for row in rows if row.mean() > 0) / free
+    quantile = stats.t.ppf(1 - (1 - CONFIDENCE) / (2 * len(mine)), free)
+    found = []
+    for a, b in zip(rows, rows[len(mine):]):
+        if not b.mean() > 0:
+            found.append(Difference(math.nan, -math.inf, math.inf))
+            continue
+        middle = (a.mean() - b.mean()) / b.mean()
+        half = quantile * math.sqrt(ratio * (a.mean() / len(a) + b.mean() / len(b))) / b.mean()
+        found.append(Difference(middle, middle - half, middle + half))
+    return found
+
+
+def table(work, case):
+    """All runs, and their comparison with ours."""
+    d = 4.0 if work.quick else 2.5
+    codes = [code for code in work.codes if not code.name.startswith("plain")]
+    volumes: Dict[str, List[List[Dict[str, float]]]] = {code.name: [] for code in codes}
+    for rolling in ROLLING:
+        for code in codes:
+            volumes[code.name].append([])
+        for start in STARTS:
+            name = f"{case}_{rolling:g}_{start:g}"
+            settings = {"d": d, "rolling": rolling, "xoffset": start, "yoffset": start}
+            scene = work.scene(name, "20_embankment/in.embankment", settings)._replace(headroom=30.0)
+            found = work.run(name, scene, round(SECONDS / scene.dt), codes=codes)
+            for code, (final, _) in found.items():
+                volumes[code][-1].append(volumes_of(work, f"{name}.deck", settings, scene, final))
+    work.about_table = about(volumes, d)
+    disk.write(work.output / FILE, csv_of(work.about_table))
+    for row in work.about_table["rows"]:
+        if row["verdict"]:
+            work.checks.append(check_of(case, row))
+
+
+def check_of(case, row) -> Check:
+    """Of a row of about(); a code fails where it clearly differs, one of another law of rolling informs."""
+    told = row["verdict"] == "cannot tell" or row["code"] in OTHER_LAW
+    reason = (f"{row['mean_m3']:,.0f} m3, {100 * row['low']:+.1f} to {100 * row['high']:+.1f} % of SLOPE's "
+              f"{row['slope_m3']:,.0f} m3, of three starts; within {100 * AGREE:g} % agrees")
+    return Check(case, f"{row['quantity']}, mu_r {row['rolling']:g}", row["code"], row["verdict"], "SLOPE", "agrees",
+                 None if told else 0.0, reason)
+
+
+def about(volumes, d: float) -> Dict[str, Any]:
+    """What crosscheck.yaml has of it: volumes {code: rows of rolling resistances of repeats of volumes}."""
+    rows = []
+    for quantity in QUANTITIES:
+        of = {code: [[one[quantity] for one in row] for row in each] for code, each in volumes.items()}
+        for code, each in of.items():
+            compared: List[Optional[Difference]] = [None] * len(each)
+            if code != "slope":
+                compared = [*differences(each, of["slope"])]
+            for rolling, row, ours, one in zip(ROLLING, each, of["slope"], compared):
+                rows.append({"quantity": quantity, "code": code, "rolling": rolling, "runs_m3": row,
+                             "mean_m3": float(np.mean(row)), "slope_m3": float(np.mean(ours)),
+                             "difference": one and one.share, "low": one and one.low, "high": one and one.high,
+                             "verdict": one and one.verdict})
+    return {"d": d, "starts": list(STARTS), "seconds": SECONDS, "agree": AGREE, "confidence": CONFIDENCE, "rows": rows}
+
+
+def csv_of(found) -> str:
+    """The rows of about(), a line each."""
+    heads = ["quantity", "code", "rolling", "mean_m3", "difference", "low", "high", "verdict"]
+    return disk.csv_text([*heads, *(f"start_{start:g}" for start in STARTS)],
+                         ([*(row[head] for head in heads), *row["runs_m3"]] for row in found["rows"]))
+
+
+def volumes_of(work, folder_name: str, settings, scene, final) -> Dict[str, float]:
+    """Of the places of the balls at the end, m3: the deck's own rasters of them."""
+    folder = work.folder(folder_name)
+    ids = deck_ids(folder)
+    if len(final) != len(ids):
+        raise SlopeError(folder, "must be of a run that keeps all balls in its box", f"{len(final)} of {len(ids)}")
+    corners = scene.box()
+    disk.write(folder / "end.dump", "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n" + f"{len(ids)}\n"
+               + "ITEM: BOX BOUNDS ff ff ff\n" + "".join(f"{low} {high}\n" for low, high in zip(*corners))
+               + "ITEM: ATOMS id x y z\n" + "".join(f"{id_} {x!r} {y!r} {z!r}\n" for id_, (x, y, z)
+                                                    in zip(ids, final[:, :3].tolist())))
+    text = re.sub(r"&[ \t]*\n", " ", DECK.read_text(encoding="ascii"))
+    before = re.split(r"^[ \t]*run\b", text, flags=re.MULTILINE)[0]
+    before = re.sub(r"^[ \t]*(dump|dump_modify|restart)\b.*$", "", before, flags=re.MULTILINE)
+    disk.write(folder / "in.end", before + "read_dump end.dump 0 x y z box no\nrun 0\n")
+    options = [word for pair in settings.items() for word in ("-var", *map(str, pair))]
+    peer_runs.run_deck(work.lmp, folder, "in.end", 1, options)
+    found = volume.of_run(str(folder / "embankment"), volume.Wanted(ROAD, 5.0, local=True), folder / "terrain.asc")
+    run_, told = found.run, found.about["volume"]
+    columns = run_.raster.transform.a * (np.arange(run_.raster.z.shape[1]) + 0.5)
+    far = columns < road_corners()[:, 0].min()      # the mass comes from larger x
+    return {"to remove": float(told["remove"]), "on the road": float(told["remove_on_road"]),
+            "beyond": float(run_.raster.z[:, far].sum() * run_.cell ** 2)}
+
+
+def deck_ids(folder) -> List[int]:
+    """Of the moving balls, in the order of the states of all codes."""
+    lines = (folder / START).read_text().splitlines()
+    head = next(i for i, line in enumerate(lines) if line.startswith("ITEM: ATOMS id"))
+    return [int(line.split()[0]) for line in lines[head + 1:]]
