@@ -40,7 +40,7 @@ def main(names):
         radii = [radius for radius, _, _ in columns]
         if len(radii) < 3 or len(set(radii)) < 2:
             continue
-        lines = {cover: case.line_of(radii, [case.runout_of(start, end, cover) for _, start, end in columns])
+        lines = {cover: case.line_of(radii, [case.runout_between(start, end, cover) for _, start, end in columns])
                  for cover in case.COVERS}
         line = lines[case.COVER]
         others = ", ".join(f"{lines[cover].limit:.2f} at {100 * cover:g} % of a layer" for cover in case.COVERS)

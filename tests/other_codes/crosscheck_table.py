@@ -13,6 +13,7 @@ import numpy as np
 from scipy import stats
 
 from slope_tools import disk
+from slope_tools.case import run_folders
 from slope_tools.deposits import volume
 from slope_tools.errors import SlopeError
 from . import peer_runs
@@ -130,9 +131,10 @@ def volumes_of(work, folder_name: str, settings, scene, final) -> Dict[str, floa
     before = re.split(r"^[ \t]*run\b", text, flags=re.MULTILINE)[0]
     before = re.sub(r"^[ \t]*(dump|dump_modify|restart)\b.*$", "", before, flags=re.MULTILINE)
     disk.write(folder / "in.end", before + "read_dump end.dump 0 x y z box no\nrun 0\n")
-    options = [word for pair in settings.items() for word in ("-var", *map(str, pair))]
+    bulk = run_folders.load_summary(folder / "embankment.summary.yaml", run_folders.OF_DEPOSIT)["bulk_factor"]
+    options = [word for pair in {**settings, "bulk": bulk, "out": "end"}.items() for word in ("-var", *map(str, pair))]
     peer_runs.run_deck(work.lmp, folder, "in.end", 1, options)
-    found = volume.of_run(str(folder / "embankment"), volume.Wanted(ROAD, 5.0, local=True), folder / "terrain.asc")
+    found = volume.of_run(str(folder / "end"), volume.Wanted(ROAD, 5.0, local=True), folder / "terrain.asc")
     run_, told = found.run, found.about["volume"]
     columns = run_.raster.transform.a * (np.arange(run_.raster.z.shape[1]) + 0.5)
     far = columns < road_corners()[:, 0].min()      # the mass comes from larger x

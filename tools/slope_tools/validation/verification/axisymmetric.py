@@ -7,7 +7,7 @@ from typing import NamedTuple, Sequence
 
 import numpy as np
 
-from .claims import AtMost, Claim, Control, Near, Run
+from .claims import Claim, Control, Near, Run
 
 CASE = "15_axisymmetric"
 DECK = Run("15_axisymmetric/in.axisymmetric")
@@ -27,11 +27,22 @@ def size(start):
     return np.round(np.hypot(x, y).max() + 0.5), np.round(np.ptp(z) + 0.5)
 
 
-def front_of(balls, cover=COVER):
-    """Radius of the front, in diameters."""
+def layers_of(balls):
+    """Of each ring of one diameter: its balls over those of a layer."""
     counts = np.bincount(np.floor(np.hypot(balls["x"][0], balls["y"][0]) / D).astype(int))
-    layers = counts / (np.pi * (2 * np.arange(len(counts)) + 1))
-    return np.flatnonzero(layers >= cover).max() + 1
+    return counts / (np.pi * (2 * np.arange(len(counts)) + 1))
+
+
+def front_of(balls):
+    """Radius of the front, in diameters."""
+    return np.flatnonzero(layers_of(balls) >= COVER).max() + 1
+
+
+def front_between(balls, cover=COVER):
+    """The same between the middles of two rings, where a share of a layer is crossed: without the step of a ring."""
+    layers = np.append(layers_of(balls), 0.0)
+    last = np.flatnonzero(layers >= cover).max()
+    return last + 0.5 + (layers[last] - cover) / (layers[last] - layers[last + 1])
 
 
 def tops(balls):
@@ -56,10 +67,16 @@ def profile(balls, radius):
     return (rings + 0.5) / radius, [height[np.floor(away) == ring].mean() / radius for ring in rings]
 
 
-def runout_of(start, end, cover=COVER):
+def runout_of(start, end):
     """(front - r0)/r0, from the balls before and after."""
     radius, _ = size(start)
-    return (front_of(end, cover) - radius) / radius
+    return (front_of(end) - radius) / radius
+
+
+def runout_between(start, end, cover=COVER):
+    """The same with the front between rings."""
+    radius, _ = size(start)
+    return (front_between(end, cover) - radius) / radius
 
 
 def frames_of(result):
@@ -98,7 +115,8 @@ def line_of(radii: Sequence[float], runouts: Sequence[float]) -> Line:
 def line(*results, cover=COVER) -> Line:
     """Of runs."""
     frames = [frames_of(result) for result in results]
-    return line_of([size(start)[0] for start, _ in frames], [runout_of(start, end, cover) for start, end in frames])
+    return line_of([size(start)[0] for start, _ in frames],
+                   [runout_between(start, end, cover) for start, end in frames])
 
 
 def limit(*results):
@@ -110,11 +128,14 @@ def from_line(published: Line):
     """What tells how far the farthest run is from a line that was published, in rings of one diameter."""
     def rings(*results):
         radii = [size(frames_of(result)[0])[0] for result in results]
-        return max(abs(runout(result) - published.at(radius)) * radius for result, radius in zip(results, radii))
+        return max(abs(runout_between(*frames_of(result)) - published.at(radius)) * radius
+                   for result, radius in zip(results, radii))
     return rings
 
 
 GLASS = DECK(friction=21.8, rolling=0.033, e=0.45)      # of inputs/14_repose_walls
+MATERIALS = {"sand": DECK, "glass": GLASS}
+LINES = {("sand", 0.5): Line(0.49, -1.06), ("glass", 0.5): Line(0.62, -1.56)}
 WIDE = DECK(radius=12)
 CLAIMS = [
     Claim("axisymmetric_glass", "Height over radius 1, glass beads, radius 8 d: run-out over radius", "",
