@@ -2,8 +2,8 @@
 
 Each code runs the same starts and the same fixed balls, three of them at each rolling resistance. One way of evaluation
 serves all codes: the places of the balls at the end go back into the deck, whose fix deposit/grid makes the rasters
-that `slope volume` reads. The variance of a volume is taken in proportion to its mean, by all runs together; of the
-difference of two means there is an interval, and a verdict by a bound that is stated beforehand.
+that `slope volume` reads. Two codes are compared start by start. The variance of a difference is taken in proportion to
+the mean, by all starts together; there is an interval of each mean difference, and a verdict by a bound.
 """
 import math
 import re
@@ -17,16 +17,17 @@ from slope_tools.case import run_folders
 from slope_tools.deposits import volume
 from slope_tools.errors import SlopeError
 from . import peer_runs
-from .crosscheck_cases import INPUTS, OTHER_ROLLING as OTHER_LAW, START, Check, road_corners
+from .crosscheck_cases import INPUTS, OTHER_ROLLING as OTHER_LAW, START, Check, deposit, road_corners
 
 DECK = INPUTS / "20_embankment" / "in.embankment"
 ROAD = INPUTS / "20_embankment" / "road.csv"
 ROLLING = 0.0, 0.05, 0.10
 STARTS = 0.0, 0.25, 0.5         # of the lattice, in spacings: the repeats
 SECONDS = 15.0                  # all have come to rest
-AGREE = 0.05                    # of the volume: an interval within it agrees
 CONFIDENCE = 0.95               # of all three intervals of a quantity and a code together
-QUANTITIES = "to remove", "on the road", "beyond"
+# quantity: unit, share that an interval must be within to agree; the displacement scatters least, and finds a wrong law
+QUANTITIES = {"to remove": ("m3", 0.05), "on the road": ("m3", 0.05), "beyond": ("m3", 0.05),
+              "displacement of the centroid": ("m", 0.01)}
 FILE = "table.csv"
 
 
@@ -36,27 +37,26 @@ class Difference(NamedTuple):
     low: float
     high: float
 
-    @property
-    def verdict(self) -> str:
-        if -AGREE <= self.low and self.high <= AGREE:
+    def verdict(self, bound: float) -> str:
+        if -bound <= self.low and self.high <= bound:
             return "agrees"
-        return "differs" if self.low > AGREE or self.high < -AGREE else "cannot tell"
+        return "differs" if self.low > bound or self.high < -bound else "cannot tell"
 
 
 def differences(mine: Sequence[Sequence[float]], other: Sequence[Sequence[float]]) -> List[Difference]:
-    """Of a code against another, whose volumes (m3) at each rolling resistance are rows of repeats."""
-    rows = [np.asarray(row, float) for row in (*mine, *other)]
-    free = sum(len(row) - 1 for row in rows)
-    # variance of a run over its mean
-    ratio = sum(float(((row - row.mean()) ** 2).sum()) / row.mean() for row in rows if row.mean() > 0) / free
-    quantile = stats.t.ppf(1 - (1 - CONFIDENCE) / (2 * len(mine)), free)
+    """Of a code against another, whose values at each rolling resistance are rows, of the same starts."""
+    pairs = [(np.asarray(a, float), np.asarray(b, float)) for a, b in zip(mine, other)]
+    free = sum(len(a) - 1 for a, _ in pairs)
+    # variance of a difference over the mean of both
+    ratio = sum(len(a) * float((a - b).var()) / float((a + b).mean() / 2) for a, b in pairs if (a + b).any()) / free
+    quantile = stats.t.ppf(1 - (1 - CONFIDENCE) / (2 * len(pairs)), free)
     found = []
-    for a, b in zip(rows, rows[len(mine):]):
+    for a, b in pairs:
         if not b.mean() > 0:
             found.append(Difference(math.nan, -math.inf, math.inf))
             continue
-        middle = (a.mean() - b.mean()) / b.mean()
-        half = quantile * math.sqrt(ratio * (a.mean() / len(a) + b.mean() / len(b))) / b.mean()
+        middle = float((a - b).mean() / b.mean())
+        half = float(quantile * math.sqrt(ratio * (a + b).mean() / 2 / len(a)) / b.mean())
         found.append(Difference(middle, middle - half, middle + half))
     return found
 
@@ -75,7 +75,7 @@ def table(work, case):
             scene = work.scene(name, "20_embankment/in.embankment", settings)._replace(headroom=30.0)
             found = work.run(name, scene, round(SECONDS / scene.dt), codes=codes)
             for code, (final, _) in found.items():
-                volumes[code][-1].append(volumes_of(work, f"{name}.deck", settings, scene, final))
+                volumes[code][-1].append(numbers_of(work, f"{name}.deck", settings, scene, final))
     work.about_table = about(volumes, d)
     disk.write(work.output / FILE, csv_of(work.about_table))
     for row in work.about_table["rows"]:
@@ -86,8 +86,9 @@ def table(work, case):
 def check_of(case, row) -> Check:
     """Of a row of about(); a code fails where it clearly differs, one of another law of rolling informs."""
     told = row["verdict"] == "cannot tell" or row["code"] in OTHER_LAW
-    reason = (f"{row['mean_m3']:,.0f} m3, {100 * row['low']:+.1f} to {100 * row['high']:+.1f} % of SLOPE's "
-              f"{row['slope_m3']:,.0f} m3, of three starts; within {100 * AGREE:g} % agrees")
+    unit, bound = QUANTITIES[row["quantity"]]
+    reason = (f"{row['mean']:,.6g} {unit}, {100 * row['low']:+.1f} to {100 * row['high']:+.1f} % off SLOPE's "
+              f"{row['slope']:,.6g} {unit}, of three starts; within {100 * bound:g} % agrees")
     return Check(case, f"{row['quantity']}, mu_r {row['rolling']:g}", row["code"], row["verdict"], "SLOPE", "agrees",
                  None if told else 0.0, reason)
 
@@ -95,29 +96,29 @@ def check_of(case, row) -> Check:
 def about(volumes, d: float) -> Dict[str, Any]:
     """What crosscheck.yaml has of it: volumes {code: rows of rolling resistances of repeats of volumes}."""
     rows = []
-    for quantity in QUANTITIES:
+    for quantity, (unit, bound) in QUANTITIES.items():
         of = {code: [[one[quantity] for one in row] for row in each] for code, each in volumes.items()}
         for code, each in of.items():
             compared: List[Optional[Difference]] = [None] * len(each)
             if code != "slope":
                 compared = [*differences(each, of["slope"])]
             for rolling, row, ours, one in zip(ROLLING, each, of["slope"], compared):
-                rows.append({"quantity": quantity, "code": code, "rolling": rolling, "runs_m3": row,
-                             "mean_m3": float(np.mean(row)), "slope_m3": float(np.mean(ours)),
+                rows.append({"quantity": quantity, "unit": unit, "code": code, "rolling": rolling, "runs": row,
+                             "mean": float(np.mean(row)), "slope": float(np.mean(ours)),
                              "difference": one and one.share, "low": one and one.low, "high": one and one.high,
-                             "verdict": one and one.verdict})
-    return {"d": d, "starts": list(STARTS), "seconds": SECONDS, "agree": AGREE, "confidence": CONFIDENCE, "rows": rows}
+                             "verdict": one and one.verdict(bound)})
+    return {"d": d, "starts": list(STARTS), "seconds": SECONDS, "confidence": CONFIDENCE, "rows": rows}
 
 
 def csv_of(found) -> str:
     """The rows of about(), a line each."""
-    heads = ["quantity", "code", "rolling", "mean_m3", "difference", "low", "high", "verdict"]
+    heads = ["quantity", "unit", "code", "rolling", "mean", "difference", "low", "high", "verdict"]
     return disk.csv_text([*heads, *(f"start_{start:g}" for start in STARTS)],
-                         ([*(row[head] for head in heads), *row["runs_m3"]] for row in found["rows"]))
+                         ([*(row[head] for head in heads), *row["runs"]] for row in found["rows"]))
 
 
-def volumes_of(work, folder_name: str, settings, scene, final) -> Dict[str, float]:
-    """Of the places of the balls at the end, m3: the deck's own rasters of them."""
+def numbers_of(work, folder_name: str, settings, scene, final) -> Dict[str, float]:
+    """Of the places of the balls at the end: volumes of the deck's own rasters of them, m3, and how far they went."""
     folder = work.folder(folder_name)
     ids = deck_ids(folder)
     if len(final) != len(ids):
@@ -139,7 +140,8 @@ def volumes_of(work, folder_name: str, settings, scene, final) -> Dict[str, floa
     columns = run_.raster.transform.a * (np.arange(run_.raster.z.shape[1]) + 0.5)
     far = columns < road_corners()[:, 0].min()      # the mass comes from larger x
     return {"to remove": float(told["remove"]), "on the road": float(told["remove_on_road"]),
-            "beyond": float(run_.raster.z[:, far].sum() * run_.cell ** 2)}
+            "beyond": float(run_.raster.z[:, far].sum() * run_.cell ** 2),
+            "displacement of the centroid": deposit(scene, final)["displacement of the centroid m"]}
 
 
 def deck_ids(folder) -> List[int]:
