@@ -135,7 +135,9 @@ def from_line(published: Line):
 
 GLASS = DECK(friction=21.8, rolling=0.033, e=0.45)      # of inputs/14_repose_walls
 MATERIALS = {"sand": DECK, "glass": GLASS}
-LINES = {("sand", 0.5): Line(0.49, -1.06), ("glass", 0.5): Line(0.62, -1.56)}
+# of columns of 8, 12 and 16 d; inputs/15_axisymmetric/README.md
+LINES = {("sand", 0.5): Line(0.538, -1.44, 0.028), ("sand", 1.0): Line(1.129, -2.521, 0.021),
+         ("glass", 0.5): Line(0.639, -1.755, 0.022), ("glass", 1.0): Line(1.344, -3.373, 0.035)}
 WIDE = DECK(radius=12)
 CLAIMS = [
     Claim("axisymmetric_glass", "Height over radius 1, glass beads, radius 8 d: run-out over radius", "",
