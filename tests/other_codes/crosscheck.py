@@ -49,7 +49,7 @@ def run(args: Request) -> None:
     cases = peers.chosen("--only", args.only, CASES)
     names = peers.chosen("--peers", args.peers, [code.name for code in PEERS])
     if bare(args):
-        print(f"would run {', '.join(cases)} in {', '.join(names)}, some quarter of an hour; nothing is run without a word:"
+        print(f"would run {', '.join(cases)} in {', '.join(names)}, 15 minutes; nothing is run without a word:"
               "\n  slope crosscheck -o DIR        all of it\n"
               "  slope crosscheck --quick       coarser balls, four minutes\n"
               f"  slope crosscheck --only CASE   of {', '.join(CASES)}")
