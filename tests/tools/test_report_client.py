@@ -99,7 +99,8 @@ HEADLINES = {
     "nothing": headline_of("nothing", volume_m3=0.0, share=0.95, source="ensemble",
                            road={**ROAD, "reached": [0.02, 0.07]})}
 SAID = {"number": ("35,800 m³", "Between 21,000 m³ and 48,200 m³, with 90 % confidence.", "gives 1,200 m³"),
-        "floor": ("at least 12,000 m³", "90 % of known events of this volume and height stay within 12,000 m³",
+        "floor": ("at least 12,000 m³", "90 % of known events of this volume and height stay within 12,000 m³; what "
+                  "the others bring these runs do not show.",
                   "12 % of known events of this volume and height go farther than the longest run, which ends after "
                   "2,300 m.", "Next step: a larger elevation model"),
         "not reached": ("20 % to 30 % of known events reach it", "More than 0 m³", "the longest run ends after 1,846 m",
@@ -129,6 +130,42 @@ def test_what_stands_first(slope, here, case):
     if case == "withheld":
         remedy, = (one["remedy"] for one in yaml.safe_load(path.read_text())["conservative"]["withheld"])
         assert f"<code>{html.escape(remedy)}</code>" in page
+
+
+def weighted(quantities=None, reached=0.9, gap=None):
+    """The data of a study of three runs that known events weigh."""
+    rows = [{"run": name, "distance_99_m": far, "remove_on_road_m3": on, "blocked_m": 40.0, "beyond_road_m3": 0.0}
+            for name, far, on in (("a", 200.0, 0.0), ("b", 300.0, 19600.0), ("c", 900.0, 300.0))]
+    known = {"reached": reached, "quantities": {
+        key: {"quantiles": [{"share": 0.95, "value": value}]} for key, value in (quantities or {}).items()},
+        "to_remove": [{"share": 0.95, "value": 9e3, "low": 0.0, "high": None, "gap": gap}]}
+    return SimpleNamespace(finished=rows, road=True, study={"ensemble": {"known_events": known}})
+
+
+def test_ranges_beside_a_weighted_number():
+    """They are weighted, too, or say of what they are: the least and the most of runs are no range of known events."""
+    numbers = Numbers()
+    data = weighted({"remove_on_road_m3": 5230.0, "distance_99_m": 610.0})
+    assert client_part.road(data, numbers).startswith("On the road itself 95 % of known events leave at most 5,230 m3; "
+                                                      "single runs, each counted alike, 0 to 19,600 m3")
+    assert client_part.distance(data, numbers, True) == (
+        "In 95 % of known events 99 % of the volume stays within 610 m of the highest point of the body, in plan; "
+        "in single runs, each counted alike, within 200 to 900 m.")
+    data = weighted({"remove_on_road_m3": None})        # known events go beyond the runs
+    assert client_part.road(data, numbers).startswith(
+        "On the road itself single runs, each counted alike, leave 0 to 19,600 m3")
+    for data in (weighted(reached=None), SimpleNamespace(**{**vars(weighted()), "study": {"ensemble": None}}),
+                 SimpleNamespace(**{**vars(weighted()), "study": None})):
+        assert client_part.road(data, numbers).startswith("On the road itself lie 0 to 19,600 m3")
+        assert client_part.distance(data, numbers, True).startswith("In all 3 runs 99 % of the volume stays within 200")
+
+
+@pytest.mark.parametrize("gap, source, said", [([2e3, 9e3], "ensemble", True), (None, "ensemble", False),
+                                               ([2e3, 9e3], "paper", False)])
+def test_the_number_says_that_it_is_in_a_gap(gap, source, said):
+    about = {"source": source, "share": 0.95}
+    text = client_part.in_gap(weighted(gap=gap), about, Numbers())
+    assert ("between 2,000 m3 and 9,000 m3" in text) == said and bool(text) == said
 
 
 def test_the_next_step_and_its_time(tmp_path):

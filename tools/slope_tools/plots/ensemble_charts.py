@@ -11,11 +11,12 @@ THOUSANDS = StrMethodFormatter("{x:,.6g}")
 
 
 class Quantile(NamedTuple):
-    """A point of the curve that has a name; its bounds are None where nothing bounds it."""
+    """A point of the curve that has a name; its bounds are None where nothing bounds it; gap: it is between these."""
     share: float
     value: float
     low: Optional[float]
     high: Optional[float]
+    gap: Optional[Tuple[float, float]] = None
 
 
 class Bar(NamedTuple):
@@ -41,7 +42,10 @@ def hazard_curve(values, share, low, high, quantiles: Sequence[Quantile], x_labe
                           alpha=0.18, lw=0, label="bounds, 90 %")
         axes.step(at, np.append(share, share[-1]), where="post", color=COLOURS[0], lw=1.4, label=what)
         for one in quantiles:
-            axes.plot([one.value], [1 - one.share], "o", ms=4, color=COLOURS[1])
+            if one.gap:
+                axes.plot(one.gap, [1 - one.share] * 2, "-", lw=2.5, color=COLOURS[1])
+            else:
+                axes.plot([one.value], [1 - one.share], "o", ms=4, color=COLOURS[1])
             axes.annotate(f"{100 * one.share:g} %", (one.value, 1 - one.share), xytext=(4, 3),
                           textcoords="offset points", fontsize=6)
         axes.set(xlim=(values[0], end), ylim=(0, 1.02), xlabel=x_label, ylabel=f"share of the {what} above")

@@ -18,6 +18,7 @@ from ..deposits import deposit
 from ..errors import SlopeError
 from ..survey.geopackage import Layer
 from ..survey.rasters import Raster, crs_name
+from ..tables import named_run
 from ..tables.study_file import Study
 from . import choices, corridor, reached, results, search
 from .reached import Source
@@ -85,7 +86,7 @@ def ground_of(name: str, warn) -> Ground:
                       [results.read_body(folder, about).source for about in table["bodies"]],
                       results.yearly_of(asked, folder, table["bodies"]))
     if not any((folder / place).is_file() for place in ("study.yaml", "site.yaml")):
-        run = deposit.read(run_folders.named_run(name).prefix, None, warn)
+        run = deposit.read(named_run.read(name).prefix, None, warn)
         return Ground(run.raster, [Source(1, [Path(run.prefix)], np.ones(1), 0, run.raster.offset)], None)
     study = Study.read(folder)
     known = ((study.about.get("ensemble") or {}).get("known_events") or {}).get("weights")

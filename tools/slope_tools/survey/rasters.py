@@ -360,8 +360,10 @@ def write_asc_local(path, raster, about, exact=False):
     return sidecar
 
 
-def write_geotiff(path, bands, raster):
+def write_geotiff(path, bands, raster, tags=None):
     """Write bands, a dict of name -> values (NaN: NODATA), on the grid of raster (its z is not used) to a GeoTIFF.
+
+    tags: {name: text}, metadata of the file.
 
     It lies at the CRS coordinates, transform plus offset; without a CRS at the local ones. Doubles, so that sums over
     the cells are those of the array. The file is complete or not touched. Raises SlopeError where it cannot be written.
@@ -373,6 +375,7 @@ def write_geotiff(path, bands, raster):
             with rasterio.open(new, "w", driver="GTiff", height=rows, width=columns, count=len(bands), dtype="float64",
                                crs=raster.crs, transform=Affine.translation(*raster.offset) * raster.transform,
                                nodata=NODATA, compress="deflate") as out:
+                out.update_tags(**(tags or {}))
                 for band, (name, values) in enumerate(bands.items(), 1):
                     out.write(np.where(np.isnan(values), NODATA, values), band)
                     out.set_band_description(band, name)
