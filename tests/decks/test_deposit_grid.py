@@ -411,7 +411,7 @@ run 10
 
 
 @pytest.mark.parametrize("np_, name", [(1, "out.summary.yaml"), (2, "out.last_motion.asc"), (2, "out.left.csv"),
-                                         (1, "out.lock")])
+                                       (1, "out.lock")])
 def test_a_folder_where_a_file_must_be(tmp_path, np_, name):
     flat(tmp_path, 10)
     write_balls(tmp_path / "balls.data", [[5, 5, 5]], 0.5, None, [(0.0, 10.0)] * 3)
