@@ -237,12 +237,11 @@ def data_of(rows, **more):
                               "below_ground": lambda: None, "names": lambda: names, "result": result, **more})
 
 
-def ground_of(*touched, crs="EPSG:6677"):
-    """A ground whose edges were reached at these rows and columns."""
-    z = np.zeros((5, 6))
-    for row, column, value in touched:
-        z[row, column] = value
-    return SimpleNamespace(max_thickness=z, raster=SimpleNamespace(crs=crs), obstacles=Obstacles({}, {}))
+GROUND = SimpleNamespace(obstacles=Obstacles({}, {}))
+LEFT = [{"side": "south", "volume": 5000.0, "balls": 50, "where": "before", "distance": 120.4, "add": 170.0},
+        {"side": "west", "volume": 900.0, "balls": 9, "where": "past", "distance": 20.0, "add": 1230.0},
+        {"side": "south", "volume": 80.0, "balls": 1, "where": "on", "distance": 0.0, "add": 60.0},
+        {"side": "a hole", "volume": 20.0, "balls": 1, "where": "past its end", "distance": 8.0, "add": None}]
 
 
 def test_what_was_lost_is_counted_in_one_line_with_its_side():
@@ -250,14 +249,19 @@ def test_what_was_lost_is_counted_in_one_line_with_its_side():
     found, = judged.lost(rows)
     assert (found.kind, found.level, found.runs[0], len(found.runs)) == ("lost much", WARNING, "run 6", 9)
     assert found.numbers["volume"] == 6000 and found.numbers["percent"] == 12 and found.numbers["of"] == 15
-    assert warnings.first_page([found], ground_of((4, 2, 3.0), (2, 0, 2.5))) == [
-        "9 of 15 runs lost up to 6,000 m³ over the edge: enlarge the terrain to the south-west."]
+    assert warnings.first_page([found]) == ["9 of 15 runs lost up to 6,000 m³ over the edge: enlarge the terrain."]
+    rows[6]["left"] = LEFT
+    found, = judged.lost(rows)
+    assert found.text == (
+        "up to 6,000 m3 (12 % of the released volume) left the grid or the box and are not on the maps (5,000 m3 in "
+        "the south, 120 m before the road; 900 m3 in the west, 20 m beyond the road; 80 m3 in the south, on the road; "
+        "20 m3 elsewhere), and how far they went is unknown: enlarge the terrain and the box by about 1,230 m in the "
+        "west, about 170 m in the south, heights in the hole (slope terrain --fill)")
+    assert warnings.first_page([found]) == [
+        "9 of 15 runs lost up to 6,000 m³ over the edge: enlarge the terrain by about 1,230 m in the west, about "
+        "170 m in the south, heights in the hole (slope terrain --fill)."]
     found, = judged.lost(rows_of((1.0, 50000.0)))
     assert (found.kind, found.level) == ("lost", NOTE) and judged.lost(rows_of((0.01, 50000.0))) == []
-    assert warnings.first_page([found], ground_of((2, 5, 1), crs=None))[0].endswith(
-        "enlarge the terrain beyond the right edge of the map.")
-    assert warnings.side_of(ground_of((0, 2, 1), (4, 2, 1))) == "to the north and the south"
-    assert warnings.side_of(ground_of((4, 2, 3.0), (2, 0, 0.5))) == "to the south"
 
 
 def moved(rows, *shares):
@@ -274,8 +278,8 @@ def test_the_weightiest_come_first_and_three_are_shown():
     rows.append({"run": "cut too", "status": "failed", "error": "ERROR: no memory"})
     thin = Finding("thin", {"balls": 1.83, "limit": 3.0}).entry()
     data = data_of(rows, study={"conservative": None, "warnings": [thin]})
-    found = warnings.findings(data, ground_of())
-    told = warnings.first_page(found, ground_of())
+    found = warnings.findings(data, GROUND)
+    told = warnings.first_page(found)
     by_kind = {one.kind: one for one in found}
     assert by_kind["in motion"].runs == ("run 0",) and by_kind["moving"].runs == ("run 2", "run 1")
     assert by_kind["moving"].numbers["share"] == 0.05 and by_kind["moving"].numbers["differ"]
@@ -290,11 +294,11 @@ def test_the_weightiest_come_first_and_three_are_shown():
 
 def test_what_no_run_tells_is_on_the_first_page_alone():
     rows = rows_of((0.0, 50000.0))
-    found = warnings.findings(data_of(rows), ground_of())
+    found = warnings.findings(data_of(rows), GROUND)
     assert [one.kind for one in found] == ["no repeats", "no sizes", "slip assumed"]
-    assert warnings.listed(found, {}) == [] and len(warnings.first_page(found, ground_of())) == 3
+    assert warnings.listed(found, {}) == [] and len(warnings.first_page(found)) == 3
     found = warnings.findings(data_of(rows, repeats={"seed": ["1"]}, study={
-        "conservative": {"size_m3": 3.0, "doubts": []}, "warnings": []}), ground_of())
+        "conservative": {"size_m3": 3.0, "doubts": []}, "warnings": []}), GROUND)
     assert [one.kind for one in found] == ["slip assumed"]
 
 
@@ -313,15 +317,16 @@ def test_a_release_that_is_not_the_body(change, kind, numbers):
 
 
 def test_runs_of_several_sizes_are_one_line():
-    sizes, = gathered([Finding("lost much", {"volume": volume, "percent": 3.0, "up_to": "up to "},
+    sizes, = gathered([Finding("lost much", {"volume": volume, "percent": 3.0, "up_to": "up to ", "where": "",
+                                             "add": ""},
                                (f"rolling_0_d_{volume:g}",), "sizes of balls") for volume in (337.0, 4.21)], 4)
     several = [sizes.entry(), "the slope is steep", "the toe is wet",
                {"kind": "moving", "text": "judged from the rows"}]
     found = warnings.findings(data_of([], study={"conservative": None, "warnings": several}, repeats={"x": []}),
-                              ground_of())
+                              GROUND)
     assert [one.text for one in found if one.level == WARNING][1:] == ["the slope is steep", "the toe is wet"]
     assert sizes.numbers["volume"] == 337 and sizes.numbers["of"] == 4 and len(sizes.runs) == 2
-    assert found[-3] == sizes and warnings.first_page([sizes], ground_of()) == []
+    assert found[-3] == sizes and warnings.first_page([sizes]) == []
 
 
 def test_a_finding_survives_its_file():

@@ -17,8 +17,9 @@ class Words(NamedTuple):
 
 
 NOT_BODY = "{who} released a mass that may not be the body: {released:cubic}{of_body}."
-LOST = "{who} lost {up_to}{volume:cubic} over the edge: enlarge the terrain{side}."
-LEFT = "{up_to}{volume} m3 ({percent:.2g} % of the released volume) left the grid or the box and are not on the maps"
+LOST = "{who} lost {up_to}{volume:cubic} over the edge: enlarge the terrain{add}."
+LEFT = ("{up_to}{volume} m3 ({percent:.2g} % of the released volume) left the grid or the box and are not on the maps"
+        "{where}")
 AT_REST = "not at rest at the end{among}: {end}, at {time:.1f} s"
 DOUBTFUL = "the released mass is doubtful: "
 
@@ -29,7 +30,8 @@ WORDS: Dict[str, Union[str, Words]] = {
     "in motion": Words(f"{AT_REST}. More than 10 % of the volume is in motion: these numbers are not those of a "
                        "deposit", client="{who} ended with more than a tenth of the mass in motion: the numbers are "
                                          "not those of a deposit."),
-    "lost much": Words(f"{LEFT}, and how far they went is unknown: enlarge the terrain and the box", client=LOST),
+    "lost much": Words(f"{LEFT}, and how far they went is unknown: enlarge the terrain and the box{{add}}",
+                       client=LOST),
     "bulk factor": Words(f"{DOUBTFUL}the bulk factor {{factor:.3g}} is {{off}} {{side}} 6/pi: {{why}}", NOTE, NOT_BODY),
     "body volume": Words(f"{DOUBTFUL}it is {{off}} {{side}} than the body of {{body:,.0f}} m3", NOTE, NOT_BODY),
     "balls removed": Words(f"{DOUBTFUL}{{off}} of the balls were removed at the start, and the body that the others "
@@ -182,7 +184,7 @@ WORDS: Dict[str, Union[str, Words]] = {
     "balls on the road": "on the road lies the volume of {balls}, fewer than {bound:g}",
     "known events": "no run reaches {bound} m, as half of known events of this volume and height do; {longest}",
     "left the terrain": "{percent:.2g} % of the released volume left the terrain before or beside the road, more than "
-                        "{most:g} %",
+                        "{most:g} %{where}",
     "runs not at rest or failed": "{number} of {bound} runs failed or are not at rest at the end, more than {most:g} %",
     "size error": "the size error is not trusted: {why}",
     # caveats on the volume to remove

@@ -35,7 +35,7 @@ def content(data, ground, numbers, answers: Sequence[Optional[Dict[str, Any]]], 
             "answer": spoken or (of_answer(data, main, numbers) if main else of_reach(data, numbers)),
             "sentences": sentences(data, ground, numbers, bool(main))
             + road_part.on_first_page(data, numbers, bool(main and main["withheld"])),
-            "caveats": warnings.first_page(found, ground)[:warnings.MOST], "rest": warnings.rest_of(listed),
+            "caveats": warnings.first_page(found)[:warnings.MOST], "rest": warnings.rest_of(listed),
             "basis": basis(data)}
 
 
