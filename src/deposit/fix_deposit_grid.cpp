@@ -35,7 +35,7 @@ using Slope::MassLedger;
 typedef DepositResults Result;
 
 static const std::string CALLER = "Fix deposit/grid ";
-static constexpr int VERSION = 7;    // of what restart files hold
+static constexpr int VERSION = 8;    // of what restart files hold
 static constexpr int PER_CELL = DepositRasters::PER_CELL;
 static constexpr double BYTES_PER_CELL = PER_CELL * sizeof(double);
 static constexpr int MOST_CELLS = (MAXSMALLINT - 4096) / static_cast<int>(BYTES_PER_CELL);
@@ -149,6 +149,7 @@ void FixDepositGrid::start()
     losses.begin_command();    // now that the volume of balls is known
   }
   released.volume = balls.volume();
+  released.stiffness_number = release.stiffness_number(released);
   started = fresh = true;
   release.log(id, released);
 }
@@ -350,6 +351,8 @@ void FixDepositGrid::archive(Slope::Archive &archive)
   archive.number("released_volume", released.volume);
   archive.number("body", released.body);
   archive.number("front", released.front);
+  archive.number("thick", released.thick);
+  archive.number("stiffness_number", released.stiffness_number);
   archive.number("bulk_of_the_release", bulk);
   archive.number("lost_number", losses.lost.number);
   archive.number("lost_volume", losses.lost.volume);
