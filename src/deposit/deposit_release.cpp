@@ -283,8 +283,8 @@ DepositRelease::Body DepositRelease::integrate(Region *region) const
 
 double DepositRelease::stiffness_number(const Released &released) const
 {
-  const PairGranRestitution *law = PairGranRestitution::of(lmp);
-  if (!law || released.thick <= 0.0) return 0.0;
+  const PairGranRestitution *pair = PairGranRestitution::of(lmp);
+  if (!pair || released.thick <= 0.0) return 0.0;
 
   std::vector<double> mine(atom->ntypes + 1, 0.0), largest(mine);    // diameters, by type
   double mass = 0.0, all;
@@ -301,9 +301,12 @@ double DepositRelease::stiffness_number(const Released &released) const
 
   double softest = HUGE_VAL;    // over the diameter
   for (int i = 1; i <= atom->ntypes; i++)
-    for (int j = i; j <= atom->ntypes; j++)
-      if (largest[i] > 0.0 && largest[j] > 0.0 && law->table.can_touch(i, j))
-        softest = std::min(softest, law->table.normal(i, j).k / std::max(largest[i], largest[j]));
+    for (int j = i; j <= atom->ntypes; j++) {
+      const Slope::ContactLaw *law = pair->law(i, j);
+      if (!law || largest[i] == 0.0 || largest[j] == 0.0) continue;
+      const double d = std::max(largest[i], largest[j]);
+      softest = std::min(softest, law->spring(0.5 * largest[i], 0.5 * largest[j]).kn / d);
+    }
   const double weight = all / released.body * gravity(groups) * released.thick;
   return softest < HUGE_VAL && weight > 0.0 ? softest / weight : 0.0;
 }

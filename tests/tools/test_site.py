@@ -160,6 +160,8 @@ def test_two_commands_lead_from_gis_files_to_a_report(done):
     assert best["kind"] == "prediction" and best["mean_m3"] > 0
     # so few balls do not tell the size error
     assert study["step"]["volume_m3"] > 0 and study["step"]["text"] in second
+    assert study["step"]["step"] == 0.5
+    assert all(row["stiffness_number"] > 0.98 * site_budget.STIFFNESS_NUMBER for row in study["runs"])
     spent = study["step"]["energy"]
     assert spent["gravity"] > spent["sliding"] > 0
     assert abs(spent["residual"]) < 1e-3 * spent["gravity"] and abs(spent["begin_end"]) < 0.02 * spent["gravity"]
@@ -456,10 +458,10 @@ def test_the_size_of_the_balls_comes_from_the_budget():
 
 
 def test_the_run_time_in_the_deck_is_that_of_one_run():
-    """Set-up, and what balls and steps cost: 15 s in steps of STEP times a quarter of sqrt(m/k)."""
+    """Set-up, and what balls and steps cost: 15 s in steps of a quarter of sqrt(m/k)."""
     choices = site_choices.complete({"terrain": {"files": ["dem.tif"]}})
     trial = site_budget.Trial(800, 3.5, 15.0, True, 13.0, 1e-7, 0.5, 2.0, 0.0)
-    step = site_budget.STEP * 0.25 * 0.05 * 2.5 / 60.0       # at 60 m/s a contact overlaps by a twentieth of 2.5 m
+    step = 0.25 * 0.05 * 2.5 / 60.0       # at 60 m/s a contact overlaps by a twentieth of 2.5 m
     found = site_numbers(choices, SOIL._replace(speed=60.0), trial, budget(number=2240))
     assert found.run_seconds == pytest.approx(0.5 + 15 / step * 2240 * 1e-7)
 
@@ -471,7 +473,7 @@ def test_a_slow_mass_has_the_stiffness_that_its_weight_needs(d, thick, number):
     kn = number * 2000 * np.pi / 6 * 9.80665 * thick * d
     for speed in (1.0, 10.0):
         soil = site_budget.Soil(2000.0, thick, speed)
-        assert site_budget.time_step(d, soil) == pytest.approx(site_budget.STEP * 0.25 * (mass / kn) ** 0.5)
+        assert site_budget.time_step(d, soil) == pytest.approx(0.25 * (mass / kn) ** 0.5)
     assert site_budget.time_step(d, soil._replace(speed=300.0)) < site_budget.time_step(d, soil)
 
 

@@ -36,7 +36,6 @@ GRAVITY = 9.80665       # m/s2
 STIFFNESS_NUMBER = 2e4          # K: least stiffness over density of the ground, gravity, thickness of the body and diameter
 LAYERS = 7.0            # balls; bodies thicker than this need harder contacts, in proportion
 OVERLAP = 0.05          # of the diameter: that of a contact at the largest speed
-STEP = 2.0              # time step, of the rule's 0.25 sqrt(m/kn)
 AIR = 1.2               # margin of the stiffness over the trial run's largest speed
 PATIENCE = 3.0          # duration: times the trial's time to rest
 LEAST_DURATION = 60.0   # s
@@ -91,7 +90,7 @@ def time_step(d: float, soil: Soil) -> float:
     mass = density * math.pi / 6 * d ** 3
     by_weight = STIFFNESS_NUMBER * max(1.0, thick / (LAYERS * d)) * density * math.pi / 6 * GRAVITY * thick * d
     by_speed = mass * (speed / (OVERLAP * d)) ** 2
-    return STEP * 0.25 * math.sqrt(mass / max(by_weight, by_speed))
+    return 0.25 * math.sqrt(mass / max(by_weight, by_speed))
 
 
 def three_digits(value: float) -> float:
