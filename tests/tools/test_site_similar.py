@@ -28,7 +28,7 @@ def measured(folder, factor, *words):
         subprocess.run([LMP, "-in", "in.site", "-screen", "none", "-var", "rolling", "0.05", "-var", "xoffset", offset,
                         *words], cwd=folder / "mine", check=True, stdin=subprocess.DEVNULL)
         about = yaml.safe_load((folder / "mine" / "site.summary.yaml").read_text())
-        assert about["at_rest"]
+        assert about["stop"]["reason"] == "halted"
         within = {round(100 * one["share"]): one["distance"] for one in about["travel"]["quantiles"]}
         found.append([about["travel"]["centroid"], within[90], within[99]])
     return decks.index_variables(folder / "mine" / "in.site"), about, np.array(found) / factor
@@ -54,5 +54,4 @@ def test_scaled_lengths_give_the_scaled_collapse(site, tmp_path, factor):
     assert float(scaled["speed"]) == pytest.approx(factor ** 0.5 * float(variables["speed"]), rel=0.15)
     assert other["dt"] == pytest.approx(factor ** 0.5 * about["dt"], rel=0.05)
     # 4 runs each: t of 6 degrees of freedom is below 3.7 in 99 % of cases
-    print(t_of(found, lengths), found.mean(axis=0), lengths.mean(axis=0), lengths.std(axis=0, ddof=1))
     assert (abs(t_of(found, lengths)) < 3.7).all()
