@@ -94,8 +94,8 @@ void ContactGuards::check_timestep()
   const double dt = update->dt;
   if (dt <= bound * (1.0 + 1.0e-12) || comm->me > 0) return;
   if (table.spring_bound(iworst, jworst) <= bound)
-    warn("time step {:.4g} s is {:.3g} times the largest that holds the restitution, "
-         "0.25 sqrt(m_min/kn) = {:.4g} s (types {} {})",
+    warn("time step {:.4g} s is {:.3g} times the largest that was tested to hold the restitution, "
+         "of several contacts at once too, 0.25 sqrt(m_min/kn) = {:.4g} s (types {} {})",
          dt, dt / bound, bound, iworst, jworst);
   else
     warn("time step {:.4g} s is {:.3g} times the largest with which the dashpots of scheme plain "

@@ -121,8 +121,9 @@ DepositSummary DepositReport::summary(const std::string &why, const DepositResul
   s.ranks = comm->nprocs;
   s.reason = why;
   s.grid = options.grid;
-  s.release = {released.mass.number, released.mass.solid, options.body, released.body,
-               balls.bulk()};
+  s.release = {
+      released.mass.number, released.mass.solid,      options.body, released.body, balls.bulk(),
+      released.thick,       released.stiffness_number};
   s.present = results.present;
   s.lost = value[Result::NLOST];
   s.volume = {value[Result::RELEASED], value[Result::ON_GRID], value[Result::OFF_GRID],

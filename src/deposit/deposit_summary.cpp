@@ -69,6 +69,10 @@ void DepositSummary::write_release(std::string &s) const
   line(s, "  balls", count(release.balls));
   line(s, "  bulk_factor", real(release.bulk_factor));
   line(s, "  from_cubic", real(release.from_cubic()));
+  line(s, "  thickness", body ? real(release.thickness) : "null");
+  line(s, "  stiffness_number",
+       (release.stiffness_number > 0.0 ? real(release.stiffness_number) : "null") +
+           "  # kn / (density of the ground x gravity x thickness x diameter)");
   s += "balls:\n";
   line(s, "  released", count(release.balls));
   line(s, "  present", count(present));

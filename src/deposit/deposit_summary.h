@@ -37,7 +37,8 @@ struct DepositSummary {
     double balls, ball_volume;    // ball_volume: solid
     std::string region;           // empty: the bulk factor was given
     double body_volume, bulk_factor;
-    double from_cubic() const;    // bulk_factor / (6/pi) - 1
+    double thickness, stiffness_number;    // of the body, largest; of its contacts, K; 0: unknown
+    double from_cubic() const;             // bulk_factor / (6/pi) - 1
   } release;
 
   // --- where it is ---

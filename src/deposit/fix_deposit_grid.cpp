@@ -163,6 +163,7 @@ void FixDepositGrid::start()
     losses.begin_command(elapsed);    // now that the volume of balls is known
   }
   released.volume = balls.volume();
+  released.stiffness_number = release.stiffness_number(released);
   started = fresh = true;
   release.log(id, released);
 }
@@ -365,6 +366,8 @@ void FixDepositGrid::archive(Slope::Archive &archive)
   archive.number("released_volume", released.volume);
   archive.number("body", released.body);
   archive.number("front", released.front);
+  archive.number("thick", released.thick);
+  archive.number("stiffness_number", released.stiffness_number);
   archive.number("bulk_of_the_release", bulk);
   archive.number("lost_number", losses.lost.number);
   archive.number("lost_volume", losses.lost.volume);

@@ -316,6 +316,19 @@ def test_a_release_that_is_not_the_body(change, kind, numbers):
         assert "50,000 m" in one.client()
 
 
+def test_soft_contacts_are_one_line_with_the_softest():
+    """Runs of other versions, and those without a body, have no number, and are not judged."""
+    rows = rows_of(*[(0.0, 50000.0)] * 4)
+    for row, number in zip(rows, (4970.0, 12000.0, None, 4450.0)):
+        row["stiffness_number"] = number
+    found, = judged.soft(rows)
+    assert (found.kind, found.level, found.runs) == ("soft", NOTE, ("run 3", "run 0"))
+    assert found.numbers["number"] == 4450 and found.numbers["limit"] == 1e4 and found.kind in judged.KINDS
+    assert found in judged.of_runs([{**row, "status": "finished"} for row in rows]) and judged.soft(rows[1:3]) == []
+    del rows[2]["stiffness_number"]
+    assert judged.soft(rows[2:3]) == []
+
+
 def test_runs_of_several_sizes_are_one_line():
     sizes, = gathered([Finding("lost much", {"volume": volume, "percent": 3.0, "up_to": "up to ", "where": "",
                                              "add": ""},

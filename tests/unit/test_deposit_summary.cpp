@@ -46,7 +46,7 @@ TEST(DepositSummary, Release)
   s.release.bulk_factor = 6.0 / 3.14159265358979323846;
   EXPECT_TRUE(has(s.text(), "  region: null"));
   EXPECT_TRUE(has(s.text(), "  body_volume: null"));
-  s.release = {12.0, 6.25, "it's", 10.0, 1.6};
+  s.release = {12.0, 6.25, "it's", 10.0, 1.6, 4.5, 2.0e4};
   EXPECT_NEAR(s.release.from_cubic(), 1.6 / 1.9098593171027440 - 1.0, 1e-15);
   for (const char *line : {"  region: 'it''s'", "  body_volume: 10.0", "  ball_volume: 6.25",
                            "  balls: 12", "  bulk_factor: 1.6", "bulk_factor: 1.6"})

@@ -40,6 +40,8 @@ WORDS: Dict[str, Union[str, Words]] = {
                           "not tell what it takes to build the road anew", client=(
                               "A part of the road lies on the mass that is released, and goes with it: what it takes "
                               "to build it anew is not in the volume.")),
+    "soft": Words("the contacts are soft for the weight on them, K {number:,.0f} instead of {limit:,.0f} and more: "
+                  "volumes and distances may be some percent too large (choosing parameters, stiffness)", NOTE),
     "large": Words("{millions} million m3: masses of {limit:g} million m3 and more are known to run farther than "
                    "laboratory friction suggests; the run-out is not conservative unless known events weigh the "
                    "runs, or the friction was calibrated with a past event of that size (slope calibrate)", NOTE,

@@ -49,7 +49,8 @@ SUMMARY = mapping(
                 "dependentRequired": {"fast_share": ["fast_volume", "fast_speed"]}},
      "moving": FLAG, "ranks": NUMBER, "dt": ABOVE_0, "bulk_factor": ABOVE_0, "slope_version": ANY,
      "lammps_version": ANY},
-    change_rate=NUMBER,     # older summaries, and other pair styles, have neither this nor the next
+    change_rate=NUMBER,     # older summaries, and other pair styles, have neither this nor the next two
+    release=mapping({}, stiffness_number=MAYBE),
     guards=mapping(numbers("largest_overlap", "deep_contacts", "energy_growth", "dangerous_builds")))
 
 

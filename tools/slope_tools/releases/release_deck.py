@@ -17,6 +17,7 @@ class Body(NamedTuple):
     cell: float             # of the terrain
     lower: float            # the slip surface's lowest height is so far below the terrain's, >= 0
     box: Tuple[float, float, float, float, float, float]    # xlo xhi ylo yhi zlo zhi of the body
+    thick: float            # largest, vertical
 
 
 def diameter(volume: float) -> float:

@@ -30,7 +30,12 @@ COLLECT = 1.5           # s of a run's volume and maps: after all runs, one afte
 REPORT = 15.0           # s of the report
 LONGER = 1.2            # times as many steps takes a run of the ensemble, whose ground may be smooth
 LEDGER = 1.4            # times as long takes a run that keeps account of its energy: that with half the step
-SPEED = 47.0            # m/s for which the paper's stiffness is sufficient
+SPEED = 47.0            # m/s, where no trial run tells
+SLOW = 1.0              # m/s, least speed; that of the trial run, which has the stiffness that the weight needs
+GRAVITY = 9.80665       # m/s2
+STIFFNESS_NUMBER = 2e4          # K: least stiffness over density of the ground, gravity, thickness of the body and diameter
+LAYERS = 7.0            # balls; bodies thicker than this need harder contacts, in proportion
+OVERLAP = 0.05          # of the diameter: that of a contact at the largest speed
 AIR = 1.2               # margin of the stiffness over the trial run's largest speed
 PATIENCE = 3.0          # duration: times the trial's time to rest
 LEAST_DURATION = 60.0   # s
@@ -72,10 +77,20 @@ class Size(NamedTuple):
     text: str                   # the runs in words
 
 
-def time_step(d: float, speed: float, density: float) -> float:
+class Soil(NamedTuple):
+    """What the stiffness of contacts depends on, beside the diameter of the balls."""
+    density: float          # of a ball, kg/m3
+    thick: float            # largest thickness of the body, m
+    speed: float            # largest, m/s
+
+
+def time_step(d: float, soil: Soil) -> float:
     """The deck's time step (s) for balls of diameter d (m)."""
-    stiffness = 1.96e9 * d / 1.25 * (speed / 47) ** 2
-    return 0.25 * math.sqrt(density * math.pi / 6 * d ** 3 / stiffness)
+    density, thick, speed = soil
+    mass = density * math.pi / 6 * d ** 3
+    by_weight = STIFFNESS_NUMBER * max(1.0, thick / (LAYERS * d)) * density * math.pi / 6 * GRAVITY * thick * d
+    by_speed = mass * (speed / (OVERLAP * d)) ** 2
+    return 0.25 * math.sqrt(mass / max(by_weight, by_speed))
 
 
 def three_digits(value: float) -> float:
@@ -182,11 +197,10 @@ def plan(choices: Choices) -> Plan:
     return Plan(parts, bool(choices["road"]["file"]), points, text)
 
 
-def study_seconds(d: float, volume: float, trial: Trial, speed: float, density: float, wanted: Plan,
-                  jobs: int) -> Tuple[float, float]:
+def study_seconds(d: float, volume: float, trial: Trial, soil: Soil, wanted: Plan, jobs: int) -> Tuple[float, float]:
     """What a study takes on this machine, with balls of diameter d in a body of that volume (m3); and at most."""
     def run(size: float, longer: float = 1.0) -> float:
-        steps = longer * trial.typical / time_step(size, speed, density)
+        steps = longer * trial.typical / time_step(size, soil)
         return trial.setup + steps * volume / size ** 3 * trial.cost
 
     total = sum(runs * run(factor * d) for factor, runs in wanted.parts)
@@ -217,8 +231,8 @@ def fit(budget: float, cost: Callable[[float], float], volume: float, option: st
 
 
 def stiff_to(trial: Optional[Trial]) -> float:
-    """The speed (m/s) for which the stiffness must be sufficient: the paper's, or more if the trial run was faster."""
-    return max(SPEED, float(f"{AIR * trial.speed:.2g}")) if trial else SPEED
+    """The speed (m/s) for which the stiffness must be sufficient."""
+    return max(SLOW, float(f"{AIR * trial.speed:.2g}")) if trial else SPEED
 
 
 def duration(trial: Optional[Trial]) -> float:
@@ -226,16 +240,16 @@ def duration(trial: Optional[Trial]) -> float:
     return max(LEAST_DURATION, 10.0 * math.ceil(PATIENCE * trial.rest / 10)) if trial else LONGEST
 
 
-def size(choices: Choices, volume: float, trial: Optional[Trial], jobs: int, cells: int) -> Size:
+def size(choices: Choices, volume: float, soil: Soil, trial: Optional[Trial], jobs: int, cells: int) -> Size:
     """The balls by the first of diameter, number, minutes, memory that is given; SlopeError if there are none such.
 
-    volume: of the body, m3; cells: of the terrain. The choices hold speed and density.
+    volume: of the body, m3; cells: of the terrain.
     """
-    balls, model, wanted = choices["balls"], choices["model"], plan(choices)
+    balls, wanted = choices["balls"], plan(choices)
 
     def seconds(d: float) -> Tuple[float, float]:
         assert trial is not None
-        return study_seconds(d, volume, trial, model["speed"], model["density"], wanted, jobs)
+        return study_seconds(d, volume, trial, soil, wanted, jobs)
 
     if balls["diameter"]:
         d = balls["diameter"]

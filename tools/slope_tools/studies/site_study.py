@@ -21,7 +21,7 @@ from ..sites.site_layers import OBSERVED, ROAD
 from ..survey.roads import Asked
 from ..tables import energy
 from ..tables.size_error import SizeErrors, WHAT
-from ..tables.step_check import HALF, QUANTITY, Step
+from ..tables.step_check import QUANTITY, Step, half_of
 from ..tables.study_file import read_study
 from . import mapped, results, size_study, study
 from .sensitivity import quantities
@@ -180,7 +180,7 @@ def sizes(planned: size_study.Plan, variables: Dict[str, str], work) -> Sizes:
 def half_steps(setup: Setup, rolling: str, variables: Dict[str, str]) -> List[repeats.Repeat]:
     """One run with half the time step, which keeps account of its energy, too, unless the deck is of a version that
     cannot."""
-    settings = {"rolling": [rolling], "step": [HALF], **({LEDGER: ["1"]} if LEDGER in variables else {})}
+    settings = {"rolling": [rolling], "step": [half_of(variables)], **({LEDGER: ["1"]} if LEDGER in variables else {})}
     return repeats.plan(setup.runs, settings, {}, variables)
 
 
@@ -188,10 +188,11 @@ def step_of(setup: Setup, run_: repeats.Repeat, rolling: str, variables: Dict[st
     """What that run tells."""
     [row], _ = results.rows_of(setup, [run_], results.Maps(()), pictures=False)
     if run_.error:
-        return Step(rolling, None, f"{run_.name}: {run_.error}")
+        return Step(rolling, None, f"{run_.name}: {run_.error}", step=float(run_.chosen["step"]))
     prefix = run_folders.prefix_of(run_folders.summary_of(setup.output, row))
     return Step(rolling, row[QUANTITY], energy=energy.read(Path(f"{prefix}.{energy.SUFFIX}"))
-                if LEDGER in variables else None, spacing=variables.get("spacing"))
+                if LEDGER in variables else None, spacing=variables.get("spacing"),
+                step=float(run_.chosen["step"]))
 
 
 def unusable(setup: Setup, why: str, shortly: str = "") -> Sizes:

@@ -14,6 +14,7 @@ from .released import Release, release
 
 BALANCE = 1e-9          # of the released volume
 LOST = 1e-6             # of the released volume
+SOFT = 1e4              # stiffness number: with softer contacts a mass goes too far
 VERSIONS = ("slope_version", "lammps_version", "lmp_sha256")
 
 Row = Mapping[str, Any]
@@ -24,6 +25,7 @@ def columns(summary: Mapping[str, Any], log) -> Dict[str, Any]:
     state, motion = rest.state(summary), summary["motion"]
     return {**quantities.of_summary(summary), "at_rest": state.at_rest, "end": state.text, "end_short": state.short,
             "moves_share": state.share, "moving_share": motion["moving_share"], "fast_share": motion.get("fast_share"),
+            "stiffness_number": (summary.get("release") or {}).get("stiffness_number"),
             "fast_volume_m3": motion.get("fast_volume"), "fast_speed_m_s": motion.get("fast_speed"),
             "release": release(summary, [*log.notes, *log.warnings])._asdict(), "log_warnings": log.warnings}
 
@@ -31,8 +33,8 @@ def columns(summary: Mapping[str, Any], log) -> Dict[str, Any]:
 def of_runs(rows: Sequence[Row]) -> List[Finding]:
     """On runs, finished or failed."""
     finished = [row for row in rows if row["status"] == "finished"]
-    return [*failed(rows), *not_at_rest(finished), *lost(finished), *released(finished), *large(finished),
-            *balance(finished), *programs(finished), *of_road(finished)]
+    return [*failed(rows), *not_at_rest(finished), *lost(finished), *released(finished), *soft(finished),
+            *large(finished), *balance(finished), *programs(finished), *of_road(finished)]
 
 
 def of(row: Row) -> Sequence[str]:
@@ -79,6 +81,14 @@ def released(finished: Sequence[Row]) -> List[Finding]:
                     len(finished))
 
 
+def soft(finished: Sequence[Row]) -> List[Finding]:
+    """Contacts that are too soft for the weight on them; none is known of runs of older versions, and others."""
+    found = sorted((row for row in finished if (row.get("stiffness_number") or SOFT) < SOFT),
+                   key=lambda row: row["stiffness_number"])
+    return gathered((Finding("soft", {"number": float(row["stiffness_number"]), "limit": SOFT}, of(row))
+                     for row in found), len(finished))
+
+
 def large(finished: Sequence[Row]) -> List[Finding]:
     return of_volume(max((row["released_m3"] for row in finished), default=0.0))
 
@@ -109,8 +119,8 @@ def of_logs(rows: Sequence[Row], said: Iterable[str]) -> List[Finding]:
                     lambda one: kind(one.numbers["line"]))
 
 
-KINDS = {"failed", "in motion", "moving", "lost much", "lost", "bulk factor", "body volume", "balls removed", "large",
-         "balance", "programs"}     # of the above: what a file says of them is judged from its rows
+KINDS = {"failed", "in motion", "moving", "lost much", "lost", "bulk factor", "body volume", "balls removed", "soft",
+         "large", "balance", "programs"}     # of the above: what a file says of them is judged from its rows
 
 
 def limits(study: Optional[Mapping[str, Any]], repeats: bool) -> List[Finding]:
