@@ -72,7 +72,8 @@ void PlacementArguments::parse(int narg, char **arg, bool may_write)
     file = arg[1];
     iarg = 2;
   } else {
-    error->all(FLERR, "{} needs surface or file, got {}", caller, arg[0]);
+    error->all(FLERR, "{} needs {}, got {}", caller,
+               may_write ? "surface or file" : "surface, file or fill", arg[0]);
   }
 
   while (iarg < narg) {

@@ -162,11 +162,12 @@ NO_FILES = {"pair/gran/restitution", "fix/energy/ledger", "fix/deposit/grid", "f
 # words that the parsers compare with: what follows is a file, or not
 NAMES_FILE = {"file", "terrain", "layer", "table", "raster", "bedrock"}
 NAMES_NONE = {
-    "angle", "bulk", "cell", "damping", "deposit", "depth", "direction", "extent", "friction", "grid", "headroom",
-    "inside", "keep", "limit_damping", "lower", "mass", "method", "motion", "move", "open", "origin", "output",
-    "outside", "overlap", "pattern", "point", "restitution", "rolling", "rolling_radius", "rolling_spring", "rotate",
-    "scale", "scattered", "scheme", "seismic", "series", "shape", "side", "sink", "smallest", "spacing", "stiffness",
-    "strength", "sunk", "surface", "units", "upper", "volume", "water", "window", "within", "write"}
+    "angle", "bulk", "cell", "damping", "deposit", "depth", "direction", "extent", "fill", "friction", "grid",
+    "headroom", "inside", "keep", "limit_damping", "lower", "mass", "method", "motion", "move", "open", "origin",
+    "output", "outside", "overlap", "pattern", "point", "restitution", "rolling", "rolling_radius",
+    "rolling_spring", "rotate", "scale", "scattered", "scheme", "seed", "seismic", "series", "shape", "side", "sink",
+    "smallest", "spacing", "stiffness", "strength", "sunk", "surface", "units", "upper", "volume", "water", "window",
+    "within", "write"}
 WORD = re.compile(r'(?:strcmp\(\w+\[[^]]*\], |given\(|\b(?:keyword|word|key|name) == )"([a-z_]+)"')
 
 
