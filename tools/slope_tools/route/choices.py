@@ -6,7 +6,7 @@ from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Union, get_ar
 
 from .. import disk, schemas
 from ..errors import SlopeError
-from ..sites.site_choices import OF_BALL
+from ..releases.packing import BULK
 from ..survey import roads
 
 NAME = "route.yaml"
@@ -20,7 +20,7 @@ OF = ("terrain", "crs", "assign_crs", "cell", "fill", "road", "road_width", "cor
       "density", "water", "volume", "depth", "keep")
 LATER = ("sample", "fragility", "name", "client", "author")      # may change once bodies are there
 NEEDED = ("terrain", "road", "road_width", "corridor", "cohesion", "friction", "density")
-VARY = ("rolling=0:0.1", "xoffset=0:0.99")
+VARY = ("rolling=0:0.1", "packing=1:1000000")
 
 
 class Choices(NamedTuple):
@@ -67,7 +67,7 @@ class Choices(NamedTuple):
     @property
     def ball_density(self) -> float:
         """kg/m3"""
-        return round(self.density * OF_BALL, 1)
+        return round(self.density * BULK, 1)
 
 
 def schema() -> Dict[str, Any]:
