@@ -161,6 +161,10 @@ TABLE = {
         2 1.0 surface ground upper spacing 1 sunk 1 -> sunk needs outside REGION, got none
         2 1.0 surface ground upper spacing 1 inside block sunk 1 -> sunk needs outside REGION, got none
         2 1.0 surface ground upper spacing 1 outside road sunk 1 -> sunk region road must have a lower boundary, got INF
+        2 1.0 surface ground lower spacing 1 sink 0.5 rim -> rim must be followed by continued, ended, within or beyond
+        2 1.0 surface ground lower spacing 1 sink 0.5 rim up -> rim must be continued, ended, within or beyond, got up
+        2 1.0 surface ground lower spacing 1 rim ended -> rim must be that of a lower surface with a sink > 0, got
+        2 1.0 surface ground upper spacing 1 sink 0.5 rim ended -> rim must be that of a lower surface with a sink > 0
         2 1.0 surface ground upper spacing 1 smallest -> smallest must be followed by D, got 0 of 1 values
         2 1.0 surface ground upper spacing 1 smallest 0 -> smallest must be > 0, got 0
         2 1.0 surface ground upper spacing 1 smallest x -> smallest must be a finite number, got x

@@ -164,7 +164,7 @@ NAMES_FILE = {"file", "terrain", "layer", "table", "raster", "bedrock"}
 NAMES_NONE = {
     "angle", "bulk", "cell", "damping", "deposit", "depth", "direction", "extent", "fill", "friction", "grid",
     "headroom", "inside", "keep", "limit_damping", "lower", "mass", "method", "motion", "move", "open", "origin",
-    "output", "outside", "overlap", "pattern", "point", "restitution", "rolling", "rolling_radius",
+    "output", "outside", "overlap", "pattern", "point", "restitution", "rim", "rolling", "rolling_radius",
     "rolling_spring", "rotate", "scale", "scattered", "scheme", "seed", "seismic", "series", "shape", "side", "sink",
     "smallest", "spacing", "stiffness", "strength", "sunk", "surface", "units", "upper", "volume", "water", "window",
     "within", "write"}
