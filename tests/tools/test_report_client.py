@@ -220,7 +220,7 @@ def test_without_a_road_the_reach_is_the_number(slope, here):
 
 # --- caveats ---
 
-RELEASE = {"released": 50000.0, "body": 50000.0, "factor": 1.91, "from_cubic": 0.0, "removed": None}
+RELEASE = {"released": 50000.0, "body": 50000.0, "factor": 1.91, "from_cubic": 0.0, "removed": None, "packed": False}
 
 
 def rows_of(*masses, **more):
@@ -305,6 +305,9 @@ def test_what_no_run_tells_is_on_the_first_page_alone():
 @pytest.mark.parametrize("change, kind, numbers", [
     ({"from_cubic": 0.2, "factor": 2.29}, "bulk factor", {"off": "20 %", "side": "above"}),
     ({"from_cubic": -0.2, "factor": 1.53}, "bulk factor", {"off": "20 %", "side": "below"}),
+    ({"from_cubic": -0.1273, "factor": 1.667, "packed": True}, None, {}),
+    ({"from_cubic": 0.05, "factor": 2.0, "packed": True}, "bulk factor",
+     {"off": "20 %", "side": "above", "usual": "1/0.60"}),
     ({"body": 60000.0}, "body volume", {"off": "17 %", "side": "less"}),
     ({"body": None, "removed": 0.3}, "balls removed", {"off": "30 %"}),
     ({"body": None, "removed": 0.1}, None, {})])

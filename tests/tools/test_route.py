@@ -703,7 +703,7 @@ def test_a_body_alone_is_that_of_a_site(slope, capsys, monkeypatch):
     words = ("site --terrain R/slips/2/terrain.asc --scar R/slips/2/body.2.base.asc --scar-is surface --road "
              f"R/slips/2/road.csv --road-width 8 --lane 4 --density 1900 --balls 40 --road-from {start} -o alone")
     assert called(capsys, words.split())[0] == 0
-    words = "study alone --sample 3 --seed 2 --vary rolling=0:0.1 --vary xoffset=0:0.99"
+    words = "study alone --sample 3 --seed 2 --vary rolling=0:0.1 --vary packing=1:1000000"
     status, _, err = called(capsys, words.split())
     assert status == 0, err
     assert without_times("alone/ensemble/study.csv") == without_times("R/bodies/2/ensemble/study.csv")

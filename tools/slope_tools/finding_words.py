@@ -32,7 +32,8 @@ WORDS: Dict[str, Union[str, Words]] = {
                                          "not those of a deposit."),
     "lost much": Words(f"{LEFT}, and how far they went is unknown: enlarge the terrain and the box{{add}}",
                        client=LOST),
-    "bulk factor": Words(f"{DOUBTFUL}the bulk factor {{factor:.3g}} is {{off}} {{side}} 6/pi: {{why}}", NOTE, NOT_BODY),
+    "bulk factor": Words(f"{DOUBTFUL}the bulk factor {{factor:.3g}} is {{off}} {{side}} {{usual}}: {{why}}", NOTE,
+                         NOT_BODY),
     "body volume": Words(f"{DOUBTFUL}it is {{off}} {{side}} than the body of {{body:,.0f}} m3", NOTE, NOT_BODY),
     "balls removed": Words(f"{DOUBTFUL}{{off}} of the balls were removed at the start, and the body that the others "
                            "represent is unknown (fix deposit/grid ... bulk region)", NOTE, NOT_BODY),
@@ -249,8 +250,8 @@ WORDS: Dict[str, Union[str, Words]] = {
                        "far they went is unknown, and they are left out; use a larger one", NOTE),
     "underdetermined": Words("{known} cannot determine {asked} variables", NOTE),
     "no scatter": Words("too few runs to measure the scatter by chance of {which}: the region may be too narrow", NOTE),
-    "one lattice": Words("all runs have the same lattice, {offsets} not being repeated: the scatter by chance (s) "
-                         "lacks what another lattice changes, and the region may be too narrow or beside the truth",
+    "one lattice": Words("the balls of all runs begin alike, {offsets} not being repeated: the scatter by chance "
+                         "(s) lacks what another start changes, and the region may be too narrow or beside the truth",
                          NOTE),
 }
 

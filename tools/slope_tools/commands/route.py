@@ -67,7 +67,7 @@ class Request(road_arguments.Clearing, Engine):
     sample: Optional[int] = option("runs of each body, of which more may be added later (default 4)", metavar="N",
                                    type=whole)
     vary: Optional[List[str]] = option(
-        "what differs between the runs, as of slope study (default rolling=0:0.1 and xoffset=0:0.99)",
+        "what differs between the runs, as of slope study (default rolling=0:0.1 and packing=1:1000000)",
         metavar="NAME=DISTRIBUTION", action="append")
     balls: Optional[int] = option("of each body (default 4000)", metavar="N", one_of="size")
     minutes: Optional[float] = option(

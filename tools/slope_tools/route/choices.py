@@ -6,7 +6,7 @@ from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Union, get_ar
 
 from .. import disk, schemas
 from ..errors import SlopeError
-from ..sites.site_choices import OF_BALL
+from ..releases.packing import BULK
 from ..survey import roads
 
 NAME = "route.yaml"
@@ -23,7 +23,7 @@ LATER = ("sample", "fragility", "name", "client", "author", "blocked", "lane", "
          "mesh")
 NEEDED = ("terrain", "road", "road_width", "corridor", "density")
 STRENGTH = ("cohesion", "friction")     # not of bodies that are given: without them these have no factor of safety
-VARY = ("rolling=0:0.1", "xoffset=0:0.99")
+VARY = ("rolling=0:0.1", "packing=1:1000000")
 
 
 class Choices(NamedTuple):
@@ -70,7 +70,7 @@ class Choices(NamedTuple):
     @property
     def ball_density(self) -> float:
         """kg/m3"""
-        return round(self.density * OF_BALL, 1)
+        return round(self.density * BULK, 1)
 
 
 def schema() -> Dict[str, Any]:

@@ -181,7 +181,7 @@ def case_of(setup: Setup, questions: Questions, row) -> withheld_words.Case:
 
 
 def unseen(repeated, defaults):
-    """The caveat that the scatter is incomplete: only seeds were repeated, though the deck can move its lattice."""
+    """The caveat that the scatter is incomplete: only seeds were repeated, though the deck can place its balls anew."""
     offsets = repeats.only_seeds(repeated, defaults)
     return [Finding("not repeated", {"repeated": ", ".join(repeated), "offsets": ", ".join(offsets)})] \
         if offsets else []
