@@ -64,9 +64,9 @@ def cell(value):
 def draw(path, work):
     """The deposit of every code along x, with the road."""
     from slope_tools.drawing import figures, pictures
-    from slope_tools.drawing.figures import plt
-    with plt.rc_context(figures.STYLE):
-        figure, axes = plt.subplots(figsize=(figures.FULL, 2.7))
+    from slope_tools.drawing import pictures
+    with pictures.settings(figures.STYLE):
+        figure, axes = pictures.subplots(figsize=(figures.FULL, 2.7))
         road = road_corners()[:, 0]
         axes.axvspan(road.min(), road.max(), color=figures.ROAD, alpha=0.12, lw=0, label="road")
         for i, (name, (edges, values)) in enumerate(work.profiles.items()):

@@ -21,8 +21,8 @@ class Misleading(ValueError):
         self.line, self.rule, self.got = node.start_mark.line + 1, rule, got
 
 
-class _Checked:
-    """The checks, before a SafeConstructor."""
+class _Checked(yaml.constructor.SafeConstructor):
+    """A constructor with the checks."""
 
     def construct_mapping(self, node, deep=False):
         keys = [key for key, _ in node.value if key.tag != MERGE]
@@ -62,7 +62,7 @@ def not_decimal(node, found) -> Misleading:
 
 
 def _loader(base):
-    made = type("Loader", (_Checked, base), {})
+    made: Any = type("Loader", (_Checked, base), {})
     for tag, function in ((INT, _Checked.construct_whole), (FLOAT, _Checked.construct_real),
                           (TIMESTAMP, _Checked.construct_date)):
         made.add_constructor(tag, function)

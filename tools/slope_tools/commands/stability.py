@@ -97,8 +97,9 @@ def run(args: Request) -> None:
     warn, kept = findings.warner("stability")
     given = rasters_of(args, raster, warn)
     with disk.complete(args.output, FILES[-1]) as folder:
-        for one in given:
-            rasters.write_asc_local(folder / one.name, raster._replace(z=one.z), {"sources": [one.source]}, exact=True)
+        for beside in given:
+            rasters.write_asc_local(folder / beside.name, raster._replace(z=beside.z), {"sources": [beside.source]},
+                                    exact=True)
         said = slip_run.run(asked, polygon, raster, folder, lmp, args.np or 1,
                             lambda line: print(line, flush=True))
         rows = bodies.rows_of(folder / f"{PREFIX}.slips.csv", (*bodies.NUMBERS, "factor", "area", "depth"), ("yield",))
@@ -168,9 +169,11 @@ def asked_of(args: Request) -> slip_deck.Asked:
                    for k, (_, *words) in enumerate(args.layer, 1))
     return slip_deck.Asked(
         args.terrain, slip_deck.Strength(args.cohesion, args.friction, args.density), layers, args.water,
-        args.water_table and slip_deck.TABLE, (shaking[0], shaking[-1] if len(shaking) > 1 else 0.0), bool(args.within),
+        slip_deck.TABLE if args.water_table else None, (shaking[0], shaking[-1] if len(shaking) > 1 else 0.0),
+        bool(args.within),
         pair(args.volume), pair(args.depth), None if args.direction is None else (90.0 - args.direction) % 360.0,
-        args.method or "bishop", args.keep or 3, args.shape or "sphere", args.bedrock and slip_deck.BEDROCK)
+        args.method or "bishop", args.keep or 3, args.shape or "sphere",
+        slip_deck.BEDROCK if args.bedrock else None)
 
 
 def pair(limits) -> Optional[Tuple[float, float]]:
