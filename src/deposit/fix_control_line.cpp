@@ -10,6 +10,7 @@
 
 #include "atomic_file.h"
 #include "constants.h"
+#include "empty_group.h"
 #include "fix_deposit_grid.h"
 #include "lammps_compat.h"
 #include "large_messages.h"
@@ -172,10 +173,14 @@ void FixControlLine::setup(int /*vflag*/)
 {
   set_up = update->ntimestep;
   clock.begin(update->ntimestep, update->dt);
-  if (group->count(igroup) == 0 && comm->me == 0)
-    error->warning(
-        FLERR, "Fix control/line {}: the group should have balls, got none at the start of the run",
-        id);
+  const bigint others = balls_beside_empty(lmp, groupbit, [](int) {
+    return true;
+  });
+  if (others > 0 && comm->me == 0)
+    error->warning(FLERR,
+                   "Fix control/line {}: the group should have balls, got none of {}: group {} has "
+                   "the balls that were there when it was defined",
+                   id, others, group->names[igroup]);
   remember();
 }
 

@@ -408,8 +408,8 @@ void BallPlacement::report(const SurfaceCounts &counts, bool known) const
 
 const std::vector<double> &BallPlacement::fingerprint()
 {
-  if (!marks.empty()) return marks;
   check_regions();
+  if (!marks.empty()) return marks;
   marks = {static_cast<double>(counted), arguments.diameter};
   if (!sampler) {
     marks.insert(marks.end(), sums, sums + 3);
