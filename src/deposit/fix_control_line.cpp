@@ -210,8 +210,7 @@ bool FixControlLine::lists_follow_motion() const
 /* ----------------------------------------------------------------------
    A ball moves by half the skin at most before the lists are built anew, but for the step in which that
    is found. One that moves by less than half the skin in that step, too, cannot reach a line that is
-   farther than the skin away. Those that are fast now are watched wherever they are. Which balls
-   belong to the group is asked when they cross: it may change in each step.
+   farther than the skin away. Those that are fast now are watched wherever they are.
 ------------------------------------------------------------------------- */
 
 void FixControlLine::watch()
