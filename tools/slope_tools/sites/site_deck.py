@@ -60,7 +60,7 @@ def values(choices: Choices, parts: Parts, numbers: Numbers) -> Dict[str, Any]:
     balls = packing.number(body.volume, numbers.diameter)
     parameters: Dict[str, Any] = {
         "title": parts.title, "terrain": parts.terrain, "deck": NAME, "volume": f"{body.volume:,.0f}",
-        "balls": f"about {balls:,.0f}", "rest": "some" if numbers.rest is None else f"{numbers.rest:.0f}",
+        "balls": f"about {balls:,.0f}", "rest_s": "some" if numbers.rest is None else f"{numbers.rest:.0f}",
         "run_time": run_time(numbers.run_seconds), "lower": math.ceil(body.lower),
         "box": " ".join(plain(value) for value in body.box), "types": 4 if parts.structures else 3,
         "bins": bins(parts.room, body.volume),
