@@ -64,7 +64,6 @@ def cell(value):
 def draw(path, work):
     """The deposit of every code along x, with the road."""
     from slope_tools.drawing import figures, pictures
-    from slope_tools.drawing import pictures
     with pictures.settings(figures.STYLE):
         figure, axes = pictures.subplots(figsize=(figures.FULL, 2.7))
         road = road_corners()[:, 0]

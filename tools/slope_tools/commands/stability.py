@@ -95,7 +95,8 @@ def run(args: Request) -> None:
     raster = rasters.read_asc_local(args.terrain)
     polygon = polygons.read_local(args.within, raster, args.local) if args.within else None
     warn, kept = findings.warner("stability")
-    given = rasters_of(args, raster, warn)
+    placed: List[findings.Finding] = []
+    given = rasters_of(args, raster, placed.append)
     with disk.complete(args.output, FILES[-1]) as folder:
         for beside in given:
             rasters.write_asc_local(folder / beside.name, raster._replace(z=beside.z), {"sources": [beside.source]},
@@ -108,7 +109,7 @@ def run(args: Request) -> None:
                              f"below {HUGE:g} somewhere", f"{rows[0]['factor']:.4g}")
         masks = [bodies.mask_of(folder / f"{PREFIX}.{k + 1}.base.asc") for k in range(len(rows))]
         rock = next((one.z for one in given if one.name == slip_deck.BEDROCK), None)
-        for one in [*warnings_of(asked.strength.cohesion, args.density, rows, masks, given), *said.warnings,
+        for one in [*placed, *warnings_of(asked.strength.cohesion, args.density, rows, masks, given), *said.warnings,
                     *doubts.of_all(raster, rows, masks, asked.volume, asked.depth,
                                    polygon and doubts.cells_in(raster, polygon))]:
             warn(one)
