@@ -11,6 +11,7 @@
 #include "deposit_options.h"
 #include "lammps_compat.h"
 #include "large_messages.h"
+#include "pair_gran_restitution.h"
 #include "region_columns.h"
 #include "region_surface.h"
 #include "region_terrain.h"
@@ -18,6 +19,7 @@
 #include "atom.h"
 #include "comm.h"
 #include "error.h"
+#include "fix.h"
 #include "region.h"
 
 #include <algorithm>
@@ -49,9 +51,14 @@ DepositRelease::DepositRelease(LAMMPS *lmp, const DepositBalls &balls_in,
 
 DepositRelease::Released DepositRelease::find() const
 {
-  Released found = {find_mass(), 0.0, 0.0, 0.0};
+  Released found = Released();
+  found.mass = find_mass();
   check_ground();
-  if (!options.body.empty()) found.body = body_volume(found.mass);
+  if (!options.body.empty()) {
+    const Body body = find_body(found.mass);
+    found.body = body.volume;
+    found.thick = body.thick;
+  }
   double z;
   balls.farthest(found.mass.top, found.front, z);
   return found;
@@ -187,29 +194,29 @@ DepositRelease::Mass DepositRelease::find_mass() const
 
 /* ---------------------------------------------------------------------- */
 
-double DepositRelease::body_volume(const Mass &mass) const
+DepositRelease::Body DepositRelease::find_body(const Mass &mass) const
 {
   Region *region = body();
   const std::string &id = options.body;
-  double volume = 0.0;
+  Body found = {0.0, 0.0};
   std::string problem;
   try {
-    volume = integrate(region);
+    found = integrate(region);
   } catch (std::runtime_error &e) {    // the same on all ranks
     problem = e.what();
   }
   if (!problem.empty()) error->all(FLERR, "Fix deposit/grid bulk region {}: {}", id, problem);
-  if (volume == 0.0)
+  if (found.volume == 0.0)
     error->all(FLERR, "Fix deposit/grid bulk region {} must have a volume > 0, got 0: it is empty",
                id);
   check_balls(region, mass);
-  if (!(volume >= LEAST * mass.solid && volume <= MOST * mass.solid))
+  if (!(found.volume >= LEAST * mass.solid && found.volume <= MOST * mass.solid))
     error->all(
         FLERR,
         "Fix deposit/grid bulk region {} must be the body that the balls fill, of {:g} to {:g} "
         "times their volume {:.6g}, got {:.6g}",
-        id, LEAST, MOST, mass.solid, volume);
-  return volume;
+        id, LEAST, MOST, mass.solid, found.volume);
+  return found;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -241,14 +248,16 @@ Region *DepositRelease::body() const
 
 /* ---------------------------------------------------------------------- */
 
-double DepositRelease::integrate(Region *region) const
+DepositRelease::Body DepositRelease::integrate(Region *region) const
 {
   const double zlo = region->extent_zlo, zhi = region->extent_zhi;
   const auto columns = RegionColumns::of(lmp, region, {zlo, zhi, (zhi - zlo) / SEARCH_STEPS});
   Slope::Intervals found;
+  double longest = 0.0;    // of the columns of this rank
   auto length = [&](double x, double y) {
     columns->column(x, y, found);
     found.intersect(Slope::Interval{zlo, zhi});
+    longest = std::max(longest, found.length());
     return found.length();
   };
   auto sum = [this](std::vector<double> &values) {
@@ -262,9 +271,62 @@ double DepositRelease::integrate(Region *region) const
       mine[2 + d] = std::min(mine[2 + d], -atom->x[i][d]);
     }
   MPI_Allreduce(mine, ends, 4, MPI_DOUBLE, MPI_MIN, world);
-  return Slope::body_volume(
+  Body body;
+  body.volume = Slope::body_volume(
       {{region->extent_xlo, region->extent_ylo}, {region->extent_xhi, region->extent_yhi}},
       {{ends[0], ends[1]}, {-ends[2], -ends[3]}}, length, {comm->me, comm->nprocs, sum});
+  MPI_Allreduce(&longest, &body.thick, 1, MPI_DOUBLE, MPI_MAX, world);
+  return body;
+}
+
+/* ---------------------------------------------------------------------- */
+
+double DepositRelease::stiffness_number(const Released &released) const
+{
+  const PairGranRestitution *pair = PairGranRestitution::of(lmp);
+  if (!pair || released.thick <= 0.0) return 0.0;
+
+  std::vector<double> mine(atom->ntypes + 1, 0.0), largest(mine);    // diameters, by type
+  double mass = 0.0, all;
+  int groups = 0;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!balls.selected(i)) continue;
+    double &d = mine[atom->type[i]];
+    d = std::max(d, 2.0 * atom->radius[i]);
+    mass += atom->rmass[i];
+    groups |= atom->mask[i];
+  }
+  MPI_Allreduce(mine.data(), largest.data(), atom->ntypes + 1, MPI_DOUBLE, MPI_MAX, world);
+  MPI_Allreduce(&mass, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+
+  double softest = HUGE_VAL;    // over the diameter
+  for (int i = 1; i <= atom->ntypes; i++)
+    for (int j = i; j <= atom->ntypes; j++) {
+      const Slope::ContactLaw *law = pair->law(i, j);
+      if (!law || largest[i] == 0.0 || largest[j] == 0.0) continue;
+      const double d = std::max(largest[i], largest[j]);
+      softest = std::min(softest, law->spring(0.5 * largest[i], 0.5 * largest[j]).kn / d);
+    }
+  const double weight = all / released.body * gravity(groups) * released.thick;
+  return softest < HUGE_VAL && weight > 0.0 ? softest / weight : 0.0;
+}
+
+/* ----------------------------------------------------------------------
+   of all fixes that pull balls of these groups
+------------------------------------------------------------------------- */
+
+double DepositRelease::gravity(int mine) const
+{
+  int groups;
+  MPI_Allreduce(&mine, &groups, 1, MPI_INT, MPI_BOR, world);
+  double sum[3] = {0.0, 0.0, 0.0};
+  for (Fix *fix : compat::fixes_of_style(lmp, "gravity")) {
+    if (!(groups & fix->groupbit)) continue;
+    int dim;
+    const double *g = static_cast<double *>(fix->extract("gvec", dim));
+    for (int d = 0; d < 3; d++) sum[d] += g[d];
+  }
+  return sqrt(sum[X] * sum[X] + sum[Y] * sum[Y] + sum[Z] * sum[Z]);
 }
 
 /* ----------------------------------------------------------------------

@@ -27,7 +27,9 @@ class DepositRelease : protected Pointers {
     Mass mass;
     double volume;    // bulk
     double body;      // volume of the region that the balls stand for; 0 without
+    double thick;     // largest vertical thickness of it
     double front;     // plan distance of the farthest ball from the top
+    double stiffness_number;
   };
 
   DepositRelease(class LAMMPS *, const class DepositBalls &, const class DepositOptions &);
@@ -36,6 +38,10 @@ class DepositRelease : protected Pointers {
   std::vector<double> ground() const;
 
   Released find() const;    // all but the bulk volume
+
+  // K, the stiffness of the softest contacts between the balls over density of the ground, gravity, largest
+  // thickness of the body and largest diameter; 0 where there is no body, weight or such contact
+  double stiffness_number(const Released &) const;
 
   // to the log
   void log(const std::string &fix_id, const Released &) const;
@@ -49,10 +55,14 @@ class DepositRelease : protected Pointers {
   void check_ground() const;
 
   Mass find_mass() const;
-  double body_volume(const Mass &) const;
+  struct Body {
+    double volume, thick;
+  };
+  Body find_body(const Mass &) const;
   class Region *body() const;
-  double integrate(class Region *) const;
+  Body integrate(class Region *) const;
   void check_balls(class Region *, const Mass &) const;
+  double gravity(int groups) const;    // groups: bits of this rank's balls
 };
 
 }    // namespace LAMMPS_NS

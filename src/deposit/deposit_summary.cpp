@@ -69,6 +69,10 @@ void DepositSummary::write_release(std::string &s) const
   line(s, "  balls", count(release.balls));
   line(s, "  bulk_factor", real(release.bulk_factor));
   line(s, "  from_cubic", real(release.from_cubic()));
+  line(s, "  thickness", body ? real(release.thickness) : "null");
+  line(s, "  stiffness_number",
+       (release.stiffness_number > 0.0 ? real(release.stiffness_number) : "null") +
+           "  # kn / (density of the ground x gravity x thickness x diameter)");
   s += "balls:\n";
   line(s, "  released", count(release.balls));
   line(s, "  present", count(present));
@@ -121,12 +125,13 @@ void DepositSummary::write_motion(std::string &s) const
   line(s, "  fast_share", real(motion.fast_share) + "  # of the released volume");
   line(s, "  fast_volume", real(motion.fast_volume));
   line(s, "  fast_speed", real(motion.largest));
+  line(s, "  rest_share", real(rest_share) + "  # at rest, fast_share is below it");
   line(s, "change_rate",
        real(change_rate) + "  # share of the volume that changes cell, per second");
   line(s, "moving", motion.moving_share > MOVING_SHARE ? "true" : "false");
   line(s, "at_rest",
        std::string(at_rest() ? "true" : "false") + "  # ended by its halt, and fast_share < " +
-           real(REST_SHARE));
+           real(rest_share));
 }
 
 /* ---------------------------------------------------------------------- */

@@ -78,6 +78,36 @@ def test_released_is_the_body(plane, np_, d, small):
     assert told in log and f"{100 * release['from_cubic']:+.1f} % from 6/pi" in log
 
 
+LAW = ("pair_style gran/restitution\npair_coeff 1 1 stiffness 1e7 1e7 restitution 0.5\n"
+       "pair_coeff 2 2 stiffness 4e6 4e6 restitution 0.5\npair_coeff 1 2 stiffness 9e6 9e6 restitution 0.5\n"
+       "comm_modify vel yes")
+WEIGHT = "fix g all gravity 9.81 vector 0.6 0 -0.8"
+
+
+@pytest.mark.parametrize("np_, changed, number", [
+    (1, "", 1e7), (3, "", 1e7), (2, "set region small type 2", 4e6 / 0.8), (1, "no body", None), (1, "no law", None),
+    (1, "no weight", None)])
+def test_stiffness_number(plane, np_, changed, number):
+    """K: the softest contacts between balls, over density of the ground, gravity, thickness and diameter."""
+    law = "pair_style none" if changed == "no law" else LAW
+    weight = "" if changed == "no weight" else WEIGHT
+    more = changed if changed.startswith("set") else ""
+    bulk = "1.9" if changed == "no body" else "region body"
+    text = deck(f"{weight}\n{more}\nrun 1\nwrite_restart a.restart", bulk=bulk)
+    run_deck(text.replace("pair_style none", law), plane, np=np_)
+    release = summary(plane)["release"]
+    if number is None:
+        assert release["stiffness_number"] is None
+        return
+    assert release["thickness"] == pytest.approx(6.0, rel=2e-3)
+    density = 2000 * release["ball_volume"] / release["body_volume"]
+    assert release["stiffness_number"] == pytest.approx(number / (density * 9.81 * release["thickness"]), rel=1e-6)
+    again = text.replace("create_box 2 ground", "read_restart a.restart").replace("write_restart a.restart", "")
+    lines = [line for line in again.splitlines() if not line.startswith(("lattice", "create_atoms", "set "))]
+    run_deck("\n".join(lines).replace("pair_style none", law.replace("1e7", "3e7")), plane)
+    assert summary(plane)["release"] == release
+
+
 def test_a_given_factor_has_no_region(plane):
     log = run_deck(deck(bulk=1.7, small=1.0), plane)
     release = summary(plane)["release"]

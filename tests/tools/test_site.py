@@ -160,6 +160,8 @@ def test_two_commands_lead_from_gis_files_to_a_report(done):
     assert best["kind"] == "prediction" and best["mean_m3"] > 0
     # so few balls do not tell the size error
     assert study["step"]["volume_m3"] > 0 and study["step"]["text"] in second
+    assert study["step"]["step"] == 0.5
+    assert all(row["stiffness_number"] > 0.98 * site_budget.STIFFNESS_NUMBER for row in study["runs"])
     spent = study["step"]["energy"]
     assert spent["gravity"] > spent["sliding"] > 0
     assert abs(spent["residual"]) < 1e-3 * spent["gravity"] and abs(spent["begin_end"]) < 0.02 * spent["gravity"]
@@ -293,12 +295,12 @@ def test_the_deck_by_hand_gives_the_numbers_of_the_study(done, tmp_path):
     hand.mkdir()
     for name in ("in.site", "terrain.asc", "terrain.yaml", "release.slip.asc", "road.csv"):
         shutil.copy(folder / "mine" / name, hand)
-    subprocess.run([LMP, "-in", "in.site", "-var", "rolling", "0.05", "-var", "yoffset", "0.5"], cwd=hand, check=True,
+    subprocess.run([LMP, "-in", "in.site", "-var", "rolling", "0.05", "-var", "packing", "2"], cwd=hand, check=True,
                    stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
     volume = slope(hand, "volume", "site", "--road", "road.csv", "--cut-angle", "30", "--mesh", "10", "-o", "removal")
     assert volume.returncode == 0, volume.stderr
     by_hand = yaml.safe_load((hand / "removal" / "volume.yaml").read_text())["volume"]
-    run = folder / "mine" / "runs" / "rolling_0.05_spacing_0.9_yoffset_0.5" / "volume" / "volume.yaml"
+    run = folder / "mine" / "runs" / "rolling_0.05_spacing_0.9_packing_2" / "volume" / "volume.yaml"
     assert by_hand == yaml.safe_load(run.read_text())["volume"] and by_hand["remove"] > 0
     other = folder / "mine" / "runs" / "rolling_0.05_spacing_0.9" / "volume" / "volume.yaml"
     assert by_hand != yaml.safe_load(other.read_text())["volume"]
@@ -339,7 +341,7 @@ def test_the_folder_is_made_anew_from_its_file(done, tmp_path):
     variables = decks.index_variables(mine / "in.site")
     assert variables["friction"] == "25"
     volume = site_choices.found(mine)["body"]["volume"]
-    assert volume / float(variables["d"]) ** 3 == pytest.approx(300, rel=0.02)
+    assert 0.6 * 6 / np.pi * volume / float(variables["d"]) ** 3 == pytest.approx(300, rel=0.02)
 
     # the study does not mix runs of two decks
     study = inside(folder, "study", "mine", "--paper")
@@ -432,16 +434,19 @@ def test_a_volume_of_frank_by_polygon(tmp_path):
 
 # --- the budget ---
 
+SOIL = site_budget.Soil(2000.0, 5.0, 47.0)
+
+
 def budget(**balls):
     choices = site_choices.complete({"terrain": {"files": ["dem.tif"]}, "balls": balls})
-    choices["model"].update(speed=47.0, duration=60.0)
+    choices["model"].update(duration=60.0)
     trial = site_budget.Trial(800, 3.5, 15.0, True, 13.0, 1e-7, 0.5, 2.0, 0.0)
-    return site_budget.size(choices, 35000.0, trial, 2, 6144)
+    return site_budget.size(choices, 35000.0, SOIL, trial, 2, 6144)
 
 
 def test_the_size_of_the_balls_comes_from_the_budget():
-    assert budget(number=2240).diameter == 2.5
-    assert budget(diameter=2.5, number=7).balls == 2240
+    assert budget(number=2567).diameter == 2.5      # 0.60 of the body is balls
+    assert budget(diameter=2.5, number=7).balls == round(0.6 * 35000 / (np.pi / 6 * 2.5 ** 3)) == 2567
     assert budget().balls == pytest.approx(site_budget.DEFAULT, rel=0.02)
     some, more = budget(minutes=10), budget(minutes=100)
     assert 570 < some.most <= 600 and 5700 < more.most <= 6000      # with all runs that may be added
@@ -453,12 +458,39 @@ def test_the_size_of_the_balls_comes_from_the_budget():
 
 
 def test_the_run_time_in_the_deck_is_that_of_one_run():
-    """Set-up, and what balls and steps cost: 15 s in steps of 0.25 sqrt(m/k), k = 3.92 GN/m for 2.5 m and 47 m/s."""
+    """Set-up, and what balls and steps cost: 15 s in steps of a quarter of sqrt(m/k)."""
     choices = site_choices.complete({"terrain": {"files": ["dem.tif"]}})
-    choices["model"].update(speed=47.0, density=2000.0)
     trial = site_budget.Trial(800, 3.5, 15.0, True, 13.0, 1e-7, 0.5, 2.0, 0.0)
-    step = 0.25 * (2000 * np.pi / 6 * 2.5 ** 3 / 3.92e9) ** 0.5
-    assert site_numbers(choices, trial, budget(number=2240)).run_seconds == pytest.approx(0.5 + 15 / step * 2240 * 1e-7)
+    step = 0.25 * 0.05 * 2.5 / 60.0       # at 60 m/s a contact overlaps by a twentieth of 2.5 m
+    found = site_numbers(choices, SOIL._replace(speed=60.0), trial, budget(number=2240))
+    assert found.run_seconds == pytest.approx(0.5 + 15 / step * 2240 * 1e-7)
+
+
+@pytest.mark.parametrize("d, thick, number", [(1.0, 7.0, 2e4), (0.5, 3.0, 2e4), (1.0, 14.0, 4e4), (0.5, 14.0, 8e4)])
+def test_a_slow_mass_has_the_stiffness_that_its_weight_needs(d, thick, number):
+    """K times density of the ground, gravity, thickness and diameter; K grows in bodies thicker than 7 balls."""
+    mass = 2000 * np.pi / 6 * d ** 3
+    kn = number * 2000 * 0.6 * 9.80665 * thick * d
+    for speed in (1.0, 10.0):
+        soil = site_budget.Soil(2000.0, thick, speed)
+        assert site_budget.time_step(d, soil) == pytest.approx(0.25 * (mass / kn) ** 0.5)
+    assert site_budget.time_step(d, soil._replace(speed=300.0)) < site_budget.time_step(d, soil)
+
+
+@pytest.mark.parametrize("factor", [10.0, 0.1])
+@pytest.mark.parametrize("speed", [3.0, 90.0])
+def test_scaled_lengths_have_a_scaled_step(factor, speed):
+    """Froude: times and speeds go with the root of the lengths, by weight and by speed."""
+    soil = site_budget.Soil(3000.0, 12.0, speed)
+    other = site_budget.Soil(3000.0, 12.0 * factor, speed * factor ** 0.5)
+    assert site_budget.time_step(1.5 * factor, other) == pytest.approx(factor ** 0.5 * site_budget.time_step(1.5, soil))
+
+
+def test_no_speed_is_below_that_of_the_trial_run():
+    """Where nothing moves, too, it is larger than 0, as site.yaml wants it; a fast trial counts with a fifth more."""
+    trial = site_budget.Trial(800, 3.5, 15.0, True, 0.0, 1e-7, 0.5, 2.0, 0.0)
+    assert site_budget.stiff_to(trial) == site_budget.SLOW > 0
+    assert site_budget.stiff_to(trial._replace(speed=13.0)) == 16.0
 
 
 def test_a_second_trial_tells_how_long_most_runs_take():
@@ -473,7 +505,7 @@ def test_a_second_trial_tells_how_long_most_runs_take():
 
     choices = site_choices.complete({"terrain": {"files": ["dem.tif"]}, "balls": {"minutes": 1.0}})
     wanted = site_budget.plan(choices)
-    took = [site_budget.study_seconds(2.0, 3e4, one, 47.0, 3411.0, wanted, 2) for one in (fine, both)]
+    took = [site_budget.study_seconds(2.0, 3e4, one, SOIL, wanted, 2) for one in (fine, both)]
     assert took[0] == took[1]
     assert site_budget.finer_diameter(choices, coarse) == pytest.approx(3.6 / 3 ** (1 / 3), rel=2e-3)
     assert site_budget.finer_diameter(choices, coarse._replace(seconds=3.0)) is None    # 13 s, more than a fifth of it
@@ -502,8 +534,23 @@ def test_the_time_step_is_the_decks(done):
     folder = done[0] / "mine"
     variables = decks.index_variables(folder / "in.site")
     summary = yaml.safe_load((folder / "runs" / "rolling_0_spacing_0.9" / "site.summary.yaml").read_text())
-    wanted = site_budget.time_step(*(float(variables[name]) for name in ("d", "speed", "density")))
+    d, *soil = (float(variables[name]) for name in ("d", "density", "thick", "speed"))
+    wanted = site_budget.time_step(d, site_budget.Soil(*soil))
     assert summary["dt"] == pytest.approx(wanted, rel=1e-6)
+
+
+@pytest.mark.parametrize("per_step, skin", [(1e-5, 0.2), (0.0016, 0.2), (0.0036, 0.3), (0.0100, 0.5), (0.0144, 0.6), (1, 0.6)])
+def test_the_skin_of_neighbor_lists_follows_speed_and_step(tmp_path, per_step, skin):
+    """By the diameters that the fastest ball moves in a step, as the deck reckons."""
+    rule = re.findall(r"^variable +(?:thicker|skin) .*", (Path(site_deck.__file__).parent / site_deck.TEMPLATE).read_text(),
+                      re.MULTILINE)
+    d, speed = 2.5, 40.0
+    (tmp_path / "in.skin").write_text("\n".join([
+        f"variable d index {d}", f"variable speed index {speed}", f"variable dt equal {per_step * d / speed:.17g}", *rule,
+        'print "skin $(v_skin:%.10g)" file skin.txt']) + "\n")
+    subprocess.run([LMP, "-in", "in.skin", "-log", "none"], cwd=tmp_path, check=True, stdin=subprocess.DEVNULL,
+                   stdout=subprocess.DEVNULL)
+    assert float((tmp_path / "skin.txt").read_text().split()[1]) == pytest.approx(skin * d, rel=1e-6)
 
 
 # --- bad input: one line that names file, item, rule and value; no folder ---
@@ -695,7 +742,8 @@ def test_an_ensemble_of_a_site(done):
     """Its deck with the distributions of mobile masses; known events that do not cover it are refused at once."""
     listed = inside(done[0], "study", "mine", "--sample", "6", "--dry-run")
     assert listed.returncode == 0 and "6 runs, 0 of them finished" in listed.stdout, listed.stderr
-    assert all(listed.stdout.count(f"{name} 0.") >= 5 for name in ("rolling", "spacing", "xoffset"))
+    assert all(listed.stdout.count(f"{name} 0.") >= 5 for name in ("rolling", "spacing"))
+    assert len(set(re.findall(r"packing (\d{4,6})\b", listed.stdout))) >= 5
     refused(inside(done[0], "study", "mine", "--sample", "6", "--mobility", "rock_avalanches"),
             "--known: must be a set that covers the mass: the set of known events does not cover this volume")
     refused(inside(done[0], "study", "mine", "--sample", "6", "--mesh", "10"),
@@ -707,7 +755,7 @@ def test_a_site_has_its_own_choices(tmp_path):
     """What site.yaml says is refused as an option, its default too: nothing is ignored without a word."""
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine" / "site.yaml").touch()
-    for option, *values in (("--set", "rolling=0"), ("--repeat", "xoffset=0.5"), ("--vary", "rolling=0:1"),
+    for option, *values in (("--set", "rolling=0"), ("--repeat", "packing=2"), ("--vary", "rolling=0:1"),
                             ("--known", "rock_avalanches"), ("--except", "x"),
                             ("--equally-good", "d"), ("--size-error", "converge.yaml"),
                             ("--intensity", "peak"), ("--more-than", "10"), ("--exceed", "0.1,0.5,1"),

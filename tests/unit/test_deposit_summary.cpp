@@ -20,6 +20,7 @@ static DepositSummary halted(double fast)
   DepositSummary s = DepositSummary();
   s.reason = "halted";
   s.motion.fast_share = fast;
+  s.rest_share = 0.01;
   return s;
 }
 
@@ -33,6 +34,10 @@ TEST(DepositSummary, AtRest)
   EXPECT_TRUE(halted(0.0).at_rest());
   EXPECT_TRUE(halted(0.0099).at_rest());
   EXPECT_FALSE(halted(0.01).at_rest());
+  DepositSummary wider = halted(0.02);
+  wider.rest_share = 0.03;
+  EXPECT_TRUE(wider.at_rest());
+  EXPECT_NE(wider.text().find("  rest_share: 0.03  #"), std::string::npos);
   for (const char *reason : {"run completed", "time limit", "running"}) {
     DepositSummary s = halted(0.0);
     s.reason = reason;
@@ -46,7 +51,7 @@ TEST(DepositSummary, Release)
   s.release.bulk_factor = 6.0 / 3.14159265358979323846;
   EXPECT_TRUE(has(s.text(), "  region: null"));
   EXPECT_TRUE(has(s.text(), "  body_volume: null"));
-  s.release = {12.0, 6.25, "it's", 10.0, 1.6};
+  s.release = {12.0, 6.25, "it's", 10.0, 1.6, 4.5, 2.0e4};
   EXPECT_NEAR(s.release.from_cubic(), 1.6 / 1.9098593171027440 - 1.0, 1e-15);
   for (const char *line : {"  region: 'it''s'", "  body_volume: 10.0", "  ball_volume: 6.25",
                            "  balls: 12", "  bulk_factor: 1.6", "bulk_factor: 1.6"})

@@ -138,7 +138,7 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
                 *site_warnings.site_warnings(found.measures, size, trial)):
         keep(one)
     site_warnings.write(new, warnings)
-    deck = site_deck.text(choices, parts, numbers(choices, trial, size))
+    deck = site_deck.text(choices, parts, numbers(choices, soil_of(choices, parts), trial, size))
     disk.write(new / site_deck.NAME, deck)
     draw(new / MAP, shown(found, layers, reached), f"{title}: {found.measures.volume:,.0f} m\u00b3")
     files = sorted([path.name for path in new.iterdir()] + [site_choices.NAME])
@@ -217,15 +217,22 @@ def room_of(raster: Raster) -> float:
     return geometry.box_of(raster).area * max(float(np.nanmax(raster.z) - np.nanmin(raster.z)), raster.transform.a)
 
 
-def numbers(choices: Choices, trial: Optional[Trial], size: Optional[Size], diameter: Optional[float] = None):
+def soil_of(choices: Choices, parts: site_deck.Parts) -> site_budget.Soil:
+    """What the stiffness depends on; of the trial run, where the speed is still unknown, by weight alone."""
+    model = choices["model"]
+    return site_budget.Soil(model["density"], parts.body.thick, model["speed"] or site_budget.SLOW)
+
+
+def numbers(choices: Choices, soil: site_budget.Soil, trial: Optional[Trial], size: Optional[Size],
+            diameter: Optional[float] = None):
     """What the choices leave open, for the deck."""
     model = choices["model"]
     d = diameter or (size.diameter if size else 0.0)
     seconds = None
     if trial and size:
-        steps = trial.typical / site_budget.time_step(d, model["speed"], model["density"])
+        steps = trial.typical / site_budget.time_step(d, soil)
         seconds = trial.setup + steps * size.balls * trial.cost
-    return site_deck.Numbers(d, model["speed"] or site_budget.SPEED,
+    return site_deck.Numbers(d, soil.speed,
                              model["duration"] or site_budget.LONGEST, model["cell"] or 1.0,
                              choices["motion"]["peak_friction"] or site_deck.LEAST_PEAK, trial and trial.typical,
                              seconds)
@@ -258,7 +265,8 @@ def tried_with(d: float, choices: Choices, parts: site_deck.Parts, found: releas
     for path in list(new.iterdir()):
         if path.suffix in (".asc", ".stl", ".csv", ".txt"):
             os.symlink(f"../{path.name}", folder / path.name)
-    disk.write(folder / site_deck.NAME, site_deck.text(coarse, parts, numbers(coarse, None, None, d)))
+    soil = soil_of(coarse, parts)
+    disk.write(folder / site_deck.NAME, site_deck.text(coarse, parts, numbers(coarse, soil, None, None, d)))
     try:
         trial = site_budget.measure(folder, site_deck.NAME, lmp)._replace(diameter=d)
     except SlopeError as error:
@@ -278,7 +286,7 @@ def settle(choices: Choices, parts: site_deck.Parts, found: release.Body, trial:
     model, balls = choices["model"], choices["balls"]
     model["speed"] = model["speed"] or site_budget.stiff_to(trial)
     model["duration"] = model["duration"] or site_budget.duration(trial)
-    size = site_budget.size(choices, parts.body.volume, trial, machine.jobs, raster.z.size)
+    size = site_budget.size(choices, parts.body.volume, soil_of(choices, parts), trial, machine.jobs, raster.z.size)
     balls["diameter"] = size.diameter
     model["cell"] = model["cell"] or max(found.area.cell, site_budget.three_digits(size.diameter / 2))
     return size

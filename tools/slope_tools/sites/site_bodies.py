@@ -55,6 +55,7 @@ def around(body: release_deck.Body, name: str, several: Dict[int, Known]) -> rel
     every = [body, *(one.deck for one in several.values())]
     low, high = np.min([one.box for one in every], axis=0), np.max([one.box for one in every], axis=0)
     return body._replace(slip=slip_name(name, f"${{{VARIABLE}}}"), lower=max(one.lower for one in every),
+                         thick=max(one.thick for one in every),
                          box=(low[0], high[1], low[2], high[3], low[4], high[5]))
 
 

@@ -15,7 +15,8 @@ from .. import processes
 from ..case import last_words, logs, run_folders
 from ..digits import rounded
 from ..errors import SlopeError
-from .site_choices import Choices, OFFSETS, other_grounds
+from ..releases import packing
+from .site_choices import Choices, PACKING, other_grounds
 
 DEFAULT = 2000          # balls, if no budget is given: 12 to 18 minutes on two cores for 6 million m3 of rock
 TRIAL = 800             # balls of the trial run
@@ -30,7 +31,12 @@ COLLECT = 1.5           # s of a run's volume and maps: after all runs, one afte
 REPORT = 15.0           # s of the report
 LONGER = 1.2            # times as many steps takes a run of the ensemble, whose ground may be smooth
 LEDGER = 1.4            # times as long takes a run that keeps account of its energy: that with half the step
-SPEED = 47.0            # m/s for which the paper's stiffness is sufficient
+SPEED = 47.0            # m/s, where no trial run tells
+SLOW = 1.0              # m/s, least speed; that of the trial run, which has the stiffness that the weight needs
+GRAVITY = 9.80665       # m/s2
+STIFFNESS_NUMBER = 2e4          # K: least stiffness over density of the ground, gravity, thickness of the body and diameter
+LAYERS = 7.0            # balls; bodies thicker than this need harder contacts, in proportion
+OVERLAP = 0.05          # of the diameter: that of a contact at the largest speed
 AIR = 1.2               # margin of the stiffness over the trial run's largest speed
 PATIENCE = 3.0          # duration: times the trial's time to rest
 LEAST_DURATION = 60.0   # s
@@ -72,10 +78,20 @@ class Size(NamedTuple):
     text: str                   # the runs in words
 
 
-def time_step(d: float, speed: float, density: float) -> float:
+class Soil(NamedTuple):
+    """What the stiffness of contacts depends on, beside the diameter of the balls."""
+    density: float          # of a ball, kg/m3
+    thick: float            # largest thickness of the body, m
+    speed: float            # largest, m/s
+
+
+def time_step(d: float, soil: Soil) -> float:
     """The deck's time step (s) for balls of diameter d (m)."""
-    stiffness = 1.96e9 * d / 1.25 * (speed / 47) ** 2
-    return 0.25 * math.sqrt(density * math.pi / 6 * d ** 3 / stiffness)
+    density, thick, speed = soil
+    mass = density * math.pi / 6 * d ** 3
+    by_weight = STIFFNESS_NUMBER * max(1.0, thick / (LAYERS * d)) * density * packing.SOLID * GRAVITY * thick * d
+    by_speed = mass * (speed / (OVERLAP * d)) ** 2
+    return 0.25 * math.sqrt(mass / max(by_weight, by_speed))
 
 
 def three_digits(value: float) -> float:
@@ -87,13 +103,13 @@ def three_digits(value: float) -> float:
 def trial_diameter(choices: Choices, volume: float) -> float:
     """Of the trial's balls (m): TRIAL of them, or fewer if the site has fewer."""
     balls = choices["balls"]
-    number = TRIAL
+    number: float = TRIAL
     if balls["diameter"]:
         number_of(choices, volume, balls["diameter"])
-        number = min(number, volume / balls["diameter"] ** 3)
+        number = min(number, packing.number(volume, balls["diameter"]))
     elif balls["number"]:
         number = min(number, balls["number"])
-    return three_digits((volume / max(number, 1)) ** (1 / 3))
+    return three_digits(packing.diameter(volume, max(number, 1)))
 
 
 def finer_diameter(choices: Choices, trial: Trial) -> Optional[float]:
@@ -166,14 +182,14 @@ class Plan(NamedTuple):
 def plan(choices: Choices) -> Plan:
     """Of the study by the paper's method, and the ensemble that is weighted by known events."""
     study, points = choices["study"], choices["study"]["points"]
-    each = 1 + sum(len(study[name]) for name in OFFSETS)
+    each = 1 + len(study[PACKING])
     grounds = other_grounds(choices)
     fine = study["fine"] not in ("no", False)
     parts = [(1.0, each * len(study["rolling"]) + len(grounds))]
     if fine:        # one of the paper's study, one of the ensemble
         parts.append((1 / study["fine"], 1 + (points > 0)))
-    text = (f"{sum(runs for _, runs in parts)} runs: {len(study['rolling'])} rolling resistances x {each} lattice "
-            "positions")
+    text = (f"{sum(runs for _, runs in parts)} runs: {len(study['rolling'])} rolling resistances x {each} "
+            "packings")
     if grounds:
         text += f", {len(grounds)} on other grounds"
     if fine:
@@ -184,12 +200,11 @@ def plan(choices: Choices) -> Plan:
     return Plan(parts, bool(choices["road"]["file"]), points, text)
 
 
-def study_seconds(d: float, volume: float, trial: Trial, speed: float, density: float, wanted: Plan,
-                  jobs: int) -> Tuple[float, float]:
+def study_seconds(d: float, volume: float, trial: Trial, soil: Soil, wanted: Plan, jobs: int) -> Tuple[float, float]:
     """What a study takes on this machine, with balls of diameter d in a body of that volume (m3); and at most."""
     def run(size: float, longer: float = 1.0) -> float:
-        steps = longer * trial.typical / time_step(size, speed, density)
-        return trial.setup + steps * volume / size ** 3 * trial.cost
+        steps = longer * trial.typical / time_step(size, soil)
+        return trial.setup + steps * packing.number(volume, size) * trial.cost
 
     total = sum(runs * run(factor * d) for factor, runs in wanted.parts)
     if wanted.half_step:
@@ -202,13 +217,13 @@ def study_seconds(d: float, volume: float, trial: Trial, speed: float, density: 
 def gigabytes(d: float, volume: float, cells: int, jobs: int, wanted: Plan) -> float:
     """The memory of all runs that are active at a time, of which one is the fine run."""
     finest = min(factor for factor, _ in wanted.parts)
-    balls = volume / d ** 3
+    balls = packing.number(volume, d)
     return jobs * (PER_RUN + PER_CELL * cells) + PER_BALL * balls * (jobs - 1 + finest ** -3)
 
 
 def fit(budget: float, cost: Callable[[float], float], volume: float, option: str, unit: str) -> float:
     """The smallest diameter (m) whose cost(d), which falls with d, is within a budget; SlopeError if none is."""
-    low, high = (volume / MOST) ** (1 / 3), (volume / FEWEST) ** (1 / 3)
+    low, high = packing.diameter(volume, MOST), packing.diameter(volume, FEWEST)
     if cost(high) > budget:
         raise SlopeError(option, f"must be at least {cost(high):.3g} {unit}, which a study with {FEWEST} balls takes",
                          f"{budget:g}")
@@ -221,8 +236,8 @@ def fit(budget: float, cost: Callable[[float], float], volume: float, option: st
 
 
 def stiff_to(trial: Optional[Trial]) -> float:
-    """The speed (m/s) for which the stiffness must be sufficient: the paper's, or more if the trial run was faster."""
-    return max(SPEED, float(f"{AIR * trial.speed:.2g}")) if trial else SPEED
+    """The speed (m/s) for which the stiffness must be sufficient."""
+    return max(SLOW, float(f"{AIR * trial.speed:.2g}")) if trial else SPEED
 
 
 def duration(trial: Optional[Trial]) -> float:
@@ -230,21 +245,21 @@ def duration(trial: Optional[Trial]) -> float:
     return max(LEAST_DURATION, 10.0 * math.ceil(PATIENCE * trial.rest / 10)) if trial else LONGEST
 
 
-def size(choices: Choices, volume: float, trial: Optional[Trial], jobs: int, cells: int) -> Size:
+def size(choices: Choices, volume: float, soil: Soil, trial: Optional[Trial], jobs: int, cells: int) -> Size:
     """The balls by the first of diameter, number, minutes, memory that is given; SlopeError if there are none such.
 
-    volume: of the body, m3; cells: of the terrain. The choices hold speed and density.
+    volume: of the body, m3; cells: of the terrain.
     """
-    balls, model, wanted = choices["balls"], choices["model"], plan(choices)
+    balls, wanted = choices["balls"], plan(choices)
 
     def seconds(d: float) -> Tuple[float, float]:
         assert trial is not None
-        return study_seconds(d, volume, trial, model["speed"], model["density"], wanted, jobs)
+        return study_seconds(d, volume, trial, soil, wanted, jobs)
 
     if balls["diameter"]:
         d = balls["diameter"]
     elif balls["number"]:
-        d = three_digits((volume / balls["number"]) ** (1 / 3))
+        d = three_digits(packing.diameter(volume, balls["number"]))
     elif balls["minutes"]:
         if trial is None:
             raise SlopeError("--minutes", "needs a LAMMPS program (LMP, --lmp) to measure this machine, --balls "
@@ -254,7 +269,7 @@ def size(choices: Choices, volume: float, trial: Optional[Trial], jobs: int, cel
         d = up(fit(balls["memory"], lambda one: gigabytes(one, volume, cells, jobs, wanted), volume, "--memory", "GB"))
     else:
         balls["number"] = DEFAULT
-        d = three_digits((volume / DEFAULT) ** (1 / 3))
+        d = three_digits(packing.diameter(volume, DEFAULT))
     least, most = seconds(d) if trial else (None, None)
     return Size(d, number_of(choices, volume, d), wanted.runs, least, most, gigabytes(d, volume, cells, jobs, wanted),
                 wanted.text)
@@ -262,7 +277,7 @@ def size(choices: Choices, volume: float, trial: Optional[Trial], jobs: int, cel
 
 def number_of(choices: Choices, volume: float, d: float) -> int:
     """The balls of diameter d (m) that a body (m3) is made of; SlopeError if they are too large or too many."""
-    number = round(volume / d ** 3)
+    number = round(packing.number(volume, d))
     if not 1 <= number <= MOST:
         raise SlopeError("--diameter" if choices["balls"]["diameter"] else "--balls", f"must make 1 to {MOST:,} balls "
                          f"of a body of {rounded(volume)} m3: {'smaller' if number < 1 else 'larger'} ones",

@@ -6,14 +6,17 @@ from typing import Any, Dict, NamedTuple, Optional, Sequence
 
 import jinja2
 
+from ..releases import packing
 from ..releases.release_deck import Body
 from ..slips.bodies import rank_of
+from . import site_budget
 from .site_choices import Choices, widest
 from .site_inputs import Line, Motion, Structure
 
 NAME = "in.site"
 TEMPLATE = "in.site.j2"
 KNOB = re.compile(r"variable +\w+ +index ")
+REST = 0.03             # share of the mass that may be faster than 0.1 m/s in a deposit at rest
 FRAMES = 40             # snapshots of a run, about
 BINS = 1000             # of the neighbor list for a ball, at most: each is cleared whenever the list is built
 REACH, WIDEST = 1.2, 5.0        # diameters: of the neighbor list; wider bins gain no more, and cost in a dense mass
@@ -54,10 +57,10 @@ def text(choices: Choices, parts: Parts, numbers: Numbers) -> str:
 def values(choices: Choices, parts: Parts, numbers: Numbers) -> Dict[str, Any]:
     """What the template is filled in with."""
     model, motion, body = choices["model"], choices["motion"], parts.body
-    balls = body.volume / numbers.diameter ** 3
+    balls = packing.number(body.volume, numbers.diameter)
     parameters: Dict[str, Any] = {
         "title": parts.title, "terrain": parts.terrain, "deck": NAME, "volume": f"{body.volume:,.0f}",
-        "balls": f"about {balls:,.0f}", "rest": "some" if numbers.rest is None else f"{numbers.rest:.0f}",
+        "balls": f"about {balls:,.0f}", "rest_s": "some" if numbers.rest is None else f"{numbers.rest:.0f}",
         "run_time": run_time(numbers.run_seconds), "lower": math.ceil(body.lower),
         "box": " ".join(plain(value) for value in body.box), "types": 4 if parts.structures else 3,
         "bins": bins(parts.room, body.volume),
@@ -70,6 +73,7 @@ def values(choices: Choices, parts: Parts, numbers: Numbers) -> Dict[str, Any]:
         ("d", numbers.diameter), ("spacing", model["spacing"]), ("widest", widest()),
         ("rolling", choices["study"]["rolling"][0]), ("friction", model["friction"]), ("slip", model["slip_friction"]),
         ("restitution", model["restitution"]), ("field_e", model["field_restitution"]), ("density", model["density"]),
+        ("thick", body.thick), ("stiffness_number", site_budget.STIFFNESS_NUMBER), ("rest", REST),
         ("speed", numbers.speed), ("duration", numbers.duration), ("cell", numbers.cell),
         ("concrete", choices["structures"]["friction"]), ("concrete_e", choices["structures"]["restitution"]),
         ("scale", motion["scale"]), ("shaking", parts.motion.length if parts.motion else 0),

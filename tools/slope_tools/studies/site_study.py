@@ -15,11 +15,11 @@ from ..findings import Finding, finding
 from ..runs import repeats
 from ..schemas import FINDINGS
 from ..sites import ground, site_choices, site_deck, site_warnings
-from ..sites.site_choices import Choices, OFFSETS, other_grounds
+from ..sites.site_choices import Choices, OFFSETS, PACKING, other_grounds
 from ..sites.site_layers import OBSERVED, ROAD
 from ..survey.roads import Asked
 from ..tables import energy
-from ..tables.step_check import HALF, QUANTITY, Step
+from ..tables.step_check import QUANTITY, Step, half_of
 from ..tables.study_file import read_study
 from . import fine_runs, mapped, results, study
 from .setup import Road, Setup
@@ -53,8 +53,8 @@ def run(folder: Path, engine: Setup, method: str, asked: Optional[str] = None) -
     setup = engine._replace(deck=deck, output=folder / STUDY, site=folder, road=None)
     if road["file"]:
         setup = setup._replace(road=Road(folder / ROAD, road["cut_angle"], road["mesh"], asked=Asked.of(road)))
-    repeated = {name: words(several[name]) for name in OFFSETS if several[name]}
     settings, variables = {"rolling": words(several["rolling"])}, decks.index_variables(deck)
+    repeated = {name: words(several[name]) for name in (PACKING, *OFFSETS) if name in variables and several.get(name)}
     middle = settings["rolling"][len(several["rolling"]) // 2]
     others = grounds(choices, variables)
     if others:
@@ -124,7 +124,7 @@ def grounds(choices: Choices, variables: Dict[str, str]) -> List[Dict[str, str]]
 def half_steps(setup: Setup, rolling: str, variables: Dict[str, str]) -> List[repeats.Repeat]:
     """One run with half the time step, which keeps account of its energy, too, unless the deck is of a version that
     cannot."""
-    settings = {"rolling": [rolling], "step": [HALF], **({LEDGER: ["1"]} if LEDGER in variables else {})}
+    settings = {"rolling": [rolling], "step": [half_of(variables)], **({LEDGER: ["1"]} if LEDGER in variables else {})}
     return repeats.plan(setup.runs, settings, {}, variables)
 
 
@@ -132,10 +132,11 @@ def step_of(setup: Setup, run_: repeats.Repeat, rolling: str, variables: Dict[st
     """What that run tells."""
     [row], _ = results.rows_of(setup, [run_], results.Maps(()), pictures=False)
     if run_.error:
-        return Step(rolling, None, f"{run_.name}: {run_.error}")
+        return Step(rolling, None, f"{run_.name}: {run_.error}", step=float(run_.chosen["step"]))
     prefix = run_folders.prefix_of(run_folders.summary_of(setup.output, row))
     return Step(rolling, row[QUANTITY], energy=energy.read(Path(f"{prefix}.{energy.SUFFIX}"))
-                if LEDGER in variables else None, spacing=variables.get("spacing"))
+                if LEDGER in variables else None, spacing=variables.get("spacing"),
+                step=float(run_.chosen["step"]))
 
 
 def scored(folder: Path, setup: Setup) -> None:

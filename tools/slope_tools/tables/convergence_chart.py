@@ -1,15 +1,15 @@
 """The chart of `slope sensitivity --converge`: every run and the means, over the thickness in balls."""
-import matplotlib
+from matplotlib.ticker import StrMethodFormatter
 
 from ..drawing import pictures
-from ..drawing.figures import COLOURS, FULL, GRAY, STYLE, plt
+from ..drawing.figures import COLOURS, FULL, GRAY, STYLE
 
 
 def draw(path, variable, panels, title):
     """Write the chart (PNG); panels: list of (name, unit, Convergence, [(size, value of a run), ...])."""
-    with plt.rc_context(STYLE):
+    with pictures.settings(STYLE):
         width = FULL if len(panels) > 1 else 0.6 * FULL
-        figure, axes = plt.subplots(1, len(panels), figsize=(width, 2.9), squeeze=False)
+        figure, axes = pictures.subplots(1, len(panels), figsize=(width, 2.9), squeeze=False)
         for axis, (name, unit, fit, points) in zip(axes[0], panels):
             thick = {size.d: size.balls for size in fit.sizes if size.balls is not None}
             at = (lambda d: thick[d]) if thick else (lambda d: d)
@@ -21,7 +21,7 @@ def draw(path, variable, panels, title):
             axis.set_title(f"{name} ({unit})", loc="left")
             axis.set_xlabel("balls over the thickness of the body" if thick else variable)
             axis.set_xlim(left=0)
-            axis.yaxis.set_major_formatter(matplotlib.ticker.StrMethodFormatter("{x:,.6g}"))
+            axis.yaxis.set_major_formatter(StrMethodFormatter("{x:,.6g}"))
             axis.grid(color="#dddddd", lw=0.5)
             axis.set_axisbelow(True)
             axis.spines[["top", "right"]].set_visible(False)

@@ -55,8 +55,8 @@ def read_effect(about: Optional[Mapping[str, Any]], key: str) -> Optional[Effect
 
 def open_of(balls: float, effects: Mapping[str, Effect]) -> Dict[str, Any]:
     """By which factors known cases grew from so many balls of thickness, for each column that they know."""
-    return {"balls_thick": balls, "growth": {key: size_family.growth(balls, size_family.COLUMN[key])._asdict()
-                                             for key in effects if key in size_family.COLUMN}}
+    known = {key: size_family.growth(balls, size_family.COLUMN[key]) for key in effects if key in size_family.COLUMN}
+    return {"balls_thick": balls, "growth": {key: one._asdict() for key, one in known.items() if one}}
 
 
 # --- words ---

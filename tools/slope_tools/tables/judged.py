@@ -5,7 +5,7 @@ A finding has the numbers of the gravest run, which is the first of its runs.
 from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence
 
 from ..case.logs import kind
-from ..deposits import rest
+from ..deposits import left_words, rest
 from ..deposits.travel_shares import BEYOND
 from ..findings import Finding, finding, gathered
 from ..sites.site_warnings import of_volume
@@ -14,6 +14,7 @@ from .released import Release, release
 
 BALANCE = 1e-9          # of the released volume
 LOST = 1e-6             # of the released volume
+SOFT = 1e4              # stiffness number: with softer contacts a mass goes too far
 VERSIONS = ("slope_version", "lammps_version", "lmp_sha256")
 
 Row = Mapping[str, Any]
@@ -24,6 +25,7 @@ def columns(summary: Mapping[str, Any], log) -> Dict[str, Any]:
     state, motion = rest.state(summary), summary["motion"]
     return {**quantities.of_summary(summary), "at_rest": state.at_rest, "end": state.text, "end_short": state.short,
             "moves_share": state.share, "moving_share": motion["moving_share"], "fast_share": motion.get("fast_share"),
+            "stiffness_number": (summary.get("release") or {}).get("stiffness_number"),
             "fast_volume_m3": motion.get("fast_volume"), "fast_speed_m_s": motion.get("fast_speed"),
             "release": release(summary, [*log.notes, *log.warnings])._asdict(), "log_warnings": log.warnings}
 
@@ -31,8 +33,8 @@ def columns(summary: Mapping[str, Any], log) -> Dict[str, Any]:
 def of_runs(rows: Sequence[Row]) -> List[Finding]:
     """On runs, finished or failed."""
     finished = [row for row in rows if row["status"] == "finished"]
-    return [*failed(rows), *not_at_rest(finished), *lost(finished), *released(finished), *large(finished),
-            *balance(finished), *programs(finished), *of_road(finished)]
+    return [*failed(rows), *not_at_rest(finished), *lost(finished), *released(finished), *soft(finished),
+            *large(finished), *balance(finished), *programs(finished), *of_road(finished)]
 
 
 def of(row: Row) -> Sequence[str]:
@@ -66,15 +68,25 @@ def lost(finished: Sequence[Row]) -> List[Finding]:
     if not gone:
         return []
     much = any(volume[id(row)] > BEYOND * row["released_m3"] for row in gone)
-    most = float(volume[id(gone[0])])
+    most, left = float(volume[id(gone[0])]), gone[0].get("left") or ()
     return [Finding("lost much" if much else "lost", {
         "volume": most, "percent": 100 * most / gone[0]["released_m3"], "up_to": "up to " * (len(gone) > 1),
+        "where": f" ({left_words.where(left)})" if left else "",
+        "add": f" by {left_words.to_add(left)}" if left else "",
         "of": len(finished)}, tuple(name for row in gone for name in of(row)))]
 
 
 def released(finished: Sequence[Row]) -> List[Finding]:
     return gathered((one._replace(runs=of(row)) for row in finished for one in Release(**row["release"]).doubts),
                     len(finished))
+
+
+def soft(finished: Sequence[Row]) -> List[Finding]:
+    """Contacts that are too soft for the weight on them; none is known of runs of older versions, and others."""
+    found = sorted((row for row in finished if (row.get("stiffness_number") or SOFT) < SOFT),
+                   key=lambda row: row["stiffness_number"])
+    return gathered((Finding("soft", {"number": float(row["stiffness_number"]), "limit": SOFT}, of(row))
+                     for row in found), len(finished))
 
 
 def large(finished: Sequence[Row]) -> List[Finding]:
@@ -107,8 +119,8 @@ def of_logs(rows: Sequence[Row], said: Iterable[str]) -> List[Finding]:
                     lambda one: kind(one.numbers["line"]))
 
 
-KINDS = {"failed", "in motion", "moving", "lost much", "lost", "bulk factor", "body volume", "balls removed", "large",
-         "balance", "programs"}     # of the above: what a file says of them is judged from its rows
+KINDS = {"failed", "in motion", "moving", "lost much", "lost", "bulk factor", "body volume", "balls removed", "soft",
+         "large", "balance", "programs"}     # of the above: what a file says of them is judged from its rows
 
 
 def limits(study: Optional[Mapping[str, Any]], repeats: bool) -> List[Finding]:

@@ -61,12 +61,14 @@ def step_of(made: Made, code: Code, of: Mapping[str, Any]) -> Optional[Step]:
     if code is Code.RANGE:
         return Step("runs with less resistance than the least that was tried", ensemble(made, wider=True),
                     made.seconds)
+    if code is Code.SIZE:
+        return finer_balls(made)
     if code is not Code.RULE:
         return None
     rule = Rule(of["rule"])
-    if rule is Rule.LEFT:
-        return Step(*larger_terrain(made), made.seconds)
     mine = next((one for one in made.withheld if one["kind"] == rule.value), None)
+    if rule is Rule.LEFT:
+        return Step(*larger_terrain(made, str(((mine or {}).get("numbers") or {}).get("add") or "")), made.seconds)
     words = {Rule.BALLS: "smaller balls in the model", Rule.RUNS: "more time for the mass to come to rest",
              Rule.MOBILITY: "runs with less resistance"}
     return Step(words[rule], mine["remedy"], times(made, rule, of)) if mine else None
@@ -95,14 +97,26 @@ def more_runs(made: Made) -> Optional[Step]:
     return Step("more runs", ensemble(made, MORE), None if whole is None else (MORE - 1) * whole)
 
 
-def larger_terrain(made: Made) -> Tuple[str, str]:
-    site = made.site
+def finer_balls(made: Made) -> Optional[Step]:
+    """The study once more with balls of half the diameter; None where it is none of a site."""
+    site, whole = made.site, made.seconds
+    row = next((one for one in made.study["runs"] if one["status"] == "finished"), None)
+    if site is None or row is None:
+        return None
+    number = round(8 * row["released_m3"] / row["ball_m3"], -2)
+    return Step("smaller balls in the model", f"tools/slope site {quote(str(site))} --balls {number:.0f} && tools/slope "
+                f"study {quote(str(site))} --anew", None if whole is None else 16 * whole)
+
+
+def larger_terrain(made: Made, add: str = "") -> Tuple[str, str]:
+    """add: how much on which side, in words."""
+    site, larger = made.site, "a larger elevation model" + f", by {add}" * bool(add)
     if site is None:
-        return ("a larger elevation model, and the box of the deck with it",
+        return (f"{larger}, and the box of the deck with it",
                 f"tools/slope study {quote(str(made.study['study']['deck']))} ... --anew")
     folder = quote(str(site))
-    return "a larger elevation model", (f"terrain.files, terrain.bounds in {folder}/{site_choices.NAME}, then: "
-                                        f"tools/slope site {folder} && tools/slope study {folder} --anew")
+    return larger, (f"terrain.files, terrain.bounds in {folder}/{site_choices.NAME}, then: "
+                    f"tools/slope site {folder} && tools/slope study {folder} --anew")
 
 
 def ensemble(made: Made, factor: int = 1, wider: bool = False) -> str:

@@ -36,8 +36,9 @@ def cases() -> Mapping[str, Sequence[Mapping[str, float]]]:
     return {name: sorted(rows, key=lambda row: row["balls"]) for name, rows in found.items()}
 
 
-def growth(balls: float, quantity: str, known: Optional[Mapping[str, Sequence[Mapping[str, float]]]] = None) -> Growth:
-    """From bodies of so many balls of thickness (> 0); quantity: REMOVE, BEYOND or LENGTH.
+def growth(balls: float, quantity: str,
+           known: Optional[Mapping[str, Sequence[Mapping[str, float]]]] = None) -> Optional[Growth]:
+    """From bodies of so many balls of thickness (> 0); quantity: REMOVE, BEYOND or LENGTH; None without cases.
 
     Between the sizes of a case its values are interpolated by the logarithms of both; below its coarsest one that
     counts, and from 16 balls on nothing grows that was seen.
@@ -48,7 +49,7 @@ def growth(balls: float, quantity: str, known: Optional[Mapping[str, Sequence[Ma
         if len(line) > 1:
             factors.append(line[-1][1] / value_at(balls, line))
             finest.append(line[-1][0])
-    return Growth(min(factors), statistics.median(factors), max(factors), len(factors), min(finest))
+    return Growth(min(factors), statistics.median(factors), max(factors), len(factors), min(finest)) if factors else None
 
 
 def value_at(balls: float, line: Sequence[Tuple[float, float]]) -> float:

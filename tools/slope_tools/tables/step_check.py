@@ -1,12 +1,12 @@
 """What half the time step changes: one run with it, against the mean of the runs that are otherwise the same."""
-from typing import Any, Dict, NamedTuple, Optional, Sequence
+from typing import Any, Dict, Mapping, NamedTuple, Optional, Sequence
 
 from ..digits import rounded, to_three
+from ..errors import SlopeError
 from ..findings import Finding
 from ..statistics import headline
 from .combinations import Group
 
-HALF = "0.5"            # of the rule's step, the deck's variable `step`
 QUANTITY = "remove_m3"
 
 
@@ -17,6 +17,16 @@ class Step(NamedTuple):
     why: str = ""
     energy: Optional[Dict[str, Any]] = None     # of energy.read()
     spacing: Optional[str] = None       # of its ground
+    step: Optional[float] = None        # of the rule's: half of the deck's
+
+
+def half_of(variables: Mapping[str, str]) -> str:
+    """Half the step of a deck with these variables, as a value of its `step`."""
+    step = variables.get("step", "1")
+    try:
+        return f"{float(step) / 2:.10g}"
+    except ValueError:
+        raise SlopeError("step of the deck", "must be a number", step) from None
 
 
 def compare(step: Step, groups: Sequence[Group]) -> Dict[str, Any]:
@@ -25,7 +35,7 @@ def compare(step: Step, groups: Sequence[Group]) -> Dict[str, Any]:
     within_chance: None where the scatter of a run is unknown. Chance: a single run differs from the mean of n by less
     than t s sqrt(1 + 1/n) in 95 % of cases (Hahn and Meeker, Statistical Intervals, 1991, section 4.7).
     """
-    entry: Dict[str, Any] = {"step": float(HALF), "rolling": step.rolling, "volume_m3": step.volume, "mean_m3": None,
+    entry: Dict[str, Any] = {"step": step.step, "rolling": step.rolling, "volume_m3": step.volume, "mean_m3": None,
                              "chance_m3": None, "within_chance": None, "energy": step.energy, "doubts": []}
     same = next((group for group in groups if group.set.get("rolling") == step.rolling
                  and group.set.get("spacing", step.spacing) == step.spacing), None)
