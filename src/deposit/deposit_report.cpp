@@ -135,6 +135,7 @@ DepositSummary DepositReport::summary(const std::string &why, const DepositResul
   s.motion.moving_share = results.present > 0.0 ? moving / left : 0.0;
   s.motion.fast_share = s.motion.fast_volume / released.volume;
   s.change_rate = value[Result::CHANGE];
+  s.rest_share = options.rest;
   return s;
 }
 

@@ -688,3 +688,4 @@ region body sphere 5 5 5 0.4 units box
     found = summary(tmp_path, "collapse")
     assert found["stop"]["step"] == 21000 and found["stop"]["reason"] == "halted"
     assert found["grid"]["extent"] == [0, 60, 0, 40] and found["bulk_factor"] == 1.7
+    assert found["motion"]["rest_share"] == 0.03

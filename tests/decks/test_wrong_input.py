@@ -304,8 +304,12 @@ TABLE = {
         10 20 extent 0 8 0 x -> extent must be a finite number, got x
         10 20 cell 1 terrain ground output out extent 8 0 0 8 -> extent must have xlo < xhi and ylo < yhi, got 8 0 0 8
         10 20 cell 1 terrain ground output out extent 0 9 0 8 -> extent must lie in that of region ground, 0 8 0 8
-        10 20 color red -> : unknown keyword color, must be cell, terrain, output, bulk, extent, motion, window or
-        10 20 red -> : unknown keyword red, must be cell, terrain, output, bulk, extent, motion, window or series
+        10 20 rest 0 -> rest must be > 0, got 0
+        10 20 rest 0.2 -> rest must be at most 0.1, got 0.2
+        10 20 rest x -> rest must be a finite number, got x
+        10 20 rest -> rest: value 1 is missing
+        10 20 color red -> : unknown keyword color, must be cell, terrain, output, bulk, extent, motion, rest, window or
+        10 20 red -> : unknown keyword red, must be cell, terrain, output, bulk, extent, motion, rest, window or series
         """,  # noqa: E501
     ("motion", "fix shake soil ground/motion", "Fix ground/motion"): """
         -> needs FILE with lines t ax ay az
