@@ -539,14 +539,16 @@ def test_the_time_step_is_the_decks(done):
     assert summary["dt"] == pytest.approx(wanted, rel=1e-6)
 
 
-@pytest.mark.parametrize("per_step, skin", [(1e-5, 0.2), (0.0016, 0.2), (0.0036, 0.3), (0.0100, 0.5), (0.0144, 0.6), (1, 0.6)])
+@pytest.mark.parametrize("per_step, skin", [(1e-5, 0.2), (0.0016, 0.2), (0.0036, 0.3), (0.0100, 0.5), (0.0144, 0.6),
+                                            (1, 0.6)])
 def test_the_skin_of_neighbor_lists_follows_speed_and_step(tmp_path, per_step, skin):
     """By the diameters that the fastest ball moves in a step, as the deck reckons."""
-    rule = re.findall(r"^variable +(?:thicker|skin) .*", (Path(site_deck.__file__).parent / site_deck.TEMPLATE).read_text(),
-                      re.MULTILINE)
+    template = (Path(site_deck.__file__).parent / site_deck.TEMPLATE).read_text()
+    rule = re.findall(r"^variable +(?:thicker|skin) .*", template, re.MULTILINE)
     d, speed = 2.5, 40.0
     (tmp_path / "in.skin").write_text("\n".join([
-        f"variable d index {d}", f"variable speed index {speed}", f"variable dt equal {per_step * d / speed:.17g}", *rule,
+        f"variable d index {d}", f"variable speed index {speed}",
+        f"variable dt equal {per_step * d / speed:.17g}", *rule,
         'print "skin $(v_skin:%.10g)" file skin.txt']) + "\n")
     subprocess.run([LMP, "-in", "in.skin", "-log", "none"], cwd=tmp_path, check=True, stdin=subprocess.DEVNULL,
                    stdout=subprocess.DEVNULL)
