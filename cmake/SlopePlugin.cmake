@@ -16,7 +16,7 @@ set_target_properties(slopeplugin PROPERTIES
   CXX_STANDARD 17 CXX_STANDARD_REQUIRED ON CXX_EXTENSIONS OFF # of the newest LAMMPS' headers
   LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}")
 target_include_directories(slopeplugin PRIVATE
-  ${SLOPE_INCLUDES} "${CMAKE_BINARY_DIR}/styles" "${LAMMPS_SOURCE_DIR}/src")
+  ${SLOPE_INCLUDES} "${CMAKE_BINARY_DIR}/styles" "${LAMMPS_SOURCE_DIR}/src" "${LAMMPS_SOURCE_DIR}/src/GRANULAR")
 target_compile_definitions(slopeplugin PRIVATE
   LAMMPS_${sizes} SLOPE_LAMMPS_VERSION=${SLOPE_LAMMPS_VERSION})
 if(BUILD_MPI)

@@ -1,9 +1,10 @@
 #!/usr/bin/python3
-"""Makes terrain.asc of this case: an embankment above a road, drawn from the paper's scale.
+"""Makes terrain.asc of this case: an embankment above a road.
 
-The elevation data of the site are not public, so this is a reconstruction: plane faces and a
-gentle valley, heights in metres on a 2.5 m grid. x runs from the fields up to the plateau,
-y along the road. Run it in this folder; it overwrites terrain.asc.
+The elevation data of the site (Geospatial Information Authority of Japan, free after
+registration) are not shipped, and the paper's text has no dimensions of the face: these are ours.
+Plane faces and a gentle valley, heights in metres on a 2.5 m grid. x runs from the fields up to the
+plateau, y along the road. Run it in this folder; it overwrites terrain.asc.
 """
 import numpy as np
 
@@ -13,20 +14,30 @@ ROAD = (60.0, 80.0)             # Route 4: level, at the toe
 TOE, SHOULDER = 84.0, 156.0     # foot and edge of the embankment's face
 HEIGHT = 36.0                   # of the shoulder above the toe: a face of 1 : 2
 
-x = np.arange(CELL / 2, X, CELL)
-y = np.arange(CELL / 2, Y, CELL)[::-1]          # ESRI rows run north to south
 
-# along x: fields falling away from the road, road, verge and ditch, face, plateau
-profile = np.interp(x, [0.0, 50.0, ROAD[0], ROAD[1], TOE, SHOULDER, X],
-                    [-4.0, -1.5, 0.0, 0.0, 0.0, HEIGHT, HEIGHT + 1.0])
+def heights(rise=HEIGHT, shoulder=SHOULDER):
+    """The rows of the raster, from north to south."""
+    x = np.arange(CELL / 2, X, CELL)
+    y = np.arange(CELL / 2, Y, CELL)[::-1]          # ESRI rows run north to south
 
-# the embankment fills a shallow valley: natural ground rises on both sides of it
-aside = np.clip(np.abs(y - Y / 2) - 45.0, 0.0, None)
-share = np.clip((x - TOE) / (SHOULDER - TOE), 0.0, 1.0)
-height = profile[None, :] + 0.15 * aside[:, None] * share[None, :]
+    # along x: fields falling away from the road, road, verge and ditch, face, plateau
+    profile = np.interp(x, [0.0, 50.0, ROAD[0], ROAD[1], TOE, shoulder, X],
+                        [-4.0, -1.5, 0.0, 0.0, 0.0, rise, rise + 1.0])
 
-with open("terrain.asc", "w") as out:
-    out.write(f"ncols {x.size}\nnrows {y.size}\nxllcorner 0\nyllcorner 0\n"
-              f"cellsize {CELL}\nNODATA_value -9999\n")
-    for row in height:
-        out.write(" ".join(f"{z:.3f}".rstrip("0").rstrip(".") for z in row) + "\n")
+    # the embankment fills a shallow valley: natural ground rises on both sides of it
+    aside = np.clip(np.abs(y - Y / 2) - 45.0, 0.0, None)
+    share = np.clip((x - TOE) / (shoulder - TOE), 0.0, 1.0)
+    return profile[None, :] + 0.15 * aside[:, None] * share[None, :]
+
+
+def write(path, height):
+    """An ESRI ASCII grid."""
+    with open(path, "w", encoding="ascii") as out:
+        out.write(f"ncols {height.shape[1]}\nnrows {height.shape[0]}\nxllcorner 0\nyllcorner 0\n"
+                  f"cellsize {CELL}\nNODATA_value -9999\n")
+        for row in height:
+            out.write(" ".join(f"{z:.3f}".rstrip("0").rstrip(".") for z in row) + "\n")
+
+
+if __name__ == "__main__":
+    write("terrain.asc", heights())

@@ -76,6 +76,13 @@ double PlanLine::checksum() const
   return sum;
 }
 
+double PlanLine::largest() const
+{
+  double most = 0.0;
+  for (const double one : xy) most = std::max(most, std::fabs(one));
+  return most;
+}
+
 /* ----------------------------------------------------------------------
    twice the area of the triangle a b c: > 0 if c is to the left of the line from a to b
 ------------------------------------------------------------------------- */
@@ -127,4 +134,38 @@ void PlanLine::cross(const double *from, const double *to, std::vector<Crossing>
   std::sort(found.begin() + before, found.end(), [](const Crossing &one, const Crossing &two) {
     return one.passed < two.passed;
   });
+}
+
+/* ---------------------------------------------------------------------- */
+
+static double square_of_distance(const double *a, const double *b)
+{
+  const double dx = a[0] - b[0], dy = a[1] - b[1];
+  return dx * dx + dy * dy;
+}
+
+bool PlanLine::is_near(const double *place, double reach) const
+{
+  return is_near(place, reach, 0, start.size() - 1);
+}
+
+/* ----------------------------------------------------------------------
+   From the first point to the last one: none of the way is farther from the point in the middle than
+   the longer half, so that most places need one comparison.
+------------------------------------------------------------------------- */
+
+bool PlanLine::is_near(const double *place, double reach, size_t first, size_t last) const
+{
+  const size_t middle = first + (last - first) / 2;
+  const double *p = &xy[2 * middle], *q = &xy[2 * last];
+  const double far = reach + std::max(start[middle] - start[first], start[last] - start[middle]);
+  if (square_of_distance(place, p) > far * far) return false;
+  if (middle > first)
+    return is_near(place, reach, first, middle) || is_near(place, reach, middle, last);
+
+  const double dx = q[0] - p[0], dy = q[1] - p[1];
+  const double part = ((place[0] - p[0]) * dx + (place[1] - p[1]) * dy) / (dx * dx + dy * dy);
+  const double within = std::min(1.0, std::max(0.0, part));
+  const double nearest[2] = {p[0] + within * dx, p[1] + within * dy};
+  return !(square_of_distance(place, nearest) > reach * reach);    // near, too, if it has no length
 }

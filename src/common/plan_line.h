@@ -37,14 +37,20 @@ class PlanLine {
   // Crossings of a straight path are appended, first ones first.
   void cross(const double *from, const double *to, std::vector<Crossing> &found) const;
 
+  // Whether any of it lies within reach of a place.
+  bool is_near(const double *place, double reach) const;
+
   double length() const { return start.empty() ? 0.0 : start.back(); }
   double checksum() const;    // other points, or another order, have another
+  double largest() const;     // of its coordinates, whatever their signs
 
   std::vector<double> xy;
   double xlo, xhi, ylo, yhi;    // bounding box
 
  private:
   std::vector<double> start;    // distance of each point along the line
+
+  bool is_near(const double *place, double reach, size_t first, size_t last) const;
 };
 
 }    // namespace Slope

@@ -157,7 +157,8 @@ template <class T, class N = T> struct ContactOf {
   T w[3];              // w_i - w_j, rad/s
   N rolling_radius;    // m
 
-  // 1, 0, 0, 1, 1 but in the steps in which the contact begins and ends, see ContactPasses::find_times()
+  // 1 (weight, touches, grown) or 0 (the others), but in the steps in which the contact begins and ends: see
+  // ContactPasses::find_times()
   T weight;    // of the normal dashpot
   T beyond;    // stretch of the normal spring beyond the overlap, m
   T first;     // 1 in the first step, 0 in others

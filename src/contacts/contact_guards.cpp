@@ -32,7 +32,7 @@ static constexpr double DEEP = 0.1;         // overlap, of the smaller radius, t
 /* ---------------------------------------------------------------------- */
 
 ContactGuards::ContactGuards(LAMMPS *lmp, const ContactTable &contacts) :
-    Pointers(lmp), table(contacts), energy(lmp), motion(lmp), overlaps{0.0, 0, 0, 0}
+    Pointers(lmp), energy(lmp), table(contacts), motion(lmp), overlaps{0.0, 0, 0, 0}
 {
 }
 
@@ -57,8 +57,8 @@ void ContactGuards::say(const std::string &text)
 void ContactGuards::start(int freeze_group_bit)
 {
   print_table();
-  check_timestep();
-  check_dashpots();
+  told.clear();
+  check_balls();
   check_neighbor_lists();
   overlaps = {0.0, 0, 0, 0};
   energy.start();
@@ -67,10 +67,23 @@ void ContactGuards::start(int freeze_group_bit)
 
 void ContactGuards::print_table()
 {
-  const std::string text = table.text(update->dt) +
+  std::string text = table.text(update->dt) +
       fmt::format("  contact kernel {}\n", Slope::ContactKernels::current_name());
+  const std::string unknown = energy.unknown_work();
+  if (!unknown.empty())
+    text += fmt::format("  energy is not checked: {} may do work of its own\n", unknown);
   if (text != printed && comm->me == 0) utils::logmesg(lmp, text);
   printed = text;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void ContactGuards::check_balls()
+{
+  check_timestep();
+  for (int i = 1; i <= atom->ntypes; i++)
+    for (int j = i; j <= atom->ntypes; j++)
+      if (table.can_touch(i, j)) check_dashpots(i, j);
 }
 
 /* ----------------------------------------------------------------------
@@ -92,7 +105,7 @@ void ContactGuards::check_timestep()
       }
     }
   const double dt = update->dt;
-  if (dt <= bound * (1.0 + 1.0e-12) || comm->me > 0) return;
+  if (dt <= bound * (1.0 + 1.0e-12) || !told.insert("step").second) return;
   if (table.spring_bound(iworst, jworst) <= bound)
     warn("time step {:.4g} s is {:.3g} times the largest that was tested to hold the restitution, "
          "of several contacts at once too, 0.25 sqrt(m_min/kn) = {:.4g} s (types {} {})",
@@ -107,13 +120,6 @@ void ContactGuards::check_timestep()
    warn of dashpots and mass ratios beyond what the law follows
 ------------------------------------------------------------------------- */
 
-void ContactGuards::check_dashpots()
-{
-  for (int i = 1; i <= atom->ntypes; i++)
-    for (int j = i; j <= atom->ntypes; j++)
-      if (table.can_touch(i, j)) check_dashpots(i, j);
-}
-
 void ContactGuards::check_dashpots(int i, int j)
 {
   const ContactTable::TypeRange &a = table.range(i), &b = table.range(j);
@@ -123,13 +129,16 @@ void ContactGuards::check_dashpots(int i, int j)
       lightest = std::min(lightest, range->mass_min);
       heaviest = std::max(heaviest, range->mass_max);
     }
-  if (heaviest > MASS_RATIO_TESTED * lightest && a.moving && b.moving)
+  const auto first = [&](const char *what) {
+    return told.insert(fmt::format("{} {} {}", what, i, j)).second;
+  };
+  if (heaviest > MASS_RATIO_TESTED * lightest && a.moving && b.moving && first("masses"))
     warn("the masses of balls of types {} and {} that can touch are tested up to a ratio of {:g}, "
          "got {:.4g}",
          i, j, MASS_RATIO_TESTED, heaviest / lightest);
   const Slope::SpringDashpot normal = table.normal(i, j);
   const double zeta = normal.damping_ratio(lightest);
-  if (zeta > ZETA_FOLLOWED && table.is_exact())
+  if (zeta > ZETA_FOLLOWED && table.is_exact() && first("damping"))
     warn("damping ratio of types {} and {} must be <= {:g} to be followed in time, got {:.4g} (cn "
          "{:.4g} N s/m, lightest ball {:.4g} kg): these contacts do not rebound and rest at the "
          "right overlap, but reach it too fast",
@@ -142,6 +151,10 @@ void ContactGuards::check_dashpots(int i, int j)
 
 void ContactGuards::check_neighbor_lists()
 {
+  if (neighbor->build_once)
+    warn("neigh_modify once should be no, got yes: balls that come near each other or a wall later "
+         "are "
+         "not found, and pass through");
   if (neighbor->delay == 0 && neighbor->every == 1 && neighbor->dist_check) return;
   warn("with neigh_modify every {} delay {} check {} contacts may be found late and rebound too "
        "fast; every 1 delay 0 check yes finds them in time",

@@ -13,6 +13,7 @@
 
 #include "energy_guard.h"
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -54,9 +55,13 @@ class ContactGuards : protected Pointers {
   void start(int freeze_group_bit);
   void begin_step();    // collective
 
+  // whatever of step, dashpots and masses is not sensible and has not been told in this run: when balls have come or changed,
+  // and the step
+  void check_balls();
+
   void record_overlap(int i, double overlap, double radius);    // m; radius: the smaller one
   void watch_energy(double elastic);    // J, of this rank's springs; collective
-  void check_finite() const { energy.check_finite(); }
+  EnergyGuard energy;
   void say(const std::string &text);    // a warning of a wall; by rank 0, or by all
   void report();                        // at the end of a run; collective
 
@@ -72,8 +77,8 @@ class ContactGuards : protected Pointers {
  private:
   const class ContactTable &table;
   std::string printed;    // table as last printed
-  EnergyGuard energy;
   MotionGuard motion;
+  std::set<std::string> told;    // by check_balls() in this run
 
   // contacts that were seen deeper than is sensible: with every neighbor list and by watch_energy()
   struct Overlaps {
@@ -85,7 +90,6 @@ class ContactGuards : protected Pointers {
   template <typename... Args> void warn(const char *format, const Args &...args);
   void print_table();
   void check_timestep();
-  void check_dashpots();
   void check_dashpots(int itype, int jtype);
   void check_neighbor_lists();
 };

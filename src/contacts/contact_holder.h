@@ -20,6 +20,9 @@ class ContactHolder {
   // of the springs of this rank's contacts, J
   virtual double elastic_energy() const = 0;
 
+  // balls have come, or changed their sizes: whether the wall is made for them; collective
+  virtual void check_sizes() {}
+
  protected:
   ~ContactHolder() = default;    // not virtual: that of Fix may throw in some versions of LAMMPS
 };

@@ -8,8 +8,7 @@
 #include "archive.h"
 #include "atom.h"
 #include "error.h"
-#include "fix.h"
-#include "lammps_compat.h"
+#include "inserted_balls.h"
 
 #include <algorithm>
 #include <cmath>
@@ -88,22 +87,24 @@ void ContactTable::find_ranges(int freeze_group_bit)
     range.mass_max = value[MASS_MAX];
     range.radius_dynamic = value[DYNAMIC];
     range.radius_frozen = value[FROZEN];
-
-    // balls that fix pour or fix deposit will add later count as moving
-
-    for (const char *style : {"pour", "deposit"})
-      for (Fix *fix : compat::fixes_of_style(lmp, style)) {
-        int itype = t;
-        const double *radius = static_cast<double *>(fix->extract("radius", itype));
-        if (radius) range.radius_dynamic = std::max(range.radius_dynamic, *radius);
-      }
   }
-  std::fill(wall_type.begin(), wall_type.end(), 0);    // wall fixes announce themselves after
+  for (const InsertedBalls &balls : inserted_balls(lmp)) {
+    TypeRange &range = ranges[balls.type];
+    range.mass_min = range.moving ? std::min(range.mass_min, balls.mass_min) : balls.mass_min;
+    range.mass_max = std::max(range.mass_max, balls.mass_max);
+    range.radius_dynamic = std::max(range.radius_dynamic, balls.radius_max);
+    range.moving = true;
+  }
 }
 
 /* ----------------------------------------------------------------------
    a wall needs the law of every type that it meets
 ------------------------------------------------------------------------- */
+
+void ContactTable::forget_walls()
+{
+  std::fill(wall_type.begin(), wall_type.end(), 0);
+}
 
 void ContactTable::add_wall(int type, int groupbit, const char *style)
 {

@@ -41,9 +41,12 @@ class ContactTable : protected Pointers {
   }    // k: itype * (ntypes + 1) + jtype
   const TypeRange &range(int type) const { return ranges[type]; }
 
-  // at init: the balls of each type; walls are announced afterwards
+  // the balls of each type, and those that fix pour and fix deposit will add; collective
   void find_ranges(int freeze_group_bit);
-  void add_wall(int type, int groupbit, const char *style);    // meets the balls of a group
+
+  // at init, each wall: it meets the balls of a group
+  void forget_walls();
+  void add_wall(int type, int groupbit, const char *style);
 
   // one side moves, the other one does too, is frozen or a wall
   bool can_touch(int itype, int jtype) const;    // and there is a law

@@ -7,8 +7,10 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "fix.h"
 #include "lammps_compat.h"
 #include "memory.h"
+#include "modify.h"
 #include "update.h"
 
 #include <algorithm>
@@ -19,11 +21,12 @@ using namespace LAMMPS_NS;
 using Slope::Vector;
 
 static constexpr double ROUNDING = 1.0e-10;    // of the largest force
+static constexpr int ALL = 63;                 // velocities and spins, by bits
 
 /* ---------------------------------------------------------------------- */
 
 Continuation::Continuation(LAMMPS *lmp) :
-    Pointers(lmp), before(nullptr), force(nullptr), step(-1), dt(0.0)
+    Pointers(lmp), before(nullptr), force(nullptr), step(-1), dt(0.0), guided(false)
 {
 }
 
@@ -45,9 +48,50 @@ void Continuation::keep_forces()
   for (int i = 0; i < atom->nlocal; i++) {
     memcpy(force[i], atom->f[i], 3 * sizeof(double));
     memcpy(&force[i][3], atom->torque[i], 3 * sizeof(double));
+    force[i][CHANGED] = changed(i);
   }
   step = update->ntimestep;
   dt = update->dt;
+}
+
+/* ----------------------------------------------------------------------
+   Which velocities the second half of the step has changed: none that fix move prescribes, none of fix
+   nve/noforce. Fixes do not tell.
+------------------------------------------------------------------------- */
+
+bool Continuation::others_move() const
+{
+  int known = 0, mine = 0, any;
+  for (int k = 0; k < modify->nfix; k++) {
+    const Fix *fix = modify->fix[k];
+    const bool integrates = Slope::is_style(fix->style, "nve/sphere");
+    if (fix->time_integrate && !integrates) return true;
+    if (integrates || Slope::is_style(fix->style, "freeze")) known |= fix->groupbit;
+  }
+  for (int i = 0; i < atom->nlocal; i++)
+    if (!(atom->mask[i] & known)) mine = 1;
+  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+  return any;
+}
+
+void Continuation::note_half_step()
+{
+  if (!guided || atom->nlocal == 0) return;
+  const auto *const now = reinterpret_cast<const Vector *>(atom->v[0]);
+  const auto *const spin = reinterpret_cast<const Vector *>(atom->omega[0]);
+  v_half.assign(now, now + atom->nlocal);
+  omega_half.assign(spin, spin + atom->nlocal);
+}
+
+int Continuation::changed(int i) const
+{
+  if (!guided || i >= static_cast<int>(v_half.size())) return ALL;
+  int bits = 0;
+  for (int d = 0; d < 3; d++) {
+    if (atom->v[i][d] != (&v_half[i].x)[d]) bits |= 1 << d;
+    if (atom->omega[i][d] != (&omega_half[i].x)[d]) bits |= 8 << d;
+  }
+  return bits;
 }
 
 /* ----------------------------------------------------------------------
@@ -57,6 +101,9 @@ void Continuation::keep_forces()
 void Continuation::find_half_step()
 {
   forget_half_step();
+  guided = others_move();
+  v_half.clear();
+  omega_half.clear();
   if (!forces_known()) return;
 
   const int nlocal = atom->nlocal, nall = nlocal + atom->nghost;
@@ -72,8 +119,11 @@ void Continuation::find_half_step()
     const double *f = force[i];
     const double a = 0.5 * dt / atom->rmass[i];
     const double b = a / (0.4 * atom->radius[i] * atom->radius[i]);
-    now[i] = {now[i].x - a * f[0], now[i].y - a * f[1], now[i].z - a * f[2]};
-    spin[i] = {spin[i].x - b * f[3], spin[i].y - b * f[4], spin[i].z - b * f[5]};
+    const int bits = static_cast<int>(f[CHANGED]);
+    for (int d = 0; d < 3; d++) {
+      if (bits >> d & 1) (&now[i].x)[d] -= a * f[d];
+      if (bits >> d & 8) (&spin[i].x)[d] -= b * f[3 + d];
+    }
   }
   comm->forward_comm();    // to the ghosts
   std::swap_ranges(now, now + nall, v.begin());
@@ -115,32 +165,32 @@ void Continuation::begin_step()
 
 void Continuation::grow(int nmax)
 {
-  memory->grow(force, nmax, FORCE, "continuation:force");
+  memory->grow(force, nmax, KEPT, "continuation:force");
   memory->grow(before, nmax, BEFORE, "continuation:before");
 }
 
 void Continuation::copy(int from, int to)
 {
-  memcpy(force[to], force[from], FORCE * sizeof(double));
+  memcpy(force[to], force[from], KEPT * sizeof(double));
   memcpy(before[to], before[from], BEFORE * sizeof(double));
 }
 
 void Continuation::clear(int i)
 {
-  memset(force[i], 0, FORCE * sizeof(double));
+  memset(force[i], 0, KEPT * sizeof(double));
   memset(before[i], 0, BEFORE * sizeof(double));
 }
 
 int Continuation::pack(int i, double *buf) const
 {
-  memcpy(buf, force[i], FORCE * sizeof(double));
-  memcpy(buf + FORCE, before[i], BEFORE * sizeof(double));
+  memcpy(buf, force[i], KEPT * sizeof(double));
+  memcpy(buf + KEPT, before[i], BEFORE * sizeof(double));
   return STORED;
 }
 
 int Continuation::unpack(int i, const double *buf)
 {
-  memcpy(force[i], buf, FORCE * sizeof(double));
-  memcpy(before[i], buf + FORCE, BEFORE * sizeof(double));
+  memcpy(force[i], buf, KEPT * sizeof(double));
+  memcpy(before[i], buf + KEPT, BEFORE * sizeof(double));
   return STORED;
 }

@@ -20,7 +20,8 @@ namespace LAMMPS_NS {
 // is kept, moves between ranks with it and goes into restart files; taken back, it gives the velocities of
 // the middle, and with these the set-up finds the forces of the last step once more, but for rounding.
 // Before the first step those that were kept take their place. If they differ by more, something has been
-// changed in between, and those of the set-up stand.
+// changed in between, and those of the set-up stand. Where others than fix nve/sphere move balls, as fix move does, a force
+// may change nothing: what it changed in the last step is kept, too.
 class Continuation : protected Pointers {
  public:
   explicit Continuation(class LAMMPS *);
@@ -35,12 +36,13 @@ class Continuation : protected Pointers {
   void forget_half_step();
   std::vector<Slope::Vector> v, omega;
 
-  void begin_step();    // the first one takes the forces back
-  double **before;      // force (3) on each ball in the step before the last one, for scheme exact
+  void note_half_step();    // in the middle of each step
+  void begin_step();        // the first one takes the forces back
+  double **before;    // force (3) on each ball in the step before the last one, for scheme exact
 
   // --- storage by atom ---
 
-  static constexpr int STORED = 9;    // numbers of each ball
+  static constexpr int STORED = 10;    // numbers of each ball
   void grow(int nmax);
   void copy(int from, int to);
   void clear(int i);
@@ -54,10 +56,15 @@ class Continuation : protected Pointers {
   }
 
  private:
-  static constexpr int FORCE = 6, BEFORE = 3;
-  double **force;    // and torque, on each ball in the last step
+  static constexpr int FORCE = 6, CHANGED = FORCE, KEPT = FORCE + 1, BEFORE = 3;
+  double **force;    // and torque, on each ball in the last step; what they changed: changed()
   bigint step;       // the step that they belong to
   double dt;         // and its length
+  bool guided;       // some balls may be moved by others than fix nve/sphere
+  std::vector<Slope::Vector> v_half, omega_half;    // then, in the middle of this step
+
+  bool others_move() const;
+  int changed(int i) const;
 };
 
 // what changes velocities in the second half of a step beside the forces; a class, as the style that does so is in a room

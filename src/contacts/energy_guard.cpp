@@ -6,7 +6,6 @@
 #include "energy_guard.h"
 
 #include "atom.h"
-#include "domain.h"
 #include "error.h"
 #include "fix.h"
 #include "force.h"
@@ -23,8 +22,8 @@ using namespace FixConst;
 /* ---------------------------------------------------------------------- */
 
 EnergyGuard::EnergyGuard(LAMMPS *lmp) :
-    Pointers(lmp), known(false), begun(false), lowest(0.0), motion(0.0), grown(0.0), count(0),
-    number(0), pull{0.0, 0.0, 0.0}
+    Pointers(lmp), known(false), begun(false), gravity(lmp), lowest(0.0), motion(0.0), grown(0.0),
+    count(0), came(0.0), all_came(0.0), new_balls(false)
 {
 }
 
@@ -36,21 +35,32 @@ void EnergyGuard::start()
   motion = grown = 0.0;
   count = 0;
 
-  known = contacts_alone();
-  for (int k = 0; k < modify->nfix && known; k++)
-    known = does_no_work(Slope::plain_style(modify->fix[k]->style), modify->fmask[k]);
+  known = unknown_work().empty();
+  if (known) gravity.start();
+}
+
+std::string EnergyGuard::unknown_work() const
+{
+  const std::string other = other_forces();
+  if (!other.empty()) return other;
+  for (int k = 0; k < modify->nfix; k++) {
+    const Fix *fix = modify->fix[k];
+    if (!does_no_work(Slope::plain_style(fix->style), modify->fmask[k]))
+      return fmt::format("fix {} {}", fix->id, fix->style);
+  }
+  return "";
 }
 
 // other pair styles, bonds and the like have energies of their own
 
-bool EnergyGuard::contacts_alone() const
+std::string EnergyGuard::other_forces() const
 {
-  if (force->bond || force->angle || force->dihedral || force->improper || force->kspace)
-    return false;
+  if (force->bond || force->angle || force->dihedral || force->improper) return "bonds";
+  if (force->kspace) return "a kspace style";
   for (const std::string &style : compat::parts_of_hybrid(force->pair))
     if (!Slope::is_style(style, "gran/restitution") && !Slope::is_style(style, "zero"))
-      return false;
-  return true;
+      return "pair style " + style;
+  return "";
 }
 
 /* ----------------------------------------------------------------------
@@ -62,8 +72,8 @@ bool EnergyGuard::contacts_alone() const
 bool EnergyGuard::does_no_work(const std::string &style, int mask)
 {
   for (const char *name :
-       {"nve/sphere", "gravity", "freeze", "wall/gran/balls", "wall/gran/mesh", "ground/motion",
-        "control/line", "store/force", "CONTACT_HISTORY", "GROUP"})
+       {"nve/sphere", "gravity", "freeze", "enforce2d", "wall/gran/balls", "wall/gran/mesh",
+        "ground/motion", "control/line", "store/force", "CONTACT_HISTORY", "GROUP"})
     if (style == name) return true;
   for (const char *name : {"^adapt", "^deform", "^heat", "^momentum", "^nphug", "^press/",
                            "^python", "^set$", "^temp/"})
@@ -96,50 +106,37 @@ bool EnergyGuard::check(double elastic)
 {
   check_finite();
 
-  double moving = elastic, height = 0.0, gravity[3] = {0.0, 0.0, 0.0};
+  double moving = elastic;
   for (int i = 0; i < atom->nlocal; i++) {
     const double *v = atom->v[i], *w = atom->omega[i], r = atom->radius[i];
     moving += 0.5 * atom->rmass[i] *
         (v[0] * v[0] + v[1] * v[1] + v[2] * v[2] +
          0.4 * r * r * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]));
   }
-  for (Fix *fix : compat::fixes_of_style(lmp, "gravity")) {
-    int dim;
-    const double *g = static_cast<double *>(fix->extract("gvec", dim));
-    for (int i = 0; i < atom->nlocal; i++) {
-      if (!(atom->mask[i] & fix->groupbit)) continue;
-      double x[3];
-      domain->unmap(atom->x[i], atom->image[i], x);
-      height -= atom->rmass[i] * (g[0] * x[0] + g[1] * x[1] + g[2] * x[2]);
-    }
-    for (int d = 0; d < 3; d++) gravity[d] += g[d];
-  }
-
-  // what the motion of the ground has put in is counted, and taken out again
-
-  double given = 0.0;
+  end_list();
+  double given = gravity.done();
   for (Fix *fix : compat::fixes_of_style(lmp, "ground/motion")) {
     int dim;
     given += *static_cast<double *>(fix->extract("work", dim));
   }
-  double mine[3] = {moving, height, given};
+  double mine[3] = {moving, given, came};
   double all[3];
   MPI_Allreduce(mine, all, 3, MPI_DOUBLE, MPI_SUM, world);
-  const double energy = all[0] + all[1] - all[2];
+  const double energy = all[0] - all[1];
 
-  // balls that came or went and gravity that turns change the energy: start again
+  // balls that came bring energy: start again; those that went only took some
 
-  if (!begun || number != atom->natoms || !std::equal(gravity, gravity + 3, pull)) lowest = energy;
+  new_balls = begun && all[2] != all_came;
+  if (!begun || new_balls) lowest = energy;
   begun = true;
-  number = atom->natoms;
-  std::copy(gravity, gravity + 3, pull);
+  all_came = all[2];
   lowest = std::min(lowest, energy);
   motion = std::max(motion, all[0]);
 
-  // rounding of large heights and of much work is no growth
+  // rounding of much work is no growth
 
   const double growth = energy - lowest;
-  if (!known || growth <= 1.0e-9 * (std::fabs(all[1]) + std::fabs(all[2]))) return false;
+  if (!known || growth <= 1.0e-9 * std::fabs(all[1])) return false;
   grown = std::max(grown, growth / motion);
   return growth > GROWTH * motion && count++ == 0;
 }

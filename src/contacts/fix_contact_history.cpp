@@ -27,7 +27,7 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 
 static constexpr int STORED = Continuation::STORED;
-static constexpr int VERSION = 2;    // of what restart files hold
+static constexpr int VERSION = 3;    // of what restart files hold
 static const std::string CALLER = "Pair gran/restitution";
 
 /* ---------------------------------------------------------------------- */
@@ -54,6 +54,12 @@ FixContactHistory::~FixContactHistory()
 
 void FixContactHistory::pre_exchange()
 {
+  owner->run_guards().energy.end_list();
+  store_contacts();
+}
+
+void FixContactHistory::store_contacts()
+{
   if (!lists_used) return;
   lists_used = false;
   owner->store_flags();
@@ -71,6 +77,7 @@ void FixContactHistory::post_neighbor()
   FixNeighHistory::post_neighbor();
   pair->beyond_contact = 0;
   lists_new = true;
+  owner->run_guards().energy.begin_list();
 }
 
 void FixContactHistory::setup_post_neighbor()
@@ -144,7 +151,7 @@ void FixContactHistory::setup(int)
 void FixContactHistory::end_of_step()
 {
   if (update->ntimestep % EnergyGuard::EVERY)
-    owner->run_guards().check_finite();
+    owner->run_guards().energy.check_finite();
   else
     owner->watch_energy();
 }
@@ -158,6 +165,13 @@ void FixContactHistory::post_run()
 }
 
 /* ---------------------------------------------------------------------- */
+
+// by fix dt/reset
+
+void FixContactHistory::reset_dt()
+{
+  if (update->whichflag == 1) owner->run_guards().check_balls();
+}
 
 void FixContactHistory::initial_integrate(int)
 {
@@ -194,6 +208,7 @@ void FixContactHistory::set_arrays(int i)
   FixNeighHistory::set_arrays(i);
   continuation.clear(i);
   known_as[i] = 0;
+  if (owner) owner->run_guards().energy.ball_came();
 }
 
 int FixContactHistory::most_packed() const
@@ -222,7 +237,7 @@ int FixContactHistory::unpack_exchange(int i, double *buf)
 void FixContactHistory::write_restart(FILE *fp)
 {
   if (update->whichflag == 0) rename_partners();
-  pre_exchange();
+  store_contacts();
   if (!continuation.forces_known() && update->whichflag == 1)    // in a run: forces are known
     continuation.keep_forces();
   Slope::Archive to(style, VERSION);

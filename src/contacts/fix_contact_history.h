@@ -27,6 +27,7 @@ class FixContactHistory : public FixNeighHistory {
   void init() override;
   void setup(int) override;
   void initial_integrate(int) override;
+  void reset_dt() override;
   void pre_exchange() override;
   void setup_post_neighbor() override;
   void post_neighbor() override;
@@ -60,6 +61,7 @@ class FixContactHistory : public FixNeighHistory {
       *known_as;    // ID of each ball when the contacts were stored by atom; 0: it came after that
   RestartExtra restart_extra;
 
+  void store_contacts();
   void rename_partners();
   void archive(Slope::Archive &);    // members of a restart file
   int most_packed() const;           // numbers of a ball of this rank, as pack_exchange() has them

@@ -6,10 +6,13 @@
 #include "fix_contact_wall.h"
 
 #include "atom.h"
+#include "empty_group.h"
 #include "error.h"
 #include "exchange_size.h"
+#include "group.h"
 #include "modify.h"
 #include "pair_gran_restitution.h"
+#include "update.h"
 
 #include <algorithm>
 
@@ -21,7 +24,8 @@ static constexpr int VERSION = 5;    // of what restart files hold of a wall
 
 FixContactWall::FixContactWall(LAMMPS *lmp, int narg, char **arg, int keys) :
     Fix(lmp, narg, arg), caller(fmt::format("Fix {} {}", style, id)), pair(nullptr), wall_type(0),
-    records(keys), contacts_in_lists(false), kept_by_atom(false), restart_extra(lmp)
+    records(keys), contacts_in_lists(false), kept_by_atom(false), emptiness_told(false),
+    restart_extra(lmp)
 {
   scalar_flag = vector_flag = 1;
   extscalar = extvector = 1;
@@ -58,6 +62,7 @@ void FixContactWall::init()
     error->all(FLERR, "{}: requires pair_style gran/restitution, which holds its coefficients",
                caller);
   pair->announce_wall(this, wall_type, groupbit, style);
+  check_group();
 
   // contacts must be stored by atom before any fix migrates atoms
 
@@ -68,6 +73,24 @@ void FixContactWall::init()
                  modify->fix[i]->id, modify->fix[i]->style);
   }
   reserve();    // of a restart file's contacts, too
+}
+
+/* ----------------------------------------------------------------------
+   balls that are there and would fall through
+------------------------------------------------------------------------- */
+
+void FixContactWall::check_group()
+{
+  if (emptiness_told || update->whichflag != 1) return;
+  const bigint others = balls_beside_empty(lmp, groupbit, [this](int i) {
+    return pair->law(atom->type[i], wall_type) != nullptr;
+  });
+  if (others == 0) return;
+  emptiness_told = true;
+  pair->guards.say(fmt::format(
+      "{}: the group should have balls, got none of the {} that have coefficients with "
+      "type {}: they pass through; group {} has the balls that were there when it was defined",
+      caller, others, wall_type, group->names[igroup]));
 }
 
 /* ---------------------------------------------------------------------- */

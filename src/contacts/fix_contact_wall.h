@@ -61,8 +61,9 @@ class FixContactWall : public Fix, public ContactHolder {
   virtual void archive_wall(Slope::Archive &) = 0;
 
  private:
-  bool kept_by_atom;
+  bool kept_by_atom, emptiness_told;
   RestartExtra restart_extra;
+  void check_group();
   void store_contacts();
   void restart_members(Slope::Archive &);
   void reserve();    // room for a ball's contacts in messages between ranks; collective

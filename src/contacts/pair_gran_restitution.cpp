@@ -185,6 +185,15 @@ void PairGranRestitution::init_style()
                "Pair gran/restitution pair_style must be hybrid or hybrid/overlay with others, got "
                "{}, which scales the forces between balls but not those of walls",
                force->pair_style);
+  const auto parts = compat::parts_of_hybrid(force->pair);
+  const auto ours = std::count_if(parts.begin(), parts.end(), [](const std::string &part) {
+    return is_style(part, "gran/restitution");
+  });
+  if (ours > 1)
+    error->all(FLERR,
+               "Pair gran/restitution: needs one pair_style gran/restitution, got {} in pair_style "
+               "{}: contacts of both would not know of each other; types differ by pair_coeff",
+               ours, force->pair_style);
   require_run(lmp, "Pair gran/restitution");
   require_plain_units(lmp, "Pair gran/restitution");
   require_single_balls(lmp, "Pair gran/restitution");
@@ -212,10 +221,12 @@ void PairGranRestitution::init_style()
   for (const Fix *fix : compat::fixes_of_style(lmp, "freeze")) freeze_group_bit |= fix->groupbit;
   require_spins(lmp, "Pair gran/restitution", freeze_group_bit);
 
-  sizes_vary = !compat::fixes_of_style(lmp, "adapt").empty();
+  sizes_vary = !compat::fixes_of_style(lmp, "adapt").empty() ||
+      !compat::fixes_of_style(lmp, "set").empty();
   works.wanted = !compat::fixes_of_style(lmp, "energy/ledger").empty();
 
-  table.find_ranges(freeze_group_bit);    // wall fixes announce themselves after
+  table.find_ranges(freeze_group_bit);
+  table.forget_walls();    // wall fixes announce themselves after
   walls.clear();
 }
 
@@ -268,6 +279,10 @@ void PairGranRestitution::watch_energy()
   double elastic = lists.elastic_energy(balls, states.partners(balls), guards);
   for (const ContactHolder *wall : walls) elastic += wall->elastic_energy();
   guards.watch_energy(elastic);
+  if (!sizes_vary && !guards.energy.balls_came()) return;
+  table.find_ranges(freeze_group_bit);
+  guards.check_balls();
+  for (ContactHolder *wall : walls) wall->check_sizes();
 }
 
 /* ----------------------------------------------------------------------
@@ -318,6 +333,11 @@ void PairGranRestitution::compute(int eflag, int vflag)
   if (repeat || fix_history->lists_new)
     lists.build(*list, *fix_history, freeze_group_bit, sizes_vary, guards);
   fix_history->lists_new = false;
+
+  if (!repeat) {
+    guards.energy.in_step();
+    fix_history->continuation.note_half_step();
+  }
 
   // what touches, here and at the walls, and the number of contacts of each ball
 

@@ -57,7 +57,7 @@ class PairGranRestitution : public Pair, public ContactHistoryOwner {
   double atom2cut(int);
   double radii2cut(double, double);
 
-  // the pair style of this name, alone or in pair hybrid; nullptr if there is none
+  // the pair style of this name, alone or in pair hybrid; nullptr if there is none, or more than one
   static PairGranRestitution *of(class LAMMPS *);
 
   // for the walls, which register at init: the contact law of a type pair, nullptr where no pair_coeff

@@ -6,6 +6,7 @@
 #include "deposit_balls.h"
 
 #include "constants.h"
+#include "deposit_left.h"
 #include "histogram.h"
 #include "large_messages.h"
 
@@ -117,9 +118,9 @@ DepositBalls::Sums DepositBalls::bin(DepositBins &bins) const
    same comparisons as in Comm::exchange()
 ------------------------------------------------------------------------- */
 
-MassLedger::Mass DepositBalls::outside(MassLedger *ledger) const
+std::vector<int> DepositBalls::outside() const
 {
-  MassLedger::Mass count;
+  std::vector<int> found;
   const double *boxlo = domain->triclinic ? domain->boxlo_lamda : domain->boxlo;
   const double *boxhi = domain->triclinic ? domain->boxhi_lamda : domain->boxhi;
 
@@ -135,14 +136,9 @@ MassLedger::Mass DepositBalls::outside(MassLedger *ledger) const
       if (domain->boundary[dim][0] == 1 && x[dim] < boxlo[dim]) out = true;
       if (domain->boundary[dim][1] == 1 && x[dim] >= boxhi[dim]) out = true;
     }
-    if (!out) continue;
-    count.number += 1.0;
-    count.volume += volume_of(i);
-    const double *at = atom->x[i];
-    if (ledger)
-      ledger->note({(double) atom->tag[i], {at[0], at[1], at[2]}, (double) update->ntimestep});
+    if (out) found.push_back(i);
   }
-  return count;
+  return found;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -271,23 +267,44 @@ DepositSummary::Motion DepositBalls::motion(double threshold, double &moving) co
 
 /* ---------------------------------------------------------------------- */
 
-void DepositLosses::begin_command()
+MassLedger::Mass DepositLosses::mass_of(const std::vector<int> &some) const
 {
-  MassLedger::begin_command(balls.outside(nullptr));
+  Mass sum;
+  for (const int i : some) sum.volume += balls.volume_of(i);
+  sum.number = (double) some.size();
+  return sum;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void DepositLosses::begin_command(double now)
+{
+  const std::vector<int> outside = balls.outside();
+  MassLedger::begin_command(mass_of(outside));
+  left.begin_command(outside, now);
 }
 
 /* ---------------------------------------------------------------------- */
 
 void DepositLosses::end_command()
 {
-  if (in_command()) MassLedger::end_command(balls.outside(nullptr));
+  if (!in_command()) return;
+  const std::vector<int> still = balls.outside();
+  MassLedger::end_command(mass_of(still));
+  left.end_command(still);
 }
 
 /* ---------------------------------------------------------------------- */
 
-void DepositLosses::before_exchange()
+void DepositLosses::before_exchange(double now)
 {
-  lose(balls.outside(this));
+  const std::vector<int> outside = balls.outside();
+  lose(mass_of(outside));
+  for (const int i : outside) {
+    const double *x = atom->x[i];
+    note({(double) atom->tag[i], {x[X], x[Y], x[Z]}, (double) update->ntimestep});
+    left.lose(i, now);
+  }
 }
 
 /* ---------------------------------------------------------------------- */

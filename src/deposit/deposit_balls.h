@@ -30,8 +30,9 @@ class DepositBalls : protected Pointers {
   bool selected(int i) const;             // whether an atom is in the group
   void unwrap(int i, double *x) const;    // its place, which does not jump at periodic sides
 
-  // those that are outside of the box; with a ledger, which gets a note of each
-  Slope::MassLedger::Mass outside(Slope::MassLedger *) const;
+  double volume_of(int i) const;    // bulk
+
+  std::vector<int> outside() const;    // those that are outside of the box
 
   // --- of all ranks; collective ---
 
@@ -60,31 +61,37 @@ class DepositBalls : protected Pointers {
   double side_factor;    // side of a cube / diameter
 
   double side_of(int i) const;
-  double volume_of(int i) const;
   double speed_of(int i) const;
   void seen_from(const double *place, int i, double &distance, double &angle) const;
 };
 
 // The ledger of a fix deposit/grid: balls that LAMMPS deletes because they left the box are counted when
-// LAMMPS does it.
+// LAMMPS does it, and their places kept.
 class DepositLosses : public Slope::MassLedger, protected Pointers {
  public:
-  DepositLosses(class LAMMPS *lmp, const DepositBalls &balls_in) : Pointers(lmp), balls(balls_in) {}
+  DepositLosses(class LAMMPS *lmp, const DepositBalls &balls_in, class DepositLeft &left_in) :
+      Pointers(lmp), balls(balls_in), left(left_in)
+  {
+  }
 
   // write_restart and others move the atoms to their ranks without a call of a fix, and then drop
-  // those outside of the box: who was outside before and is gone afterwards was lost in the command
-  void begin_command();
+  // those outside of the box: who was outside before and is gone afterwards was lost in the command;
+  // the end is collective
+  void begin_command(double now);
   void end_command();
 
   // LAMMPS is about to send every ball to the rank that owns its place. A ball that is beyond a fixed
   // side of the box has no owner and is deleted without a message.
-  void before_exchange();
+  void before_exchange(double now);
 
   // collective: what all ranks lost since the last time; returns lines on the first balls
   std::vector<std::string> add_up();
 
  private:
   const DepositBalls &balls;
+  class DepositLeft &left;
+
+  Mass mass_of(const std::vector<int> &) const;
 };
 
 }    // namespace LAMMPS_NS

@@ -10,8 +10,9 @@
 
 using namespace Slope;
 
-// of a cell without a ball, kind by kind; the speed: no centre
-static const double NOTHING[DepositBins::KINDS] = {0.0, -1.0, 0.0};
+// of a cell without a ball: volume, speed (no centre), energy
+static const double NOTHING[] = {0.0, -1.0, 0.0};
+static_assert(sizeof(NOTHING) / sizeof(double) == DepositBins::KINDS, "one of each kind");
 
 enum { X, Y };
 

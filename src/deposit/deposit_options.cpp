@@ -6,6 +6,7 @@
 #include "deposit_options.h"
 
 #include "deposit_rasters.h"
+#include "deposit_summary.h"
 #include "elevation_grid.h"
 #include "lammps_compat.h"
 #include "region_surface.h"
@@ -20,6 +21,7 @@
 
 using namespace LAMMPS_NS;
 using Slope::DepositRasters;
+using Slope::DepositSummary;
 using Slope::PlanGrid;
 
 static constexpr double MAXBULK = 1.0e3;     // a ball's square must not be cut by countless cells
@@ -124,13 +126,20 @@ int Words::keyword()
     motion = positive();
     return 1;
   }
+  if (keyword == "rest") {
+    rest = positive();
+    if (rest > DepositSummary::MOVING_SHARE)
+      error->all(FLERR, "Fix deposit/grid rest must be at most {:g}, got {}",
+                 DepositSummary::MOVING_SHARE, text(1));
+    return 1;
+  }
   if (keyword == "bulk") return read_bulk();
   if (keyword == "window") return read_window();
   if (keyword == "series") return read_series();
   if (keyword == "extent") return read_extent();
   error->all(FLERR,
              "Fix deposit/grid: unknown keyword {}, must be cell, terrain, output, bulk, "
-             "extent, motion, window or series",
+             "extent, motion, rest, window or series",
              keyword);
   return 0;
 }

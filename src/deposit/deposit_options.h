@@ -20,6 +20,7 @@ struct DepositOptions {
   int nevery, nfreq, window = 0;
   std::string terrain, prefix;          // region of the ground; begins all names of files
   double cell = 0.0, motion = 0.1;      // m, m/s
+  double rest = 0.01;                   // of the released volume: less is fast in a mass at rest
   double bulk = Slope::SIMPLE_CUBIC;    // volume of the ground / volume of the balls; 0: from body
   std::string body;                     // region of the released ground; empty: bulk was given
   bool series = false;

@@ -23,8 +23,9 @@ static const double NaN = std::numeric_limits<double>::quiet_NaN();
 
 enum { X, Y };
 
-// of a cell where nothing ever was, kind by kind
-static const double UNTOUCHED[DepositRasters::KINDS] = {0.0, 0.0, 0.0, 0.0, NaN, NaN, 0.0};
+// of a cell where nothing ever was: thickness, largest thickness, speed and energy; arrival, last motion; snapshot
+static const double UNTOUCHED[] = {0.0, 0.0, 0.0, 0.0, NaN, NaN, 0.0};
+static_assert(sizeof(UNTOUCHED) / sizeof(double) == DepositRasters::KINDS, "one of each kind");
 
 /* ---------------------------------------------------------------------- */
 

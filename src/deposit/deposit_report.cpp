@@ -24,6 +24,8 @@ using Slope::DepositSummary;
 using Slope::FileSet;
 typedef DepositResults Result;
 
+static const std::string LEFT = ".left.csv";    // the balls that left the ground
+
 enum { X, Y, Z };
 
 /* ---------------------------------------------------------------------- */
@@ -40,7 +42,7 @@ DepositReport::DepositReport(LAMMPS *lmp, const std::string &id, const DepositOp
 void DepositReport::begin_run()
 {
   on_rank_zero(lmp, "Fix deposit/grid", [this]() {
-    std::vector<std::string> paths = {options.prefix + ".summary.yaml"};
+    std::vector<std::string> paths = {options.prefix + ".summary.yaml", options.prefix + LEFT};
     for (const DepositRasters::File &file : DepositRasters::files(options.prefix, ""))
       paths.push_back(file.path);
     FileSet::probe(paths);
@@ -74,7 +76,8 @@ void DepositReport::warn(const std::string &line)
 /* ---------------------------------------------------------------------- */
 
 void DepositReport::write(const std::string &why, const DepositResults &results,
-                          const DepositRasters &rasters, const ContactGuards *guards)
+                          const DepositRasters &rasters, const std::string &left,
+                          const ContactGuards *guards)
 {
   DepositSummary about = summary(why, results);
   note_guards(guards);
@@ -93,6 +96,7 @@ void DepositReport::write(const std::string &why, const DepositResults &results,
     FileSet files;
     for (const DepositRasters::File &file : DepositRasters::files(options.prefix, number))
       rasters.write(files.add(file.path), file);
+    files.add(options.prefix + LEFT).write(left);
     about.files = files.names();
     files.add(options.prefix + ".summary.yaml").write(about.text());
     files.commit();
@@ -136,6 +140,7 @@ DepositSummary DepositReport::summary(const std::string &why, const DepositResul
   s.motion.moving_share = results.present > 0.0 ? moving / left : 0.0;
   s.motion.fast_share = s.motion.fast_volume / released.volume;
   s.change_rate = value[Result::CHANGE];
+  s.rest_share = options.rest;
   return s;
 }
 

@@ -64,9 +64,9 @@ class DepositReport : protected Pointers {
   // to the screen, the log and the summary
   void warn(const std::string &);
 
-  // all files, or none; rasters: those of rank 0
+  // all files, or none; rasters, left (the text of PREFIX.left.csv): those of rank 0
   void write(const std::string &reason, const DepositResults &, const Slope::DepositRasters &,
-             const ContactGuards *);
+             const std::string &left, const ContactGuards *);
 
   void archive(Slope::Archive &);    // members of a restart file
 

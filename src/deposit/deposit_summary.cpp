@@ -125,12 +125,13 @@ void DepositSummary::write_motion(std::string &s) const
   line(s, "  fast_share", real(motion.fast_share) + "  # of the released volume");
   line(s, "  fast_volume", real(motion.fast_volume));
   line(s, "  fast_speed", real(motion.largest));
+  line(s, "  rest_share", real(rest_share) + "  # at rest, fast_share is below it");
   line(s, "change_rate",
        real(change_rate) + "  # share of the volume that changes cell, per second");
   line(s, "moving", motion.moving_share > MOVING_SHARE ? "true" : "false");
   line(s, "at_rest",
        std::string(at_rest() ? "true" : "false") + "  # ended by its halt, and fast_share < " +
-           real(REST_SHARE));
+           real(rest_share));
 }
 
 /* ---------------------------------------------------------------------- */

@@ -19,7 +19,6 @@ namespace Slope {
 // volumes are bulk unless stated otherwise.
 struct DepositSummary {
   static constexpr double MOVING_SHARE = 0.1;    // of the volume: more is a mass in motion
-  static constexpr double REST_SHARE = 0.01;     // of the volume: less may be fast in one at rest
   static constexpr double FAST = 0.1;            // m/s: faster than this is fast
 
   // --- versions, the run ---
@@ -72,9 +71,10 @@ struct DepositSummary {
     double fast_share;    // of the released volume
   } motion;
   double change_rate;
+  double rest_share;    // of the released volume: less may be fast in a mass at rest
 
   // the run ended by its criterion of rest and little is fast; a run that was cut never is at rest
-  bool at_rest() const { return reason == "halted" && motion.fast_share < REST_SHARE; }
+  bool at_rest() const { return reason == "halted" && motion.fast_share < rest_share; }
 
   // --- findings of the guards, warnings ---
 

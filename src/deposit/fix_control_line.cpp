@@ -3,13 +3,15 @@
    Distributed under the GNU General Public License, version 2
 ------------------------------------------------------------------------- */
 
-/* What crosses a line: the path of every ball in every step is tested against the vertical plane over
-   the line, right after the balls have moved, before LAMMPS deletes those that left the box. */
+/* What crosses a line: the path of every ball that can reach it is tested in every step against the
+   vertical plane over the line, right after the balls have moved, before LAMMPS deletes those that left
+   the box. Which can is found whenever the neighbor lists are built. */
 
 #include "fix_control_line.h"
 
 #include "atomic_file.h"
 #include "constants.h"
+#include "empty_group.h"
 #include "fix_deposit_grid.h"
 #include "lammps_compat.h"
 #include "large_messages.h"
@@ -26,6 +28,7 @@
 #include "error.h"
 #include "force.h"
 #include "group.h"
+#include "neighbor.h"
 #include "update.h"
 
 #include <algorithm>
@@ -172,10 +175,16 @@ void FixControlLine::setup(int /*vflag*/)
 {
   set_up = update->ntimestep;
   clock.begin(update->ntimestep, update->dt);
-  if (group->count(igroup) == 0 && comm->me == 0)
-    error->warning(
-        FLERR, "Fix control/line {}: the group should have balls, got none at the start of the run",
-        id);
+  const bigint others = balls_beside_empty(lmp, groupbit, [](int) {
+    return true;
+  });
+  if (others > 0 && comm->me == 0)
+    error->warning(FLERR,
+                   "Fix control/line {}: the group should have balls, got none of {}: group {} has "
+                   "the balls that were there when it was defined",
+                   id, others, group->names[igroup]);
+  skin = neighbor->skin;
+  watch();
   remember();
 }
 
@@ -183,6 +192,7 @@ void FixControlLine::end_of_step()
 {
   require_step(lmp, "Fix control/line", set_up);
   clock.pass(update->ntimestep);
+  if (neighbor->ago == 0 || (some && !lists_follow_motion())) watch();
   remember();
 }
 
@@ -192,35 +202,99 @@ void FixControlLine::reset_dt()
   if (update->whichflag == 1) clock.change_step_size(update->ntimestep, update->dt);
 }
 
+/* ----------------------------------------------------------------------
+   whether lists are built anew in the step in which any ball has moved by half the skin
+------------------------------------------------------------------------- */
+
+bool FixControlLine::lists_follow_motion() const
+{
+  return neighbor->every == 1 && neighbor->delay == 0 && neighbor->dist_check &&
+      !neighbor->build_once && !neighbor->includegroup;
+}
+
+/* ----------------------------------------------------------------------
+   A ball moves by half the skin at most before the lists are built anew, but for the step in which that
+   is found. One that moves by less than half the skin in that step, too, cannot reach a line that is
+   farther than the skin away. Those that are fast now are watched wherever they are.
+------------------------------------------------------------------------- */
+
+void FixControlLine::watch()
+{
+  static constexpr double ROUNDING = 1.0e-12;
+  number = atom->nlocal;
+  some = lists_follow_motion() && neighbor->ago == 0 && skin > 0.0;
+  farthest = 0.5 * skin;
+  const double reach = skin + ROUNDING * line.largest();
+  const double fast = 0.5 * farthest / update->dt;
+  watched.clear();
+  for (int i = 0; i < number; i++) {
+    double place[3];
+    domain->unmap(atom->x[i], atom->image[i], place);
+    const double *v = atom->v[i];
+    if (!some || line.is_near(place, reach) ||
+        v[X] * v[X] + v[Y] * v[Y] + v[Z] * v[Z] > fast * fast)
+      watched.push_back(i);
+  }
+  places.resize(3 * watched.size());
+}
+
 /* ---------------------------------------------------------------------- */
 
 void FixControlLine::remember()
 {
-  const int n = atom->nlocal;
-  places.resize(3 * (size_t) n);
-  for (int i = 0; i < n; i++) domain->unmap(atom->x[i], atom->image[i], &places[3 * i]);
+  for (size_t k = 0; k < watched.size(); k++)
+    domain->unmap(atom->x[watched[k]], atom->image[watched[k]], &places[3 * k]);
 }
 
 /* ---------------------------------------------------------------------- */
 
 void FixControlLine::post_integrate()
 {
-  const int n = atom->nlocal;
-  if (places.size() != 3 * (size_t) n)
+  if (atom->nlocal != number)
     error->one(
         FLERR,
         "Fix control/line {}: the number of balls must not change between two steps without a "
         "set-up, which pre no leaves out, got {} after {}",
-        id, n, places.size() / 3);
-  std::vector<PlanLine::Crossing> found;
-  for (int i = 0; i < n; i++) {
-    if (!(atom->mask[i] & groupbit)) continue;
-    const double *from = &places[3 * i];
-    double to[3];
-    domain->unmap(atom->x[i], atom->image[i], to);
-    found.clear();
-    line.cross(from, to, found);
-    for (const PlanLine::Crossing &crossing : found) note(i, from, to, crossing);
+        id, atom->nlocal, number);
+  for (size_t k = 0; k < watched.size(); k++) test(watched[k], &places[3 * k]);
+  if (some) test_fast();
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixControlLine::test(int i, const double *from)
+{
+  if (!(atom->mask[i] & groupbit)) return;
+  double to[3];
+  domain->unmap(atom->x[i], atom->image[i], to);
+  found.clear();
+  line.cross(from, to, found);
+  for (const PlanLine::Crossing &crossing : found) note(i, from, to, crossing);
+}
+
+/* ----------------------------------------------------------------------
+   A ball that was slow when the lists were built and now moves too far in one step, thrown by a contact
+   that has gone wrong: where it was follows from its velocity. One comparison for each component
+   of all velocities, without branches, tells that there is none.
+------------------------------------------------------------------------- */
+
+void FixControlLine::test_fast()
+{
+  if (number == 0) return;
+  const double limit = farthest / update->dt, *all = atom->v[0];
+  const double one = limit / sqrt(3.0);
+  int any = 0;
+  for (size_t k = 0; k < 3 * (size_t) number; k++) any |= std::fabs(all[k]) > one;
+  if (!any) return;
+
+  for (int i = 0; i < number; i++) {
+    const double *v = atom->v[i];
+    if (v[X] * v[X] + v[Y] * v[Y] + v[Z] * v[Z] <= limit * limit) continue;
+    if (std::binary_search(watched.begin(), watched.end(), i)) continue;
+    double from[3];
+    domain->unmap(atom->x[i], atom->image[i], from);
+    for (int c = 0; c < 3; c++) from[c] -= update->dt * v[c];
+    test(i, from);
   }
 }
 
@@ -373,6 +447,6 @@ void FixControlLine::restart(char *buffer)
 
 double FixControlLine::memory_usage()
 {
-  return (double) places.capacity() * sizeof(double) +
+  return (double) watched.capacity() * sizeof(int) + (double) places.capacity() * sizeof(double) +
       (double) (fresh.capacity() + log.events.capacity()) * sizeof(CrossingLog::Event);
 }

@@ -53,10 +53,16 @@ class FixControlLine : public Fix {
   bigint set_up = -1;    // step of the last set-up
   std::unique_ptr<class RegionSurface> ground;
 
-  // places of this rank's balls at the end of the last step, in the order of the atoms, which stays
-  // until balls have moved in the next one
+  // balls of this rank that may cross before the neighbor lists are built again, and where they were at
+  // the end of the last step; the order of the atoms stays until balls have moved in the next one
+  std::vector<int> watched;
   std::vector<double> places;
+  int number = 0;           // of the balls of this rank when they were chosen
+  bool some = false;        // not all of them are watched
+  double skin = 0.0;        // of the neighbor lists in this run
+  double farthest = 0.0;    // that a ball which is not watched may move in a step
 
+  std::vector<Slope::PlanLine::Crossing> found;    // of one path
   std::vector<Slope::CrossingLog::Event> fresh;    // of this rank, since collect()
   Slope::CrossingLog log;                          // of all ranks, on rank 0
   double result[NRESULT];
@@ -65,7 +71,11 @@ class FixControlLine : public Fix {
   void read_line();
   void find_deposit();
   void check_line() const;
+  bool lists_follow_motion() const;
+  void watch();
   void remember();
+  void test(int, const double *from);
+  void test_fast();
   void note(int, const double *, const double *, const Slope::PlanLine::Crossing &);
   void collect();
   void write_files();

@@ -17,6 +17,7 @@
 #include "requirements.h"
 #include "restart_archive.h"
 
+#include "atom.h"
 #include "comm.h"
 #include "error.h"
 #include "update.h"
@@ -53,8 +54,9 @@ enum { X, Y, Z };
 
 FixDepositGrid::FixDepositGrid(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), options(DepositOptions::read(lmp, narg, arg)),
-    balls(lmp, groupbit, options.bulk), losses(lmp, balls), report(lmp, id, options, balls),
-    results(), started(false), fresh(false), sampled(-1), warned(false), elapsed(0.0), offset(0.0)
+    balls(lmp, groupbit, options.bulk), left(lmp, balls, options), losses(lmp, balls, left),
+    report(lmp, id, options, balls), results(), started(false), fresh(false), sampled(-1),
+    warned(false), kept_by_atom(false), elapsed(0.0), offset(0.0)
 {
   nevery = options.nevery;
   make_rasters();
@@ -67,7 +69,13 @@ FixDepositGrid::FixDepositGrid(LAMMPS *lmp, int narg, char **arg) :
   extvector = -1;
   extlist = new int[Result::NUMBER];
   for (int k = 0; k < Result::NUMBER; k++) extlist[k] = Result::extensive(k);
-  restart_global = 1;
+  restart_global = restart_peratom = 1;
+  create_attribute = 1;
+  maxexchange = Slope::BallPath::NUMBERS;
+  left.grow(atom->nmax);
+  atom->add_callback(Atom::GROW);    // last: LAMMPS cannot undo it where the constructor fails
+  atom->add_callback(Atom::RESTART);
+  kept_by_atom = true;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -75,6 +83,9 @@ FixDepositGrid::FixDepositGrid(LAMMPS *lmp, int narg, char **arg) :
 FixDepositGrid::~FixDepositGrid()
 {
   delete[] extlist;
+  if (!kept_by_atom) return;
+  atom->delete_callback(id, Atom::GROW);
+  atom->delete_callback(id, Atom::RESTART);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -110,13 +121,15 @@ void FixDepositGrid::init()
     if (fix != this && static_cast<FixDepositGrid *>(fix)->options.prefix == options.prefix)
       error->all(FLERR, "Fix deposit/grid output must differ from that of fix {}, got {}", fix->id,
                  options.prefix);
+  left.check_restart(CALLER + id);
+  left.begin_run();
   report.begin_run();
   sampled = -1;
 
   // this may be the init() of a command that drops balls outside of the box
 
   if (started) losses.end_command();
-  losses.begin_command();
+  losses.begin_command(elapsed);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -125,6 +138,7 @@ void FixDepositGrid::setup_pre_exchange()
 {
   if (!started && update->whichflag == 1) start();
   if (started) losses.end_command();
+  offset = elapsed - clock();
   pre_exchange();
 }
 
@@ -132,7 +146,7 @@ void FixDepositGrid::setup_pre_exchange()
 
 void FixDepositGrid::pre_exchange()
 {
-  if (started) losses.before_exchange();
+  if (started) losses.before_exchange(now());
 }
 
 /* ----------------------------------------------------------------------
@@ -146,7 +160,7 @@ void FixDepositGrid::start()
   released = release.find();
   if (!options.body.empty()) {
     balls.set_bulk(released.body / released.mass.solid);
-    losses.begin_command();    // now that the volume of balls is known
+    losses.begin_command(elapsed);    // now that the volume of balls is known
   }
   released.volume = balls.volume();
   released.stiffness_number = release.stiffness_number(released);
@@ -216,6 +230,7 @@ void FixDepositGrid::sample(bool record)
 
   const double released = results.released.volume;
   double *value = results.vector;
+  if (record) left.sample(now());
   results.present = sums.number;
   value[Result::RELEASED] = released;
   value[Result::ON_GRID] = add_bins(record);
@@ -309,7 +324,7 @@ void FixDepositGrid::write_files(const std::string &reason)
 {
   if (sampled != update->ntimestep) sample(false);
   results.time = now();
-  report.write(reason, results, rasters, guards());
+  report.write(reason, results, rasters, left.csv(results.time), guards());
 }
 
 const ContactGuards *FixDepositGrid::guards() const
@@ -361,6 +376,7 @@ void FixDepositGrid::archive(Slope::Archive &archive)
   archive.number("snapshot_time", rasters.snapshot_time);
   archive.number("change", rasters.change);
   report.archive(archive);
+  left.archive(archive);
   archive.same("numbers_of_a_cell", PER_CELL);
   if (!archive.reads()) return;
   balls.set_bulk(bulk);
@@ -373,6 +389,7 @@ void FixDepositGrid::write_restart(FILE *fp)
   if (started) losses.end_command();
   if (started && (sampled != update->ntimestep || update->whichflag == 0)) sample(false);
   if (update->whichflag == 1) report.note_guards(guards());    // between runs they begin anew
+  left.collect();
   if (comm->me > 0) return;
 
   const int nrows = options.grid.n[Y];
@@ -437,5 +454,54 @@ void *FixDepositGrid::extract(const char *name, int & /*itype*/)
 
 double FixDepositGrid::memory_usage()
 {
-  return rasters.bytes() + bins.blocks().bytes();
+  return rasters.bytes() + bins.blocks().bytes() + left.bytes();
+}
+
+/* ----------------------------------------------------------------------
+   storage by atom: where each ball started and was seen
+------------------------------------------------------------------------- */
+
+void FixDepositGrid::grow_arrays(int nmax)
+{
+  left.grow(nmax);
+}
+
+void FixDepositGrid::copy_arrays(int i, int j, int /*delflag*/)
+{
+  left.copy(i, j);
+}
+
+void FixDepositGrid::set_arrays(int i)
+{
+  left.clear(i);
+}
+
+int FixDepositGrid::pack_exchange(int i, double *buf)
+{
+  return left.pack(i, buf);
+}
+
+int FixDepositGrid::unpack_exchange(int i, double *buf)
+{
+  return left.unpack(i, buf);
+}
+
+int FixDepositGrid::pack_restart(int i, double *buf)
+{
+  return left.pack_restart(i, buf);
+}
+
+void FixDepositGrid::unpack_restart(int i, int nth)
+{
+  left.unpack_restart(i, nth);
+}
+
+int FixDepositGrid::size_restart(int /*i*/)
+{
+  return DepositLeft::RESTART;
+}
+
+int FixDepositGrid::maxsize_restart()
+{
+  return DepositLeft::RESTART;
 }

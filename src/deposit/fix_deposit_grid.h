@@ -17,6 +17,7 @@ FixStyle(deposit/grid,FixDepositGrid);
 #include "archive.h"
 #include "deposit_balls.h"
 #include "deposit_bins.h"
+#include "deposit_left.h"
 #include "deposit_options.h"
 #include "deposit_rasters.h"
 #include "deposit_release.h"
@@ -44,6 +45,16 @@ class FixDepositGrid : public Fix {
   void *extract(const char *, int &) override;
   double memory_usage() override;
 
+  void grow_arrays(int) override;
+  void copy_arrays(int, int, int) override;
+  void set_arrays(int) override;
+  int pack_exchange(int, double *) override;
+  int unpack_exchange(int, double *) override;
+  int pack_restart(int, double *) override;
+  void unpack_restart(int, int) override;
+  int size_restart(int) override;
+  int maxsize_restart() override;
+
   // for fix control/line
   // bulk volume / volume of a ball; 0: not known yet
   double bulk() const { return balls.bulk(); }
@@ -52,6 +63,7 @@ class FixDepositGrid : public Fix {
  private:
   const DepositOptions options;
   DepositBalls balls;
+  DepositLeft left;
   DepositLosses losses;
   DepositReport report;
 
@@ -63,6 +75,7 @@ class FixDepositGrid : public Fix {
   bigint set_up = -1;     // step of the last set-up
   bigint sampled;         // step of the last sample
   bool warned;            // that the balance does not close
+  bool kept_by_atom;
 
   void make_rasters();
   void start();

@@ -48,7 +48,8 @@ void BallGround::find_bodies()
   const PlacementArguments &a = arguments;
   const auto others = compat::fixes_of_style(lmp, "wall/gran/balls");
   if (a.sink > 0.0)
-    sunk = std::make_shared<SunkRegion>(lmp, a.caller, a.region, a.side, a.sink, a.diameter);
+    sunk = std::make_shared<SunkRegion>(lmp, a.caller, a.region, a.side, a.sink, a.diameter,
+                                        a.rim == PlacementArguments::ENDED);
   if (sunk && a.side == RegionSurface::LOWER)
     for (Fix *fix : others) {
       const std::string &left_out = dynamic_cast<BallBody &>(*fix).left_out();
@@ -132,10 +133,17 @@ bool BallGround::height(double x, double y, double &z) const
 bool BallGround::keep(double x, double y) const
 {
   double z, bottom;
+  if (of_rim() && boundary->height(x, y, z) != (arguments.rim == PlacementArguments::WITHIN))
+    return false;
   for (const Sunk &body : bodies)
     if (body->centre(x, y, bottom) && height(x, y, z) && bottom < z) return false;
   if (!columns || (bodies.size() == 1 && bodies[0]->region == arguments.filter)) return true;
   return columns->height(x, y, z) == arguments.filter_inside;
+}
+
+bool BallGround::of_rim() const
+{
+  return arguments.rim == PlacementArguments::WITHIN || arguments.rim == PlacementArguments::BEYOND;
 }
 
 bool BallGround::scar(double x, double y, double &z) const
@@ -197,14 +205,14 @@ Slope::Surface BallGround::surface() const
   s.height = [=](double x, double y, double &z) {
     return in_plan(x, y) && height(x, y, z);
   };
-  if (!columns) return s;
+  if (!columns && !of_rim()) return s;
   s.keep = [=](double x, double y) {
     return in_plan(x, y) && keep(x, y);
   };
 
   // what lies outside of a region borders on the scar that it leaves
 
-  if (!arguments.filter_inside && (columns->has_boundary() || !bodies.empty()))
+  if (columns && !arguments.filter_inside && (columns->has_boundary() || !bodies.empty()))
     s.scar = [=](double x, double y, double &z) {
       return in_plan(x, y) && scar(x, y, z);
     };

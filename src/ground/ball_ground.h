@@ -52,6 +52,7 @@ class BallGround : protected Pointers {
 
   void find_bodies();
   bool height(double x, double y, double &z) const;
+  bool of_rim() const;
   bool scar(double x, double y, double &z) const;
   void check_floor() const;
 };

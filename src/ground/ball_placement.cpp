@@ -76,7 +76,7 @@ BallPlacement::~BallPlacement() = default;
 
 std::shared_ptr<SunkRegion> BallPlacement::sunk() const
 {
-  return ground->sunk;
+  return arguments.rim == PlacementArguments::BEYOND ? nullptr : ground->sunk;
 }
 
 const std::string &BallPlacement::outside() const
@@ -388,8 +388,13 @@ void BallPlacement::report(const SurfaceCounts &counts, bool known) const
     text += fmt::format("{} sunk by {}", k ? "," : "", ground->bodies[k]->sink);
   if (ground->sunk) {
     text += fmt::format(", sunk by {}", a.sink);
-    if (!ground->sunk->ground.empty())
+    if (a.rim == PlacementArguments::ENDED)
+      text += " and ended at the rim";
+    else if (!ground->sunk->ground.empty())
       text += " and continued up to region " + ground->sunk->ground;
+    if (a.rim == PlacementArguments::WITHIN || a.rim == PlacementArguments::BEYOND)
+      text += fmt::format(", {} the rim of region {}",
+                          a.rim == PlacementArguments::WITHIN ? "within" : "beyond", a.region);
   }
   if (a.smallest > 0.0 && a.smallest < a.diameter)
     text += fmt::format(", tight for balls of diameter {}", a.smallest);
@@ -403,8 +408,8 @@ void BallPlacement::report(const SurfaceCounts &counts, bool known) const
 
 const std::vector<double> &BallPlacement::fingerprint()
 {
-  if (!marks.empty()) return marks;
   check_regions();
+  if (!marks.empty()) return marks;
   marks = {static_cast<double>(counted), arguments.diameter};
   if (!sampler) {
     marks.insert(marks.end(), sums, sums + 3);

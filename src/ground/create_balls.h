@@ -24,6 +24,11 @@ class CreateBalls : public Command {
   void command(int, char **) override;
 
  private:
+  void check_box() const;
+  bigint place(double diameter, int narg, char **arg, std::vector<double> &xyz) const;
+  bigint fill(double diameter, int narg, char **arg, std::vector<double> &xyz) const;
+  void bounds(const class Region *, double lo[3], double hi[3]) const;
+  void half_a_ball(double diameter, double share[3]) const;
   void into_box(std::vector<double> &) const;
   bool mine(const double *) const;
 };

@@ -80,9 +80,8 @@ void DeleteBalls::command(int narg, char **arg)
   if (comm->me == 0)
     utils::logmesg(lmp,
                    "Delete_balls: {:.0f} balls of group {} removed that overlapped fixed balls by "
-                   "more than {:g} of their radius: {:.6g} m3 of balls, {:.6g} m3 of ground at "
-                   "6/pi; {:.0f} balls left\n",
-                   all[0], name, fraction, all[2], all[2] * 6.0 / Slope::PI, all[1]);
+                   "more than {:g} of their radius: {:.6g} m3 of balls; {:.0f} balls left\n",
+                   all[0], name, fraction, all[2], all[1]);
   if (all[1] == 0.0) error->all(FLERR, "Delete_balls: no ball of group {} is left", name);
   const double share = all[2] / (all[2] + all[3]);
   if (share > MUCH && comm->me == 0)

@@ -11,10 +11,10 @@
 
 #include "atom.h"
 #include "ball_placement.h"
-#include "comm.h"
 #include "contact_energy.h"
 #include "contact_guards.h"
 #include "error.h"
+#include "inserted_balls.h"
 #include "neighbor.h"
 #include "pair_gran_restitution.h"
 #include "style_argument.h"
@@ -97,14 +97,15 @@ void FixWallGranBalls::check_sizes()
 {
   const double smallest = placement->smallest();
   if (smallest == 0.0 || smaller_warned) return;
-  const double moving = BallPlacement::smallest_ball(lmp, groupbit);
+  double moving = BallPlacement::smallest_ball(lmp, groupbit);
+  for (const InsertedBalls &later : inserted_balls(lmp))
+    if ((later.mask & groupbit) && (moving == 0.0 || 2.0 * later.radius_min < moving))
+      moving = 2.0 * later.radius_min;
   if (moving == 0.0 || moving > smallest * (1.0 - SAME_SIZE)) return;
-  if (comm->me == 0)
-    error->warning(
-        FLERR,
-        "{}: balls of diameter {} may pass between these, placed for {} and larger, on steep "
-        "ground: define the fix after the balls, or with smallest {}",
-        caller, moving, smallest, moving);
+  pair->guards.say(
+      fmt::format("{}: balls of diameter {} may pass between these, placed for {} and larger, on "
+                  "steep ground: define the fix after the balls, or with smallest {}",
+                  caller, moving, smallest, moving));
   smaller_warned = true;
 }
 

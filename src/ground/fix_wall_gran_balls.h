@@ -39,6 +39,7 @@ class FixWallGranBalls : public FixContactWall, public BallBody {
 
   void find_contacts(bool repeat) override;
   double elastic_energy() const override;
+  void check_sizes() override;
 
   // largest overlap (m) of a ball at x with any fixed ball, <= 0 if it touches none
   double deepest_overlap(const double *x, double radius) const;
@@ -65,7 +66,6 @@ class FixWallGranBalls : public FixContactWall, public BallBody {
   {
     return {balls->places(), &radius, Slope::FixedPartners::ONE};
   }
-  void check_sizes();
   void take_contacts() override;
   void give_histories();
   void archive_wall(Slope::Archive &) override;

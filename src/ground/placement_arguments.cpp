@@ -26,7 +26,7 @@ PlacementArguments::PlacementArguments(LAMMPS *lmp, const std::string &caller_in
     Pointers(lmp),
     caller(caller_in), diameter(diameter_in), side(RegionSurface::UPPER),
     spacing(0.0), origin{0.0, 0.0}, scattered(false), seed(1), angle(0.0), filter_inside(true),
-    sink(0.0), filter_sink(-1.0), smallest(smallest_in)
+    rim(CONTINUED), sink(0.0), filter_sink(-1.0), smallest(smallest_in)
 {
   if (!(diameter > 0.0) || !std::isfinite(diameter))
     error->all(FLERR, "{} diameter must be > 0, got {}", caller, diameter);
@@ -72,7 +72,8 @@ void PlacementArguments::parse(int narg, char **arg, bool may_write)
     file = arg[1];
     iarg = 2;
   } else {
-    error->all(FLERR, "{} needs surface or file, got {}", caller, arg[0]);
+    error->all(FLERR, "{} needs {}, got {}", caller,
+               may_write ? "surface or file" : "surface, file or fill", arg[0]);
   }
 
   while (iarg < narg) {
@@ -80,12 +81,16 @@ void PlacementArguments::parse(int narg, char **arg, bool may_write)
     if (n == 0) n = parse_any(narg - iarg, &arg[iarg], may_write);
     if (n == 0)
       error->all(FLERR, "{} keyword must be {}inside{}, got {}", caller,
-                 region.empty() ? "" : "spacing, origin, pattern, angle, sink, sunk, smallest, ",
+                 region.empty() ? ""
+                                : "spacing, origin, pattern, angle, sink, sunk, smallest, rim, ",
                  may_write ? ", outside or write" : " or outside", arg[iarg]);
     iarg += n;
   }
   if (!region.empty() && spacing == 0.0)
     error->all(FLERR, "{} surface needs a spacing, got none", caller);
+  if (rim != CONTINUED && !(sink > 0.0 && side == RegionSurface::LOWER))
+    error->all(FLERR, "{} rim must be that of a lower surface with a sink > 0, got {}", caller,
+               side == RegionSurface::LOWER ? "sink 0" : "upper");
   if (filter_sink >= 0.0 && (filter.empty() || filter_inside))
     error->all(FLERR, "{} sunk needs outside REGION, got none", caller);
 }
@@ -103,6 +108,8 @@ int PlacementArguments::parse_surface(int narg, char **arg)
   } else if (strcmp(arg[0], "sunk") == 0) {
     filter_sink = number("H", narg, arg);
     check_sink(filter_sink, arg);
+  } else if (strcmp(arg[0], "rim") == 0) {
+    parse_rim(narg, arg);
   } else if (strcmp(arg[0], "smallest") == 0) {
     smallest = number("D", narg, arg);
     if (smallest <= 0.0) error->all(FLERR, "{} smallest must be > 0, got {}", caller, arg[1]);
@@ -126,6 +133,18 @@ int PlacementArguments::parse_surface(int narg, char **arg)
     return 0;
   }
   return 2;
+}
+
+void PlacementArguments::parse_rim(int narg, char **arg)
+{
+  need(1, "continued, ended, within or beyond", narg, arg);
+  const char *const names[] = {"continued", "ended", "within", "beyond"};
+  for (Rim one : {CONTINUED, ENDED, WITHIN, BEYOND})
+    if (strcmp(arg[1], names[one]) == 0) {
+      rim = one;
+      return;
+    }
+  error->all(FLERR, "{} rim must be continued, ended, within or beyond, got {}", caller, arg[1]);
 }
 
 int PlacementArguments::parse_pattern(int narg, char **arg)

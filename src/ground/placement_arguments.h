@@ -15,7 +15,8 @@ namespace LAMMPS_NS {
 // The arguments that say where fixed balls go, which fix wall/gran/balls and create_balls share:
 //
 //   surface REGION upper|lower spacing S [inside REGION | outside REGION [sunk H]] [origin x y]
-//     [sink H] [smallest D] [pattern grid | pattern scattered [SEED]] [angle DEG]
+//     [sink H [rim continued|ended|within|beyond]] [smallest D] [pattern grid | pattern scattered [SEED]]
+//     [angle DEG]
 //   file FILE [inside REGION | outside REGION]
 //   write FILE     in addition, if may_write
 //
@@ -36,6 +37,9 @@ class PlacementArguments : protected Pointers {
   double angle;    // of the plan grid, counterclockwise, radians
   std::string filter;
   bool filter_inside;
+  // where a sunk body ends: continued up to the ground, or not; all of that, or only what is within the
+  // body's plan or beyond it
+  enum Rim { CONTINUED, ENDED, WITHIN, BEYOND } rim;
   double sink, filter_sink;    // < 0: the sink of the fix that has sunk the filter's region
 
   // diameter of the smallest moving ball, at most that of the fixed ones; 0: unknown (file)
@@ -47,6 +51,7 @@ class PlacementArguments : protected Pointers {
   void parse(int, char **, bool);
   int parse_surface(int, char **);
   int parse_pattern(int, char **);
+  void parse_rim(int, char **);
   void check_pattern() const;
   int parse_any(int, char **, bool);
   void check_sink(double, char **) const;

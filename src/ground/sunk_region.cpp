@@ -24,9 +24,10 @@ static constexpr double SAME = 1.0e-6;    // heights, in diameters
 /* ---------------------------------------------------------------------- */
 
 SunkRegion::SunkRegion(LAMMPS *lmp, const std::string &caller, const std::string &region_in,
-                       int side_in, double sink_in, double diameter_in) :
+                       int side_in, double sink_in, double diameter_in, bool ends_in) :
     Pointers(lmp),
-    region(region_in), side(side_in), sink(sink_in), diameter(diameter_in), flush(false)
+    region(region_in), side(side_in), sink(sink_in), diameter(diameter_in), ends(ends_in),
+    flush(false)
 {
   boundary.reset(new RegionSurface(lmp, caller, region.c_str(), side, PITCH * diameter));
   if (side == RegionSurface::UPPER || !boundary->has_boundary()) return;
@@ -138,7 +139,8 @@ void SunkRegion::build()
                     boundary->yhi,
                     nullptr,
                     nullptr,
-                    side == RegionSurface::LOWER};
+                    side == RegionSurface::LOWER,
+                    ends};
   bed.height = [this](double x, double y, double near, double &z) {
     double end;    // a search of the column from its bottom takes long
     if (flush && std::isnan(near) && top->height(x, y, end))

@@ -37,7 +37,8 @@ SunkSurface::SunkSurface(const Bed &bed, double sink_in, double pitch) : sink(si
   if (!(bed.xlo <= bed.xhi) || !(bed.ylo <= bed.yhi))
     throw std::invalid_argument("the plan rectangle must not be empty");
 
-  const double margin = bed.body ? (bed.ground ? REACH + 1.0 : 1.0) * sink + 2.0 * pitch : 0.0;
+  const double margin =
+      bed.body ? (bed.ground && !bed.ends ? REACH + 1.0 : 1.0) * sink + 2.0 * pitch : 0.0;
   const double columns = std::ceil((bed.xhi - bed.xlo + 2.0 * margin) / pitch + 4.0) *
       std::ceil((bed.yhi - bed.ylo + 2.0 * margin) / pitch + 4.0);
   if (!(columns < MAX_COLUMNS)) throw std::length_error("2^31 columns");
@@ -253,14 +254,14 @@ void SunkSurface::go_on(const Bed &bed, const std::vector<Edge> &found)
   };
   SparsePlane<Nearest> nearest;
   nearest.reset(nx, ny, {-1, HUGE_VALF});
-  const double pitch = std::max(px, py), reach = bed.ground ? REACH * sink : 0.0;
+  const double pitch = std::max(px, py), reach = bed.ground && !bed.ends ? REACH * sink : 0.0;
   const int wide = static_cast<int>(reach / px), high = static_cast<int>(reach / py);
 
   for (size_t e = 0, next; e < found.size(); e = next) {
     const int i = found[e].i, j = found[e].j;
     Ramp ramp = {i, j, 0.0, 0.0, 0.0};
     double top;
-    const bool sloped = bed.ground && plane(i, j, ramp.gx, ramp.gy) &&
+    const bool sloped = bed.ground && !bed.ends && plane(i, j, ramp.gx, ramp.gy) &&
         bed.ground(column_x(i), column_y(j), UNKNOWN, top);
     if (sloped) ramp.under = top - z.get(i, j);
     bool rises = false;

@@ -96,6 +96,9 @@ struct Bed {
   // What is above the surface goes with it: the sunk surface reaches as far beyond the rim as a ball
   // of radius H around a point of the surface. Else it ends with the columns of the surface.
   bool body;
+
+  // It is not continued, where it comes out of the ground either.
+  bool ends;
 };
 
 class SunkSurface {

@@ -12,6 +12,7 @@
 #include "comm.h"
 #include "domain.h"
 #include "fix.h"
+#include "fix_gravity.h"
 #include "fix_nve_sphere.h"
 #include "modify.h"
 #include "neigh_request.h"
@@ -108,6 +109,16 @@ inline bool moves_discs(Fix *fix)
   return sphere && sphere->*Reach::prefactor() > 0.45;    // 0.4 of a sphere, 0.5 of a disc
 }
 
+// whether a fix gravity has variables: protected there
+inline bool gravity_varies(Fix *fix)
+{
+  struct Reach : public FixGravity {
+    static int FixGravity::*variables() { return &Reach::varflag; }
+  };
+  const auto gravity = dynamic_cast<FixGravity *>(fix);
+  return gravity && gravity->*Reach::variables() != 0;
+}
+
 // pair styles that a pair hybrid is made of, empty if it is none: protected there
 inline std::vector<std::string> parts_of_hybrid(Pair *pair)
 {
@@ -195,7 +206,6 @@ SLOPE_REVEAL(Modify, int *, used_restart_global)
 SLOPE_REVEAL(Modify, char **, id_restart_peratom)
 SLOPE_REVEAL(Modify, char **, style_restart_peratom)
 SLOPE_REVEAL(Modify, int *, used_restart_peratom)
-#undef SLOPE_REVEAL
 
 struct RestartList {
   int number;

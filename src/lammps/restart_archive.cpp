@@ -71,6 +71,7 @@ const double *RestartExtra::find(int i, int nth, int fixed, int each)
     at += static_cast<int>(*at);
   }
   if (!whole(at, fixed)) return reject(i, at < end ? *at : 0.0);
+  if (each == 0) return *at == fixed ? at : reject(i, *at);
   if (!whole(at + 1, 0.0) || at[0] != fixed + at[1] * each) return reject(i, at[1]);
   return at;
 }
@@ -89,9 +90,9 @@ const double *RestartExtra::reject(int i, double number)
 void RestartExtra::check(const std::string &caller) const
 {
   const std::string problem = fmt::format(
-      "the contacts of ball {} in the restart file must have a whole number of values that fits in "
+      "the {} of ball {} in the restart file must have a whole number of values that fits in "
       "it, got {:g}: the file is damaged, take an earlier one",
-      ball, wrong);
+      what, ball, wrong);
   end_if_any(lmp, caller, ball ? problem : "");
 }
 

@@ -40,18 +40,23 @@ template <typename Work> void read_archive(LAMMPS *lmp, const std::string &calle
 std::string archive_bytes(LAMMPS *lmp, FILE *fp, const std::string &caller);
 
 // What a restart file has for the balls of a fix, which LAMMPS hands over without its length. In a damaged
-// file the numbers in it may be anything: a ball is then left without contacts, and check() ends the run.
+// file the numbers in it may be anything: a ball is then left without them, and check() ends the run.
 class RestartExtra : protected Pointers {
  public:
-  explicit RestartExtra(class LAMMPS *lmp) : Pointers(lmp), ball(0), wrong(0.0) {}
+  explicit RestartExtra(class LAMMPS *lmp, const char *what_in = "contacts") :
+      Pointers(lmp), what(what_in), ball(0), wrong(0.0)
+  {
+  }
 
   // for ball i, the nth fix: how many numbers there are, the number of contacts, and so on; all fit in what
-  // has been read, and are fixed numbers and those of each contact; nullptr: the file is damaged
+  // has been read, and are fixed numbers and those of each contact, 0: without their number; nullptr: the file
+  // is damaged
   const double *find(int i, int nth, int fixed, int each);
 
   void check(const std::string &caller) const;    // collective
 
  private:
+  const std::string what;
   tagint ball;     // the last one that is damaged; 0: none
   double wrong;    // the number there
 

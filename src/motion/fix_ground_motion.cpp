@@ -9,6 +9,7 @@
 
 #include "fix_ground_motion.h"
 
+#include "empty_group.h"
 #include "large_messages.h"
 #include "rank_zero.h"
 #include "requirements.h"
@@ -20,6 +21,7 @@
 #include "comm.h"
 #include "error.h"
 #include "force.h"
+#include "group.h"
 #include "modify.h"
 #include "update.h"
 
@@ -145,10 +147,14 @@ void FixGroundMotion::check_integrators()
     if (!follows(atom->mask[i]) && !(atom->mask[i] & frozen)) mine[1]++;
   }
   MPI_Allreduce(mine, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
-  if (all[0] == 0 && comm->me == 0)
+  const bigint others = balls_beside_empty(lmp, groupbit, [](int) {
+    return true;
+  });
+  if (others > 0 && comm->me == 0)
     error->warning(FLERR,
-                   "Fix ground/motion {}: the group should have balls, got none: nothing is shaken",
-                   id);
+                   "Fix ground/motion {}: the group should have balls, got none of {}: nothing is "
+                   "shaken; group {} has the balls that were there when it was defined",
+                   id, others, group->names[igroup]);
   if (all[1] > 0 && comm->me == 0)
     error->warning(
         FLERR,

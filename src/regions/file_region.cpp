@@ -13,10 +13,12 @@
 
 using namespace LAMMPS_NS;
 
+static int defined = 0;    // regions so far
+
 /* ---------------------------------------------------------------------- */
 
 FileRegion::FileRegion(LAMMPS *lmp, int narg, char **arg, const std::vector<std::string> &own) :
-    Region(lmp, narg, arg), caller("Region " + std::string(arg[1]))
+    Region(lmp, narg, arg), number(++defined), caller("Region " + std::string(arg[1]))
 {
   if (narg < 3) error->all(FLERR, "{}: file name is missing", caller);
   std::string names;

@@ -20,6 +20,9 @@ class FileRegion : public Region {
   int surface_interior(double *, double) override { return no_contacts(); }
   int surface_exterior(double *, double) override { return no_contacts(); }
 
+  const int
+      number;    // of all that were ever defined: one that replaces another may have its address
+
  protected:
   const std::string caller;    // "Region terrain"
 

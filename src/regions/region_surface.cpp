@@ -11,6 +11,7 @@
 #include "region.h"
 #include "region_columns.h"
 #include "region_intersect.h"
+#include "region_marks.h"
 #include "region_terrain.h"
 #include "region_union.h"
 
@@ -82,7 +83,7 @@ RegionSurface::~RegionSurface() = default;
 
 void RegionSurface::note_parts(Region *part)
 {
-  made_of.push_back({part->id, part, part->extent_zlo, part->extent_zhi});
+  made_of.push_back({part->id, part, region_marks(part)});
   if (dynamic_cast<RegIntersect *>(part) || dynamic_cast<RegUnion *>(part))
     for (Region *inner : compat::parts_of(lmp, part)) note_parts(inner);
 }
@@ -90,10 +91,8 @@ void RegionSurface::note_parts(Region *part)
 bool RegionSurface::stands(std::string &changed) const
 {
   for (const Part &part : made_of) {
-    const Region *now = compat::find_region(lmp, part.id);
-    if (now == part.region &&
-        (!now->bboxflag || (now->extent_zlo == part.zlo && now->extent_zhi == part.zhi)))
-      continue;
+    Region *const now = compat::find_region(lmp, part.id);
+    if (now == part.region && region_marks(now) == part.marks) continue;
     changed = part.id;
     return false;
   }

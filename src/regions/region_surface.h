@@ -62,7 +62,7 @@ class RegionSurface : protected Pointers {
   struct Part {
     std::string id;
     class Region *region;
-    double zlo, zhi;    // of its bounding box
+    std::vector<double> marks;
   };
   std::vector<Part> made_of;
   bool bounded;

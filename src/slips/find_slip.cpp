@@ -32,7 +32,8 @@ static constexpr double HUGE_FACTOR = 100.0;
 static constexpr double TELL_EVERY = 10.0;    // s
 
 static constexpr int NVARIABLE = 6;
-static const char *const ENDS[NVARIABLE] = {"_x", "_y", "_z", "_r", "_factor", "_yield"};
+static const char *const ENDS[] = {"_x", "_y", "_z", "_r", "_factor", "_yield"};
+static_assert(sizeof(ENDS) / sizeof(*ENDS) == NVARIABLE, "one of each variable");
 
 /* ----------------------------------------------------------------------
    find_slip REGION strength C PHI DENSITY keyword value ... output PREFIX

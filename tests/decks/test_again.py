@@ -109,3 +109,73 @@ def test_no_memory_is_lost(site, monkeypatch):
     assert len(memory) == 60
     # the median of ten: where the heap ends varies by up to 60 kB from clear to clear
     assert median(memory[-10:]) - median(memory[10:20]) < 100, f"kB after each clear: {memory}"
+
+
+# --- balls that others than fix nve/sphere move: a force that is on them may change nothing ---
+
+# between a frozen ball and one that something else moves, a third
+PRESSED = """
+units si
+atom_style sphere
+atom_modify map array
+boundary f f f
+newton {newton}
+comm_modify vel yes
+{begin}
+pair_style gran/restitution
+pair_coeff * * stiffness 1e8 1e8 restitution 0.1 friction 30 rolling 0.1
+timestep 9e-4
+neighbor 0.3 bin
+neigh_modify every 1 delay 0 check yes
+fix hold held freeze
+fix move soil nve/sphere
+fix weight all gravity 9.81 vector 0 0 -1
+{guide}
+{first}
+run 60 upto
+"""
+BEGIN = """
+region box block -5 5 -5 5 -5 10
+create_box 3 box
+create_atoms 2 single 0 0 0
+create_atoms 1 single 0 0 1.0
+create_atoms 3 single 0.2 0 1.975
+set type * diameter 1.0 density 2500
+group held type 2
+group soil type 1
+group plate type 3
+velocity all set 0 0 0
+velocity plate set 0 0 -0.5
+set type 3 omega 0 3 0
+"""
+AGAIN = "read_restart at.restart\ncomm_modify vel yes\n"
+GUIDES = {
+    "linear": "fix guide plate move linear 0.1 0 -0.5", "one component": "fix guide plate move linear NULL NULL -0.5",
+    "wiggle": "fix guide plate move wiggle 0.01 0 -0.03 0.1",
+    "rotate": "fix guide plate move rotate 0 -3 1.975 0 1 0 3",
+    "variable": "variable z equal -0.1*step*dt\nvariable v equal -0.1\n"
+                "fix guide plate move variable NULL NULL v_z NULL NULL v_v",
+    "noforce": "fix guide plate nve/noforce",
+    "nothing": "", "setforce": "fix guide plate setforce 0 0 0\nfix move2 plate nve/sphere",
+    "setforce in part": "fix guide plate setforce 0 NULL 0\nfix move2 plate nve/sphere",
+    "free": "fix move2 plate nve/sphere"}
+
+
+def last(site, **settings):
+    dump = ("\nwrite_dump all custom end.dump id x y z vx vy vz omegax omegay omegaz"
+            " modify sort id format float %.17g\n")
+    run_deck(PRESSED.format(**{"newton": "on", "begin": BEGIN, "first": "", **settings}) + dump, site)
+    return (site / "end.dump").read_text()
+
+
+@pytest.mark.parametrize("newton", ["on", "off"])
+@pytest.mark.parametrize("guide", GUIDES)
+def test_pieces_of_a_run_with_balls_that_are_guided(tmp_path, guide, newton):
+    settings = {"newton": newton, "guide": GUIDES[guide]}
+    whole = last(tmp_path, **settings)
+    assert float(whole.splitlines()[-1].split()[3]) != 1.975 or guide == "nothing"
+    for until in (10, 20, 30, 37):
+        assert last(tmp_path, **settings, first=f"run {until}") == whole
+    assert last(tmp_path, **settings, first="run 20\nrun 5\nwrite_restart at.restart") == whole
+    if guide != "variable":    # whose variable holds the place from the first step on
+        assert last(tmp_path, **settings, begin=AGAIN, first="run 5") == whole

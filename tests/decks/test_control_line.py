@@ -278,6 +278,87 @@ def test_balls_that_go_between_two_steps(tmp_path, np_):
         failed.value)
 
 
+# --- only balls that can reach the line are tested in each step: the others are none the worse for it ---
+
+BENT = "-6 -8\n1 -2\n-1 1.5\n2 4\n5 9\n"
+EACH = "every 1 delay 0 check yes"
+
+
+def thrown(tmp_path, neigh, skin=0.5, boundary="f f f", np_=1, extra="", run="run 900\n", line=BENT):
+    """Balls thrown against a field of 20 m/s2, to and fro over a line with bends; what was written."""
+    rng = np.random.default_rng(3)
+    n = 150
+    x = np.column_stack([rng.uniform(-9, 9, n), rng.uniform(-9, 9, n), rng.uniform(5, 9, n)])
+    v = np.column_stack([rng.uniform(-15, 25, n), rng.uniform(-8, 8, n), 0 * x[:, 0]])
+    write_asc(tmp_path / "ground.asc", np.full((20, 20), 3.0), -10, -10, 1)
+    side = (-10, 10) if boundary[0] == "p" else (-40, 40)
+    write_balls(tmp_path / "balls.data", x, rng.uniform(0.5, 1.0, n), v, [side, side, (0, 30)])
+    (tmp_path / "line.csv").write_text(line)
+    head = flight_head(boundary=boundary).replace("neighbor 0.5 bin", f"neighbor {skin} bin")
+    head = head.replace("neigh_modify every 1 delay 0 check no", f"neigh_modify {neigh}")
+    run_deck(head + "fix weight all gravity 20 vector -1 0 0\n" + DEPOSIT + LINE + extra + run, tmp_path, np=np_)
+    return [(tmp_path / f"out.line.{kind}").read_text() for kind in ("csv", "yaml")]
+
+
+@pytest.fixture(scope="module", params=["f f f", "p p f"])
+def all_tested(request, tmp_path_factory):
+    """Lists that are built in each step tell nothing of what moves between two of them: every ball is tested."""
+    found = thrown(tmp_path_factory.mktemp("all"), "every 1 delay 0 check no", boundary=request.param)
+    assert len(found[0].splitlines()) > 50
+    return request.param, found
+
+
+@pytest.mark.parametrize("neigh, skin, np_", [
+    (EACH, 0.5, 1), (EACH, 0.5, 2), (EACH, 3.0, 4), (EACH, 0.02, 1), (EACH, 0.1, 2), (EACH, 1e-12, 1),
+    ("every 1 delay 20 check yes", 0.5, 1), ("every 7 delay 0 check yes", 0.5, 2), ("every 1 delay 0 check no", 0.1, 1),
+    (f"{EACH} once yes", 0.5, 1)])
+def test_the_same_crossings_whatever_the_lists_do(tmp_path, all_tested, neigh, skin, np_):
+    boundary, expected = all_tested
+    assert thrown(tmp_path, neigh, skin, boundary, np_) == expected
+
+
+@pytest.mark.parametrize("run", [
+    "run 400\nrun 500 pre no\n", "run 400 post no\nrun 500\n", "run 400\nneigh_modify delay 30\nrun 500 pre no\n",
+    "run 400\nneigh_modify check no\nrun 500 pre no\n", "run 900 every 100 NULL\n",
+    "run 300\nneigh_modify delay 30\nrun 300\nneigh_modify delay 0\nrun 300 pre no\n"])
+def test_the_same_crossings_in_several_runs(tmp_path, all_tested, run):
+    boundary, expected = all_tested
+    assert thrown(tmp_path, EACH, boundary=boundary, run=run)[0] == expected[0]
+
+
+@pytest.mark.parametrize("skin", [0.2, 1.0])
+def test_a_ball_that_is_thrown_over_the_line_in_one_step(tmp_path, skin):
+    """Slow and far from the line when the lists were built, it is on the other side a step later."""
+    throw = "variable throw equal (step==200)*8e8\nfix throw all addforce v_throw 0 0\n"
+    found = []
+    for neigh in (EACH, "every 1 delay 0 check no"):
+        head = flight_head().replace("neighbor 0.5 bin\nneigh_modify every 1 delay 0 check no",
+                                     f"neighbor {skin} bin\nneigh_modify {neigh}")
+        write_asc(tmp_path / "ground.asc", np.full((20, 20), 3.0), -10, -10, 1)
+        write_balls(tmp_path / "balls.data", [[-2, 0, 8], [-5, 4, 8]], 1.0, [[0.1, 0, 0], [0, 0, 0]],
+                    [(-10, 10), (-10, 10), (0, 30)])
+        (tmp_path / "line.csv").write_text("-0.5 -9\n-0.7 9\n")
+        run_deck(head + throw + DEPOSIT + LINE + "run 220\n", tmp_path)
+        found.append(crossings(tmp_path))
+    assert [row["ball"] for row in found[0]] == [1, 2]
+    assert found[0][0]["step"] == 201 and 0.001 * found[0][0]["speed"] > skin
+    close(*found)
+
+
+@pytest.mark.parametrize("skin, np_", [(0.2, 1), (0.6, 2), (0.05, 4)])
+def test_a_collapse_crosses_where_its_places_do(tmp_path, skin, np_):
+    """Against the places of all balls in each step."""
+    rows = collapse(tmp_path, "run 500", np_, every=1, skin=skin)
+    frames = read_dump(tmp_path / "out.dump")
+    ways = []
+    for step in range(1, 501):
+        side = [at[:, 1] < np.interp(at[:, 2], [-13, 10, 20], [8, 8, 9]) for at in (frames[step - 1], frames[step])]
+        ways += [(step, ball, 1 if after else -1) for ball, before, after in zip(frames[step][:, 0], *side)
+                 if before != after]
+    assert len(ways) > 20
+    assert sorted((row["step"], row["ball"], row["direction"]) for row in rows) == sorted(ways)
+
+
 def test_doc_examples(tmp_path):
     for name in ("fence.csv", "kerb.csv"):
         (tmp_path / name).write_text("0 -9\n0 9\n")

@@ -1,9 +1,12 @@
-"""create_balls: the balls of a surface as atoms, the same ones on any number of ranks."""
+"""create_balls: the balls of a surface, or of a packing, as atoms, the same ones on any number of ranks."""
 
 import math
 from pathlib import Path
 
+import numpy
 import pytest
+from scipy.spatial import cKDTree
+
 from deck_helpers import run_deck
 
 DIAMETER = 0.5
@@ -193,3 +196,118 @@ def test_balls_outside_the_box_are_counted_and_located(tmp_path):
     run_deck(deck(box="-6 6 -6 6 2 12"), tmp_path, np=2, expect_error=message)
     log = (tmp_path / "log.deck").read_text()
     assert f"the first at {x:g} {y:g} {z:.5f}" in log
+
+
+# --- fill: a disordered packing ---
+
+FILL = """
+units           si
+newton          {newton}
+atom_style      sphere
+boundary        {boundary}
+comm_modify     vel yes
+{decomposition}
+region          box {box} units box
+create_box      2 box
+region          ball sphere 0 0 6 5 units box
+region          inner block -5.5 5.5 -5.5 5.5 0.5 11.5 units box
+region          left block -5 0 -5 5 1 11 units box
+region          right block 0 5 -5 5 1 11 units box
+region          upper plane 0 0 6 0 0.3 1
+{create}
+dump            all all custom 1 balls.dump id type x y z vx vy vz radius mass
+dump_modify     all sort id format float %.17g
+run             0
+"""
+
+
+def fill(tmp_path, create="create_balls 2 0.5 2977 fill ball seed 3", newton="on", boundary="f f f",
+         decomposition="", box="block -6 6 -6 6 0 12", **options):
+    """The log of a deck that fills, and the centres, sorted."""
+    log = run_deck(FILL.format(**locals()), tmp_path, **options)
+    return log, numpy.array(positions(tmp_path / "balls.dump"))
+
+
+@pytest.fixture(scope="module")
+def packed(tmp_path_factory):
+    return fill(tmp_path_factory.mktemp("packed"))
+
+
+def pair_correlation(x, inner, density, d, far=5.0, wide=0.05):
+    """In bins of wide diameters from 1.2 to far diameters around the balls of inner."""
+    edges = numpy.arange(1.2, far + wide / 2, wide) * d
+    pairs = cKDTree(inner).count_neighbors(cKDTree(x), edges)
+    return numpy.diff(pairs) / (len(inner) * density * 4 / 3 * math.pi * numpy.diff(edges ** 3))
+
+
+def test_a_packing_fills_a_sphere_without_contact(packed):
+    log, x = packed
+    assert f"Create_balls: {len(x)} balls of diameter 0.5 fill region ball, packing 3" in log
+    assert (numpy.linalg.norm(x - [0, 0, 6], axis=1) <= 5).all()
+    assert len(x) * 0.5 ** 3 / 6 / (4 / 3 * 5 ** 3) == pytest.approx(0.60, abs=0.01)
+    nearest = cKDTree(x).query(x, 2)[0][:, 1]
+    assert 0.5001 < nearest.min() and numpy.median(nearest) < 0.51
+
+
+def test_each_ball_has_mass_radius_type_and_rests(tmp_path, packed):
+    fill(tmp_path)
+    for _, kind, _, _, _, vx, vy, vz, radius, mass in atoms(tmp_path / "balls.dump"):
+        assert (kind, vx, vy, vz, radius) == (2, 0, 0, 0, 0.25)
+        assert mass == pytest.approx(2977 * math.pi / 6 * 0.5 ** 3, rel=1e-12)
+
+
+@pytest.mark.parametrize("create, is_lattice", [
+    ("create_balls 2 0.5 2977 fill inner", False),
+    ("lattice sc 0.5\ncreate_atoms 2 region inner\nset type 2 diameter 0.5", True)])
+def test_pair_correlation_of_a_packing_and_of_the_cubic_lattice(tmp_path, create, is_lattice):
+    _, x = fill(tmp_path, create)
+    inner = x[(abs(x - [0, 0, 6]) < 3).all(axis=1)]
+    largest = pair_correlation(x, inner, len(x) / 11 ** 3, 0.5).max()
+    assert (largest > 4) if is_lattice else (largest < 2)
+
+
+@pytest.mark.parametrize("ranks, decomposition, newton", [
+    (1, "", "off"), (2, "", "on"), (4, "", "on"), (4, "", "off"), (4, "comm_style tiled\nprocessors 1 * 2", "on")])
+def test_the_same_packing_on_any_number_of_ranks(tmp_path, packed, ranks, decomposition, newton):
+    _, x = fill(tmp_path, decomposition=decomposition, newton=newton, np=ranks)
+    assert numpy.array_equal(x, packed[1])
+
+
+def test_seeds_are_packings_of_their_own(tmp_path, packed):
+    several = {seed: fill(tmp_path, f"create_balls 2 0.5 2977 fill ball seed {seed}")[1] for seed in (1, 2)}
+    _, default = fill(tmp_path, "create_balls 2 0.5 2977 fill ball")
+    assert numpy.array_equal(default, several[1])
+    for one, other in ((several[1], several[2]), (several[2], packed[1])):
+        assert (cKDTree(one).query(other)[0] < 0.02).sum() < 10
+
+
+def test_regions_that_meet_have_parts_of_one_packing(tmp_path):
+    _, x = fill(tmp_path, "create_balls 1 0.5 2977 fill left seed 2\ncreate_balls 2 0.5 2977 fill right seed 2")
+    assert {row[1] for row in atoms(tmp_path / "balls.dump")} == {1, 2}
+    assert cKDTree(x).query(x, 2)[0][:, 1].min() > 0.5001
+    assert len(x) * math.pi / 6 * 0.5 ** 3 / 1000 == pytest.approx(0.60, abs=0.005)
+
+
+@pytest.mark.parametrize("box, boundary", [
+    ("block -6 6 -6 6 0 12", "p p p"), ("block -6 6 -6 6 0 12", "p f f"), ("prism -6 6 -6 6 0 12 3 -2 1", "p p p"),
+    ("prism -6 6 -6 6 0 12 3 0 0", "f p f")])
+def test_no_ball_touches_one_beyond_a_periodic_face(tmp_path, box, boundary):
+    create = "create_balls 2 0.5 2977 fill box seed 4"
+    _, x = fill(tmp_path, create, box=box, boundary=boundary, np=2)
+    tilt = [float(word) for word in box.split()[7:]] or [0, 0, 0]
+    sides = numpy.array([[12, 0, 0], [tilt[0], 12, 0], [tilt[1], tilt[2], 12]])
+    steps = [range(-1, 2) if kind == "p" else (0,) for kind in boundary.split()]
+    images = numpy.array([[i, j, k] for i in steps[0] for j in steps[1] for k in steps[2]]) @ sides
+    everywhere = (x + images[:, None]).reshape(-1, 3)
+    assert cKDTree(everywhere).query(x, 2)[0][:, 1].min() > 0.5
+    filled = 0.60 * (11.5 / 12) ** boundary.count("p")
+    assert len(x) * math.pi / 6 * 0.5 ** 3 / 12 ** 3 == pytest.approx(filled, abs=0.01)
+    lone = fill(tmp_path, create, box=box, boundary=boundary)[1]
+    assert numpy.array_equal(x, lone)
+
+
+def test_only_what_is_in_the_box_is_filled(tmp_path):
+    _, x = fill(tmp_path, "create_balls 2 0.5 2977 fill upper", np=2)
+    assert ((x >= [-6, -6, 0]) & (x < [6, 6, 12])).all()
+    assert (0.3 * x[:, 1] + x[:, 2] > 6).all()
+    assert len(x) * math.pi / 6 * 0.5 ** 3 / (12 * 12 * 6) == pytest.approx(0.60, abs=0.01)

@@ -378,10 +378,10 @@ run 40
     names = ["thickness", "surface", "base", "max_thickness", "max_speed", "max_energy", "arrival",
              "last_motion"]
     files = [f"out.{name}.asc" for name in names]
-    expected = sorted(files + ["out.summary.yaml", "out.20.thickness.asc", "out.40.thickness.asc"])
+    expected = sorted(files + ["out.summary.yaml", "out.left.csv", "out.20.thickness.asc", "out.40.thickness.asc"])
     assert sorted(f.name for f in (tmp_path / "it's").iterdir()) == expected
     found = summary(tmp_path / "it's")
-    assert found["files"] == ["out.40.thickness.asc"] + files
+    assert found["files"] == ["out.40.thickness.asc"] + files + ["out.left.csv"]
     assert found["stop"]["reason"] == "run completed" and found["moving"] is False
     assert found["fix"] == "dep" and found["ranks"] == 1 and found["step"] == 40
     assert found["slope_version"] and found["lammps_version"]
@@ -410,7 +410,8 @@ run 10
     assert "Step" not in log
 
 
-@pytest.mark.parametrize("np_, name", [(1, "out.summary.yaml"), (2, "out.last_motion.asc"), (1, "out.lock")])
+@pytest.mark.parametrize("np_, name", [(1, "out.summary.yaml"), (2, "out.last_motion.asc"), (2, "out.left.csv"),
+                                       (1, "out.lock")])
 def test_a_folder_where_a_file_must_be(tmp_path, np_, name):
     flat(tmp_path, 10)
     write_balls(tmp_path / "balls.data", [[5, 5, 5]], 0.5, None, [(0.0, 10.0)] * 3)
@@ -517,10 +518,10 @@ set group all density 2000
     data = (tmp_path / "a.1500.restart").read_bytes()
     number = struct.pack("<2d", 1.0, -2.0)
     style, left_out = (name.ljust(24, b"\0") + number for name in (b"deposit/grid", b"cells_left_out"))
-    assert data.count(style + struct.pack("<d", 7.0)) == data.count(left_out + struct.pack("<d", 0.0)) == 1
+    assert data.count(style + struct.pack("<d", 8.0)) == data.count(left_out + struct.pack("<d", 0.0)) == 1
     for name, member, value, message in [
-            ("old", style, 6.0,
-             "Fix deposit/grid dep: the restart file must have data of version 7, got 6: start again"),
+            ("old", style, 7.0,
+             "Fix deposit/grid dep: the restart file must have data of version 8, got 7: start again"),
             ("large", left_out, 4e7,
              "Fix deposit/grid dep: nothing can go on from this restart file, in which it may have 38347849 cells that "
              "the mass touched, got 40000000: start again, with a larger cell")]:
@@ -688,3 +689,4 @@ region body sphere 5 5 5 0.4 units box
     found = summary(tmp_path, "collapse")
     assert found["stop"]["step"] == 21000 and found["stop"]["reason"] == "halted"
     assert found["grid"]["extent"] == [0, 60, 0, 40] and found["bulk_factor"] == 1.7
+    assert found["motion"]["rest_share"] == 0.03

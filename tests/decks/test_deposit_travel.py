@@ -187,14 +187,14 @@ def test_fast_share(tmp_path, np_, motion):
     assert found["motion"]["median_speed"] == pytest.approx(np.median(speed[still]), rel=0.005)
 
 
-def fly(folder, fast, ending, steps=300):
+def fly(folder, fast, ending, steps=300, rest=""):
     """One ball of a hundred at a speed, the others still; the run ends as the deck says."""
     ground(folder)
     x = np.column_stack([np.arange(100) + 20.5, np.full(100, 50.5), np.full(100, 1.0)])
     v = np.zeros((100, 3))
     v[0, 2] = fast
     write_balls(folder / "balls.data", x, 1.0, v, BOX)
-    run_deck(flight_head() + DEPOSIT + f"{ending}\nrun {steps}\n", folder)
+    run_deck(flight_head() + DEPOSIT.rstrip() + f"{rest}\n{ending}\nrun {steps}\n", folder)
     return summary(folder)
 
 
@@ -215,6 +215,25 @@ def test_at_rest(tmp_path, fast, ending, reason, at_rest):
     assert found["stop"]["reason"] == reason and found["at_rest"] is at_rest
     assert found["moving"] is False
     assert found["stop"]["step"] == {"halted": 100, "run completed": 300}.get(reason, found["step"]) < 100000000
+
+
+@pytest.mark.parametrize("share, at_rest", [(None, False), (0.01, False), (0.0101, True), (0.1, True), (0.005, False)])
+def test_the_limit_of_rest_is_the_decks(tmp_path, share, at_rest):
+    """One ball of a hundred is fast."""
+    found = fly(tmp_path, 0.2, HALT, rest="" if share is None else f" rest {share}")
+    assert found["motion"]["fast_share"] == pytest.approx(0.01) and found["motion"]["rest_share"] == (share or 0.01)
+    assert found["stop"]["reason"] == "halted" and found["at_rest"] is at_rest
+
+
+@pytest.mark.parametrize("first, second", [(0.01, 0.03), (0.03, 0.01)])
+def test_the_limit_of_rest_after_a_restart_is_that_of_its_deck(tmp_path, first, second):
+    fly(tmp_path, 0.2, f"{HALT}\nrestart 100 cut.*.restart", rest=f" rest {first}")
+    assert summary(tmp_path)["at_rest"] is (first > 0.01)
+    again = flight_head().replace("read_data balls.data", "read_restart cut.100.restart")
+    run_deck(again + DEPOSIT.rstrip() + f" rest {second}\n{HALT}\nrun 300\n", tmp_path)
+    found = summary(tmp_path)
+    assert found["motion"]["rest_share"] == second and found["at_rest"] is (second > 0.01)
+    assert found["stop"]["reason"] == "halted"
 
 
 def test_files_in_a_run_are_not_at_rest(tmp_path):

@@ -45,6 +45,7 @@ def same_files(tmp_path, one="out", two="again"):
     """Deposit, maxima, arrival times: the same bytes; the volume that changed cell: to rounding."""
     for name in RASTERS:
         assert filecmp.cmp(tmp_path / f"{one}.{name}.asc", tmp_path / f"{two}.{name}.asc", shallow=False), name
+    assert filecmp.cmp(tmp_path / f"{one}.left.csv", tmp_path / f"{two}.left.csv", shallow=False)
     a, b = summary(tmp_path, one), summary(tmp_path, two)
     assert a.pop("change_rate") == pytest.approx(b.pop("change_rate"), rel=1e-12)
     for key in ("step", "time", "balls", "volume", "travel", "motion", "largest"):

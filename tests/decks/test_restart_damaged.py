@@ -126,3 +126,15 @@ def test_marks_of_a_ground_that_are_damaged(counted):
         (folder / "cut.restart").write_bytes(data[:begin] + struct.pack("<d", value) + data[begin + 8:])
         run_deck(COUNTED.format(begin="read_restart cut.restart"), folder,
                  expect_error="Fix wall/gran/balls field: the restart file must have a whole number of values in mark")
+
+
+def test_a_damaged_path_of_a_ball_ends_the_run(counted):
+    """What fix deposit/grid has for a ball: 6 numbers, their length first."""
+    folder, data, _ = counted
+    record = struct.pack("<3d", 6.0, 6.0, 6.0)      # of the ball that started at 6 6
+    assert data.count(record) == 1
+    at = data.index(record)
+    for value, np_ in ((7.0, 1), (0.0, 1), (1e300, 2), (float("nan"), 1), (5.5, 2)):
+        (folder / "cut.restart").write_bytes(data[:at] + struct.pack("<d", value) + data[at + 8:])
+        run_deck(COUNTED.format(begin="read_restart cut.restart"), folder, np=np_,
+                 expect_error="Fix deposit/grid dep: the path of ball ")

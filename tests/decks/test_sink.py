@@ -6,6 +6,7 @@ import re
 
 import numpy
 import pytest
+from scipy.spatial import cKDTree
 
 from deck_helpers import run_deck, write_asc
 
@@ -128,6 +129,36 @@ def test_nothing_is_left_out_of_a_body_on_sunk_balls(tmp_path, d):
     assert far[below] == pytest.approx(RADIUS + d, abs=0.02 * d)
     assert (slip[:, 2] < ground(slip[:, 0]) + 1e-6).all()
     assert (ground(slip[:, 0]) - slip[:, 2]).min() < 0.25 * d
+
+
+def of_rim(tmp_path, rim, d=2.0):
+    """Log, slip and field balls with a rim, and how far beyond the plan of the body each slip ball is."""
+    (tmp_path / rim).mkdir()
+    log, slip, field = place(tmp_path / rim, fixes=SLIP.replace("write", f"rim {rim} write") + FIELD + DELETE, d=d)
+    # the plan of the body: where the sphere's lower half is below the ground
+    x, y = numpy.meshgrid(numpy.arange(10, 45, 0.1), numpy.arange(5, 35, 0.1))
+    low = CENTRE[2] - numpy.sqrt(numpy.maximum(RADIUS ** 2 - (x - CENTRE[0]) ** 2 - (y - CENTRE[1]) ** 2, 0))
+    inside = (low < ground(x)) & (numpy.hypot(x - CENTRE[0], y - CENTRE[1]) < RADIUS)
+    plan = numpy.column_stack([x[inside], y[inside]])
+    return log, slip, field, cKDTree(plan).query(slip[:, :2])[0]
+
+
+def test_the_rim_is_divided_or_ends(tmp_path):
+    d = 2.0
+    whole = of_rim(tmp_path, "continued")
+    within, beyond, ended = (of_rim(tmp_path, rim) for rim in ("within", "beyond", "ended"))
+    assert within[3].max() < 0.2 and whole[3].max() == beyond[3].max() > 1.15 * d
+    assert "within the rim of region slip" in within[0] and "beyond the rim of region slip" in beyond[0]
+    # the nodes of the plan grid are divided; where the surface is cut, extra balls may be added to both
+    places = [{tuple(p) for p in on_nodes(log, slip).round(9)} for log, slip, _, _ in (whole, within, beyond)]
+    assert places[0] == places[1] | places[2] and not places[1] & places[2]
+    # the field knows of the body from the balls within, and leaves out the same columns
+    assert numpy.array_equal(within[2], whole[2])
+
+    log, slip, field, far = ended
+    assert "sunk by 2 and ended at the rim)" in log and removed(log) == 0
+    assert 0.5 * d < far.max() < 1.05 * d
+    assert closest(field) > 0.99 * d and len(field) > len(whole[2])
 
 
 def test_on_the_surface_itself_many_are(tmp_path):

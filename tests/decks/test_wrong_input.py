@@ -161,6 +161,10 @@ TABLE = {
         2 1.0 surface ground upper spacing 1 sunk 1 -> sunk needs outside REGION, got none
         2 1.0 surface ground upper spacing 1 inside block sunk 1 -> sunk needs outside REGION, got none
         2 1.0 surface ground upper spacing 1 outside road sunk 1 -> sunk region road must have a lower boundary, got INF
+        2 1.0 surface ground lower spacing 1 sink 0.5 rim -> rim must be followed by continued, ended, within or beyond
+        2 1.0 surface ground lower spacing 1 sink 0.5 rim up -> rim must be continued, ended, within or beyond, got up
+        2 1.0 surface ground lower spacing 1 rim ended -> rim must be that of a lower surface with a sink > 0, got
+        2 1.0 surface ground upper spacing 1 sink 0.5 rim ended -> rim must be that of a lower surface with a sink > 0
         2 1.0 surface ground upper spacing 1 smallest -> smallest must be followed by D, got 0 of 1 values
         2 1.0 surface ground upper spacing 1 smallest 0 -> smallest must be > 0, got 0
         2 1.0 surface ground upper spacing 1 smallest x -> smallest must be a finite number, got x
@@ -232,8 +236,8 @@ TABLE = {
         road.csv move x NULL NULL -> move must be v_name or NULL, got x
         """,
     ("create", "create_balls", "Create_balls"): """
-        -> needs TYPE DIAMETER DENSITY and surface or file, got 0 arguments
-        3 1.0 2000 -> needs TYPE DIAMETER DENSITY and surface or file, got 3 arguments
+        -> needs TYPE DIAMETER DENSITY and surface, file or fill, got 0 arguments
+        3 1.0 2000 -> needs TYPE DIAMETER DENSITY and surface, file or fill, got 3 arguments
         x 1.0 2000 file balls.txt -> type must be a whole number below 2^31, got x
         0 1.0 2000 file balls.txt -> type must be 1 to 3 (the atom types of the box), got 0
         4 1.0 2000 file balls.txt -> type must be 1 to 3 (the atom types of the box), got 4
@@ -241,7 +245,15 @@ TABLE = {
         3 0 2000 file balls.txt -> diameter must be > 0, got 0
         3 1.0 x file balls.txt -> density must be a finite number, got x
         3 1.0 -1 file balls.txt -> density must be > 0, got -1
-        3 1.0 2000 lattice sc -> needs surface or file, got lattice
+        3 1.0 2000 lattice sc -> needs surface, file or fill, got lattice
+        3 1.0 2000 fill -> fill must be followed by REGION [seed N], got 0 words
+        3 1.0 2000 fill ground seed -> fill must be followed by REGION [seed N], got 2 words
+        3 1.0 2000 fill ground spacing 1 -> fill keyword must be seed, got spacing
+        3 1.0 2000 fill ground seed 0 -> fill seed must be > 0, got 0
+        3 1.0 2000 fill ground seed 1.5 -> fill seed must be a whole number below 2^31, got 1.5
+        3 1.0 2000 fill nowhere -> fill region nowhere does not exist
+        3 1e3 2000 fill ground -> fill region ground must have room for a ball of diameter 1000
+        3 1e-4 2000 fill ground -> fill diameter must be so large that the box around region ground has room
         3 1.0 2000 file missing.txt -> : cannot read missing.txt: No such file or directory
         3 1.0 2000 file outside.txt -> balls must lie in the simulation box (below its upper faces), got 1 of 1
         3 1.0 2000 file two.txt -> : two.txt, line 2: must be 3 numbers, x y z, got 1 2
@@ -304,8 +316,12 @@ TABLE = {
         10 20 extent 0 8 0 x -> extent must be a finite number, got x
         10 20 cell 1 terrain ground output out extent 8 0 0 8 -> extent must have xlo < xhi and ylo < yhi, got 8 0 0 8
         10 20 cell 1 terrain ground output out extent 0 9 0 8 -> extent must lie in that of region ground, 0 8 0 8
-        10 20 color red -> : unknown keyword color, must be cell, terrain, output, bulk, extent, motion, window or
-        10 20 red -> : unknown keyword red, must be cell, terrain, output, bulk, extent, motion, window or series
+        10 20 rest 0 -> rest must be > 0, got 0
+        10 20 rest 0.2 -> rest must be at most 0.1, got 0.2
+        10 20 rest x -> rest must be a finite number, got x
+        10 20 rest -> rest: value 1 is missing
+        10 20 color red -> : unknown keyword color, must be cell, terrain, output, bulk, extent, motion, rest, window or
+        10 20 red -> : unknown keyword red, must be cell, terrain, output, bulk, extent, motion, rest, window or series
         """,  # noqa: E501
     ("motion", "fix shake soil ground/motion", "Fix ground/motion"): """
         -> needs FILE with lines t ax ay az

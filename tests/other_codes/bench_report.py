@@ -153,10 +153,10 @@ def against(value):
 def draw(path, about):
     """The codes against ours with their targets, the other measures, and where our time goes."""
     from slope_tools.drawing import figures, pictures
-    from slope_tools.drawing.figures import plt
+    from slope_tools.drawing import pictures
     measures, codes, parts = about["measures"], about["codes"], about["breakdown_seconds"]
-    with plt.rc_context(figures.STYLE):
-        figure, axes = plt.subplots(1, 2, figsize=(figures.FULL, 2.3), width_ratios=(1.5, 1))
+    with pictures.settings(figures.STYLE):
+        figure, axes = pictures.subplots(1, 2, figsize=(figures.FULL, 2.3), width_ratios=(1.5, 1))
         names = [name for name in measures if name in codes][::-1]
         if names:
             ratios = [measures[name]["value"] for name in names]

@@ -17,19 +17,20 @@ from slope_tools.runs import jobs
 from . import peers
 from .crosscheck_cases import PEERS, Work, bounce, collapse, rolling, slide_roll
 from .crosscheck_report import report
+from .crosscheck_table import table
 
-DESCRIPTION = "The same scenes in other codes: bounce, slide, roll, rolling resistance, a collapse."
+DESCRIPTION = "The same scenes in other codes: bounce, slide, roll, rolling resistance, a collapse, the paper's table."
 EPILOG = """\
 units: metres, seconds, m3 of ground (bulk).
 
-example: a minute and a half; with balls of 2.5 m instead of 4 m, some minutes; two codes:
+example: four minutes; with balls of 2.5 m instead of 4 m, a quarter of an hour; two codes:
   tools/slope crosscheck --quick
   tools/slope crosscheck -o crosscheck
   tools/slope crosscheck --quick --peers granular,liggghts -o two
 
 Writes DIR/crosscheck.csv, DIR/crosscheck.yaml, DIR/crosscheck.png, and the input of every code in a folder of its own.
 """
-CASES = {"bounce": bounce, "slide_roll": slide_roll, "rolling": rolling, "collapse": collapse}
+CASES = {"bounce": bounce, "slide_roll": slide_roll, "rolling": rolling, "collapse": collapse, "table": table}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,9 +49,9 @@ def run(args: Request) -> None:
     cases = peers.chosen("--only", args.only, CASES)
     names = peers.chosen("--peers", args.peers, [code.name for code in PEERS])
     if bare(args):
-        print(f"would run {', '.join(cases)} in {', '.join(names)}, some four minutes; nothing is run without a word:"
+        print(f"would run {', '.join(cases)} in {', '.join(names)}, 15 minutes; nothing is run without a word:"
               "\n  slope crosscheck -o DIR        all of it\n"
-              "  slope crosscheck --quick       coarser balls, a minute and a half\n"
+              "  slope crosscheck --quick       coarser balls, four minutes\n"
               f"  slope crosscheck --only CASE   of {', '.join(CASES)}")
         return
     output = args.output or Path("crosscheck")

@@ -140,7 +140,7 @@ class Work:
     def __init__(self, output, lmp, names, quick):
         self.output, self.lmp, self.quick = output, lmp, quick
         self.codes, self.checks, self.notes, self.versions, self.profiles = [], [], [], {}, {}
-        self.about_collapse = None
+        self.about_collapse = self.about_table = None
         for code in (*OURS, *(code for code in PEERS if code.name in names)):
             missing = code(lmp).missing()
             if missing:

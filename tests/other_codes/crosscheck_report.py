@@ -19,7 +19,7 @@ def report(work):
                             "lmp_sha256": disk.sha256(work.lmp), "versions": work.versions, "quick": work.quick,
                             "compared": sum(row["passed"] is not None for row in rows),
                             "failed": sum(row["passed"] is False for row in rows)},
-             "collapse": work.about_collapse, "checks": rows,
+             "collapse": work.about_collapse, "table": work.about_table, "checks": rows,
              "differs": {code.name: list(code.differs) for code in work.codes if code.differs}, "notes": work.notes}
     out = io.StringIO()
     writer = csv.DictWriter(out, [*Check._fields, "passed"], lineterminator="\n")
@@ -29,6 +29,8 @@ def report(work):
     disk.write(work.output / "crosscheck.yaml", "# slope crosscheck: the same scenes in other codes; m, rad, m3\n"
                + yaml.safe_dump(about, sort_keys=False))
     written = ["crosscheck.yaml", "crosscheck.csv"]
+    if work.about_table:
+        written.append("table.csv")
     if work.profiles:
         draw(work.output / "crosscheck.png", work)
         written.append("crosscheck.png")
@@ -62,9 +64,9 @@ def cell(value):
 def draw(path, work):
     """The deposit of every code along x, with the road."""
     from slope_tools.drawing import figures, pictures
-    from slope_tools.drawing.figures import plt
-    with plt.rc_context(figures.STYLE):
-        figure, axes = plt.subplots(figsize=(figures.FULL, 2.7))
+    from slope_tools.drawing import pictures
+    with pictures.settings(figures.STYLE):
+        figure, axes = pictures.subplots(figsize=(figures.FULL, 2.7))
         road = road_corners()[:, 0]
         axes.axvspan(road.min(), road.max(), color=figures.ROAD, alpha=0.12, lw=0, label="road")
         for i, (name, (edges, values)) in enumerate(work.profiles.items()):

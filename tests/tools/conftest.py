@@ -73,14 +73,12 @@ def save_blank():
         def save(figure, path, **options):
             if rendered:
                 return save.real(figure, path, **options)
-            pictures.plt.close(figure)
             return pictures.disk.write(path, BLANK["png"])
         save.real, pictures.save = pictures.save, save
     if figures and not hasattr(figures.data_uri, "real"):
         def data_uri(figure, kind="png"):
             if rendered:
                 return data_uri.real(figure, kind)
-            figures.plt.close(figure)
             mime = {"png": "image/png", "svg": "image/svg+xml"}[kind]
             return f"data:{mime};base64,{base64.b64encode(BLANK[kind]).decode('ascii')}"
         data_uri.real, figures.data_uri = figures.data_uri, data_uri

@@ -8,7 +8,7 @@ import yaml
 from slope_tools import disk
 from slope_tools.commands import study
 from slope_tools.statistics import answer
-from slope_tools.statistics.answer import Code, Ensemble, Kind, Paper, Road, Source, Withheld
+from slope_tools.statistics.answer import AtRoad, Code, Ensemble, Kind, Paper, Road, Source, Withheld
 from slope_tools.statistics.withheld import Kind as Rule
 from slope_tools.tables import answered
 
@@ -23,7 +23,9 @@ def ensemble(far=0.01, rules=(), values=1000.0, **more):
 
 
 def road(low, high, longest=500.0):
-    return Road(400.0, 410.0, (high, low), (0.9 * high, 0.9 * low), longest)
+    """Runs that bring 50 m3 to a road unless the longest one is short, without a lobe on it."""
+    brought = AtRoad(8, 2, 1, 50.0, 5.0) if longest and longest >= 400 else AtRoad(8, 0, 0, 9.0, 0.9)
+    return Road(400.0, 410.0, (high, low), (0.9 * high, 0.9 * low), longest, brought)
 
 
 def codes(found):

@@ -21,7 +21,7 @@ from slope_tools.seismic import chain_files, fragility_files
 needs_lmp = pytest.mark.skipif(not os.environ.get("LMP"), reason="needs the LAMMPS program (LMP)")
 ROAD = "1,0\n8,0\n8,51\n1,51\n"
 FRAGILITY = f"slips {SOIL} --peaks 50:1500:50 --pseudo-static 1 --sample 256"
-STUDY = "mine --sample 6 --vary rolling=0:0.1 --vary xoffset=0:0.99 --fragility fragility"
+STUDY = "mine --sample 6 --vary rolling=0:0.1 --vary packing=1:1000000 --fragility fragility"
 
 
 @pytest.fixture(scope="module")

@@ -1,7 +1,6 @@
 """tools/slope study --sample --mobility: bounds of weighted curves, weighted maps, an ensemble of small collapses."""
 import csv
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,11 +13,11 @@ from messages import is_one
 from tiny_collapse import read_asc
 
 from slope_tools import cli
+from slope_tools.case import run_folders
 from slope_tools.deposits import travel_shares
 from slope_tools.ensembles import conditioned, known_events, known_maps
 from slope_tools.mobility import weights
 from slope_tools.report import ensemble_part
-from slope_tools.report.data import Data
 from slope_tools.report.numbers import Numbers
 from slope_tools.sites import site_warnings
 from slope_tools.statistics.hazard import weighted
@@ -110,6 +109,58 @@ def test_events_before_the_shortest_run_may_leave_more_on_a_road(shortest):
         band, truth = curve.at(volume), (lost > volume).mean()
         assert band.low <= truth <= band.high and band.low <= band.value <= band.high, (volume, truth, band)
         assert band.high - band.low >= mass.early.sum() and band.high < 0.55
+
+
+LAW = stats.lognorm(0.3, scale=1300)
+GAPPED = np.concatenate([np.linspace(700, 1200, 40), np.linspace(1500, 2600, 24)])      # 39 to 68 % end in the gap
+
+
+@pytest.mark.parametrize("share", [0.1, 0.3, 0.385, 0.4, 0.5, 0.65, 0.7, 0.9])
+@pytest.mark.parametrize("values", [GAPPED, 5e3 + 2 * GAPPED, 2e4 - 3 * GAPPED, np.full(64, 7.0)])
+def test_a_quantile_in_a_gap_is_no_number(share, values):
+    """Of the length it holds the known one; others have it where they depend on what ends in the gap."""
+    found = weights.of_lengths(GAPPED, LAW.sf(GAPPED))
+    (low, high, _), = found.gaps
+    assert (low, high) == (1200, 1500)
+    mass = conditioned.masses(found)
+    assert [one.sum() for one in mass.either] == pytest.approx([mass.share.sum()] * 2)
+    one, = conditioned.quantiles(conditioned.curve(values, mass), [share], values, mass)
+    falling = values[0] > values[-1]
+    inside = LAW.cdf(1200) < (1 - share - mass.far if falling else share) < LAW.cdf(1500)
+    assert (one.gap is not None) == (bool(inside) and np.ptp(values) > 0)
+    if one.gap:
+        ends = sorted(np.interp([1200, 1500], GAPPED, values))
+        assert one.gap == pytest.approx(ends) and one.value == ends[1] and one.low <= ends[0]
+        assert one.high is None or one.high >= ends[1]
+        if values is GAPPED:
+            assert one.gap[0] < LAW.ppf(share) < one.gap[1]
+
+
+def test_without_a_gap_there_is_no_either():
+    lengths = LAW.ppf(np.linspace(0.01, 0.99, 64))
+    mass = conditioned.masses(weights.of_lengths(lengths, LAW.sf(lengths)))
+    assert mass.either is None
+    one, = conditioned.quantiles(conditioned.curve(lengths, mass), (0.5,), lengths, mass)
+    assert one.gap is None
+
+
+@pytest.mark.parametrize("gap", [(1888.0, 2950.0), None])
+def test_words_of_a_quantile_in_a_gap(gap):
+    """Console, card, table and numbers have both ends, and no single value."""
+    one = {"share": 0.5, "value": 2950.0, "low": 1500.0, "high": 3100.0, "gap": gap}
+    line = known_events.quantile_text(one, "m")
+    assert ("between 1,888 and 2,950 m" in line) == bool(gap) and ("stay within" in line) != bool(gap)
+    assert ensemble_part.cell_of(one) == ("1,888 to 2,950" if gap else "2,950")
+    about = {"reached": 0.9, "effective": 12.0, "doubts": [], "variables": {}, "quantities": {
+        "length_m": {"name": "length", "unit": "m", "quantiles": [one]}}}
+    data = type("Data", (), {"study": {"ensemble": {"known_events": about, "of": "length_m", "confidence": 0.9}}})
+    numbers = Numbers()
+    part = ensemble_part.KnownEvents(data, numbers)
+    shown, = part.answer()["parts"]
+    assert shown["number"] == ("1,890 to 2,950" if gap else "2,950")
+    assert ("no run ends" in shown["note"]) == bool(gap) and "Between 1,500 m" in shown["note"]
+    assert sum("gap" in row[0] for row in numbers.rows) == (2 if gap else 0)
+    assert part.tables()[0].rows[0][1] == ("1,888 to 2,950" if gap else "2,950")
 
 
 def test_runs_that_reach_no_event_say_nothing():
@@ -272,6 +323,6 @@ def test_the_run_shown_has_the_quantity(value, shown):
     """Nearest to what 90 % of known events stay within, or the largest; a run that lost it over the edge has none."""
     quantities = {} if value == "absent" else {"distance_99_m": {"quantiles": [{"share": 0.9, "value": value}]}}
     runs = [{"run": name, "distance_99_m": one} for name, one in zip("abcd", (1500.0, 2000.0, 2500.0, None))]
-    data = SimpleNamespace(finished=runs, study={"conservative": None, "ensemble": {
-        "of": "distance_99_m", "known_events": {"quantities": {"length_m": {}, **quantities}}}})
-    assert Data.governing(data) == shown
+    about = {"conservative": None, "runs": runs, "ensemble": {
+        "of": "distance_99_m", "known_events": {"quantities": {"length_m": {}, **quantities}}}}
+    assert run_folders.governing(about) == shown

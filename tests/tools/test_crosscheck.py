@@ -16,7 +16,8 @@ from tiny_collapse import LMP
 
 sys.path.insert(0, str(TOP / "tests"))
 
-from other_codes import crosscheck as crosscheck_command, crosscheck_cases as crosscheck, peers  # noqa: E402
+from other_codes import crosscheck as crosscheck_command, crosscheck_cases as crosscheck  # noqa: E402
+from other_codes import crosscheck_table, peers  # noqa: E402
 from slope_tools.errors import SlopeError  # noqa: E402
 
 
@@ -107,8 +108,53 @@ def test_deposit_by_hand():
     assert sum(values) * 5 == pytest.approx(3 * 8) and values[edges.index(60)] == pytest.approx(8 / 5)
 
 
+TRUE = [[17636, 17300, 17900], [17199, 16900, 17450], [17067, 17300, 16800]]
+
+
+@pytest.mark.parametrize("factor, verdict", [(1.0, "agrees"), (1.01, "agrees"), (1.04, "cannot tell"),
+                                             (1.15, "differs"), (0.85, "differs")])
+def test_agreement_is_an_interval_within_the_bound(factor, verdict):
+    mine = [[factor * one + by for one, by in zip(row, (200, -300, 100))] for row in TRUE]
+    found = crosscheck_table.differences(mine, TRUE)
+    assert [one.verdict(0.05) for one in found] == [verdict] * 3
+    for one in found:
+        assert one.low < one.share < one.high and one.share == pytest.approx(factor - 1)
+    more = crosscheck_table.differences([2 * row for row in mine], [2 * row for row in TRUE])
+    assert all(m.high - m.low < 0.7 * (one.high - one.low) for m, one in zip(more, found))
+
+
+def test_the_intervals_hold_the_truth():
+    """95 % of all three of a quantity, where the variance grows with the mean."""
+    random, held = np.random.default_rng(5), 0
+    means = np.array([[439.0], [215.0], [81.0]])
+    for _ in range(400):
+        a, b = (random.normal(means, np.sqrt(20 * means), (3, 3)) for _ in range(2))
+        held += all(one.low <= 0 <= one.high for one in crosscheck_table.differences(a, b))
+    assert 0.92 < held / 400 < 0.99
+
+
+def test_a_wrong_law_is_found_in_the_table():
+    """Volumes of runs with twice the rolling resistance; nothing lies beyond in one: no share of it."""
+    beyond = [[439, 470, 410], [215, 240, 190], [81, 70, 92]]
+    wrong = [beyond[0][::-1], beyond[2], [0, 4, 0]]
+    found = crosscheck_table.differences(wrong, beyond)
+    assert [one.verdict(0.05) for one in found] == ["cannot tell", "differs", "differs"]
+    none, = crosscheck_table.differences([[1.0, 2.0, 3.0]], [[0.0, 0.0, 0.0]])
+    assert none.verdict(0.05) == "cannot tell" and math.isnan(none.share)
+    rows = crosscheck_table.about({"slope": made(beyond), "granular": made(wrong),
+                                   "yade": made(wrong)}, 2.5)["rows"]
+    checks_ = [crosscheck_table.check_of("table", row) for row in rows if row["verdict"]]
+    of = {code: [check.passed for check in checks_ if check.code == code and check.case == "table"
+                 and check.quantity.startswith("beyond")] for code in ("granular", "yade")}
+    assert of == {"granular": [None, False, False], "yade": [None, None, None]}     # of another law: for information
+
+
+def made(values):
+    return [[dict.fromkeys(crosscheck_table.QUANTITIES, one) for one in row] for row in values]
+
+
 @pytest.mark.parametrize("arguments, message", [
-    ("--only fall", "--only: must be of bounce, slide_roll, rolling, collapse, got fall"),
+    ("--only fall", "--only: must be of bounce, slide_roll, rolling, collapse, table, got fall"),
     ("--peers pfc", "--peers: must be of granular, liggghts, yade, got pfc"),
     ("--lmp none", "--lmp: must lead to the LAMMPS program"),
     ("-o file", "-o: must be a folder, got file"),

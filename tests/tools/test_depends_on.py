@@ -61,7 +61,7 @@ TRIAL = {"lmp", "jobs"}                         # what the trial run finds is wr
 LATER = {("project", "name"), ("project", "client"), ("project", "author"), ("road", "cut_angle"), ("road", "mesh"),
          *(("road", key) for key in ("width", "from", "blocked", "lane", "clearing", "loosening")),
          ("study", "rolling"), ("study", "spacing"), ("study", "points"), ("known", "set"), ("known", "confined"),
-         ("study", "xoffset"), ("study", "yoffset"), ("study", "zoffset"), ("study", "sizes")}
+         ("study", "packing"), ("study", "sizes")}
 KEYS = [(section, key) for section, about in site_choices.sections() for key in about["properties"]]
 NOT_FILES = {("terrain", "crs"), ("terrain", "assign_crs"), ("terrain", "z_unit"), ("release", "shape"),
              ("release", "scar_is"), ("project", "name"), ("project", "client"), ("project", "author"),
@@ -162,11 +162,12 @@ NO_FILES = {"pair/gran/restitution", "fix/energy/ledger", "fix/deposit/grid", "f
 # words that the parsers compare with: what follows is a file, or not
 NAMES_FILE = {"file", "terrain", "layer", "table", "raster", "bedrock"}
 NAMES_NONE = {
-    "angle", "bulk", "cell", "damping", "deposit", "depth", "direction", "extent", "friction", "grid", "headroom",
-    "inside", "keep", "limit_damping", "lower", "mass", "method", "motion", "move", "open", "origin", "output",
-    "outside", "overlap", "pattern", "point", "restitution", "rolling", "rolling_radius", "rolling_spring", "rotate",
-    "scale", "scattered", "scheme", "seismic", "series", "shape", "side", "sink", "smallest", "spacing", "stiffness",
-    "strength", "sunk", "surface", "units", "upper", "volume", "water", "window", "within", "write"}
+    "angle", "bulk", "cell", "damping", "deposit", "depth", "direction", "extent", "fill", "friction", "grid",
+    "headroom", "inside", "keep", "limit_damping", "lower", "mass", "method", "motion", "move", "open", "origin",
+    "output", "outside", "overlap", "pattern", "point", "restitution", "rim", "rolling", "rolling_radius",
+    "rolling_spring", "rotate", "scale", "scattered", "scheme", "seed", "seismic", "series", "shape", "side", "sink",
+    "smallest", "spacing", "stiffness", "strength", "sunk", "surface", "units", "upper", "volume", "water", "window",
+    "within", "write"}
 WORD = re.compile(r'(?:strcmp\(\w+\[[^]]*\], |given\(|\b(?:keyword|word|key|name) == )"([a-z_]+)"')
 
 

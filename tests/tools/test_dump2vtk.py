@@ -323,6 +323,32 @@ def test_a_raster_is_laid_on_the_terrain_or_on_the_surface(here):
     assert np.array_equal(shows, ~np.isnan(surface)) and np.all(points[..., 2] == 7.125)
 
 
+def write_sidecar(path, east, north, epsg=32654):
+    Path(path).write_text(f"# About it.\ncrs:\n  epsg: {epsg}\n  wkt: PROJCS[\"WGS 84 / UTM\n    54N\"]\norigin:\n"
+                          f"  east: {east}\n  north: {north}\ncell: 2.0\n")
+
+
+def test_a_raster_of_another_origin_is_moved_or_refused(here):
+    """Its sidecar says where it lies; without one it is in the terrain's coordinates."""
+    write_asc("terrain.asc", np.zeros((4, 5)))
+    write_asc("p.wide.asc", np.arange(42.0).reshape(6, 7))
+    write_asc("p.near.asc", np.ones((4, 5)))
+    write_sidecar("terrain.yaml", 380000.0, 4000000.0)
+    write_sidecar("p.wide.yaml", 379998.0, 3999998.5)
+    command = "--terrain", "terrain.asc", "--raster", "p.wide.asc", "p.near.asc", "-o", "run"
+    good(*command)
+    x, y = (read_vts("run.wide.vts")[0][..., k] for k in (0, 1))
+    assert (x.min(), x.max(), y.min(), y.max()) == (-1, 11, -0.5, 9.5)
+    assert read_vts("run.near.vts")[0][..., :2].min() == 1
+    write_sidecar("p.wide.yaml", 379998.0, 3999998.5, epsg="null")
+    good(*command)
+    for text, message in ((379998.0, None), ("x", "p.wide.yaml, line 7: origin must be numbers, got x")):
+        write_sidecar("p.wide.yaml", text, 3999998.5, epsg=6677)
+        assert (message or "p.wide.asc must be in the CRS of terrain.asc, EPSG:32654, got EPSG:6677") in bad(*command)
+    Path("p.wide.yaml").write_text("warnings: []\n")
+    assert "p.wide.yaml must be the sidecar of p.wide.asc" in bad(*command)
+
+
 def test_the_deposit_of_a_run(here):
     """Its base is the ground, where the scar shows, and its time step gives the time of dumps that have none."""
     terrain = np.full((5, 6), 20.0)

@@ -63,6 +63,9 @@ variable a index 0.5   # a share; 0 <= share < 1
 variable b index 30    # degrees
 variable c index 0.3   # where c is > 0, or 5
 variable e index 0.5
+variable f index 2
+variable g index 2977
+create_balls 1 ${f} ${g} fill body seed 1
 pair_coeff 1 1 stiffness 1 1 restitution ${e} friction ${b}
 fix deposit all deposit/grid 1 1 cell 1
 """
@@ -72,7 +75,8 @@ def test_a_deck_has_ranges(tmp_path):
     deck = tmp_path / "in.a"
     deck.write_text(RANGED)
     found = deck_ranges.ranges(deck)
-    assert set(found) == {"a", "b", "e"}
+    assert set(found) == {"a", "b", "e", "f", "g"}
+    assert found["f"].text == found["g"].text == "> 0"
     assert [found["a"].holds(value) for value in (-0.1, 0, 0.5, 1)] == [False, True, True, False]
     assert [found["b"].holds(value) for value in (0, 89.9, 90)] == [True, True, False]
     assert found["e"].text == "> 0 and <= 1" and found["a"].text == ">= 0 and < 1"

@@ -80,7 +80,50 @@ def test_a_run_by_its_folder_or_one_of_its_files(slope, here, study):
         status, out, err = slope(name)
         assert status == 0 and f"written to {folder}: site.base.tif" in out, err
         assert ("two, the governing run of mine/study: mine/study/two/site" in out) == (name in ("mine", "mine/study"))
+        of_study = name in ("mine", "mine/study")
+        about = yaml.safe_load(Path(folder, "export.yaml").read_text())["run"]
+        assert (about["name"], about["study"]) == (("two", "mine/study") if of_study else (None, None))
+        with rasterio.open(f"{folder}/site.base.tif") as tif:
+            assert tif.tags()["run"] == ("two, the governing run of mine/study" if of_study else "mine/study/two/site")
         shutil.rmtree(folder)
+
+
+ENSEMBLE = """
+conservative: null
+farthest: one
+ensemble: {of: length_m, quantities: {length_m: {quantiles: [{share: 0.9, value: 210.0}]}}, known_events: %s}
+runs: [{run: one, length_m: 300.0, summary: %s/one/site.summary.yaml},
+       {run: two, length_m: 200.0, summary: %s/two/site.summary.yaml}, {run: three, status: failed}]
+"""
+KNOWN = "{quantities: {length_m: {quantiles: [{share: 0.9, value: %s}]}}}"
+
+
+@pytest.mark.parametrize("known, inside, run", [
+    ("null", ".", "two"),                           # at the 90 % quantile of the runs as they are
+    (KNOWN % 290.0, "../study", "one"),             # of the weighted runs; they are those of the paper's study
+    (KNOWN % "null", ".", "one"),                   # known events go beyond all runs: the longest
+    ("{quantities: {}}", ".", "two")])              # nothing is weighted
+@pytest.mark.parametrize("paper", [True, False])
+def test_a_site_is_the_run_of_the_first_page(slope, here, known, inside, run, paper):
+    """Of the study that governs, by its own rule, whatever else lies there; the files name it."""
+    write_sidecar(40, 60, 2.5)
+    headline = "headline: {source: ensemble}\n"
+    for name in ("one", "two"):
+        Path("mine/ensemble", inside, name).mkdir(parents=True)
+        write_rasters(f"mine/ensemble/{inside}/{name}/site")
+        shutil.copy("terrain.asc", f"mine/ensemble/{inside}/{name}")
+        shutil.copy("terrain.yaml", f"mine/ensemble/{inside}/{name}")
+    write_rasters("mine/byhand")
+    Path("mine/ensemble/study.yaml").write_text(headline + ENSEMBLE % (known, inside, inside))
+    if paper:
+        Path("mine/study").mkdir(exist_ok=True)
+        Path("mine/study/study.yaml").write_text(headline + "conservative: {run: other}")
+    status, out, err = slope("mine")
+    assert (status, err) == (0, "") and f"{run}, the governing run of mine/ensemble: " in out
+    about = yaml.safe_load(Path("mine/export/export.yaml").read_text())
+    assert (about["run"]["name"], about["run"]["study"]) == (run, "mine/ensemble")
+    with rasterio.open("mine/export/site.thickness.tif") as tif:
+        assert tif.tags()["run"] == f"{run}, the governing run of mine/ensemble"
 
 
 def test_without_a_terrain_in_local_metres(slope):

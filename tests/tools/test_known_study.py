@@ -65,7 +65,7 @@ def test_both_studies_of_masses_of_all_sizes(request, capsys, monkeypatch, name,
 
 
 def test_the_ensemble_varies_ground_and_restitution(large, capsys, monkeypatch):
-    """Friction, rolling, spacing, restitution on the field and the lattice; runs that are added go farther."""
+    """Friction, rolling, spacing, restitution on the field and the packing; runs that are added go farther."""
     seen = []
     monkeypatch.setattr(study_command, "perform", lambda setup, *rest, **more: None)
     monkeypatch.setattr(study_command.results, "Questions", lambda *args, **more: seen.append(args[4]))
@@ -73,7 +73,8 @@ def test_the_ensemble_varies_ground_and_restitution(large, capsys, monkeypatch):
     assert study(capsys, monkeypatch, "big")[0] == 0
     [order] = seen
     assert {one.name: (one.low, one.high) for one in order.sample.variables} == {
-        "friction": (5, 30), "rolling": (0, 0.15), "spacing": (0.3, 0.95), "field_e": (0.05, 0.5), "xoffset": (0, 0.99)}
+        "friction": (5, 30), "rolling": (0, 0.15), "spacing": (0.3, 0.95), "field_e": (0.05, 0.5),
+        "packing": (1, 1000000)}
     assert {one.name: one.wide for one in order.sample.variables if one.wide} == {
         "friction": (2, 30), "spacing": (0.2, 0.95)}
     assert order.condition.found.by_set.in_range and not order.condition.named
@@ -83,12 +84,12 @@ def test_the_ensemble_varies_ground_and_restitution(large, capsys, monkeypatch):
 
 
 def test_other_grounds_at_both_ends_of_rolling(mine, capsys, monkeypatch):  # noqa: F811
-    """One position each, beside the rolling resistances and positions on the site's own ground."""
+    """One packing each, beside the rolling resistances and packings on the site's own ground."""
     status, out, err = study(capsys, monkeypatch, "mine --paper")
     assert status == 0, err
     runs = [line.split(":")[0] for line in out.splitlines() if line.startswith("rolling_") and "_spacing_" in line]
     assert runs == [*(f"rolling_{rolling}_spacing_0.9{more}" for rolling in ("0", "0.05", "0.1")
-                      for more in ("", "_xoffset_0.5", "_yoffset_0.5")),
+                      for more in ("", "_packing_2", "_packing_3")),
                     *(f"rolling_{rolling}_spacing_{spacing}" for spacing in ("0.5", "0.7") for rolling in ("0", "0.1"))]
     # three sizes of balls, of which one is the site's own, and half the step
     assert sum("_d_" in line for line in out.splitlines()) == 6 and "20 runs, 0 of them finished" in out
@@ -143,8 +144,8 @@ def test_the_estimate_is_of_the_study_that_is_made(large):
     plan = site_budget.plan(choices)
     assert plan.runs == 19 and not plan.half_step       # no road: nothing to compare
     assert site_budget.plan({**choices, "road": {**choices["road"], "file": "road.csv"}}).half_step
-    assert plan.text == ("19 runs: 3 rolling resistances x 3 lattice positions, 4 on other grounds, 2 other sizes of "
-                         "balls x 3")
+    assert plan.text == ("19 runs: 3 rolling resistances x 3 packings, 4 on other grounds, 2 other sizes of balls x "
+                         "3")
     assert site_budget.plan({**choices, "study": {**choices["study"], "spacing": []}}).runs == 15
 
 

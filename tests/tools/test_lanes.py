@@ -15,7 +15,7 @@ import pytest
 import yaml
 from affine import Affine
 from shapely.affinity import translate
-from shapely.geometry import LineString, Polygon, box, shape
+from shapely.geometry import LineString, MultiLineString, Point, Polygon, box, shape
 
 from run_helpers import (CRS_M, EAST, NORTH, centres, run_command, write_geojson, write_run,
                          write_sidecar)
@@ -406,6 +406,43 @@ def test_a_road_that_is_written_is_read_as_the_same_line(here):
     assert roads.read_local("road.csv", place, asked).line.equals_exact(CURVE, 1e-6)
     with pytest.raises(roads.SlopeError, match="road.csv: is a line, whose width must be given: --road-width"):
         roads.read_local("road.csv", place)
+
+
+UP, REST = [(40, 0), (40, 80)], [(40, 30), (40, 80)]
+
+
+@pytest.mark.parametrize("drawn, axis", [
+    ([UP, UP], UP), ([UP, UP, UP], UP), ([UP, UP[::-1]], UP), ([UP[::-1], UP], UP[::-1]),     # two features, or copies
+    ([[*UP, UP[0]]], UP), ([[*UP, (40, 30)]], UP), ([[(40, 0), (30, 40), (40, 80), (30, 40), (40, 0)]],
+                                                    [(40, 0), (30, 40), (40, 80)]),       # there and back
+    ([UP, REST], UP), ([UP[::-1], REST], UP[::-1]), ([[(40, 0), (40, 50)], REST], UP)])   # in a part
+@pytest.mark.parametrize("suffix", ["geojson", "csv", "wkt"])
+def test_a_line_that_is_drawn_twice_is_one_axis(here, drawn, axis, suffix):
+    place = gridded(GROUNDS["level"], 2.0)
+    if suffix == "geojson":
+        write_geojson("road.geojson", *map(LineString, drawn))
+    elif suffix == "csv":
+        (here / "road.csv").write_text("\n".join("".join(f"{x},{y}\n" for x, y in line) for line in drawn))
+    else:
+        (here / "road.wkt").write_text(MultiLineString(drawn).wkt)
+    said = []
+    found = roads.read_local(f"road.{suffix}", place, roads.Asked(8.0), local=True, warn=said.append)
+    wanted = LineString(axis)
+    assert found.line.length == pytest.approx(wanted.length) and found.line.hausdorff_distance(wanted) < 1e-9
+    assert (found.line.coords[0], found.line.coords[-1]) == (wanted.coords[0], wanted.coords[-1])
+    [one] = said
+    drawn_length = sum(LineString(line).length for line in drawn)
+    assert one.kind == "drawn twice" and f"road.{suffix}" in str(one)
+    assert one.numbers["percent"] == pytest.approx(100 * (1 - wanted.length / drawn_length))
+
+
+def test_what_is_no_line_is_named(here):
+    write_geojson("road.geojson", LineString(UP), Point(3, 3), box(1, 1, 2, 2))
+    said = []
+    found = roads.read_local("road.geojson", gridded(GROUNDS["level"], 2.0), roads.Asked(8.0), local=True,
+                             warn=said.append)
+    assert found.line.length == 80 and [one.kind for one in said] == ["no line"]
+    assert "Point and Polygon" in str(said[0])
 
 
 # --- over the runs of a study ---

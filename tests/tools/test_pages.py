@@ -53,6 +53,18 @@ def test_no_page_is_left_out_of_the_contents():
     assert sorted(listed) == sorted(set(PAGES) - {"index"})
 
 
+@pytest.mark.parametrize("path", [path for path in (TOP / "README.md", *DOC.glob("*.rst"), *(TOP / "inputs").rglob("*"))
+                                  if path.suffix in (".md", ".rst", ".yaml", ".py") or path.name.startswith("in.")],
+                         ids=lambda path: str(path.relative_to(TOP)))
+def test_nothing_is_ascribed_to_the_paper_that_it_does_not_state(path):
+    """It has no released volume, no depth of the slip; the elevation data are free, and not shipped."""
+    parts = re.split(r"\n\s*\n", path.read_text(encoding="utf-8"))
+    for sentence in (one for part in parts for one in re.split(r"(?<=[.:;])\s", " ".join(part.split()))):
+        assert not re.search(r"(data|terrain).*not public", sentence), sentence
+        assert not (re.search(r"[Tt]aken from the paper|paper (states|gives|has)", sentence)
+                    and re.search(r"49,000|48,858", sentence)), sentence
+
+
 def test_the_pages_are_as_long_as_they_may_be():
     assert words(*(set(PAGES) - set(GENERATED))) <= MOST
     assert words("tutorial", "gis", "limits") <= USERS

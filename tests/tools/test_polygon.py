@@ -155,12 +155,39 @@ TEXT_CSV = "\n\n".join("\n".join(f"{x + EAST!r},{y + NORTH!r}" for x, y in ring.
     ("a.txt", lambda path: Path(path).write_text("# road\n" + moved(ROAD).wkt.replace("), (", "),\n(")), ""),
     ("a.wkt", lambda path: Path(path).write_text("GEOMETRYCOLLECTION(" + moved(ROAD, WGS).wkt + ")"),
      f"--assign-crs {WGS}"),
+    ("a.wkt", lambda path: Path(path).write_text("SRID=6677;" + moved(ROAD).wkt), ""),
+    ("a.wkt", lambda path: Path(path).write_text("srid = 4326; " + moved(ROAD, WGS).wkt), ""),
+    ("a.wkt", lambda path: Path(path).write_text("SRID=0;" + moved(ROAD).wkt), ""),
+    ("a.wkt", lambda path: Path(path).write_text("SRID=4326;" + ROAD.wkt), "--local"),
+    ("a.csv", lambda path: Path(path).write_text(f'WKT,name\n"{moved(ROAD).wkt}",road\n'), ""),
+    ("a.csv", lambda path: Path(path).write_text(f'id;wkt_geom;name\r\n1;{moved(ROAD).wkt};"a; b"\r\n'), ""),
+    ("a.csv", lambda path: Path(path).write_text(f'"geom"\n"SRID=4326;{moved(ROAD, WGS).wkt}"\n'), ""),
 ], ids=lambda value: value if isinstance(value, str) else "")
 def test_every_format(written, name, make, options):
     make(name)
     found, out = written(f"{name} {options}")
     assert_is(found, ROAD)
     assert f"area {ROAD.area:.3f} m2" in out or f"area {ROAD.area - 0.001:.3f} m2" in out
+
+
+@pytest.mark.parametrize("closed", [1, 0])
+def test_a_closed_line_of_a_drawing_is_an_area(slope, closed):
+    points = list(moved(ROAD).exterior.coords)[:-1]
+    lines = ["0", "SECTION", "2", "ENTITIES", "0", "LWPOLYLINE", "8", "0", "90", str(len(points)), "70", str(closed),
+             *(word for x, y in points for word in ("10", repr(x), "20", repr(y))), "0", "ENDSEC", "0", "EOF", ""]
+    Path("a.dxf").write_text("\n".join(lines))
+    status, _, err = slope("a.dxf --assign-crs EPSG:6677 -o out.csv")
+    if closed:
+        assert (status, err) == (0, "")
+        assert_is(rings("out.csv"), Polygon(ROAD.exterior))
+    else:
+        assert status == 2 and "a.dxf: feature 0: must be a polygon, got LineString" in err
+
+
+def test_texts_of_several_systems_are_refused(slope):
+    Path("a.wkt").write_text(f"SRID=6677;{moved(ROAD).wkt}\nSRID=6676;{moved(ROAD).wkt}\n")
+    status, _, err = slope("a.wkt -o out.csv")
+    assert status == 2 and err.count("\n") == 1 and "a.wkt: must be in one CRS, got SRID=6676 and SRID=6677" in err
 
 
 def test_layers_of_a_file(slope):

@@ -435,7 +435,7 @@ def test_every_example_of_the_page_runs(qgis, inside, place):
             site = results
             assert "sizes: [0.7, 1, 1.4]" in Path(site["SITE"]).read_text()      # in the test fewer runs, one size
             text = re.sub(r"(?m)^  rolling: .*$", "  rolling: [0.05]", Path(site["SITE"]).read_text(), count=1)
-            Path(site["SITE"]).write_text(re.sub(r"(?m)^  (sizes|xoffset|yoffset): .*$", r"  \1: []",
+            Path(site["SITE"]).write_text(re.sub(r"(?m)^  (sizes|packing): .*$", r"  \1: []",
                                                  text.replace("  points: 64", "  points: 0")))
         if parameters.get("DECK") == "mine/site.yaml":
             study = results

@@ -281,6 +281,9 @@ def fast(share, volume=940.0, speed=30.0):
     (summary(**fast(0.0099)), True, "at rest"),
     (summary(**fast(0.01)), False, "ended by its rest criterion; 1 % of the volume (940 m3) is faster than 0.1 m/s, up "
      "to 30 m/s"),
+    (summary(rest_share=0.03, **fast(0.0299)), True, "at rest"),
+    (summary(rest_share=0.03, **fast(0.03)), False, "ended by its rest criterion; 3 % of the volume"),
+    (summary(rest_share=0.001, **fast(0.002)), False, "ended by its rest criterion; 0.2 % of the volume"),
     (summary("run completed", **fast(0.0)), False, "stopped at its duration; 0 % of the volume (940 m3)"),
     (summary("run completed", **fast(0.042)), False, "stopped at its duration; 4.2 % of the volume (940 m3) is faster"),
     (summary("running", **fast(0.3)), False, "was written in the run (running); 30 % of the volume"),
@@ -342,6 +345,8 @@ TRAVEL = {"front": 1.0, "front_at_release": 1.0, "centroid": 1.0, "reach_angle":
      "quantiles: first value: distance: must be a finite number or null, got 'x'"),
     ("travel", {**TRAVEL, "quantiles": [{"share": 0.5, "distance": float("nan"), "reach_angle": 1}]}, "got nan"),
     ("motion", {"moving_share": 0.0, "threshold": 0.1, "fast_share": 0.1}, "must be valid: 'fast_volume' is a dep"),
+    ("motion", {"moving_share": 0.0, "threshold": 0.1, **fast(0.0), "rest_share": "x"},
+     "rest_share: must be a finite number, got"),
     ("motion", {"moving_share": 0.0, "threshold": 0.1, **fast(None)}, "fast_share: must be a finite number, got"),
     ("moving", 1, "must be true or false, got 1"), ("dt", 0, "must be > 0, got 0"),
     ("volume", {"released": 1.0}, "must have on_grid and off_grid and lost and residual")])

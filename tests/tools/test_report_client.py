@@ -99,7 +99,8 @@ HEADLINES = {
     "nothing": headline_of("nothing", volume_m3=0.0, share=0.95, source="ensemble",
                            road={**ROAD, "reached": [0.02, 0.07]})}
 SAID = {"number": ("35,800 m³", "Between 21,000 m³ and 48,200 m³, with 90 % confidence.", "gives 1,200 m³"),
-        "floor": ("at least 12,000 m³", "90 % of known events of this volume and height stay within 12,000 m³",
+        "floor": ("at least 12,000 m³", "90 % of known events of this volume and height stay within 12,000 m³; what "
+                  "the others bring these runs do not show.",
                   "12 % of known events of this volume and height go farther than the longest run, which ends after "
                   "2,300 m.", "Next step: a larger elevation model"),
         "not reached": ("20 % to 30 % of known events reach it", "More than 0 m³", "the longest run ends after 1,846 m",
@@ -129,6 +130,42 @@ def test_what_stands_first(slope, here, case):
     if case == "withheld":
         remedy, = (one["remedy"] for one in yaml.safe_load(path.read_text())["conservative"]["withheld"])
         assert f"<code>{html.escape(remedy)}</code>" in page
+
+
+def weighted(quantities=None, reached=0.9, gap=None):
+    """The data of a study of three runs that known events weigh."""
+    rows = [{"run": name, "distance_99_m": far, "remove_on_road_m3": on, "blocked_m": 40.0, "beyond_road_m3": 0.0}
+            for name, far, on in (("a", 200.0, 0.0), ("b", 300.0, 19600.0), ("c", 900.0, 300.0))]
+    known = {"reached": reached, "quantities": {
+        key: {"quantiles": [{"share": 0.95, "value": value}]} for key, value in (quantities or {}).items()},
+        "to_remove": [{"share": 0.95, "value": 9e3, "low": 0.0, "high": None, "gap": gap}]}
+    return SimpleNamespace(finished=rows, road=True, study={"ensemble": {"known_events": known}})
+
+
+def test_ranges_beside_a_weighted_number():
+    """They are weighted, too, or say of what they are: the least and the most of runs are no range of known events."""
+    numbers = Numbers()
+    data = weighted({"remove_on_road_m3": 5230.0, "distance_99_m": 610.0})
+    assert client_part.road(data, numbers).startswith("On the road itself 95 % of known events leave at most 5,230 m3; "
+                                                      "single runs, each counted alike, 0 to 19,600 m3")
+    assert client_part.distance(data, numbers, True) == (
+        "In 95 % of known events 99 % of the volume stays within 610 m of the highest point of the body, in plan; "
+        "in single runs, each counted alike, within 200 to 900 m.")
+    data = weighted({"remove_on_road_m3": None})        # known events go beyond the runs
+    assert client_part.road(data, numbers).startswith(
+        "On the road itself single runs, each counted alike, leave 0 to 19,600 m3")
+    for data in (weighted(reached=None), SimpleNamespace(**{**vars(weighted()), "study": {"ensemble": None}}),
+                 SimpleNamespace(**{**vars(weighted()), "study": None})):
+        assert client_part.road(data, numbers).startswith("On the road itself lie 0 to 19,600 m3")
+        assert client_part.distance(data, numbers, True).startswith("In all 3 runs 99 % of the volume stays within 200")
+
+
+@pytest.mark.parametrize("gap, source, said", [([2e3, 9e3], "ensemble", True), (None, "ensemble", False),
+                                               ([2e3, 9e3], "paper", False)])
+def test_the_number_says_that_it_is_in_a_gap(gap, source, said):
+    about = {"source": source, "share": 0.95}
+    text = client_part.in_gap(weighted(gap=gap), about, Numbers())
+    assert ("between 2,000 m3 and 9,000 m3" in text) == said and bool(text) == said
 
 
 def test_the_next_step_and_its_time(tmp_path):
@@ -183,7 +220,7 @@ def test_without_a_road_the_reach_is_the_number(slope, here):
 
 # --- caveats ---
 
-RELEASE = {"released": 50000.0, "body": 50000.0, "factor": 1.91, "from_cubic": 0.0, "removed": None}
+RELEASE = {"released": 50000.0, "body": 50000.0, "factor": 1.91, "from_cubic": 0.0, "removed": None, "packed": False}
 
 
 def rows_of(*masses, **more):
@@ -200,12 +237,11 @@ def data_of(rows, **more):
                               "below_ground": lambda: None, "names": lambda: names, "result": result, **more})
 
 
-def ground_of(*touched, crs="EPSG:6677"):
-    """A ground whose edges were reached at these rows and columns."""
-    z = np.zeros((5, 6))
-    for row, column, value in touched:
-        z[row, column] = value
-    return SimpleNamespace(max_thickness=z, raster=SimpleNamespace(crs=crs), obstacles=Obstacles({}, {}))
+GROUND = SimpleNamespace(obstacles=Obstacles({}, {}))
+LEFT = [{"side": "south", "volume": 5000.0, "balls": 50, "where": "before", "distance": 120.4, "add": 170.0},
+        {"side": "west", "volume": 900.0, "balls": 9, "where": "past", "distance": 20.0, "add": 1230.0},
+        {"side": "south", "volume": 80.0, "balls": 1, "where": "on", "distance": 0.0, "add": 60.0},
+        {"side": "a hole", "volume": 20.0, "balls": 1, "where": "past its end", "distance": 8.0, "add": None}]
 
 
 def test_what_was_lost_is_counted_in_one_line_with_its_side():
@@ -213,14 +249,19 @@ def test_what_was_lost_is_counted_in_one_line_with_its_side():
     found, = judged.lost(rows)
     assert (found.kind, found.level, found.runs[0], len(found.runs)) == ("lost much", WARNING, "run 6", 9)
     assert found.numbers["volume"] == 6000 and found.numbers["percent"] == 12 and found.numbers["of"] == 15
-    assert warnings.first_page([found], ground_of((4, 2, 3.0), (2, 0, 2.5))) == [
-        "9 of 15 runs lost up to 6,000 m³ over the edge: enlarge the terrain to the south-west."]
+    assert warnings.first_page([found]) == ["9 of 15 runs lost up to 6,000 m³ over the edge: enlarge the terrain."]
+    rows[6]["left"] = LEFT
+    found, = judged.lost(rows)
+    assert found.text == (
+        "up to 6,000 m3 (12 % of the released volume) left the grid or the box and are not on the maps (5,000 m3 in "
+        "the south, 120 m before the road; 900 m3 in the west, 20 m beyond the road; 80 m3 in the south, on the road; "
+        "20 m3 elsewhere), and how far they went is unknown: enlarge the terrain and the box by about 1,230 m in the "
+        "west, about 170 m in the south, heights in the hole (slope terrain --fill)")
+    assert warnings.first_page([found]) == [
+        "9 of 15 runs lost up to 6,000 m³ over the edge: enlarge the terrain by about 1,230 m in the west, about "
+        "170 m in the south, heights in the hole (slope terrain --fill)."]
     found, = judged.lost(rows_of((1.0, 50000.0)))
     assert (found.kind, found.level) == ("lost", NOTE) and judged.lost(rows_of((0.01, 50000.0))) == []
-    assert warnings.first_page([found], ground_of((2, 5, 1), crs=None))[0].endswith(
-        "enlarge the terrain beyond the right edge of the map.")
-    assert warnings.side_of(ground_of((0, 2, 1), (4, 2, 1))) == "to the north and the south"
-    assert warnings.side_of(ground_of((4, 2, 3.0), (2, 0, 0.5))) == "to the south"
 
 
 def moved(rows, *shares):
@@ -237,8 +278,8 @@ def test_the_weightiest_come_first_and_three_are_shown():
     rows.append({"run": "cut too", "status": "failed", "error": "ERROR: no memory"})
     thin = Finding("thin", {"balls": 1.83, "limit": 3.0}).entry()
     data = data_of(rows, study={"conservative": None, "warnings": [thin]})
-    found = warnings.findings(data, ground_of())
-    told = warnings.first_page(found, ground_of())
+    found = warnings.findings(data, GROUND)
+    told = warnings.first_page(found)
     by_kind = {one.kind: one for one in found}
     assert by_kind["in motion"].runs == ("run 0",) and by_kind["moving"].runs == ("run 2", "run 1")
     assert by_kind["moving"].numbers["share"] == 0.05 and by_kind["moving"].numbers["differ"]
@@ -253,17 +294,20 @@ def test_the_weightiest_come_first_and_three_are_shown():
 
 def test_what_no_run_tells_is_on_the_first_page_alone():
     rows = rows_of((0.0, 50000.0))
-    found = warnings.findings(data_of(rows), ground_of())
+    found = warnings.findings(data_of(rows), GROUND)
     assert [one.kind for one in found] == ["no repeats", "no sizes", "slip assumed"]
-    assert warnings.listed(found, {}) == [] and len(warnings.first_page(found, ground_of())) == 3
+    assert warnings.listed(found, {}) == [] and len(warnings.first_page(found)) == 3
     found = warnings.findings(data_of(rows, repeats={"seed": ["1"]}, study={
-        "conservative": {"size_m3": 3.0, "doubts": []}, "warnings": []}), ground_of())
+        "conservative": {"size_m3": 3.0, "doubts": []}, "warnings": []}), GROUND)
     assert [one.kind for one in found] == ["slip assumed"]
 
 
 @pytest.mark.parametrize("change, kind, numbers", [
     ({"from_cubic": 0.2, "factor": 2.29}, "bulk factor", {"off": "20 %", "side": "above"}),
     ({"from_cubic": -0.2, "factor": 1.53}, "bulk factor", {"off": "20 %", "side": "below"}),
+    ({"from_cubic": -0.1273, "factor": 1.667, "packed": True}, None, {}),
+    ({"from_cubic": 0.05, "factor": 2.0, "packed": True}, "bulk factor",
+     {"off": "20 %", "side": "above", "usual": "1/0.60"}),
     ({"body": 60000.0}, "body volume", {"off": "17 %", "side": "less"}),
     ({"body": None, "removed": 0.3}, "balls removed", {"off": "30 %"}),
     ({"body": None, "removed": 0.1}, None, {})])
@@ -289,15 +333,16 @@ def test_soft_contacts_are_one_line_with_the_softest():
 
 
 def test_runs_of_several_sizes_are_one_line():
-    sizes, = gathered([Finding("lost much", {"volume": volume, "percent": 3.0, "up_to": "up to "},
+    sizes, = gathered([Finding("lost much", {"volume": volume, "percent": 3.0, "up_to": "up to ", "where": "",
+                                             "add": ""},
                                (f"rolling_0_d_{volume:g}",), "sizes of balls") for volume in (337.0, 4.21)], 4)
     several = [sizes.entry(), "the slope is steep", "the toe is wet",
                {"kind": "moving", "text": "judged from the rows"}]
     found = warnings.findings(data_of([], study={"conservative": None, "warnings": several}, repeats={"x": []}),
-                              ground_of())
+                              GROUND)
     assert [one.text for one in found if one.level == WARNING][1:] == ["the slope is steep", "the toe is wet"]
     assert sizes.numbers["volume"] == 337 and sizes.numbers["of"] == 4 and len(sizes.runs) == 2
-    assert found[-3] == sizes and warnings.first_page([sizes], ground_of()) == []
+    assert found[-3] == sizes and warnings.first_page([sizes]) == []
 
 
 def test_a_finding_survives_its_file():

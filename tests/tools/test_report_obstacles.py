@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from affine import Affine
+from matplotlib import colormaps
 from shapely.geometry import box
 
 from run_helpers import TOOLS
@@ -60,8 +61,7 @@ def drawn(monkeypatch):
     """Figures that were to become data URIs."""
     found = []
     monkeypatch.setattr(figures, "data_uri", lambda figure, kind="png": found.append(figure) or "uri")
-    yield found
-    figures.plt.close("all")
+    return found
 
 
 def texts(figure):
@@ -140,7 +140,7 @@ def test_the_cut_is_drawn_only_where_it_cuts():
 # --- one palette for each quantity ---
 
 def test_palettes_are_named_in_one_place():
-    names = set(figures.plt.colormaps()) - {"gray", "terrain", "seismic"}      # of the shaded relief; words of ours
+    names = set(colormaps) - {"gray", "terrain", "seismic"}      # of the shaded relief; words of ours
     found = {path.name: re.findall(r'"([A-Za-z_]+)"', path.read_text(encoding="utf-8"))
              for path in (TOOLS / "slope_tools").rglob("*.py") if path.name != "palettes.py"}
     assert {name: used for name, words in found.items() if (used := names & set(words))} == {}

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from affine import Affine
+from matplotlib.figure import Figure
 from rasterio.crs import CRS
 from shapely.geometry import box
 
@@ -52,8 +53,7 @@ def drawn(monkeypatch):
         found.append(figure)
         return f"data:image/{kind};base64,AAAA"
     monkeypatch.setattr(figures, "data_uri", keep)
-    yield found
-    figures.plt.close("all")
+    return found
 
 
 def labels(axis):
@@ -160,7 +160,7 @@ def test_the_outline_of_a_mapped_raster_is_that_of_its_cells(drawn):
     layers = site("usual")[0]
     mask = np.zeros(layers.raster.z.shape, bool)
     mask[10:20, 30:50] = True       # of 60 rows; cells of 2.5 m
-    axes = figures.plt.figure().add_subplot()
+    axes = Figure().add_subplot()
     figure_maps.draw_mapped(axes, layers._replace(mapped=mask))
     points = np.concatenate([path.vertices for one in axes.collections for path in one.get_paths()])
     assert [*points.min(axis=0), *points.max(axis=0)] == pytest.approx([75, 100, 125, 125])

@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 import rasterio
 import yaml
-from shapely.geometry import LineString, Point, box, shape
+from shapely.geometry import LineString, MultiPolygon, Point, Polygon, box, shape
 
 import route_stand_in
 import run_helpers
@@ -343,6 +343,42 @@ def test_zones_of_shares(two, capsys):
     assert about["per_year"] is False and about["runs"] == 8
 
 
+@pytest.mark.parametrize("words, got", [
+    ("1/100,1/1000", "1/100"), ("0.5,1/100", "1/100"), ("1/2", "1/2"), ("0.01,0.001", "0.01 and 0.001"),
+    ("0.5,1e-3,1e-4", "0.001 and 0.0001")])
+def test_shares_do_not_read_like_return_periods(two, capsys, words, got):
+    status, out, err = zones_of(two[0], capsys, "--zones", words)
+    assert (status, out, err.count("\n")) == (2, "", 1) and err.rstrip().endswith(f"got {got}"), err
+    assert "--zones" in err and "runs" in err and not (two[0] / "zones").exists()
+    assert ("--fragility" in err) == ("/" in got)
+
+
+def test_one_share_may_stand_for_all_runs(two, capsys):
+    assert zones_of(two[0], capsys, "--zones", "0.5,0.001")[0] == 0
+    few, every = yaml.safe_load((two[0] / "zones/zones.yaml").read_text())["zones"]
+    assert every["at_least_m2"] > few["at_least_m2"] and every["cannot_tell_m2"] == 0
+
+
+@pytest.mark.parametrize("other", [
+    "--zones 0.9", "--zones 0.9,0.3", "--zones 0.9,0.4 --thicker 0.5", "--zones 0.9,0.4 --intensity speed:1",
+    "--zones 0.9,0.4 --intensity thickness:0.1,1"])
+def test_zones_of_another_question_are_kept(two, capsys, other):
+    path = two[0] / "zones/zones.yaml"
+    assert zones_of(two[0], capsys, "--zones", "0.9,0.4")[0] == 0
+    before = path.read_bytes(), (two[0] / "zones/zones.gpkg").read_bytes()
+    status, _, err = zones_of(two[0], capsys, *other.split())
+    assert status == 2 and err.count("\n") == 1 and "--overwrite" in err and "zones.gpkg" in err, err
+    assert (path.read_bytes(), (two[0] / "zones/zones.gpkg").read_bytes()) == before
+    assert zones_of(two[0], capsys, "--zones", "0.9,0.4")[0] == 0       # the same question again
+
+
+def test_zones_of_shares_are_not_those_per_year(two, capsys, capacity, monkeypatch):
+    assert zones_of(two[0], capsys, "--zones", "0.002")[0] == 0
+    with_fragility(two, capacity, monkeypatch)
+    status, _, err = zones_of(two[0], capsys, "--zones", "0.002")
+    assert status == 2 and "per year" in err and "--overwrite" in err
+
+
 def test_beside_the_zones_runs_may_not_tell(two, capsys, capacity, monkeypatch):
     """Four runs of which none comes leave a share of 0.53, and of the frequencies of all bodies that of their sum."""
     none = float(hazard.share_bounds(0, 4)[1])
@@ -500,6 +536,136 @@ def slides(several):
         "crs": {"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::6677"}}}))
 
 
+# --- bodies that are given: their attributes and geometries ---
+
+PLACES = (40, 45), (150, 45)
+
+
+def bodies_file(*several, geometries=None):
+    """slides.geojson with a feature of each of these attributes; geometries: of some of them, others are squares."""
+    features = []
+    for k, (about, (x, y)) in enumerate(zip(several, PLACES)):
+        own = (geometries or {}).get(k, box(x, y, x + 24, y + 24))
+        features.append({"type": "Feature", "properties": about, "geometry": own and own.__geo_interface__})
+    Path("slides.geojson").write_text(json.dumps({
+        "type": "FeatureCollection", "features": features,
+        "crs": {"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::6677"}}}))
+
+
+def given_bodies(**more):
+    asked = choices.Choices(["dem.asc"], "axis.csv", 8.0, 60.0, 9e3, 30.0, 1900.0, crs="EPSG:6677",
+                            bodies="slides.geojson")._replace(**more)
+    said = []
+    Path("R").mkdir(exist_ok=True)
+    return search.given(asked, corridor.make(asked, Path("R"), lambda _: None, lambda _: None), said.append), said
+
+
+@pytest.mark.parametrize("about, got", [
+    ({"depth": "6,0"}, "depth must be a number of m > 0, with a decimal point and without a unit, got 6,0"),
+    ({"depth": "6 m"}, "got 6 m"), ({"depth": "six"}, "got six"), ({"depth": "nan"}, "got nan"),
+    ({"depth": -3.0}, "got -3"),
+    ({"depth": 0}, "got 0"), ({"depth": "inf"}, "got inf"), ({"depth": True}, "got True"), ({"depth": [5]}, "depth"),
+    ({"volume": "1.200,5"}, "volume must be a number of m3 > 0"), ({"depth": "2026-11-27"}, "got 2026-11-27"),
+    ({"depth": 3.0, "volume": 900.0}, "must have one attribute, depth (m) or volume (m3)"),
+    ({"depth": None}, "must have one attribute, depth (m) or volume (m3)"), ({"Depth": 3.0}, "must have one attribute"),
+    ({"depth": ""}, "must have one attribute"),
+    ({"depth": 1e6}, "depth: must be at most"), ({"volume": 1e9}, "volume: must be at most"),
+    ({"volume": 0.1}, "must hold a body"), ({"volume": 4.0}, "below the ground somewhere")])
+def test_an_attribute_that_is_no_size(slope, about, got):
+    bodies_file(about)
+    with pytest.raises(SlopeError) as error:
+        given_bodies()
+    line = str(error.value)
+    assert line.startswith("slides.geojson: feature 1: ") and got in line, line
+    assert "--" not in line and "shape" not in line
+
+
+def test_a_size_may_be_text(slope):
+    bodies_file({"depth": "4.0"}, {"depth": " 3 "})
+    found, _ = given_bodies()
+    bodies_file({"depth": 4.0}, {"depth": 3})
+    for one, other in zip(found, given_bodies()[0], strict=True):
+        assert np.array_equal(one.base, other.base, equal_nan=True) and one.factor == other.factor
+
+
+def test_a_feature_without_a_geometry_is_left_out(slope):
+    bodies_file({"depth": 4.0}, {"depth": 3.0}, geometries={0: None})
+    found, said = given_bodies()
+    assert [one.name for one in found] == ["feature 2"]
+    [warning] = [one for one in said if one.kind == "no geometry"]
+    assert "slides.geojson: feature 1 has no geometry (1 of 2" in str(warning)
+    bodies_file({"depth": 4.0}, geometries={0: None})
+    with pytest.raises(SlopeError, match="slides.geojson: must hold polygons, none of its features has a geometry"):
+        given_bodies()
+
+
+@pytest.mark.parametrize("geometry, said", [
+    (MultiPolygon([box(120, 45, 140, 69), box(150, 45, 174, 69)]), "must be one polygon"),
+    (box(150, 45, 152, 47), "must hold at least 9 centres of the cells of the terrain"),
+    (box(190, 45, 260, 69), "must stay at least 2 cells away from NODATA and from the edge of the terrain"),
+    (box(5000, 45, 5020, 69), "must overlap the terrain"), (box(150, 9, 174, 24), "the ground in it must fall"),
+    (LineString([(150, 45), (170, 60)]), "must be a polygon"), (Point(150, 45), "must be a polygon"),
+    (Polygon([(150, 45), (174, 69), (174, 45), (150, 69)]), "must be polygons that do not cross or touch themselves")])
+def test_a_geometry_that_is_no_body(slope, geometry, said):
+    """The line names the file and the feature, no file of ours, and no option that the command has not."""
+    bodies_file({"depth": 4.0}, {"depth": 3.0}, geometries={1: geometry})
+    with pytest.raises(SlopeError) as error:
+        given_bodies()
+    line = str(error.value)
+    assert line.startswith("slides.geojson: feature 2: ") and said in line, line
+    assert not any(word in line for word in ("/tmp", "polygon.geojson", "--shape", "slbl", "--assign-crs EPSG:n;"))
+
+
+def test_a_ground_that_bulges(slope):
+    """No sphere through toe and shoulder is so shallow: the line names feature, attribute and the least depth."""
+    y = 3.0 * (39.5 - np.arange(40))
+    write_asc("dem.asc", np.add.outer(30 * np.sin(np.clip((y - 35) / 50, 0, 1) * np.pi / 2), np.zeros(70)), 3.0)
+    bodies_file({"depth": 4.0}, {"depth": 0.001}, geometries={k: box(x, 37, x + 24, 84) for k, (x, _) in enumerate(
+        PLACES)})
+    with pytest.raises(SlopeError) as error:
+        given_bodies()
+    line = str(error.value)
+    assert line.startswith("slides.geojson: feature") and ": depth: must be at least" in line and "--" not in line, line
+
+
+def test_given_bodies_need_no_strength(slope):
+    bodies_file({"depth": 4.0}, {"depth": 3.0})
+    found, _ = given_bodies(cohesion=None, friction=None)
+    assert [one.factor for one in found] == [None, None]
+    assert all(one.factor > 0 for one in given_bodies()[0])
+
+
+@pytest.mark.parametrize("given, said", [
+    ({}, "--cohesion: must be given, unless --bodies are"),
+    ({"friction": 30.0}, "--cohesion: must be given with --friction"),
+    ({"cohesion": 9e3, "bodies": "slides.geojson"}, "--friction: must be given with --cohesion")])
+def test_a_search_needs_strengths(tmp_path, given, said):
+    first = {"terrain": ["dem.asc"], "road": "axis.csv", "road_width": 8.0, "corridor": 60.0, "density": 1900.0}
+    with pytest.raises(SlopeError) as error:
+        choices.settle(tmp_path / "R", {**first, **given})
+    assert str(error.value) == said and not (tmp_path / "R").exists()
+    assert choices.settle(tmp_path / "R", {**first, "bodies": "slides.geojson"}).cohesion is None
+    assert choices.read(tmp_path / "R").friction is None
+
+
+def test_the_page_of_bodies_without_a_factor(two):
+    table = yaml.safe_load((two[0] / choices.TABLE).read_text())
+    for one in table["bodies"]:
+        one["factor"] = None
+    found, ground = made(two[0], table)
+    route_page.write(choices.read(two[0]), ground, two[0], found, lambda _: None)
+    assert "None" not in (two[0] / route_page.PAGE).read_text()
+    assert [row["factor"] for row in csv.DictReader((two[0] / results.BODIES).read_text().splitlines())] == ["", ""]
+
+
+@pytest.mark.parametrize("name, value", [("lane", 4.0), ("clearing", 60.0), ("blocked", 0.5), ("mesh", 5.0),
+                                         ("cut_angle", 35.0), ("name", "A route")])
+def test_what_runs_do_not_depend_on_may_be_given_later(two, name, value):
+    more = {"clearing": {"loosening": 1.3}}.get(name, {})
+    assert getattr(choices.settle(two[0], {name: value, **more}), name) == value
+    assert getattr(choices.read(two[0]), name) == value
+
+
 def route_of(capsys, *words):
     return called(capsys, ["route", "R", *words])
 
@@ -537,7 +703,7 @@ def test_a_body_alone_is_that_of_a_site(slope, capsys, monkeypatch):
     words = ("site --terrain R/slips/2/terrain.asc --scar R/slips/2/body.2.base.asc --scar-is surface --road "
              f"R/slips/2/road.csv --road-width 8 --lane 4 --density 1900 --balls 40 --road-from {start} -o alone")
     assert called(capsys, words.split())[0] == 0
-    words = "study alone --sample 3 --seed 2 --vary rolling=0:0.1 --vary xoffset=0:0.99"
+    words = "study alone --sample 3 --seed 2 --vary rolling=0:0.1 --vary packing=1:1000000"
     status, _, err = called(capsys, words.split())
     assert status == 0, err
     assert without_times("alone/ensemble/study.csv") == without_times("R/bodies/2/ensemble/study.csv")
@@ -557,6 +723,26 @@ def test_a_body_alone_is_that_of_a_site(slope, capsys, monkeypatch):
     assert Path("slurm/calls").read_text().split() == ["0-1"]       # one array for the runs of both bodies
     assert {path: path.stat().st_mtime for path in made_} == made_
     assert len(list(Path("R/bodies").glob("*/runs/*/*.summary.yaml"))) == len(made_) + 2 == 8
+
+
+@pytest.mark.long
+@needs_lmp
+def test_a_lane_later_is_evaluated_without_new_runs(slope, capsys):
+    """Of a body without strengths; page, tables and the body's own site have it."""
+    slides([((40, 45), 4.0)])
+    words = [word for word in ROUTE if word not in ("--cohesion", "9e3", "--friction", "30", "--lane", "4")]
+    status, out, err = route_of(capsys, *words)
+    assert status == 0 and "factor of safety" not in out, err
+    runs_ = {path: path.stat().st_mtime for path in Path("R/bodies").glob("*/runs/*/finished.yaml")}
+    [before] = csv.DictReader(Path("R/stretches.csv").read_text().splitlines())
+    assert len(runs_) == 3 and before["remove_lane_50"] == before["factor"] == ""
+    assert route_of(capsys, "--lane", "4", "--name", "Later")[0] == 0
+    assert {path: path.stat().st_mtime for path in runs_} == runs_
+    [after] = csv.DictReader(Path("R/stretches.csv").read_text().splitlines())
+    assert 0 < float(after["remove_lane_50"]) < float(after["remove_50"]) == float(before["remove_50"])
+    site = yaml.safe_load(Path("R/bodies/1/site.yaml").read_text())
+    assert site["road"]["lane"] == 4 and site["project"]["name"].startswith("Later, ")
+    assert "its runs are evaluated" not in route_of(capsys)[1]
 
 
 @pytest.mark.long

@@ -13,8 +13,9 @@ from run_helpers import run_command
 
 from slope_tools import cli
 from slope_tools.commands import polygon, run_arguments
+from slope_tools.errors import SlopeError
 from slope_tools.findings import Finding, entries
-from slope_tools.report import document, structures_part, warnings as report_warnings
+from slope_tools.report import document, heading, structures_part, warnings as report_warnings
 from slope_tools.report.study_part import ENDS, MOST_ROWS, Runs
 from slope_tools.tables import judged, quantities, study_table
 
@@ -54,6 +55,13 @@ def test_the_rest_is_named_or_asked_for(all_columns, monkeypatch, capsys):
     out = capsys.readouterr().out
     assert ("--all-columns" in out) != all_columns and "friction 30" in out
     assert ("1,234" in out) == all_columns and "12,345" in out
+
+
+def test_a_heading_names_the_option_that_is_wrong(tmp_path):
+    with pytest.raises(SlopeError, match="--name: must be one line"):
+        heading.heading(tmp_path, {"project": "a\nb", "client": None, "author": None})
+    with pytest.raises(SlopeError, match="--client: must be one line"):
+        heading.heading(tmp_path, {"project": "a", "client": "b\n", "author": None})
 
 
 # --- --progress json ---

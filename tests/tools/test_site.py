@@ -297,12 +297,12 @@ def test_the_deck_by_hand_gives_the_numbers_of_the_study(done, tmp_path):
     hand.mkdir()
     for name in ("in.site", "terrain.asc", "terrain.yaml", "release.slip.asc", "road.csv"):
         shutil.copy(folder / "mine" / name, hand)
-    subprocess.run([LMP, "-in", "in.site", "-var", "rolling", "0.05", "-var", "yoffset", "0.5"], cwd=hand, check=True,
+    subprocess.run([LMP, "-in", "in.site", "-var", "rolling", "0.05", "-var", "packing", "2"], cwd=hand, check=True,
                    stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
     volume = slope(hand, "volume", "site", "--road", "road.csv", "--cut-angle", "30", "--mesh", "10", "-o", "removal")
     assert volume.returncode == 0, volume.stderr
     by_hand = yaml.safe_load((hand / "removal" / "volume.yaml").read_text())["volume"]
-    run = folder / "mine" / "runs" / "rolling_0.05_spacing_0.9_yoffset_0.5" / "volume" / "volume.yaml"
+    run = folder / "mine" / "runs" / "rolling_0.05_spacing_0.9_packing_2" / "volume" / "volume.yaml"
     assert by_hand == yaml.safe_load(run.read_text())["volume"] and by_hand["remove"] > 0
     other = folder / "mine" / "runs" / "rolling_0.05_spacing_0.9" / "volume" / "volume.yaml"
     assert by_hand != yaml.safe_load(other.read_text())["volume"]
@@ -343,7 +343,7 @@ def test_the_folder_is_made_anew_from_its_file(done, tmp_path):
     variables = decks.index_variables(mine / "in.site")
     assert variables["friction"] == "25"
     volume = site_choices.found(mine)["body"]["volume"]
-    assert volume / float(variables["d"]) ** 3 == pytest.approx(300, rel=0.02)
+    assert 0.6 * 6 / np.pi * volume / float(variables["d"]) ** 3 == pytest.approx(300, rel=0.02)
 
     # the study does not mix runs of two decks
     study = inside(folder, "study", "mine", "--paper")
@@ -447,8 +447,8 @@ def budget(**balls):
 
 
 def test_the_size_of_the_balls_comes_from_the_budget():
-    assert budget(number=2240).diameter == 2.5
-    assert budget(diameter=2.5, number=7).balls == 2240
+    assert budget(number=2567).diameter == 2.5      # 0.60 of the body is balls
+    assert budget(diameter=2.5, number=7).balls == round(0.6 * 35000 / (np.pi / 6 * 2.5 ** 3)) == 2567
     assert budget().balls == pytest.approx(site_budget.DEFAULT, rel=0.02)
     some, more = budget(minutes=10), budget(minutes=100)
     assert 570 < some.most <= 600 and 5700 < more.most <= 6000      # with all runs that may be added
@@ -472,7 +472,7 @@ def test_the_run_time_in_the_deck_is_that_of_one_run():
 def test_a_slow_mass_has_the_stiffness_that_its_weight_needs(d, thick, number):
     """K times density of the ground, gravity, thickness and diameter; K grows in bodies thicker than 7 balls."""
     mass = 2000 * np.pi / 6 * d ** 3
-    kn = number * 2000 * np.pi / 6 * 9.80665 * thick * d
+    kn = number * 2000 * 0.6 * 9.80665 * thick * d
     for speed in (1.0, 10.0):
         soil = site_budget.Soil(2000.0, thick, speed)
         assert site_budget.time_step(d, soil) == pytest.approx(0.25 * (mass / kn) ** 0.5)
@@ -539,6 +539,20 @@ def test_the_time_step_is_the_decks(done):
     d, *soil = (float(variables[name]) for name in ("d", "density", "thick", "speed"))
     wanted = site_budget.time_step(d, site_budget.Soil(*soil))
     assert summary["dt"] == pytest.approx(wanted, rel=1e-6)
+
+
+@pytest.mark.parametrize("per_step, skin", [(1e-5, 0.2), (0.0016, 0.2), (0.0036, 0.3), (0.0100, 0.5), (0.0144, 0.6), (1, 0.6)])
+def test_the_skin_of_neighbor_lists_follows_speed_and_step(tmp_path, per_step, skin):
+    """By the diameters that the fastest ball moves in a step, as the deck reckons."""
+    rule = re.findall(r"^variable +(?:thicker|skin) .*", (Path(site_deck.__file__).parent / site_deck.TEMPLATE).read_text(),
+                      re.MULTILINE)
+    d, speed = 2.5, 40.0
+    (tmp_path / "in.skin").write_text("\n".join([
+        f"variable d index {d}", f"variable speed index {speed}", f"variable dt equal {per_step * d / speed:.17g}", *rule,
+        'print "skin $(v_skin:%.10g)" file skin.txt']) + "\n")
+    subprocess.run([LMP, "-in", "in.skin", "-log", "none"], cwd=tmp_path, check=True, stdin=subprocess.DEVNULL,
+                   stdout=subprocess.DEVNULL)
+    assert float((tmp_path / "skin.txt").read_text().split()[1]) == pytest.approx(skin * d, rel=1e-6)
 
 
 # --- bad input: one line that names file, item, rule and value; no folder ---
@@ -730,7 +744,8 @@ def test_an_ensemble_of_a_site(done):
     """Its deck with the distributions of mobile masses; known events that do not cover it are refused at once."""
     listed = inside(done[0], "study", "mine", "--sample", "6", "--dry-run")
     assert listed.returncode == 0 and "6 runs, 0 of them finished" in listed.stdout, listed.stderr
-    assert all(listed.stdout.count(f"{name} 0.") >= 5 for name in ("rolling", "spacing", "xoffset"))
+    assert all(listed.stdout.count(f"{name} 0.") >= 5 for name in ("rolling", "spacing"))
+    assert len(set(re.findall(r"packing (\d{4,6})\b", listed.stdout))) >= 5
     refused(inside(done[0], "study", "mine", "--sample", "6", "--mobility", "rock_avalanches"),
             "--known: must be a set that covers the mass: the set of known events does not cover this volume")
     refused(inside(done[0], "study", "mine", "--sample", "6", "--mesh", "10"),
@@ -742,7 +757,7 @@ def test_a_site_has_its_own_choices(tmp_path):
     """What site.yaml says is refused as an option, its default too: nothing is ignored without a word."""
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine" / "site.yaml").touch()
-    for option, *values in (("--set", "rolling=0"), ("--repeat", "xoffset=0.5"), ("--vary", "rolling=0:1"),
+    for option, *values in (("--set", "rolling=0"), ("--repeat", "packing=2"), ("--vary", "rolling=0:1"),
                             ("--known", "rock_avalanches"), ("--except", "x"),
                             ("--equally-good", "d"), ("--size-error", "converge.yaml"),
                             ("--intensity", "peak"), ("--more-than", "10"), ("--exceed", "0.1,0.5,1"),

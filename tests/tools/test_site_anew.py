@@ -1,5 +1,4 @@
 """slope site FOLDER over a folder that is there: what of it stays, what is found anew, what is refused, kills."""
-import math
 import os
 import re
 import shlex
@@ -261,9 +260,9 @@ def test_the_ground_is_scattered_balls_as_large_as_those_of_the_soil(inside, min
     assert "spacing 0.8" in inside("mine --balls 60 --spacing 0.8").out
     deck = decks.index_variables(mine / site_deck.NAME)
     assert (deck["field_d"], deck["spacing"], deck["ground_seed"]) == ("${d}", "0.8", "1")
-    field, = [words for words in decks.commands(mine / site_deck.NAME) if words[:2] == ["fix", "field"]]
-    assert field[-3:-1] == ["pattern", "scattered"] and "pattern" not in " ".join(
-        *[words for words in decks.commands(mine / site_deck.NAME) if words[:2] == ["fix", "slip"]])
+    for name in ("slip", "beyond", "field"):
+        words, = [words for words in decks.commands(mine / site_deck.NAME) if words[:2] == ["fix", name]]
+        assert words[words.index("pattern"):] == ["pattern", "scattered", "${which}"]
 
 
 def older(mine, **model):
@@ -306,6 +305,40 @@ def test_an_older_site_is_rebuilt_with_the_ground_of_now(inside, mine):
     assert decks.index_variables(mine / site_deck.NAME)["spacing"] == "0.33"
 
 
+def with_lattice(mine):
+    """The same site as a version made it whose balls began on a cubic lattice."""
+    edit(mine, "model", density=3411.4)
+    edit(mine, "study", xoffset=[0.5], yoffset=[0.25, 0.75], zoffset=[])
+    about = yaml.safe_load((mine / "site.yaml").read_text())
+    del about["study"]["packing"]
+    deck = mine / site_deck.NAME
+    deck.write_text(re.sub("variable  packing .*", "variable  xoffset index 0.0\nvariable  yoffset index 0.0",
+                           deck.read_text()))
+    (mine / "site.yaml").write_text(yaml.safe_dump(about))
+    about["found"].update(deck_sha256=disk.sha256(deck),
+                          choices_sha256=site_choices.fingerprint(site_choices.read(mine), mine))
+    (mine / "site.yaml").write_text(yaml.safe_dump(about))
+
+
+def test_the_study_of_a_site_with_a_lattice_is_as_it_was(inside, mine, monkeypatch):
+    with_lattice(mine)
+    variables = decks.index_variables(mine / site_deck.NAME)
+    assert site_choices.chance(variables) == "xoffset=0:0.99"
+    out = in_process(mine.parent, "study", "mine", "--paper", "--dry-run").stdout
+    assert "xoffset_0.5" in out and "yoffset_0.75" in out and "packing" not in out
+
+
+def test_a_site_with_a_lattice_is_rebuilt_with_a_packing(inside, mine):
+    before = site_choices.read(mine)
+    with_lattice(mine)
+    out = inside("mine").out
+    assert "xoffset, yoffset, zoffset of an older version" in out
+    choices = site_choices.read(mine)
+    assert choices["study"]["packing"] == [2, 3, 4] and not set(site_choices.OFFSETS) & set(choices["study"])
+    assert choices["model"]["density"] == 2977 and choices["balls"] == before["balls"]
+    assert "fill body seed" in (mine / site_deck.NAME).read_text()
+
+
 @pytest.mark.parametrize("model, rule", [
     ({"field_diameter": 2, "spacing": -1}, "model.spacing: must be > 0, got -1"),
     ({"field_diameter": 2, "spacing": "x"}, "model.spacing: must be a finite number"),
@@ -326,7 +359,7 @@ def test_options_of_soil_and_ground_reach_the_deck(inside, mine):
     assert "friction 25 degrees, on the slip surface 5; rolling resistance 0, 0.07" in out
     assert "bulk density 1,600 kg/m3" in out
     deck = decks.index_variables(mine / site_deck.NAME)
-    wanted = {"friction": 25, "slip": 5, "spacing": 0.5, "field_e": 0.3, "density": 1600 * 6 / math.pi}
+    wanted = {"friction": 25, "slip": 5, "spacing": 0.5, "field_e": 0.3, "density": 1600 / 0.60}
     assert {name: float(deck[name]) for name in wanted} == pytest.approx(wanted, rel=1e-4)
 
 
@@ -405,7 +438,7 @@ def test_a_failed_run_leaves_score_and_report_of_the_others(inside, mine, monkey
     monkeypatch.setattr(film, "encode", lambda *_: b"")
     write_layer(mine.parent / "mapped.geojson", MAPPED)
     inside("mine --observed mapped.geojson --balls 60")
-    edit(mine, "study", rolling=[0.05, 0.1], spacing=[], xoffset=[], yoffset=[], sizes=[])
+    edit(mine, "study", rolling=[0.05, 0.1], spacing=[], packing=[], sizes=[])
     Path("some").write_text(f"""#!/bin/sh\ncase "$*" in *"rolling 0.1"*) exit 1;; esac\nexec {LMP} "$@"\n""")
     Path("none").write_text("#!/bin/sh\nexit 1\n")
     for name in ("some", "none"):
@@ -525,7 +558,7 @@ def test_the_report_is_written_though_the_score_fails(gis, monkeypatch):  # noqa
     assert made.returncode == 0, made.stderr
     path = gis / "mine" / "site.yaml"
     about = yaml.safe_load(path.read_text())
-    about["study"].update(rolling=[0.05], xoffset=[], yoffset=[], sizes=[])
+    about["study"].update(rolling=[0.05], packing=[], sizes=[])
     path.write_text(yaml.safe_dump(about))
     (gis / "mine" / "score").mkdir()
     (gis / "mine" / "score" / "score.yaml").write_text("of other runs\n")

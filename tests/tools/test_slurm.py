@@ -202,6 +202,140 @@ def test_an_interruption_cancels_the_array(cluster, here):
     assert not states()
 
 
+# --- programs in place of Slurm's ---
+
+SBATCH = """\
+for word; do case $word in --array=*) array=${word#--array=};; esac; script=$word; done
+range=${array%%%*}; last=${range#0-}
+if [ -n "$MAX" ] && [ $last -ge $MAX ]; then echo "sbatch: error: $REFUSAL" >&2; exit 1; fi
+queued=$(find QUEUE -name '*_*' | wc -l)
+if [ -n "$MOST" ] && [ $((queued + last + 1)) -gt $MOST ]; then echo "sbatch: error: $REFUSAL" >&2; exit 1; fi
+number=$(($(cat QUEUE/number) + 1)); echo $number > QUEUE/number
+echo "$array" >> QUEUE/arrays
+for ((i = 0; i <= last; i++)); do
+  touch QUEUE/${number}_$i
+  (SLURM_ARRAY_TASK_ID=$i bash "$script"; rm QUEUE/${number}_$i) > /dev/null 2>&1 < /dev/null &
+done
+printf -- "$ANSWER" $number
+"""
+SQUEUE = """\
+printf -- "$BANNER"
+cd QUEUE
+for file in *_*; do
+  [ -e $file ] && case "$*" in *%T*) echo $file RUNNING;; *) echo ${file%_*};; esac
+done
+true
+"""
+BANNER = "-----\\n    Welcome to the machine of 2026\\n\\n--> Valid submit host...OK\\n"
+
+
+@pytest.fixture
+def stand_ins(here, monkeypatch):
+    """sbatch, squeue and scancel of a folder, which gets the numbers of the arrays; variables say what they answer."""
+    place = here / "queue"
+    place.mkdir()
+    (place / "number").write_text("100")
+    for name, words in {"sbatch": SBATCH, "squeue": SQUEUE, "scancel": 'echo "$*" >> QUEUE/cancelled'}.items():
+        (place / name).write_text("#!/bin/bash\n" + words.replace("QUEUE", str(place)))
+        (place / name).chmod(0o755)
+    monkeypatch.setenv("PATH", f"{place}:{os.environ['PATH']}")
+    monkeypatch.setenv("ANSWER", "%d\\n")
+    monkeypatch.setenv("REFUSAL", "Batch job submission failed: Invalid job array specification")
+    return place
+
+
+def study(words, rolling=(0, 0.1, 0.2), out="out"):
+    several = ",".join(map(str, rolling))
+    return cli.main(["study", "case/in.tiny", "--set", "steps=20", "--set", f"rolling={several}", "--engine", "slurm",
+                     "-o", out, *words])
+
+
+def error_of(capsys):
+    """The one line of a command that was refused."""
+    [line] = [line for line in capsys.readouterr().err.splitlines() if "warning: " not in line]
+    return line
+
+
+def arrays(place):
+    return (place / "arrays").read_text().split()
+
+
+@pytest.mark.parametrize("answer", [
+    BANNER + "%d\\n", "%d;cluster\\n", "sbatch: INFO: project quota is at 90 %%%%\\n%d\\n", "\\n  %d  \\n\\n",
+    "Submitted batch job %d\\n", BANNER + "Submitted batch job %d on cluster main\\n", "%d\\n" + BANNER])
+def test_a_banner_around_the_number(stand_ins, monkeypatch, answer):
+    monkeypatch.setenv("ANSWER", answer)
+    monkeypatch.setenv("BANNER", BANNER)        # of squeue
+    assert study([], (0, 0.1)) == 0 and arrays(stand_ins) == ["0-1"]
+    assert (Path("out") / engine.FOLDER / engine.KNOWN).read_text().split() == ["101"]
+
+
+@pytest.mark.parametrize("answer", ["", "Welcome\\n", "17\\n%d\\nWelcome\\n", "job %d is queued\\n"])
+def test_an_answer_without_one_number_is_shown(stand_ins, monkeypatch, capsys, answer):
+    monkeypatch.setenv("ANSWER", answer)
+    assert study([], (0,)) == 2 and arrays(stand_ins) == ["0-0"]
+    line = error_of(capsys)
+    assert "--engine slurm: sbatch must answer with the number" in line and answer.split("\\n")[0][:4] in line
+
+
+@pytest.mark.parametrize("option", [
+    "--array=0-3%1", "--array 0-3", "--arr=0-3", "-a0-3", "-a 0-3", "-Ha0-3", "--parsable", "--wait", "-W", "-QW",
+    "--test-only", "--test", "--wrap=ls"])
+def test_options_that_the_study_sets_are_refused(stand_ins, capsys, option):
+    assert study([f"--slurm=--partition=all {option}"], (0,)) == 2
+    assert error_of(capsys).endswith(f"got {option.split()[0]}")
+    assert not (stand_ins / "arrays").exists() and not Path("out").exists()
+
+
+def test_other_options_are_not():
+    for words in ("--account=a -A a", "-p all --partition all", "--wait-all-nodes=1 -w n1", "--acctg-freq=1"):
+        try:
+            engine.check(words)
+        except SlopeError as error:
+            assert not str(error).startswith("--slurm")
+
+
+@pytest.mark.parametrize("words, wanted", [([], ["0-1", "0-0"]), (["--jobs", "2"], ["0-1%2", "0-0%2"])])
+def test_an_array_that_is_too_large_is_submitted_in_parts(stand_ins, monkeypatch, words, wanted):
+    monkeypatch.setenv("MAX", "2")
+    assert study(words) == 0 and arrays(stand_ins) == wanted
+    assert len(list(Path("out").glob("*/finished.yaml"))) == 3
+
+
+@pytest.mark.parametrize("refusal", [
+    "QOSMaxSubmitJobPerUserLimit", "Batch job submission failed: Job violates accounting/QOS policy (job submit limit, "
+    "user's size and/or time limits)"])
+def test_a_limit_of_submitted_jobs_is_waited_for(stand_ins, monkeypatch, refusal):
+    monkeypatch.setenv("MOST", "2")
+    monkeypatch.setenv("REFUSAL", refusal)
+    assert study([], (0, 0.1, 0.2, 0.3)) == 0 and len(list(Path("out").glob("*/finished.yaml"))) == 4
+
+
+@pytest.mark.parametrize("refusal, tries", [("Invalid partition name specified", 1),
+                                            ("Requested time limit is invalid", 2)])
+def test_another_refusal_is_said(stand_ins, monkeypatch, capsys, refusal, tries):
+    monkeypatch.setenv("MAX", "0")
+    monkeypatch.setenv("REFUSAL", refusal)
+    assert study([], (0, 0.1)) == 2
+    assert f"--engine slurm: sbatch failed: sbatch: error: {refusal}" in error_of(capsys)
+    assert len(list((Path("out") / engine.FOLDER).glob("*.runs"))) == tries
+
+
+@pytest.mark.parametrize("name", ["a\tb", "a\nb", "it's \\t $HOME `x`", "grün"])
+def test_any_name_of_a_folder(stand_ins, name):
+    Path(name).mkdir()
+    assert study([], (0,), f"{name}/out") == 0 and arrays(stand_ins) == ["0-0"]
+
+
+def test_a_task_beyond_the_array_leaves_nothing(stand_ins, monkeypatch):
+    assert study([], (0,)) == 0
+    script = next((Path("out") / engine.FOLDER).glob("*.sh")).resolve()
+    Path("empty").mkdir()
+    monkeypatch.setenv("SLURM_ARRAY_TASK_ID", "5")
+    subprocess.run(["bash", script], cwd="empty", check=False)
+    assert not list(Path("empty").iterdir())
+
+
 # --- a queue that does not answer ---
 
 @pytest.fixture

@@ -251,10 +251,12 @@ def test_a_site_of_a_body(coarse, capsys):
 def test_doubtful_input_is_named():
     half = np.array([[1.0, np.nan], [np.nan, np.nan]])
     masks = [half == 1.0, np.ones((2, 2), bool)]
-    found = list(map(str, stability.warnings_of(8.0, 19.0, [{"rank": 1}, {"rank": 2}], masks, half)))
-    assert [one.split(":")[0] for one in found] == ["--cohesion 8", "--density 19", "body 2"]
-    assert "no value below 75 % of its cells" in found[2]
-    assert not list(stability.warnings_of(0.0, 1900.0, [], [], None))
+    given = [stability.Given(kind, "", "rock.asc", half) for kind in ("bedrock", "water table", "layer")]
+    found = list(map(str, stability.warnings_of(8.0, 19.0, [{"rank": 1}, {"rank": 2}], masks, given)))
+    assert [one.split(":")[0] for one in found] == ["--cohesion 8", "--density 19", *3 * ["body 2"]]
+    assert all(f"{what} has no value below 75 % of its cells" in one for what, one in zip(
+        ("--bedrock", "--water-table", "--layer rock.asc"), found[2:]))
+    assert not list(stability.warnings_of(0.0, 1900.0, [], [], []))
 
 
 SOIL = bishop.Strengths(3e3, np.tan(np.radians(19.6)))

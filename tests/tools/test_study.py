@@ -571,6 +571,19 @@ def test_the_log_is_read_as_it_grows(tmp_path):
     assert log.update().error == "ERROR: Lost atoms: original 3 current 2"
 
 
+@pytest.mark.parametrize("lines, density, packed", [
+    ("lattice sc 2\ncreate_atoms 1 region body\nset group soil diameter 2 density 3411.4", 3411.4, False),
+    ("create_balls 1 ${d} ${density} fill body seed 3\ncreate_balls 1 2 2977 fill body seed 3\n"
+     "Create_balls: 351 balls of diameter 2 fill region body, packing 3", 2977, True),
+    ("create_balls 2 2 2977 surface ground upper spacing 2\n"
+     "Create_balls: 351 fixed balls of diameter 2 (351 on the plan grid every 2", None, False)])
+def test_the_log_tells_how_the_balls_begin(tmp_path, lines, density, packed):
+    path = tmp_path / "log.lammps"
+    path.write_text(f"{LOG}{lines}\n")
+    log = logs.Log(path).update()
+    assert log.density == density and logs.packed(log.notes) == packed
+
+
 def test_a_terminal_gets_a_live_display(here):
     leader, follower = pty.openpty()
     process = subprocess.Popen([*PROGRAM, "study", "case/in.tiny", "--set", "steps=7000", "--set", "rolling=0,0.1",

@@ -349,14 +349,15 @@ def test_a_stretched_crs_is_warned_of(slope):
 
 @pytest.mark.parametrize("units, option, factor", [
     ("ft", "", 0.3048), ("US survey foot", "", 1200 / 3937), ("", "--z-unit ft", 0.3048),
-    ("m", "--z-unit us-ft", 1200 / 3937), ("ft", "--z-unit m", 1), ("", "--z-unit m", 1)])
+    ("m", "--z-unit us-ft", 1200 / 3937), ("ft", "--z-unit m", 1), ("", "--z-unit m", 1), ("unspecified", "", 1),
+    ("Unknown", "", 1), (" ", "--z-unit ft", 0.3048), ("unspecified", "--z-unit ft", 0.3048)])
 def test_heights_in_feet_become_metres(written, units, option, factor):
     z, transform = survey()
     write_tif("feet.tif", z / factor, transform, tags={"units": (units,)})
     *found, _, out = written(f"feet.tif {option}")
     assert_plane(*found)
     assert ("brought to metres" in out) == (factor != 1)
-    assert ("taken as" in out) == bool(units and option)
+    assert ("taken as" in out) == bool(units in ("m", "ft") and option)
 
 
 def test_a_crs_in_feet_with_the_unit_of_its_heights(written):

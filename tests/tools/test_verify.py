@@ -12,6 +12,7 @@ from slope_tools.errors import SlopeError
 from slope_tools.validation import verification
 from slope_tools.validation.verification import claims
 from slope_tools.validation.verification.claims import AtLeast, AtMost, Between, Claim, Control, Near, Run, Verdict
+from slope_tools.validation.verification.errata import errata
 from slope_tools.validation.verification.restitution import observed
 
 LMP = """#!/bin/sh
@@ -236,6 +237,13 @@ def test_the_page_holds_every_claim_against_its_present_bound():
     page = {row[0]: tuple(row[2:4]) for row in csv.reader(line.strip() for line in lines if line.startswith('   "'))}
     for one in verification.all_claims():
         assert page[one.text + f" ({one.unit})" * bool(one.unit)] == one.bound.texts(), one.name
+
+
+def test_the_page_has_every_erratum():
+    page = (TOP / "doc" / "src" / "verification.rst").read_text(encoding="ascii")
+    shown = page[page.index("Errata of the paper"):page.index("\nA dropped ball")]
+    assert shown.count("  Printed: ") == len(errata())
+    assert all(f"**{one.title}.**  Printed: {one.printed}  {one.right}\n" in shown for one in errata())
 
 
 @pytest.mark.parametrize("command", examples("verify"))

@@ -4,16 +4,11 @@ import re
 import shlex
 from pathlib import Path
 
-import numpy as np
 import pytest
-from affine import Affine
-from shapely.geometry import box
 
 from slope_tools import cli
-from slope_tools.deposits import left
 from slope_tools.statistics import withheld
 from slope_tools.statistics.withheld import Facts, Kind
-from slope_tools.survey.rasters import Raster
 from slope_tools.tables import combinations, usable, withheld_words
 from slope_tools.tables.usable import Events
 from slope_tools.tables.withheld_words import Case
@@ -92,7 +87,8 @@ def test_the_commands_are_ones_that_the_tools_take(case, changed):
 def rows(*volumes, **more):
     return [{"status": "finished", "run": f"seed_{k}", "set": {"rolling": "0"}, "repeat": {"seed": str(k)},
              "remove_m3": volume, "remove_on_road_m3": volume / 2, "ball_m3": 1.0, "released_m3": 1000.0,
-             "left_before_road_m3": 0.0, "at_rest": True, "length_m": 500.0, "label": "", **more}
+             "left_before_road_m3": 0.0, "left": None, "off_grid_m3": 0.0, "lost_m3": 0.0, "on_road_m3": volume / 2,
+             "beyond_road_m3": 0.0, "at_rest": True, "length_m": 500.0, "label": "", **more}
             for k, volume in enumerate(volumes)]
 
 
@@ -131,39 +127,40 @@ def test_zero_has_a_probability():
 
 # --- what left the terrain before it reached the road ---
 
-def test_what_left_before_or_beside_a_road():
-    """Mass in the west, a road in the middle that ends short of the northern edge."""
-    z = np.zeros((10, 20))
-    raster = Raster(z, Affine(1, 0, 0, 0, -1, 10), None)
-    released = np.zeros(z.shape, bool)
-    released[4:6, 1:3] = True
-    road = box(9, -1, 11, 8)
-    z[5, 19] = 3.0                              # behind the road
-    assert left.before_road(100.0, raster, released, road) == 0
-    z[0, 5] = 1.0                               # at the side, before it
-    assert left.before_road(100.0, raster, released, road) == pytest.approx(25.0)
-    z[9, 10] = 4.0                              # on the road itself
-    assert left.before_road(100.0, raster, released, road) == pytest.approx(500.0 / 8)
-    assert left.before_road(0.0, raster, released, road) == 0
-    assert left.before_road(7.0, raster._replace(z=0 * z), released, road) == 7     # nobody knows where
+LEFT = [{"side": "east", "volume": 30.0, "balls": 30, "where": "past", "distance": 5.0, "add": 900.0},
+        {"side": "north", "volume": 12.0, "balls": 12, "where": "before", "distance": 123.4, "add": 170.0},
+        {"side": "south", "volume": 8.0, "balls": 8, "where": "before", "distance": 40.0, "add": 60.0}]
 
 
-def test_a_valley_that_turns_behind_the_road():
-    """The mass goes east, passes a road across the valley, and leaves in the north: no straight line tells that."""
-    z = np.zeros((40, 60))
-    raster = Raster(z, Affine(1, 0, 0, 0, -1, 40), None)
-    released = np.zeros(z.shape, bool)
-    released[28:32, 2:6] = True
-    z[26:34, 2:50] = 1.0
-    z[0:34, 42:50] = 1.0
-    road = box(34, 4, 36, 16)
-    assert left.before_road(100.0, raster, released, road) == 0
-    # without a way through: the straight line
-    z[20:24, 42:50] = 0
-    z[10:16, 42:50] = 0
-    assert left.before_road(100.0, raster, released, road) == 100
-    assert left.before_road(100.0, raster, released, box(0, 0, 20, 20)) == 100      # a road below all of the mass
-    # a second way round the road, and shorter
-    z[0:34, 42:50] = 1.0
-    z[0:28, 8:16] = z[0:8, 8:50] = 1.0
-    assert left.before_road(100.0, raster, released, road) == pytest.approx(100.0, rel=0.2)
+def test_what_left_before_the_road_withholds_and_what_passed_it_does_not():
+    several = rows(90.0, 100, 110, lost_m3=50.0, left_before_road_m3=9.0)
+    assert judged(several, events(400.0, 0.6))["withheld"] == []
+    several[1].update(left_before_road_m3=20.0, left=LEFT)
+    [entry] = judged(several, events(400.0, 0.6))["withheld"]
+    assert entry["text"] == ("2 % of the released volume left the terrain before or beside the road, more than 1 %: "
+                             "12 m3 in the north, 123 m before the road; 8 m3 in the south, 40 m before the road")
+    assert entry["remedy"] == ("a larger elevation model, by about 170 m in the north, about 60 m in the south "
+                               "(terrain.files, terrain.bounds) in 'my site'/site.yaml, then: " + ANEW.format(""))
+
+
+def test_where_it_is_not_known_what_left_all_of_it_withholds():
+    several = rows(90.0, 100, 110, off_grid_m3=6.0, lost_m3=5.0, left_before_road_m3=None)
+    [entry] = judged(several, events(400.0, 0.6))["withheld"]
+    assert entry["text"].endswith("more than 1 %: it is not known where, as the runs are of an older version")
+    several = rows(90.0, 100, 110, off_grid_m3=5.0, lost_m3=5.0, left_before_road_m3=None)
+    assert judged(several, events(400.0, 0.6))["withheld"] == []
+
+
+# --- what reaches the road ---
+
+def test_a_run_reaches_the_road_by_what_lies_there_however_small_the_lobe():
+    """By a ball at least, on the road or beyond it; the length does not count."""
+    several = rows(0.0, 0, 0, 0, length_m=200.0)
+    for row, (on, past) in zip(several, ((0.6, 0.0), (0.6, 0.5), (0.0, 40.0), (0.0, 0.99))):
+        row.update(on_road_m3=on, beyond_road_m3=past)
+    road = events(400.0, 0.6).road(several)
+    assert road.brought._asdict() == {"runs": 4, "reach": 2, "passing": 1, "volume": 40.0, "balls": 40.0}
+    assert not road.missed and road.longest == 200 < road.near
+    for row in several:
+        row.update(on_road_m3=0.4, beyond_road_m3=0.5, length_m=900.0)
+    assert events(400.0, 0.6).road(several).missed

@@ -20,6 +20,7 @@ static DepositSummary halted(double fast)
   DepositSummary s = DepositSummary();
   s.reason = "halted";
   s.motion.fast_share = fast;
+  s.rest_share = 0.01;
   return s;
 }
 
@@ -33,6 +34,10 @@ TEST(DepositSummary, AtRest)
   EXPECT_TRUE(halted(0.0).at_rest());
   EXPECT_TRUE(halted(0.0099).at_rest());
   EXPECT_FALSE(halted(0.01).at_rest());
+  DepositSummary wider = halted(0.02);
+  wider.rest_share = 0.03;
+  EXPECT_TRUE(wider.at_rest());
+  EXPECT_NE(wider.text().find("  rest_share: 0.03  #"), std::string::npos);
   for (const char *reason : {"run completed", "time limit", "running"}) {
     DepositSummary s = halted(0.0);
     s.reason = reason;

@@ -2,6 +2,7 @@
 
 #include "plan_line.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -153,6 +154,49 @@ TEST(PlanLine, WalksAroundAClosedLineAddUp)
     EXPECT_EQ(sum, 1) << walk;
   }
   EXPECT_GT(crossed, 1000);
+}
+
+// against the smallest distance of all pieces
+
+TEST(PlanLine, NearIsWithinReachOfAnyPiece)
+{
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> anywhere(-10.0, 10.0), bend(-1.5, 1.5);
+  int near = 0, far = 0;
+  for (int points : {2, 3, 4, 7, 50}) {
+    std::vector<double> xy = {anywhere(random), anywhere(random)};
+    while (xy.size() < 2 * (size_t) points)
+      for (int c = 0; c < 2; c++) xy.push_back(xy[xy.size() - 2] + bend(random));
+    const PlanLine line(xy);
+    for (int k = 0; k < 500; k++) {
+      const double place[2] = {anywhere(random), anywhere(random)};
+      double least = HUGE_VAL;
+      for (size_t i = 0; i + 2 < xy.size(); i += 2)
+        for (int cut = 0; cut <= 1000; cut++)
+          least = std::min(least,
+                           std::hypot(xy[i] + 0.001 * cut * (xy[i + 2] - xy[i]) - place[0],
+                                      xy[i + 1] + 0.001 * cut * (xy[i + 3] - xy[i + 1]) - place[1]));
+      EXPECT_TRUE(line.is_near(place, least + 1e-9));
+      EXPECT_FALSE(line.is_near(place, 0.999 * least - 1e-4));
+      (least < 2.0 ? near : far)++;
+    }
+  }
+  EXPECT_GT(near, 100);
+  EXPECT_GT(far, 100);
+}
+
+TEST(PlanLine, NearAtItsEndsAndOfAPieceWithoutLength)
+{
+  const double end[2] = {2.0, 5.0}, beside[2] = {3.0, 2.0}, corner[2] = {5.0, -1.0};
+  EXPECT_TRUE(north.is_near(end, 1.0));
+  EXPECT_FALSE(north.is_near(end, 0.999));
+  EXPECT_TRUE(north.is_near(beside, 1.0));
+  EXPECT_FALSE(north.is_near(beside, 0.999));
+  EXPECT_TRUE(hook.is_near(corner, std::sqrt(2.0) + 1e-12));
+  EXPECT_FALSE(hook.is_near(corner, 1.41));
+  const PlanLine tiny({0.0, 0.0, 1e-200, 0.0});
+  EXPECT_TRUE(tiny.is_near(end, 6.0));
+  EXPECT_FALSE(tiny.is_near(end, 5.0));
 }
 
 TEST_F(LineFile, ReadsBlanksAndCommas)

@@ -7,6 +7,7 @@
 
 #include "elevation_grid.h"
 #include "interrupt.h"
+#include "line_reader.h"
 #include "numbers.h"
 #include "options.h"
 #include "output_files.h"
@@ -119,6 +120,58 @@ std::string extent_text(const ElevationGrid &raster)
       to_text(raster.ylo) + " to " + to_text(raster.yhi());
 }
 
+// Where local 0 0 lies in the survey, of the sidecar that `slope terrain` writes beside FILE.asc; rasters of a run
+// have none: they are in the coordinates of its terrain
+
+struct Origin {
+  std::string path;    // empty where nothing is known
+  double east = 0.0, north = 0.0;
+  std::string epsg = "null";
+};
+
+Origin origin_of(const std::string &raster)
+{
+  const fs::path path = fs::path(raster).replace_extension(".yaml");
+  if (fs::path(raster).extension() != ".asc" || !fs::exists(path)) return Origin();
+  Origin found;
+  found.path = raster;
+  LineReader file(path.string());
+  std::string section;
+  int sides = 0;
+  while (file.next()) {
+    const auto &words = file.words();
+    if (words.empty()) continue;
+    if (words.size() == 1) section = words[0];
+    if (words.size() != 2) continue;
+    if (section == "crs:" && words[0] == "epsg:") found.epsg = words[1];
+    if (section != "origin:" || (words[0] != "east:" && words[0] != "north:")) continue;
+    double &side = words[0] == "east:" ? found.east : found.north;
+    if (!to_number(std::string(words[1]), side) || !std::isfinite(side))
+      file.fail("origin must be numbers, got " + std::string(words[1].substr(0, 40)));
+    sides++;
+  }
+  if (sides != 2)
+    throw std::runtime_error(path.string() + " must be the sidecar of " + raster +
+                             " with origin: east: and north:, got none");
+  return found;
+}
+
+// A raster in the local coordinates of the first one that has an origin
+
+ElevationGrid read_raster(const std::string &path, Origin &first)
+{
+  ElevationGrid raster = ElevationGrid::read(path);
+  const Origin own = origin_of(path);
+  if (own.path.empty()) return raster;
+  if (first.path.empty()) first = own;
+  if (own.epsg != first.epsg && own.epsg != "null" && first.epsg != "null")
+    throw std::runtime_error(path + " must be in the CRS of " + first.path +
+                             ", EPSG:" + first.epsg + ", got EPSG:" + own.epsg);
+  raster.xlo += own.east - first.east;
+  raster.ylo += own.north - first.north;
+  return raster;
+}
+
 // embankment.thickness.asc -> thickness, embankment.00000900.thickness.asc -> 00000900.thickness
 
 std::string raster_name(const std::string &path)
@@ -153,9 +206,10 @@ void Slope::rasters_to_vtk(const Options &options, OutputFiles &output, Progress
   }
 
   ElevationGrid ground;
+  Origin first;
   if (!options.terrain.empty()) {
     progress.say("terrain");
-    ground = ElevationGrid::read(options.terrain);
+    ground = read_raster(options.terrain, first);
     const fs::path file = output.single("terrain.vts");
     auto height = [&](int i, int j) {
       return ground.at(i, j);
@@ -163,13 +217,13 @@ void Slope::rasters_to_vtk(const Options &options, OutputFiles &output, Progress
     const size_t showing = write_grid(ground, "height", height, options.single, output.path(file));
     report += (folder / file).string() + ": " + size_text(ground, showing);
   }
-  if (!options.surface.empty()) ground = ElevationGrid::read(options.surface);
+  if (!options.surface.empty()) ground = read_raster(options.surface, first);
   const std::string &base = options.surface.empty() ? options.terrain : options.surface;
 
   for (const auto &path : options.rasters) {
     const std::string name = raster_name(path);
     progress.say(name);
-    const ElevationGrid raster = ElevationGrid::read(path);
+    const ElevationGrid raster = read_raster(path, first);
     const fs::path file = output.single(name + ".vts");
 
     // On a centre of the ground's cells its height, also where rounding would put a little weight

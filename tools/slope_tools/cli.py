@@ -18,8 +18,8 @@ import traceback
 import warnings
 from pathlib import Path
 
-from . import disk, options, findings
-from .errors import SlopeError
+from . import disk, findings, options, streams
+from .errors import SlopeError, not_imported
 from .provenance import version
 
 COMMANDS = {
@@ -53,6 +53,7 @@ RENAMED = {
     "calibrate": {"--volume": "--road-volume"}, "sensitivity": {"--vary": "--levels"},
     "report": {"--project": "--name"}, "bench": {"--repeat": "--runs"},
 }
+WITHOUT_PLACES = {"quake", "verify", *IN_TESTS}      # no file of theirs has a CRS
 TESTS = Path(__file__).resolve().parents[2] / "tests"
 
 
@@ -123,6 +124,23 @@ def check_names(words):
                              disk.shown(place) if disk.is_utf8(word) else None)
 
 
+def forget_matplotlibrc():
+    """Leave out a user's settings of matplotlib, of which wrong ones stop or clutter its import.
+
+    drawing.pictures has those that count; a script that uses the package keeps its own.
+    """
+    os.environ.pop("MPLBACKEND", None)
+    os.environ["MATPLOTLIBRC"] = os.devnull
+    if os.path.isfile("matplotlibrc"):      # in the current folder it goes first
+        here = os.open(".", os.O_RDONLY)
+        try:
+            os.chdir("/")
+            importlib.import_module("matplotlib")
+        finally:
+            os.fchdir(here)
+            os.close(here)
+
+
 def main(argv=None):
     """Run one subcommand on argv (default: the command line); the status is 0, 1 (a bug), 2 (bad input) or 130."""
     argv = sys.argv[1:] if argv is None else argv
@@ -143,7 +161,12 @@ def main(argv=None):
     findings.as_json = "--progress=json" in before or ("--progress", "json") in zip(before, before[1:])
     for name, summary in every.items():
         if name == asked:
-            add_command(commands, name, module_of(name, parser), help=summary)
+            try:
+                module = module_of(name, parser)
+            except ImportError as error:
+                say("error", name, not_imported(error))
+                return 2
+            add_command(commands, name, module, help=summary)
         else:
             commands.add_parser(name, help=summary)
     if completes:
@@ -152,6 +175,9 @@ def main(argv=None):
     shown = warnings.showwarning
     try:
         check_names(argv)
+        forget_matplotlibrc()
+        if asked not in WITHOUT_PLACES:
+            importlib.import_module(f"{__package__}.survey.proj").require_database()
         warnings.showwarning = lambda message, *_, **__: findings.printer(args.command)(str(message))     # of libraries
         args.run(args)
     except SlopeError as error:
@@ -159,15 +185,15 @@ def main(argv=None):
             traceback.print_exc()
         say("error", asked, error)
         return 2
+    except ImportError as error:
+        say("error", asked, not_imported(error))
+        return 2
     except MemoryError as error:
         say("error", asked, f"not enough memory: {error}")
         return 2
     except KeyboardInterrupt:
         say("error", asked, "interrupted")
         return 130
-    except BrokenPipeError:         # `slope ... | head`: nobody reads on
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 141
     except Exception as error:
         if args.debug:
             raise
@@ -178,3 +204,21 @@ def main(argv=None):
     finally:
         warnings.showwarning = shown
     return 0
+
+
+def program():
+    """main() on the streams of streams.replace(): the status is 141 where a reader went away, as of `slope ... | head`,
+    and 2 where what was to be said could not be written for another reason, such as a full disk."""
+    try:
+        status = main()
+    except SystemExit as ended:     # argparse's: --help, or words that are wrong
+        status = ended.code
+    failed = streams.failure()
+    if status or failed is None:
+        return status
+    name, error = failed
+    if isinstance(error, BrokenPipeError):
+        return 141
+    say("error", next((word for word in sys.argv[1:] if word in {**COMMANDS, **IN_TESTS}), "slope"),
+        f"{name}: {error.strerror}")
+    return 2

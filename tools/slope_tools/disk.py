@@ -15,6 +15,7 @@ from pathlib import Path
 import yaml
 import numpy as np
 
+from . import written_yaml
 from .errors import SlopeError
 
 
@@ -114,20 +115,12 @@ def _sha256(path, *_) -> str:
     return digest.hexdigest()
 
 
-def load_yaml(text):
-    """As yaml.safe_load, which makes no objects, ten times faster: by libyaml.
-
-    Its recursion has no limit and would end the program: a text that may be nested thousands of levels deep is left to
-    Python's loader, which raises RecursionError.
-    """
-    deep = text.count("[") + text.count("{") > 5000 or max(map(len, text.splitlines()), default=0) > 10000
-    return yaml.load(text, Loader=yaml.SafeLoader if deep else getattr(yaml, "CSafeLoader", yaml.SafeLoader))
-
-
 def parse_yaml(path, what):
     """What is in a YAML file, of whatever type."""
     try:
-        return load_yaml(Path(path).read_text(encoding="utf-8"))
+        return written_yaml.load(Path(path).read_text(encoding="utf-8"))
+    except written_yaml.Misleading as error:
+        raise SlopeError(f"{path}: line {error.line}", error.rule, error.got) from None
     except RecursionError:
         raise SlopeError(path, f"must be {what} (its nesting is too deep)") from None
     except (OSError, ValueError, yaml.YAMLError) as error:
@@ -241,7 +234,7 @@ def check_standing(record, files, sources, overwrite, called=None):
         return
     try:
         text = Path(record).read_text(encoding="utf-8")
-        known = set(texts(load_yaml(text))) if Path(record).suffix == ".yaml" else text
+        known = set(texts(written_yaml.load(text))) if Path(record).suffix == ".yaml" else text
     except (OSError, ValueError, RecursionError, yaml.YAMLError):
         known = ""
     others = [name for name in map(str, sources) if name not in known]

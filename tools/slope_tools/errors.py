@@ -1,4 +1,5 @@
 """The one exception for bad input."""
+import os
 
 
 class SlopeError(Exception):
@@ -17,3 +18,11 @@ class SlopeError(Exception):
             got = str(got)
             line += f", got {got[:self.LONGEST]}{'...' * (len(got) > self.LONGEST)}"
         super().__init__("".join(c if c.isprintable() else "?" for c in " ".join(line.split())))
+
+
+def not_imported(error: Exception) -> SlopeError:
+    """The error of a library that cannot be imported: variables may lead to those of another installation."""
+    given = [f"{name}={os.environ[name]}" for name in ("PYTHONPATH", "PYTHONHOME", "LD_LIBRARY_PATH", "LD_PRELOAD")
+             if os.environ.get(name)]
+    remedy = f"; if it is of another installation, unset {', '.join(given)}" if given else ""
+    return SlopeError("the libraries", f"must be those of this Python (Debian's){remedy}", error)

@@ -17,8 +17,9 @@ class Words(NamedTuple):
 
 
 NOT_BODY = "{who} released a mass that may not be the body: {released:cubic}{of_body}."
-LOST = "{who} lost {up_to}{volume:cubic} over the edge: enlarge the terrain{side}."
-LEFT = "{up_to}{volume} m3 ({percent:.2g} % of the released volume) left the grid or the box and are not on the maps"
+LOST = "{who} lost {up_to}{volume:cubic} over the edge: enlarge the terrain{add}."
+LEFT = ("{up_to}{volume} m3 ({percent:.2g} % of the released volume) left the grid or the box and are not on the maps"
+        "{where}")
 AT_REST = "not at rest at the end{among}: {end}, at {time:.1f} s"
 DOUBTFUL = "the released mass is doubtful: "
 
@@ -29,8 +30,10 @@ WORDS: Dict[str, Union[str, Words]] = {
     "in motion": Words(f"{AT_REST}. More than 10 % of the volume is in motion: these numbers are not those of a "
                        "deposit", client="{who} ended with more than a tenth of the mass in motion: the numbers are "
                                          "not those of a deposit."),
-    "lost much": Words(f"{LEFT}, and how far they went is unknown: enlarge the terrain and the box", client=LOST),
-    "bulk factor": Words(f"{DOUBTFUL}the bulk factor {{factor:.3g}} is {{off}} {{side}} 6/pi: {{why}}", NOTE, NOT_BODY),
+    "lost much": Words(f"{LEFT}, and how far they went is unknown: enlarge the terrain and the box{{add}}",
+                       client=LOST),
+    "bulk factor": Words(f"{DOUBTFUL}the bulk factor {{factor:.3g}} is {{off}} {{side}} {{usual}}: {{why}}", NOTE,
+                         NOT_BODY),
     "body volume": Words(f"{DOUBTFUL}it is {{off}} {{side}} than the body of {{body:,.0f}} m3", NOTE, NOT_BODY),
     "balls removed": Words(f"{DOUBTFUL}{{off}} of the balls were removed at the start, and the body that the others "
                            "represent is unknown (fix deposit/grid ... bulk region)", NOTE, NOT_BODY),
@@ -85,10 +88,16 @@ WORDS: Dict[str, Union[str, Words]] = {
                          "these heights, and the cells in metres?",
     "stretched": "a metre in {crs} is {metres:.3f} m on the ground: choose a local CRS",
     "CRS of terrain": "{file} has no CRS: taken to be in that of the terrain{remedy}",
+    "local raster": "{file} has neither origin nor CRS: taken to be in the terrain's local metres",
+    "survey raster": "{file} has neither origin nor CRS: taken to be in coordinates of the survey; --local if it is in "
+                     "the terrain's local metres",
     "datums": "tiles of {datums} are mixed and not converted: {what} may differ where they meet",
     "cut to input": "--bounds reaches beyond the input, {extent}: cut to it",
     "outside": "{file}: {percent:.2g} % of the area lies outside of {terrain}",
     "no geometry": "{feature} has no geometry ({without} of {features} have none): left out",
+    "no line": "{file}: {kinds} in it, where a line is asked for: left out",
+    "drawn twice": "{file}: {percent:.3g} % of the length of its lines is drawn more than once, or there and back: "
+                   "taken once",
     "file name": "{file}: LAMMPS cannot read {characters} in the name of a file: rename it before it goes into a deck",
     "swapped": "--release and --road may be swapped, the road lies above the release area: {grounds}",
     # of a body
@@ -134,7 +143,10 @@ WORDS: Dict[str, Union[str, Words]] = {
     # of a slope's stability: bodies of a search, one that failed, fragility
     "in kPa": "--cohesion {value:g}: is it in Pa? Values in kPa are a thousand times smaller",
     "in kN": "--density {value:g}: is it in kg/m3? Values in kN/m3 are about a hundred times smaller",
-    "bedrock": "body {body}: --bedrock has no value below {percent:.2g} % of its cells",
+    "bedrock": "body {body}: --bedrock has no value below {percent:.3g} % of its cells",
+    "water table": "body {body}: --water-table has no value below {percent:.3g} % of its cells, which are dry",
+    "layer": "body {body}: --layer {file} has no value below {percent:.3g} % of its cells, which are of the strength "
+             "above",
     "columns": "body {body} has {value:.0f} cells of the terrain, fewer than {limit:g}: its numbers are rough",
     "terrain": "body {body} is within {limit:g} cells of the edge of the terrain or of cells without a height: a "
                "larger terrain may have a lower factor",
@@ -175,7 +187,7 @@ WORDS: Dict[str, Union[str, Words]] = {
     "balls on the road": "on the road lies the volume of {balls}, fewer than {bound:g}",
     "known events": "no run reaches {bound} m, as half of known events of this volume and height do; {longest}",
     "left the terrain": "{percent:.2g} % of the released volume left the terrain before or beside the road, more than "
-                        "{most:g} %",
+                        "{most:g} %{where}",
     "runs not at rest or failed": "{number} of {bound} runs failed or are not at rest at the end, more than {most:g} %",
     "size error": "the size error is not trusted: {why}",
     # caveats on the volume to remove
@@ -238,8 +250,8 @@ WORDS: Dict[str, Union[str, Words]] = {
                        "far they went is unknown, and they are left out; use a larger one", NOTE),
     "underdetermined": Words("{known} cannot determine {asked} variables", NOTE),
     "no scatter": Words("too few runs to measure the scatter by chance of {which}: the region may be too narrow", NOTE),
-    "one lattice": Words("all runs have the same lattice, {offsets} not being repeated: the scatter by chance (s) "
-                         "lacks what another lattice changes, and the region may be too narrow or beside the truth",
+    "one lattice": Words("the balls of all runs begin alike, {offsets} not being repeated: the scatter by chance "
+                         "(s) lacks what another start changes, and the region may be too narrow or beside the truth",
                          NOTE),
 }
 

@@ -40,9 +40,9 @@ class Finding(NamedTuple):
         """Its words, without runs and remedy."""
         return f"{self.part}: " * bool(self.part) + self._filled(words_of(self.kind).text)
 
-    def client(self, **more) -> str:
-        """Its words for the first page of a report, "" if it has none; more: numbers that only that page has."""
-        numbers = {"who": who(len(self.runs), self.numbers.get("of", 1)), "side": "", **self.numbers, **more}
+    def client(self) -> str:
+        """Its words for the first page of a report, "" if it has none."""
+        numbers = {"who": who(len(self.runs), self.numbers.get("of", 1)), **self.numbers}
         return self._replace(numbers=numbers)._filled(words_of(self.kind).client)
 
     def _filled(self, words: str) -> str:

@@ -2,6 +2,8 @@
 import functools
 from typing import Any, Dict, List, Mapping, Optional, Tuple
 
+import yaml
+
 from . import disk
 from .errors import SlopeError
 
@@ -89,6 +91,15 @@ def nth(index: int) -> str:
     return f"{NTH[index] if index < len(NTH) else f'{index + 1}th'} value"
 
 
+def as_number(value: Any) -> Optional[str]:
+    """How YAML has the number that a text is meant to be: 1.2e1, which is a text to it, or one in quotes; else None."""
+    try:
+        number = float(value) if isinstance(value, str) and "_" not in value else None
+    except ValueError:
+        return None
+    return yaml.safe_dump(number).split()[0] if disk.is_number(number) else None
+
+
 def rule_of(error) -> str:
     """What a ValidationError of jsonschema says, as a rule."""
     rule, value, got = str(error.validator), error.validator_value, repr(error.instance)[:60]
@@ -100,6 +111,8 @@ def rule_of(error) -> str:
     if rule == "type":
         types = value if isinstance(value, list) else [value]
         example = f", such as [{got}]" if "array" in types and disk.is_number(error.instance) else ""
+        if "number" in types and (meant := as_number(error.instance)):
+            example = f" (as {meant}; YAML takes it for a text)"
         return f"must be {' or '.join(TYPES.get(one, one) for one in types)}{example}, got {got}"
     if rule == "anyOf" and "description" in error.schema:
         return f"must have {error.schema['description']}, got {got}"

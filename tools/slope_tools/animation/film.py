@@ -10,8 +10,8 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.lines import Line2D
 
-from ..drawing import figures
-from ..drawing.figures import FULL, STYLE, plt
+from ..drawing import figures, pictures
+from ..drawing.figures import FULL, STYLE
 from ..plots import figure_maps
 from .frames import Frames
 from .scene import MOVES, fastest, tones
@@ -46,11 +46,10 @@ def film(data, ground, section, layers, frames: Optional[Frames], name: str) -> 
                       np.full(round(HOLD * RATE), frames.time[-1]))
     picture = Picture(data, ground, section, layers, frames)
     try:
-        content = encode(program, picture, times)
+        with pictures.settings(STYLE):
+            content = encode(program, picture, times)
     except (OSError, subprocess.SubprocessError) as error:
         return Film(None, f"No film: ffmpeg could not make it ({' '.join(str(error).split())[:200]}).")
-    finally:
-        plt.close(picture.figure)
     return Film(content, f"The same as a film, in plan and along the section, {len(times) / RATE:.0f} s "
                          f"long{'' if pace == 1 else f', {speed(pace)} real time'}{note}: {name}, beside this page.")
 
@@ -106,7 +105,7 @@ class Picture:
         colours = LinearSegmentedColormap.from_list("speed", tones("speed"))
         colours.set_under(AT_REST)
         norm = Normalize(MOVES, self.top)
-        with plt.rc_context({**STYLE, "figure.constrained_layout.use": False}):
+        with pictures.settings({**STYLE, "figure.constrained_layout.use": False}):
             self.figure, axes = self.sheet(layers)
             self.plan(axes[0], layers._replace(ground=ground.base, section=section.points))
             self.profile(axes[1])
@@ -137,7 +136,7 @@ class Picture:
         if profile[1] > TALLEST / 1.5:
             profile = [profile[0] * TALLEST / 1.5 / profile[1], TALLEST / 1.5]
         tall = 0.35 + plan[1] + 0.5 + profile[1] + 0.95
-        figure = plt.figure(figsize=(FULL, tall), dpi=DPI)
+        figure = pictures.figure(figsize=(FULL, tall), dpi=DPI)
         tops = 0.35, 0.35 + plan[1] + 0.5
         axes = [figure.add_axes([(0.55 + (inner - size[0]) / 2) / FULL, 1 - (top + size[1]) / tall, size[0] / FULL,
                                  size[1] / tall]) for top, size in zip(tops, (plan, profile))]

@@ -44,15 +44,18 @@ KEYWORDS = {"pair_coeff": {"friction": Bounds(0, 90, with_high=False), "restitut
             "set": {"diameter": ABOVE_ZERO, "density": ABOVE_ZERO},
             "fix": {"spacing": ABOVE_ZERO, "cell": ABOVE_ZERO},
             "create_balls": {"spacing": ABOVE_ZERO}}
+# the places of numbers in a command, the first behind its name being 1
+PLACES = {"create_balls": {2: ABOVE_ZERO, 3: ABOVE_ZERO}}
 
 
 def ranges(deck: Path) -> Dict[str, Bounds]:
     """{variable: its Bounds} of those whose range is known; a stated one counts before that of a command."""
     found: Dict[str, Bounds] = {}
     for words in decks.commands(deck):
-        for keyword, word in zip(words, words[1:]):
+        for place, (keyword, word) in enumerate(zip(words, words[1:]), 1):
             match = re.fullmatch(r"\$(?:\{(\w+)\}|(\w))", word)
-            bounds: Optional[Bounds] = KEYWORDS.get(words[0], {}).get(keyword)
+            bounds: Optional[Bounds] = (KEYWORDS.get(words[0], {}).get(keyword)
+                                        or PLACES.get(words[0], {}).get(place))
             if match and bounds:
                 found[match[1] or match[2]] = bounds
     text = Path(deck).read_text(encoding="utf-8", errors="replace")

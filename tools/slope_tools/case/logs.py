@@ -12,6 +12,7 @@ TIMES = ("Time", "v_time")             # thermo columns; LAMMPS' own time restar
 NUMBER = re.compile(r"\d[\d.,]*(?:[eE][+-]?\d+)?")
 REMOVED = re.compile(r"Delete_balls: ([\d.]+) balls of group .*?; ([\d.]+) balls left")
 REMOVED_SHARE = re.compile(r"Delete_balls: ([\d.]+) % of the volume of group")
+FILLED = re.compile(r"Create_balls: \d+ balls of diameter \S+ fill region ")
 LOST = re.compile(r"Fix deposit/grid \S+: ball \d+ left the box")
 INPUT_PLACE = re.compile(r"\s*\([^()]*\.(?:cpp|h):\d+\)\s*$")     # LAMMPS names its source line at the end of a message
 
@@ -132,7 +133,10 @@ class Log:
             self.terrain = words[3].strip("\"'")
         elif words[0] == "set" and "density" in words[:-1] and self.density is None:
             self.density = density_of(words[words.index("density") + 1])
-        if (words[0] in ("pair_style", "pair_coeff", "timestep", "units", "lattice", "neighbor")
+        elif words[0] == "create_balls" and words[4:5] == ["fill"] and self.density is None:
+            self.density = density_of(words[3])
+        if (words[0] in ("pair_style", "pair_coeff", "timestep", "units", "lattice", "create_balls",
+                         "neighbor")
                 or (words[0] == "fix" and len(words) > 3)):
             add(self.settings, " ".join(line.split("#")[0].split()))
 
@@ -175,6 +179,11 @@ def message(line):
 def kind(line: str) -> str:
     """What a warning is about: removed (balls, at the start), lost (mass), or its words without their numbers."""
     return "removed" if REMOVED_SHARE.match(line) else "lost" if LOST.match(line) else NUMBER.sub("#", line)
+
+
+def packed(lines: Iterable[str]) -> bool:
+    """Whether balls began in a disordered packing, by the lines of a log."""
+    return any(FILLED.match(line) for line in lines)
 
 
 def removed(lines: Iterable[str]) -> Optional[float]:

@@ -1,8 +1,7 @@
 """The files of a run: its summary and the rasters that fix deposit/grid wrote."""
 import os
-import re
 from pathlib import Path
-from typing import Any, Dict, Mapping, NamedTuple, Optional, Tuple
+from typing import Any, Dict, Mapping, Optional, Tuple
 
 from .. import schemas
 from ..errors import SlopeError
@@ -28,8 +27,12 @@ DIGESTS = {"type": ["object", "null"], "additionalProperties": TEXT}   # {what: 
 BEGUN = mapping({}, set=named(TEXT), variables=named(TEXT), program=DIGESTS, environment=DIGESTS, inputs=DIGESTS,
                 continued=listed(OBJECT))
 ENDED = mapping({"summary": TEXT}, wall_seconds=NUMBER, environment=DIGESTS, inputs=DIGESTS)
+QUANTITIES = {"type": "object", "additionalProperties": mapping({}, quantiles=listed(mapping(
+    {"share": NUMBER, "value": MAYBE})))}
 GOVERNING = mapping({"conservative": mapping({"run": TEXT}, null=True)}, farthest={"type": ["string", "null"]},
                     largest=mapping({}, front_m=mapping({"run": TEXT})),
+                    ensemble=mapping({}, null=True, of={"type": ["string", "null"]}, quantities=QUANTITIES,
+                                     known_events=mapping({}, null=True, quantities=QUANTITIES)),
                     runs=listed(mapping({"run": TEXT}, summary=TEXT)))
 WHAT = "a summary that fix deposit/grid wrote"
 # what `slope volume`, `score` and `export` need of one, and what the others do
@@ -42,7 +45,8 @@ SUMMARY = mapping(
      "largest": mapping(numbers("thickness", "max_thickness", "max_speed", "max_energy")),
      "stop": mapping({"step": NUMBER, "time": NUMBER, "reason": ANY}),
      "grid": mapping({"cell": ABOVE_0, "extent": ANY}), "balls": mapping({"released": ABOVE_0, "lost": NUMBER}),
-     "motion": {**mapping(numbers("moving_share", "threshold"), **numbers("fast_share", "fast_volume", "fast_speed")),
+     "motion": {**mapping(numbers("moving_share", "threshold"),
+                          **numbers("fast_share", "fast_volume", "fast_speed", "rest_share")),
                 "dependentRequired": {"fast_share": ["fast_volume", "fast_speed"]}},
      "moving": FLAG, "ranks": NUMBER, "dt": ABOVE_0, "bulk_factor": ABOVE_0, "slope_version": ANY,
      "lammps_version": ANY},
@@ -61,46 +65,29 @@ def prefix_of(summary):
     return Path(str(summary).removesuffix(".summary.yaml"))
 
 
-class Named(NamedTuple):
-    """The run that a name on the command line stands for."""
-    prefix: str
-    folder: Optional[Path]      # that was named, None if a prefix or a file was
-    note: Optional[str]         # which run of several it is
+def governing(about: Mapping[str, Any]) -> Optional[str]:
+    """The run that represents the headline of a study.yaml; else the one that went farthest. None: none finished.
 
-
-def named_run(name: str) -> Named:
-    """The run of a prefix, of one of its rasters or its summary, of its folder, or the governing run of a study's or a
-    site's folder; SlopeError if there is none, or several.
+    Of an ensemble the one at the 90 % quantile of what counts, or the longest where known events go beyond all runs.
     """
-    path = Path(name)
-    if Path(f"{name}.thickness.asc").is_file() or not path.exists():
-        return Named(name, None, None)
-    if path.is_file():
-        match = re.fullmatch(rf"(.+?)(?:\.\d+)?\.(?:{'|'.join(RASTERS)})\.asc|(.+)\.summary\.yaml", path.name)
-        if not match:
-            raise SlopeError(path, f"must be {OF_RUN}")
-        return Named(str(path.with_name(match[1] or match[2])), None, None)
-    here = summaries(path)
-    if len(here) > 1:
-        raise SlopeError(path, "must hold one run, or name one of them by its prefix",
-                         ", ".join(str(prefix_of(one)) for one in here[:3]) + ", ..." * (len(here) > 3))
-    if here:
-        return Named(str(prefix_of(here[0])), path, None)
-    for study in (path / "study.yaml", path / "study" / "study.yaml"):
-        if study.is_file():
-            run, folder = governing_run(study)
-            inside = summaries(folder)
-            if len(inside) != 1:
-                raise SlopeError(folder, "must hold the governing run of the study, with its summary")
-            return Named(str(prefix_of(inside[0])), path, f"{run}, the governing run of {study.parent}")
-    raise SlopeError(path, f"must be {OF_RUN}: it holds neither a PREFIX.summary.yaml nor a study.yaml")
+    ensemble = about.get("ensemble")
+    if ensemble and ensemble.get("of"):
+        # a quantile is the value of a run
+        of = ensemble["of"]
+        entries = (ensemble.get("known_events") or {}).get("quantities") or ensemble["quantities"]
+        at = {one["share"]: one["value"] for one in entries[of]["quantiles"]}[0.9] if of in entries else None
+        having = [row for row in about["runs"] if row.get(of) is not None]      # others failed, or lost it
+        if at is None:      # events beyond the runs decide
+            return max(having, key=lambda row: row[of])["run"]
+        return min(having, key=lambda row: abs(row[of] - at))["run"]
+    best = about["conservative"] or about.get("largest", {}).get("front_m", {})      # the latter in older ones
+    return about["conservative"] and best["run"] or about.get("farthest") or best.get("run")
 
 
 def governing_run(study: Path) -> Tuple[str, Path]:
-    """Name and folder of the run on which a study's answer rests, or which went farthest where it has none."""
+    """Name and folder of the governing run of a study.yaml."""
     about = schemas.load(study, OF_STUDY, GOVERNING)
-    best = about["conservative"] or about.get("largest", {}).get("front_m", {})      # the latter in older ones
-    name = about["conservative"] and best["run"] or about.get("farthest") or best.get("run")
+    name = governing(about)
     if not name:
         raise SlopeError(study, f"must be {OF_STUDY}, with a finished run")
     for row in about.get("runs") or ():

@@ -7,6 +7,7 @@ from .decks import quoted
 NAME = "in.slips"
 PREFIX = "body"         # of the files of find_slip
 WITHIN = "within.csv"   # the polygon, beside the deck
+TABLE, BEDROCK, LAYER = "water_table.asc", "bedrock.asc", "layer.{}.asc"        # rasters there
 
 
 class Strength(NamedTuple):
@@ -19,17 +20,17 @@ class Strength(NamedTuple):
 
 
 class Layer(NamedTuple):
-    top: Path           # raster of heights, below which the strength is this one
+    top: str            # raster of heights, below which the strength is this one
     strength: Strength
 
 
 class Asked(NamedTuple):
-    """What find_slip takes, in its units; None: its default."""
+    """What find_slip takes, in its units; None: its default. Rasters but the terrain are files beside the deck."""
     terrain: Path
     strength: Strength
     layers: Tuple[Layer, ...] = ()
     ratio: Optional[float] = None           # of pore pressure
-    table: Optional[Path] = None            # of the water
+    table: Optional[str] = None             # raster of the heights of the water table
     seismic: Tuple[float, float] = (0.0, 0.0)
     within: bool = False                    # the polygon in WITHIN
     volume: Optional[Tuple[float, float]] = None    # m3
@@ -38,20 +39,20 @@ class Asked(NamedTuple):
     method: str = "bishop"
     keep: int = 3
     shape: str = "sphere"
-    bedrock: Optional[Path] = None          # its heights
+    bedrock: Optional[str] = None           # raster of its heights
 
 
 def text(asked: Asked, named: Callable[[Path], str]) -> str:
-    """The deck; named: how it names a file."""
+    """The deck; named: how it names the terrain."""
     words: List[str] = [f"strength {asked.strength.words()}"]
     for layer in asked.layers:
-        words.append(f"layer {quoted(named(layer.top))} {layer.strength.words()}")
+        words.append(f"layer {quoted(layer.top)} {layer.strength.words()}")
     if asked.table is not None:
-        words.append(f"water table {quoted(named(asked.table))}")
+        words.append(f"water table {quoted(asked.table)}")
     elif asked.ratio is not None:
         words.append(f"water ru {asked.ratio:.12g}")
     if asked.bedrock is not None:
-        words.append(f"bedrock {quoted(named(asked.bedrock))}")
+        words.append(f"bedrock {quoted(asked.bedrock)}")
     if any(asked.seismic):
         words.append("seismic {:.12g} {:.12g}".format(*asked.seismic))
     for name, limits in (("volume", asked.volume), ("depth", asked.depth)):

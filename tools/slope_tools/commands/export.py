@@ -4,13 +4,13 @@ from pathlib import Path
 from typing import Any, Dict, Optional
 
 from .. import disk, findings
-from ..case import run_folders
 from ..deposits import deposit
 from ..deposits.export import file_of, layers, write
 from ..errors import SlopeError
 from ..options import Overwrite, option, positional
 from ..survey import rasters
 from ..survey.rasters import crs_name
+from ..tables import named_run
 
 DESCRIPTION = "Every raster of a run as a GeoTIFF in the coordinates of the survey."
 EPILOG = """\
@@ -21,10 +21,10 @@ examples: the rasters of a run, for QGIS; of a site, its governing run; of a run
   tools/slope export mine
   tools/slope export study/rolling_0.05/embankment --terrain terrain.asc -o gis
 
-zones of a study or a route: polygons in which a mass thicker than 0.5 m has at least these probabilities, per year
-where a route has a hazard, else as shares of the runs; classes of intensity against return periods:
+zones of a study or a route: polygons in which a mass thicker than 0.5 m has at least these probabilities, shares of the
+runs, or per year where a route has a hazard (1/100,1/1000,1/5000); classes of intensity against them:
   tools/slope export mine --zones 0.9,0.5,0.1 --thicker 0.5
-  tools/slope export route --zones 1/100,1/1000,1/5000 --intensity speed:1,5 -o zones
+  tools/slope export route --zones 0.5,0.1 --intensity speed:1,5 -o zones
 
 Writes PREFIX.thickness.tif and so on, and export.yaml; with --zones zones.gpkg, with a style for QGIS, and zones.yaml.
 """
@@ -70,11 +70,13 @@ def run_zones(args: Request, zones_: str) -> None:
     limits = zones.limits(0.1 if args.thicker is None else args.thicker, args.intensity)
     own = Path(args.prefix, "zones") if Path(args.prefix).is_dir() else Path(f"{args.prefix}.zones")
     folder = args.output or own
-    disk.check_folder(folder, ["zones.gpkg", "zones.yaml"], [args.prefix], args.overwrite)
+    disk.check_folder(folder)
     ground = zones.ground_of(args.prefix, findings.printer("export"))
-    zones.check(ground, wanted, args.prefix)
+    zones.check(ground, wanted, args.prefix, zones_)
+    asked = zones.asked(ground, zones_, limits)
+    disk.check_folder(folder, ["zones.gpkg", "zones.yaml"], [args.prefix, asked], args.overwrite)
     several = [zones.of(ground, limit, wanted) for limit in limits]
-    about: Dict[str, Any] = {"of": args.prefix, **zones.about(ground, several, wanted)}
+    about: Dict[str, Any] = {"of": args.prefix, "asked": asked, **zones.about(ground, several, wanted)}
     with disk.complete(folder, "zones.yaml") as new:
         geopackage.write(new / "zones.gpkg", {zones.LAYER: zones.layer(ground, several, wanted)}, ground.raster,
                          {zones.LAYER: zones.style(several, wanted, about["per_year"])})
@@ -92,23 +94,25 @@ def run_zones(args: Request, zones_: str) -> None:
 def run_rasters(args: Request) -> None:
     """The rasters of a run."""
     warn, warnings = findings.warner("export")
-    named = run_folders.named_run(args.prefix)
+    named = named_run.read(args.prefix)
     run_ = deposit.read(named.prefix, args.terrain, warn)
     folder = args.output or (named.folder / "export" if named.folder else Path(f"{named.prefix}.export"))
+    which = named.study and f"{named.run}, the governing run of {named.study}"
     place = run_.raster
     found = layers(named.prefix)
     disk.check_folder(folder, [*(file_of(layer) for layer in found), "export.yaml"], [named.prefix], args.overwrite)
     about = {"prefix": run_.prefix, "terrain": run_.terrain, "crs": None if place.crs is None else crs_name(place.crs),
              "origin": {"east": place.offset[0], "north": place.offset[1]}, "cell": run_.cell,
-             "run": {"slope_version": run_.summary.get("slope_version"), "time": run_.summary["time"]}, "rasters": []}
+             "run": {"name": named.run, "study": named.study and str(named.study),
+                     "slope_version": run_.summary.get("slope_version"), "time": run_.summary["time"]}, "rasters": []}
     if not any(layer.kind == "base" for layer in found):
         warn(findings.Finding("no base", {"file": f"{named.prefix}.base.asc"}))
     with disk.complete(folder, "export.yaml") as new:
         for layer in rasters.progress(found, "writing GeoTIFFs"):
-            about["rasters"].append(write(new, layer, place))
+            about["rasters"].append(write(new, layer, place, {"run": which or named.prefix}))
         about["warnings"] = warnings
         disk.write_yaml(new / "export.yaml", about, "slope export: rasters of a run as GeoTIFFs; m, m/s, J, s")
-    if named.note:
-        print(f"{named.note}: {named.prefix}")
+    if which:
+        print(f"{which}: {named.prefix}")
     print(f"{len(found)} rasters, {about['crs'] or 'local metres, no CRS'}, cells of {run_.cell:g} m\n"
           f"written to {folder}: {' '.join(one['file'] for one in about['rasters'])} export.yaml")

@@ -17,8 +17,7 @@ from ..plots.section import FALL
 from ..report import document, paper
 from ..report.heading import Asked
 from ..report.heading import SITE
-from ..studies import site_study
-from ..tables import answered
+from ..tables import named_run
 
 STUDY = "study.yaml"
 OF_SITE = f" (default: what {SITE} says, in DIR or above it)"
@@ -75,12 +74,12 @@ def study_of(folder: Path) -> Path:
     """The study inside the folder of a site; any other folder itself, as a site that holds a run made by hand only."""
     if not (folder / SITE).is_file() or (folder / STUDY).is_file():
         return folder
-    inside = answered.governing(folder / site_study.STUDY, folder / site_study.ENSEMBLE)
-    if (inside / STUDY).is_file():
+    inside = named_run.study_in(folder)
+    if inside:
         return inside
     if not run_folders.summaries(folder):
         raise SlopeError(folder, f"must hold the study of this site: `slope study {quote(str(folder))}` makes it and "
-                         "the report", f"no {inside / STUDY}")
+                         "the report", f"no {folder / named_run.INSIDE[0] / STUDY}")
     return folder
 
 

@@ -48,7 +48,7 @@ class Request(road_arguments.Clearing, Engine):
     fill: Optional[int] = option("fill NODATA holes of at most N cells", metavar="N")
     road: Optional[str] = option("the road's axis, a line: GeoJSON, shapefile, CSV or WKT", metavar="LINE")
     corridor: Optional[float] = option("bodies are searched up to this far on each side of the road, m", metavar="M")
-    cohesion: Optional[float] = option("of the ground, Pa", metavar="C")
+    cohesion: Optional[float] = option("of the ground, Pa; this and the next not needed with --bodies", metavar="C")
     friction: Optional[float] = option("friction angle, degrees", metavar="PHI")
     density: Optional[float] = option("of the ground, kg/m3", metavar="R")
     water: Optional[float] = option("pore pressure over the weight per area (default: dry)", metavar="RU")
@@ -67,7 +67,7 @@ class Request(road_arguments.Clearing, Engine):
     sample: Optional[int] = option("runs of each body, of which more may be added later (default 4)", metavar="N",
                                    type=whole)
     vary: Optional[List[str]] = option(
-        "what differs between the runs, as of slope study (default rolling=0:0.1 and xoffset=0:0.99)",
+        "what differs between the runs, as of slope study (default rolling=0:0.1 and packing=1:1000000)",
         metavar="NAME=DISTRIBUTION", action="append")
     balls: Optional[int] = option("of each body (default 4000)", metavar="N", one_of="size")
     minutes: Optional[float] = option(
@@ -116,8 +116,8 @@ def run(args: Request) -> None:
                 place = runs.make_site(choices, folder, about, len(table["bodies"]), machine, quiet, quiet,
                                        site_map.draw)
                 if new:
-                    tell(f"body {about['body']} at {about['chainage_m']:.0f} m: {about['volume_m3']:,.0f} m3, "
-                         f"factor of safety {about['factor']:.3f}")
+                    factor = "" if about["factor"] is None else f", factor of safety {about['factor']:.3f}"
+                    tell(f"body {about['body']} at {about['chainage_m']:.0f} m: {about['volume_m3']:,.0f} m3{factor}")
                 several.append(runs.asked_of(choices, place, engine_of(args)))
             if args.dry_run:
                 tell("\n".join(runs.listed(several)))

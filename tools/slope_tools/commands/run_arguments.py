@@ -8,6 +8,7 @@ from typing import Callable, List, Optional, Union
 from rich.console import Console
 from rich.table import Table
 
+from .. import streams
 from ..findings import printer
 from ..options import Program, flag, number, option, several, whole
 from ..statistics import designs
@@ -111,7 +112,7 @@ def teller(all_columns: bool) -> Callable[[Union[str, Table]], None]:
         if isinstance(what, str):
             print(what, flush=True)
             return
-        width = Console().width if sys.stdout.isatty() else 180
+        width = Console().width if streams.is_terminal(sys.stdout) else 180
         if all_columns:
             width = max(width, study_table.width_of(what))
         left_out = study_table.fit(what, width)

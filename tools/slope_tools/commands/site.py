@@ -10,6 +10,7 @@ from ..findings import printer
 from ..options import Program, option, positional, whole
 from ..plots import site_map
 from ..programs import find_lmp
+from ..releases import packing
 from ..releases.release import SHAPES
 from ..releases.release_scar import KINDS
 from ..runs import jobs
@@ -212,8 +213,9 @@ def chosen(args: Request):
                              args.output)
         folder, choices = args.folder, site_choices.read(args.folder)
         known = site_choices.found(folder).get("derived") or {}
-        choices = of_new_ground(choices, folder, given)
-        if given.keys() - BESIDE:
+        older = site_choices.has_lattice(choices)
+        choices = of_new_packing(of_new_ground(choices, folder, given), folder)
+        if older or given.keys() - BESIDE:
             site_choices.forget(choices, known)
             known = {}
     else:
@@ -225,6 +227,14 @@ def chosen(args: Request):
                        {OPTIONS[option]: "--assign-crs" if option == "assigned" else f"--{option.replace('_', '-')}"
                         for option in given})
     return folder, choices, known
+
+
+def of_new_packing(choices, folder):
+    """The choices of a folder, an older one with the packing of this version, which is said."""
+    if site_choices.has_lattice(choices):
+        print(f"{folder / site_choices.NAME}: {', '.join(site_choices.OFFSETS)} of an older version no longer count: "
+              "the balls begin in a disordered packing, not on a cubic lattice")
+    return site_choices.without_lattice(choices)
 
 
 def of_new_ground(choices, folder, given):
@@ -258,7 +268,7 @@ def density_of_ball(bulk):
     """Of the balls (kg/m3) that together have a bulk density."""
     if bulk < LIGHT:
         raise SlopeError("--density", f"must be at least {LIGHT} kg/m3, of the ground with its voids", bulk)
-    return round(bulk * site_choices.OF_BALL, 1)
+    return round(bulk * packing.BULK, 1)
 
 
 def soil(choices):
@@ -266,7 +276,7 @@ def soil(choices):
     of = choices["model"]
     return (f"friction {of['friction']:g} degrees, on the slip surface {of['slip_friction']:g}; rolling resistance "
             f"{', '.join(f'{one:g}' for one in choices['study']['rolling'])}; the ground: spacing {of['spacing']:g}, "
-            f"restitution {of['field_restitution']:g}; bulk density {of['density'] / site_choices.OF_BALL:,.0f} kg/m3")
+            f"restitution {of['field_restitution']:g}; bulk density {of['density'] / packing.BULK:,.0f} kg/m3")
 
 
 def assigned_crs(words):

@@ -2,7 +2,7 @@
 import argparse
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Dict, List, Optional, Tuple
+from typing import Any, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 from .. import disk, findings
 from ..case import slip_deck
@@ -60,7 +60,7 @@ class Search:
     volume: Optional[List[float]] = option("limits of a body's volume, m3", metavar=("LO", "HI"), nargs=2)
     depth: Optional[List[float]] = option("limits of its greatest depth, m", metavar=("LO", "HI"), nargs=2)
     within: Optional[str] = option("the bodies lie in this polygon: GeoJSON, shapefile, CSV or WKT", metavar="P")
-    local: bool = flag("the polygon is in the terrain's local metres")
+    local: bool = flag("the polygon, and rasters with neither sidecar nor CRS, are in the terrain's local metres")
     direction: Optional[float] = option(
         "compass bearing of sliding, degrees (default: where the weight drives most)", metavar="B")
     shape: Optional[str] = option(
@@ -86,8 +86,8 @@ def run(args: Request) -> None:
         stability_failed.run(args)
         return
     from ..runs import slip_run         # numpy, rasterio
-    from ..slips import bodies, columns, doubts
-    from ..survey import polygons, rasters, resampling
+    from ..slips import bodies, doubts
+    from ..survey import polygons, rasters
 
     asked = asked_of(args)
     lmp = find_lmp(args.lmp)
@@ -95,7 +95,11 @@ def run(args: Request) -> None:
     raster = rasters.read_asc_local(args.terrain)
     polygon = polygons.read_local(args.within, raster, args.local) if args.within else None
     warn, kept = findings.warner("stability")
+    given = rasters_of(args, raster, warn)
     with disk.complete(args.output, FILES[-1]) as folder:
+        for beside in given:
+            rasters.write_asc_local(folder / beside.name, raster._replace(z=beside.z), {"sources": [beside.source]},
+                                    exact=True)
         said = slip_run.run(asked, polygon, raster, folder, lmp, args.np or 1,
                             lambda line: print(line, flush=True))
         rows = bodies.rows_of(folder / f"{PREFIX}.slips.csv", (*bodies.NUMBERS, "factor", "area", "depth"), ("yield",))
@@ -103,8 +107,8 @@ def run(args: Request) -> None:
             raise SlopeError(args.terrain, "must be steep enough, and the strengths in Pa, for a factor of safety "
                              f"below {HUGE:g} somewhere", f"{rows[0]['factor']:.4g}")
         masks = [bodies.mask_of(folder / f"{PREFIX}.{k + 1}.base.asc") for k in range(len(rows))]
-        rock = args.bedrock and resampling.sample(rasters.read(args.bedrock), *columns.centres(raster))
-        for one in [*warnings_of(asked.strength.cohesion, args.density, rows, masks, rock), *said.warnings,
+        rock = next((one.z for one in given if one.name == slip_deck.BEDROCK), None)
+        for one in [*warnings_of(asked.strength.cohesion, args.density, rows, masks, given), *said.warnings,
                     *doubts.of_all(raster, rows, masks, asked.volume, asked.depth,
                                    polygon and doubts.cells_in(raster, polygon))]:
             warn(one)
@@ -112,11 +116,29 @@ def run(args: Request) -> None:
         write(folder, args, raster, rows, masks, rock, {"method": asked.method, "shape": asked.shape,
                                                         "keep": asked.keep, "bodies": table, "warnings": kept})
         slip_run.settle(asked, raster, folder, len(rows), args.output)
-    slip_run.remove_others(args.output, len(rows))
+    slip_run.remove_others(args.output, len(rows), [one.name for one in given])
     print(summary(table, args.output, said.notes))
 
 
-def warnings_of(cohesion: float, density: float, rows, masks, rock):
+class Given(NamedTuple):
+    """A raster beside the terrain."""
+    kind: str           # of the finding where it has no value
+    name: str           # of the file beside the deck
+    source: str
+    z: Any              # heights in the cells of the terrain, NaN where it has none
+
+
+def rasters_of(args: Request, raster, warn) -> List[Given]:
+    """The rasters that the options name, on the cells of the terrain: find_slip takes coordinates as they are."""
+    from ..survey import beside
+
+    named = [("water table", slip_deck.TABLE, args.water_table), ("bedrock", slip_deck.BEDROCK, args.bedrock),
+             *(("layer", slip_deck.LAYER.format(k), layer[0]) for k, layer in enumerate(args.layer, 1))]
+    return [Given(kind, name, str(path), beside.heights_on(path, raster, args.local, warn))
+            for kind, name, path in named if path is not None]
+
+
+def warnings_of(cohesion: float, density: float, rows, masks, given: Sequence[Given]):
     """What a reader must know of the input."""
     import numpy as np
 
@@ -125,9 +147,11 @@ def warnings_of(cohesion: float, density: float, rows, masks, rock):
     if density < LIGHT:
         yield findings.Finding("in kN", {"value": density})
     for row, mask in zip(rows, masks):
-        share = 0.0 if rock is None else np.isnan(rock[mask]).mean()
-        if share > 0:
-            yield findings.Finding("bedrock", {"body": int(row["rank"]), "percent": 100 * float(share)})
+        for one in given:
+            share = np.isnan(one.z[mask]).mean()
+            if share > 0:
+                yield findings.Finding(one.kind, {"body": int(row["rank"]), "percent": 100 * float(share),
+                                                  "file": one.source})
 
 
 def asked_of(args: Request) -> slip_deck.Asked:
@@ -141,14 +165,15 @@ def asked_of(args: Request) -> slip_deck.Asked:
     shaking = args.seismic or [0.0]
     if len(shaking) > 2:
         raise SlopeError("--seismic", "must be KH, or KH KV", " ".join(f"{one:g}" for one in shaking))
-    layers = tuple(slip_deck.Layer(Path(path), slip_deck.Strength(*(parsed(word) for word in words)))
-                   for path, *words in args.layer)
+    layers = tuple(slip_deck.Layer(slip_deck.LAYER.format(k), slip_deck.Strength(*(parsed(word) for word in words)))
+                   for k, (_, *words) in enumerate(args.layer, 1))
     return slip_deck.Asked(
         args.terrain, slip_deck.Strength(args.cohesion, args.friction, args.density), layers, args.water,
-        args.water_table, (shaking[0], shaking[-1] if len(shaking) > 1 else 0.0), bool(args.within),
+        slip_deck.TABLE if args.water_table else None, (shaking[0], shaking[-1] if len(shaking) > 1 else 0.0),
+        bool(args.within),
         pair(args.volume), pair(args.depth), None if args.direction is None else (90.0 - args.direction) % 360.0,
         args.method or "bishop", args.keep or 3, args.shape or "sphere",
-        args.bedrock)
+        slip_deck.BEDROCK if args.bedrock else None)
 
 
 def pair(limits) -> Optional[Tuple[float, float]]:

@@ -10,8 +10,8 @@ APART = 0.1         # of the cohesion, between the axis of the nearest sphere an
 
 def run(args: Any) -> None:
     """Do it, a stability.Request; raises SlopeError on bad input. Prints points of the line."""
-    from ..slips import back, back_files, columns, failed
-    from ..survey import rasters, resampling
+    from ..slips import back, back_files, failed
+    from ..survey import beside, rasters
 
     for name in SEARCH:
         if getattr(args, name):
@@ -24,7 +24,8 @@ def run(args: Any) -> None:
         raise SlopeError("--water", "must be 0 to below 1", f"{ratio:g}")
     disk.check_folder(args.output, back_files.FILES, [args.terrain, args.failed], args.overwrite)
     raster = rasters.read_asc_local(args.terrain)
-    table, rock = (path and resampling.sample(rasters.read(path), *columns.centres(raster))
+    warn, kept = findings.warner("stability")
+    table, rock = (path and beside.heights_on(path, raster, args.local, warn)
                    for path in (args.water_table, args.bedrock))
     way = None if args.direction is None else (90.0 - args.direction) % 360.0
     body = failed.read(args.failed, raster, way, args.density, table, rock)
@@ -32,7 +33,6 @@ def run(args: Any) -> None:
         body = body._replace(columns=body.columns._replace(pressure=None))
     line = back.line(body.columns, horizontal, vertical, ratio)
     far = back.line(body.far, horizontal, vertical, ratio) if body.far else None
-    warn, kept = findings.warner("stability")
     for one in warnings_of(body, line, far):
         warn(one)
     about = {"terrain": args.terrain, "failed": args.failed, "density": args.density, "seismic": shaking,

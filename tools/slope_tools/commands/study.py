@@ -280,20 +280,20 @@ def of_ensemble(args: Request, method="") -> Request:
     site, choices = args.deck, site_choices.read(args.deck)
     site_study.check(site, choices)
     about = choices["road"]
+    chance = site_choices.chance(decks.index_variables(site / site_deck.NAME))
     road = {name: about[roads.KEYS[field]] for name, field in road_arguments.OPTIONS.items()}
     road.update(road=site / ROAD, cut_angle=about["cut_angle"], mesh=about["mesh"])
     return replace(args, deck=site / site_deck.NAME, site=site, method=method,
                    output=args.output or site / site_study.ENSEMBLE,
                    wide={} if args.vary or args.fit or args.fragility else known_study.WIDE,
-                   vary=args.vary or ([] if args.fit else chances(choices) if args.fragility
-                                      else list(known_study.VARY)), **(road if about["file"] else {}))
+                   vary=args.vary or ([] if args.fit else [*of_fragility(choices), chance] if args.fragility
+                                      else [*known_study.VARY, chance]), **(road if about["file"] else {}))
 
 
-def chances(choices):
-    """--vary of a site's chain, unless it is given: the rolling resistances of its study, and the lattice."""
+def of_fragility(choices):
+    """--vary of a site's chain, unless it is given, beside what is chance: the rolling resistances of its study."""
     rolling = choices["study"]["rolling"]
-    several = [f"rolling={min(rolling):.10g}:{max(rolling):.10g}"] * (min(rolling) < max(rolling))
-    return [*several, "xoffset=0:0.99"]
+    return [f"rolling={min(rolling):.10g}:{max(rolling):.10g}"] * (min(rolling) < max(rolling))
 
 
 def run_ensemble(args: Request, settings, repeated, thresholds, defaults, condition, chain=None) -> None:

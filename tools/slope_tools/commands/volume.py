@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Optional
 
 from .. import disk, findings
-from ..deposits import volume
+from ..deposits import left_words, volume
 from ..deposits.volume import CUT_ANGLE, MUCH_BELOW, SAMPLES
 from ..options import Overwrite, flag, option, positional, whole
 from . import road_arguments
@@ -83,6 +83,7 @@ def summary(about, folder):
     lines.append(f"axis: blocked over {axis['blocked_length']:.1f} of {axis['length']:.1f} m, where thicker than "
                  f"{axis['blocked_above']:g} m; up to {axis['largest_thickness']:.2f} m")
     lines += of_stretches(about["stretches"], about["clearing"])
+    lines += of_mass(about["divided"], about["left"])
     lines.append(f"mesh of {about['mesh']['size']:g} m: {about['mesh']['cells_to_clear']} cells to clear")
     lines.append(f"written to {folder}: {' '.join(about['files'])}")
     return "\n".join(lines)
@@ -103,3 +104,17 @@ def of_stretches(stretches, total):
         lane = f"; a lane of {total['lane']:g} m: {with_hours(total, 'remove_lane', 'hours_lane')}" \
             if "lane" in total else ""
         yield f"all stretches: {with_hours(total, 'remove', 'hours')}{lane}"
+
+
+def of_mass(divided, left):
+    """Lines on the mass before the road and beyond it, and on what left the terrain."""
+    if divided is None:
+        return
+    end = f", {divided['past_end']:.1f} m3 of them past its end" if divided["past_end"] > 0 else ""
+    yield (f"of the released volume {divided['before']:.1f} m3 before the road, {divided['on']:.1f} on it, "
+           f"{divided['past']:.1f} beyond it{end}")
+    if divided["unknown"] > 0:
+        yield (f"{divided['unknown']:.1f} m3 left the terrain, and it is not known where: a run of an older version, "
+               "without dumps")
+    elif said := left_words.told(left):
+        yield f"left the terrain: {said}"

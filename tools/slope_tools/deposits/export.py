@@ -35,13 +35,16 @@ def file_of(layer):
     return f"{layer.path.stem}.tif"
 
 
-def write(folder, layer, place):
-    """Write a layer as a GeoTIFF on the grid of place (a Raster with CRS and offset); what export.yaml tells of it."""
+def write(folder, layer, place, tags):
+    """Write a layer as a GeoTIFF on the grid of place (a Raster with CRS and offset); what export.yaml tells of it.
+
+    tags: {name: text} of its metadata.
+    """
     raster = rasters.read(layer.path, heights=False)
     if raster.z.shape != place.z.shape or raster.transform != place.transform:
         raise SlopeError(layer.path, "must have the grid of the run's thickness: is it of another run?")
     quantity, unit = RASTERS[layer.kind]
-    rasters.write_geotiff(folder / file_of(layer), {f"{quantity} ({unit})": raster.z}, place)
+    rasters.write_geotiff(folder / file_of(layer), {f"{quantity} ({unit})": raster.z}, place, tags)
     there = raster.z[np.isfinite(raster.z)]
     about = {"file": file_of(layer), "quantity": quantity, "unit": unit}
     if layer.step >= 0:

@@ -3,7 +3,7 @@ from dataclasses import dataclass
 from typing import Any, Mapping, Optional
 
 FAST = 0.1              # m/s: what is slower creeps or jitters (motion: fast_... of fix deposit/grid)
-MOST_FAST = 0.01        # share of the released volume that may be faster in a deposit at rest
+MOST_FAST = 0.01        # share of the released volume that may be faster in a deposit at rest, in older summaries
 CUT = "run completed"   # what a summary calls the end of a run that no criterion ended
 ENDS = {"halted": "ended by its rest criterion", CUT: "stopped at its duration",
         "time limit": "cut by a limit of computing time"}
@@ -52,13 +52,14 @@ def percent(share: float) -> str:
 def state(summary: Mapping[str, Any]) -> Rest:
     """The state of a run by its summary (run_folders.load_summary).
 
-    At rest is a deposit whose run ended by the deck's criterion of rest, and of which less than 1 % is faster than
-    0.1 m/s; a summary without fast_share has only the share that is faster than a threshold of the deck's.
+    At rest is a deposit whose run ended by the deck's criterion of rest, and of which less than the deck's rest_share
+    (1 % in older summaries) is faster than 0.1 m/s; a summary without fast_share has only the share that is faster than
+    a threshold of the deck's.
     """
     reason, motion = str(summary["stop"]["reason"]), summary["motion"]
     halted, ended = reason == "halted", ENDS.get(reason, f"was written in the run ({reason})")
     if "fast_share" not in motion:
         still = motion["moving_share"] < MOST_FAST and motion["threshold"] <= FAST and not summary["moving"]
         return Rest(halted, ended, halted and still, motion["moving_share"], motion["threshold"])
-    share = float(motion["fast_share"])
-    return Rest(halted, ended, halted and share < MOST_FAST, share, FAST, motion["fast_volume"], motion["fast_speed"])
+    share, most = float(motion["fast_share"]), float(motion.get("rest_share", MOST_FAST))
+    return Rest(halted, ended, halted and share < most, share, FAST, motion["fast_volume"], motion["fast_speed"])

@@ -3,13 +3,11 @@ import math
 from typing import List, NamedTuple, Optional, Tuple
 
 import numpy as np
-from affine import Affine
 
 from .. import disk, geometry
 from ..errors import SlopeError
-from ..findings import Finding
 from ..geometry import coverage, extent
-from ..survey import polygons, rasters
+from ..survey import beside, polygons
 from ..survey.crs import same_crs
 from ..survey.rasters import Raster, crs_name
 from . import reach
@@ -38,13 +36,9 @@ def read_observed(path, raster, threshold, local, warn=None):
     if path.suffix.lower() not in RASTERS:
         polygon = polygons.read_local(path, raster, local)
         return from_polygon(polygon, raster)
-    mapped = rasters.read_asc_local(path) if path.suffix == ".asc" else rasters.read(path)
-    if mapped.crs is None and raster.crs is not None and not local:
-        mapped = mapped._replace(crs=raster.crs)
-        if warn:
-            warn(Finding("CRS of terrain", {"file": str(path),
-                                            "remedy": " (--local if it is in the run's local metres)"}))
-    return from_raster(path, mapped, raster, threshold, local)
+    mapped = beside.read(path, raster, local=beside.Local(local), warn=warn,
+                         remedy=" (--local if it is in the run's local metres)")
+    return from_raster(path, mapped, raster, threshold)
 
 
 def from_polygon(polygon, raster):
@@ -57,17 +51,15 @@ def from_polygon(polygon, raster):
     return Observed(share, None, points, polygon, max(0, polygon.area - inside.area), 0.0)
 
 
-def from_raster(path, mapped, raster, threshold, local):
+def from_raster(path, mapped, raster, threshold):
     """A mapped raster of thickness on the run's grid: what each of its cells holds goes to the cells it shares."""
     t = mapped.transform
     if t.b or t.d or t.a <= 0 or t.e >= 0:
         raise SlopeError(path, "must be a raster with rows from west to east and columns from north to south")
-    if local:
-        mapped = mapped._replace(crs=raster.crs, offset=raster.offset)
-    elif raster.crs is None and mapped.crs is not None:
+    if raster.crs is None and mapped.crs is not None:
         raise SlopeError("--terrain", "must have a CRS, so that both can be brought together (--local if the mapped "
                          "deposit is in the run's local metres)", "none")
-    elif not same_crs(mapped.crs, raster.crs):
+    if not same_crs(mapped.crs, raster.crs):
         raise SlopeError(path, f"must be in the CRS of the run, {crs_name(raster.crs)} (gdalwarp -t_srs reprojects)",
                          crs_name(mapped.crs))
     thickness = np.nan_to_num(mapped.z, nan=0.0)
@@ -76,7 +68,7 @@ def from_raster(path, mapped, raster, threshold, local):
         row, column = wrong[0]
         raise SlopeError(f"{path}: row {row + 1} column {column + 1}", "must be a thickness >= 0",
                          f"{thickness[row, column]:g}")
-    there = Affine.translation(*np.subtract(mapped.offset, raster.offset)) * t  # to the run's local metres
+    there = beside.in_local(mapped, raster)
     to_index = ~raster.transform * there
     shape = raster.z.shape
     x = to_index.c + to_index.a * np.arange(thickness.shape[1] + 1)
@@ -257,7 +249,7 @@ def write_csv(path, run_, mesh, table):
 
 
 def draw(path, run_, simulated, observed, about):
-    from ..drawing import maps      # matplotlib, which a study that draws nothing does not need
+    from ..drawing import maps, pictures        # matplotlib, which a study that draws nothing does not need
 
     raster = run_.raster
     kind = np.where(simulated, np.where(observed.share >= 0.5, 1, 2), np.where(observed.share >= 0.5, 3, 0))
@@ -273,17 +265,18 @@ def draw(path, run_, simulated, observed, about):
     shown = maps.window(raster, *bounds)
     area = about["area"]
     jaccard = "none" if area["jaccard"] is None else f"{area['jaccard']:.3f}"
-    figure, axes = maps.relief(raster, run_.base, shown, f"{about['prefix']}: Jaccard {jaccard}, thicker than "
-                                                         f"{about['threshold']:g} m")
-    classes = {1: ("tab:green", "both"), 2: ("tab:orange", "simulated only"), 3: ("tab:blue", "mapped only")}
-    values, where = maps.part(raster, kind, shown)
-    colours = maps.ListedColormap([colour for colour, _ in classes.values()])
-    axes.imshow(np.ma.masked_equal(values, 0), cmap=colours, vmin=0.5, vmax=3.5, alpha=0.65, extent=where,
-                interpolation="nearest")
-    for colour, name in classes.values():
-        axes.plot([], [], "s", color=colour, alpha=0.65, label=name)
-    if observed.polygon is not None:
-        maps.outline(axes, observed.polygon, color="black", linewidth=1.0, label="mapped outline")
-    axes.plot(*about["runout"]["from"], "k^", markersize=6, label=about["runout"]["from_source"].split(": ")[-1])
-    axes.legend(loc="upper right", fontsize=8)
-    maps.save(figure, path)
+    with pictures.settings():
+        figure, axes = maps.relief(raster, run_.base, shown, f"{about['prefix']}: Jaccard {jaccard}, thicker than "
+                                                             f"{about['threshold']:g} m")
+        classes = {1: ("tab:green", "both"), 2: ("tab:orange", "simulated only"), 3: ("tab:blue", "mapped only")}
+        values, where = maps.part(raster, kind, shown)
+        colours = maps.ListedColormap([colour for colour, _ in classes.values()])
+        axes.imshow(np.ma.masked_equal(values, 0), cmap=colours, vmin=0.5, vmax=3.5, alpha=0.65, extent=where,
+                    interpolation="nearest")
+        for colour, name in classes.values():
+            axes.plot([], [], "s", color=colour, alpha=0.65, label=name)
+        if observed.polygon is not None:
+            maps.outline(axes, observed.polygon, color="black", linewidth=1.0, label="mapped outline")
+        axes.plot(*about["runout"]["from"], "k^", markersize=6, label=about["runout"]["from_source"].split(": ")[-1])
+        axes.legend(loc="upper right", fontsize=8)
+        maps.save(figure, path)

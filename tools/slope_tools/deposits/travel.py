@@ -6,7 +6,6 @@ import numpy as np
 
 from .. import disk
 from ..drawing import figures, pictures
-from ..drawing.figures import plt
 from ..errors import SlopeError
 from ..findings import Finding
 from ..survey import rasters
@@ -270,8 +269,8 @@ def write_balls(path, arrivals):
 def draw(path, arrivals, tables, wanted: Wanted) -> None:
     """The distributions, as the paper's Figure 3: a line for the median of the runs, a band from lowest to highest."""
     several = len(arrivals) > 1
-    with plt.rc_context(figures.STYLE):
-        figure, panels = plt.subplots(1, 2, figsize=(figures.FULL, 2.9), sharey=True)
+    with pictures.settings(figures.STYLE):
+        figure, panels = pictures.subplots(1, 2, figsize=(figures.FULL, 2.9), sharey=True)
         for axes, (name, (at, shares, _)), colour in zip(panels, tables.items(), figures.COLOURS):
             if several:
                 axes.fill_between(at, shares.min(axis=0), shares.max(axis=0), step="post", color=colour, alpha=0.25,

@@ -16,7 +16,7 @@ from ..sites.site_warnings import of_angles
 from ..survey import rasters, roads
 from ..survey.lines import read_local
 from ..survey.rasters import crs_name
-from . import clearing, cut, deposit, stretch_files, volume_files
+from . import clearing, cut, deposit, passed, stretch_files, volume_files
 from .road_axis import along, axes_of, axis_of, in_grid_of, stretches, width_of
 
 CUT_ANGLE = 30.0       # degrees
@@ -90,7 +90,7 @@ def of_run(prefix, wanted: Wanted, terrain=None, tell: Callable[[str], None] = l
         raise SlopeError(wanted.road, "ground at the edge of the road must have a height, it has none at",
                          f"{x:.3f} {y:.3f} (local metres)") from None
     about = totals(wanted, run, mesh, result, profile, source)
-    about.update(clearing=cleared.totals, stretches=cleared.entries)
+    about.update(clearing=cleared.totals, stretches=cleared.entries, **passed.of_run(run, road, given.line))
     if result.unknown > 0:
         warn(Finding("no ground", {"volume": float(result.unknown)}))
         about["volume"]["unknown"] = result.unknown

@@ -82,7 +82,9 @@ def write_profile(path, run_, profile):
 
 
 def draw(path, run_, road, axis, mesh, result, about, cleared):
-    from ..drawing import maps      # matplotlib
+    from matplotlib.patches import Rectangle
+
+    from ..drawing import maps, pictures
     raster = run_.raster
     full = np.argwhere(result.deposit > 0)
     deposited: Tuple = ()
@@ -91,33 +93,36 @@ def draw(path, run_, road, axis, mesh, result, about, cleared):
         deposited = *mesh.corner(bottom, left), *np.add(mesh.corner(top, right), mesh.size)
     shown = maps.window(raster, road.bounds, deposited)
     volume = about["volume"]
-    figure, axes = maps.relief(raster, run_.base, shown,
-                               f"{about['prefix']}: {volume['remove']:,.0f} m3 to remove above a cut of "
-                               f"{about['cut_angle']:g} degrees, {volume['remove_on_road']:,.0f} m3 of it on the road")
-    maps.values_on(axes, raster, result.removed, shown, "thickness to remove (m)")
-    thickness, where = maps.part(raster, raster.z, shown)
-    if (thickness > 0).any() and min(thickness.shape) >= 2:
-        axes.contour((thickness > 0).astype(float), [0.5], colors="black", linewidths=0.6, linestyles="dotted",
-                     extent=where, origin="upper")
-        axes.plot([], [], color="black", linewidth=0.8, linestyle="dotted", label="deposit")
-    maps.outline(axes, road, color="tab:blue", linewidth=1.4, label="road")
-    for number_, line in enumerate(axis.geoms):
-        axes.plot(*np.asarray(line.coords).T, color="tab:blue", linewidth=0.8, linestyle="dashdot",
-                  label=None if number_ else "axis")
-    for number_, one in enumerate(cleared.stretches):
-        axes.plot(*np.asarray(one.axis.line(one.along).coords).T, color="tab:red", linewidth=2.4, alpha=0.8,
-                  label=None if number_ else "blocked stretch")
-    for number_, lane in enumerate(cleared.lanes):
-        maps.outline(axes, lane, color="tab:green", linewidth=1.2, label=None if number_ else
-                     f"lane of {about['clearing']['lane']:g} m, {about['clearing']['remove_lane']:,.0f} m3 to remove")
-    listed = np.argwhere(result.volume > 0)
-    if 0 < len(listed) <= LABELS:
-        digits = 0 if result.volume.max() >= 10 else 2
-        for row, column in listed:
-            x, y = mesh.corner(row, column)
-            axes.add_patch(maps.plt.Rectangle((x, y), mesh.size, mesh.size, fill=False, linewidth=0.4))
-            axes.text(x + mesh.size / 2, y + mesh.size / 2, f"{result.volume[row, column]:.{digits}f}",
-                      fontsize=5, ha="center", va="center", clip_on=True)
-        axes.plot([], [], color="black", linewidth=0.4, label=f"mesh of {mesh.size:g} m, m3 to remove")
-    axes.legend(loc="upper right", fontsize=8)
-    maps.save(figure, path)
+    with pictures.settings():
+        figure, axes = maps.relief(raster, run_.base, shown,
+                                   f"{about['prefix']}: {volume['remove']:,.0f} m3 to remove above a cut of "
+                                   f"{about['cut_angle']:g} degrees, {volume['remove_on_road']:,.0f} m3 of it on the "
+                                   "road")
+        maps.values_on(axes, raster, result.removed, shown, "thickness to remove (m)")
+        thickness, where = maps.part(raster, raster.z, shown)
+        if (thickness > 0).any() and min(thickness.shape) >= 2:
+            axes.contour((thickness > 0).astype(float), [0.5], colors="black", linewidths=0.6, linestyles="dotted",
+                         extent=where, origin="upper")
+            axes.plot([], [], color="black", linewidth=0.8, linestyle="dotted", label="deposit")
+        maps.outline(axes, road, color="tab:blue", linewidth=1.4, label="road")
+        for number_, line in enumerate(axis.geoms):
+            axes.plot(*np.asarray(line.coords).T, color="tab:blue", linewidth=0.8, linestyle="dashdot",
+                      label=None if number_ else "axis")
+        for number_, one in enumerate(cleared.stretches):
+            axes.plot(*np.asarray(one.axis.line(one.along).coords).T, color="tab:red", linewidth=2.4, alpha=0.8,
+                      label=None if number_ else "blocked stretch")
+        for number_, lane in enumerate(cleared.lanes):
+            clearing = about["clearing"]
+            maps.outline(axes, lane, color="tab:green", linewidth=1.2, label=None if number_ else
+                         f"lane of {clearing['lane']:g} m, {clearing['remove_lane']:,.0f} m3 to remove")
+        listed = np.argwhere(result.volume > 0)
+        if 0 < len(listed) <= LABELS:
+            digits = 0 if result.volume.max() >= 10 else 2
+            for row, column in listed:
+                x, y = mesh.corner(row, column)
+                axes.add_patch(Rectangle((x, y), mesh.size, mesh.size, fill=False, linewidth=0.4))
+                axes.text(x + mesh.size / 2, y + mesh.size / 2, f"{result.volume[row, column]:.{digits}f}",
+                          fontsize=5, ha="center", va="center", clip_on=True)
+            axes.plot([], [], color="black", linewidth=0.4, label=f"mesh of {mesh.size:g} m, m3 to remove")
+        axes.legend(loc="upper right", fontsize=8)
+        maps.save(figure, path)

@@ -1,23 +1,17 @@
 """What the pictures of a report share: style, sizes, text that is measured before it is drawn, data URIs."""
 import base64
-import io
 import math
 from typing import Any, Dict, List
 
-import matplotlib
 import numpy as np
+from matplotlib.font_manager import FontProperties
+from matplotlib.text import Text
+from matplotlib.textpath import TextToPath
+from matplotlib.ticker import MaxNLocator, StrMethodFormatter
+from matplotlib.transforms import Bbox
 
-matplotlib.use("Agg")  # no display is needed
-
-from matplotlib import pyplot as plt  # noqa: E402  (after the backend is set)
-from matplotlib.font_manager import FontProperties  # noqa: E402
-from matplotlib.text import Text  # noqa: E402
-from matplotlib.textpath import TextToPath  # noqa: E402
-from matplotlib.ticker import MaxNLocator  # noqa: E402
-from matplotlib.transforms import Bbox  # noqa: E402
-
-from .. import digits  # noqa: E402
-from . import pictures  # noqa: E402
+from .. import digits
+from . import pictures
 
 FULL, WIDE, HALF = 7.0, 4.6, 3.42    # inches: the width of a page's text, of two thirds, of one of two side by side
 DPI = 200
@@ -28,28 +22,28 @@ STYLE: Dict[str, Any] = {
     "axes.edgecolor": GRAY, "xtick.color": GRAY, "ytick.color": GRAY, "xtick.labelsize": 6.5,
     "ytick.labelsize": 6.5, "xtick.major.width": 0.5, "ytick.major.width": 0.5, "xtick.major.size": 2.5,
     "ytick.major.size": 2.5, "legend.fontsize": 6.8, "legend.framealpha": 0.9, "legend.edgecolor": "#bbbbbb",
-    "figure.constrained_layout.use": True, "svg.hashsalt": "slope"}
+    "figure.constrained_layout.use": True}
 TITLE: float = STYLE["axes.titlesize"]     # points
+FONT = "DejaVu Sans"    # matplotlib's own
 LINE = 1.25     # of a letter's size: from one line to the next
 
 
 def data_uri(figure, kind="png"):
-    """The figure as a data URI; closes it. Empty room above and below is cut off; the width, and so the size of the
+    """The figure as a data URI. Empty room above and below is cut off; the width, and so the size of the
 
     letters on the page, stays.
     """
-    out = io.BytesIO()
     for text in figure.findobj(Text):
         text.set_text(digits.typeset(text.get_text()))
     figure.draw_without_rendering()
     figure.set_layout_engine("none")    # once more, and it would not be what was measured
     used = figure.get_tightbbox(figure.canvas.get_renderer())
     width = figure.get_size_inches()[0]
-    figure.savefig(out, format=kind, dpi=DPI, metadata={"Date": None} if kind == "svg" else {"Software": None},
-                   bbox_inches=Bbox([[min(0, used.x0), used.y0 - 0.03], [max(width, used.x1), used.y1 + 0.03]]))
-    plt.close(figure)
+    content = pictures.drawn(figure, format=kind, dpi=DPI, bbox_inches=Bbox([
+        [min(0, used.x0), used.y0 - 0.03], [max(width, used.x1), used.y1 + 0.03]]),
+        metadata={"Date": None} if kind == "svg" else {"Software": None})
     mime = {"png": "image/png", "svg": "image/svg+xml"}[kind]
-    return f"data:{mime};base64,{base64.b64encode(out.getvalue()).decode('ascii')}"
+    return f"data:{mime};base64,{base64.b64encode(content).decode('ascii')}"
 
 
 def legend_above(axes) -> None:
@@ -60,8 +54,9 @@ def legend_above(axes) -> None:
 # --- text ---
 
 def text_width(text, size, bold=False):
-    """Inches that a line of text takes; size in points."""
-    font = FontProperties(size=size, weight="bold" if bold else "normal")
+    """Inches that a line of text takes; size in points. In the font of pictures.settings(), without these."""
+    font = FontProperties(family=FONT, style="normal", variant="normal", stretch="normal", size=size,
+                          weight="bold" if bold else "normal")
     return TextToPath().get_text_width_height_descent(text, font, ismath=False)[0] / 72 if text else 0.0
 
 
@@ -190,8 +185,9 @@ def tornado(path, panels, variables, title):
     _, _, about, first = panels[0]
     order = sorted(variables, key=lambda name: (variables[name][0] != "repeat",
                                                 max(abs(value - about["mean"]) for _, value in first[name])))
-    with plt.rc_context(STYLE):
-        figure, axes = plt.subplots(1, len(panels), figsize=(FULL, 0.9 + 0.26 * len(order)), sharey=True, squeeze=False)
+    with pictures.settings(STYLE):
+        figure, axes = pictures.subplots(1, len(panels), figsize=(FULL, 0.9 + 0.26 * len(order)), sharey=True,
+                                         squeeze=False)
         for axis, (name, unit, scatter, found) in zip(axes[0], panels):
             mean, deviation = scatter["mean"], scatter["standard_deviation"]
             if deviation is not None:
@@ -211,7 +207,7 @@ def tornado(path, panels, variables, title):
             axis.margins(x=0.12, y=0.02)
             axis.autoscale_view()
             axis.xaxis.set_major_locator(MaxNLocator(5))
-            axis.xaxis.set_major_formatter(matplotlib.ticker.StrMethodFormatter("{x:,.6g}"))
+            axis.xaxis.set_major_formatter(StrMethodFormatter("{x:,.6g}"))
             axis.grid(axis="x", color="#dddddd", lw=0.5, zorder=0)
             axis.set_axisbelow(True)
             axis.spines[["top", "right"]].set_visible(False)

@@ -1,16 +1,12 @@
 """Maps of a deposit on a shaded relief of the ground, as PNG."""
 import math
 
-import matplotlib
 import numpy as np
+from matplotlib import colormaps
+from matplotlib.colors import BoundaryNorm, ListedColormap
 
-matplotlib.use("Agg")  # no display is needed
-
-from matplotlib import pyplot as plt  # noqa: E402  (after the backend is set)
-from matplotlib.colors import BoundaryNorm, ListedColormap  # noqa: E402
-
-from ..geometry import extent, polygons_of  # noqa: E402
-from . import palettes, pictures  # noqa: E402
+from ..geometry import extent, polygons_of
+from . import palettes, pictures
 
 SIDE = 8.0      # inches, width of a map
 PIXELS = 1200   # a raster is thinned out to at most this many cells along a side
@@ -70,14 +66,14 @@ def contours(axes, z, where, interval, labels=True, **style):
 
 def scheme(name, bounds, low=0.15, high=1.0):
     """Colour map and norm of classes; the lightest tones of the colour map are left out."""
-    colours = plt.get_cmap(name)(np.linspace(low, high, len(bounds) - 1))
+    colours = colormaps[name](np.linspace(low, high, len(bounds) - 1))
     return ListedColormap(colours), BoundaryNorm(bounds, len(bounds) - 1)
 
 
 def relief(raster, base, shown, title):
     """A figure with the shaded relief of the ground and axes in local metres: figure, axes."""
     width, height = shown[2] - shown[0], shown[3] - shown[1]
-    figure, axes = plt.subplots(figsize=(SIDE, min(max(SIDE * height / width, SIDE / 3), 1.5 * SIDE)), dpi=130)
+    figure, axes = pictures.subplots(figsize=(SIDE, min(max(SIDE * height / width, SIDE / 3), 1.5 * SIDE)), dpi=130)
     z, where = part(raster, base, shown)
     step = (where[1] - where[0]) / z.shape[1]
     if min(z.shape) >= 2:
@@ -124,5 +120,5 @@ def outline(axes, geometry, **style):
 
 
 def save(figure, path):
-    """Write the figure, cut to what is drawn; close it."""
+    """Write the figure, cut to what is drawn."""
     pictures.save(figure, path, dpi="figure", bbox_inches="tight")

@@ -15,7 +15,7 @@ near the source they may leave more), so that in an upper bound they exceed ever
 beyond the longest exceed every value, in a lower bound none.
 """
 from dataclasses import dataclass
-from typing import Callable, List, NamedTuple, Optional, Sequence
+from typing import Callable, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 from scipy import linalg, stats
@@ -36,7 +36,8 @@ class Masses:
 
     share: of the known events that each run stands for, with those before the shortest run; far: of those beyond the
     longest; order: of the runs by length; effective: number of runs of equal weight; window: runs, see weights.Weights;
-    early: what of share stands for the events before the shortest run.
+    early: what of share stands for the events before the shortest run; either: share if those that end in gaps, where
+    no run does, count as the run before, and as the one after; None without gaps.
     """
     share: np.ndarray
     far: float
@@ -44,6 +45,7 @@ class Masses:
     effective: float
     window: int
     early: np.ndarray
+    either: Optional[Tuple[np.ndarray, np.ndarray]] = None
 
 
 def masses(found: weights.Weights) -> Masses:
@@ -52,7 +54,26 @@ def masses(found: weights.Weights) -> Masses:
     share = found.weights + early
     inside = share.sum()
     effective = float(inside ** 2 / (share ** 2).sum()) if inside > 0 else 0.0
-    return Masses(share, found.far, found.order, effective, found.window, early)
+    return Masses(share, found.far, found.order, effective, found.window, early, either_side(share, found))
+
+
+def either_side(share: np.ndarray, found: weights.Weights) -> Optional[Tuple[np.ndarray, np.ndarray]]:
+    """The shares with the events in the gaps on the run before, and on the one after; None without gaps."""
+    if not found.before:
+        return None
+    of, begins = share[found.order], [0, *(i + 1 for i in found.before)]
+    ends = np.append(found.below[found.before], found.below[-1])        # of the known events, before each gap
+    starts = np.append(0.0, found.below[begins[1:]])
+    parts = np.split(of, begins[1:])
+    inside = np.concatenate([part * (end - start) / part.sum() if part.sum() > 0 else part
+                             for part, start, end in zip(parts, starts, ends)])
+    both = []
+    for after in (0, 1):
+        one = np.empty_like(share)
+        one[found.order] = inside
+        one[found.order[np.array(found.before) + after]] += starts[1:] - ends[:-1]
+        both.append(one)
+    return both[0], both[1]
 
 
 def above(values: np.ndarray, levels: np.ndarray) -> np.ndarray:
@@ -102,25 +123,57 @@ def bounds(share: np.ndarray, found: np.ndarray, runs: float):
     return np.clip(middle - half, 0, share), np.clip(middle + half, share, 1)
 
 
-def quantiles(found: hazard.Curve, shares: Sequence[float] = hazard.SHARES) -> List["Quantile"]:
-    """Values that shares of the known events stay within; None where events beyond the longest run decide."""
+def quantiles(found: hazard.Curve, shares: Sequence[float] = hazard.SHARES, values: Optional[hazard.Values] = None,
+              mass: Optional[Masses] = None) -> List["Quantile"]:
+    """Values that shares of the known events stay within; None where events beyond the longest run decide.
+
+    values, mass: of the runs of the curve, which tell whether events decide that end where no run does.
+    """
     # a curve may begin just below its runs
-    values = np.maximum(found.values, min(found.values[1], 0.0))
+    levels = np.maximum(found.values, min(found.values[1], 0.0))
     sides = found.share, found.low, found.high
-    return [Quantile(share, *(first_within(values, one, 1 - share) for one in sides)) for share in shares]
+    several = []
+    for share in shares:
+        value, low, high = (first_within(levels, one, 1 - share) for one in sides)
+        several.append(Quantile(share, value, low, high))
+    if mass is None or mass.either is None:
+        return several
+    given = np.asarray(values, float)
+    return [in_gap(one, *(within(given, side, one.share) for side in mass.either)) for one in several]
 
 
 class Quantile(NamedTuple):
-    """As hazard.Quantile, but there may be no value at all."""
+    """As hazard.Quantile, but there may be no value at all.
+
+    gap: the values if the events that end where no run does count as the runs on either side, where these differ; the
+    value is the larger of them then.
+    """
     share: float
     value: Optional[float]
     low: Optional[float]
     high: Optional[float]
+    gap: Optional[Tuple[float, float]] = None
+
+
+def in_gap(one: Quantile, before: Optional[float], after: Optional[float]) -> Quantile:
+    """A quantile, given its values with the events in gaps on either side."""
+    if one.value is None or before is None or after is None or before == after:
+        return one
+    low, high = sorted((before, after))
+    return one._replace(value=high, gap=(low, high), low=None if one.low is None else min(one.low, low),
+                        high=None if one.high is None else max(one.high, high))
+
+
+def within(values: np.ndarray, share: np.ndarray, wanted: float) -> Optional[float]:
+    """The value that a share of the known events stays within; None where it goes beyond the runs."""
+    order = np.argsort(values, kind="stable")
+    at = np.flatnonzero(np.cumsum(share[order]) >= wanted - 1e-12)
+    return float(values[order][at[0]]) if len(at) else None
 
 
 def first_within(values: np.ndarray, share: np.ndarray, left: float) -> Optional[float]:
-    within = np.flatnonzero(share <= left + 1e-12)
-    return float(values[within[0]]) if len(within) else None
+    at = np.flatnonzero(share <= left + 1e-12)
+    return float(values[at[0]]) if len(at) else None
 
 
 # --- the design ---

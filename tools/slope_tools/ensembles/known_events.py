@@ -149,9 +149,9 @@ def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: S
               for name in names}
     about["quantities"] = {
         name: {"name": names[name][0], "unit": names[name][1],
-               "quantiles": [one._asdict() for one in conditioned.quantiles(curve)]} for name, curve in curves.items()}
-    about["to_remove"] = [one._asdict() for one in conditioned.quantiles(
-        curves[REMOVE], answer.shares(about["far"]))] if REMOVE in curves else None
+               "quantiles": quantiles(curve, runs, name, hazard.SHARES)} for name, curve in curves.items()}
+    about["to_remove"] = quantiles(curves[REMOVE], runs, REMOVE, answer.shares(about["far"])) \
+        if REMOVE in curves else None
     about["variables"] = {name: variable(runs, k, main) for k, name in enumerate(sample.names)}
     about["influence"] = {name: known_influence.evaluate(runs, name) for name in main[:1]}
     about["doubts"] = entries(doubts(about, runs))
@@ -162,6 +162,11 @@ def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: S
     disk.write(output / HAZARD, hazard.table(curves))
     disk.write(output / WEIGHTS, weights_table(runs))
     return disk.plain(about)
+
+
+def quantiles(curve: hazard.Curve, runs: Runs, name: str, shares: Sequence[float]) -> List[Dict[str, Any]]:
+    """What study.yaml says of those of a quantity."""
+    return [one._asdict() for one in conditioned.quantiles(curve, shares, runs.column(name), runs.mass)]
 
 
 def reach(runs: Runs, found: exceedance.Mobility) -> Dict[str, Any]:
@@ -275,4 +280,7 @@ def quantile_text(one: Mapping[str, Any], unit: str) -> str:
     if one["value"] is None:
         return f"{share}: unknown, they go beyond the runs"
     low, high = ("?" if one[side] is None else quantities.number(one[side]) for side in ("low", "high"))
+    if one.get("gap"):      # none in older files
+        first, last = map(quantities.number, one["gap"])
+        return f"{share}: between {first} and {last} {unit}, as no run ends where they do ({low} to {high})"
     return f"{share} stay within {quantities.number(one['value'])} {unit} ({low} to {high})"

@@ -14,7 +14,8 @@ BESIDE = f"{PAPER}, beside runs that are weighted by known events"
 NONE = "site.yaml asks for no runs that are weighted by known events (study.points)"
 WEIGHTED = "weighted by known events of this volume and height, beside the paper's method"
 # --vary, unless it is given: from values back-calculated for rock avalanches (doc/src/events.rst) to the defaults
-VARY = ("friction=5:30", "rolling=0:0.15", "spacing=0.3:0.95", "field_e=0.05:0.5", "xoffset=0:0.99")
+# and site_choices.chance()
+VARY = ("friction=5:30", "rolling=0:0.15", "spacing=0.3:0.95", "field_e=0.05:0.5")
 # bounds of runs that are added towards longer ones; between them the density is that of VARY
 WIDE = {"friction": (2.0, 30.0), "spacing": (0.2, 0.95)}
 

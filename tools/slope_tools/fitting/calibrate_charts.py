@@ -5,7 +5,7 @@ from typing import Sequence
 import numpy as np
 
 from ..drawing import palettes, pictures
-from ..drawing.figures import COLOURS, FULL, GRAY, STYLE, plt
+from ..drawing.figures import COLOURS, FULL, GRAY, STYLE
 from ..statistics.backanalysis import Posterior, SHARE
 
 BINS = 30
@@ -14,9 +14,9 @@ BINS = 30
 def draw(path: Path, found: Posterior, variables: Sequence, runs: np.ndarray, title: str) -> None:
     """Write the chart (PNG). runs: points of the unit cube where runs were made; variables: distributions.Range."""
     number = len(variables)
-    with plt.rc_context(STYLE):
+    with pictures.settings(STYLE):
         side = min(FULL, 2.1 * number + 0.6)
-        figure, axes = plt.subplots(number, number, figsize=(side, side), squeeze=False)
+        figure, axes = pictures.subplots(number, number, figsize=(side, side), squeeze=False)
         for row in range(number):
             for column in range(number):
                 axis = axes[row][column]

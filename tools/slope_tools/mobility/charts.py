@@ -4,10 +4,10 @@ from typing import Optional
 
 import numpy as np
 from matplotlib.collections import LineCollection
+from matplotlib.colors import Normalize
 from shapely.geometry.base import BaseGeometry
 
 from ..drawing import figures, maps, palettes, pictures
-from ..drawing.figures import plt
 from ..survey.crs import crs_name
 from ..survey.resampling import sample
 from .body import Body
@@ -26,7 +26,7 @@ def draw_map(path: Path, mobility: Mobility, body: Body, road: Optional[BaseGeom
     xs, ys = raster.transform * np.array([column + 0.5, row + 0.5])
     boxes = [(way.x.min(), way.y.min(), way.x.max(), way.y.max()), (xs.min(), ys.min(), xs.max(), ys.max())]
     shown = maps.window(raster, *boxes)
-    with plt.rc_context(figures.STYLE):
+    with pictures.settings(figures.STYLE):
         figure, axes = maps.relief(raster, raster.z, shown, f"fall path, {WORDS[mobility.chosen]}")
         z, where = maps.part(raster, raster.z, shown)
         maps.contours(axes, z, where, figures.contour_interval(z))
@@ -38,7 +38,7 @@ def draw_map(path: Path, mobility: Mobility, body: Body, road: Optional[BaseGeom
         curve = mobility.curves[mobility.chosen]
         middle = (curve[1:] + curve[:-1]) / 2
         drawn = axes.add_collection(LineCollection(np.stack([points[:-1], points[1:]], axis=1), cmap=palettes.PATH,
-                                                   norm=plt.Normalize(0, 1), linewidths=3, array=middle))
+                                                   norm=Normalize(0, 1), linewidths=3, array=middle))
         figure.colorbar(drawn, cax=axes.inset_axes([1.12, 0, 0.03, 1]), label="share of known events that go beyond")
         axes.plot(*way.crown[:2], "^", color=figures.RELEASE, ms=6, mec="white", mew=0.5)
         for share in MARKED:
@@ -56,8 +56,8 @@ def draw_profile(path: Path, found: Found, body: Body, road: Optional[AtRoad]) -
     counts = found.decides
     way = counts.path
     ground = way.elevation(body)
-    with plt.rc_context(figures.STYLE):
-        figure, (above, below) = plt.subplots(2, 1, figsize=(figures.FULL, 4.6), sharex=True)
+    with pictures.settings(figures.STYLE):
+        figure, (above, below) = pictures.subplots(2, 1, figsize=(figures.FULL, 4.6), sharex=True)
         above.plot(way.length, ground, color="black", lw=1.0)
         above.fill_between(way.length, sample(body.raster._replace(z=body.base), way.x, way.y), ground,
                            color=figures.RELEASE, alpha=0.25, lw=0, label="released body")

@@ -39,7 +39,8 @@ class Weights(NamedTuple):
     before and beyond it, 1 together; effective: number of runs of equal weight that say as much (Kish), of
     weights / reached; distance: largest difference (Kolmogorov) of the distribution of the weighted runs from that of
     the known events, within the range; gaps: in it, by length; window: number of cells that a weight is the mean of;
-    order: of the runs, by length; ratio: of_lengths'.
+    order: of the runs, by length; ratio: of_lengths'; below: share of the known events before each, in this order;
+    before: places in it of the runs before the gaps.
     """
     weights: np.ndarray
     reached: float
@@ -51,6 +52,8 @@ class Weights(NamedTuple):
     window: int
     order: np.ndarray
     ratio: np.ndarray
+    below: np.ndarray
+    before: List[int]
 
 
 def of_lengths(lengths, exceedance, ratio=None) -> Weights:
@@ -70,14 +73,15 @@ def of_lengths(lengths, exceedance, ratio=None) -> Weights:
     weights = np.zeros(len(lengths))
     given = np.ones(len(lengths)) if ratio is None else np.asarray(ratio, float)
     if reached <= 0:
-        return Weights(weights, 0.0, float(below[0]), rest, 0.0, 0.0, [], window, order, given)
+        return Weights(weights, 0.0, float(below[0]), rest, 0.0, 0.0, [], window, order, given, below, [])
     counts = given[order] / averaged(given[order], window)
     smooth = counts * averaged(cells / averaged(counts, window), window)
     weights[order] = smooth
-    upto = below[0] + np.cumsum(smooth)
+    upto, before = below[0] + np.cumsum(smooth), gaps(below)
     distance = max(np.abs(upto - below).max(), np.abs(upto - smooth - below).max())
     return Weights(weights, reached, float(below[0]), rest, float(reached ** 2 / (smooth ** 2).sum()), float(distance),
-                   gaps(lengths[order], below), window, order, given)
+                   [Gap(*map(float, (*lengths[order][i:i + 2], below[i + 1] - below[i]))) for i in before], window,
+                   order, given, below, before)
 
 
 def window_of(number: int) -> int:
@@ -92,8 +96,8 @@ def averaged(cells: np.ndarray, window: int) -> np.ndarray:
     return np.convolve(wide, np.full(window, 1 / window), "valid")
 
 
-def gaps(lengths: np.ndarray, below: np.ndarray) -> List[Gap]:
-    """Where no run ends though known events do; lengths ascending, with the share of known events up to each.
+def gaps(below: np.ndarray) -> List[int]:
+    """Behind which run none ends though known events do; below: share of known events up to each, ascending.
 
     The shares of the known events between runs drawn independently are distributed exponentially, about the mean that
     the density of the runs makes. So one of them over the mean of k others, those around it, exceeds x with the
@@ -105,5 +109,5 @@ def gaps(lengths: np.ndarray, below: np.ndarray) -> List[Gap]:
         near = np.delete(share[max(0, i - NEAR):i + NEAR + 1], min(i, NEAR))
         k = len(near)
         if not k or share[i] > near.mean() * k * ((len(share) * ONCE) ** (1 / k) - 1):
-            found.append(Gap(float(lengths[i]), float(lengths[i + 1]), float(share[i])))
+            found.append(int(i))
     return found

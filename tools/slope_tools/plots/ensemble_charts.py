@@ -1,22 +1,22 @@
 """The charts of an ensemble, as data URIs: the hazard curve, and which variables a quantity depends on."""
 from typing import NamedTuple, Optional, Sequence, Tuple
 
-import matplotlib
 import numpy as np
 from matplotlib.ticker import MaxNLocator, PercentFormatter, StrMethodFormatter
 
-from ..drawing import figures
-from ..drawing.figures import COLOURS, GRAY, HALF, STYLE, plt
+from ..drawing import figures, pictures
+from ..drawing.figures import COLOURS, GRAY, HALF, STYLE
 
 THOUSANDS = StrMethodFormatter("{x:,.6g}")
 
 
 class Quantile(NamedTuple):
-    """A point of the curve that has a name; its bounds are None where nothing bounds it."""
+    """A point of the curve that has a name; its bounds are None where nothing bounds it; gap: it is between these."""
     share: float
     value: float
     low: Optional[float]
     high: Optional[float]
+    gap: Optional[Tuple[float, float]] = None
 
 
 class Bar(NamedTuple):
@@ -34,15 +34,18 @@ def hazard_curve(values, share, low, high, quantiles: Sequence[Quantile], x_labe
 
     what: it is a share of.
     """
-    with plt.rc_context(STYLE):
-        figure, axes = plt.subplots(figsize=(figures.WIDE, 2.7))
+    with pictures.settings(STYLE):
+        figure, axes = pictures.subplots(figsize=(figures.WIDE, 2.7))
         end = values[-1] + 0.04 * (values[-1] - values[0] or 1)
         at = np.append(values, end)
         axes.fill_between(at, np.append(low, low[-1]), np.append(high, high[-1]), step="post", color=COLOURS[0],
                           alpha=0.18, lw=0, label="bounds, 90 %")
         axes.step(at, np.append(share, share[-1]), where="post", color=COLOURS[0], lw=1.4, label=what)
         for one in quantiles:
-            axes.plot([one.value], [1 - one.share], "o", ms=4, color=COLOURS[1])
+            if one.gap:
+                axes.plot(one.gap, [1 - one.share] * 2, "-", lw=2.5, color=COLOURS[1])
+            else:
+                axes.plot([one.value], [1 - one.share], "o", ms=4, color=COLOURS[1])
             axes.annotate(f"{100 * one.share:g} %", (one.value, 1 - one.share), xytext=(4, 3),
                           textcoords="offset points", fontsize=6)
         axes.set(xlim=(values[0], end), ylim=(0, 1.02), xlabel=x_label, ylabel=f"share of the {what} above")
@@ -54,8 +57,8 @@ def hazard_curve(values, share, low, high, quantiles: Sequence[Quantile], x_labe
 
 def influence(bars: Sequence[Bar], title: str) -> str:
     """First-order and total indices of the variables, the largest on top."""
-    with plt.rc_context(STYLE):
-        figure, axes = plt.subplots(figsize=(HALF, 0.9 + 0.32 * len(bars)))
+    with pictures.settings(STYLE):
+        figure, axes = pictures.subplots(figsize=(HALF, 0.9 + 0.32 * len(bars)))
         for y, bar in enumerate(sorted(bars, key=lambda one: one.total)):
             axes.barh(y, bar.total, 0.62, color=COLOURS[0], alpha=0.3, label="with others (total)" if y == 0 else None)
             axes.barh(y, bar.first, 0.34, color=COLOURS[0], label="alone (first order)" if y == 0 else None)
@@ -72,8 +75,8 @@ def influence(bars: Sequence[Bar], title: str) -> str:
 def against(x: Sequence[float], y: Sequence[float], x_label: str, y_label: str, title: str,
             line: Optional[Tuple[Sequence[float], Sequence[float]]] = None) -> str:
     """A dot for each run; line: what an emulator makes of it."""
-    with plt.rc_context(STYLE):
-        figure, axes = plt.subplots(figsize=(HALF, 2.1))
+    with pictures.settings(STYLE):
+        figure, axes = pictures.subplots(figsize=(HALF, 2.1))
         axes.plot(x, y, "o", ms=2.8, color=COLOURS[0], alpha=0.75, mew=0)
         if line:
             axes.plot(*line, color=COLOURS[1], lw=1.2)
@@ -86,7 +89,7 @@ def finish(axes, title: str, grid: str = "both") -> None:
     """What all charts have in common."""
     axes.set_title(title, loc="left")
     axes.xaxis.set_major_locator(MaxNLocator(6))
-    axes.xaxis.set_major_formatter(THOUSANDS if grid != "x" else matplotlib.ticker.StrMethodFormatter("{x:.2g}"))
+    axes.xaxis.set_major_formatter(THOUSANDS if grid != "x" else StrMethodFormatter("{x:.2g}"))
     if grid != "x":
         axes.yaxis.set_major_formatter(THOUSANDS)
     axes.grid(axis=grid, color="#dddddd", lw=0.5)

@@ -3,8 +3,8 @@ from typing import NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
-from ..drawing import figures
-from ..drawing.figures import COLOURS, FULL, HALF, LINE, ROAD, SECTION, STYLE, plt, shortened, text_width, ticks
+from ..drawing import figures, pictures
+from ..drawing.figures import COLOURS, FULL, HALF, LINE, ROAD, SECTION, STYLE, shortened, text_width, ticks
 from .figure_maps import LINE as CONTROL, MARKS, WALL, entries_of_marks
 from .sheets import Box, EDGE, Entry, LABEL, OUT, Sheet, TICK, keep_in, label, place_entries, widest
 
@@ -63,7 +63,7 @@ def section(s, before, base, runs, road, cut, title, bends=(), walls=(), crossin
     typical = float(np.percentile(deposit, 75)) if deposit.size else 0.0
     left = EDGE + OUT + widest(low, high) + 0.02
     scale = scale_of(np.ptp(s), high - low, typical, FULL - left - 0.12)
-    with plt.rc_context(STYLE):
+    with pictures.settings(STYLE):
         sheet = Sheet(FULL)
         sheet.title(title, left)
         size = np.ptp(s) * scale.inches, max((high - low) * scale.heights, 0.4)
@@ -215,7 +215,7 @@ def chart(series, x_label, y_label, title, others=(), levels=(), mark: Optional[
 
     mark: (x, y, text) of the point that counts.
     """
-    with plt.rc_context(STYLE):
+    with pictures.settings(STYLE):
         sheet = Sheet(width)
         every = np.concatenate([[0.0], *(one.y for one in (*series, *others)), [y for _, y in levels],
                                 [mark[1]] if mark else [], *(np.asarray(one.y) + (one.scatter or 0)
@@ -273,7 +273,7 @@ class Convergence(NamedTuple):
 
 def convergence(found, x_label, y_label, title, width=HALF):
     """Means against the size of the balls, the line through them and its end."""
-    with plt.rc_context(STYLE):
+    with pictures.settings(STYLE):
         sheet = Sheet(width)
         deviations = np.array([one or 0.0 for one in found.scatter])
         means_ = np.asarray(found.means, float)
@@ -302,7 +302,7 @@ def convergence(found, x_label, y_label, title, width=HALF):
 
 def bars(names, values, y_label, title, width=FULL):
     """Values of runs whose variables are no numbers."""
-    with plt.rc_context(STYLE):
+    with pictures.settings(STYLE):
         sheet = Sheet(width)
         names = [shortened(name, 0.37 * width, TICK) for name in names]
         left = EDGE + OUT + max(text_width(name, TICK) for name in names) + 0.02

@@ -3,11 +3,12 @@ import math
 from typing import Any, Mapping, NamedTuple, Optional, Tuple
 
 import numpy as np
+from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.patches import Rectangle
 
-from ..drawing import figures, palettes
-from ..drawing.figures import FULL, HALF, RELEASE, ROAD, SECTION, STYLE, TITLE, classes_of, plt, text_width, wrapped
+from ..drawing import figures, palettes, pictures
+from ..drawing.figures import FULL, HALF, RELEASE, ROAD, SECTION, STYLE, TITLE, classes_of, text_width, wrapped
 from ..drawing.maps import RELIEF, contours, outline, part, scheme, shade
 from ..geometry import parts_of, polygons_of
 from . import sheets
@@ -163,7 +164,7 @@ def finish(sheet, layers, size, left):
 
 def value_map(layers, values, title, bar, bounds, colours, width=HALF, crs_name="", mask=None):
     """A map of a raster in classes; values below the first bound, and where mask is False, are not drawn."""
-    with plt.rc_context(STYLE):
+    with pictures.settings(STYLE):
         frame = frame_of(layers, width == FULL, crs_name)
         sheet, axes, size, beside, below = sheets.single(width, frame, title, TALL[width], bounds)
         base_map(axes, layers, labels=width == FULL)
@@ -180,7 +181,7 @@ def mesh_map(layers, removed, mesh, title, crs_name):
     The data URI, and whether the mesh is drawn: only where its numbers can be read.
     """
     layers = layers._replace(section=None)
-    with plt.rc_context(STYLE):
+    with pictures.settings(STYLE):
         frame, bounds = frame_of(layers, True, crs_name), classes_of(removed)
         sheet, axes, size, beside, below = sheets.single(FULL, frame, title, TALL[FULL], bounds)
         base_map(axes, layers, labels=False)
@@ -203,7 +204,7 @@ def mesh_map(layers, removed, mesh, title, crs_name):
 
 def road_map(layers, parts, bounds, title, bar, crs_name):
     """Parts of the road, areas in local metres, by a value in classes; parts: list of (area, value)."""
-    with plt.rc_context(STYLE):
+    with pictures.settings(STYLE):
         frame = frame_of(layers, True, crs_name)
         sheet, axes, size, beside, below = sheets.single(FULL, frame, title, TALL[FULL], bounds)
         base_map(axes, layers)
@@ -212,13 +213,13 @@ def road_map(layers, parts, bounds, title, bar, crs_name):
             for polygon in polygons_of(area):
                 axes.fill(*np.asarray(polygon.exterior.coords).T, color=cmap(norm(value)), lw=0, zorder=6.2)
         sheets.draw_axes(axes, frame, size)
-        sheets.colour_bar(sheet, plt.cm.ScalarMappable(norm, cmap), bounds, bar, beside, below)
+        sheets.colour_bar(sheet, ScalarMappable(norm, cmap), bounds, bar, beside, below)
         return finish(sheet, layers, size, sheets.margins(frame)[0])
 
 
 def terrain_map(layers, detail, crs_name):
     """The whole terrain, tinted by height; detail: the part that the other maps show."""
-    with plt.rc_context(STYLE):
+    with pictures.settings(STYLE):
         frame = frame_of(layers, True, crs_name)
         z, where = part(layers.raster, layers.ground, layers.shown)
         numbers = [np.nanmin(z), np.nanmax(z)] if np.isfinite(z).any() else [0]
@@ -238,7 +239,7 @@ def terrain_map(layers, detail, crs_name):
 
 def small_maps(layers, panels, bar, bounds, colours):
     """The same map of several runs side by side; panels: list of (title, values)."""
-    with plt.rc_context(STYLE):
+    with pictures.settings(STYLE):
         sheet, frame = sheets.Sheet(FULL), frame_of(layers, False)
         left, _, right, bottom = sheets.margins(frame)
         beside = sheets.bar_room(bounds)

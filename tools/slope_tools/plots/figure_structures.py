@@ -1,12 +1,14 @@
 """Pictures of structures and control lines in a report, as data URIs: curves of runs, and a map of pressures."""
 import numpy as np
+from matplotlib import colormaps
+from matplotlib.cm import ScalarMappable
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import LogNorm, to_rgba
 from mpl_toolkits.axes_grid1 import make_axes_locatable
 
 from .. import digits
-from ..drawing import figures, palettes
-from ..drawing.figures import COLOURS, FULL, HALF, STYLE, plt
+from ..drawing import figures, palettes, pictures
+from ..drawing.figures import COLOURS, FULL, HALF, STYLE
 
 EMPTY = "#e4e6e9"       # of a panel that nothing touched
 DECADE = 10.0           # values that span less are on a linear axis
@@ -15,8 +17,8 @@ DECADES = 3             # of the pressures that have a colour
 
 def curves(lines, x_label, y_label, title, falling=False):
     """Lines of (name, x, y) as an SVG; falling: y is a share, from 1 down, over x on a log axis if x spans DECADE."""
-    with plt.rc_context(STYLE):
-        figure, axes = plt.subplots(figsize=(HALF, 2.3))
+    with pictures.settings(STYLE):
+        figure, axes = pictures.subplots(figsize=(HALF, 2.3))
         for k, (name, x, y) in enumerate(lines):
             axes.plot(x, y, color=COLOURS[k % len(COLOURS)], lw=0.9, label=name,
                       drawstyle="steps-post" if falling else "default")
@@ -55,11 +57,12 @@ def pressure_map(corners, pressure, direction, title):
     places, values = places[seen], values[seen]
     places[..., 0] -= places[..., 0].min()
     top = values.max()
-    with plt.rc_context(STYLE):
+    with pictures.settings(STYLE):
         span = np.ptp(places.reshape(-1, 2), axis=0)
-        figure, axes = plt.subplots(figsize=(FULL, min(max(0.8 * FULL * span[1] / max(span[0], 1e-9), 0.5), 2.6) + 0.7))
+        tall = min(max(0.8 * FULL * span[1] / max(span[0], 1e-9), 0.5), 2.6) + 0.7
+        figure, axes = pictures.subplots(figsize=(FULL, tall))
         norm = LogNorm(top / 10 ** DECADES, top)
-        colours = plt.get_cmap(palettes.PRESSURE)(norm(np.maximum(values, norm.vmin)))
+        colours = colormaps[palettes.PRESSURE](norm(np.maximum(values, norm.vmin)))
         colours[values <= 0] = to_rgba(EMPTY)
         axes.add_collection(PolyCollection(places, facecolors=colours, edgecolors="#9aa0a6", linewidths=0.15))
         low, high = places.reshape(-1, 2).min(axis=0), places.reshape(-1, 2).max(axis=0)
@@ -68,7 +71,7 @@ def pressure_map(corners, pressure, direction, title):
                  xlabel="along the structure (m)", ylabel="height (m)")
         axes.set_title(title, loc="left")
         beside = make_axes_locatable(axes).append_axes("right", size=0.1, pad=0.08)
-        bar = figure.colorbar(plt.cm.ScalarMappable(norm, palettes.PRESSURE), cax=beside, extend="min")
+        bar = figure.colorbar(ScalarMappable(norm, palettes.PRESSURE), cax=beside, extend="min")
         bar.set_label(f"largest pressure ({prefix}Pa)", fontsize=6.5)
         bar.ax.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
         bar.ax.tick_params(labelsize=6)

@@ -7,8 +7,10 @@ import math
 from typing import NamedTuple, Optional, Tuple
 
 from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
 
-from ..drawing.figures import LINE, TITLE, nice, plt, text_width, ticks, wrapped
+from ..drawing import pictures
+from ..drawing.figures import LINE, TITLE, nice, text_width, ticks, wrapped
 
 EDGE, GAP = 0.05, 0.09      # around a sheet, between two things on it
 OUT = 0.09                  # from an axis to its labels
@@ -73,7 +75,7 @@ class Sheet:
 
     def __init__(self, width):
         self.width, self.bottom = width, EDGE
-        self.figure = plt.figure(figsize=(width, width))
+        self.figure = pictures.figure(figsize=(width, width))
         self.figure.set_layout_engine("none")
         self.boxes = []     # (axes, Box)
         self.texts = []     # (text, from the left, from the top)
@@ -194,7 +196,7 @@ def colour_bar(sheet, image, bounds, text, beside, below):
     if bounds is not None:
         axis.set_ticklabels(thinned([f"{bound:g}" for bound in bounds], None if upright else below.width))
     else:
-        axis.set_major_locator(plt.MaxNLocator(4 if not upright or beside.height < 2 else 7))
+        axis.set_major_locator(MaxNLocator(4 if not upright or beside.height < 2 else 7))
     axes.tick_params(labelsize=TICK, size=2, width=0.5)
     bar.set_label(text, fontsize=LABEL, labelpad=3)
     bar.outline.set_linewidth(0.5)

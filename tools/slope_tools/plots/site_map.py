@@ -5,7 +5,7 @@ from typing import List
 
 import numpy as np
 
-from ..drawing import figures, palettes
+from ..drawing import figures, palettes, pictures
 from ..drawing.maps import outline, window
 from ..geometry import extent
 from ..sites.site_layers import Shown
@@ -26,7 +26,7 @@ def draw(path: Path, layers: Shown, title: str) -> None:
     shown = window(raster, *boxes(layers))
     base = figure_maps.Layers(raster, raster.z, shown, None, layers.road, None, figures.contour_interval(raster.z))
     bounds = figures.even(float(layers.depth.max()))
-    with figures.plt.rc_context(figures.STYLE):
+    with pictures.settings(figures.STYLE):
         frame = figure_maps.frame_of(base, True, crs)
         sheet, axes, size, beside, below = sheets.single(figures.FULL, frame, title,
                                                          figure_maps.TALL[figures.FULL], bounds)

@@ -1,21 +1,16 @@
 """The picture of a motion: acceleration, velocity, displacement against time, intensity, response spectrum."""
-import matplotlib
-
-matplotlib.use("Agg")  # no display is needed
-
-from matplotlib import pyplot as plt  # noqa: E402  (after the backend is set)
-
-from ..drawing import pictures  # noqa: E402
-from ..drawing.figures import COLOURS, DPI, STYLE  # noqa: E402
-from .quake_motion import AXES, DAMPING, PERIODS, husid, integrals, spectrum  # noqa: E402
-from .quake_records import GAL  # noqa: E402
+from ..drawing import pictures
+from ..drawing.figures import COLOURS, DPI, STYLE
+from .quake_motion import AXES, DAMPING, PERIODS, husid, integrals, spectrum
+from .quake_records import GAL
 
 
 def draw(path, motion, title):
     """Write the picture as PNG."""
     v, d = integrals(motion)
-    with plt.rc_context(STYLE):
-        figure, axes = plt.subplot_mosaic([["a", "s"], ["v", "s"], ["d", "h"]], figsize=(9.0, 5.4), width_ratios=[2, 1])
+    with pictures.settings(STYLE):
+        figure = pictures.figure(figsize=(9.0, 5.4))
+        axes = figure.subplot_mosaic([["a", "s"], ["v", "s"], ["d", "h"]], width_ratios=[2, 1])
         curves = (("a", motion.a / GAL, "acceleration (gal)"), ("v", v, "velocity (m/s)"), ("d", d, "displacement (m)"),
                   ("h", husid(motion), "Arias intensity (m/s)"))
         for key, values, label in curves:

@@ -1,7 +1,7 @@
 """The body that is released, below a polygon or from a scar."""
 import math
 from pathlib import Path
-from typing import Any, Dict, List, NamedTuple, Optional
+from typing import Any, Dict, List, NamedTuple, Optional, Tuple
 
 import numpy as np
 from scipy.ndimage import label
@@ -40,6 +40,11 @@ class Wanted(NamedTuple):
     scar_crs: Optional[str] = None      # of the scar
     local: bool = False                 # the polygon is in local metres
     advice: Optional[polygons.Advice] = None        # for messages on the polygon's place
+    read: Optional[Tuple[rasters.Raster, Any]] = None   # ground and polygon in local metres, if they are read already
+
+    def called(self, name: str) -> str:
+        """What messages call a number: the option, or the attribute of a polygon that is read already."""
+        return f"{self.where}: {name}" if self.read else f"--{name}"
 
     @property
     def where(self) -> str:
@@ -61,10 +66,9 @@ class Body(NamedTuple):
 def body_of(wanted: Wanted) -> Body:
     """The body; raises SlopeError on bad input."""
     wanted = check(wanted)
-    raster = read_terrain(wanted.terrain)
-    geometry = None
+    raster, geometry = wanted.read or (read_terrain(wanted.terrain), None)
     doubts: List[Finding] = []
-    if wanted.polygon:
+    if wanted.polygon and not wanted.read:
         crs = as_crs("--assign-crs", wanted.crs) if wanted.crs else None
         geometry = polygons.read_local(wanted.polygon, raster, local=wanted.local, crs=crs,
                                        advice=wanted.advice or polygons.OF_ASSIGN_CRS._replace(terrain=wanted.terrain),
@@ -86,7 +90,7 @@ def check(wanted: Wanted) -> Wanted:
     for name in ("depth", "volume"):
         value = getattr(wanted, name)
         if value is not None and not value > 0:
-            raise SlopeError(f"--{name}", "must be > 0", f"{value:g}")
+            raise SlopeError(wanted.called(name), "must be > 0", f"{value:g}")
     if wanted.least < 0:
         raise SlopeError("--least", "must be >= 0", f"{wanted.least:g}")
     if wanted.scar:
@@ -171,7 +175,7 @@ def from_scar(wanted: Wanted, scar: release_scar.Scar, geometry):
     row, column = area.corner
     part = depth[row:row + area.z.shape[0], column:column + area.z.shape[1]]
     return area, area.z - part, {"shape": "scar", "scar": wanted.scar, "scar_is": scar.kind, "least": wanted.least,
-                                 "beside_m": release_scar.beside(scar, inside)}
+                                 "beside_m": release_scar.off_beside(scar, inside)}
 
 
 def from_shape(wanted: Wanted, raster, geometry):
@@ -180,7 +184,8 @@ def from_shape(wanted: Wanted, raster, geometry):
     release_area.require_slope(area, wanted.where)
     parts = len(polygons.polygons_of(geometry))
     if wanted.shape != "slbl" and parts > 1:
-        raise SlopeError(wanted.polygon, f"must be one polygon for --shape {wanted.shape}; slbl takes several", parts)
+        raise SlopeError(wanted.polygon, "must be one polygon: make a feature of each part" if wanted.read else
+                         f"must be one polygon for --shape {wanted.shape}; slbl takes several", parts)
     if wanted.shape == "sphere":
         shape = release_bodies.sphere_shape(area, geometry, wanted.where)
     elif wanted.shape == "ellipsoid":
@@ -192,9 +197,9 @@ def from_shape(wanted: Wanted, raster, geometry):
     else:
         shape = release_bodies.slbl_shape(area)
     if wanted.depth is not None:
-        free, depth = release_solve.to_depth(area, shape, wanted.depth)
+        free, depth = release_solve.to_depth(area, shape, wanted.depth, wanted.called("depth"), not wanted.read)
     elif wanted.volume is not None:
-        free, depth = release_solve.to_volume(area, shape, wanted.volume)
+        free, depth = release_solve.to_volume(area, shape, wanted.volume, wanted.called("volume"), not wanted.read)
     else:
         free = shape.most if wanted.curvature is None else wanted.curvature
         if not shape.least <= free <= shape.most:

@@ -2,7 +2,7 @@
 import numpy as np
 
 from ..drawing import figures, palettes, pictures
-from ..drawing.figures import FULL, RELEASE, SECTION, STYLE, plt
+from ..drawing.figures import FULL, RELEASE, SECTION, STYLE
 from ..drawing.maps import RELIEF, contours, outline, part, scheme, shade, window
 from ..survey.rasters import Raster
 from ..survey.resampling import sample
@@ -29,10 +29,10 @@ def draw(path, raster: Raster, area: Area, slip: np.ndarray, geometry, title: st
     along = np.linspace(0, length, POINTS)
     ground, base = (sample(raster._replace(z=z), *line.T) for z in (raster.z, whole))
 
-    with plt.rc_context(STYLE):
+    with pictures.settings(STYLE):
         tall = min(max(FULL * (shown[3] - shown[1]) / (shown[2] - shown[0]), 2.0), 5.5)
         low = min(max(0.9 * FULL * np.ptp(ground[np.isfinite(ground)]) / length, 1.2), 4.0)
-        figure, (map_axes, section) = plt.subplots(2, 1, figsize=(FULL, tall + low), height_ratios=(tall, low))
+        figure, (map_axes, section) = pictures.subplots(2, 1, figsize=(FULL, tall + low), height_ratios=(tall, low))
         draw_map(figure, map_axes, raster, depth, shown, geometry)
         map_axes.plot(*line.T, color=SECTION, lw=0.8, ls=(0, (6, 2, 1, 2)))
         for point, name in zip(ends, ("A", "A'")):

@@ -4,6 +4,7 @@ from typing import NamedTuple, Tuple
 
 from ..case.decks import quoted
 from ..digits import rounded
+from . import packing
 
 BALLS = 20000       # that the suggested diameter makes of the body
 
@@ -22,7 +23,7 @@ class Body(NamedTuple):
 
 def diameter(volume: float) -> float:
     """A ball's diameter (m), to two digits, so that some 20,000 stand for a volume (m3)."""
-    return float(f"{(volume / BALLS) ** (1 / 3):.2g}")
+    return float(f"{packing.diameter(volume, BALLS):.2g}")
 
 
 def text(body: Body) -> str:
@@ -43,10 +44,8 @@ region      around block {box} units box    # of the body: shortens searches
 region      slip intersect 3 ground above around    # the body that is released
 
 create_box  3 ground    # 1 soil, 2 slip surface, 3 field
-lattice     sc ${{d}}
-create_atoms 1 region slip
+create_balls 1 ${{d}} 2977 fill slip
 group       soil type 1
-set         group soil diameter ${{d}} density 3411.4
 
 # --- contact model: pair_style gran/restitution, pair_coeff 1 1, 1 2 and 1 3 come here ---
 

@@ -6,10 +6,8 @@ from affine import Affine
 from rasterio.crs import CRS
 
 from ..errors import SlopeError
-from ..survey import rasters
-from ..survey.crs import same_crs, transform
-from ..survey.rasters import Raster, crs_name
-from ..survey.resampling import sample
+from ..survey import beside
+from ..survey.rasters import Raster
 from .release_solve import THINNEST
 
 KINDS = ("surface", "depth", "change", "height")
@@ -68,7 +66,7 @@ def check_heights(path: str, values: np.ndarray, raster: Raster) -> None:
                      f"{meant}; --scar-is surface if they are heights", f"{scar.min():.6g} to {scar.max():.6g}")
 
 
-def beside(scar: Scar, inside: Optional[np.ndarray]) -> Optional[float]:
+def off_beside(scar: Scar, inside: Optional[np.ndarray]) -> Optional[float]:
     """How far (m, median) the terrain lies above a second survey of it beside the body.
 
     inside: mask of the nodes in the polygon of the body. None where that is not known: no two surveys, or no nodes
@@ -90,27 +88,7 @@ def on_nodes(path: str, raster: Raster, heights: bool, crs: Optional[CRS] = None
     Heights are NaN where the raster has none. Depths and changes are 0 there, also between a cell that has one and a
     cell beyond the raster: what they sum up to does not depend on how the file marks the ground beside the scar.
     """
-    scar = rasters.read_asc_local(path) if heights else _read_values(path)
-    scar = scar._replace(crs=crs or scar.crs)
-    if not np.isfinite(scar.z).any():
-        raise SlopeError(path, "must hold a value, all cells are NODATA")
+    scar = beside.read(path, raster, heights, crs)
     if not heights:
         scar = scar._replace(z=np.pad(np.nan_to_num(scar.z), 1), transform=scar.transform * Affine.translation(-1, -1))
-    rows, columns = raster.z.shape
-    x, y = np.meshgrid(np.arange(columns) + 0.5, np.arange(rows) + 0.5)
-    x, y = Affine.translation(*raster.offset) * raster.transform * (x, y)
-    if scar.crs is not None and raster.crs is None:
-        raise SlopeError(path, f"is in {crs_name(scar.crs)}, and the terrain must have a CRS, too: slope terrain --crs",
-                         "none")
-    if scar.crs is not None and not same_crs(scar.crs, raster.crs):
-        x, y = transform(raster.crs, scar.crs, x, y)
-    values = sample(scar._replace(transform=Affine.translation(*scar.offset) * scar.transform), x, y)
-    if not np.isfinite(values).any():
-        raise SlopeError(path, "must overlap the terrain")
-    return values
-
-
-def _read_values(path: str) -> Raster:
-    """A raster of other values than heights, with the place that its sidecar says, if it has one."""
-    raster, place = rasters.read(path, heights=False), rasters.read_sidecar(path)
-    return raster if place is None else raster._replace(crs=place.crs, offset=place.offset)
+    return beside.on_cells(path, scar, raster)

@@ -48,11 +48,12 @@ def volume(depth: np.ndarray, cell: float) -> float:
     return float(np.nansum(depth)) * cell ** 2
 
 
-def solved(area: Area, shape: Shape, wanted: float, measure: Callable[[np.ndarray], float], option: str,
-           unit: str) -> Tuple[float, np.ndarray]:
+def solved(area: Area, shape: Shape, wanted: float, measure: Callable[[np.ndarray], float], called: str,
+           unit: str, another: bool) -> Tuple[float, np.ndarray]:
     """The free number of a shape at which measure(depths) is what is wanted, and the depths.
 
-    Raises SlopeError if there is no such number.
+    called: what messages call what is wanted; another: whether the user can choose another shape. Raises SlopeError if
+    there is no such number.
     """
     def find(number):
         return depths(area, shape.surface(number))
@@ -65,14 +66,15 @@ def solved(area: Area, shape: Shape, wanted: float, measure: Callable[[np.ndarra
     rises = np.flatnonzero((found[:-1] <= 0) & (found[1:] >= 0))
     if not len(rises) and found.max() < 0:
         what = shape.limit if np.argmax(found) == len(found) - 1 else f"the largest {shape.name}"
-        raise SlopeError(option, f"must be at most {at_most(found.max() + wanted)} {unit}, that of {what} within the "
-                         "release polygon: take a larger polygon or another shape", f"{wanted:.10g}")
+        raise SlopeError(called, f"must be at most {at_most(found.max() + wanted)} {unit}, that of {what} within the "
+                         f"release polygon: take a larger polygon{' or another shape' * another}", f"{wanted:.10g}")
     if not len(rises):
-        why = f"that of the smallest {shape.name} within the release polygon: take a smaller polygon or another shape"
+        why = (f"that of the smallest {shape.name} within the release polygon: take a smaller polygon"
+               f"{' or another shape' * another}")
         if "toe" in shape.about and "shoulder" in shape.about:
             why = ("as the ground in the release polygon bulges above the line from toe to shoulder, so that no "
-                   f"smaller {shape.name} goes through both: take --shape slbl or a smaller polygon")
-        raise SlopeError(option, f"must be at least {at_least(found.min() + wanted)} {unit}, {why}", f"{wanted:.10g}")
+                   f"smaller {shape.name} goes through both: take {'--shape slbl or ' * another}a smaller polygon")
+        raise SlopeError(called, f"must be at least {at_least(found.min() + wanted)} {unit}, {why}", f"{wanted:.10g}")
     low, high = tried[rises[-1]], tried[rises[-1] + 1]
     close = EXACT * max(abs(low), abs(high))
     number = float(brentq(miss, low, high, xtol=close, rtol=1e-14))
@@ -95,14 +97,14 @@ def part_way(below: np.ndarray, above: np.ndarray, wanted: float, measure: Calla
     return below + share * (above - below)
 
 
-def to_depth(area: Area, shape: Shape, depth: float) -> Tuple[float, np.ndarray]:
+def to_depth(area: Area, shape: Shape, depth: float, called="--depth", another=True) -> Tuple[float, np.ndarray]:
     """The free number of a shape whose largest depth (m, vertical) is given, and the depths."""
-    return solved(area, shape, depth, lambda found: float(found.max()), "--depth", "m")
+    return solved(area, shape, depth, lambda found: float(found.max()), called, "m", another)
 
 
-def to_volume(area: Area, shape: Shape, wanted: float) -> Tuple[float, np.ndarray]:
+def to_volume(area: Area, shape: Shape, wanted: float, called="--volume", another=True) -> Tuple[float, np.ndarray]:
     """The free number of a shape whose volume (m3) is given, and the depths."""
-    return solved(area, shape, wanted, lambda found: volume(found, area.cell), "--volume", "m3")
+    return solved(area, shape, wanted, lambda found: volume(found, area.cell), called, "m3", another)
 
 
 def slip_surface(area: Area, depth: np.ndarray, where: str) -> np.ndarray:

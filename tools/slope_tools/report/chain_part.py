@@ -4,8 +4,8 @@ from typing import Any, List, Mapping, Optional
 
 import numpy as np
 
-from ..drawing import figures
-from ..drawing.figures import COLOURS, plt
+from ..drawing import figures, pictures
+from ..drawing.figures import COLOURS
 from ..errors import SlopeError
 from ..findings import texts
 from ..plots.ensemble_charts import THOUSANDS
@@ -80,9 +80,9 @@ def per_year(data, about: Mapping[str, Any]):
 
 def draw(about: Mapping[str, Any], yearly, title: str) -> str:
     """Left the curves against the peak, one for each volume; right the annual frequency against the volume."""
-    with plt.rc_context(figures.STYLE):
-        figure, axes = plt.subplots(1, 1 if yearly is None else 2, squeeze=False,
-                                    figsize=(figures.WIDE if yearly is None else figures.FULL, 2.7))
+    with pictures.settings(figures.STYLE):
+        figure, axes = pictures.subplots(1, 1 if yearly is None else 2, squeeze=False,
+                                         figsize=(figures.WIDE if yearly is None else figures.FULL, 2.7))
         left, peaks = axes[0, 0], about["peaks_gal"]
         for one, colour in zip(about["curves"], COLOURS):
             left.fill_between(peaks, one["low"], one["high"], color=colour, alpha=0.18, lw=0)

@@ -20,6 +20,7 @@ TERMS = {"rolling": "coefficient of rolling resistance of the balls", "friction"
          "spacing": "distance between the fixed balls of the ground, in their diameters: its roughness",
          "angle": "angle by which the plan grid of the ground's balls is turned (degrees)",
          "ground_seed": "seed of the places of the ground's balls",
+         "packing": "number of the packing in which the balls start",
          "xoffset": "shift along x of the lattice on which the balls start, in lattice spacings",
          "yoffset": "the same along y", "zoffset": "the same along z",
          "seed": "seed of random numbers, such as those that displace the balls at the start"}

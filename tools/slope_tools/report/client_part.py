@@ -9,7 +9,7 @@ from ..deposits import travel_shares
 from ..ensembles import known_study
 from ..mobility.results import percent
 from ..statistics import headline
-from ..statistics.answer import Code, Kind, Source
+from ..statistics.answer import SHARE, Code, Kind, Source
 from ..statistics.withheld import Kind as Rule
 from ..tables import combinations, next_step
 from ..tables.quantities import ALL, DISTANCE
@@ -35,7 +35,7 @@ def content(data, ground, numbers, answers: Sequence[Optional[Dict[str, Any]]], 
             "answer": spoken or (of_answer(data, main, numbers) if main else of_reach(data, numbers)),
             "sentences": sentences(data, ground, numbers, bool(main))
             + road_part.on_first_page(data, numbers, bool(main and main["withheld"])),
-            "caveats": warnings.first_page(found, ground)[:warnings.MOST], "rest": warnings.rest_of(listed),
+            "caveats": warnings.first_page(found)[:warnings.MOST], "rest": warnings.rest_of(listed),
             "basis": basis(data)}
 
 
@@ -43,6 +43,8 @@ def content(data, ground, numbers, answers: Sequence[Optional[Dict[str, Any]]], 
 
 REMOVE = "Volume to remove from the road"
 WHO = "known events of this volume and height"
+ALIKE = "each counted alike"
+ON_ROAD = "remove_on_road_m3"
 RULES = {
     Rule.BALLS: "fewer than ten of the model's balls come to lie on the road, which are single blocks and no volume",
     Rule.MOBILITY: f"no run goes as far as half of {WHO}",
@@ -63,7 +65,21 @@ def of_headline(data, numbers) -> Optional[Dict[str, Any]]:
         about, numbers)
     open_ = kind in (Kind.FLOOR, Kind.WITHHELD)
     step = next_step.of_reasons(next_step.Made(data.study, data.folder), about) if open_ else None
+    found["band"] += in_gap(data, about, numbers)
     return {"kind": kind.value, "reasons": reasons(about), "step": step, **found}
+
+
+def in_gap(data, about: Mapping[str, Any], numbers) -> str:
+    """A sentence, where the share's known events end between two runs."""
+    if about["source"] != Source.ENSEMBLE.value or not is_weighted(data):
+        return ""
+    several = data.study["ensemble"]["known_events"].get("to_remove") or ()
+    gap = next((one.get("gap") for one in several if one["share"] == about["share"]), None)
+    if not gap:
+        return ""
+    low, high = (numbers(f"{REMOVE.lower()}, {end} of the gap where no run ends", "m3", value)
+                 for end, value in zip(("begin", "end"), gap))
+    return f" No run ends where these known events do: between {low} m3 and {high} m3, of which the larger counts."
 
 
 # --- what stands in the place of the number ---
@@ -102,8 +118,7 @@ def of_floor(about: Mapping[str, Any], numbers) -> Dict[str, Any]:
     text = numbers(f"{REMOVE.lower()}, at least", "m3", about["volume_m3"])
     share = about["share"]
     if share:
-        band = (f"{percent(share)} of {WHO} stay within {text} m3; the others bring more, how much these runs do not "
-                "show.")
+        band = f"{percent(share)} of {WHO} stay within {text} m3; what the others bring these runs do not show."
     elif about["source"] == Source.PAPER.value:
         band = ("A further run of the governing settings stays below, in 97.5 % of such studies; more mobile masses "
                 "may bring more.")
@@ -241,6 +256,21 @@ def runs_of(data) -> str:
     return f"In all {len(data.finished)} runs" if len(data.finished) > 1 else "In the run"
 
 
+def weighted(data, numbers, key: str) -> str:
+    """What SHARE of known events stay within, where they weigh the runs and tell it; else ""."""
+    if not is_weighted(data):
+        return ""
+    entry = (data.study["ensemble"]["known_events"].get("quantities") or {}).get(key)
+    at = {one["share"]: one["value"] for one in entry["quantiles"]}.get(SHARE) if entry else None
+    return "" if at is None else f"{numbers.quantity(key, at)} {ALL[key].unit}"
+
+
+def is_weighted(data) -> bool:
+    """Whether known events weigh the runs of the number."""
+    ensemble = (data.study or {}).get("ensemble") or {}
+    return (ensemble.get("known_events") or {}).get("reached") is not None
+
+
 def distance(data, numbers, has_road_number: bool) -> str:
     values = reaches(data)
     if not values:
@@ -250,16 +280,26 @@ def distance(data, numbers, has_road_number: bool) -> str:
         return (f"Distances are in plan from the highest point of the body; single blocks go farther, up to "
                 f"{numbers.quantity('front_m', max(front))} m in the model.")
     far = span(numbers, DISTANCE, values)
-    return (f"{runs_of(data)} 99 % of the volume stays within {far} of the highest point of the body, in plan.")
+    known = weighted(data, numbers, DISTANCE)
+    if known:
+        return (f"In {percent(SHARE)} of known events 99 % of the volume stays within {known} of the highest point of "
+                f"the body, in plan; in single runs, {ALIKE}, within {far}.")
+    return f"{runs_of(data)} 99 % of the volume stays within {far} of the highest point of the body, in plan."
 
 
 def road(data, numbers) -> str:
     if data.road is None:
         return ""
-    on = [row["remove_on_road_m3"] for row in data.finished]
+    on = [row[ON_ROAD] for row in data.finished]
     if not max(on) > 0:
         return f"{runs_of(data)} nothing comes to lie on the road."
-    text = (f"On the road itself lie {span(numbers, 'remove_on_road_m3', on)}")
+    known, far = weighted(data, numbers, ON_ROAD), span(numbers, ON_ROAD, on)
+    if known:
+        text = f"On the road itself {percent(SHARE)} of known events leave at most {known}; single runs, {ALIKE}, {far}"
+    elif is_weighted(data):
+        text = f"On the road itself single runs, {ALIKE}, leave {far}"
+    else:
+        text = f"On the road itself lie {far}"
     blocked = [row["blocked_m"] for row in data.finished if row.get("blocked_m") is not None]
     if blocked and max(blocked) > 0:
         text += f", over a length of up to {numbers.quantity('blocked_m', max(blocked))} m"

@@ -8,7 +8,7 @@ from affine import Affine
 
 from .. import schemas
 from ..case import logs, run_folders
-from ..deposits import deposit, score, travel_shares
+from ..deposits import deposit, score
 from ..errors import SlopeError
 from ..schemas import OBJECT, mapping
 from ..survey import rasters
@@ -98,7 +98,7 @@ class Data:
         about = self.study["study"]
         self.settings, self.repeats = about["set"], dict(about.get("repeat") or {})
         names = [row["run"] for row in self.finished]
-        shown = shown or self.governing()
+        shown = shown or run_folders.governing(self.study)
         if shown not in names:
             raise SlopeError("--run", f"must be a finished run of {path}, such as {names[0]}", shown)
         self.result = self._load(self.finished[names.index(shown)])
@@ -209,27 +209,6 @@ class Data:
         for row in self.finished:
             found.setdefault(tuple(row["set"].items()), []).append(row)
         return found
-
-    def governing(self):
-        """The run that represents the headline; else the one that went farthest.
-
-        Of an ensemble the one at the 90 % quantile of what counts.
-        """
-        study = self.study or {}
-        best = study["conservative"]
-        ensemble: Any = study.get("ensemble")
-        if ensemble and ensemble["of"]:
-            # a quantile is the value of a run
-            of = ensemble["of"]
-            entries = (ensemble.get("known_events") or {}).get("quantities") or ensemble["quantities"]
-            at = {one["share"]: one["value"] for one in entries[of]["quantiles"]}[0.9] if of in entries else None
-            having = [row for row in self.finished if row[of] is not None]      # others lost it over the edge
-            if at is None:      # events beyond the runs decide
-                return max(having, key=lambda row: row[of])["run"]
-            return min(having, key=lambda row: abs(row[of] - at))["run"]
-        if not best:
-            return travel_shares.farthest(self.finished)["run"]
-        return best["run"]
 
     def _beside(self, shown):
         """Names of the runs that are drawn: one of each combination, evenly spread if there are many."""

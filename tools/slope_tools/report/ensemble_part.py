@@ -18,6 +18,7 @@ from .sections import Cell, Figures, Picture, Section, Table, Text
 
 MOST_SCATTER = 4        # variables with a chart of the runs against them
 ODDS = [0.0, 0.05, 0.2, 0.4, 0.6, 0.8, 1.0]
+IN_GAP = "In a gap: no run ends where these known events do."
 SHARES = ("50 %", "90 %", "95 %", "99 %")
 
 
@@ -181,6 +182,13 @@ class KnownEvents:
     def number(self, what: str, unit: str, value: Optional[float]) -> str:
         return "unknown" if value is None else self.numbers(f"known events: {what}", unit, value)
 
+    def quantile(self, share: str, unit: str, one: Mapping[str, Any]) -> str:
+        """The value, or the two between which it is."""
+        if not one.get("gap"):
+            return self.number(share, unit, one["value"])
+        return " to ".join(self.number(f"{share}, {end} of the gap where no run ends", unit, value)
+                           for end, value in zip(("begin", "end"), one["gap"]))
+
     def answer(self):
         """For the card on top, instead of that of the runs as their distributions have them."""
         if not self.entry or self.about["reached"] is None:
@@ -192,7 +200,9 @@ class KnownEvents:
             bounds = [None if one[side] is None else self.number(f"{share}, {side}", unit, one[side])
                       for side in ("low", "high")]
             note = band(bounds, unit, self.confidence)
-            parts.append({"number": self.number(share, unit, one["value"]), "what": share, "note": note,
+            if one.get("gap"):      # none in older files
+                note = f"{IN_GAP} {note}"
+            parts.append({"number": self.quantile(share, unit, one), "what": share, "note": note,
                           "unit": "" if one["value"] is None else unit})
         shown = next((part for part, one in zip(parts, self.entry["quantiles"]) if one["share"] == 0.9), parts[-1])
         return {"title": f"{what[0].upper()}{what[1:]}: 90 % of known events stay within", "number": shown["number"],
@@ -205,34 +215,42 @@ class KnownEvents:
         points = read_curve(self.data.folder / known_events.HAZARD, self.of) if self.entry else None
         if points is None or not self.entry:
             return None
-        named = [ensemble_charts.Quantile(*(one[key] for key in ("share", "value", "low", "high")))
+        named = [ensemble_charts.Quantile(one["share"], one["value"], one["low"], one["high"], one.get("gap"))
                  for one in self.entry["quantiles"] if one["value"] is not None]
         title = f"Hazard curve by known events: {self.entry['name']}"
         uri = ensemble_charts.hazard_curve(points[0], points[1], points[2], points[3], named,
                                            f"{self.entry['name']} ({self.entry['unit']})", title, "known events")
         return Picture(uri, title, "The weighted hazard curve: share of known events in which the quantity is "
                        f"larger, with its {100 * self.confidence:g} % bounds. What the runs do not reach is not "
-                       "shared out: known events beyond the longest run exceed every value.")
+                       "shared out: known events beyond the longest run exceed every value. A line: no run ends where "
+                       "these known events do.")
 
     def tables(self) -> List[Table]:
         """Quantiles of all quantities; which parameters the weighted runs have, and how the first depends on them."""
-        quantiles = [[Cell(entry["name"], entry["unit"]),
-                      *("?" if one["value"] is None else quantities.number(one["value"]) for one in entry["quantiles"])]
-                     for entry in self.about["quantities"].values()]
+        quantiles: List[Any] = [[Cell(entry["name"], entry["unit"]), *map(cell_of, entry["quantiles"])]
+                                for entry in self.about["quantities"].values()]
         indices = (self.about.get("influence") or {}).get(self.of, {}).get("variables", {})    # none in older files
-        rows = []
+        rows: List[Any] = []
         for name, entry in self.about["variables"].items():
             rank, one = entry["rank"].get(self.of), indices.get(name)
             rows.append([name, *map(str, entry["quantiles"]), "-" if rank is None else f"{rank:+.2f}",
                          indices_text(one) if one and one["total"] is not None else "-"])
         return [] if not quantiles else [
-            Table("The values that the given share of known events stay within. \"?\": they go beyond the runs.",
+            Table("The values that the given share of known events stay within. \"?\": they go beyond the runs; two "
+                  f"values: {IN_GAP[0].lower()}{IN_GAP[1:-1]}.",
                   ["quantity", *SHARES], quantiles),
             Table("The parameters of the weighted runs: the values that 5, 50 and 95 % of the weight stay within; the "
                   "weighted rank correlation of the quantity on top, and its Sobol indices, first order / total "
                   "\N{PLUS-MINUS SIGN} the error of the total one. Weighted, the parameters depend on each other: what "
                   "two of them share is in the first index of both and in the total one of neither.",
                   ["parameter", "5 %", "50 %", "95 %", "rank", "indices"], rows)]
+
+
+def cell_of(one: Mapping[str, Any]) -> str:
+    """A quantile in a table."""
+    if one["value"] is None:
+        return "?"
+    return " to ".join(map(quantities.number, one.get("gap") or [one["value"]]))
 
 
 # --- of both ---

@@ -29,7 +29,7 @@ class Asked(NamedTuple):
 def heading(folder: Path, given: Dict[str, Optional[str]]) -> Dict[str, Optional[str]]:
     """{field: text, None where unknown} of project, client, author and survey; given: the options, which come first."""
     for name, text in given.items():
-        check_text(f"--{name}", text)
+        check_text(f"--{FIELDS.get(name, name)}", text)
     found = of_site(folder)
     return {name: given.get(name) or found.get(name) for name in (*FIELDS, "survey")}
 

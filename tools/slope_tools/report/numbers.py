@@ -3,7 +3,7 @@ import csv
 import io
 
 from .. import disk
-from ..deposits import travel_shares
+from ..deposits import rest, travel_shares
 from ..mobility.run_length import ON_PATH
 from ..statistics import headline
 from ..tables import withheld_words
@@ -225,8 +225,9 @@ def rest_card(data):
                  None)
     status = "rest" if worst is None else "moving" if worst["moving"] else "doubt"
     if data.study:
-        note = "ended by their rest criterion, less than 1 % of the volume faster than 0.1 m/s" if worst is None else \
-            f"{data.label_of(worst)}: {worst['end']}, at {worst['stop_time_s']:.1f} s"
+        note = f"{data.label_of(worst)}: {worst['end']}, at {worst['stop_time_s']:.1f} s" if worst else \
+            "ended by their rest criterion, at most " \
+            f"{rest.percent(max(end['moves_share'] for end in ends))} of the volume faster than {rest.FAST:g} m/s"
         return {"what": "At rest at the end", "number": f"{len(resting)} of {len(ends)}", "unit": "runs", "note": note,
                 "status": status}
     return {"what": "At the end of the run", "number": f"{ends[0]['stop_time_s']:.1f}", "unit": "s", "status": status,

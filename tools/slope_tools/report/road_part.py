@@ -39,7 +39,14 @@ def section(data, numbers, maps) -> Optional[Section]:
                         *(Cell(head, unit) for head, unit, _ in columns)]
     return Section("road", "Blocked stretches of the road", [
         Figures([shares(data, asked, about, runs, maps)], "tall"),
-        Table(caption(asked, about, runs), heads, lines, ())])
+        Table(caption(asked, about, runs) + gaps(data, about), heads, lines, ())])
+
+
+def gaps(data, about) -> str:
+    """Where known events end and no run does."""
+    known = (data.study.get("ensemble") or {}).get("known_events") if about["of_known_events"] else None
+    return "".join(f" {one['text'][0].upper()}{one['text'][1:]}." for one in (known or {}).get("doubts") or ()
+                   if one["kind"] == "gap")
 
 
 def caption(asked: Asked, about, runs: str) -> str:

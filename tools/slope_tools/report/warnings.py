@@ -9,7 +9,6 @@ from ..tables import judged
 from . import structures_part
 
 MOST = 3                # on the first page
-SIDE = 0.5              # of the mass at the most touched edge: another edge with as much is named too
 BESIDE_MAPS = "no CRS"  # the page says so there
 LARGE = "large"
 WEIGHT = {kind: place for place, kind in enumerate(WORDS)}
@@ -52,12 +51,11 @@ def listed(found: Sequence[Finding], names) -> List[Tuple[str, str]]:
                   key=lambda one: one[0] != WARNING)
 
 
-def first_page(found: Sequence[Finding], ground) -> List[str]:
+def first_page(found: Sequence[Finding]) -> List[str]:
     """What a client must know beside the number: a line for each kind of doubt, counted, the weightiest first."""
     mine = sorted((one for one in found if words_of(one.kind).client and not one.part),
                   key=lambda one: WEIGHT[one.kind])
-    side = side_of(ground) if any(one.kind in ("lost", "lost much") for one in mine) else ""
-    return [one.client(side=f" {side}" * bool(side))
+    return [one.client()
             for one in gathered(mine, alike=lambda one: words_of(one.kind).client)]
 
 
@@ -77,18 +75,3 @@ def below_ground(data) -> List[Finding]:
     known = headline.nearest(below, headline.place_of_digits(below))
     return [Finding("cut below ground", {"percent": 100 * share, "volume": known, "run": data.label(data.result),
                                          "angle": data.study["study"]["road"]["cut_angle"]})]
-
-
-def side_of(ground) -> str:
-    """Towards which side the mass left, by the depth of what reached each edge of the shown run; "" if none did."""
-    z = ground.max_thickness
-    edges = {"north": z[0].sum(), "south": z[-1].sum(), "west": z[:, 0].sum(), "east": z[:, -1].sum()}
-    most = max(edges.values())
-    if not most > 0:
-        return ""
-    named = [name for name, value in edges.items() if value > SIDE * most]
-    if ground.raster.crs is None:       # nobody knows where north is
-        sides = {"north": "upper", "south": "lower", "west": "left", "east": "right"}
-        return f"beyond the {' and the '.join(sides[name] for name in named)} edge of the map"
-    return "to the " + ("-".join(named) if len(named) == 2 and named[0] in ("north", "south")
-                        and named[1] in ("west", "east") else " and the ".join(named))

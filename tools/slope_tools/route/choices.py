@@ -6,7 +6,7 @@ from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Union, get_ar
 
 from .. import disk, schemas
 from ..errors import SlopeError
-from ..sites.site_choices import OF_BALL
+from ..releases.packing import BULK
 from ..survey import roads
 
 NAME = "route.yaml"
@@ -18,9 +18,12 @@ TABLE = "bodies.yaml"
 MADE = ("terrain.asc", "terrain.yaml", "road.csv", "windows")
 OF = ("terrain", "crs", "assign_crs", "cell", "fill", "road", "road_width", "corridor", "cohesion", "friction",
       "density", "water", "volume", "depth", "keep")
-LATER = ("sample", "fragility", "name", "client", "author")      # may change once bodies are there
-NEEDED = ("terrain", "road", "road_width", "corridor", "cohesion", "friction", "density")
-VARY = ("rolling=0:0.1", "xoffset=0:0.99")
+# may change once bodies are there: only the evaluation of their runs has it
+LATER = ("sample", "fragility", "name", "client", "author", "blocked", "lane", "clearing", "loosening", "cut_angle",
+         "mesh")
+NEEDED = ("terrain", "road", "road_width", "corridor", "density")
+STRENGTH = ("cohesion", "friction")     # not of bodies that are given: without them these have no factor of safety
+VARY = ("rolling=0:0.1", "packing=1:1000000")
 
 
 class Choices(NamedTuple):
@@ -29,8 +32,8 @@ class Choices(NamedTuple):
     road: str
     road_width: float
     corridor: float
-    cohesion: float
-    friction: float
+    cohesion: Optional[float]
+    friction: Optional[float]
     density: float
     water: Optional[float] = None
     crs: Optional[str] = None
@@ -67,7 +70,7 @@ class Choices(NamedTuple):
     @property
     def ball_density(self) -> float:
         """kg/m3"""
-        return round(self.density * OF_BALL, 1)
+        return round(self.density * BULK, 1)
 
 
 def schema() -> Dict[str, Any]:
@@ -106,7 +109,8 @@ def settle(folder: Path, given: Mapping[str, Any]) -> Choices:
     for name in NEEDED:
         if name not in {**known, **given}:
             raise SlopeError(option(name), f"must be given, or the folder of a route with {NAME}")
-    found = Choices(**{**known, **given})
+    none: Dict[str, Any] = dict.fromkeys(STRENGTH)
+    found = Choices(**{**none, **known, **given})
     check(found)
     if not path.is_file() and folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise SlopeError(folder, "must be a new folder, an empty one, or that of a route")
@@ -166,6 +170,11 @@ def check(found: Choices) -> None:
     for name, value in numbers.items():
         if value is not None and not value > 0:
             raise SlopeError(option(name), "must be > 0", f"{value:g}")
+    missing = [name for name in STRENGTH if getattr(found, name) is None]
+    if missing and (not found.bodies or len(missing) < len(STRENGTH)):
+        other = next((name for name in STRENGTH if name not in missing), None)
+        raise SlopeError(option(missing[0]), f"must be given with {option(other)}" if other else
+                         "must be given, unless --bodies are")
     if not 0 <= found.reach < 1:
         raise SlopeError("--reach", "must be 0 to below 1, a share of known events", f"{found.reach:g}")
     if found.balls and found.minutes:

@@ -5,12 +5,12 @@ from typing import Any, Iterator, List, Mapping
 
 import numpy as np
 from matplotlib.collections import LineCollection
+from matplotlib.colors import LogNorm, Normalize
 from shapely.ops import substring
 
 from .. import digits, disk, provenance
 from ..deposits.axis import Axis, Span
-from ..drawing import figures, maps, palettes
-from ..drawing.figures import plt
+from ..drawing import figures, maps, palettes, pictures
 from ..report import document
 from ..report.sections import Picture, Section, Table
 from ..statistics import hazard
@@ -100,14 +100,14 @@ def map_of(corridor: Corridor, found: Mapping[str, Any], yearly: bool, bounds, a
     room = corridor.reach
     shown = maps.window(raster, (bounds[0] - room, bounds[1] - room, bounds[2] + room, bounds[3] + room))
     axis = Axis(np.asarray(corridor.axis.coords), corridor.start)
-    with plt.rc_context({**figures.STYLE, "figure.constrained_layout.use": False}):
+    with pictures.settings({**figures.STYLE, "figure.constrained_layout.use": False}):
         figure, axes = maps.relief(raster, raster.z, shown, "")
         maps.outline(axes, corridor.road, color="black", lw=0.4)
         axes.plot(*np.asarray(corridor.axis.coords)[:, :2].T, color="white", lw=2.2)
         here = [one for one in found["pieces"] if one["to"] > along.low and one["from"] < along.high]
         lines = [np.asarray(axis.line(Span(max(one["from"], axis.s[0]), min(one["to"], axis.s[-1]))).coords)[:, :2]
                  for one in here]
-        norm = plt.matplotlib.colors.LogNorm(LEAST, 1.0) if yearly else plt.Normalize(0, 1)
+        norm = LogNorm(LEAST, 1.0) if yearly else Normalize(0, 1)
         values = np.array([max(one["per_year"]["counts"], LEAST) if yearly else one["share"] for one in here])
         coloured = axes.add_collection(LineCollection(lines, cmap=palettes.PATH, norm=norm, linewidths=3.2,
                                                       array=values))
@@ -151,7 +151,7 @@ def stretches(found: Mapping[str, Any], yearly: bool) -> Section:
                 ("length", 1), ("remove", 1), ("remove", 2), ("remove_lane", 1), ("passable_width", 1),
                 ("hours_lane", 1), ("hours", 1))]
             rows.append([one["stretch"], f"{km(one['from'])} to {km(one['to'])}", *often(one, yearly), by["body"],
-                         f"{by['factor']:.2f}", *share(by, "share"), *numbers])
+                         cell(by["factor"], "{:.2f}"), *share(by, "share"), *numbers])
     heads = ["stretch", "km", *(["blocked, per year", "90 %"] if yearly else []), "body", "factor of safety",
              "share of its runs", "90 %", "blocked m", "to remove m3", "95 % of the runs", "for a lane m3",
              "passable m", "hours, lane", "hours"]
@@ -160,7 +160,7 @@ def stretches(found: Mapping[str, Any], yearly: bool) -> Section:
 
 
 def bodies(found: Mapping[str, Any], yearly: bool) -> Section:
-    rows = [[one["body"], one["name"], km(one["chainage_m"]), f"{one['factor']:.3f}", cell(one["volume_m3"]),
+    rows = [[one["body"], one["name"], km(one["chainage_m"]), cell(one["factor"], "{:.3f}"), cell(one["volume_m3"]),
              cell(one["depth_m"]), cell(one["known_share"], "{:.2g}"), one["runs"], *share(one, "share_blocked"),
              cell(one["on_road_median_m3"]), cell(one["on_road_most_m3"]),
              *([f"{one['per_year']['fails']:.2g}", f"{one['per_year']['blocks']:.2g}"] if yearly else [])]
@@ -173,7 +173,7 @@ def bodies(found: Mapping[str, Any], yearly: bool) -> Section:
 
 
 def left_out(found: Mapping[str, Any]) -> Section:
-    rows = [[one["body"], km(one["chainage_m"]), f"{one['factor']:.3f}", cell(one["volume_m3"]), one["why_not"]]
+    rows = [[one["body"], km(one["chainage_m"]), cell(one["factor"], "{:.3f}"), cell(one["volume_m3"]), one["why_not"]]
             for one in found["left_out"]]
     return table("Left out", ["body", "km", "factor of safety", "volume m3", "why"], rows,
                  "Bodies that may fail and by known mobility do not come to the road; no number has them. Those of "

@@ -7,6 +7,7 @@ import contextlib
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, NamedTuple, Sequence
 
+from .. import disk
 from ..case import decks
 from ..case.data_files import data_files
 from ..case.slip_deck import PREFIX
@@ -47,8 +48,20 @@ def make_site(choices: Choices, folder: Path, about: Mapping[str, Any], number: 
     if not (place / site_choices.NAME).is_file() or site.site_folder.was_not_made(place):
         place.parent.mkdir(exist_ok=True)
         site.make(choices_of(choices, slips, about, number), place, machine, tell, warn, draw)
-    site_study.check(place, site_choices.read(place))
+    known = site_choices.read(place)
+    site_study.check(place, known)
+    changed = {section: {**known[section], **now} for section, now in later(choices, about).items()}
+    if any(known[section] != now for section, now in changed.items()):
+        disk.write(place / site_choices.NAME, site_choices.text({**known, **changed}, site_choices.found(place), place))
     return place
+
+
+def later(choices: Choices, about: Mapping[str, Any]) -> Dict[str, Dict[str, Any]]:
+    """The sections of a body's site whose choices may change when it is made."""
+    return {"road": {"cut_angle": choices.cut_angle, "mesh": choices.mesh,
+                     **choices.asked._replace(start=about["road_from_m"] / 1000).about()},
+            "project": {"name": f"{choices.name + ', ' if choices.name else ''}{about['name']}",
+                        "client": choices.client, "author": choices.author}}
 
 
 def choices_of(choices: Choices, slips: Path, about: Mapping[str, Any], number: int) -> site_choices.Choices:
@@ -58,15 +71,14 @@ def choices_of(choices: Choices, slips: Path, about: Mapping[str, Any], number: 
     found["terrain"]["files"] = [str(slips / TERRAIN)]
     found["release"].update(scar=base, scar_is="surface",
                             bodies=[base] if (slips / f"{PREFIX}{bodies.END}").is_file() else [])
-    found["road"].update(file=str(slips / "road.csv"), cut_angle=choices.cut_angle, mesh=choices.mesh,
-                         **choices.asked._replace(start=about["road_from_m"] / 1000).about())
+    found["road"]["file"] = str(slips / "road.csv")
+    for section, now in later(choices, about).items():
+        found[section].update(now)
     found["balls"]["number"] = choices.balls
     if choices.minutes:     # a site's are those of its own study, which has more runs
         found["balls"]["minutes"] = choices.minutes / number * site_budget.plan(found).runs / choices.sample
     found["model"]["density"] = choices.ball_density
     found["known"]["confined"] = choices.confined
-    found["project"].update(name=f"{choices.name + ', ' if choices.name else ''}{about['name']}", client=choices.client,
-                            author=choices.author)
     site_choices.check({"slope_site": site_choices.VERSION, **found}, str(slips))
     return found
 
@@ -109,12 +121,16 @@ def make(several: Sequence[Asked], tell) -> List[str]:
 
 
 def is_collected(one: Asked, new) -> bool:
-    """Whether the results in a body's folder are of these runs, none of which was made since."""
+    """Whether the results in a body's folder are of these runs, none of which was made since, and of this road."""
     if any(run.folder in new or run.error for run in one.todo):
         return False
     try:
         about = read_study(one.setup.output / "study.yaml")
     except SlopeError:
+        return False
+    road = about["study"].get("road") or {}
+    assert one.setup.road
+    if any(road.get(key) != value for key, value in one.setup.road.about().items()):
         return False
     return [row["run"] for row in about["runs"] if row["status"] == "finished"] == [run.name for run in one.todo]
 

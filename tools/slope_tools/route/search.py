@@ -5,23 +5,24 @@ it; body.slips.csv and body.N.columns.csv, its row and its columns of find_slip;
 --slips` and `slope fragility` take it.
 """
 import csv
-import json
+import math
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Tuple
 
-import fiona
 import numpy as np
 
 from .. import disk, schemas
 from ..case import slip_deck
 from ..case.slip_deck import PREFIX, Strength
 from ..errors import SlopeError
+from ..findings import Finding
 from ..mobility import body as falling
 from ..mobility import known, road
 from ..releases import release, release_files
 from ..runs import slip_run
 from ..slips import bishop, bodies, failed
-from ..survey import rasters, vectors
+from ..survey import polygons, rasters, vectors
 from .choices import TABLE, Choices
 from .corridor import TERRAIN, Corridor, Window, around, searches, write_line
 
@@ -29,6 +30,9 @@ WINDOWS, SLIPS = "windows", "slips"
 DONE = "window.yaml"        # of a window that was searched
 SHARED = 0.1                # of the smaller body's cells; bodies that share more are one
 WHAT = "what `slope route` wrote"
+SIZES = {"depth": "m", "volume": "m3"}      # attributes of polygons
+ADVICE = polygons.Advice(polygon_crs="save it from a GIS with one; a .prj file beside a shapefile",
+                         terrain_crs="--assign-crs EPSG:n", wrong_crs="save it from a GIS with the right CRS")
 BODY = schemas.mapping({
     "body": schemas.COUNT, "name": schemas.TEXT, "factor": schemas.MAYBE, "known_share": schemas.MAYBE,
     "why_not": schemas.TEXT,
@@ -40,7 +44,7 @@ class Slip(NamedTuple):
     """A body: its ground's cells, the heights below it there (NaN beside it), and its row of find_slip, if any."""
     window: Window
     base: np.ndarray
-    factor: float
+    factor: Optional[float]     # None of a body that was given without strengths
     row: Optional[Mapping[str, str]] = None
     columns: Path = Path()  # the file of find_slip that goes with the row
     name: str = ""          # of a body that was given
@@ -105,8 +109,9 @@ def searched(choices: Choices, corridor: Corridor, folder: Path, lmp: Path, rank
         if not (place / DONE).is_file():
             search(choices, corridor, window, ground, place, lmp, ranks)
             tell(f"window {k} of {len(windows)} is searched")
-        found += [one for one in of_window(place, window) if one.factor < choices.below]
-    found.sort(key=lambda one: one.factor)
+        found += [one for one in of_window(place, window)
+                  if one.factor is not None and one.factor < choices.below]
+    found.sort(key=lambda one: one.factor or 0.0)
     several: List[Slip] = []
     for one in found:
         if all(shared(one, other) <= SHARED for other in several):
@@ -116,6 +121,7 @@ def searched(choices: Choices, corridor: Corridor, folder: Path, lmp: Path, rank
 
 def search(choices: Choices, corridor: Corridor, window: Window, ground, place: Path, lmp: Path, ranks: int) -> None:
     """Search a window; its folder is whole, or not there."""
+    assert choices.cohesion is not None and choices.friction is not None    # choices.check() has seen to it
     raster = corridor.clip(window)
     place.parent.mkdir(parents=True, exist_ok=True)
     with disk.complete(place, DONE) as new:
@@ -153,55 +159,72 @@ def of_window(place: Path, window: Window) -> List[Slip]:
 
 def given(choices: Choices, corridor: Corridor, warn) -> List[Slip]:
     """The bodies of polygons with an attribute depth (m) or volume (m3); SlopeError if two share their ground."""
-    from tempfile import TemporaryDirectory
     found: List[Slip] = []
-    with TemporaryDirectory() as folder:
-        terrain, polygon = Path(folder, TERRAIN), Path(folder, "polygon.geojson")
-        for name, feature, crs, size in features(choices.bodies):
-            polygon.write_text(feature, encoding="utf-8")
-            local = release.polygons.read_local(polygon, corridor.raster, crs=crs, warn=warn)
-            room = corridor.reach
-            xlo, ylo, xhi, yhi = local.bounds
-            window = corridor.window(xlo - room, ylo - room, xhi + room, yhi + room)
-            if window.empty:
-                raise SlopeError(f"{choices.bodies}: {name}", "must lie in the terrain")
-            rasters.write_asc_local(terrain, corridor.clip(window), {}, exact=True)
-            body = release.body_of(release.Wanted(str(terrain), str(polygon), crs=crs and crs.to_wkt(), **size))
-            for one in body.warnings:
-                warn(one._replace(part=name))
-            slip = release_files.ground_without(body.raster, body.area, body.slip)
-            base = np.where(body.raster.z - slip > 0, slip, np.nan)
-            factor = bishop_factor(choices, body.raster, terrain.with_name("base.asc"), slip)
-            new = Slip(window, base, factor, name=name)
-            for other in found:
-                if shared(new, other) > SHARED:
-                    raise SlopeError(choices.bodies, f"must hold bodies that share at most {SHARED:g} of their cells",
-                                     f"{other.name} and {name} share {shared(new, other):.2g}")
-            found.append(new)
+    for name, geometry, crs, size in features(choices.bodies, warn):
+        where = f"{choices.bodies}: {name}"
+        local = polygons.of_feature(where, geometry, corridor.raster, crs, ADVICE)
+        room = corridor.reach
+        xlo, ylo, xhi, yhi = local.bounds
+        window = corridor.window(xlo - room, ylo - room, xhi + room, yhi + room)
+        ground = corridor.clip(window)
+        body = release.body_of(release.Wanted("the terrain", where, read=(ground, local), **size))
+        for one in body.warnings:
+            warn(one._replace(part=name))
+        slip = release_files.ground_without(ground, body.area, body.slip)
+        try:
+            with TemporaryDirectory() as folder:
+                factor = bishop_factor(choices, ground, Path(folder, "base.asc"), slip)
+        except SlopeError as error:
+            raise SlopeError(where, f"must have a factor of safety: {error}") from error
+        new = Slip(window, np.where(ground.z - slip > 0, slip, np.nan), factor, name=name)
+        for other in found:
+            if shared(new, other) > SHARED:
+                raise SlopeError(choices.bodies, f"must hold bodies that share at most {SHARED:g} of their cells",
+                                 f"{other.name} and {name} share {shared(new, other):.2g}")
+        found.append(new)
     return found
 
 
-def features(path: Optional[str]):
-    """Name, GeoJSON, CRS and size of the polygons of a file."""
-    where = vectors.require_file(path)
-    vectors.read(path, "Polygon")        # SlopeError
-    with fiona.open(where.path, layer=where.layer) as data:
-        crs = rasters.CRS.from_wkt(data.crs_wkt) if data.crs_wkt else None
-        for number, feature in enumerate(data, 1):
-            name = f"feature {number}"
-            size = {key: float(value) for key in ("depth", "volume")
-                    if (value := feature["properties"].get(key)) is not None}
-            if len(size) != 1 or not min(size.values()) > 0:
-                raise SlopeError(f"{path}: {name}", "must have one attribute, depth (m) or volume (m3), > 0",
-                                 size or None)
-            yield name, json.dumps(dict(feature["geometry"])), crs, size
+def features(path: Optional[str], warn):
+    """Name, geometry, CRS and size of the polygons of a file; warn is called for those that have no geometry."""
+    found = vectors.read(path, "Polygon")
+    several = len(found.features) + found.empty
+    if found.empty:
+        first = min(set(range(1, several + 1)) - set(found.numbers))
+        warn(Finding("no geometry", {"feature": f"{path}: feature {first}", "without": found.empty,
+                                     "features": several}))
+    crs = found.known_crs(path, ADVICE.wrong_crs)
+    for number, (_, geometry), about in zip(found.numbers, found.features, found.attributes):
+        where = f"{path}: feature {number}"
+        size = {key: size_of(where, key, value) for key in ("depth", "volume")
+                if (value := about.get(key)) not in (None, "")}
+        if len(size) != 1:
+            raise SlopeError(where, "must have one attribute, depth (m) or volume (m3), > 0", size or None)
+        yield f"feature {number}", geometry, crs, size
 
 
-def bishop_factor(choices: Choices, raster, path: Path, without: np.ndarray) -> float:
-    """Of a body that was given, about the sphere that fits its base; without: the ground without it, for a file."""
+def size_of(where: str, name: str, value: Any) -> float:
+    """An attribute as a number, which may be stored as text."""
+    try:
+        size = math.nan if isinstance(value, bool) else float(value)
+    except (TypeError, ValueError):
+        size = math.nan
+    if not 0 < size < math.inf:
+        raise SlopeError(where, f"attribute {name} must be a number of {SIZES[name]} > 0, with a decimal point and "
+                         "without a unit", value)
+    return size
+
+
+def bishop_factor(choices: Choices, raster, path: Path, without: np.ndarray) -> Optional[float]:
+    """Of a body that was given, about the sphere that fits its base; None without strengths.
+
+    without: the ground without it, for a file.
+    """
+    if choices.cohesion is None or choices.friction is None:
+        return None
     rasters.write_asc_local(path, raster._replace(z=without), {}, exact=True)
-    strengths = bishop.Strengths(choices.cohesion, np.tan(np.radians(choices.friction)), choices.water or 0.0)
     body = failed.of_base(raster, path, None, choices.density, None)
+    strengths = bishop.Strengths(choices.cohesion, np.tan(np.radians(choices.friction)), choices.water or 0.0)
     return float(bishop.factor_of_safety(body.columns, strengths)[0])
 
 

@@ -18,6 +18,7 @@ from ..deposits import deposit
 from ..errors import SlopeError
 from ..survey.geopackage import Layer
 from ..survey.rasters import Raster, crs_name
+from ..tables import named_run
 from ..tables.study_file import Study
 from . import choices, corridor, reached, results, search
 from .reached import Source
@@ -85,7 +86,7 @@ def ground_of(name: str, warn) -> Ground:
                       [results.read_body(folder, about).source for about in table["bodies"]],
                       results.yearly_of(asked, folder, table["bodies"]))
     if not any((folder / place).is_file() for place in ("study.yaml", "site.yaml")):
-        run = deposit.read(run_folders.named_run(name).prefix, None, warn)
+        run = deposit.read(named_run.read(name).prefix, None, warn)
         return Ground(run.raster, [Source(1, [Path(run.prefix)], np.ones(1), 0, run.raster.offset)], None)
     study = Study.read(folder)
     known = ((study.about.get("ensemble") or {}).get("known_events") or {}).get("weights")
@@ -101,9 +102,21 @@ def ground_of(name: str, warn) -> Ground:
     return Ground(run.raster, [Source(1, prefixes, weights / weights.sum(), failed, run.raster.offset, effect)], None)
 
 
-def check(ground: Ground, wanted: Sequence[float], name: object) -> None:
-    """Raise SlopeError if the hazard curve does not reach a probability."""
+def check(ground: Ground, wanted: Sequence[float], name: object, text: str = "") -> None:
+    """Raise SlopeError if the hazard curve does not reach a probability, or the runs without one do not tell shares.
+
+    text: that of --zones; 1/100 reads like a return period, which needs a hazard.
+    """
     if ground.yearly is None:
+        periods = [one for one in text.split(",") if "/" in one]
+        if periods:
+            raise SlopeError("--zones", f"must be shares of the runs, such as 0.5,0.1, as {name} has no hazard, with "
+                             "which they are per year (slope fragility --hazard, then slope route --fragility)",
+                             periods[0])
+        least = min(one.bounds(one.weights.min())[0] for one in ground.sources)
+        if wanted[1:] and wanted[-2] < least:
+            raise SlopeError("--zones", f"must have at most one share below {least:.2g}, as the runs of {name} do not "
+                             "tell these apart: make more of them", f"{wanted[-2]:g} and {wanted[-1]:g}")
         return
     most, least = (1 - math.exp(-float(ground.yearly.rate.rates[end])) for end in (0, -1))
     for one in wanted:
@@ -171,6 +184,12 @@ def features(ground: Ground, zones: Zones, wanted: Sequence[float]) -> Iterator[
 
 def layer(ground: Ground, several: Sequence[Zones], wanted: Sequence[float]) -> Layer:
     return Layer("Polygon", PROPERTIES, (one for zones in several for one in features(ground, zones, wanted)))
+
+
+def asked(ground: Ground, text: str, several: Sequence[Limit]) -> str:
+    """What is asked for, in words: of two questions it is not the same."""
+    return (f"{text} {'per year' if ground.yearly else 'of the runs'}, {several[0].quantity} > "
+            + ", ".join(f"{one.value:g}" for one in several))
 
 
 def about(ground: Ground, several: Sequence[Zones], wanted: Sequence[float]) -> Dict[str, Any]:

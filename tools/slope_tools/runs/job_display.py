@@ -8,7 +8,7 @@ from rich.live import Live
 from rich.progress_bar import ProgressBar
 from rich.table import Table
 
-from .. import findings
+from .. import findings, streams
 
 TELL = 30.0             # s between two lines about a run, where there is no terminal
 
@@ -25,7 +25,7 @@ class Display:
         self.printed = {}      # name -> when the last line about it was printed
         self.live = None
         self.share = 0.0       # done, as it was said last
-        if sys.stderr.isatty() and not findings.as_json:
+        if streams.is_terminal(sys.stderr) and not findings.as_json:
             # without auto_refresh there is no thread, and the study may fork
             self.live = Live(console=Console(stderr=True), auto_refresh=False, transient=True)
         self.done_before = self.total - self.waiting

@@ -8,8 +8,8 @@ from ..case.settings import MOST_RUNS, as_number
 from ..errors import SlopeError
 from . import jobs
 
-CHANCE = re.compile(r"seed|\w*offset")      # names of variables without a preferred value
-OFFSET = re.compile(r"\w*offset")
+CHANCE = re.compile(r"seed|packing|\w*offset")      # names of variables without a preferred value
+OFFSET = re.compile(r"packing|\w*offset")
 FIRST = "base"                              # the repeat that has the deck's values
 
 Settings = Mapping[str, Sequence[str]]
@@ -43,8 +43,8 @@ def check(names: Sequence[str], equally_good: str) -> None:
     also = [name for name in equally_good.split(",") if name]
     for name in names:
         if not (CHANCE.fullmatch(name) or name in also):
-            raise SlopeError("--repeat", "must name a variable that differs by chance alone, seed or ...offset; if the "
-                             f"values of {name} are equally good, say --equally-good {name}", name)
+            raise SlopeError("--repeat", "must name a variable that differs by chance alone, seed, packing or ...offset; if "
+                             f"the values of {name} are equally good, say --equally-good {name}", name)
     for name in also:
         if name not in names:
             raise SlopeError("--equally-good", "must name variables of --repeat", name)
@@ -95,11 +95,11 @@ def with_repeats(output, combinations: Iterable[Dict[str, str]], chances: Sequen
 
 
 def unmoved(names: Iterable[str], defaults: Mapping[str, str]) -> List[str]:
-    """The offsets of a deck (its index variables) if none of them is among names, so that all runs have one lattice."""
+    """The variables of a deck that place its balls, if none of them is among names, so that all runs begin alike."""
     offsets = [name for name in defaults if OFFSET.fullmatch(name)]
     return [] if set(offsets) & set(names) else offsets
 
 
 def only_seeds(repeated: Settings, defaults: Mapping[str, str]) -> List[str]:
-    """The offsets of a deck of which none is repeated, although something else is: their chance is not seen."""
+    """The same if something else is repeated: their chance is not seen."""
     return unmoved(repeated, defaults) if repeated else []

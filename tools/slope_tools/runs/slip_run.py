@@ -2,7 +2,7 @@
 import os
 import subprocess
 from pathlib import Path
-from typing import Any, Callable, List, NamedTuple
+from typing import Any, Callable, List, NamedTuple, Sequence
 
 from .. import disk, processes
 from ..case import last_words, logs, slip_deck
@@ -77,9 +77,13 @@ def settle(asked: slip_deck.Asked, raster: rasters.Raster, folder: Path, kept: i
         rasters.write_asc_local(folder / name, raster._replace(z=values.z), {}, exact=True)
 
 
-def remove_others(folder: Path, kept: int) -> None:
-    """Files of bodies beyond those that were kept: of an earlier search in the same folder."""
+def remove_others(folder: Path, kept: int, given: Sequence[str]) -> None:
+    """Files of an earlier search in the same folder: of bodies beyond those that were kept, of rasters not given."""
     for path in [*folder.glob(f"{PREFIX}.*.base.*"), *folder.glob(f"{PREFIX}.*.columns.csv")]:
         rank = path.name.split(".")[1]
         if rank.isdigit() and int(rank) > kept:
             path.unlink()
+    for path in [folder / slip_deck.TABLE, folder / slip_deck.BEDROCK, *folder.glob(slip_deck.LAYER.format("[0-9]*"))]:
+        if path.name not in given:
+            path.unlink(missing_ok=True)
+            path.with_suffix(".yaml").unlink(missing_ok=True)

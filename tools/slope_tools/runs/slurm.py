@@ -5,12 +5,14 @@ the queue without a status, because it was cancelled or its node went down, is s
 last restart file where the deck can do that.
 """
 import contextlib
+import os
+import re
 import shlex
 import shutil
 import subprocess
 import time
 from pathlib import Path
-from typing import Dict, List, Optional
+from typing import Dict, List, Optional, Tuple
 
 from .. import disk, processes
 from ..errors import SlopeError
@@ -24,11 +26,16 @@ LOOK = 2.0                  # s between two looks at the queue
 PATIENCE = 6.0              # s that a task may be out of the queue without a status: folders of other nodes lag behind
 TRIES = 5                   # times that a run is submitted
 SILENCE = 600.0             # s that the queue may fail to answer: slurmctld is busy, or is restarted
+OWN = "--array", "--parsable", "--test-only", "--wait", "--wrap"     # options of sbatch that the study sets
+SHORT = re.compile(r"-[HIOQVhksv]*[aW]")      # short ones of --array and --wait, also after others without a value
+NUMBER = re.compile(r"(?:Submitted batch job )?(\d+)(?:;.*| on cluster .*)?")
+TASK = re.compile(r"(\d+_\d+) (\w+)")
+LIMIT = re.compile("array|limit", re.IGNORECASE)        # sbatch: MaxArraySize, or the jobs that may be submitted
 SCRIPT = """\
 #!/bin/bash
 line=$(sed -n "$((SLURM_ARRAY_TASK_ID + 1))p" {runs})
-cd "$(cut -f 1 <<< "$line")" || exit
-eval "$(cut -f 2- <<< "$line")" {screen} 2>&1 < /dev/null
+[[ $line ]] || exit
+eval "$line"
 ended=$?
 if ((ended != 143)); then   # by SIGTERM: cancelled, and the program may end before this script does
   echo $ended > {status}.new && mv {status}.new {status}
@@ -42,9 +49,14 @@ def check(options: str) -> None:
         if not shutil.which(name):
             raise SlopeError("--engine slurm", f"needs {name} of Slurm, which is not on the PATH")
     try:
-        shlex.split(options)
+        words = shlex.split(options)
     except ValueError as error:
         raise SlopeError("--slurm", f"must be options of sbatch ({error})", options) from None
+    for word in words:
+        name = word.partition("=")[0]       # sbatch takes the begin of a name, too
+        if SHORT.match(word) or len(name) > len("--a") and any(one.startswith(name) for one in OWN):
+            raise SlopeError("--slurm", f"must not have {', '.join(OWN)}, which the study sets; --jobs is how many "
+                             "runs there are at a time", word)
     call("squeue", "-h", "-o", "%A")
 
 
@@ -58,6 +70,27 @@ def call(*words: str) -> str:
         last = (done.stderr or done.stdout).strip().splitlines() or ["no word of it"]
         raise SlopeError("--engine slurm", f"{words[0]} failed: {last[-1]}")
     return done.stdout
+
+
+class Limit(SlopeError):
+    """sbatch refused an array because of its size, or of what is submitted already."""
+
+
+def number_in(answer: str) -> str:
+    """The number of the job in what sbatch says, also where a banner is around it; SlopeError if there is not one."""
+    found = [match.group(1) for line in answer.splitlines() if (match := NUMBER.fullmatch(line.strip()))]
+    last = NUMBER.fullmatch((answer.strip().splitlines() or [""])[-1].strip())
+    if last or len(set(found)) == 1:
+        return last.group(1) if last else found[0]
+    raise SlopeError("--engine slurm", "sbatch must answer with the number of the job, which may be running now "
+                     "(squeue shows it)", repr(answer))
+
+
+def quoted(word: str) -> str:
+    """A word for bash, on one line."""
+    if word.isprintable():
+        return shlex.quote(word)
+    return "$'" + "".join(f"\\x{byte:02x}" for byte in os.fsencode(word)) + "'"
 
 
 class Task:
@@ -113,8 +146,8 @@ class Queue:
                     raise
             else:
                 self.silent = None
-                self.known = {name: state for name, state in (line.split()[:2] for line in lines)
-                              if state not in ("COMPLETED", "CANCELLED", "FAILED", "NODE_FAIL", "TIMEOUT")}
+                self.known = {match.group(1): match.group(2) for line in lines if (match := TASK.match(line.strip()))
+                              and match.group(2) not in ("COMPLETED", "CANCELLED", "FAILED", "NODE_FAIL", "TIMEOUT")}
             self.asked = time.monotonic()
         return self.known
 
@@ -127,6 +160,9 @@ class Work(jobs.Work):
         self.options, self.throttle, self.queue = shlex.split(options), throttle, Queue()
         self.folder = self.store.folder / FOLDER
         self.tries: Dict[Path, int] = {}
+        self.ready: Dict[Path, Tuple[str, str]] = {}       # of runs that wait for a place: line for the user, command
+        self.size: Optional[int] = None     # of an array, where sbatch refused a larger one
+        self.most: Optional[int] = None     # tasks that may be submitted, where it refused one more
         self.running = 0        # tasks, when they were last looked at
         self.folder.mkdir(exist_ok=True)
         known = self.folder / KNOWN
@@ -139,37 +175,62 @@ class Work(jobs.Work):
         return max(1, self.running)
 
     def _begin(self, waiting):
-        """Submit all that waits as one array."""
-        if not waiting:
-            return []
-        todo, said = list(waiting), []
-        waiting.clear()
-        lines = []
-        for run in todo:
-            said.append((run, self.of(run)._prepare(run)))
-            (run.folder / STATUS).unlink(missing_ok=True)
-            screen = run.folder / jobs.SCREEN
-            screen.touch()
-            run.output_before = screen.stat().st_size
-            lines.append(f"{run.folder.absolute()}\t{shlex.join(self.of(run)._line(run))}\n")
-            self.tries[run.folder] = self.tries.get(run.folder, 0) + 1
-        array = self._submit(lines)
-        for i, run in enumerate(todo):
-            task = Task(f"{array}_{i}", run.folder / STATUS, self.queue)
-            self.active.append(jobs.Active(run, task, time.monotonic()))
-        return [(run, f"{text}, task {i} of Slurm's array {array}") for i, (run, text) in enumerate(said)]
+        """Submit all that waits as one array, or as several where sbatch refuses one of that size."""
+        while waiting and (room := self._room(len(waiting))) > 0:
+            todo = waiting[:room]
+            for run in todo:
+                if run.folder not in self.ready:
+                    self.ready[run.folder] = self._prepare_task(run)
+            try:
+                array = self._submit([self.ready[run.folder][1] for run in todo])
+            except Limit:
+                if len(todo) > 1:
+                    self.size = (len(todo) + 1) // 2
+                elif self.active:
+                    self.most = len(self.active)
+                else:
+                    raise
+                continue
+            del waiting[:len(todo)]
+            for i, run in enumerate(todo):
+                self.tries[run.folder] = self.tries.get(run.folder, 0) + 1
+                task = Task(f"{array}_{i}", run.folder / STATUS, self.queue)
+                self.active.append(jobs.Active(run, task, time.monotonic()))
+                yield run, f"{self.ready.pop(run.folder)[0]}, task {i} of Slurm's array {array}"
+
+    def _room(self, number: int) -> int:
+        """How many of so many tasks may be submitted now as one array; each array has a throttle of its own."""
+        active = len(self.active)
+        room = min(number, self.size or number, number if self.most is None else self.most - active)
+        if self.size and self.throttle and active:
+            return min(room, self.throttle - active) if self.size < self.throttle else 0
+        return room
+
+    def _prepare_task(self, run) -> Tuple[str, str]:
+        """Prepare the folder of a run; a line for the user, and the command of its task."""
+        said = self.of(run)._prepare(run)
+        (run.folder / STATUS).unlink(missing_ok=True)
+        screen = run.folder / jobs.SCREEN
+        screen.touch()
+        run.output_before = screen.stat().st_size
+        words = " ".join(map(quoted, self.of(run)._line(run)))
+        return said, f"cd {quoted(str(run.folder.absolute()))} || exit; {words} >> {jobs.SCREEN} 2>&1 < /dev/null\n"
 
     def _submit(self, lines: List[str]) -> str:
         """Submit an array of commands; its number."""
         place = self.folder / f"{len(list(self.folder.glob('*.runs'))) + 1}.runs"
         disk.write(place, "".join(lines))
         script = place.with_suffix(".sh")
-        disk.write(script, SCRIPT.format(runs=shlex.quote(str(place.absolute())), screen=f">> {jobs.SCREEN}",
-                                         status=STATUS))
+        disk.write(script, SCRIPT.format(runs=quoted(str(place.absolute())), status=STATUS))
         array = f"0-{len(lines) - 1}" + (f"%{self.throttle}" if self.throttle else "")
-        answer = call("sbatch", "--parsable", f"--array={array}", f"--ntasks={self.ranks}", "--output=/dev/null",
-                      "--job-name=slope", *self.options, str(script.absolute()))
-        number = answer.strip().split(";")[0]
+        try:
+            answer = call("sbatch", "--parsable", f"--array={array}", f"--ntasks={self.ranks}", "--output=/dev/null",
+                          "--job-name=slope", *self.options, str(script.absolute()))
+        except SlopeError as error:
+            if LIMIT.search(str(error)):
+                raise Limit("--engine slurm", str(error).partition(": ")[2]) from None
+            raise
+        number = number_in(answer)
         self.queue.arrays.append(number)
         self.queue.asked = -1e9
         disk.write(self.folder / KNOWN, "\n".join(self.queue.arrays) + "\n")

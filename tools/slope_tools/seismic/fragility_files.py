@@ -113,11 +113,10 @@ def fitted_at(fit: Optional[Fit], peaks: np.ndarray) -> Optional[np.ndarray]:
 def draw(path: Path, peaks: np.ndarray, curves: Sequence[Curve]) -> None:
     """The curves with their bands and fits; with a hazard curve also where the frequency of the last one comes from."""
     from ..drawing import figures, pictures
-    from ..drawing.figures import plt
     parts = curves[-1].frequency
-    with plt.rc_context(figures.STYLE):
-        figure, axes = plt.subplots(1, 2 if parts else 1, figsize=(figures.FULL, 2.9), squeeze=False,
-                                    width_ratios=[3, 2] if parts else None)
+    with pictures.settings(figures.STYLE):
+        figure, axes = pictures.subplots(1, 2 if parts else 1, figsize=(figures.FULL, 2.9), squeeze=False,
+                                         width_ratios=[3, 2] if parts else None)
         left = axes[0, 0]
         for k, one in enumerate(curves):
             colour = "black" if one.name == ANY else figures.COLOURS[k % len(figures.COLOURS)]

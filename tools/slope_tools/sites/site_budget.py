@@ -15,7 +15,8 @@ from .. import processes
 from ..case import last_words, logs, run_folders
 from ..digits import rounded
 from ..errors import SlopeError
-from .site_choices import Choices, OFFSETS, other_grounds
+from ..releases import packing
+from .site_choices import Choices, PACKING, other_grounds
 
 DEFAULT = 2000          # balls, if no budget is given: 12 to 18 minutes on two cores for 6 million m3 of rock
 TRIAL = 800             # balls of the trial run
@@ -88,7 +89,7 @@ def time_step(d: float, soil: Soil) -> float:
     """The deck's time step (s) for balls of diameter d (m)."""
     density, thick, speed = soil
     mass = density * math.pi / 6 * d ** 3
-    by_weight = STIFFNESS_NUMBER * max(1.0, thick / (LAYERS * d)) * density * math.pi / 6 * GRAVITY * thick * d
+    by_weight = STIFFNESS_NUMBER * max(1.0, thick / (LAYERS * d)) * density * packing.SOLID * GRAVITY * thick * d
     by_speed = mass * (speed / (OVERLAP * d)) ** 2
     return 0.25 * math.sqrt(mass / max(by_weight, by_speed))
 
@@ -102,13 +103,13 @@ def three_digits(value: float) -> float:
 def trial_diameter(choices: Choices, volume: float) -> float:
     """Of the trial's balls (m): TRIAL of them, or fewer if the site has fewer."""
     balls = choices["balls"]
-    number = TRIAL
+    number: float = TRIAL
     if balls["diameter"]:
         number_of(choices, volume, balls["diameter"])
-        number = min(number, volume / balls["diameter"] ** 3)
+        number = min(number, packing.number(volume, balls["diameter"]))
     elif balls["number"]:
         number = min(number, balls["number"])
-    return three_digits((volume / max(number, 1)) ** (1 / 3))
+    return three_digits(packing.diameter(volume, max(number, 1)))
 
 
 def finer_diameter(choices: Choices, trial: Trial) -> Optional[float]:
@@ -181,12 +182,12 @@ class Plan(NamedTuple):
 def plan(choices: Choices) -> Plan:
     """Of the study by the paper's method, and the ensemble that is weighted by known events."""
     study, points = choices["study"], choices["study"]["points"]
-    each = 1 + sum(len(study[name]) for name in OFFSETS)
+    each = 1 + len(study[PACKING])
     grounds = other_grounds(choices)
     others = [float(factor) for factor in study["sizes"] if factor != 1]       # balls of the site's size are there
     parts = [(1.0, each * len(study["rolling"]) + len(grounds)), *((factor, each) for factor in others)]
-    text = (f"{sum(runs for _, runs in parts)} runs: {len(study['rolling'])} rolling resistances x {each} lattice "
-            "positions")
+    text = (f"{sum(runs for _, runs in parts)} runs: {len(study['rolling'])} rolling resistances x {each} "
+            "packings")
     if grounds:
         text += f", {len(grounds)} on other grounds"
     if others:
@@ -201,7 +202,7 @@ def study_seconds(d: float, volume: float, trial: Trial, soil: Soil, wanted: Pla
     """What a study takes on this machine, with balls of diameter d in a body of that volume (m3); and at most."""
     def run(size: float, longer: float = 1.0) -> float:
         steps = longer * trial.typical / time_step(size, soil)
-        return trial.setup + steps * volume / size ** 3 * trial.cost
+        return trial.setup + steps * packing.number(volume, size) * trial.cost
 
     total = sum(runs * run(factor * d) for factor, runs in wanted.parts)
     if wanted.half_step:
@@ -213,12 +214,12 @@ def study_seconds(d: float, volume: float, trial: Trial, soil: Soil, wanted: Pla
 
 def gigabytes(d: float, volume: float, cells: int, jobs: int) -> float:
     """The memory of all runs that are active at a time."""
-    return jobs * (PER_RUN + PER_CELL * cells + PER_BALL * volume / d ** 3)
+    return jobs * (PER_RUN + PER_CELL * cells + PER_BALL * packing.number(volume, d))
 
 
 def fit(budget: float, cost: Callable[[float], float], volume: float, option: str, unit: str) -> float:
     """The smallest diameter (m) whose cost(d), which falls with d, is within a budget; SlopeError if none is."""
-    low, high = (volume / MOST) ** (1 / 3), (volume / FEWEST) ** (1 / 3)
+    low, high = packing.diameter(volume, MOST), packing.diameter(volume, FEWEST)
     if cost(high) > budget:
         raise SlopeError(option, f"must be at least {cost(high):.3g} {unit}, which a study with {FEWEST} balls takes",
                          f"{budget:g}")
@@ -254,7 +255,7 @@ def size(choices: Choices, volume: float, soil: Soil, trial: Optional[Trial], jo
     if balls["diameter"]:
         d = balls["diameter"]
     elif balls["number"]:
-        d = three_digits((volume / balls["number"]) ** (1 / 3))
+        d = three_digits(packing.diameter(volume, balls["number"]))
     elif balls["minutes"]:
         if trial is None:
             raise SlopeError("--minutes", "needs a LAMMPS program (LMP, --lmp) to measure this machine, --balls "
@@ -264,7 +265,7 @@ def size(choices: Choices, volume: float, soil: Soil, trial: Optional[Trial], jo
         d = up(fit(balls["memory"], lambda one: gigabytes(one, volume, cells, jobs), volume, "--memory", "GB"))
     else:
         balls["number"] = DEFAULT
-        d = three_digits((volume / DEFAULT) ** (1 / 3))
+        d = three_digits(packing.diameter(volume, DEFAULT))
     least, most = seconds(d) if trial else (None, None)
     return Size(d, number_of(choices, volume, d), wanted.runs, least, most, gigabytes(d, volume, cells, jobs),
                 wanted.text)
@@ -272,7 +273,7 @@ def size(choices: Choices, volume: float, soil: Soil, trial: Optional[Trial], jo
 
 def number_of(choices: Choices, volume: float, d: float) -> int:
     """The balls of diameter d (m) that a body (m3) is made of; SlopeError if they are too large or too many."""
-    number = round(volume / d ** 3)
+    number = round(packing.number(volume, d))
     if not 1 <= number <= MOST:
         raise SlopeError("--diameter" if choices["balls"]["diameter"] else "--balls", f"must make 1 to {MOST:,} balls "
                          f"of a body of {rounded(volume)} m3: {'smaller' if number < 1 else 'larger'} ones",

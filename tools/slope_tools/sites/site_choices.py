@@ -13,16 +13,16 @@ from typing import Any, Dict, Iterator, List, Mapping, Optional, Tuple
 
 import yaml
 
-from .. import disk, schemas
+from .. import disk, schemas, written_yaml
 from ..errors import SlopeError
+from ..releases import packing
 from ..survey import vectors
 from ..survey.crs import as_crs
 
 NAME = "site.yaml"
 VERSION = 1             # of site.yaml, also in its schema
-OF_BALL = 6 / math.pi       # density of a ball over that of the ground, in a cubic packing
 LONGEST_TEXT = 200      # letters of a name in the heading of a report
-OFFSETS = ("xoffset", "yoffset", "zoffset")        # of the study: its repeats
+PACKING = "packing"     # variable of the deck, and of the study: its repeats
 SCHEMA = Path(__file__).with_name("site_schema.json")
 WHAT = "a site.yaml of `slope site`"
 FOUND = schemas.mapping({}, found=schemas.mapping({}, null=True))       # of any version
@@ -41,6 +41,8 @@ DERIVED = (("balls", "diameter"), ("balls", "number"), ("model", "speed"), ("mod
 
 # keys of model in older sites, whose ground was a plan grid of one diameter; their decks keep it
 RETIRED = ("field_diameter", "field_ratio")
+# keys of study, and variables of the deck, in older sites, whose balls began on a cubic lattice; their decks keep it
+OFFSETS = ("xoffset", "yoffset", "zoffset")
 
 # sections that `slope study` and the report read when they run, except for files, of which the folder has copies
 READ_LATER = ("project", "road", "study", "known")
@@ -93,6 +95,29 @@ def without_old_ground(given: Choices) -> Choices:
     return {**given, "model": model}
 
 
+def has_lattice(given: Choices) -> bool:
+    """Whether the choices are of an older site, see OFFSETS."""
+    study = given.get("study")
+    return isinstance(study, dict) and any(key in study for key in OFFSETS)
+
+
+def without_lattice(given: Choices) -> Choices:
+    """Choices without the lattice of older sites: as many repeats, and the ground as heavy as before."""
+    if not has_lattice(given):
+        return given
+    study = {key: value for key, value in given["study"].items() if key not in OFFSETS}
+    moved = sum(len(several) for key in OFFSETS if isinstance(several := given["study"].get(key), list))
+    model = given.get("model")
+    if isinstance(model, dict) and disk.is_number(model.get("density")):
+        model = {**model, "density": round(model["density"] * math.pi / 6 * packing.BULK, 1)}
+    return {**given, **({"model": model} if model else {}), "study": {**study, PACKING: list(range(2, 2 + moved))}}
+
+
+def chance(variables: Mapping[str, str]) -> str:
+    """--vary of what differs between runs by chance alone, of a deck with these index variables."""
+    return f"{PACKING}=1:1000000" if PACKING in variables else f"{OFFSETS[0]}=0:0.99"
+
+
 def widest() -> float:
     """The largest spacing of the ground's balls, in diameters: through a wider one balls fall."""
     return schema()["properties"]["model"]["properties"]["spacing"]["maximum"]
@@ -137,7 +162,7 @@ def read(folder: Path) -> Choices:
     if not path.is_file():
         raise SlopeError(folder, f"must be a folder with {NAME}, which slope site makes")
     given = disk.parse_yaml(path, WHAT)
-    check(without_old_ground(given) if isinstance(given, dict) else given, str(path))
+    check(without_lattice(without_old_ground(given)) if isinstance(given, dict) else given, str(path))
     return with_files(complete(given), lambda name: os.path.normpath(folder / name))
 
 
@@ -239,7 +264,7 @@ def text(choices: Choices, found_: Dict[str, Any], folder: Path) -> str:
     lines += [f"  {line}" for line in yaml.safe_dump(disk.plain(found_), sort_keys=False, allow_unicode=True,
                                                      width=1000).splitlines()]
     whole = "\n".join(lines) + "\n"
-    check(disk.load_yaml(whole), NAME)
+    check(written_yaml.load(whole), NAME)
     return whole
 
 

@@ -6,6 +6,7 @@ from typing import Any, Dict, NamedTuple, Optional, Sequence
 
 import jinja2
 
+from ..releases import packing
 from ..releases.release_deck import Body
 from ..slips.bodies import rank_of
 from . import site_budget
@@ -56,7 +57,7 @@ def text(choices: Choices, parts: Parts, numbers: Numbers) -> str:
 def values(choices: Choices, parts: Parts, numbers: Numbers) -> Dict[str, Any]:
     """What the template is filled in with."""
     model, motion, body = choices["model"], choices["motion"], parts.body
-    balls = body.volume / numbers.diameter ** 3
+    balls = packing.number(body.volume, numbers.diameter)
     parameters: Dict[str, Any] = {
         "title": parts.title, "terrain": parts.terrain, "deck": NAME, "volume": f"{body.volume:,.0f}",
         "balls": f"about {balls:,.0f}", "rest": "some" if numbers.rest is None else f"{numbers.rest:.0f}",

@@ -17,8 +17,8 @@ from ..survey import lines, polygons, vectors
 from ..survey.rasters import Raster, crs_name
 
 # names of the deck's own fixes and groups, and of files that a run writes beside them
-TAKEN = {"all", "soil", "slip", "field", "spread", "move", "weight", "deposit", "rest", "shake", "drag", "stands",
-         "fails", "balls", "road", "release", "observed", "terrain", "body", "ground", "base", "summary"}
+TAKEN = {"all", "soil", "slip", "beyond", "field", "spread", "move", "weight", "deposit", "rest", "shake", "drag",
+         "stands", "fails", "balls", "road", "release", "observed", "terrain", "body", "ground", "base", "summary"}
 MOTION = "motion.txt"
 
 

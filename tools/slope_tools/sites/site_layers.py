@@ -12,7 +12,7 @@ from ..errors import SlopeError
 from ..findings import Finding
 from ..geometry import extent
 from ..releases import release_area
-from ..survey import polygons, rasters, roads, vectors
+from ..survey import beside, polygons, rasters, roads, vectors
 from ..survey.crs import as_crs, same_crs
 from ..survey.rasters import Raster, crs_name
 from . import site_choices, site_inputs
@@ -162,11 +162,7 @@ def observed_layer(choices: Choices, raster: Raster, folder: Path, tell, warn):
         return None
     if Path(path).suffix.lower() not in RASTERS:
         return polygon_layer(choices, path, raster, folder / f"{OBSERVED}.csv", tell, warn)
-    mapped = rasters.read(path, heights=False)
-    mapped = mapped._replace(crs=assigned(choices, path) or mapped.crs)
-    if mapped.crs is None:
-        mapped = mapped._replace(crs=raster.crs)
-        warn(Finding("CRS of terrain", {"file": str(path), "remedy": ""}))
+    mapped = beside.read(path, raster, False, assigned(choices, path), warn=warn)
     if not same_crs(mapped.crs, raster.crs):
         raise SlopeError(path, f"must be in the CRS of the terrain, {crs_name(raster.crs)} (gdalwarp -t_srs "
                          "reprojects)", crs_name(mapped.crs))

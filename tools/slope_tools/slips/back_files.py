@@ -7,7 +7,6 @@ import numpy as np
 
 from .. import disk
 from ..drawing import figures, pictures
-from ..drawing.figures import plt
 from .back import Line
 
 FILES = ["back.csv", "back.png", "back.yaml"]
@@ -25,8 +24,8 @@ def write(folder: Path, line: Line, far: Optional[Line], about: Dict[str, Any]) 
 
 
 def draw(path: Path, line: Line, far: Optional[Line], about: Dict[str, Any]) -> None:
-    with plt.rc_context(figures.STYLE):
-        figure, axes = plt.subplots(figsize=(figures.WIDE, 2.9))
+    with pictures.settings(figures.STYLE):
+        figure, axes = pictures.subplots(figsize=(figures.WIDE, 2.9))
         unit, name = unit_of(line)
         axes.plot(line.friction, line.cohesion / unit, color=figures.COLOURS[0], lw=1.4,
                   label="F = 1" + (", axis of the nearest sphere" if far else ""))

@@ -4,10 +4,11 @@ from pathlib import Path
 from typing import Dict, List, Optional, Sequence
 
 import numpy as np
+from matplotlib import colormaps
 from matplotlib.colors import BoundaryNorm
 
 from ..drawing import figures, palettes, pictures
-from ..drawing.figures import COLOURS, FULL, STYLE, plt
+from ..drawing.figures import COLOURS, FULL, STYLE
 from ..drawing.maps import RELIEF, contours, part, shade, window
 from ..geometry import extent
 from ..survey.rasters import Raster
@@ -31,9 +32,9 @@ def draw(path: Path, raster: Raster, factor: np.ndarray, rows: Sequence[Dict[str
     shown = window(raster, *boxes) if boxes else extent(raster)
     sections = min(len(rows), MOST)
     deep = math.ceil(sections / 2)
-    with plt.rc_context(STYLE):
+    with pictures.settings(STYLE):
         tall = min(max(0.85 * FULL * (shown[3] - shown[1]) / (shown[2] - shown[0]), 2.0), 6.0)
-        figure = plt.figure(figsize=(FULL, tall + 2.0 * deep))
+        figure = pictures.figure(figsize=(FULL, tall + 2.0 * deep))
         grid = figure.add_gridspec(1 + deep, 2, height_ratios=[tall] + [2.0] * deep)
         axes = figure.add_subplot(grid[0, :])
         draw_map(axes, raster, factor, shown)
@@ -71,7 +72,7 @@ def draw_map(axes, raster: Raster, factor: np.ndarray, shown) -> None:
     values, _ = part(raster, factor, shown)
     image = axes.imshow(np.ma.masked_invalid(values), cmap=palettes.SAFETY, extent=where, alpha=0.75,
                         interpolation="nearest",
-                        norm=BoundaryNorm(CLASSES, plt.get_cmap(palettes.SAFETY).N, extend="both"))
+                        norm=BoundaryNorm(CLASSES, colormaps[palettes.SAFETY].N, extend="both"))
     axes.figure.colorbar(image, ax=axes, shrink=0.9, label="least factor of safety of the surfaces")
     axes.set(xlim=(shown[0], shown[2]), ylim=(shown[1], shown[3]), xlabel="x (m)", ylabel="y (m)", aspect="equal")
 

@@ -6,7 +6,7 @@ from typing import NamedTuple, Optional
 import numpy as np
 
 from ..errors import SlopeError
-from ..survey import rasters
+from ..survey import beside
 from ..survey.rasters import Raster
 from ..survey.resampling import sample
 from . import back, bodies, columns
@@ -57,16 +57,17 @@ def of_search(path: Path, raster: Raster, direction: Optional[float], density: f
 
 def of_base(raster: Raster, path: Path, direction: Optional[float], density: float, table) -> Failed:
     """Of a raster with the heights of the ground without the body, on the cells of the terrain."""
-    base = rasters.read(path)
-    if base.z.shape != raster.z.shape or not base.transform.almost_equals(raster.transform, 1e-6):
+    found = beside.read(path, raster, local=beside.Local(guessed=True))
+    if not beside.has_cells(found, raster):
         raise SlopeError(path, "must be on the cells of the terrain")
-    inside = columns.largest(raster, base.z + LEAST) & np.isfinite(np.gradient(base.z)).all(axis=0)
-    points = back.points_of(raster, base.z, inside)
+    base = beside.on_cells(path, found, raster)
+    inside = columns.largest(raster, base + LEAST) & np.isfinite(np.gradient(base)).all(axis=0)
+    points = back.points_of(raster, base, inside)
     centre, radius = back.sphere_of(points)
-    way = back.steepest(raster, base.z, inside, centre) if direction is None else direction
+    way = back.steepest(raster, base, inside, centre) if direction is None else direction
 
     def about(axis):
-        return columns.of_raster(raster, base.z, inside, axis, way, density, table)
+        return columns.of_raster(raster, base, inside, axis, way, density, table)
 
     far = None if math.isinf(radius) else about(back.far_centre(points))
     return Failed(about(centre), int(inside.sum()), far, way, centre, radius)

@@ -55,29 +55,45 @@ class Reason(NamedTuple):
         return cls(Code(about["code"]), about["numbers"])
 
 
+class AtRoad(NamedTuple):
+    """Of runs: how many there are, bring a ball to the road, past it; the most that one brings, m3 and balls."""
+    runs: int
+    reach: int
+    passing: int
+    volume: float
+    balls: float
+
+    def and_of(self, other: "AtRoad") -> "AtRoad":
+        """Of the runs of both."""
+        most = max(self, other, key=lambda one: one.balls)
+        return AtRoad(self.runs + other.runs, self.reach + other.reach, self.passing + other.passing, most.volume,
+                      most.balls)
+
+
 class Road(NamedTuple):
     """A road on the fall path: its edges (m), the shares of the known events that reach the near and pass the far one.
 
     Of a row of landslides by the smaller and the larger scatter, of a set of events twice the same. longest: m, of the
-    runs; None: none has a length.
+    runs, without lobes below 1 % of the mass; None: none has a length. brought: what the runs bring to it, all of it.
     """
     near: float
     far: float
     reached: Tuple[float, float]
     passed: Tuple[float, float]
     longest: Optional[float]
+    brought: AtRoad
 
     @property
     def missed(self) -> bool:
         """Whether no run reaches it."""
-        return self.longest is None or self.longest < self.near
+        return self.brought.reach == 0
 
     def numbers(self) -> Dict[str, Any]:
         return {"low": min(self.reached), "high": max(self.reached), "near_m": self.near, "longest_m": self.longest}
 
     def about(self) -> Dict[str, Any]:
         return {"near_m": self.near, "far_m": self.far, "reached": sorted(self.reached),
-                "passed": sorted(self.passed), "longest_m": self.longest}
+                "passed": sorted(self.passed), "longest_m": self.longest, "brought": self.brought._asdict()}
 
 
 class Withheld(NamedTuple):

@@ -32,9 +32,11 @@ class Facts(NamedTuple):
     runs: int                       # all of them
     failed: int
     moving: int                     # not at rest at their end
-    left: float                     # share of the released volume that left before or beside the road, the largest
+    left: float                     # share of the released volume that left before the road, or nobody knows where
     length: Optional[float]         # m, of the longest run; None: no run has one
     median: Optional[float]         # m, length that half of known events exceed; None: no set covers the mass
+    where: str = ""                 # it left, in words
+    add: str = ""                   # terrain that is missing there, in words
     size: str = ""                  # why the size error is not trusted; "": it is, or was not measured
 
 
@@ -59,7 +61,7 @@ def left(facts: Facts) -> Optional[Finding]:
     if facts.left <= LEFT:
         return None
     return Finding(Kind.LEFT.value, {"number": facts.left, "bound": LEFT, "percent": 100 * facts.left,
-                                     "most": 100 * LEFT})
+                                     "most": 100 * LEFT, "where": facts.where, "add": facts.add})
 
 
 def unfinished(facts: Facts) -> Optional[Finding]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from .. import disk, provenance
 from ..case import run_folders
-from ..deposits import left, travel_shares
+from ..deposits import gone, travel_shares
 from ..ensembles import ensemble, known_study
 from ..findings import Finding, entries, finding
 from ..runs import repeats
@@ -181,7 +181,7 @@ def case_of(setup: Setup, questions: Questions, row) -> withheld_words.Case:
 
 
 def unseen(repeated, defaults):
-    """The caveat that the scatter is incomplete: only seeds were repeated, though the deck can move its lattice."""
+    """The caveat that the scatter is incomplete: only seeds were repeated, though the deck can place its balls anew."""
     offsets = repeats.only_seeds(repeated, defaults)
     return [Finding("not repeated", {"repeated": ", ".join(repeated), "offsets": ", ".join(offsets)})] \
         if offsets else []
@@ -222,11 +222,13 @@ def result(run, row, maps, output):
     stays = volume["released"] - volume["off_grid"] - volume["lost"]
     on_grid = float(np.nansum(thickness.z)) * thickness.transform.a ** 2
     base = run_folders.load_raster(prefix, "surface").z - thickness.z
-    length = run_length.of_run(deposit.Deposit(str(prefix), thickness, base, summary, None), terrain_of(run))
+    left = deposit.Deposit(str(prefix), thickness, base, summary, None)
+    length = run_length.of_run(left, terrain_of(run))
     row = {**row, "variables": about.get("variables"),
            quantities.STOP: site_ground.of_variables(about.get("variables")), "ranks": about.get("ranks"),
            "package": about.get("package"),
-           **quantities.of_length(length), "ball_m3": volume["released"] / summary["balls"]["released"],
+           **quantities.of_length(length), "left": gone.entries(left),
+           "ball_m3": volume["released"] / summary["balls"]["released"],
            "mass_error": (on_grid - stays) / volume["released"],
            **judged.columns(summary, run.log), "change_rate": summary.get("change_rate"),
            "wall_s": marker.get("wall_seconds"), "summary": os.path.relpath(path, output),
@@ -248,15 +250,13 @@ def on_road(run, setup: Setup, row, thickness, picture=True) -> Dict[str, Any]:
     about = disk.plain(found.about)       # numpy has no place in study.yaml
     released = run_folders.load_raster(prefix, "arrival").z == 0
     polygon, total = road.read(placed(thickness, run)).polygon, about["clearing"]
-    gone, passed = row["off_grid_m3"] + row["lost_m3"], run_folders.load_raster(prefix, "max_thickness")
     taken = on_body(thickness, released, polygon, row["ball_m3"])
     if taken > 0:
         found.warnings.append(Finding("road on body", {"file": road.file.name}))
     return {"road_on_body_m2": taken, "remove_m3": about["volume"]["remove"],
             "remove_on_road_m3": about["volume"]["remove_on_road"],
             "remove_beside_road_m3": about["volume"]["remove_beside_road"],
-            "beyond_road_m3": beyond(thickness, released, polygon),
-            "left_before_road_m3": left.before_road(gone, passed, released, polygon),
+            **quantities.of_division(about["divided"], about["left"]),
             "blocked_m": total["blocked_length"], "axis_thickness_m": about["axis"]["largest_thickness"],
             "remove_lane_m3": total.get("remove_lane"), "lane_hours": total.get("hours_lane"),
             "clear_hours": total.get("hours"), "stretches": about["stretches"], "clearing": total,
@@ -269,24 +269,6 @@ def in_folder(one: Finding, folder: Path) -> Finding:
     """The same, whose files are named as from a run's folder: one warning for all runs."""
     return one._replace(numbers={name: value.replace(f"{folder}/", "") if isinstance(value, str) else value
                                  for name, value in one.numbers.items()})
-
-
-def beyond(thickness, released, road):
-    """Volume (m3) on those parts of the grid that the road (local metres) cuts off from the released mass (a mask).
-
-    None if the road does not divide the grid.
-    """
-    from shapely.geometry import box
-    from .. import geometry
-    rows, columns = thickness.z.shape
-    lines = np.arange(columns + 1.0), np.arange(rows + 1.0)
-    parts = geometry.polygons_of(box(0, 0, columns, rows).difference(geometry.to_index(road, thickness)))
-    shares = [geometry.coverage(part, *lines)[0] for part in parts]
-    shares = [share for share in shares if share.sum() > 1e-6]
-    if len(shares) < 2:
-        return None
-    shares.sort(key=lambda share: (share * released).sum())     # the last one is where the mass comes from
-    return float(sum((share * thickness.z).sum() for share in shares[:-1]) * thickness.transform.a ** 2)
 
 
 def on_body(thickness, released, road, ball_m3) -> float:

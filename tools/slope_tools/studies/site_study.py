@@ -16,7 +16,7 @@ from ..runs import repeats
 from ..schemas import FINDINGS, mapping
 from ..sites import ground, site_choices, site_deck, site_warnings
 from ..sites.site_budget import three_digits
-from ..sites.site_choices import Choices, OFFSETS, other_grounds
+from ..sites.site_choices import Choices, OFFSETS, PACKING, other_grounds
 from ..sites.site_layers import OBSERVED, ROAD
 from ..survey.roads import Asked
 from ..tables import energy
@@ -56,8 +56,8 @@ def run(folder: Path, engine: Setup, method: str) -> Done:
     setup = engine._replace(deck=deck, output=folder / STUDY, site=folder, road=None)
     if road["file"]:
         setup = setup._replace(road=Road(folder / ROAD, road["cut_angle"], road["mesh"], asked=Asked.of(road)))
-    repeated = {name: words(several[name]) for name in OFFSETS if several[name]}
     settings, variables = {"rolling": words(several["rolling"])}, decks.index_variables(deck)
+    repeated = {name: words(several[name]) for name in (PACKING, *OFFSETS) if name in variables and several.get(name)}
     middle = settings["rolling"][len(several["rolling"]) // 2]
     others = grounds(choices, variables)
     if others:

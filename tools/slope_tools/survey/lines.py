@@ -5,23 +5,53 @@ import numpy as np
 from shapely import wkt
 from shapely.errors import ShapelyError
 from shapely.geometry import GeometryCollection, LineString, MultiLineString
-from shapely.ops import linemerge
+from shapely.ops import linemerge, unary_union
 
 from ..errors import SlopeError
-from . import polygons, text_points, vectors
+from ..findings import Finding
+from . import polygons, text_points, vectors, well_known
 from .crs import require_degrees, same_crs, transform
 from .rasters import crs_name
 
 
+SAME = 1e-9     # of a length, by which lines that are the same may differ
+
+
 def lines_of(geometry):
     """The lines in a geometry as a MultiLineString, joined where they touch."""
+    lines = parts_of(geometry)
+    return joined(lines) if len(lines) > 1 else MultiLineString(lines)
+
+
+def parts_of(geometry):
+    """The lines in a geometry, a list of LineStrings."""
     if geometry.geom_type in ("LineString", "LinearRing"):
-        return MultiLineString([geometry] if not geometry.is_empty else [])
-    lines = [line for part in getattr(geometry, "geoms", ()) for line in lines_of(part).geoms]
-    if len(lines) > 1:
-        merged = linemerge(lines)
-        lines = list(getattr(merged, "geoms", [merged]))
-    return MultiLineString(lines)
+        return [] if geometry.is_empty else [LineString(geometry.coords)]
+    return [line for part in getattr(geometry, "geoms", ()) for line in parts_of(part)]
+
+
+def joined(lines):
+    merged = linemerge(lines)
+    return MultiLineString(list(getattr(merged, "geoms", [merged])))
+
+
+def once(lines):
+    """Lines with what is drawn more than once, or there and back, drawn once; which share of the length that is.
+
+    They have the direction of the first of the lines there.
+    """
+    whole = unary_union(lines)
+    share = 1 - whole.length / sum(line.length for line in lines)
+    if share <= SAME:
+        return lines_of(MultiLineString(lines)), 0.0
+    return MultiLineString([directed(line, lines) for line in lines_of(whole).geoms]), share
+
+
+def directed(line, lines):
+    """A line in the direction in which the first of the lines that it is part of passes there."""
+    begin, end = (LineString(line.coords[:2]).interpolate(share, normalized=True) for share in (1 / 3, 2 / 3))
+    first = next((one for one in lines if one.distance(begin) <= SAME * one.length), line)
+    return line if first.project(begin) < first.project(end) else LineString(line.coords[::-1])
 
 
 def read_local(path, raster, local, what="line", advice=None, crs=None, warn=vectors.ignore,
@@ -36,6 +66,9 @@ def read_local(path, raster, local, what="line", advice=None, crs=None, warn=vec
     vectors.require_file(path)
     text_ = polygons.read_text(path)
     own = raster.crs
+    if text_ is not None:
+        text_, named = well_known.plain(path, text_)
+        crs = crs or (None if local else named)
     if text_ is None:
         found = vectors.read(path, "Line", warn)
         own = None if local or crs else found.known_crs(path, (advice or polygons.ADVICE).wrong_crs)
@@ -43,12 +76,19 @@ def read_local(path, raster, local, what="line", advice=None, crs=None, warn=vec
     else:
         geometry, unit = text_geometry(path, text_)
         polygons.check_unit(path, unit, local, crs, advice or polygons.ADVICE)
-    lines = lines_of(geometry)
+    parts = parts_of(geometry)
+    lines = MultiLineString(parts)
     if lines.is_empty and (others := kinds(geometry)):
         raise SlopeError(path, f"must hold a line: {instead if 'Polygon' in others else 'draw one'}",
                          f"only {others}")
     if lines.is_empty or not all(np.isfinite(line.coords).all() for line in lines.geoms) or lines.length == 0:
         raise SlopeError(path, "must hold a line of a length > 0")
+    others = [one for one in getattr(geometry, "geoms", []) if not parts_of(one)]
+    if left_out := kinds(GeometryCollection(others)):
+        warn(Finding("no line", {"file": path, "kinds": left_out}))
+    lines, twice = once(parts)
+    if twice:
+        warn(Finding("drawn twice", {"file": path, "percent": 100 * twice}))
     local = local or text_ is not None and polygons.is_local(path, text_, raster)
     plain = text_ is not None and crs is None
     crs = crs or own
@@ -68,8 +108,8 @@ def read_local(path, raster, local, what="line", advice=None, crs=None, warn=vec
         if not all(np.isfinite(line).all() for line in points):
             raise SlopeError(path, f"must lie where {crs_name(raster.crs)}, the CRS of the terrain, covers it")
         if polygons.is_cut(lines, crs):
-            joined = lines_of(GeometryCollection(polygons.snapped(map(LineString, points))))
-            points = [np.asarray(line.coords) for line in joined.geoms]
+            whole = lines_of(GeometryCollection(polygons.snapped(map(LineString, points))))
+            points = [np.asarray(line.coords) for line in whole.geoms]
     return MultiLineString([line - raster.offset for line in points])
 
 

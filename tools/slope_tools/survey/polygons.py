@@ -20,7 +20,7 @@ from shapely.validation import explain_validity
 from .. import disk
 from ..errors import SlopeError
 from ..geometry import extent, numbers, polygons_of
-from . import text_points, vectors
+from . import text_points, vectors, well_known
 from .crs import require_degrees, same_crs
 from .text_points import FARTHEST
 from .rasters import crs_name
@@ -30,8 +30,7 @@ CUT = 1e-3         # m, between the halves of a cut geometry in another CRS
 DIGITS = 6     # decimals of a written coordinate, m: beyond them is the noise of origins and projections
 HEAD = "local metres:"       # in the first line of what write() wrote
 PLACE = re.compile(rf"^# {HEAD} .+", re.MULTILINE)
-WKT = re.compile(r"(?:(?:MULTI|COMPOUND)?(?:POLYGON|LINESTRING|POINT|CURVE|SURFACE)|GEOMETRYCOLLECTION|LINEARRING|"
-                 r"CURVEPOLYGON|CIRCULARSTRING|TRIANGLE|TIN)\s*(?:Z|M|ZM)?\s*(?:\(|EMPTY)", re.IGNORECASE)
+WKT = re.compile(well_known.KINDS, re.IGNORECASE)
 
 
 class Advice(NamedTuple):
@@ -69,6 +68,9 @@ def read_local(path, raster, local=False, crs=None, advice=ADVICE, warn=vectors.
 
 def _read_local(path, raster, local, crs, advice, warn):
     text = read_text(path)
+    if text is not None:
+        text, named = well_known.plain(path, text)
+        crs = crs or (None if local else named)
     if text is None:
         polygons, own = _read_layer(path, warn, None if local or crs else advice)
     elif WKT.match(re.sub("#.*", "", text).lstrip()):
@@ -77,18 +79,34 @@ def _read_local(path, raster, local, crs, advice, warn):
         (polygons, unit), own = _read_rings(path, text), raster.crs
         local = local or is_local(path, text, raster)
         check_unit(path, unit, local, crs, advice)
-    geometry = polygons[0] if len(polygons) == 1 else unary_union(polygons)
     plain = not local and text is not None and crs is None      # numbers of which no file says what they are
+    return _placed(path, polygons, raster, local, plain, crs or own, advice)
+
+
+def of_feature(where, geometry, raster, crs, advice=ADVICE):
+    """What read_local() gives, of one geometry of a vectors.Found; where: its file and feature, for messages."""
+    try:
+        parts = _parts(where, geometry)
+        if not parts:
+            raise SlopeError(where, "must hold a polygon, it is empty")
+        return _placed(where, parts, raster, False, False, crs, advice)
+    except ShapelyError as error:
+        raise SlopeError(where, "must be polygons whose points differ by more than rounding") from error
+
+
+def _placed(path, polygons, raster, local, plain, crs, advice):
+    """Polygons as one geometry in the local metres of a terrain, which it overlaps."""
+    geometry = polygons[0] if len(polygons) == 1 else unary_union(polygons)
     as_it_stands = geometry.envelope
     if not local:
-        geometry = _to_local(path, geometry, crs or own, raster, plain, advice)
+        geometry = _to_local(path, geometry, crs, raster, plain, advice)
     geometry = _checked(path, geometry)
     bounds = getattr(raster, "extent", None) or extent(raster)
     if geometry.intersection(box(*bounds)).area == 0:
         hint = " (with --local it would)" if plain and as_it_stands.intersection(box(*bounds)).area > 0 else ""
         if exchanged(geometry, raster, local).intersection(box(*bounds)).area > 0:
             hint = " (with x and y exchanged it would)"
-        read_as = "" if local or plain else (f", read as {crs_name(crs or own)}: is that right? The terrain is in "
+        read_as = "" if local or plain else (f", read as {crs_name(crs)}: is that right? The terrain is in "
                                              f"{crs_name(raster.crs)}; {advice.wrong_crs}")
         raise SlopeError(path, f"must overlap the terrain{hint}, local x y {decimetres(bounds)}",
                          decimetres(geometry.bounds) + read_as)

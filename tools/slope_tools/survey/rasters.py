@@ -21,7 +21,7 @@ from rasterio.errors import CRSError, NotGeoreferencedWarning, RasterioError
 from rich.console import Console
 from rich.progress import track
 
-from .. import disk, schemas
+from .. import disk, schemas, streams
 from ..errors import SlopeError
 from ..schemas import COUNT, TEXT, mapping, numbers
 from .marks import Scale, cells_of, text
@@ -41,6 +41,7 @@ UNITS = {"m": 1.0, "ft": 0.3048, "us-ft": 1200 / 3937}      # m, of heights
 TAGS = {"m": "m", "metre": "m", "meter": "m", "metres": "m", "meters": "m", "ft": "ft", "foot": "ft", "feet": "ft",
         "international foot": "ft", "us survey foot": "us-ft", "us survey feet": "us-ft", "ftus": "us-ft",
         "us-ft": "us-ft", "foot_us": "us-ft"}      # how files spell them, in lower case
+NO_UNIT = {"", "unspecified", "unknown", "undefined", "none"}       # how files spell that they do not say one
 
 
 class Raster(NamedTuple):
@@ -53,7 +54,7 @@ class Raster(NamedTuple):
 
 def progress(steps, what, total=None):
     """Iterate over steps behind a progress bar on stderr, which shows only on a terminal."""
-    if not sys.stderr.isatty():
+    if not streams.is_terminal(sys.stderr):
         return steps
     return track(steps, what, total, console=Console(stderr=True), transient=True)
 
@@ -147,9 +148,9 @@ def unit_of(path, source, heights=True):
 
     SlopeError where it is another one, or cannot be metres as a matter of course: the CRS is in feet, too.
     """
-    tag = source.units[0]
-    unit = TAGS.get(tag.lower()) if tag else None
-    if tag and (unit is None or not heights and unit != "m"):
+    tag = (source.units[0] or "").strip()
+    unit = TAGS.get(tag.lower())
+    if tag.lower() not in NO_UNIT and (unit is None or not heights and unit != "m"):
         raise SlopeError(path, "heights must be in metres or feet; --z-unit m, ft or us-ft overrides a wrong tag"
                          if heights else "must be in metres", tag)
     if unit is None and heights and source.crs is not None and source.crs.is_projected:
@@ -359,8 +360,10 @@ def write_asc_local(path, raster, about, exact=False):
     return sidecar
 
 
-def write_geotiff(path, bands, raster):
+def write_geotiff(path, bands, raster, tags=None):
     """Write bands, a dict of name -> values (NaN: NODATA), on the grid of raster (its z is not used) to a GeoTIFF.
+
+    tags: {name: text}, metadata of the file.
 
     It lies at the CRS coordinates, transform plus offset; without a CRS at the local ones. Doubles, so that sums over
     the cells are those of the array. The file is complete or not touched. Raises SlopeError where it cannot be written.
@@ -372,6 +375,7 @@ def write_geotiff(path, bands, raster):
             with rasterio.open(new, "w", driver="GTiff", height=rows, width=columns, count=len(bands), dtype="float64",
                                crs=raster.crs, transform=Affine.translation(*raster.offset) * raster.transform,
                                nodata=NODATA, compress="deflate") as out:
+                out.update_tags(**(tags or {}))
                 for band, (name, values) in enumerate(bands.items(), 1):
                     out.write(np.where(np.isnan(values), NODATA, values), band)
                     out.set_band_description(band, name)

@@ -16,7 +16,7 @@ from shapely.ops import unary_union
 from .. import disk
 from ..errors import SlopeError
 from ..geometry import extent, numbers
-from . import lines, polygons, vectors
+from . import lines, polygons, vectors, well_known
 
 ARCS = 45       # pieces of a quarter of a circle, outside of bends
 SLACK = 1e-5    # m, beyond the terrain; written coordinates are rounded
@@ -112,6 +112,7 @@ def is_line(path) -> bool:
     """Whether a file holds lines and no polygon, or is a CSV of too few points for one."""
     try:
         text = polygons.read_text(path)
+        text = None if text is None else well_known.plain(path, text)[0]
         geometry = unary_union([one for _, one in vectors.read(path, "Line").features]) if text is None else \
             lines.text_geometry(path, text)[0]
         if text is not None and not polygons.WKT.match(re.sub("#.*", "", text).lstrip()):
@@ -127,7 +128,8 @@ def check_line(path, line: LineString, within, start: float) -> None:
     def chainage(length):
         return f"{1000 * start + length:.1f} m"
     if not line.is_simple:
-        crossed = min((Point(one.coords[-1]) for one in unary_union(line).geoms), key=line.project)
+        noded = unary_union(line)
+        crossed = min((Point(one.coords[-1]) for one in getattr(noded, "geoms", [noded])), key=line.project)
         raise SlopeError(path, "must be a line that does not cross itself; it does at the chainage "
                          f"{chainage(line.project(crossed))}", numbers(crossed.coords[0]))
     outside = line.difference(box(*within).buffer(SLACK))

@@ -10,12 +10,12 @@ import os
 import re
 import zipfile
 from pathlib import Path
-from typing import Any, Callable, List, NamedTuple, Optional, Sequence, Tuple
+from typing import Any, Callable, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 import fiona
 from rasterio.crs import CRS
 from shapely.errors import ShapelyError
-from shapely.geometry import shape
+from shapely.geometry import Polygon, shape
 
 from ..errors import SlopeError
 from ..findings import Finding
@@ -40,6 +40,8 @@ class Found(NamedTuple):
     crs: Optional[CRS]
     empty: int                          # features without a geometry, which are not among them
     unknown: Optional[str] = None       # what the file names as its CRS, if that is none that PROJ knows
+    attributes: Sequence[Mapping[str, Any]] = ()        # of each of the features
+    numbers: Sequence[int] = ()         # of each of the features: which one of the file it is, from 1
 
     def known_crs(self, where: object, remedy: str) -> Optional[CRS]:
         """The CRS; SlopeError if it is unknown. remedy: what can be done."""
@@ -96,7 +98,9 @@ def read(name: object, kind: str, warn: Callable[[Finding], Any] = ignore) -> Fo
                 raise SlopeError(where.path, f"must have the named layer, one of {some(layers)}", where.layer)
             layer = where.layer if where.layer is not None else only_layer(opened, layers, kind, where.path)
             with fiona.open(opened, layer=layer) as data:
-                raw = [(f"{where.path}: feature {feature['id']}", feature["geometry"]) for feature in data]
+                is_drawing = data.driver == "DXF"
+                raw = [(f"{where.path}: feature {feature['id']}", feature["geometry"], dict(feature["properties"]))
+                       for feature in data]
                 crs = CRS.from_wkt(data.crs_wkt) if data.crs_wkt else None
                 unknown = unknown_crs(where.path, member, crs) if data.driver == "GeoJSON" else None
     except SlopeError:
@@ -104,14 +108,17 @@ def read(name: object, kind: str, warn: Callable[[Finding], Any] = ignore) -> Fo
     except Exception as error:  # GDAL's too, of classes that fiona keeps private
         raise SlopeError(where.path, f"must be {what} that GDAL can read: GeoJSON, shapefile, or another format of it "
                          f"({str(error).replace(opened, where.path)})") from error
-    features = [(place, shaped(place, geometry, kind)) for place, geometry in raw if geometry is not None]
+    features = [(place, shaped(place, geometry, kind)) for place, geometry, _ in raw if geometry is not None]
+    if is_drawing and kind == "Polygon":
+        features = [(place, closed(geometry)) for place, geometry in features]
     if raw and not features:
         raise SlopeError(where.path, f"must hold {what}, none of its features has a geometry", len(raw))
     empty = len(raw) - len(features)
     if empty:
-        first = next(place for place, geometry in raw if geometry is None)
+        first = next(place for place, geometry, _ in raw if geometry is None)
         warn(Finding("no geometry", {"feature": first, "without": empty, "features": len(raw)}))
-    return Found(features, crs, empty, unknown)
+    kept = [(about, number) for number, (_, geometry, about) in enumerate(raw, 1) if geometry is not None]
+    return Found(features, crs, empty, unknown, [about for about, _ in kept], [number for _, number in kept])
 
 
 def unknown_crs(path: str, member: Optional[str], taken: Optional[CRS]) -> Optional[str]:
@@ -144,6 +151,12 @@ def shaped(where: str, geometry: Any, kind: str):
         return shape(geometry)
     except (ShapelyError, ValueError, TypeError, AttributeError, NotImplementedError) as error:
         raise SlopeError(where, f"must be a {kind.lower()} ({error})") from error
+
+
+def closed(geometry: Any):
+    """A closed line, as which drawings have areas, as a polygon; another geometry as it is."""
+    is_ring = geometry.geom_type == "LineString" and len(geometry.coords) > 3 and geometry.is_ring
+    return Polygon(geometry.coords) if is_ring else geometry
 
 
 def only_layer(opened: str, layers: List[str], kind: str, path: str) -> str:

@@ -1,11 +1,12 @@
 """The headline of study.yaml (statistics.answer): of what a study says, and of both studies of a site."""
+import functools
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, Optional
 
 from .. import disk, schemas
 from ..schemas import OBJECT, mapping
 from ..statistics import answer
-from ..statistics.answer import Answer, Ensemble, Paper, Reason, Road, Withheld
+from ..statistics.answer import Answer, AtRoad, Ensemble, Paper, Reason, Road, Withheld
 from ..statistics.withheld import Kind as Rule
 
 TITLE = "slope study: volumes in m3 of ground (bulk), lengths in m, times in s"
@@ -50,8 +51,10 @@ def road_of(about: Mapping[str, Any]) -> Optional[Road]:
     one = (about.get("headline") or {}).get("road")
     if not one:
         return None
-    (reached, more_reached), (passed, more_passed) = one["reached"], one["passed"]
-    return Road(one["near_m"], one["far_m"], (reached, more_reached), (passed, more_passed), one["longest_m"])
+    (reached, more_reached), (passed, more_passed), longest = one["reached"], one["passed"], one["longest_m"]
+    near = longest is not None and longest >= one["near_m"]     # of an older version
+    brought = AtRoad(**one["brought"]) if one.get("brought") else AtRoad(1, int(near), 0, 0.0, 0.0)
+    return Road(one["near_m"], one["far_m"], (reached, more_reached), (passed, more_passed), longest, brought)
 
 
 def governing(paper: Path, ensemble: Path) -> Path:
@@ -70,8 +73,9 @@ def of_both(paper: Path, ensemble: Path) -> Optional[Answer]:
     """Of both study.yaml of a site, in which it is entered; None, and nothing is done, without a road."""
     said: Dict[Path, Any] = {path: schemas.load(path, "what `slope study` wrote", SCHEMA) for path in (paper, ensemble)}
     roads = [one for one in map(road_of, said.values()) if one]
-    road = roads[-1]._replace(longest=max((one.longest for one in roads if one.longest is not None), default=None)) \
-        if roads else None
+    road = roads[-1]._replace(
+        longest=max((one.longest for one in roads if one.longest is not None), default=None),
+        brought=functools.reduce(AtRoad.and_of, [one.brought for one in roads])) if roads else None
     found = answer.of(paper_of(said[paper]), ensemble_of(said[ensemble]), road)
     if found:
         for path, about in said.items():

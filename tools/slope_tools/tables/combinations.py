@@ -207,12 +207,12 @@ def stood(few: Sequence[Row], rows: Sequence[Row]) -> Optional[int]:
 
 
 def starts(best: Mapping[str, Any]) -> List[str]:
-    """What only another start of the lattice gives: the range over the repeats of the governing combination, a line."""
+    """What only another start of the balls gives: the range over the repeats of the governing combination, a line."""
     if not best.get("starts_m3"):       # one run, or a study of an older version
         return []
     low, high = (headline.text(value, best["place_m3"]) for value in best["starts_m3"])
     number = f"{low} to {high}" if low != high else high
-    return [f"another start of the lattice gives {number} m3 on the same site ({best['repeats']} runs)"]
+    return [f"another start of the balls gives {number} m3 on the same site ({best['repeats']} runs)"]
 
 
 def describe(best: Mapping[str, Any]) -> List[str]:

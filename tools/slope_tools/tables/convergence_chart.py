@@ -1,18 +1,18 @@
 """The chart of `slope sensitivity --converge`: every run, the line, and its end at size 0 with the 95 % interval."""
-import matplotlib
 import numpy as np
+from matplotlib.ticker import StrMethodFormatter
 
 from ..drawing import pictures
-from ..drawing.figures import COLOURS, FULL, GRAY, STYLE, plt
+from ..drawing.figures import COLOURS, FULL, GRAY, STYLE
 
 NAMES = {"d": "diameter of the balls d (m)"}
 
 
 def draw(path, variable, panels, title):
     """Write the chart (PNG); panels: list of (name, unit, Convergence, [(size, value of a run), ...])."""
-    with plt.rc_context(STYLE):
+    with pictures.settings(STYLE):
         width = FULL if len(panels) > 1 else 0.6 * FULL
-        figure, axes = plt.subplots(1, len(panels), figsize=(width, 2.9), squeeze=False)
+        figure, axes = pictures.subplots(1, len(panels), figsize=(width, 2.9), squeeze=False)
         for axis, (name, unit, fit, points) in zip(axes[0], panels):
             largest = max(size for size, _ in points)
             d = np.linspace(0, 1.04 * largest, 200)
@@ -34,7 +34,7 @@ def draw(path, variable, panels, title):
             axis.set_title(f"{name} ({unit})", loc="left")
             axis.set_xlabel(NAMES.get(variable, variable))
             axis.set_xlim(0, 1.04 * largest)
-            axis.yaxis.set_major_formatter(matplotlib.ticker.StrMethodFormatter("{x:,.6g}"))
+            axis.yaxis.set_major_formatter(StrMethodFormatter("{x:,.6g}"))
             axis.grid(color="#dddddd", lw=0.5)
             axis.set_axisbelow(True)
             axis.spines[["top", "right"]].set_visible(False)

@@ -5,7 +5,7 @@ A finding has the numbers of the gravest run, which is the first of its runs.
 from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence
 
 from ..case.logs import kind
-from ..deposits import rest
+from ..deposits import left_words, rest
 from ..deposits.travel_shares import BEYOND
 from ..findings import Finding, finding, gathered
 from ..sites.site_warnings import of_volume
@@ -68,9 +68,11 @@ def lost(finished: Sequence[Row]) -> List[Finding]:
     if not gone:
         return []
     much = any(volume[id(row)] > BEYOND * row["released_m3"] for row in gone)
-    most = float(volume[id(gone[0])])
+    most, left = float(volume[id(gone[0])]), gone[0].get("left") or ()
     return [Finding("lost much" if much else "lost", {
         "volume": most, "percent": 100 * most / gone[0]["released_m3"], "up_to": "up to " * (len(gone) > 1),
+        "where": f" ({left_words.where(left)})" if left else "",
+        "add": f" by {left_words.to_add(left)}" if left else "",
         "of": len(finished)}, tuple(name for row in gone for name in of(row)))]
 
 

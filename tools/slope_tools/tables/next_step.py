@@ -65,9 +65,9 @@ def step_of(made: Made, code: Code, of: Mapping[str, Any]) -> Optional[Step]:
     if code is not Code.RULE:
         return None
     rule = Rule(of["rule"])
-    if rule is Rule.LEFT:
-        return Step(*larger_terrain(made), made.seconds)
     mine = next((one for one in made.withheld if one["kind"] == rule.value), None)
+    if rule is Rule.LEFT:
+        return Step(*larger_terrain(made, str(((mine or {}).get("numbers") or {}).get("add") or "")), made.seconds)
     words = {Rule.BALLS: "smaller balls in the model", Rule.SIZE: "smaller balls in the model",
              Rule.RUNS: "more time for the mass to come to rest", Rule.MOBILITY: "runs with less resistance"}
     return Step(words[rule], mine["remedy"], times(made, rule, of)) if mine else None
@@ -96,14 +96,15 @@ def more_runs(made: Made) -> Optional[Step]:
     return Step("more runs", ensemble(made, MORE), None if whole is None else (MORE - 1) * whole)
 
 
-def larger_terrain(made: Made) -> Tuple[str, str]:
-    site = made.site
+def larger_terrain(made: Made, add: str = "") -> Tuple[str, str]:
+    """add: how much on which side, in words."""
+    site, larger = made.site, "a larger elevation model" + f", by {add}" * bool(add)
     if site is None:
-        return ("a larger elevation model, and the box of the deck with it",
+        return (f"{larger}, and the box of the deck with it",
                 f"tools/slope study {quote(str(made.study['study']['deck']))} ... --anew")
     folder = quote(str(site))
-    return "a larger elevation model", (f"terrain.files, terrain.bounds in {folder}/{site_choices.NAME}, then: "
-                                        f"tools/slope site {folder} && tools/slope study {folder} --anew")
+    return larger, (f"terrain.files, terrain.bounds in {folder}/{site_choices.NAME}, then: "
+                    f"tools/slope site {folder} && tools/slope study {folder} --anew")
 
 
 def ensemble(made: Made, factor: int = 1, wider: bool = False) -> str:

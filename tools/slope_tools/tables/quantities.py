@@ -4,7 +4,7 @@ Tables on the screen, study.csv, study.yaml, pages, charts, ensembles and their 
 entry, with its place in a summary; else studies/results gives its value.
 """
 from enum import Flag, auto
-from typing import Any, Callable, Dict, Iterable, List, Mapping, NamedTuple, Union
+from typing import Any, Callable, Dict, Iterable, List, Mapping, NamedTuple, Optional, Union
 
 from ..deposits import rest, travel_shares
 from ..mobility.run_length import ON_PATH, STRAIGHT
@@ -101,6 +101,8 @@ OF_ROAD = (
     Quantity("remove_on_road_m3", "on the road", "m3", PAGE_MEAN | MATTERS, screen=KNOWN, page=KNOWN, keeps=14,
              title="Volume on the road"),
     Quantity("remove_beside_road_m3", "beside the road", "m3", ASKED),
+    Quantity("before_road_m3", "before the road", "m3", ASKED, maybe=True),
+    Quantity("on_road_m3", "on the road, or left the terrain on it", "m3", maybe=True),
     Quantity("beyond_road_m3", "beyond the road", "m3", PAGE_MEAN | MATTERS, head="beyond it", screen=KNOWN,
              page=KNOWN, keeps=11, maybe=True),
     Quantity("blocked_m", "blocked length", "m", ASKED | MATTERS, head="blocked", screen=WHOLE, page=KNOWN, keeps=8),
@@ -169,6 +171,15 @@ def of_length(length) -> Dict[str, Any]:
     return {LENGTH: length and length.distance,
             "length_is": length and (ON_PATH if length.on_path else STRAIGHT),
             "length_by_lobe_m": length and list(length.others), "length_deg": length and length.angle}
+
+
+def of_division(divided: Optional[Row], left: Optional[Row]) -> Dict[str, Any]:
+    """Those of the mass on both sides of a road, by `divided` and `left` of volume.yaml; None is not known."""
+    def of(key):
+        return divided and divided[key]
+    return {"before_road_m3": of("before"), "on_road_m3": of("on"), "beyond_road_m3": of("past"),
+            "past_end_m3": of("past_end"), "unknown_m3": of("unknown"), "left": left and left["sides"],
+            "left_before_road_m3": left and left["road_ahead"]}
 
 
 def number(value, sign=""):

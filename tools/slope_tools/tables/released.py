@@ -3,11 +3,12 @@ import math
 from typing import List, NamedTuple, Optional
 
 from .. import digits, disk
-from ..case.logs import removed
+from ..case import logs
 from ..findings import Finding
+from ..releases import packing
 
-CUBIC = 6 / math.pi         # bulk volume of balls in a simple cubic packing / volume of the balls
-DOUBTFUL = 0.15             # the bulk factor is farther from that only if the balls are not the body
+CUBIC = 6 / math.pi         # bulk volume of balls on a simple cubic lattice / volume of the balls
+DOUBTFUL = 0.15             # the bulk factor is farther from the usual one only if the balls are not the body
 
 
 class Release(NamedTuple):
@@ -17,6 +18,17 @@ class Release(NamedTuple):
     factor: float                   # bulk volume / volume of the balls
     from_cubic: float               # factor / (6/pi) - 1
     removed: Optional[float]        # share of the balls that delete_balls took away at the start
+    packed: bool = False            # whether they began in a disordered packing, not on a lattice
+
+    @property
+    def usual(self) -> str:
+        """The bulk factor where no ball is missing, as it is written."""
+        return f"1/{packing.SOLID:.2f}" if self.packed else "6/pi"
+
+    @property
+    def off(self) -> float:
+        """factor / (the usual one) - 1"""
+        return (1 + self.from_cubic) * CUBIC / packing.BULK - 1 if self.packed else self.from_cubic
 
     @property
     def left_out(self):
@@ -32,12 +44,12 @@ class Release(NamedTuple):
     def doubts(self) -> List[Finding]:
         """Why the released mass may not be the body: one reason, or none."""
         also = {"released": self.released, "of_body": f" of {digits.cubic(self.body)}" if self.body else ""}
-        if abs(self.from_cubic) > DOUBTFUL:
-            why = "there are more balls than the body has room for" if self.from_cubic < 0 else (
-                f"the balls fill only {100 / (1 + self.from_cubic):.0f} % of the body, and each stands for more ground "
+        if abs(self.off) > DOUBTFUL:
+            why = "there are more balls than the body has room for" if self.off < 0 else (
+                f"the balls fill only {100 / (1 + self.off):.0f} % of the body, and each stands for more ground "
                 "than it has room for")
-            return [Finding("bulk factor", {"factor": self.factor, "off": percent(abs(self.from_cubic)), "why": why,
-                                            "side": "below" if self.from_cubic < 0 else "above", **also})]
+            return [Finding("bulk factor", {"factor": self.factor, "off": percent(abs(self.off)), "why": why,
+                                            "usual": self.usual, "side": "below" if self.off < 0 else "above", **also})]
         if self.left_out is not None and abs(self.left_out) > DOUBTFUL:
             return [Finding("body volume", {"off": percent(abs(self.left_out)), "body": self.body,
                                             "side": "less" if self.left_out > 0 else "more", **also})]
@@ -56,11 +68,12 @@ def over_runs(releases, factor=True):
                      "the ground and were removed")
     if releases and factor:
         factors = sorted(one.factor for one in releases)
-        farthest = max(releases, key=lambda one: abs(one.from_cubic)).from_cubic
-        side = f"{percent(abs(farthest))} {'above' if farthest > 0 else 'below'} 6/pi"
+        farthest = max(releases, key=lambda one: abs(one.off))
+        side = f"{percent(abs(farthest.off))} {'above' if farthest.off > 0 else 'below'} {farthest.usual}"
         most = "at most " if factors[0] < factors[-1] else ""
         about.append(f"bulk factor {span([f'{factors[0]:.4g}', f'{factors[-1]:.4g}'])}, "
-                     + ("6/pi" if abs(farthest) < 5e-4 else most + side) + " (6/pi: balls in a cubic lattice)")
+                     + (farthest.usual if abs(farthest.off) < 5e-4 else most + side)
+                     + f" ({farthest.usual}: balls {'without order' if farthest.packed else 'in a cubic lattice'})")
     return "; ".join(about)
 
 
@@ -89,4 +102,4 @@ def release(summary, texts):
     body, factor, off = (about.get(key) for key in ("body_volume", "bulk_factor", "from_cubic"))
     factor = factor if disk.is_number(factor) and factor > 0 else summary["bulk_factor"]
     return Release(summary["volume"]["released"], body if disk.is_number(body) and body > 0 else None, factor,
-                   off if disk.is_number(off) else factor / CUBIC - 1, removed(texts))
+                   off if disk.is_number(off) else factor / CUBIC - 1, logs.removed(texts), logs.packed(texts))

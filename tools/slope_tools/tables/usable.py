@@ -2,7 +2,8 @@
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
-from ..deposits import deposit, scar
+from ..deposits import deposit, left_words, scar
+from ..deposits.road_sides import BEFORE
 from ..mobility import known
 from ..mobility.road import at_road
 from ..statistics import answer, withheld
@@ -27,8 +28,8 @@ class Events(NamedTuple):
     passed: Tuple[float, float]
 
     def road(self, rows: Sequence[Row]) -> answer.Road:
-        """With the longest of a study's runs."""
-        return answer.Road(self.near, self.far, self.reached, self.passed, longest(rows))
+        """With the runs of a study."""
+        return answer.Road(self.near, self.far, self.reached, self.passed, longest(rows), at_the_road(rows))
 
 
 def known_events(prefix: Path, terrain: Optional[Path], road, about: Mapping[str, Any]) -> Optional[Events]:
@@ -53,6 +54,24 @@ def longest(rows: Sequence[Row]) -> Optional[float]:
     return max((row["length_m"] for row in rows if row.get("length_m") is not None), default=None)
 
 
+def at_the_road(rows: Sequence[Row]) -> answer.AtRoad:
+    """How many of the runs that finished bring a ball to the road, or past it: what lies there at the end, or left the
+    terrain there. A lobe counts, however small.
+    """
+    ball = [row["ball_m3"] for row in rows]
+    past = [row["beyond_road_m3"] or 0.0 for row in rows]
+    brought = [(row["on_road_m3"] or 0.0) + one for row, one in zip(rows, past)]
+    balls, most = max((one / size, one) for one, size in zip(brought, ball))
+    return answer.AtRoad(len(rows), sum(one >= size for one, size in zip(brought, ball)),
+                         sum(one >= size for one, size in zip(past, ball)), most, balls)
+
+
+def left_before(row: Row) -> float:
+    """m3 that left the terrain with the road ahead; where it is not known which balls did, all that left."""
+    known = row["left_before_road_m3"]
+    return row["off_grid_m3"] + row["lost_m3"] if known is None else known
+
+
 def facts(rows: Sequence[Row], volume: float, on_road: float, events: Optional[Events], size: str = "") -> Facts:
     """Of the rows of a study with a road, of which one finished at least.
 
@@ -60,10 +79,13 @@ def facts(rows: Sequence[Row], volume: float, on_road: float, events: Optional[E
     not trusted.
     """
     finished = [row for row in rows if row["status"] == "finished"]
+    worst = max(finished, key=lambda row: left_before(row) / row["released_m3"])
+    left = [one for one in worst["left"] or () if one.get("where") == BEFORE]
+    where = f": {left_words.where(left)}" if left else ": it is not known where, as the runs are of an older version" \
+        if worst["left_before_road_m3"] is None else ""
     return Facts(volume, on_road, min(row["ball_m3"] for row in finished), len(rows), len(rows) - len(finished),
-                 sum(not row["at_rest"] for row in finished),
-                 max(row["left_before_road_m3"] / row["released_m3"] for row in finished),
-                 longest(finished), events and events.median, size)
+                 sum(not row["at_rest"] for row in finished), left_before(worst) / worst["released_m3"],
+                 longest(finished), events and events.median, where, left_words.to_add(left), size)
 
 
 def reasons_of_ensemble(rows: Sequence[Row], events: Optional[Events], case: Case) -> List[Dict[str, Any]]:

@@ -32,8 +32,9 @@ def remedy(reason: Finding, case: Case) -> str:
     if reason.kind == Kind.MOBILITY:
         return mobile(case)
     if reason.kind == Kind.LEFT:
-        return changed(case, "a larger elevation model (terrain.files, terrain.bounds)",
-                       "a larger terrain and box in the deck")
+        more = f", by {reason.numbers['add']}" if reason.numbers["add"] else ""
+        return changed(case, f"a larger elevation model{more} (terrain.files, terrain.bounds)",
+                       f"a larger terrain and box in the deck{more}")
     if 2 * reason.numbers["failed"] > reason.numbers["number"]:
         return "the same command again, once the cause of the failures is removed"
     return changed(case, "more time (model.duration)", "the same command with more time"

@@ -11,7 +11,7 @@ import yaml
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-from .. import disk, processes, provenance, schemas, findings
+from .. import disk, findings, processes, provenance, schemas, streams
 from ..case import last_words, logs
 from ..errors import SlopeError
 from ..runs import jobs
@@ -104,7 +104,7 @@ class Bar:
     """How far the runs are: a bar on a terminal, else nothing for single runs and a line each for many."""
 
     def __init__(self, total):
-        self.live = sys.stderr.isatty() and total > 1
+        self.live = streams.is_terminal(sys.stderr) and total > 1
         self.as_lines = total > 1 and not self.live
         self.bar = Progress(TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(),
                             console=Console(stderr=True), transient=True)

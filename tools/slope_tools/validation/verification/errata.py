@@ -40,4 +40,26 @@ def errata():
                 f"They are 1.96e9 N/m, and 1.19e6 and 3.09e6 N s/m: with Table 5's ball ({MASS:.1f} kg) the formula "
                 f"gives {soil:.3g} N s/m for 0.48 and {field:.3g} N s/m for 0.1.",
                 ("table_4_moving",)),
+        Erratum("The larger the rolling resistance, the smaller the outflow: not in company J's numbers",
+                "\"The larger the rolling resistance coefficient, the smaller the outflow amount of soil becomes.\"",
+                "Company J's volume is largest at 0.05: 24,048, 26,009 and 22,340 m3. The paper notes that the trends "
+                "of the two codes differ.", ()),
+        Erratum("In Table 3's case 3 the ball rotates without sliding",
+                "\"The element slides in cases 2 and 3.\"",
+                "Case 3 of Table 3 rotates without sliding, as the simulation here does.", ()),
+        Erratum("There are two Tables 5, and Tables 4 and 5 are named in reverse",
+                "\"Table 4 and 5 show the parameters for the balls and their contact\".",
+                "Table 4 has the contacts, Table 5 the balls; the volumes to be removed are a Table 5, too, which "
+                "these pages call the second.", ()),
+        Erratum("Table 3 does not have the rolling coefficients of the parameter study",
+                "\"Using the rolling resistance coefficients in Table 3\".",
+                "Table 3 has 0.58 and 0.56, of the ball at rest on another; those of the study, 0.0, 0.05 and 0.10, "
+                "are in the second Table 5.", ()),
+        Erratum("The runs on restitution are in Figure 5, not in Fig. 8",
+                "\"With a restitution coefficient of 0.45, as in Fig. 8\"; \"the analysis shown in Fig. 8 was "
+                "conducted with dt = 1.2 x 10-4\".",
+                "Figure 8 shows sliding and rolling. The coefficient of Figure 5 is 0.445.", ()),
+        Erratum("Two headings are alike",
+                "\"Verification of a numerical simulation of the restitution experiment\", over parts 1 and 2.",
+                "Part 2 is on the time step.", ()),
     ]

@@ -1,0 +1,208 @@
+/* ----------------------------------------------------------------------
+   SLOPE package for LAMMPS: collapse of slopes by the simple DEM model
+   Distributed under the GNU General Public License, version 2
+------------------------------------------------------------------------- */
+
+#include "deposit_left.h"
+
+#include "deposit_balls.h"
+#include "deposit_options.h"
+#include "large_messages.h"
+#include "region_surface.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <set>
+
+using namespace LAMMPS_NS;
+using Slope::BallPath;
+using Slope::LeftBall;
+
+enum { X, Y };
+
+static_assert(sizeof(BallPath) == BallPath::NUMBERS * sizeof(double), "numbers only");
+
+/* ---------------------------------------------------------------------- */
+
+DepositLeft::DepositLeft(LAMMPS *lmp, const DepositBalls &balls_in,
+                         const DepositOptions &options_in) :
+    Pointers(lmp),
+    balls(balls_in), options(options_in), extra(lmp, "path"),
+    sampled(std::numeric_limits<double>::quiet_NaN())
+{
+}
+
+DepositLeft::~DepositLeft() = default;
+
+/* ---------------------------------------------------------------------- */
+
+void DepositLeft::begin_run()
+{
+  ground.reset(new RegionSurface(lmp, "Fix deposit/grid terrain", options.terrain.c_str(),
+                                 RegionSurface::UPPER));
+}
+
+/* ----------------------------------------------------------------------
+   into the box where it is periodic: ground is there
+------------------------------------------------------------------------- */
+
+void DepositLeft::wrap(double *x) const
+{
+  for (int dim = X; dim <= Y; dim++) {
+    if (!domain->periodicity[dim] || domain->triclinic) continue;
+    const double lo = domain->boxlo[dim], length = domain->boxhi[dim] - lo;
+    x[dim] -= length * std::floor((x[dim] - lo) / length);
+  }
+}
+
+bool DepositLeft::over_ground(const double *place) const
+{
+  double x[2] = {place[X], place[Y]}, z;
+  wrap(x);
+  for (int dim = X; dim <= Y; dim++)
+    if (x[dim] < options.grid.lo[dim] || x[dim] > options.grid.hi[dim]) return false;
+  return ground->height(x[X], x[Y], z);
+}
+
+/* ---------------------------------------------------------------------- */
+
+BallPath DepositLeft::path_now(int i, double now) const
+{
+  BallPath path = paths[i];
+  double x[3];
+  balls.unwrap(i, x);
+  path.move(x, std::isnan(sampled) ? now : sampled, now, [this](const double *place) {
+    return over_ground(place);
+  });
+  return path;
+}
+
+LeftBall DepositLeft::left_ball(int i, const BallPath &path) const
+{
+  LeftBall ball = {(double) atom->tag[i],
+                   balls.volume_of(i),
+                   path.left,
+                   {path.at[X], path.at[Y]},
+                   {path.start[X], path.start[Y]}};
+  wrap(ball.x);
+  return ball;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void DepositLeft::sample(double now)
+{
+  std::string changed;
+  if (!ground->stands(changed))    // of a run with pre no
+    error->all(FLERR, "Fix deposit/grid terrain region {} must not change before the run ends",
+               changed);
+  for (int i = 0; i < atom->nlocal; i++)
+    if (balls.selected(i)) paths[i] = path_now(i, now);
+  sampled = now;
+}
+
+/* ----------------------------------------------------------------------
+   one that leaves the box above ground left there
+------------------------------------------------------------------------- */
+
+void DepositLeft::lose(int i, double now)
+{
+  BallPath path = path_now(i, now);
+  if (!path.is_out()) path.left = now;
+  gone.push_back(left_ball(i, path));
+}
+
+/* ---------------------------------------------------------------------- */
+
+void DepositLeft::begin_command(const std::vector<int> &outside, double now)
+{
+  doubtful.clear();
+  const size_t before = gone.size();
+  for (const int i : outside) lose(i, now);
+  doubtful.assign(gone.begin() + before, gone.end());
+  gone.resize(before);
+}
+
+void DepositLeft::end_command(const std::vector<int> &still)
+{
+  int mine = !doubtful.empty(), any;
+  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+  if (!any) return;
+  std::vector<double> tags;
+  for (const int i : still) tags.push_back((double) atom->tag[i]);
+  tags = gather_records(world, tags);
+  const std::set<double> there(tags.begin(), tags.end());
+  for (const LeftBall &ball : gather_records(world, doubtful))
+    if (!there.count(ball.tag)) gone.push_back(ball);
+  doubtful.clear();
+}
+
+/* ---------------------------------------------------------------------- */
+
+std::string DepositLeft::csv(double now) const
+{
+  std::vector<LeftBall> mine = gone;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!balls.selected(i)) continue;
+    const BallPath path = path_now(i, now);
+    if (path.is_out()) mine.push_back(left_ball(i, path));
+  }
+  return Slope::left_csv(gather_records(world, mine));
+}
+
+/* ----------------------------------------------------------------------
+   storage by atom
+------------------------------------------------------------------------- */
+
+int DepositLeft::pack(int i, double *buf) const
+{
+  memcpy(buf, &paths[i], sizeof(BallPath));
+  return BallPath::NUMBERS;
+}
+
+int DepositLeft::unpack(int i, const double *buf)
+{
+  memcpy(&paths[i], buf, sizeof(BallPath));
+  return BallPath::NUMBERS;
+}
+
+// as LAMMPS wants it, the length first
+
+int DepositLeft::pack_restart(int i, double *buf) const
+{
+  buf[0] = RESTART;
+  return 1 + pack(i, buf + 1);
+}
+
+void DepositLeft::unpack_restart(int i, int nth)
+{
+  if (const double *from = extra.find(i, nth, RESTART, 0)) unpack(i, from + 1);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void DepositLeft::collect()
+{
+  gone = gather_records(world, gone);
+}
+
+void DepositLeft::archive(Slope::Archive &archive)
+{
+  archive.number("left_sampled", sampled);
+  archive.records("left", gone);
+  if (archive.reads() && comm->me > 0) gone.clear();
+}
+
+/* ---------------------------------------------------------------------- */
+
+double DepositLeft::bytes() const
+{
+  return (double) paths.capacity() * sizeof(BallPath) + (double) gone.capacity() * sizeof(LeftBall);
+}

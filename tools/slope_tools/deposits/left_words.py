@@ -1,0 +1,50 @@
+"""What is said of the balls that left the terrain: how much where, and how much terrain to add."""
+from typing import Any, Dict, Mapping, Optional, Sequence
+
+from ..digits import rounded
+from .gone import DUMPS, HOLE
+from .passed import AROUND
+from .road_sides import BEFORE, ON, PAST
+
+MOST = 3                # entries that are named
+BESIDE = {BEFORE: "{:,.0f} m before the road", ON: "on the road", PAST: "{:,.0f} m beyond the road",
+          AROUND: "{:,.0f} m beyond the road, past its end"}
+
+Entry = Mapping[str, Any]       # of gone.groups()
+
+
+def where(entries: Sequence[Entry]) -> str:
+    """How much left where."""
+    named = [f"{rounded(one['volume'], 3)} m3 {side(one)}{beside(one)}" for one in entries[:MOST]]
+    rest = sum(one["volume"] for one in entries[MOST:])
+    return "; ".join([*named, *([f"{rounded(rest, 3)} m3 elsewhere"] if rest > 0 else [])])
+
+
+def side(one: Entry) -> str:
+    return "in a hole of the terrain" if one["side"] == HOLE else f"in the {one['side']}"
+
+
+def beside(one: Entry) -> str:
+    """On which side of the road; "" without one."""
+    return ", " + BESIDE[one["where"]].format(one["distance"]) if "where" in one else ""
+
+
+def to_add(entries: Sequence[Entry]) -> str:
+    """How much terrain on which side, the most first; "" where none is missing."""
+    most: Dict[str, Optional[float]] = {}
+    for one in entries:
+        if one["side"] == HOLE or one["add"] is None:
+            most.setdefault(HOLE, None)
+        else:
+            most[one["side"]] = max(most.get(one["side"]) or 0.0, one["add"])
+    sides = sorted(((name, add) for name, add in most.items() if add is not None), key=lambda one: -one[1])
+    named = [f"about {add:,.0f} m in the {name}" for name, add in sides]
+    return ", ".join([*named, *(["heights in the hole (slope terrain --fill)"] if HOLE in most else [])])
+
+
+def told(about: Optional[Mapping[str, Any]]) -> str:
+    """Of `left` of volume.yaml, a sentence without its full stop; "" where nothing left."""
+    if about is None or not about["sides"]:
+        return ""
+    known = f" (from dumps, to {about['within']:,.0f} m)" if about["source"] == DUMPS else ""
+    return f"{where(about['sides'])}{known}; for what left to come to rest on the terrain add {to_add(about['sides'])}"

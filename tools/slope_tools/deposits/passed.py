@@ -1,0 +1,101 @@
+"""What of a mass lies before a road, on it and beyond it, or left the terrain there."""
+from pathlib import Path
+from typing import Any, Dict, NamedTuple, Optional
+
+import numpy as np
+from scipy import ndimage
+from shapely.geometry import LineString, Point
+from shapely.geometry.base import BaseGeometry
+from shapely.prepared import prep
+
+from .. import geometry
+from . import gone
+from .deposit import Deposit
+from .gone import Gone, Ground
+from .road_sides import BEFORE, ON, PAST, Sides, divide
+
+AROUND = "past its end"      # beyond the road, but not across it
+PARTS = BEFORE, ON, PAST
+
+
+class Left(NamedTuple):
+    """Of balls that left: BEFORE, ON or PAST; whether a road was ahead; whether it went past an end; m to the road."""
+    part: np.ndarray
+    ahead: np.ndarray
+    around: np.ndarray
+    distance: np.ndarray
+
+
+def of_run(run: Deposit, road: BaseGeometry, line: Optional[LineString]) -> Dict[str, Any]:
+    """What volume.yaml says; None where the run does not tell where its mass began.
+
+    road: polygons in local metres, in the grid of the run; line: its axis, of a road that is one.
+    """
+    ground = Ground.of(run)
+    if ground is None:
+        return {"divided": None, "left": None}
+    return of_mass(ground, divide(road, line, ground.raster, ground.released), gone.read(Path(run.prefix), ground))
+
+
+def of_mass(ground: Ground, sides: Sides, left: Optional[Gone]) -> Dict[str, Any]:
+    """What volume.yaml says, m3: `divided`, whose before, on, past and unknown are what was released, and `left`.
+
+    A ball that left counts with all of its volume where it left; so does what is beyond an edge of those that did not.
+    left: None where it is not known which balls did; it is unknown then where they are.
+    """
+    mass, edge = (per_part(values, ground, sides) for values in (
+        np.where(ground.known, ground.raster.z, 0.0), np.where(rim(ground.known), ground.raster.z, 0.0)))
+    around = on_cells(np.where(ground.known, ground.raster.z, 0.0), sides.past.difference(sides.straight), ground)
+    unknown = ground.gone
+    about: Optional[Dict[str, Any]] = None
+    if left is not None:
+        balls = beside(left, sides)
+        about = of_balls(left, balls, ground)
+        around += about["past_end"]
+        over = ground.gone - about["volume"]      # halves of balls at the edge, above ground or not
+        total = sum(edge.values())
+        for name in PARTS:
+            mass[name] += about[name] + over * (edge[name] / total if total > 0 else float(name == BEFORE))
+        unknown = 0.0
+    return {"divided": {**mass, "past_end": min(around, mass[PAST]), "unknown": unknown}, "left": about}
+
+
+def per_part(values: np.ndarray, ground: Ground, sides: Sides) -> Dict[str, float]:
+    """m3 of a thickness in each part."""
+    return {name: on_cells(values, area, ground) for name, area in zip(PARTS, (sides.before, sides.road, sides.past))}
+
+
+def on_cells(values: np.ndarray, area: BaseGeometry, ground: Ground) -> float:
+    rows, columns = values.shape
+    lines = np.arange(columns + 1.0), np.arange(rows + 1.0)
+    share = geometry.coverage(geometry.to_index(area, ground.raster), *lines)[0]
+    return float((share * values).sum() * ground.cell ** 2)
+
+
+def rim(known: np.ndarray) -> np.ndarray:
+    """Cells with ground beside the edge, or beside one without."""
+    return known & ~ndimage.binary_erosion(known, np.ones((3, 3)))
+
+
+def beside(left: Gone, sides: Sides) -> Left:
+    part = sides.of_places(left.place)
+    road, ahead, before = prep(sides.road), prep(sides.ahead), sides.before
+    points = [Point(place) for place in left.place]
+    in_ahead = np.array([one == BEFORE or one == PAST and ahead.intersects(point) for one, point in zip(part, points)],
+                        bool)
+    # of a frame of dumps: it may have left before the road
+    near = np.array([within > 0 and before.distance(point) <= within for within, point in zip(left.within, points)],
+                    bool)
+    around = np.array([one == PAST and not road.intersects(LineString([start, place]))
+                       for one, start, place in zip(part, left.start, left.place)], bool)
+    return Left(part, in_ahead | near, around, np.array([sides.road.distance(point) for point in points]))
+
+
+def of_balls(left: Gone, balls: Left, ground: Ground) -> Dict[str, Any]:
+    def volume(mask) -> float:
+        return float(left.volume[mask].sum())
+    where = np.where(balls.around, AROUND, balls.part)
+    return {"source": left.source, "volume": volume(slice(None)), "balls": len(left.volume),
+            **{name: volume(balls.part == name) for name in PARTS}, "past_end": volume(balls.around),
+            "road_ahead": volume(balls.ahead), "within": float(left.within.max(initial=0.0)),
+            "sides": gone.groups(left, ground, where, balls.distance)}
