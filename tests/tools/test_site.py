@@ -539,6 +539,7 @@ def test_the_time_step_is_the_decks(done):
     d, *soil = (float(variables[name]) for name in ("d", "density", "thick", "speed"))
     wanted = site_budget.time_step(d, site_budget.Soil(*soil))
     assert summary["dt"] == pytest.approx(wanted, rel=1e-6)
+    assert summary["motion"]["rest_share"] == site_deck.REST == float(variables["rest"])
 
 
 @pytest.mark.parametrize("per_step, skin", [(1e-5, 0.2), (0.0016, 0.2), (0.0036, 0.3), (0.0100, 0.5), (0.0144, 0.6), (1, 0.6)])
