@@ -161,7 +161,9 @@ def test_two_commands_lead_from_gis_files_to_a_report(done):
     # so few balls do not tell the size error
     assert study["step"]["volume_m3"] > 0 and study["step"]["text"] in second
     assert study["step"]["step"] == 0.5
-    assert all(row["stiffness_number"] > 0.98 * site_budget.STIFFNESS_NUMBER for row in study["runs"])
+    # of the mass that a lattice of so few balls makes of the body
+    assert all(row["stiffness_number"] == pytest.approx(site_budget.STIFFNESS_NUMBER, rel=0.15)
+               for row in study["runs"])
     spent = study["step"]["energy"]
     assert spent["gravity"] > spent["sliding"] > 0
     assert abs(spent["residual"]) < 1e-3 * spent["gravity"] and abs(spent["begin_end"]) < 0.02 * spent["gravity"]
@@ -537,6 +539,7 @@ def test_the_time_step_is_the_decks(done):
     d, *soil = (float(variables[name]) for name in ("d", "density", "thick", "speed"))
     wanted = site_budget.time_step(d, site_budget.Soil(*soil))
     assert summary["dt"] == pytest.approx(wanted, rel=1e-6)
+    assert summary["motion"]["rest_share"] == site_deck.REST == float(variables["rest"])
 
 
 @pytest.mark.parametrize("per_step, skin", [(1e-5, 0.2), (0.0016, 0.2), (0.0036, 0.3), (0.0100, 0.5), (0.0144, 0.6),
