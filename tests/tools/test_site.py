@@ -531,6 +531,19 @@ def test_a_budget_that_cannot_be_kept(balls, option):
         budget(**balls)
 
 
+@pytest.mark.parametrize("edge", [36, 55])
+def test_a_road_on_the_body_is_warned_of(told, gis, edge):
+    write_layer(gis / "wide.geojson", [(20, 0), (edge, 0), (edge, 80), (20, 80)])
+    status, _, err = told("--terrain", "dem.tif", "--release", "release.geojson", *BODY, "--road", "wide.geojson",
+                          "--balls", 100, "-o", "mine")
+    found = [line for line in err.splitlines() if "comes out under the road" in line]
+    assert status == 0 and len(found) == (edge > 48), err
+    for line in found:
+        depth, area = re.search(r"up to (\S+) m below ([\d,]+) m2", line).groups()
+        assert 0.5 < float(depth) < 5 and 150 < float(area.replace(",", "")) < 7 * 44
+    assert ("under road" in (gis / "mine" / "warnings.yaml").read_text()) == bool(found)
+
+
 def test_the_time_step_is_the_decks(done):
     """The estimate's time step against that of a run."""
     folder = done[0] / "mine"
