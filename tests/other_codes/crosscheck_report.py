@@ -49,6 +49,9 @@ def report(work):
                       "" if informs or isinstance(check.value, str) else cell(check.tolerance),
                       {True: "yes", False: "NO", None: ""}[check.passed])
     (Console() if sys.stdout.isatty() else Console(width=160)).print(shown)
+    for check in work.checks:
+        if check.case == "table":
+            print(f"{check.quantity}, {work.title[check.code]}: {check.reason}: {check.value}")
     for code in work.codes:
         for text in code.differs:
             print(f"{code.title}: {text}")

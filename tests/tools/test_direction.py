@@ -6,19 +6,20 @@ the plan grid of slip balls that sites once had, the thin body drifts.
 import os
 import subprocess
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from run_helpers import EAST, NORTH, centres, write_tif
-from test_site import inside
+from test_site import inside, work_in
 from tiny_collapse import LMP
 
 from slope_tools.survey import rasters
 
 pytestmark = [pytest.mark.long, pytest.mark.skipif(not os.environ.get("LMP"), reason="needs the LAMMPS program (LMP)")]
 
-SIDE, CELL = 150.0, 1.5         # m, of the terrain
+SIDE, CELL = 150.0, 1.0         # m, of the terrain
 SLOPE = np.tan(np.radians(33))
 TURNS = {"0": (0.0, 1), "22.5": (22.5, 1), "45": (45.0, 1), "mirrored": (22.5, -1)}
 SEEDS = (1, 2, 3, 4, 5, 6)
@@ -27,7 +28,9 @@ ERRORS = 3.5                    # standard errors of a mean, as of tests/ground_
 LATTICE = {"create_balls 1 ${d} ${density} fill body seed $(floor(v_packing))\n":
            "variable off equal v_packing/7\nlattice sc ${d} origin ${off} ${off} ${off}\ncreate_atoms 1 region body\n",
            "group       soil type 1\n": "group soil type 1\nset group soil diameter ${d} density 3411.4\n",
-           "sink ${sink} &\n            pattern scattered ${which}\n": "sink ${sink}\n"}
+           "sink ${sink} rim within &\n            pattern scattered ${which}\n": "sink ${sink}\n",
+           "fix         beyond soil wall/gran/balls 3 ${d} surface body lower spacing ${half} sink ${sink} rim beyond "
+           "&\n            pattern scattered ${which}\n": ""}
 
 
 def along(turn, x, y):
@@ -38,13 +41,16 @@ def along(turn, x, y):
 
 
 def site(folder, turn, depth, changed):
-    """A folder with a site: a body 44 m long and 32 m wide on 33 degrees, then level; flanks of 45 degrees."""
+    """A folder with a site: a body 44 m long and 32 m wide on 33 degrees, then level.
+
+    Both are smooth, so that the cells of the rasters, which do not turn, hardly show.
+    """
     folder.mkdir()
     n = round(SIDE / CELL)
     u, v = along(turn, *centres(n, n, CELL))
-    write_tif(folder / "dem.tif", np.maximum(0, -u) * SLOPE, CELL, EAST, NORTH)
-    inward = np.minimum(22 - abs(u + 26), 16 - abs(v))
-    write_tif(folder / "depth.tif", np.clip(inward, 0, depth), CELL, EAST, NORTH)
+    write_tif(folder / "dem.tif", (np.hypot(u, 6) - u) / 2 * SLOPE, CELL, EAST, NORTH)
+    cap = 1 - ((u + 26) / 22) ** 2 - (v / 16) ** 2
+    write_tif(folder / "depth.tif", np.maximum(cap, 0) * depth, CELL, EAST, NORTH)
     made = inside(folder, "site", "--terrain", "dem.tif", "--scar", "depth.tif", "--scar-is", "depth", "--balls", 300,
                   "-o", "mine")
     assert made.returncode == 0, made.stderr
@@ -59,9 +65,10 @@ def site(folder, turn, depth, changed):
 
 def run(folder, turn, seed):
     """Volumes beyond the toe and 8 m farther, and the way aside of the deposit's middle (m3, m)."""
-    subprocess.run([LMP, "-in", "in.site", "-log", f"{seed}.log", "-screen", "none", "-var", "packing", str(seed),
-                    "-var", "rolling", "0.05", "-var", "film", "1e6", "-var", "out", f"run{seed}"], cwd=folder,
-                   check=True, env={**os.environ, "OMP_NUM_THREADS": "1"}, stdin=subprocess.DEVNULL)
+    words = {"packing": seed, "rolling": 0.05, "film": 900, "out": f"run{seed}"}
+    subprocess.run([Path(LMP).absolute(), "-in", "in.site", "-log", f"{seed}.log", "-screen", "none",
+                    *(str(word) for name in words for word in ("-var", name, words[name]))], cwd=folder, check=True,
+                   env={**os.environ, "OMP_NUM_THREADS": "1"}, stdin=subprocess.DEVNULL)
     z = np.nan_to_num(rasters.read_asc_local(folder / f"run{seed}.thickness.asc").z)
     about = rasters.read_asc_local(folder / f"run{seed}.thickness.asc").transform
     x = about.c + about.a * (np.arange(z.shape[1]) + 0.5)
@@ -88,13 +95,15 @@ def off(found):
 
 
 @pytest.mark.parametrize("depth", [8.0, 3.0])
-def test_a_site_that_is_turned_or_mirrored(tmp_path, depth):
+def test_a_site_that_is_turned_or_mirrored(tmp_path, monkeypatch, depth):
+    work_in(tmp_path, monkeypatch)
     found = runs(tmp_path, depth, TURNS)
     print(found.mean(axis=1), off(found))
     assert (found[:, :, 0] > 100).all() and (off(found) < ERRORS).all()
 
 
-def test_the_grids_of_older_sites_have_a_direction(tmp_path):
+def test_the_grids_of_older_sites_have_a_direction(tmp_path, monkeypatch):
+    work_in(tmp_path, monkeypatch)
     found = runs(tmp_path, 3.0, ("0", "22.5"), LATTICE.items())
     print(found.mean(axis=1), off(found))
     assert (off(found) > ERRORS).any()

@@ -126,6 +126,19 @@ def test_a_site_is_the_run_of_the_first_page(slope, here, known, inside, run, pa
         assert tif.tags()["run"] == f"{run}, the governing run of mine/ensemble"
 
 
+def test_a_study_of_an_older_version_is_the_run_of_its_first_page(slope, here):
+    """By the rows, as on the page, where the file does not name the farthest run."""
+    for run in ("one", "two"):
+        Path("mine", run).mkdir(parents=True)
+        write_rasters(f"mine/{run}/site")
+    row = "{run: %s, status: finished, lost_m3: %g, released_m3: 100.0, front_m: %g, distance_99_m: %g}"
+    Path("mine/study.yaml").write_text(
+        f"conservative: null\nlargest: {{front_m: {{run: two}}}}\nruns:\n- {row % ('one', 0, 70, 60)}\n"
+        f"- {row % ('two', 0, 900, 50)}\n")
+    status, out, err = slope("mine")
+    assert status == 0 and "one, the governing run of mine" in out, err
+
+
 def test_without_a_terrain_in_local_metres(slope):
     write_rasters()
     status, out, err = slope("run")

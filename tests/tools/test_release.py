@@ -448,6 +448,22 @@ def test_a_closed_hollow_in_a_slip_surface(slope, no_picture):
     assert "hollow" not in slope("t.asc --scar cone.asc --scar-is depth -o other")[2]
 
 
+@pytest.mark.parametrize("middle, top, told", [(80, 500, True), (65, 500, True), (100, 500, False), (110, 30, False)])
+def test_a_slip_surface_that_comes_out_beyond_the_toe_is_warned_of(body, middle, top, told):
+    """The toe is at x = 60, the body 60 m long; a level crest, of which it may have a part, is no toe."""
+    terrain(lambda x, y: np.minimum(np.maximum(x - 60, 0) * 0.6, top))
+    x, y, depth = terrain(lambda x, y: 4 * np.clip(1 - ((x - middle) / 30) ** 2 - ((y - 100) / 20) ** 2, 0, None),
+                          "cap.asc")
+    _, about = body("t.asc --scar cap.asc --scar-is depth")
+    assert ("beyond toe" in warned(about)) == told
+    if told:
+        level = (depth > 0) & (x < 60)
+        said = warned(about)["beyond toe"]
+        # without the row of nodes beside the toe, where the slope is that of both
+        assert 0.6 * 4 * level.sum() < said["area"] <= 4 * level.sum()
+        assert 0.6 * depth[level].max() < said["depth"] <= depth[level].max() + 1e-3
+
+
 @pytest.mark.parametrize("shift", [-0.6, 0.0, 0.6])
 def test_two_surveys_over_different_datums(succeed, no_picture, shift):
     """That the datums are not compared is said; what the two differ by beside the body is, too."""

@@ -98,3 +98,14 @@ def test_a_file_of_the_energy_that_is_damaged_is_named(tmp_path):
     for rows in ([[0] + 10 * [1]], [[0] + 10 * [1] + ["nan"]]):
         with pytest.raises(SlopeError, match="site.energy: must be what the run wrote of its energy"):
             energy.read(written(tmp_path, *rows))
+
+
+@pytest.mark.parametrize("variables, half", [({"step": "1.0"}, "0.5"), ({"step": "1.5"}, "0.75"), ({}, "0.5")])
+def test_half_the_step_is_half_of_the_decks(variables, half):
+    assert step_check.half_of(variables) == half
+    assert step_check.compare(Step("0", 100.0, step=float(half)), groups())["step"] == float(half)
+
+
+def test_a_step_that_is_no_number_is_refused():
+    with pytest.raises(SlopeError, match="^step of the deck: must be a number, got "):
+        step_check.half_of({"step": "${fine}"})

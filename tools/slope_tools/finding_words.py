@@ -113,6 +113,11 @@ WORDS: Dict[str, Union[str, Words]] = {
     "few cells": "the body covers {cells} cells of {cell:g} m: use a finer terrain",
     "hollow": "the slip surface has a closed hollow, {depth:.3g} m deep, out of which the mass cannot slide: {remedy}",
     "rim": "the body is {depth:.3g} m deep at the rim of its area, where it ends in a wall: {remedy}",
+    "beyond toe": "the slip surface comes out beyond the toe: {area:,.0f} m2 of the body lie on level ground at its "
+                  "foot, up to {depth:.3g} m deep, over which it slides without the ground's friction; is a shallower "
+                  "body meant, or one that ends at the toe?",
+    "under road": "{file}: the slip surface comes out under the road, up to {depth:.3g} m below {area:,.0f} m2 of it, "
+                  "where the ground's friction does not act; is that the body you mean?",
     "shift": "beside the body {file} lies {metres:.3g} m {side} the terrain (median), which counts in the depths: "
              "vertical datums are not compared, are they the same?",
     "parts": "the body is in {parts} parts that do not touch, of {volumes} m3: is that the body you mean?",

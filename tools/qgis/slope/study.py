@@ -24,8 +24,8 @@ class Study(Algorithm):
     call continues after an interruption.
 
     Values: one NAME=V1,V2,... per line; A:B:STEP stands for A, A + STEP, ... up to B. Repeats name what is
-    chance (a variable called seed or ...offset), and give the scatter. Of a site, take site.yaml: it says all of
-    this, and the site's folder gets the results.
+    chance (a variable called seed, packing or ...offset), and give the scatter. Of a site, take site.yaml: it says
+    all of this, and the site's folder gets the results.
 
     Layers: largest thickness over all runs (m), and the share of the runs with a deposit thicker than 0.1, 0.5,
     1 m. Tables study.csv and combinations.csv: volumes in m3 of ground, lengths in m, times in s."""

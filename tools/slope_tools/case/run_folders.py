@@ -1,7 +1,7 @@
 """The files of a run: its summary and the rasters that fix deposit/grid wrote."""
 import os
 from pathlib import Path
-from typing import Any, Dict, Mapping, Optional, Tuple
+from typing import Any, Callable, Dict, Mapping, Optional, Tuple
 
 from .. import schemas
 from ..errors import SlopeError
@@ -34,6 +34,7 @@ GOVERNING = mapping({"conservative": mapping({"run": TEXT}, null=True)}, farthes
                     ensemble=mapping({}, null=True, of={"type": ["string", "null"]}, quantities=QUANTITIES,
                                      known_events=mapping({}, null=True, quantities=QUANTITIES)),
                     runs=listed(mapping({"run": TEXT}, summary=TEXT)))
+Farthest = Callable[[Mapping[str, Any]], Optional[str]]
 WHAT = "a summary that fix deposit/grid wrote"
 # what `slope volume`, `score` and `export` need of one, and what the others do
 OF_DEPOSIT = mapping({"volume": mapping(numbers("on_grid", "off_grid", "lost")), "time": NUMBER, "moving": FLAG,
@@ -65,8 +66,10 @@ def prefix_of(summary):
     return Path(str(summary).removesuffix(".summary.yaml"))
 
 
-def governing(about: Mapping[str, Any]) -> Optional[str]:
+def governing(about: Mapping[str, Any], farthest: Farthest = lambda about: None) -> Optional[str]:
     """The run that represents the headline of a study.yaml; else the one that went farthest. None: none finished.
+
+    farthest: tells the latter by the rows; where it says None, what the file says counts.
 
     Of an ensemble the one at the 90 % quantile of what counts, or the longest where known events go beyond all runs.
     """
@@ -81,13 +84,13 @@ def governing(about: Mapping[str, Any]) -> Optional[str]:
             return max(having, key=lambda row: row[of])["run"]
         return min(having, key=lambda row: abs(row[of] - at))["run"]
     best = about["conservative"] or about.get("largest", {}).get("front_m", {})      # the latter in older ones
-    return about["conservative"] and best["run"] or about.get("farthest") or best.get("run")
+    return about["conservative"] and best["run"] or farthest(about) or about.get("farthest") or best.get("run")
 
 
-def governing_run(study: Path) -> Tuple[str, Path]:
-    """Name and folder of the governing run of a study.yaml."""
+def governing_run(study: Path, farthest: Farthest = lambda about: None) -> Tuple[str, Path]:
+    """Name and folder of the governing run of a study.yaml; farthest: see governing()."""
     about = schemas.load(study, OF_STUDY, GOVERNING)
-    name = governing(about)
+    name = governing(about, farthest)
     if not name:
         raise SlopeError(study, f"must be {OF_STUDY}, with a finished run")
     for row in about.get("runs") or ():

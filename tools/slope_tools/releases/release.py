@@ -11,7 +11,7 @@ from ..errors import SlopeError
 from ..findings import Finding
 from ..survey import marks, plausible, polygons, rasters
 from ..survey.crs import as_crs
-from . import release_area, release_bodies, release_scar, release_solve
+from . import release_area, release_bodies, release_scar, release_solve, release_toe
 
 SHAPES = ("sphere", "ellipsoid", "plane", "slbl")
 LITTLE = 0.75   # share of the polygon; a base level that takes less of it is a doubtful body
@@ -233,6 +233,8 @@ def warnings(choices, found, area, slip) -> List[Finding]:
             doubts.append(Finding("hollow", {"depth": hollow, "remedy": "is it the mass on top of the terrain? Then "
                                              "--scar-is height" if choices["scar_is"] == "depth" else "a smaller body, "
                                              "or a survey without what came to rest there?"}))
+    if level := release_toe.beyond_toe(area, slip):
+        doubts.append(Finding("beyond toe", level._asdict()))
     if found.mean_slope > CLIFF:
         doubts.append(Finding("cliff", {"degrees": found.mean_slope, "in_feet": plausible.in_feet(found.mean_slope)}))
     if found.cells < COARSE:

@@ -12,7 +12,7 @@ from ..deposits import deposit, score
 from ..errors import SlopeError
 from ..schemas import OBJECT, mapping
 from ..survey import rasters
-from ..tables import judged, quantities
+from ..tables import judged, named_run, quantities
 from ..tables.released import Release
 from ..tables.study_file import read_study
 
@@ -98,7 +98,7 @@ class Data:
         about = self.study["study"]
         self.settings, self.repeats = about["set"], dict(about.get("repeat") or {})
         names = [row["run"] for row in self.finished]
-        shown = shown or run_folders.governing(self.study)
+        shown = shown or run_folders.governing(self.study, named_run.farthest)
         if shown not in names:
             raise SlopeError("--run", f"must be a finished run of {path}, such as {names[0]}", shown)
         self.result = self._load(self.finished[names.index(shown)])

@@ -43,8 +43,8 @@ def check(names: Sequence[str], equally_good: str) -> None:
     also = [name for name in equally_good.split(",") if name]
     for name in names:
         if not (CHANCE.fullmatch(name) or name in also):
-            raise SlopeError("--repeat", "must name a variable that differs by chance alone, seed, packing or ...offset; if "
-                             f"the values of {name} are equally good, say --equally-good {name}", name)
+            raise SlopeError("--repeat", "must name a variable that differs by chance alone, seed, packing or "
+                             f"...offset; if the values of {name} are equally good, say --equally-good {name}", name)
     for name in also:
         if name not in names:
             raise SlopeError("--equally-good", "must name variables of --repeat", name)

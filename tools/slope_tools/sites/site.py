@@ -16,7 +16,7 @@ import numpy as np
 from .. import disk, geometry, provenance
 from ..errors import SlopeError
 from ..findings import Finding, finding
-from ..releases import release, release_files
+from ..releases import release, release_files, release_toe
 from ..survey import local_terrain, polygons, rasters
 from ..survey.rasters import Raster, crs_name
 from . import site_bodies, site_budget, site_choices, site_deck, site_folder, site_warnings
@@ -127,6 +127,8 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
     several = site_bodies.write(choices, new, BODY, wanted, keep)
     body = site_bodies.around(write_body(new, wanted, found), BODY, several)
     layers = read_layers(choices, raster, new, tell, keep)
+    if layers.road and (under := release_toe.under(found.area, found.slip, layers.road)):
+        keep(Finding("under road", {"file": choices["road"]["file"], **under._asdict()}))
     title = choices["project"]["name"] or folder.absolute().name
     parts = site_deck.Parts(title, ", ".join(Path(name).name for name in choices["terrain"]["files"]), body,
                             layers.structures, layers.lines, layers.motion, room_of(raster))

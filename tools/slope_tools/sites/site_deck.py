@@ -16,7 +16,7 @@ from .site_inputs import Line, Motion, Structure
 NAME = "in.site"
 TEMPLATE = "in.site.j2"
 KNOB = re.compile(r"variable +\w+ +index ")
-REST = 0.03             # share of the mass that may be faster than 0.1 m/s in a deposit at rest
+REST = 0.02             # share of the mass that may be faster than 0.1 m/s in a deposit at rest
 FRAMES = 40             # snapshots of a run, about
 BINS = 1000             # of the neighbor list for a ball, at most: each is cleared whenever the list is built
 REACH, WIDEST = 1.2, 5.0        # diameters: of the neighbor list; wider bins gain no more, and cost in a dense mass

@@ -18,7 +18,7 @@ from ..sites import ground, site_choices, site_deck, site_warnings
 from ..sites.site_choices import Choices, OFFSETS, PACKING, other_grounds
 from ..sites.site_layers import OBSERVED, ROAD
 from ..survey.roads import Asked
-from ..tables import energy
+from ..tables import energy, named_run
 from ..tables.step_check import QUANTITY, Step, half_of
 from ..tables.study_file import read_study
 from . import fine_runs, mapped, results, study
@@ -144,7 +144,7 @@ def scored(folder: Path, setup: Setup) -> None:
     from ..deposits import score_run
     path = setup.output / "study.yaml"
     read_study(path)        # SlopeError unless it is one
-    name, place = run_folders.governing_run(path)
+    name, place = run_folders.governing_run(path, named_run.farthest)
     [summary] = run_folders.summaries(place)
     outline = folder / f"{OBSERVED}.csv"
     setup.tell(f"{name} against the mapped deposit:")

@@ -1,9 +1,10 @@
 """The run that a name on the command line stands for; of a study or a site the one whose maps are on the first page."""
 import re
 from pathlib import Path
-from typing import NamedTuple, Optional
+from typing import Any, Mapping, NamedTuple, Optional
 
 from ..case.run_folders import OF_RUN, RASTERS, governing_run, prefix_of, summaries
+from ..deposits import travel_shares
 from ..errors import SlopeError
 from . import answered
 
@@ -27,6 +28,13 @@ def study_in(folder: Path) -> Optional[Path]:
     return found if (found / STUDY).is_file() else None
 
 
+def farthest(about: Mapping[str, Any]) -> Optional[str]:
+    """The run of a study.yaml that went farthest; None where its rows do not say how far they went."""
+    rows = [row for row in about.get("runs") or () if row.get("status") == "finished"]
+    told = rows and all({"lost_m3", "released_m3", "front_m"} <= row.keys() for row in rows)
+    return travel_shares.farthest(rows)["run"] if told else None
+
+
 def read(name: str) -> Named:
     """The run of a prefix, of one of its rasters or its summary, of its folder, or the governing run of a study's or a
     site's folder; SlopeError if there is none, or several.
@@ -41,7 +49,7 @@ def read(name: str) -> Named:
         return Named(str(path.with_name(match[1] or match[2])), None)
     study = study_in(path)
     if study:
-        run, folder = governing_run(study / STUDY)
+        run, folder = governing_run(study / STUDY, farthest)
         inside = summaries(folder)
         if len(inside) != 1:
             raise SlopeError(folder, "must hold the governing run of the study, with its summary")

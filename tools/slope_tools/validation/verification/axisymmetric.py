@@ -135,8 +135,8 @@ def from_line(published: Line):
 
 GLASS = DECK(friction=21.8, rolling=0.033, e=0.45)      # of inputs/14_repose_walls
 MATERIALS = {"sand": DECK, "glass": GLASS}
-# of columns of 8 to 24 d, 8 to 16 d for a = 1: inputs/15_axisymmetric/README.md
-LINES = {("sand", 0.5): Line(0.555, -1.60, 0.022), ("sand", 1.0): Line(1.129, -2.521, 0.021),
+# of columns of 8 to 24 d, glass with a = 1 of 8 to 16 d: inputs/15_axisymmetric/README.md
+LINES = {("sand", 0.5): Line(0.555, -1.60, 0.022), ("sand", 1.0): Line(1.189, -3.07, 0.029),
          ("glass", 0.5): Line(0.661, -1.964, 0.019), ("glass", 1.0): Line(1.344, -3.373, 0.035)}
 WIDE = DECK(radius=12)
 COLUMNS = tuple((radius, seed) for radius in (8, 12) for seed in (1, 2, 3))

@@ -1,0 +1,46 @@
+"""Where a slip surface comes out of the ground: on the slope, as it should, or beyond its toe, or under a road."""
+from typing import NamedTuple, Optional
+
+import numpy as np
+from affine import Affine
+from rasterio.features import geometry_mask
+
+from .release_area import Area
+
+FOOT = 0.2      # of the body's fall: its lowest part
+LEVEL = 0.25    # of the mean slope of its ground: flatter ground is level
+SOME = 0.02     # of its area; less level ground at its foot is none
+
+
+class Level(NamedTuple):
+    """A part of a body that does not lie on a slope."""
+    area: float         # m2
+    depth: float        # m, largest, of the slip surface below it
+
+
+def depth_of(area: Area, slip: np.ndarray) -> np.ndarray:
+    """The depth (m) of a slip surface, 0 beside the body."""
+    return np.nan_to_num(area.z - slip)
+
+
+def beyond_toe(area: Area, slip: np.ndarray) -> Optional[Level]:
+    """The level ground at the foot of a body, None where there is next to none."""
+    depth = depth_of(area, slip)
+    body = depth > 0
+    down, across = np.gradient(area.z, area.cell)
+    slope = np.hypot(down, across)
+    low, high = area.z[body].min(), area.z[body].max()
+    with np.errstate(invalid="ignore"):
+        level = body & (area.z < low + FOOT * (high - low)) & (slope < LEVEL * np.nanmean(slope[body]))
+    if level.sum() <= SOME * body.sum():
+        return None
+    return Level(float(level.sum()) * area.cell ** 2, float(depth[level].max()))
+
+
+def under(area: Area, slip: np.ndarray, road) -> Optional[Level]:
+    """What of a road (a polygon in local metres) lies on a body, None where nothing does."""
+    step = area.y[1] - area.y[0]
+    nodes = Affine(area.cell, 0, area.x[0] - area.cell / 2, 0, step, area.y[0] - step / 2)
+    depth = np.where(geometry_mask([road], area.z.shape, nodes, invert=True), depth_of(area, slip), 0.0)
+    on = depth > 0
+    return Level(float(on.sum()) * area.cell ** 2, float(depth.max())) if on.any() else None
