@@ -50,7 +50,8 @@ def site(here):
     thickness[12:20, 14:26] = 1.5
     write_run(thickness, GROUND, 5.0)
     write_tif("mapped.tif", thickness, 5.0, crs=CRS_M)
-    Path("a.csv").write_text("time,EW (gal)\n" + "".join(f"{0.01 * k:g},{100 * np.sin(0.2 * k):g}\n" for k in range(500)))
+    Path("a.csv").write_text("time,EW (gal)\n" + "".join(f"{0.01 * k:g},{100 * np.sin(0.2 * k):g}\n"
+                                                         for k in range(500)))
     return here
 
 

@@ -66,7 +66,8 @@ def test_it_is_as_fast_as_libyaml():
 
 @pytest.mark.parametrize("text, meant", [("1.2e1", "12.0"), ("08", "8.0"), ("'12'", "12.0"), ("1e-9", "1.0e-09")])
 def test_a_text_that_is_meant_as_a_number(text, meant):
-    with pytest.raises(SlopeError, match=rf"a: must be a finite number \(as {meant}; YAML takes it for a text\), got '"):
+    with pytest.raises(SlopeError, match=rf"a: must be a finite number \(as {meant}; YAML takes it for "
+                       "a text\\), got '"):
         check(written_yaml.load(f"a: {text}"), mapping({"a": NUMBER}), "x.yaml", "a file")
 
 

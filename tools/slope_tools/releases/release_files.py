@@ -104,4 +104,5 @@ def deck_body(name: Path, terrain: str, raster: Raster, area: Area, slip: np.nda
            float(slip[reached].min()) - ROOM, float(area.z[reached].max()) + ROOM)
     return release_deck.Body(os.path.relpath(terrain, name.parent), name.name + ".slip.asc", name.name,
                              release_solve.volume(depth, area.cell), area.cell,
-                             max(0.0, float(np.nanmin(raster.z)) - float(np.nanmin(slip))), box, float(np.nanmax(depth)))
+                             max(0.0, float(np.nanmin(raster.z)) - float(np.nanmin(slip))), box,
+                             float(np.nanmax(depth)))

@@ -104,8 +104,8 @@ def finer_balls(made: Made) -> Optional[Step]:
     if site is None or row is None:
         return None
     number = round(8 * row["released_m3"] / row["ball_m3"], -2)
-    return Step("smaller balls in the model", f"tools/slope site {quote(str(site))} --balls {number:.0f} && tools/slope "
-                f"study {quote(str(site))} --anew", None if whole is None else 16 * whole)
+    return Step("smaller balls in the model", f"tools/slope site {quote(str(site))} --balls {number:.0f} && "
+                f"tools/slope study {quote(str(site))} --anew", None if whole is None else 16 * whole)
 
 
 def larger_terrain(made: Made, add: str = "") -> Tuple[str, str]:

@@ -49,7 +49,9 @@ def growth(balls: float, quantity: str,
         if len(line) > 1:
             factors.append(line[-1][1] / value_at(balls, line))
             finest.append(line[-1][0])
-    return Growth(min(factors), statistics.median(factors), max(factors), len(factors), min(finest)) if factors else None
+    if not factors:
+        return None
+    return Growth(min(factors), statistics.median(factors), max(factors), len(factors), min(finest))
 
 
 def value_at(balls: float, line: Sequence[Tuple[float, float]]) -> float:
