@@ -25,6 +25,9 @@ using namespace LAMMPS_NS;
 using Slope::BallPath;
 using Slope::LeftBall;
 
+static constexpr int PARTS = 4;    // of a cell along a side: ground may be missing in between
+static const double START[1] = {-1.0};
+
 enum { X, Y };
 
 static_assert(sizeof(BallPath) == BallPath::NUMBERS * sizeof(double), "numbers only");
@@ -35,7 +38,7 @@ DepositLeft::DepositLeft(LAMMPS *lmp, const DepositBalls &balls_in,
                          const DepositOptions &options_in) :
     Pointers(lmp),
     balls(balls_in), options(options_in), extra(lmp, "path"),
-    sampled(std::numeric_limits<double>::quiet_NaN())
+    sampled(std::numeric_limits<double>::quiet_NaN()), cells(START)
 {
 }
 
@@ -47,6 +50,7 @@ void DepositLeft::begin_run()
 {
   ground.reset(new RegionSurface(lmp, "Fix deposit/grid terrain", options.terrain.c_str(),
                                  RegionSurface::UPPER));
+  cells.set_grid(options.grid);
 }
 
 /* ----------------------------------------------------------------------
@@ -68,7 +72,29 @@ bool DepositLeft::over_ground(const double *place) const
   wrap(x);
   for (int dim = X; dim <= Y; dim++)
     if (x[dim] < options.grid.lo[dim] || x[dim] > options.grid.hi[dim]) return false;
+  if (!ground->is_raster() &&
+      everywhere(options.grid.cell_of(X, x[X]), options.grid.cell_of(Y, x[Y])))
+    return true;
   return ground->height(x[X], x[Y], z);
+}
+
+/* ---------------------------------------------------------------------- */
+
+bool DepositLeft::everywhere(int i, int j) const
+{
+  typedef Slope::BlockOfCells Block;
+  double &known = cells.make(Block::of_cell(i), Block::of_cell(j)).values[0][Block::index(i, j)];
+  if (known != UNKNOWN) return known == EVERYWHERE;
+  known = EVERYWHERE;
+  const double part = options.grid.cell / PARTS;
+  const double corner[2] = {options.grid.lo[X] + i * options.grid.cell,
+                            options.grid.lo[Y] + j * options.grid.cell};
+  for (int k = 0; k <= PARTS && known == EVERYWHERE; k++)
+    for (int m = 0; m <= PARTS && known == EVERYWHERE; m++) {
+      double z;
+      if (!ground->height(corner[X] + k * part, corner[Y] + m * part, z)) known = SOMEWHERE;
+    }
+  return known == EVERYWHERE;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -204,5 +230,6 @@ void DepositLeft::archive(Slope::Archive &archive)
 
 double DepositLeft::bytes() const
 {
-  return (double) paths.capacity() * sizeof(BallPath) + (double) gone.capacity() * sizeof(LeftBall);
+  return (double) paths.capacity() * sizeof(BallPath) +
+      (double) gone.capacity() * sizeof(LeftBall) + cells.bytes();
 }

@@ -10,6 +10,7 @@
 
 #include "archive.h"
 #include "ball_path.h"
+#include "deposit_bins.h"
 #include "restart_archive.h"
 
 #include <memory>
@@ -68,7 +69,12 @@ class DepositLeft : protected Pointers {
   std::vector<Slope::LeftBall> gone;        // no longer there; on any rank
   std::vector<Slope::LeftBall> doubtful;    // may be gone when the command ends
 
+  // of a ground that is no raster, whose height takes long: whether there is ground everywhere in a cell
+  enum { UNKNOWN = -1, SOMEWHERE, EVERYWHERE };
+  mutable Slope::DepositBlocks<1> cells;
+
   bool over_ground(const double *x) const;
+  bool everywhere(int i, int j) const;
   Slope::BallPath path_now(int i, double now) const;
   Slope::LeftBall left_ball(int i, const Slope::BallPath &) const;
   void wrap(double *x) const;

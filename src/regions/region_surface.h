@@ -38,6 +38,9 @@ class RegionSurface : protected Pointers {
   // The lower boundary of what is right below a height: false if the region is not there.
   bool height_below(double x, double y, double top, double &z) const;
 
+  // whether height() is that of a raster, and takes no search
+  bool is_raster() const { return terrain != nullptr; }
+
   // whether height() is known for any column of the rectangle: what the constructor asks for, said
   // without an error
   static bool is_fit(const class Region *, int side, double xlo, double xhi, double ylo,

@@ -74,10 +74,10 @@ class Runs:
         if self.data.road is None:
             return ""
         if any(row.get("beyond_road_m3") is not None for row in self.data.finished):
-            return ("Beyond it: all of the deposit on the far side of the road. What is cut there is counted in \"to "
-                    "remove\" too: the two overlap and cannot be added.")
-        return ("How much lies beyond the road is unknown, because the road does not divide the grid; a control line "
-                "(slope site --line) counts what passes it.")
+            return ("Beyond it: all of the mass on the far side of the road, whose ends are prolonged to the edge of "
+                    "the terrain, and what left the terrain there. What is cut there is counted in \"to remove\" too: "
+                    "the two overlap and cannot be added.")
+        return "How much lies beyond the road is unknown: the runs are of an older version."
 
     def same(self):
         """The variables that all runs have the same value of, where others differ."""
