@@ -463,9 +463,10 @@ def test_the_run_time_in_the_deck_is_that_of_one_run():
     """Set-up, and what balls and steps cost: 15 s in steps of a quarter of sqrt(m/k)."""
     choices = site_choices.complete({"terrain": {"files": ["dem.tif"]}})
     trial = site_budget.Trial(800, 3.5, 15.0, True, 13.0, 1e-7, 0.5, 2.0, 0.0)
-    step = 0.25 * 0.05 * 2.5 / 60.0       # at 60 m/s a contact overlaps by a twentieth of 2.5 m
-    found = site_numbers(choices, SOIL._replace(speed=60.0), trial, budget(number=2240))
-    assert found.run_seconds == pytest.approx(0.5 + 15 / step * 2240 * 1e-7)
+    size = budget(number=2240)
+    step = 0.25 * 0.05 * size.diameter / 60.0       # at 60 m/s a contact overlaps by a twentieth of the diameter
+    found = site_numbers(choices, SOIL._replace(speed=60.0), trial, size)
+    assert found.run_seconds == pytest.approx(0.5 + 15 / step * size.balls * 1e-7)
 
 
 @pytest.mark.parametrize("d, thick, number", [(1.0, 7.0, 2e4), (0.5, 3.0, 2e4), (1.0, 14.0, 4e4), (0.5, 14.0, 8e4)])
