@@ -68,8 +68,8 @@ class Runs(road_arguments.Clearing, Engine):
 class Repeats:
     """--repeat and --equally-good, of the commands that make runs."""
     repeat: List[str] = several(
-        "values of a variable whose value is arbitrary, called seed, packing or ...offset: one more run for each, which "
-        "shows the scatter by chance; A:B:STEP stands for A, A + STEP, ... up to B", metavar="NAME=V1,V2,...")
+        "values of a variable whose value is arbitrary, called seed, packing or ...offset: one more run for each, "
+        "which shows the scatter by chance; A:B:STEP stands for A, A + STEP, ... up to B", metavar="NAME=V1,V2,...")
     equally_good: str = option(
         "variables of another name whose values are equally good, so that --repeat takes them", metavar="NAME,...",
         default="")
