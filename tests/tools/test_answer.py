@@ -44,6 +44,31 @@ def test_the_larger_of_both():
     assert answer.of(None, None, None) is None
 
 
+def test_too_few_balls_over_the_thickness_make_a_floor():
+    """Of either study; nothing stays nothing, and what is withheld stays so."""
+    few = answer.Reason(Code.SIZE, {"balls_thick": 5.0, "enough": 16.0})
+    for paper, other in ((Paper(1200.0, size=few), ensemble()), (Paper(700.0), ensemble(size=few)),
+                         (Paper(1200.0), ensemble(size=few))):
+        found = answer.of(paper, other, road(0.5, 0.6))
+        assert (found.kind, found.volume, found.high) == (Kind.FLOOR, max(paper.volume, 950.0), None)
+        assert codes(found) == [Code.SIZE]
+    assert answer.of(Paper(0.0, size=few), None, None).kind is Kind.NOTHING
+    assert answer.of(Paper(None, [Withheld(Rule.LEFT)], few), None, None).kind is Kind.WITHHELD
+
+
+def test_the_effect_of_size_raises_the_quantiles_of_an_ensemble():
+    """By a factor of ten balls or more, by the difference of fewer; not where the fine run brings less."""
+    def volume(**effect):
+        known = {"to_remove": [{"share": 0.95, "value": 100.0, "low": 80.0, "high": None}], "far": 0.0, "longest_m": 9.0}
+        about = {"ensemble": {"known_events": known},
+                 "size": {"run": "d_1", "open": False, "effects": {"remove_m3": {"runs": 1, "chance": None, **effect}}}}
+        return answered.ensemble_of(about).quantiles[0.95]
+
+    assert volume(coarse=50.0, fine=60.0, ratio=True) == pytest.approx((120.0, 96.0, None))
+    assert volume(coarse=0.0, fine=7.0, ratio=False) == pytest.approx((107.0, 87.0, None))
+    assert volume(coarse=60.0, fine=50.0, ratio=True) == pytest.approx((100.0, 80.0, None))
+
+
 def test_a_floor_where_known_events_lie_beyond_the_runs():
     found = answer.of(Paper(0.0), ensemble(0.08, stopped=STOPPED), road(0.5, 0.6))
     assert (found.kind, found.volume, found.share, found.high) == (Kind.FLOOR, 920.0, 0.92, None)

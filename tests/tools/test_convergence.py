@@ -13,7 +13,6 @@ from tiny_collapse import edit, rows_of
 
 from slope_tools.statistics import convergence
 from slope_tools.studies import size_study
-from slope_tools.tables import size_family
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 ROAD = "--road case/road.csv --local"
@@ -64,17 +63,6 @@ def test_nothing_is_said_of_the_slide_that_looked_converged():
     runs = [(d, [mean - 0.4, mean, mean + 0.4]) for d, mean in ((4.0, 17.3), (2.0, 8.4), (1.0, 6.7), (0.5, 9.9))]
     assert not convergence.compare(runs[:3], [2.0, 4.0, 8.0]).resolved
     assert not convergence.compare(runs, [2.0, 4.0, 8.0, 16.0]).resolved
-
-
-# --- the family of cases ---
-
-def test_growth_of_a_family_by_hand():
-    family = {"a": [{"balls": 4.0, "remove": 8.0}, {"balls": 16.0, "remove": 16.0}],
-              "b": [{"balls": 4.0, "remove": 10.0}, {"balls": 8.0, "remove": 5.0}, {"balls": 20.0, "remove": 10.0}],
-              "none": [{"balls": 4.0, "remove": 0.0}, {"balls": 16.0, "remove": 1.0}]}
-    assert size_family.growth(8.0, "remove", family) == pytest.approx((math.sqrt(2), (math.sqrt(2) + 2) / 2, 2, 2, 16))
-    assert size_family.growth(1.0, "remove", family)[:3] == pytest.approx((1, 1.5, 2))      # the coarsest counts
-    assert size_family.growth(50.0, "remove", family)[:3] == (1, 1, 1)
 
 
 # --- the command ---
@@ -191,7 +179,7 @@ def test_a_fine_run_of_a_deck_raises_the_conservative_volume(slope, succeed):
     added = best["size_m3"]
     assert (added > 0) is (effect["difference"] > effect["chance"])
     assert best["mean_m3"] == pytest.approx(before["conservative"]["mean_m3"])
-    assert "size of the balls: balls of 0.5 m" in out and size["open"]["balls_thick"] == size["balls_thick"]
+    assert "size of the balls: balls of 0.5 m" in out and size["open"] is True
     # again: nothing is made
     out, _ = succeed(f"{words} --fine 2", "study")
     assert "7 of 7 runs are finished already" in out or "nothing to run" in out

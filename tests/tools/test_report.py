@@ -353,7 +353,7 @@ def test_the_size_part(slope, here):
     best = about["conservative"]
     best.update(size_m3=40.0, volume_m3=best["volume_m3"] + 40)
     best["rounded"].update(size_m3=40.0, volume_m3=best["rounded"]["volume_m3"] + 40)
-    about["size"] = {"run": "d_0.5", "open": None,
+    about["size"] = {"run": "d_0.5", "open": False,
                      "text": "balls of 0.5 m instead of 1 m: to remove 240 instead of 200 m3",
                      "effects": {}}
     Path("repeated/study.yaml").write_text(yaml.safe_dump(about))

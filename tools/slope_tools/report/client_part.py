@@ -182,11 +182,8 @@ def reason(code: Code, of: Mapping[str, Any]) -> str:
     if code is Code.FEW:
         return "the runs are too few to tell which settings go farther"
     if code is Code.SIZE:
-        text = (f"the finest of the model's balls are {of['balls_thick']:.2g} over the thickness of the body, and "
-                "smaller ones may bring more")
-        return text if "middle" not in of else (
-            f"{text}: with {of['balls']:.2g} or more, volumes grew by a factor of {of['middle']:.2f} "
-            f"({of['low']:.2f} to {of['high']:.2f}) in {of['cases']} cases")
+        return (f"the finest of the model's balls are {of['balls_thick']:.2g} over the thickness of the body, and "
+                f"smaller ones, {of['enough']:g} or more, may bring more")
     text = RULES[Rule(of["rule"])]
     return text if of["source"] == Source.PAPER.value else f"{text} (runs weighted by known events)"
 

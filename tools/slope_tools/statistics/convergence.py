@@ -1,7 +1,7 @@
 """Effect of the size of the balls on a quantity: its means, and whether halving the size changes more than chance.
 
-Nothing is fitted below the finest size: a least value lies near 8 balls of thickness, so that a line through
-coarse sizes points the wrong way (see the page on sensitivity). Units: d in m, values in the quantity's (m3 of ground,
+Nothing is fitted below the finest size: values may fall to a least one and grow again with finer balls, so
+that a line through coarse sizes points the wrong way. Units: d in m, values in the quantity's (m3 of ground,
 m, degrees); any other variable in place of d has its own. All functions are pure.
 """
 import math

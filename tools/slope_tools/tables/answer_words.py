@@ -60,9 +60,6 @@ def text(reason: Reason) -> str:
     if code is Code.FEW:
         return "the runs are too few to tell which parameters go farther: take more points"
     if code is Code.SIZE:
-        text = (f"the finest balls are {of['balls_thick']:.2g} over the thickness of the body, smaller ones may bring "
-                "more")
-        return text if "middle" not in of else (
-            f"{text}: from there to {of['balls']:.2g} or more {of['cases']} cases grew by a factor of "
-            f"{of['middle']:.2f} ({of['low']:.2f} to {of['high']:.2f})")
+        return (f"the finest balls are {of['balls_thick']:.2g} over the thickness of the body: smaller ones, "
+                f"{of['enough']:g} or more, may bring more")
     return f"{STUDY[of['source']]}: withheld by the rule {of['rule']}"

@@ -7,6 +7,7 @@ from .. import disk, schemas
 from ..schemas import OBJECT, mapping
 from ..statistics import answer
 from ..statistics.answer import Answer, AtRoad, Code, Ensemble, Paper, Reason, Road, Withheld
+from ..statistics.size_effect import RESOLVED
 from ..statistics.withheld import Kind as Rule
 from . import fine_run
 from .quantities import REMOVE
@@ -52,8 +53,7 @@ def size_of(about: Mapping[str, Any]) -> Optional[Reason]:
     size = about.get("size") or {}
     if not size.get("open"):
         return None
-    growth = size["open"]["growth"].get(REMOVE) or {}
-    return Reason(Code.SIZE, {"balls_thick": size["open"]["balls_thick"], **growth})
+    return Reason(Code.SIZE, {"balls_thick": size["balls_thick"], "enough": RESOLVED})
 
 
 def rules(entries) -> List[Withheld]:

@@ -5,7 +5,7 @@ from ..digits import rounded, to_three
 from ..runs.repeats import key_of
 from ..statistics.headline import Combination, Scatter
 from ..statistics.size_effect import RESOLVED, Effect, effect
-from . import quantities, size_family
+from . import quantities
 from .quantities import On
 
 Row = Mapping[str, Any]
@@ -26,7 +26,7 @@ def evaluate(fine: Fine) -> Dict[str, Any]:
     """The entry of study.yaml; its effects are {column: of_effect()}, its text a sentence without its full stop."""
     if fine.row is None or not fine.coarse:
         why = fine.why or "no run with the same values finished"
-        return {"run": None, "effects": {}, "open": None, "text": f"not tried: {why}"}
+        return {"run": None, "effects": {}, "open": False, "text": f"not tried: {why}"}
     ball = max(row["ball_m3"] for row in fine.coarse)
     d, coarse_d = (float(row["variables"][VARIABLE]) for row in (fine.row, fine.coarse[0]))
     effects = {}
@@ -38,7 +38,7 @@ def evaluate(fine: Fine) -> Dict[str, Any]:
     found = {"run": fine.row["run"], "d": d, "balls_thick": balls, "coarse_d": coarse_d,
              "coarse_balls_thick": fine.depth / coarse_d, "coarse_runs": [row["run"] for row in fine.coarse],
              "effects": {key: of_effect(one) for key, one in effects.items()},
-             "open": None if balls >= RESOLVED else open_of(balls, effects)}
+             "open": balls < RESOLVED}
     return {**found, "text": words(found)}
 
 
@@ -51,12 +51,6 @@ def read_effect(about: Optional[Mapping[str, Any]], key: str) -> Optional[Effect
     """That of a column in an entry of study.yaml; None where it is not known."""
     one = (about or {}).get("effects", {}).get(key)
     return one and Effect(*(one[name] for name in Effect._fields))
-
-
-def open_of(balls: float, effects: Mapping[str, Effect]) -> Dict[str, Any]:
-    """By which factors known cases grew from so many balls of thickness, for each column that they know."""
-    known = {key: size_family.growth(balls, size_family.COLUMN[key]) for key in effects if key in size_family.COLUMN}
-    return {"balls_thick": balls, "growth": {key: one._asdict() for key, one in known.items() if one}}
 
 
 # --- words ---
@@ -76,14 +70,5 @@ def words(found: Mapping[str, Any]) -> str:
     else:
         more = "more than" if one["clear"] else "no more than"
         chance = f"{more} chance explains, {rounded(to_three(one['chance']))} {what.unit}"
-    return f"{sizes}: {what.name} {change}; {chance}" + (f". {open_words(found['open'], key)}" if found["open"] else "")
-
-
-def open_words(open_: Mapping[str, Any], key: str) -> str:
-    """What balls that are smaller still may change."""
-    growth = open_["growth"].get(key)
-    if growth is None:
-        return f"What smaller balls change is not known: {RESOLVED:g} balls of thickness would show it"
-    return (f"From {open_['balls_thick']:.2g} balls of thickness to {growth['balls']:.2g} or more it grew by a factor "
-            f"of {growth['middle']:.2f} ({growth['low']:.2f} to {growth['high']:.2f}) in {growth['cases']} cases that "
-            "were run so far")
+    more = f". Balls that are smaller still may bring more: {RESOLVED:g} of them over the thickness would show it"
+    return f"{sizes}: {what.name} {change}; {chance}{more * found['open']}"
