@@ -195,7 +195,7 @@ int DepositLeft::pack(int i, double *buf) const
 
 int DepositLeft::unpack(int i, const double *buf)
 {
-  memcpy(&paths[i], buf, sizeof(BallPath));
+  memcpy(static_cast<void *>(&paths[i]), buf, sizeof(BallPath));
   return BallPath::NUMBERS;
 }
 

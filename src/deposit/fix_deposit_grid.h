@@ -18,6 +18,7 @@ FixStyle(deposit/grid,FixDepositGrid);
 #include "deposit_balls.h"
 #include "deposit_bins.h"
 #include "deposit_left.h"
+#include "deposit_losses.h"
 #include "deposit_options.h"
 #include "deposit_rasters.h"
 #include "deposit_release.h"

@@ -59,7 +59,8 @@ def test_too_few_balls_over_the_thickness_make_a_floor():
 def test_the_effect_of_size_raises_the_quantiles_of_an_ensemble():
     """By a factor of ten balls or more, by the difference of fewer; not where the fine run brings less."""
     def volume(**effect):
-        known = {"to_remove": [{"share": 0.95, "value": 100.0, "low": 80.0, "high": None}], "far": 0.0, "longest_m": 9.0}
+        quantile = {"share": 0.95, "value": 100.0, "low": 80.0, "high": None}
+        known = {"to_remove": [quantile], "far": 0.0, "longest_m": 9.0}
         about = {"ensemble": {"known_events": known},
                  "size": {"run": "d_1", "open": False, "effects": {"remove_m3": {"runs": 1, "chance": None, **effect}}}}
         return answered.ensemble_of(about).quantiles[0.95]
