@@ -311,3 +311,10 @@ def test_only_what_is_in_the_box_is_filled(tmp_path):
     assert ((x >= [-6, -6, 0]) & (x < [6, 6, 12])).all()
     assert (0.3 * x[:, 1] + x[:, 2] > 6).all()
     assert len(x) * math.pi / 6 * 0.5 ** 3 / (12 * 12 * 6) == pytest.approx(0.60, abs=0.01)
+
+
+def test_a_region_that_moves_is_not_filled(tmp_path):
+    create = ("variable up equal 0.1*step\nregion lift block -5 5 -5 5 1 11 units box move NULL NULL v_up\n"
+              "create_balls 2 0.5 2977 fill lift")
+    run_deck(FILL.format(create=create, newton="on", boundary="f f f", decomposition="", box="block -6 6 -6 6 0 12"),
+             tmp_path, expect_error="Create_balls fill region lift must not move, got one that moves or varies")
