@@ -157,8 +157,9 @@ def compared(setup: Setup, fine: Repeat, rows: Sequence[Mapping[str, Any]],
     def scatter(key: str) -> Optional[headline.Scatter]:
         if same is None:
             return None
-        parts = [group.of(key) for group in groups or ()]
-        mine = parts[(groups or ()).index(same)]
+        mine = same.of(key)
+        parts = [mine, *(group.of(key) for group in groups or () if group is not same
+                         and all(row.get(key) is not None for row in group.rows))]
         return headline.scatter_of(parts, mine) if mine.mean > 0 else headline.pooled(parts)
 
     return fine_run.Fine(row, coarse, depth_of(setup, coarse[0]) if coarse else 0.0, scatter)
