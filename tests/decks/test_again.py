@@ -156,9 +156,7 @@ GUIDES = {
     "variable": "variable z equal -0.1*step*dt\nvariable v equal -0.1\n"
                 "fix guide plate move variable NULL NULL v_z NULL NULL v_v",
     "noforce": "fix guide plate nve/noforce",
-    "nothing": "", "setforce": "fix guide plate setforce 0 0 0\nfix move2 plate nve/sphere",
-    "setforce in part": "fix guide plate setforce 0 NULL 0\nfix move2 plate nve/sphere",
-    "free": "fix move2 plate nve/sphere"}
+    "nothing": ""}
 
 
 def last(site, **settings):
