@@ -74,11 +74,11 @@ def test_balls_that_are_to_come(tmp_path, fix, lightest, narrow, np):
     """Known before the first step, from what the fix is told."""
     log = balls(fix + "\nrun 400", tmp_path, np=np)
     before = log[:log.index("\nStep ") if "\nStep " in log else log.index("   Step ")]
-    steps = told(before, "that holds the restitution")
+    steps = told(before, "tested to hold the restitution")
     assert len(steps) == (lightest is not None) and all(says_ratio(line, lightest) for line in steps)
     assert len(told(before, "may pass between these")) == (narrow is not None)
     assert all(f"balls of diameter {narrow} may" in line for line in told(before, "may pass between these"))
-    for text in ("that holds the restitution", "may pass between these"):
+    for text in ("tested to hold the restitution", "may pass between these"):
         assert told(log, text) == told(before, text)
 
 
@@ -87,7 +87,7 @@ def test_balls_that_shrink(tmp_path, np):
     """To a fifth; every 200 steps they are looked at. The rule is broken below 0.674 of the diameter."""
     shrink = "variable d equal ramp(1.0,0.2)\nfix shrink soil adapt 10 atom diameter v_d\nrun 1000\n"
     log = balls("run 100\n" + shrink, tmp_path, np=np, varying="1")
-    line, = told(log, "that holds the restitution")
+    line, = told(log, "tested to hold the restitution")
     assert any(says_ratio(line, mass(1.0 - 0.8 * at / 1000)) for at in range(400, 620, 10))
     assert len(told(log, "may pass between these")) == 1
     log = balls("run 100\n" + shrink.replace("0.2", "0.9"), tmp_path, np=np, varying="1")
@@ -97,7 +97,7 @@ def test_balls_that_shrink(tmp_path, np):
 @pytest.mark.parametrize("most, told_of", [("1.8e-3", True), ("8e-4", False)])
 def test_a_step_that_grows(tmp_path, most, told_of):
     log = balls(f"fix grow soil dt/reset 10 1e-6 {most} 0.01 units box\nrun 300", tmp_path)
-    lines = told(log, "that holds the restitution")
+    lines = told(log, "tested to hold the restitution")
     assert len(lines) == told_of and all(says_ratio(line, mass(1.0), 1.8e-3) for line in lines)
 
 
@@ -108,7 +108,7 @@ def test_masses_of_balls_that_come(tmp_path):
 
 def test_each_run_tells_again(tmp_path):
     log = balls(POUR + "diam one 0.2 dens 2500 2500\nrun 1\nrun 1", tmp_path)
-    assert len(told(log, "that holds the restitution")) == 2
+    assert len(told(log, "tested to hold the restitution")) == 2
 
 
 # --- a group has the balls that are there when it is defined ---
