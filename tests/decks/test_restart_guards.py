@@ -20,6 +20,9 @@ pair_coeff * * stiffness 1e6 1e6 restitution 0.5 friction 30
 group soil type 1
 fix balls soil wall/gran/balls 2 1.0 surface ground upper spacing 1.0 origin 0 0 angle 0 sink 0.2 outside road
 fix loose soil wall/gran/balls 2 1.0 surface ground upper spacing 0.9 pattern scattered 3
+region cap sphere 8 8 3 4
+region body intersect 2 ground cap
+fix slip soil wall/gran/balls 2 1.0 surface body lower spacing 0.5 sink 0.5 rim ended
 fix places soil wall/gran/balls 2 1.0 file places.txt
 fix house soil wall/gran/mesh 3 house.stl scale 1 move 0 0 0
 fix floor soil wall/gran/mesh 3 terrain floor.asc
@@ -40,7 +43,8 @@ CHANGES = [("2 1.0 surface", "2 0.9 surface", "balls"), ("spacing 1.0", "spacing
            ("origin 0 0", "origin 0.3 0", "balls"), ("sink 0.2", "sink 0.1", "balls"),
            ("angle 0", "angle 10", "balls"), ("pattern scattered 3", "pattern scattered 4", "loose"),
            ("pattern scattered 3", "pattern grid", "loose"), ("outside road", "inside road", "balls"),
-           ("outside road", "", "balls"),
+           ("outside road", "", "balls"), ("rim ended", "rim within", "slip"),
+           ("rim ended", "rim continued", "slip"),
            ("file places.txt", "file other.txt", "places"), ("scale 1 move", "scale 1.1 move", "house"),
            ("move 0 0 0", "move 0 0 0.1", "house"), ("house.stl", "other.stl", "house"),
            ("terrain floor.asc", "terrain higher.asc", "floor"), ("terrain ground.asc", "terrain higher.asc", "balls"),
@@ -50,7 +54,7 @@ CHANGES = [("2 1.0 surface", "2 0.9 surface", "balls"), ("spacing 1.0", "spacing
 # words of these parsers that a restart file does not guard, as decks may change them, or that another one stands for
 PARSERS = ("ground/placement_arguments", "meshes/surface_options", "deposit/deposit_options",
            "motion/fix_ground_motion", "deposit/fix_control_line")
-OUTPUTS = {"output", "write", "series", "point", "motion", "window", "deposit"}
+OUTPUTS = {"output", "write", "series", "point", "motion", "window", "deposit", "rest"}
 LIKE = {"inside": "outside", "upper": "surface", "lower": "surface", "sunk": "sink", "smallest": "file",
         "grid": "pattern"}
 
