@@ -124,7 +124,8 @@ def test_every_option_is_said(command):
 # --- environment variables ---
 
 PROGRAM = {"LMP", "LAMMPS_PLUGIN_PATH", "LD_LIBRARY_PATH"}      # by what they lead to
-SAME = {"SLOPE_KERNEL", "OMP_NUM_THREADS", "COMP_LINE"}   # of one result, but for rounding; a shell completes words
+# of one result, but for rounding; a shell completes words; is set, not read
+SAME = {"SLOPE_KERNEL", "OMP_NUM_THREADS", "COMP_LINE", "MATPLOTLIBRC"}
 
 
 def test_every_environment_variable_is_guarded():
@@ -164,7 +165,7 @@ NAMES_FILE = {"file", "terrain", "layer", "table", "raster", "bedrock"}
 NAMES_NONE = {
     "angle", "bulk", "cell", "damping", "deposit", "depth", "direction", "extent", "fill", "friction", "grid",
     "headroom", "inside", "keep", "limit_damping", "lower", "mass", "method", "motion", "move", "open", "origin",
-    "output", "outside", "overlap", "pattern", "point", "restitution", "rim", "rolling", "rolling_radius",
+    "output", "outside", "overlap", "pattern", "point", "rest", "restitution", "rim", "rolling", "rolling_radius",
     "rolling_spring", "rotate", "scale", "scattered", "scheme", "seed", "seismic", "series", "shape", "side", "sink",
     "smallest", "spacing", "stiffness", "strength", "sunk", "surface", "units", "upper", "volume", "water", "window",
     "within", "write"}

@@ -12,7 +12,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "tools"))
 
 from slope_tools.case import run_folders  # noqa: E402  (after the path is set)
 from slope_tools.deposits import volume  # noqa: E402
-from slope_tools.drawing import maps  # noqa: E402
+from slope_tools.drawing import maps, pictures  # noqa: E402
 from slope_tools.errors import SlopeError  # noqa: E402
 from slope_tools.tables.study_file import read_study  # noqa: E402
 
@@ -33,10 +33,11 @@ def main(folder, road, picture):
                 worst = found
     run = worst.run
     shown = maps.window(run.raster, worst.road.bounds)
-    figure, axes = maps.relief(run.raster, run.base, shown, f"{run.prefix}: most to remove")
-    maps.values_on(axes, run.raster, worst.result.removed, shown, "thickness to remove (m)")
-    maps.outline(axes, worst.road, color="tab:blue", label="road")
-    maps.save(figure, picture)
+    with pictures.settings():       # whatever this user's matplotlibrc says
+        figure, axes = maps.relief(run.raster, run.base, shown, f"{run.prefix}: most to remove")
+        maps.values_on(axes, run.raster, worst.result.removed, shown, "thickness to remove (m)")
+        maps.outline(axes, worst.road, color="tab:blue", label="road")
+        maps.save(figure, picture)
 
 
 if __name__ == "__main__":
