@@ -164,7 +164,8 @@ def test_a_run_of_the_deck(slope, here):
     status, out, _ = slope("tiny")
     assert status == 0 and out.startswith(f"{len(run_folders.RASTERS)} rasters")
     listed = yaml.safe_load(Path("tiny.summary.yaml").read_text())["files"]
-    assert {name.replace(".asc", ".tif") for name in listed if name.endswith(".asc")} | {"export.yaml"} == set(os.listdir("tiny.export"))
+    rasters = {name.replace(".asc", ".tif") for name in listed if name.endswith(".asc")}
+    assert rasters | {"export.yaml"} == set(os.listdir("tiny.export"))
     for name in listed:
         with rasterio.open(f"tiny.export/{name.replace('.asc', '.tif')}") as tif:
             assert np.array_equal(tif.read(1, masked=True).filled(np.nan), read_asc(name), equal_nan=True), name

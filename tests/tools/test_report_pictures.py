@@ -228,8 +228,8 @@ def test_charts_have_a_place_for_everything(drawn):
         figure_charts.chart(series, "rolling resistance (-)", "to remove (m3)", LONG, others, [(LONG, 14225.0)],
                             (0.05, 14100.0, f"largest of 6 runs, {LONG}"), width)
     figure_charts.bars([RUN, "b", "c"], [3.0, 1e5, 2.0], "to remove (m3)", LONG)
-    figure_charts.convergence(Convergence([4, 2.5, 1.25], [8000, 12000, 15000], [300, None, 100], 17500, -2400, 16800,
-                                          18200, False), "diameter of the balls (m)", "to remove (m3)", LONG)
+    figure_charts.convergence(Convergence([4, 8, 16], [8000, 12000, 15000], [300, None, 100]),
+                              "balls over the thickness of the body", "to remove (m3)", LONG)
     assert len(drawn) == 5
     for figure in drawn:
         check_layout(figure)

@@ -12,7 +12,7 @@ from slope_tools.fitting import calibration
 from slope_tools.report import convergence_part, heading, reference
 from slope_tools.seismic import fragility_files
 from slope_tools.survey import rasters
-from slope_tools.tables import size_error, structures
+from slope_tools.tables import structures
 
 TOP = Path(__file__).resolve().parents[2]
 TOOLS = TOP / "tools" / "slope_tools"
@@ -54,8 +54,8 @@ FILES = {       # file: (its reader, a text, what must be said)
     "site.yaml": (heading.site_of, (("project: [1]", "project: must be a section with keys or null, got [1]"),
                                     ("terrain: {files: [1]}", "terrain: files: first value: must be a text, got 1"))),
     "converge.yaml": (lambda folder: convergence_part.Sizes(folder / "converge.yaml"), (
-        ("study: {variable: d}", f"must be {size_error.WHAT}: must have quantities"),
-        ("{study: {variable: d, deck: a, base: {}, finished: 1}, quantities: {}}", "quantities: must not be empty"))),
+        ("study: {variable: d}", f"must be {convergence_part.WHAT}: must have quantities"),
+        ("{study: {variable: d, deck: a, finished: 1}, quantities: {}}", "quantities: must not be empty"))),
     "r.yaml": (lambda folder: reference.read(folder / "r.yaml", {"a": "it"}), (
         ("{title: T, quantities: {a: {levels: {b: 1}, 7: 1}}}", "must have no 7, which is unknown"),
         ("{title: T, quantities: {a: {levels: {b: 1}, 7: 1, more: 1}}}", "must have no 7, more, which is unknown"),

@@ -30,6 +30,7 @@ from slope_tools.sites import site_budget, site_choices, site_deck, site_warning
 from slope_tools.sites.site import numbers as site_numbers
 from slope_tools.errors import SlopeError
 from slope_tools.plots import site_map
+from slope_tools.statistics.size_effect import Effect
 from slope_tools.tables import answered
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
@@ -158,7 +159,11 @@ def test_two_commands_lead_from_gis_files_to_a_report(done):
                                                                           "spacing": ["0.9", "0.5", "0.7"]}
     best = study["conservative"]
     assert best["kind"] == "prediction" and best["mean_m3"] > 0
-    # so few balls do not tell the size error
+    assert (study["size"]["coarse_d"] / study["size"]["d"], len(study["size"]["coarse_runs"])) == (
+        pytest.approx(2), 3) and study["size"]["open"] and f"size of the balls: {study['size']['text']}" in second
+    assert best["size_m3"] == pytest.approx(Effect(
+        *(study["size"]["effects"]["remove_m3"][name] for name in Effect._fields)).added(
+            best["mean_m3"] + best["chance_m3"]))
     assert study["step"]["volume_m3"] > 0 and study["step"]["text"] in second
     assert study["step"]["step"] == 0.5
     # of the mass that a lattice of so few balls makes of the body
@@ -168,9 +173,7 @@ def test_two_commands_lead_from_gis_files_to_a_report(done):
     assert spent["gravity"] > spent["sliding"] > 0
     assert abs(spent["residual"]) < 1e-3 * spent["gravity"] and abs(spent["begin_end"]) < 0.02 * spent["gravity"]
     assert spent["text"] in (mine / "report.html").read_text()
-    withheld = [one["kind"] for one in best["withheld"]]
-    assert (best["volume_m3"] is None) == bool(withheld) and withheld in ([], ["size error"])
-    assert yaml.safe_load((mine / "sizes" / "converge.yaml").read_text())["study"]["finished"] == 9
+    assert best["withheld"] == [] and best["volume_m3"] > 0 and study["headline"]["kind"] == "floor"
     assert "report.html" in second and "conservative" in second
     assert (mine / "report.mp4").exists() == bool(shutil.which("ffmpeg"))
     assert not list(folder.glob(".mine*"))
@@ -776,7 +779,7 @@ def test_a_site_has_its_own_choices(tmp_path):
     (tmp_path / "mine" / "site.yaml").touch()
     for option, *values in (("--set", "rolling=0"), ("--repeat", "packing=2"), ("--vary", "rolling=0:1"),
                             ("--known", "rock_avalanches"), ("--except", "x"),
-                            ("--equally-good", "d"), ("--size-error", "converge.yaml"),
+                            ("--equally-good", "d"),
                             ("--intensity", "peak"), ("--more-than", "10"), ("--exceed", "0.1,0.5,1"),
                             ("--exceed-speed", "5"), ("--exceed-energy", "100000"), ("--design", "sobol"),
                             ("--seed", "0"), ("--of", "front_m"), ("--road", "road.geojson"), ("--cut-angle", "30"),

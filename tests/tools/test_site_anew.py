@@ -28,7 +28,6 @@ from slope_tools.deposits import score_run
 from slope_tools.errors import SlopeError
 from slope_tools.sites import site, site_budget, site_choices, site_deck, site_folder, site_warnings
 from slope_tools.studies import site_study
-from slope_tools.studies.setup import Setup
 
 
 MAPPED = [(25, 25), (60, 25), (60, 55), (25, 55)]
@@ -494,14 +493,6 @@ def test_warnings_of_a_site_are_those_of_its_study(tmp_path):
     assert site_study.warnings_of(tmp_path) == []
     (tmp_path / "warnings.yaml").write_text("# slope site\n- too thin\n")
     assert list(map(str, site_study.warnings_of(tmp_path))) == ["too thin"]
-
-
-def test_a_size_error_that_is_not_usable_has_its_reason_alone():
-    """The report itself says that the size error was measured and is not usable."""
-    warned = []
-    setup = Setup(Path("in.deck"), Path("out"), warn=warned.append)
-    assert site_study.unusable(setup, "too few runs") == site_study.Sizes(None, (), "too few runs")
-    assert list(map(str, warned)) == ["the size error is unknown: too few runs"]
 
 
 # --- sources that change after the folder was made ---

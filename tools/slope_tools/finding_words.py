@@ -198,7 +198,7 @@ WORDS: Dict[str, Union[str, Words]] = {
     "end of range": Words("it lies at the end of the range of {variable}, {low:g} to {high:g}", NOTE),
     "no chance": Words("without repeats (--repeat) the scatter by chance is unknown", NOTE),
     "more than released": Words("it is more than the {released:,.6g} m3 that are released, which is impossible: the "
-                                "scatter or the size error is too uncertain to give a number", NOTE),
+                                "scatter or the effect of size is too uncertain to give a number", NOTE),
     "two outcomes": Words("{few} of the {runs} runs of {combination} have less than {percent:g} % of the volume of the "
                           "others, which the scatter by chance does not describe ({why})", NOTE),
     "hardly reaches": Words("{few} of the {runs} runs of {combination} have less than {percent:g} % of the volume of "

@@ -53,8 +53,8 @@ class Request(Overwrite):
     reference: Optional[Path] = option(
         "numbers from elsewhere, published or measured, shown beside those of the runs", metavar="FILE.yaml")
     converge: Optional[Path] = option(
-        "effect of the size of the balls: the folder of `slope sensitivity --converge`, or its converge.yaml "
-        "(default: the one that the study took its size error from)", metavar="DIR")
+        "effect of the size of the balls: the folder of `slope sensitivity --converge`, or its "
+        "converge.yaml", metavar="DIR")
     name: Optional[str] = option(f"name of the project or the site, the title of the page{OF_SITE}", metavar="TEXT")
     client: Optional[str] = option(f"recipient of the report{OF_SITE}", metavar="TEXT")
     author: Optional[str] = option(f"author of the report{OF_SITE}", metavar="TEXT")
