@@ -166,7 +166,7 @@ def test_a_run_of_the_deck(slope, here):
     listed = yaml.safe_load(Path("tiny.summary.yaml").read_text())["files"]
     rasters = {name.replace(".asc", ".tif") for name in listed if name.endswith(".asc")}
     assert rasters | {"export.yaml"} == set(os.listdir("tiny.export"))
-    for name in listed:
+    for name in (one for one in listed if one.endswith(".asc")):
         with rasterio.open(f"tiny.export/{name.replace('.asc', '.tif')}") as tif:
             assert np.array_equal(tif.read(1, masked=True).filled(np.nan), read_asc(name), equal_nan=True), name
     terrain, base = read_asc("terrain.asc"), read_asc("tiny.base.asc")
