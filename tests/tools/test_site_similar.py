@@ -10,7 +10,7 @@ from run_helpers import write_tif
 
 from slope_tools.case import decks
 
-REPEATS = ("0", "0.25", "0.5", "0.75")     # positions of the lattice
+REPEATS = ("1", "2", "3", "4")     # packings
 # each is a length over that of the site: travel of the centroid, what 90 and 99 % of the volume stay within
 LENGTHS = ("centroid", "within_90", "within_99")
 
@@ -24,8 +24,8 @@ def measured(folder, factor, *words):
     done = make(folder, "--shape", "ellipsoid", "--depth", 8 * factor, "--balls", 400)
     assert done.returncode == 0, done.stderr
     found = []
-    for offset in REPEATS:
-        subprocess.run([LMP, "-in", "in.site", "-screen", "none", "-var", "rolling", "0.05", "-var", "xoffset", offset,
+    for seed in REPEATS:
+        subprocess.run([LMP, "-in", "in.site", "-screen", "none", "-var", "rolling", "0.05", "-var", "packing", seed,
                         *words], cwd=folder / "mine", check=True, stdin=subprocess.DEVNULL)
         about = yaml.safe_load((folder / "mine" / "site.summary.yaml").read_text())
         assert about["stop"]["reason"] == "halted"

@@ -166,10 +166,16 @@ def compared(setup: Setup, fine: Repeat, rows: Sequence[Mapping[str, Any]],
 
 
 def depth_of(setup: Setup, row: Mapping[str, Any]) -> float:
-    """Mean thickness (m) of the body that a run released: its volume over its area in plan."""
+    """Mean thickness (m) of the body that a run released: its volume over its area in plan.
+
+    The middles of balls lie half a ball within the rim.
+    """
+    from scipy.ndimage import binary_dilation
     arrival = run_folders.load_raster(run_folders.prefix_of(run_folders.summary_of(setup.output, row)), "arrival")
-    area = body_of(arrival.z == 0, arrival, row["ball_m3"]).sum() * arrival.transform.a ** 2
-    return row["released_m3"] / float(area)
+    body = body_of(arrival.z == 0, arrival, row["ball_m3"])
+    rim = round(row["ball_m3"] ** (1 / 3) / arrival.transform.a / 2)
+    cells = (binary_dilation(np.pad(body, rim), iterations=rim) if rim else body).sum()
+    return row["released_m3"] / (float(cells) * arrival.transform.a ** 2)
 
 
 def known_of(setup: Setup, questions: Questions) -> Mapping[str, Any]:
