@@ -14,7 +14,7 @@ from run_helpers import run_command
 from slope_tools import cli
 from slope_tools.commands import polygon, run_arguments
 from slope_tools.errors import SlopeError
-from slope_tools.findings import Finding, entries
+from slope_tools.findings import Finding, entries, finding
 from slope_tools.report import document, heading, structures_part, warnings as report_warnings
 from slope_tools.report.study_part import ENDS, MOST_ROWS, Runs
 from slope_tools.tables import judged, quantities, study_table
@@ -131,14 +131,13 @@ def test_a_fault_of_the_page_is_no_bad_input(tmp_path, monkeypatch, capsys):
 def test_that_a_road_has_no_crs_is_said_beside_the_maps_not_in_red(monkeypatch):
     sizes = "sizes of balls"
     several = [Finding("no CRS", {"file": "road.csv", "coordinates": "local"}, (), part) for part in ("", sizes)]
-    several.append(Finding("half step", {"rolling": "0", "volume": "9", "mean": "7", "by": "", "more": "more",
-                                         "chance": "1"}, (), sizes))
+    several.append(finding("too few runs")._replace(part=sizes))
     for module, name in ((judged, "of_runs"), (judged, "limits"), (judged, "of_logs"),
                          (report_warnings, "below_ground"), (structures_part, "coarse_walls")):
         monkeypatch.setattr(module, name, lambda *_: [])
     data = SimpleNamespace(judged=[], repeats=[], study={"conservative": None, "warnings": entries(several)})
     found = report_warnings.listed(report_warnings.findings(data, None), {})
-    assert [(level, text.count("half the time step")) for level, text in found] == [("warning", 1)]
+    assert [(level, text.count("too few runs")) for level, text in found] == [("warning", 1)]
 
 
 @pytest.mark.parametrize("number", [MOST_ROWS, 96])

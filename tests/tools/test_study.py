@@ -22,8 +22,8 @@ from tiny_collapse import LMP, TOP, edit, processes_in, read_asc, serial, write_
 
 from slope_tools.case import decks, logs, settings
 from slope_tools.runs import job_display
-from slope_tools.statistics import convergence, headline
-from slope_tools.studies import results, size_study, study
+from slope_tools.statistics import headline
+from slope_tools.studies import results, study
 from slope_tools.survey import rasters
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
@@ -712,11 +712,6 @@ def test_every_example_of_the_page_and_the_help_runs(slope, here, command):
     if "--engine slurm" in command:     # test_slurm.py has a cluster
         command = command.replace("srun", "sh") + " --dry-run"
     (here / "road.csv").write_text((folder / "road.csv").read_text())
-    fit = convergence.fit([(4.0, [12.0, 13.0]), (1.0, [18.0, 18.4]), (0.5, [19.0, 19.2])])
-    (here / "sizes").mkdir()
-    (here / "sizes" / "converge.yaml").write_text(yaml.safe_dump({
-        "study": {"deck": "in.embankment", "variable": "d", "base": {}, "road": None, "finished": 6},
-        "quantities": {"remove_m3": size_study.entry(fit, ("to remove", "m3"), [])}}))
     status, _, err = slope(command)
     assert status == 0, err
 

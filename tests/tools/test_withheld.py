@@ -29,11 +29,10 @@ DECK = Case(Path("in.slope"), None, {"d": "2", "duration": "60"}, 1000)
     ({"left": 0.01}, []),
     ({"failed": 1, "moving": 2}, [Kind.RUNS]),                          # 15 %
     ({"moving": 2}, []),                                                # 10 %
-    ({"size": "it is -20 %"}, [Kind.SIZE]),
-    ({"volume": 0.0, "on_road": 0.0, "size": "it is -20 %"}, []),       # nothing to count balls of
+    ({"volume": 0.0, "on_road": 0.0}, []),                              # nothing to count balls of
     ({"volume": 0.0, "on_road": 0.0, "length": 1.0, "left": 0.5, "failed": 20},
      [Kind.MOBILITY, Kind.LEFT, Kind.RUNS])])
-def test_twelve_cases(changed, kinds):
+def test_each_rule(changed, kinds):
     assert [one.kind for one in withheld.reasons(GOOD._replace(**changed))] == kinds
 
 
@@ -66,7 +65,7 @@ def test_the_reason_and_the_command_that_mends_it(changed, case, text, remedy):
 
 @pytest.mark.parametrize("case", [SITE, SITE._replace(asked=" --paper"), SITE._replace(sampled=True), DECK,
                                   DECK._replace(variables={"friction": "30", "rolling": "0"})])
-@pytest.mark.parametrize("changed", [{"on_road": 50.0}, {"length": 700.0}, {"left": 0.3}, {"moving": 5}, {"size": "x"}])
+@pytest.mark.parametrize("changed", [{"on_road": 50.0}, {"length": 700.0}, {"left": 0.3}, {"moving": 5}])
 def test_the_commands_are_ones_that_the_tools_take(case, changed):
     [entry] = withheld_words.with_remedies(withheld.reasons(GOOD._replace(**changed)), case)
     typed = re.findall(r"tools/slope (?:'[^']*'|[^&;,])*", entry["remedy"])
@@ -96,9 +95,9 @@ def events(median, reached):
     return Events(median, 300.0, 310.0, (reached / 2, reached), (0.0, reached / 2))
 
 
-def judged(several, events=None, size=""):
+def judged(several, events=None):
     best = combinations.conservative({"rolling": ["0"]}, several, combinations.grouped(several))
-    usable.judge(best, several, events, SITE, size)
+    usable.judge(best, several, events, SITE)
     return best
 
 
