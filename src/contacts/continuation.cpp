@@ -120,9 +120,11 @@ void Continuation::find_half_step()
     const double a = 0.5 * dt / atom->rmass[i];
     const double b = a / (0.4 * atom->radius[i] * atom->radius[i]);
     const int bits = static_cast<int>(f[CHANGED]);
+    double *const velocity[] = {&now[i].x, &now[i].y, &now[i].z};
+    double *const rotation[] = {&spin[i].x, &spin[i].y, &spin[i].z};
     for (int d = 0; d < 3; d++) {
-      if (bits >> d & 1) (&now[i].x)[d] -= a * f[d];
-      if (bits >> d & 8) (&spin[i].x)[d] -= b * f[3 + d];
+      if (bits >> d & 1) *velocity[d] -= a * f[d];
+      if (bits >> d & 8) *rotation[d] -= b * f[3 + d];
     }
   }
   comm->forward_comm();    // to the ghosts

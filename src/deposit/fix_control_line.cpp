@@ -139,17 +139,17 @@ void FixControlLine::init()
 void FixControlLine::find_deposit()
 {
   const std::vector<Fix *> all = compat::fixes_of_style(lmp, "deposit/grid");
-  Fix *found = deposit_id.empty() && all.size() == 1 ? all[0] : nullptr;
+  Fix *chosen = deposit_id.empty() && all.size() == 1 ? all[0] : nullptr;
   for (Fix *fix : all)
-    if (deposit_id == fix->id) found = fix;
-  deposit = static_cast<FixDepositGrid *>(found);
-  if (!found && deposit_id.empty())
+    if (deposit_id == fix->id) chosen = fix;
+  deposit = static_cast<FixDepositGrid *>(chosen);
+  if (!chosen && deposit_id.empty())
     error->all(FLERR,
                "Fix control/line {} needs deposit ID, the fix deposit/grid that has the bulk "
                "factor, where "
                "there is not exactly one, got {}",
                id, all.size());
-  if (!found)
+  if (!chosen)
     error->all(FLERR, "Fix control/line {} deposit must be the ID of a fix deposit/grid, got {}",
                id, deposit_id);
 }

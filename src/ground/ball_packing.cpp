@@ -70,7 +70,7 @@ void BallPacking::cells(const double lo[3], const double hi[3], int64_t first[3]
                         int64_t last[3]) const
 {
   for (int e = 0; e < 3; e++) {
-    double least = -origin[e], most = -origin[e];
+    double least = -origin[e], most = least;
     for (int d = 0; d < 3; d++) {
       const double a = turn[d][e] * lo[d] / side, b = turn[d][e] * hi[d] / side;
       least += std::min(a, b);

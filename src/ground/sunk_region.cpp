@@ -86,8 +86,8 @@ void SunkRegion::find_ground(const std::string &caller)
         !RegionSurface::is_fit(candidate, RegionSurface::UPPER, boundary->xlo, boundary->xhi,
                                boundary->ylo, boundary->yhi))
       continue;
-    const RegionSurface ends(lmp, caller, candidate->id, RegionSurface::UPPER, step);
-    const double area = (ends.xhi - ends.xlo) * (ends.yhi - ends.ylo);
+    const RegionSurface other(lmp, caller, candidate->id, RegionSurface::UPPER, step);
+    const double area = (other.xhi - other.xlo) * (other.yhi - other.ylo);
     if (area < widest || (area == widest && candidate->id >= ground)) continue;
 
     int known = 0, same = 0;
@@ -95,7 +95,7 @@ void SunkRegion::find_ground(const std::string &caller)
       double mine, its;
       if (!upper.height(columns[k], columns[k + 1], mine)) continue;
       known++;
-      if (ends.height(columns[k], columns[k + 1], its) && std::fabs(mine - its) <= SAME * diameter)
+      if (other.height(columns[k], columns[k + 1], its) && std::fabs(mine - its) <= SAME * diameter)
         same++;
     }
     if (known == 0 || same < MOST * known) continue;
