@@ -10,7 +10,8 @@ from slope_tools.commands import study
 from slope_tools.statistics import answer
 from slope_tools.statistics.answer import AtRoad, Code, Ensemble, Kind, Paper, Road, Source, Withheld
 from slope_tools.statistics.withheld import Kind as Rule
-from slope_tools.tables import answered
+from slope_tools.report import client_part
+from slope_tools.tables import answer_words, answered, fine_run
 
 STOPPED = answer.Reason(Code.TERRAIN, {"share": 0.12, "path_m": 900.0})
 
@@ -68,6 +69,18 @@ def test_the_effect_of_size_raises_the_quantiles_of_an_ensemble():
     assert volume(coarse=50.0, fine=60.0, ratio=True) == pytest.approx((120.0, 96.0, None))
     assert volume(coarse=0.0, fine=7.0, ratio=False) == pytest.approx((107.0, 87.0, None))
     assert volume(coarse=60.0, fine=50.0, ratio=True) == pytest.approx((100.0, 80.0, None))
+
+
+def test_a_fine_run_that_failed_makes_a_floor_too():
+    """Less is known than with one that finished: the number is no firmer."""
+    entry = fine_run.evaluate(fine_run.Fine(None, (), 0.0, lambda key: None, "d_1: diverged"))
+    about = {"conservative": {"volume_m3": 1200.0}, "size": entry}
+    found = answer.of(answered.paper_of(about), None, None)
+    assert (found.kind, found.volume, codes(found)) == (Kind.FLOOR, 1200.0, [Code.SIZE])
+    assert "did not finish" in answer_words.text(found.reasons[0]) and "d_1: diverged" in entry["text"]
+    assert "did not finish" in client_part.reason(found.reasons[0].code, found.reasons[0].numbers)
+    # none was asked for: size is not known, which the page says, and the number is as before
+    assert answer.of(answered.paper_of({**about, "size": None}), None, None).kind is Kind.NUMBER
 
 
 def test_a_floor_where_known_events_lie_beyond_the_runs():

@@ -116,5 +116,5 @@ def of_mass(divided, left):
     if divided["unknown"] > 0:
         yield (f"{divided['unknown']:.1f} m3 left the terrain, and it is not known where: a run of an older version, "
                "without dumps")
-    elif said := left_words.told(left):
+    elif said := left_words.sentence(left):
         yield f"left the terrain: {said}"

@@ -42,7 +42,7 @@ def to_add(entries: Sequence[Entry]) -> str:
     return ", ".join([*named, *(["heights in the hole (slope terrain --fill)"] if HOLE in most else [])])
 
 
-def told(about: Optional[Mapping[str, Any]]) -> str:
+def sentence(about: Optional[Mapping[str, Any]]) -> str:
     """Of `left` of volume.yaml, a sentence without its full stop; "" where nothing left."""
     if about is None or not about["sides"]:
         return ""

@@ -181,6 +181,8 @@ def reason(code: Code, of: Mapping[str, Any]) -> str:
         return f"{of['points']:g} runs were added towards longer ones, and no more"
     if code is Code.FEW:
         return "the runs are too few to tell which settings go farther"
+    if code is Code.SIZE and of["balls_thick"] is None:
+        return "the run with smaller balls in the model, which may bring more, did not finish"
     if code is Code.SIZE:
         return (f"the finest of the model's balls are {of['balls_thick']:.2g} over the thickness of the body, and "
                 f"smaller ones, {of['enough']:g} or more, may bring more")

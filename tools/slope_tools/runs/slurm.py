@@ -53,7 +53,7 @@ def check(options: str) -> None:
     except ValueError as error:
         raise SlopeError("--slurm", f"must be options of sbatch ({error})", options) from None
     for word in words:
-        name = word.partition("=")[0]       # sbatch takes the begin of a name, too
+        name = word.partition("=")[0]       # sbatch takes abbreviations, too
         if SHORT.match(word) or len(name) > len("--a") and any(one.startswith(name) for one in OWN):
             raise SlopeError("--slurm", f"must not have {', '.join(OWN)}, which the study sets; --jobs is how many "
                              "runs there are at a time", word)

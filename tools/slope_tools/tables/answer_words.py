@@ -59,6 +59,8 @@ def text(reason: Reason) -> str:
         return f"{of['points']} runs were added towards longer ones; a larger --sample allows more"
     if code is Code.FEW:
         return "the runs are too few to tell which parameters go farther: take more points"
+    if code is Code.SIZE and of["balls_thick"] is None:
+        return "the run with smaller balls, which may bring more, did not finish"
     if code is Code.SIZE:
         return (f"the finest balls are {of['balls_thick']:.2g} over the thickness of the body: smaller ones, "
                 f"{of['enough']:g} or more, may bring more")

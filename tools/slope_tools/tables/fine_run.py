@@ -26,7 +26,7 @@ def evaluate(fine: Fine) -> Dict[str, Any]:
     """The entry of study.yaml; its effects are {column: of_effect()}, its text a sentence without its full stop."""
     if fine.row is None or not fine.coarse:
         why = fine.why or "no run with the same values finished"
-        return {"run": None, "effects": {}, "open": False, "text": f"not tried: {why}"}
+        return {"run": None, "effects": {}, "open": True, "balls_thick": None, "text": f"not known: {why}"}
     ball = max(row["ball_m3"] for row in fine.coarse)
     d, coarse_d = (float(row["variables"][VARIABLE]) for row in (fine.row, fine.coarse[0]))
     effects = {}
