@@ -54,12 +54,6 @@ def tops(balls):
     return np.hypot(x[at], y[at]), z[at] - z.min() + 0.5
 
 
-def height_of(balls, within=2.0):
-    """Of the deposit at its axis, in diameters."""
-    away, height = tops(balls)
-    return height[away < within].mean()
-
-
 def profile(balls, radius):
     """Distance from the axis and mean height of the surface, ring by ring, over a radius."""
     away, height = tops(balls)
