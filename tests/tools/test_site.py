@@ -191,7 +191,7 @@ def test_both_studies_give_one_number(done, tmp_path, monkeypatch, capsys, fitte
     pages = []
     (mine / "site.yaml").write_text((mine / "site.yaml").read_text().replace("points: 64", "points: 8"))
     monkeypatch.setattr(farther, "MOST", 0.0)       # runs that are added are tested elsewhere
-    monkeypatch.setattr(study_command, "write_report", lambda study, page, film=True: pages.append(
+    monkeypatch.setattr(study_command, "write_report", lambda study, page, *_, film=True: pages.append(
         (study.name, page.name, film)))
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("LMP", LMP)

@@ -6,11 +6,12 @@ import re
 from contextlib import contextmanager
 from pathlib import Path
 from shlex import quote
-from typing import List
+from typing import List, Optional
 
 from .. import digits, disk
 from ..errors import SlopeError
 from ..findings import WARNING
+from . import unchanged
 from .heading import Asked
 
 
@@ -40,13 +41,27 @@ def write_pictures(output):
     print(f"{output.with_suffix('.1.png')} to {len(pictures)}: its maps")
 
 
-def write(asked: Asked, output: Path) -> List[str]:
-    """Write the page, its tables and its film, if one is asked for; returns lines for the user, the files first."""
-    page, html = make(asked)
+def update(asked: Asked, output: Path) -> List[str]:
+    """write() the page of a study, unless it is there, made of the same numbers and runs by the same tools."""
+    assert asked.study
+    made_of = unchanged.digest(asked, asked.study)
+    if unchanged.is_made_of(output, made_of):
+        return [f"{output}: unchanged, as all that it is made of"]
+    return write(asked, output, made_of)
+
+
+def write(asked: Asked, output: Path, made_of: Optional[str] = None) -> List[str]:
+    """Write the page, its tables and its film, if one is asked for; returns lines for the user, the files first.
+
+    made_of: unchanged.digest() of the page.
+    """
+    page, content = make(asked)
     tables = {output.with_suffix(".section.csv"): page.section.table(),
               output.with_suffix(".numbers.csv"): page.numbers.table()}
     films = {asked.film: page.film.content} if asked.film and page.film.content else {}
-    for path, text in {output: html, **tables, **films}.items():
+    beside = {**tables, **films}
+    html = render({**content, "made_of": unchanged.mark(made_of if films or not page.film.failed else None, beside)})
+    for path, text in {**beside, output: html}.items():     # the page, which says what it is made of, last
         disk.write(path, text)
     view = ", a 3-D view" if 'id="scene"' in html else ""
     written = (f"{output}: {len(html) / 1e6:.1f} MB, {html.count('<figure')} pictures{view}; "
@@ -56,11 +71,11 @@ def write(asked: Asked, output: Path) -> List[str]:
 
 
 def make(asked: Asked):
-    """The Page and its HTML."""
+    """The Page and what its template takes."""
     from .page import Page
     with trusted(asked.folder):
         page = Page(asked)
-    return page, render({**page.content(), "mark": mark(asked.folder)})
+    return page, {**page.content(), "mark": mark(asked.folder), "made_of": ""}
 
 
 def reproduce(folder: Path) -> List[str]:

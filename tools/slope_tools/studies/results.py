@@ -52,7 +52,7 @@ def collect(setup: Setup, questions: Questions, todo, work) -> Optional[Dict[str
     if order and all(run.error for run in todo):
         return None     # study.perform says so
     maps = Maps(thresholds)
-    rows, thickness = rows_of(setup, todo, maps, pictures=order is None)
+    rows, thickness = rows_of(setup, todo, maps)
     warnings = [finding(one) for one in questions.notes]
     warned = {one.kind for one in warnings if not one.part}
     warnings += [one for one in judged.of_runs(rows) if one.kind not in warned]
@@ -155,7 +155,7 @@ def compared(setup: Setup, fine: Repeat, rows: Sequence[Mapping[str, Any]],
     """The fine run beside the rows with the same values; groups: of a study with repeats, None of an ensemble."""
     if fine.error:
         return fine_run.Fine(None, (), 0.0, lambda key: None, f"{fine.name}: {fine.error}")
-    [row], _ = rows_of(setup, [fine], Maps(()), pictures=False)
+    [row], _ = rows_of(setup, [fine], Maps(()))
     coarse = [one for one in rows if one["status"] == "finished"
               and all(row["variables"][name] == one["variables"][name]
                       for name in one["set"] if name != fine_run.VARIABLE)]
@@ -213,11 +213,8 @@ def unseen(repeated, defaults):
         if offsets else []
 
 
-def rows_of(setup: Setup, todo, maps, pictures=True):
-    """A row for each run, finished or failed, and the final thickness of the last one that finished.
-
-    pictures: whether `slope volume` draws its map of each, which takes longest.
-    """
+def rows_of(setup: Setup, todo, maps):
+    """A row for each run, finished or failed, and the final thickness of the last one that finished."""
     rows, thickness = [], None
     for run in rasters.progress(todo, "collecting the runs"):
         row = {"run": run.name, "status": "failed" if run.error else "finished", "set": run.combination,
@@ -227,7 +224,7 @@ def rows_of(setup: Setup, todo, maps, pictures=True):
             continue
         row, thickness = result(run, row, maps, setup.output)
         if setup.road:
-            row.update(on_road(run, setup, row, thickness, pictures))
+            row.update(on_road(run, setup, row, thickness))
         rows.append(row)
     return rows, thickness
 
@@ -263,8 +260,9 @@ def result(run, row, maps, output):
     return row, thickness
 
 
-def on_road(run, setup: Setup, row, thickness, picture=True) -> Dict[str, Any]:
-    """What `slope volume` says of a run, all of which goes to the folder volume of the run; and what lies beyond."""
+def on_road(run, setup: Setup, row, thickness) -> Dict[str, Any]:
+    """What `slope volume` says of a run, which goes to the folder volume of the run, without the picture; and what lies
+    beyond."""
     from ..deposits import volume
     road, summary = setup.road, run_folders.summary_of(setup.output, row)
     assert road
@@ -272,7 +270,7 @@ def on_road(run, setup: Setup, row, thickness, picture=True) -> Dict[str, Any]:
     terrain = terrain_of(run)
     wanted = volume.Wanted(road.file, road.mesh, road.cut_angle, road.local, asked=road.asked)
     found = volume.of_run(str(prefix), wanted, terrain)
-    volume.write(found, run.folder / "volume", picture)
+    volume.write(found, run.folder / "volume", picture=False)
     about = disk.plain(found.about)       # numpy has no place in study.yaml
     released = run_folders.load_raster(prefix, "arrival").z == 0
     polygon, total = road.read(placed(thickness, run)).polygon, about["clearing"]

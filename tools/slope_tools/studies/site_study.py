@@ -139,7 +139,7 @@ def half_steps(setup: Setup, rolling: str, variables: Dict[str, str]) -> List[re
 
 def step_of(setup: Setup, run_: repeats.Repeat, rolling: str, variables: Dict[str, str]) -> Step:
     """What that run tells."""
-    [row], _ = results.rows_of(setup, [run_], results.Maps(()), pictures=False)
+    [row], _ = results.rows_of(setup, [run_], results.Maps(()))
     if run_.error:
         return Step(rolling, None, f"{run_.name}: {run_.error}", step=float(run_.chosen["step"]))
     prefix = run_folders.prefix_of(run_folders.summary_of(setup.output, row))
