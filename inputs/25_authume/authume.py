@@ -31,6 +31,7 @@ ROLLING = [round(0.01 * k, 2) for k in range(10, 21)]
 SHARES = 0.05, 0.25, 0.5, 0.75, 0.95
 DENSITY = 2600                  # kg/m3
 DRAWS = 1000                    # samples with replacement
+BLOCKS_P2 = 48                  # of the experiment on profile 2
 
 
 # --- the data: y is up in them, here z is; along is x in both, across is their z ---
@@ -194,14 +195,16 @@ def fit(folder, jobs):
 def predict(folder, jobs):
     """Profile 2 with the deck's defaults, the values of the fit."""
     found = runs(folder, jobs, {"profile 2": {"profile": 2}})["profile 2"]
-    each = [np.array(quantiles([one])) for one in found]
-    rows = [[name, f"{share:g}", f"{value:.1f}", f"{min(one[k][m] for one in each):.1f}",
-             f"{max(one[k][m] for one in each):.1f}"]
-            for k, name in enumerate(("along", "across")) for m, (share, value) in
-            enumerate(zip(SHARES, quantiles(found)[k]))]
+    every, each = np.concatenate(found), [quantiles([one]) for one in found]
+    draws = np.random.default_rng(1).integers(0, len(every), (DRAWS, BLOCKS_P2))
+    low, high = np.quantile([quantiles([every[chosen]]) for chosen in draws], (0.05, 0.95), axis=0)
+    rows = [[name, f"{share:g}", *(f"{value:.1f}" for value in (
+        quantiles(found)[k][m], min(one[k][m] for one in each), max(one[k][m] for one in each), low[k][m], high[k][m]))]
+        for k, name in enumerate(("along", "across")) for m, share in enumerate(SHARES)]
     left = [np.isinf(one[:, 0]).mean() for one in found]
-    rows.append(["left the terrain", "", f"{np.mean(left):.3f}", f"{min(left):.3f}", f"{max(left):.3f}"])
-    tell(folder / "prediction_P2.csv", rows, ["direction", "share", "all_m", "lowest_seed_m", "highest_seed_m"])
+    rows.append(["left the terrain", "", f"{np.mean(left):.3f}", f"{min(left):.3f}", f"{max(left):.3f}", "", ""])
+    tell(folder / "prediction_P2.csv", rows, ["direction", "share", "all_m", "lowest_seed_m", "highest_seed_m",
+                                              f"sample_of_{BLOCKS_P2}_low_m", f"sample_of_{BLOCKS_P2}_high_m"])
     np.savetxt(folder / "ends_P2.txt", np.concatenate(found), "%.2f")
 
 
