@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """Run-out against the number of blocks, stacked and loose: okada.py [-o FOLDER] [--set NAME=VALUE ...]
 
-Writes FOLDER/okada.csv: run-out in plan from the lower edge of the blocks, all blocks of all seeds; standard errors by seeds.
+Writes FOLDER/okada.csv: run-out in plan from the lower edge of the blocks, of all blocks of all seeds; standard errors by
+seeds.
 LMP names the program, otherwise build/lmp.
 """
 import argparse
@@ -59,9 +60,10 @@ def main():
     rows = [["blocks", "how", "seeds", *head]]
     for count, ((long, wide, high), seeds) in NUMBERS.items():
         for how, places in HOW.items():
-            rows.append([count, how, seeds, *row([
-                run(args.folder / f"{how}.{count}.{seed}", seed=seed, long=long, wide=wide, high=high, **places, **given)
-                for seed in range(1, seeds + 1)])])
+            size = {"long": long, "wide": wide, "high": high}
+            runs = [run(args.folder / f"{how}.{count}.{seed}", seed=seed, **size, **places, **given)
+                    for seed in range(1, seeds + 1)]
+            rows.append([count, how, seeds, *row(runs)])
             print(*rows[-1], flush=True)
     with open(args.folder / "okada.csv", "w", encoding="ascii", newline="") as file:
         csv.writer(file, lineterminator="\n").writerows(rows)
