@@ -131,12 +131,12 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
         keep(Finding("under road", {"file": choices["road"]["file"], **under._asdict()}))
     title = choices["project"]["name"] or folder.absolute().name
     parts = site_deck.Parts(title, ", ".join(Path(name).name for name in choices["terrain"]["files"]), body,
-                            layers.structures, layers.lines, layers.motion, room_of(raster))
+                            layers.structures, layers.lines, layers.motion, room_of(raster), layers.zones)
     trial, reached = tried(choices, parts, found, new, machine, tell)
     size = settle(choices, parts, found, trial, machine, raster)
     derived = site_choices.derived(given, choices, known)
     say_size(choices, size, found, machine, tell)
-    for one in (*site_warnings.of_resistance(choices),
+    for one in (*site_warnings.of_resistance(choices), *site_warnings.of_zones(layers.zones),
                 *site_warnings.site_warnings(found.measures, size, trial)):
         keep(one)
     site_warnings.write(new, warnings)
@@ -151,6 +151,7 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
              "sources_sha256": site_choices.sources(choices, folder),
              "crs": crs_name(raster.crs),
              "origin": {"east": float(raster.offset[0]), "north": float(raster.offset[1])},
+             "zones": [zone.about(raster) for zone in layers.zones],
              "body": found.measures._asdict(), "bodies": site_bodies.about(several), "balls": size.balls,
              "trial": trial and trial._asdict(), "study": {"runs": size.runs, "seconds": size.seconds,
                                                            "gigabytes": size.gigabytes, "at_a_time": machine.jobs}}
@@ -317,4 +318,4 @@ def shown(found: release.Body, layers: Layers, reached: Optional[Raster]) -> Sho
     rows, columns = found.slip.shape
     depth[row:row + rows, column:column + columns] = np.nan_to_num(found.area.z - found.slip)
     return Shown(found.raster, depth, found.geometry, layers.road, layers.observed, layers.structures, layers.lines,
-                 reached)
+                 reached, layers.zones)
