@@ -9,7 +9,7 @@ from ..statistics import answer
 from ..statistics.answer import Answer, AtRoad, Code, Ensemble, Paper, Reason, Road, Withheld
 from ..statistics.size_effect import RESOLVED
 from ..statistics.withheld import Kind as Rule
-from . import fine_run
+from . import elastic, fine_run
 from .quantities import REMOVE
 
 TITLE = "slope study: volumes in m3 of ground (bulk), lengths in m, times in s"
@@ -86,14 +86,15 @@ def governing(paper: Path, ensemble: Path) -> Path:
 
 
 def of_both(paper: Path, ensemble: Path) -> Optional[Answer]:
-    """Of both study.yaml of a site, in which it is entered; None, and nothing is done, without a road."""
+    """Of both study.yaml of a site, in which it is entered; None without a road. What the paper's study says of the
+    largest restitution is entered in the other, too."""
     said: Dict[Path, Any] = {path: schemas.load(path, "what `slope study` wrote", SCHEMA) for path in (paper, ensemble)}
     roads = [one for one in map(road_of, said.values()) if one]
     road = roads[-1]._replace(
         longest=max((one.longest for one in roads if one.longest is not None), default=None),
         brought=functools.reduce(AtRoad.and_of, [one.brought for one in roads])) if roads else None
     found = answer.of(paper_of(said[paper]), ensemble_of(said[ensemble]), road)
-    if found:
-        for path, about in said.items():
-            disk.write(path, disk.yaml_text(TITLE, {**about, "headline": found.about()}))
+    entered = {elastic.ENTRY: said[paper].get(elastic.ENTRY), **({"headline": found.about()} if found else {})}
+    for path, about in said.items():
+        disk.write(path, disk.yaml_text(TITLE, {**about, **entered}))
     return found
