@@ -55,8 +55,8 @@ def test_reach_and_area_beside_the_usual_runs(tmp_path, rows):
         "study": {"mean": 48, "low": 40, "high": 56}}
     assert about["text"] == (
         "restitution 0.9 of soil, slip surface and ground, rolling 0, 3 runs: 99 % of the volume stays within 110 m "
-        "(100 to 120) instead of 85 m (80 to 90), in all other runs at most 95 m; the deposit covers 92 m2 (80 to 108) "
-        "instead of 44 m2 (40 to 48), in all other runs at most 56 m2")
+        "(100 to 120) instead of 85 m (80 to 90); all other runs, up to 95 m; the deposit covers 92 m2 (80 to 108) "
+        "instead of 44 m2 (40 to 48); all other runs, up to 56 m2")
     with open(tmp_path / elastic.FILE, encoding="ascii") as file:
         table = list(csv.DictReader(file))
     assert [(one["run"], one["largest_restitution"]) for one in table] == [

@@ -45,7 +45,8 @@ def small(mine, gis):  # noqa: F811
 
 @pytest.mark.parametrize("name, words", [("large", "big"), ("small", "mine")])
 def test_both_studies_of_masses_of_all_sizes(request, capsys, monkeypatch, name, words):
-    """The paper's 13 runs, three with the largest restitution and a fine one, one with half the step where there is a road, 64 that known events weigh."""
+    """The paper's 13 runs, three with the largest restitution, a fine one, one with half the step where there is a
+    road; 64 that known events weigh."""
     request.getfixturevalue(name)
     status, out, err = study(capsys, monkeypatch, words)
     assert status == 0, err

@@ -99,8 +99,7 @@ def instead(one: Dict[str, Any], unit: str) -> str:
     """What the study's own runs have: the same ones otherwise, and the largest of all."""
     if not one["usual"] or not one["study"]:
         return ""
-    return (f" instead of {shown(one['usual'], unit)}, in all other runs at most {rounded(one['study']['high'], 3)} "
-            f"{unit}")
+    return f" instead of {shown(one['usual'], unit)}; all other runs, up to {rounded(one['study']['high'], 3)} {unit}"
 
 
 def name_of(key: str, about: Row) -> Tuple[str, str]:
