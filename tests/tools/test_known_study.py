@@ -1,6 +1,4 @@
 """tools/slope study SITE: by the paper's method, and weighted by known events, for masses of all sizes."""
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
@@ -70,7 +68,7 @@ def test_the_ensemble_varies_ground_and_restitution(large, capsys, monkeypatch):
     seen = []
     monkeypatch.setattr(study_command, "perform", lambda setup, *rest, **more: None)
     monkeypatch.setattr(study_command.results, "Questions", lambda *args, **more: seen.append(args[3]))
-    monkeypatch.setattr(study_command.site_study, "run", lambda *_: site_study.Done(None, None))
+    monkeypatch.setattr(study_command.site_study, "run", lambda *_: site_study.Done(None, None, None))
     assert study(capsys, monkeypatch, "big")[0] == 0
     [order] = seen
     assert {one.name: (one.low, one.high) for one in order.sample.variables} == {
@@ -125,17 +123,16 @@ def test_known_of_site_yaml_reaches_the_study(mine, capsys, monkeypatch):  # noq
     choices = (mine / "site.yaml").read_text()
     for given, path, named in (("null", "all", False), ("debris_flows:channelized", "channelized", True)):
         (mine / "site.yaml").write_text(choices.replace("  set: null", f"  set: {given}"))
-        asked = known_arguments.choice_of(None, [], None, mine)
-        condition = known_events.check(asked, None, mine / "in.site")
+        asked = known_arguments.choice_of(None, [], None, site_choices.load(mine))
+        condition = known_events.check(asked, None, mine)
         found = known_events.mobility_of(condition, mine, mine)
         assert found.law.path == path and found.in_range and (condition.found.strict is not None) == named
         assert asked.about() == {"set": None if given == "null" else given, "left_out": [], "confined": "unknown"}
-        setup = SimpleNamespace(deck=mine / "in.site")
-        assert results.known_of(setup, results.Questions({}, {}, ())) == {
-            "set": asked.about()["set"], "confined": "unknown"}
-        assert known.of_about(results.known_of(setup, results.Questions({}, {}, ()))).row == asked.row
+        kept = results.known_of(results.Questions({}, {}, (), known=site_choices.load(mine).choices["known"]))
+        assert kept == {"set": asked.about()["set"], "confined": "unknown"}
+        assert known.of_about(kept).row == asked.row
     with pytest.raises(SlopeError, match="--known: must be a set that covers the mass"):
-        known_events.check(known.choice("rock_avalanches"), "rock_avalanches", mine / "in.site")
+        known_events.check(known.choice("rock_avalanches"), "rock_avalanches", mine)
 
 
 def test_the_estimate_is_of_the_study_that_is_made(large):

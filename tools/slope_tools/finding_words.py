@@ -37,9 +37,9 @@ WORDS: Dict[str, Union[str, Words]] = {
     "body volume": Words(f"{DOUBTFUL}it is {{off}} {{side}} than the body of {{body:,.0f}} m3", NOTE, NOT_BODY),
     "balls removed": Words(f"{DOUBTFUL}{{off}} of the balls were removed at the start, and the body that the others "
                            "represent is unknown (fix deposit/grid ... bulk region)", NOTE, NOT_BODY),
-    "road on body": Words("{file}: a part of the road lies on the body, and goes with it: the volume to remove does "
+    "road on body": Words("{file}: {part} lies on the body, and goes with it: the volume to remove does "
                           "not tell what it takes to build the road anew", client=(
-                              "A part of the road lies on the mass that is released, and goes with it: what it takes "
+                              "{Part} lies on the mass that is released, and goes with it: what it takes "
                               "to build it anew is not in the volume.")),
     "soft": Words("the contacts are soft for the weight on them, K {number:,.0f} instead of {limit:,.0f} and more: "
                   "volumes and distances may be some percent too large (choosing parameters, stiffness)", NOTE),
@@ -186,7 +186,7 @@ WORDS: Dict[str, Union[str, Words]] = {
     "beyond the curve": "{which}: peaks above the hazard curve's last may add up to {per_year:.2g} failures per year",
     # of a study
     "ranks": "{runs} runs of {ranks} ranks at a time on {cores} cores: they slow each other down",
-    "no effect": Words("a repeated variable has no effect, to the last digit: left out", NOTE),
+    "no effect": Words("{which} has no effect{on}, to the last digit: {then}", NOTE),
     # why the number of a study is withheld
     "balls on the road": "on the road lies the volume of {balls}, fewer than {bound:g}",
     "known events": "no run reaches {bound} m, as half of known events of this volume and height do; {longest}",

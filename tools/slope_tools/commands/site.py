@@ -195,7 +195,7 @@ def run(args: Request) -> None:
         made = site.make(choices, folder, site.Machine(program(args.lmp), cores),
                          lambda line: print(line, flush=True), printer("site"), site_map.draw,
                          again=args.folder is not None, known=known)
-    for line in site_ground.lines(folder):
+    for line in site_ground.lines(site_choices.load(folder)):
         print(line)
     print(f"written to {folder}: {' '.join(made.files)}")
     print(f"look at {folder / site.MAP}, then: tools/slope study {quote(str(folder))}")

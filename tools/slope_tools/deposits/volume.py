@@ -82,7 +82,7 @@ def of_run(prefix, wanted: Wanted, terrain=None, tell: Callable[[str], None] = l
     roads.check_lane(asked.lane, width)
     try:
         result = evaluate(run, road, wanted.cut_angle, mesh, wanted.samples)
-        profile = along(axis, run, result.removed, asked)
+        profile = along(axis, run, result.removed, asked, road if wanted.axis else None)
         cleared = clearing.of_road(run, result, profile, axes_of(axis, asked), width,
                                    road if given.line is None else None, asked, mesh, wanted.cut_angle, wanted.samples)
     except cut.NoGround as error:

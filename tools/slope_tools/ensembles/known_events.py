@@ -18,9 +18,8 @@ from ..errors import SlopeError
 from ..findings import Finding, entries, texts
 from ..mobility import body, exceedance, known, run_length, weights
 from ..mobility.results import percent
-from ..sites import site_choices
 from ..statistics import answer, emulator, hazard
-from ..tables import answer_words, quantities
+from ..tables import answer_words, combinations, quantities
 from . import conditioned, farther, known_influence, known_maps
 from .sample import Sample
 
@@ -41,12 +40,12 @@ class Condition:
     named: bool = True
 
 
-def check(asked: known.Choice, name: Optional[str], deck: Path) -> Condition:
-    """The Condition of a choice; SlopeError if a set that was named (name; None: none was) does not cover the deck's
-    site: of others the landslides count then."""
+def check(asked: known.Choice, name: Optional[str], site: Optional[Path]) -> Condition:
+    """The Condition of a choice; SlopeError if a set that was named (name; None: none was) does not cover the body of a
+    site's folder, if there is one: of others the landslides count then."""
     found = None
-    if (deck.parent / site_choices.NAME).is_file():
-        found = known.of_body(body.of_site(deck.parent), asked)
+    if site:
+        found = known.of_body(body.of_site(site), asked)
         if name is not None and not found.strict:
             assert found.by_set
             raise SlopeError("--known", f"must be a set that covers the mass: {'; '.join(found.by_set.outside)}", name)
@@ -81,7 +80,8 @@ class Runs:
         self.sample, self.added = sample, added
         self.rows = [row for row in rows if row["status"] == "finished" and row.get("length_m") is not None]
         self.failed = len(rows) - len(self.rows)
-        self.point = [tuple(row["set"][name] for name in sample.names) for row in self.rows]
+        first = combinations.same_as(self.rows)         # the same run, to the last digit, is one point
+        self.point = [tuple(self.rows[k]["set"][name] for name in sample.names) for k in first]
         self.lengths = self.column("length_m") if self.rows else np.empty(0)
         self.exceedance = found.exceedance
         self.beyond = np.asarray(found.exceedance(self.lengths), float)
@@ -166,7 +166,10 @@ def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: S
 
 def quantiles(curve: hazard.Curve, runs: Runs, name: str, shares: Sequence[float]) -> List[Dict[str, Any]]:
     """What study.yaml says of those of a quantity."""
-    return [one._asdict() for one in conditioned.quantiles(curve, shares, runs.column(name), runs.mass)]
+    found = conditioned.quantiles(curve, shares, runs.column(name), runs.mass)
+    if len(set(runs.point)) == 1:       # one run has no bounds
+        found = [one._replace(low=None, high=None) for one in found]
+    return [one._asdict() for one in found]
 
 
 def reach(runs: Runs, found: exceedance.Mobility) -> Dict[str, Any]:
@@ -178,7 +181,7 @@ def reach(runs: Runs, found: exceedance.Mobility) -> Dict[str, Any]:
                             for k in range(len(run_length.OTHERS))],
             "gaps": [{"low_m": gap.low, "high_m": gap.high, "share": gap.share} for gap in one.gaps],
             "shortest_m": float(runs.lengths.min()), "longest_m": float(runs.lengths.max()),
-            "half_beyond_m": found.length_at(0.5), "path_m": float(found.path.length[-1]),
+            "half_beyond_m": found.length_at(0.5), "path_m": found.end(float(runs.lengths.max())),
             "beyond_path": found.beyond_path()}
 
 

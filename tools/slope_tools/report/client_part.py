@@ -173,7 +173,7 @@ def reason(code: Code, of: Mapping[str, Any]) -> str:
         return (f"{shares_of((of['low'], of['high']))} of them reach the road, as their scatter is taken: only the "
                 "larger of two estimates says more than 10 %")
     if code is Code.TERRAIN:
-        return (f"the elevation model ends after {metres(of['path_m'])} along the fall path, where "
+        return (f"the elevation model shows the first {metres(of['path_m'])} of the way, where "
                 f"{percent(of['share'])} of known events go on")
     if code is Code.RANGE:
         return "no values within the ranges that were tried are expected to go farther"

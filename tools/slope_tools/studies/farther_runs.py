@@ -28,7 +28,7 @@ def make(setup: Setup, order: Order, fixed: Mapping[str, str], chances: Sequence
         runs = known_events.Runs(order.sample, added.batches, rows, found)
         if found.outside or len(runs.rows) < 2:
             return
-        end = farther.End(float(found.path.length[-1]), found.beyond_path())
+        end = farther.End(found.end(float(runs.lengths.max())), found.beyond_path())
         new = added.propose(runs.places, runs.lengths, runs.beyond, end)
         if new is None:
             return

@@ -11,10 +11,10 @@ from ..case import run_folders
 from ..deposits import gone, travel_shares
 from ..ensembles import ensemble, known_study
 from ..findings import Finding, entries, finding
+from ..releases import release_toe
 from ..runs import repeats
 from ..runs.repeats import Repeat
 from ..seismic import chain_files
-from ..sites import site_choices
 from ..statistics import headline
 from ..survey import rasters, roads
 from ..tables import (answered, combinations, elastic, fine_run, intensity, judged, quantities, road_runs, step_check,
@@ -42,14 +42,16 @@ class Questions(NamedTuple):
     most_elastic: Optional[elastic.Made] = None     # the runs with the largest restitution
     method: str = ""                                # of a site's study, in words
     chain: Optional[chain_files.Chain] = None       # of an ensemble: how likely its bodies fail in an earthquake
+    known: Mapping[str, Any] = {}                   # of site.yaml: with which known events the runs are compared
 
 
-def collect(setup: Setup, questions: Questions, todo, work) -> None:
-    """Table, maps and study.yaml over all runs that finished."""
+def collect(setup: Setup, questions: Questions, todo, work) -> Optional[Dict[str, Any]]:
+    """Table, maps and study.yaml over all runs that finished; what the latter says, None where no run of an ensemble
+    finished."""
     settings, repeated, thresholds, order = questions[:4]
     output, deck = setup.output, setup.deck
     if order and all(run.error for run in todo):
-        return      # study.perform says so
+        return None     # study.perform says so
     maps = Maps(thresholds)
     rows, thickness = rows_of(setup, todo, maps, pictures=order is None)
     warnings = [finding(one) for one in questions.notes]
@@ -66,13 +68,13 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
     written = maps.write(output, terrain_place(first) if first else None)
     keys = ["front_m", "thickness_m", "max_thickness_m", "max_speed_m_s"]
     keys += [key for key in (travel_shares.DISTANCE, "length_m") if key in names]
-    among = known_of(setup, questions)
+    among = known_of(questions)
     events = events_of(setup, first, finished[0], among) if setup.road and finished else None
     about = {
         "study": {"deck": deck.name, "known": among,
                   "set": settings, "repeat": repeated, "runs": len(rows), "finished": len(finished),
                   "method": questions.method, "ranks": work.ranks, "jobs": work.jobs, "package": work.package,
-                  "collected": provenance.now(), "machine": provenance.machine()},
+                  "governs": output.name, "collected": provenance.now(), "machine": provenance.machine()},
         "largest": {key: largest(finished, key) for key in keys if finished},
         "farthest": travel_shares.farthest(finished)["run"] if finished else None,
         "conservative": None, "size": None, "ensemble": None, "step": None,
@@ -118,7 +120,7 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
         setup.warn(one)
     disk.write(output / "study.csv", study_table.table(settings, repeated, rows, work.defaults))
     disk.write(output / "combinations.csv", combinations.table(groups, names, settings))
-    disk.write(output / "study.yaml", disk.yaml_text(answered.TITLE, about))
+    write(output, about)
     if not order or len(rows) <= SHOWN:
         setup.tell(study_table.runs_shown(
             settings, rows, scatters,
@@ -147,6 +149,12 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
         setup.tell("\n".join(chain_files.describe(about["chain"], output)))
     for entry in [*(written["envelope"] or {}).values(), *(written["exceedance"] or ())]:
         setup.tell(f"{output / entry['file']}: {entry['what']}")
+    return about
+
+
+def write(output: Path, about: Mapping[str, Any]) -> None:
+    """study.yaml."""
+    disk.write(output / "study.yaml", disk.yaml_text(answered.TITLE, about))
 
 
 def compared(setup: Setup, fine: Repeat, rows: Sequence[Mapping[str, Any]],
@@ -185,13 +193,10 @@ def depth_of(setup: Setup, row: Mapping[str, Any]) -> float:
     return row["released_m3"] / (float(cells) * arrival.transform.a ** 2)
 
 
-def known_of(setup: Setup, questions: Questions) -> Mapping[str, Any]:
+def known_of(questions: Questions) -> Mapping[str, Any]:
     """With which known events the runs are compared: the ensemble's, or those of site.yaml; for known.of_about()."""
     condition = questions.order and questions.order.condition
-    if condition:
-        return condition.asked.about()
-    site = questions.site or setup.deck.parent
-    return site_choices.read(site)["known"] if (site / site_choices.NAME).is_file() else {}
+    return condition.asked.about() if condition else questions.known
 
 
 def events_of(setup: Setup, run, row, among: Mapping[str, Any]) -> Optional[usable.Events]:
@@ -278,10 +283,11 @@ def on_road(run, setup: Setup, row, thickness, picture=True) -> Dict[str, Any]:
     about = disk.plain(found.about)       # numpy has no place in study.yaml
     released = run_folders.load_raster(prefix, "arrival").z == 0
     polygon, total = road.read(placed(thickness, run)).polygon, about["clearing"]
-    taken = on_body(thickness, released, polygon, row["ball_m3"])
-    if taken > 0:
-        found.warnings.append(Finding("road on body", {"file": road.file.name}))
-    return {"road_on_body_m2": taken, "remove_m3": about["volume"]["remove"],
+    taken = release_toe.on_body(body_of(released, thickness, row["ball_m3"]), thickness, polygon,
+                                release_toe.rim(row["ball_m3"], thickness.transform.a))
+    if taken:
+        found.warnings.append(taken.finding(road.file.name))
+    return {"road_on_body_m2": taken.area if taken else 0.0, "remove_m3": about["volume"]["remove"],
             "remove_on_road_m3": about["volume"]["remove_on_road"],
             "remove_beside_road_m3": about["volume"]["remove_beside_road"],
             **quantities.of_division(about["divided"], about["left"]),
@@ -308,23 +314,6 @@ def body_of(released, raster, ball_m3):
     near = math.ceil(ball_m3 ** (1 / 3) / raster.transform.a)
     rows, columns = released.shape
     return binary_closing(np.pad(released, near), iterations=near)[near:near + rows, near:near + columns]
-
-
-def on_body(thickness, released, road, ball_m3) -> float:
-    """Area (m2) of the road (local metres) on the body; 0 if it meets the rim only, a cell and half a ball wide.
-
-    released, ball_m3: see body_of().
-    """
-    from scipy.ndimage import binary_erosion
-    from .. import geometry
-    cell = thickness.transform.a
-    body, rim = body_of(released, thickness, ball_m3), 1 + math.ceil(ball_m3 ** (1 / 3) / cell / 2)
-    rows, columns = released.shape
-    lines = np.arange(columns + 1.0), np.arange(rows + 1.0)
-    share = sum(geometry.coverage(part, *lines)[0] for part in geometry.polygons_of(geometry.to_index(road, thickness)))
-    if not (share * binary_erosion(body, iterations=rim)).any():
-        return 0.0
-    return float((share * body).sum() * cell ** 2)
 
 
 def placed(raster, run):

@@ -50,8 +50,8 @@ def text(reason: Reason) -> str:
                 "of known events do" + (", by one of the two scatters that are known of them" if code is
                                         Code.ONE_SCATTER else ""))
     if code is Code.TERRAIN:
-        return (f"the fall path, or the terrain, ends at {rounded(of['path_m'], 4)} m, which {percent(of['share'])} of "
-                "known events go beyond: take a larger terrain")
+        return (f"the terrain shows the first {rounded(of['path_m'], 4)} m of the way, and {percent(of['share'])} of "
+                "known events go on: take a larger terrain")
     if code is Code.RANGE:
         ends = f", which end at {of['ends']}," if of["ends"] else ""
         return f"no values within the ranges{ends} are expected to go farther: give wider ranges"
