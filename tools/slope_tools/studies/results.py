@@ -17,7 +17,7 @@ from ..runs.repeats import Repeat
 from ..seismic import chain_files
 from ..statistics import headline
 from ..survey import rasters, roads
-from ..tables import (answered, combinations, fine_run, intensity, judged, quantities, road_runs, step_check,
+from ..tables import (answered, combinations, elastic, fine_run, intensity, judged, quantities, road_runs, step_check,
                       structures, study_table, usable, withheld_words)
 from ..tables.study_maps import Maps
 from . import mapped, site_ground
@@ -39,6 +39,7 @@ class Questions(NamedTuple):
     site: Optional[Path] = None                     # folder of the site whose study it is
     fine: Optional[Repeat] = None                   # the run with smaller balls; None: none was asked for
     step: Optional[step_check.Step] = None          # the run with half the time step
+    most_elastic: Optional[elastic.Made] = None     # the runs with the largest restitution
     method: str = ""                                # of a site's study, in words
     chain: Optional[chain_files.Chain] = None       # of an ensemble: how likely its bodies fail in an earthquake
     known: Mapping[str, Any] = {}                   # of site.yaml: with which known events the runs are compared
@@ -77,6 +78,7 @@ def collect(setup: Setup, questions: Questions, todo, work) -> Optional[Dict[str
         "largest": {key: largest(finished, key) for key in keys if finished},
         "farthest": travel_shares.farthest(finished)["run"] if finished else None,
         "conservative": None, "size": None, "ensemble": None, "step": None,
+        elastic.ENTRY: None,
         "scatter": {name: known and {"deviation": known.deviation, "degrees_of_freedom": known.degrees_of_freedom}
                     for name, known in scatters.items()},
         "combinations": combinations.entries(groups, names), **written, "observed": observed,
@@ -85,6 +87,9 @@ def collect(setup: Setup, questions: Questions, todo, work) -> Optional[Dict[str
         about["study"]["road"] = write_road(output, setup.road, first, thickness)
     if questions.fine and finished:
         about["size"] = fine_run.evaluate(compared(setup, questions.fine, rows, None if order else groups))
+    (output / elastic.FILE).unlink(missing_ok=True)
+    if questions.most_elastic and finished:
+        about[elastic.ENTRY] = elastic.evaluate(questions.most_elastic, rows, output)
     if order:
         about["ensemble"] = ensemble.evaluate(order, rows, output, first and terrain_place(first), maps.problem)
         case = case_of(setup, questions, finished[0])._replace(sampled=True)
@@ -132,6 +137,8 @@ def collect(setup: Setup, questions: Questions, todo, work) -> Optional[Dict[str
             setup.tell(about["step"]["text"])
     if about["size"]:
         setup.tell(f"size of the balls: {about['size']['text']}")
+    if questions.most_elastic and finished:
+        setup.tell(about[elastic.ENTRY]["text"])
     if about["ensemble"]:
         setup.tell("\n".join(ensemble.describe(about["ensemble"])))
         setup.tell(f"{output / ensemble.HAZARD}, {output / ensemble.INFLUENCE}: all curves and indices; "
