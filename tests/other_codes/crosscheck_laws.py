@@ -69,7 +69,7 @@ def rows_of(found):
     for what, each in found.items():
         for quantity in QUANTITIES if what not in WAYS else ["to remove"]:
             mine, base = ([[one[quantity] for one in row] for row in several] for several in (each, found[OURS]))
-            compared = differences(mine, base) if what != OURS else [None] * len(mine)
+            compared = [*differences(mine, base)] if what != OURS else [None for _ in mine]
             for rolling, row, one in zip(ROLLING[1:], mine, compared):
                 yield {"what": what, "quantity": quantity, "rolling": rolling, "mean": float(np.mean(row)),
                        "difference": one and one.share, "low": one and one.low, "high": one and one.high, "runs": row}
