@@ -5,7 +5,7 @@ from typing import Any, Dict, List, Mapping, Optional
 from ..case import decks
 from ..errors import SlopeError
 from ..mobility import body, steeper
-from ..sites import ground, site_choices, site_deck
+from ..sites import ground, site_choices, site_deck, site_zones
 from ..sites.stop_angle import stop_angle
 
 FIELD_SIZE = 1e-6       # of d; the table is of grounds of balls as large as the soil's
@@ -23,6 +23,14 @@ def of_variables(variables: Optional[Mapping[str, Any]]) -> Optional[float]:
                           float(values["field_e"]), "scattered" if scattered else "grid").degrees
     except (KeyError, ValueError):
         return None     # of a deck that has no such ground
+
+
+def of_zone(zone: Mapping[str, Any], model: Mapping[str, Any], variables: Mapping[str, Any]) -> Optional[float]:
+    """The stop angle of a zone, as if the soil had its friction and rolling resistance, too; None where unknown."""
+    try:
+        return of_variables({**variables, **site_zones.now(zone, model, variables)})
+    except (KeyError, ValueError):
+        return None
 
 
 def stop_angles(folder: Path, others: bool = False) -> Dict[str, Dict[str, float]]:
@@ -58,4 +66,17 @@ def lines(folder: Path, others: bool = False) -> List[str]:
             text += ("; of the slope below the body "
                      f"{', '.join(f'{100 * slope.steeper(degrees):.0f}' for degrees in known.values())} % is steeper")
         texts.append(text)
-    return texts
+    return texts + [text for zone in site_choices.found(folder).get("zones") or () if (text := zone_line(folder, zone))]
+
+
+def zone_line(folder: Path, zone: Mapping[str, Any]) -> str:
+    """The stop angle of a zone at the site's own spacing, in words; empty where it is unknown."""
+    variables, choices = decks.index_variables(folder / site_deck.NAME), site_choices.read(folder)
+    runs = {f"{one:g}": of_zone(zone, choices["model"], {**variables, "rolling": one})
+            for one in choices["study"]["rolling"]}
+    known = {rolling: f"{degrees:.1f}" for rolling, degrees in runs.items() if degrees is not None}
+    if not known:
+        return ""
+    of = ", ".join(known.values()) if "rolling" not in zone else next(iter(known.values()))
+    at = f" at a rolling resistance of {', '.join(known)}" if "rolling" not in zone else ""
+    return f"zone {zone['name']}: stop angle {of} degrees{at}"
