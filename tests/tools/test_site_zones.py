@@ -76,7 +76,8 @@ def test_classes_of_a_raster_are_the_same_zones(tmp_path):
     classes = np.array([[7 if expected(*place, THREE[:2], "ab") == ["b"] else
                          3 if expected(*place, THREE[:2], "ab") else 0 for place in row] for row in places])
     write_tif(tmp_path / "classes.tif", classes.astype(np.int16), CELL, crs="EPSG:6677")
-    (tmp_path / "table.csv").write_text("class,name,friction,rolling,spacing\n0,,,,\n3,scree,35,,0.6\n7,forest,,0.15,\n")
+    (tmp_path / "table.csv").write_text("class,name,friction,rolling,spacing\n0,,,,\n3,scree,35,,0.6\n"
+                                        "7,forest,,0.15,\n")
     zones = read(tmp_path / "classes.tif", tmp_path / "table.csv")
     assert [(zone.name, zone.values) for zone in zones] == [("scree", {"friction": 35, "spacing": 0.6}),
                                                             ("forest", {"rolling": 0.15})]
@@ -212,12 +213,13 @@ def lmp(folder, *words):
 def test_a_site_with_zones(gis, mine):
     assert "ground.scree.csv: zone scree, 15.6 % of the terrain, 1,500 m2: friction 35, spacing 0.6" in mine
     assert re.search(r"zone scree: stop angle 15.\d, 18.\d, 21.\d degrees at a rolling resistance of 0, 0.05, 0.1", mine)
-    found = site_choices.found(gis / "mine")
+    site = site_choices.load(gis / "mine")
+    found = site.found
     assert [zone["name"] for zone in found["zones"]] == ["scree", "森", "zone 3"]
     assert {"ground.gpkg", "ground.scree.csv", "ground.zone.csv", "ground.zone_3.csv"} <= set(found["files"])
     variables = decks.index_variables(gis / "mine" / "in.site")
     assert (variables["friction_scree"], variables["rolling_zone"], variables["spacing_zone_3"]) == ("35", "0.15", "0.5")
-    angles = site_ground.of_zone(found["zones"][0], site_choices.read(gis / "mine")["model"], variables)
+    angles = site_ground.of_zone(found["zones"][0], site.choices["model"], variables)
     assert angles == pytest.approx(site_ground.of_variables({**variables, "friction": 35, "spacing": 0.6}))
 
 
@@ -228,9 +230,10 @@ def test_the_deck_has_the_values_of_a_run(gis, mine, changed):
     folder = gis / "mine"
     words = [word for name, value in changed.items() for word in ("-var", name, value)]
     log = lmp(folder, *words, "-var", "duration", "0.001")
-    variables, model = decks.index_variables(folder / "in.site"), site_choices.read(folder)["model"]
+    site = site_choices.load(folder)
+    variables, model = decks.index_variables(folder / "in.site"), site.choices["model"]
     d = float(variables["d"])
-    for number, zone in enumerate(site_choices.found(folder)["zones"], 4):
+    for number, zone in enumerate(site.found["zones"], 4):
         now = site_zones.now(zone, model, {**variables, **changed})
         [coeff] = re.findall(rf"^pair_coeff  1 {number} .*restitution (\S+) friction (\S+) rolling (\S+)$", log, re.M)[-1:]
         assert [float(one) for one in coeff] == pytest.approx([now["field_e"], now["friction"], now["rolling"]])
@@ -256,5 +259,4 @@ def test_a_deck_without_zones_has_no_word_of_them(gis):
 
 def test_a_changed_file_of_zones_is_noticed(gis, tmp_path):
     """As every other source of a site."""
-    before = site_choices.sources(site_choices.read(gis / "mine"), gis / "mine")
-    assert "../zones.geojson" in before
+    assert "../zones.geojson" in site_choices.load(gis / "mine").sources()

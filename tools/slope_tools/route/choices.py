@@ -12,7 +12,8 @@ from ..survey import roads
 NAME = "route.yaml"
 VERSION = 1
 WHAT = "what `slope route` wrote"
-FILES = ("terrain", "road", "bodies", "ground", "ground_table", "fragility")                      # paths, kept as from the folder
+# paths, kept as from the folder
+FILES = ("terrain", "road", "bodies", "ground", "ground_table", "fragility")
 TABLE = "bodies.yaml"
 # what is made before that table, and of which options
 MADE = ("terrain.asc", "terrain.yaml", "road.csv", "windows")

@@ -134,7 +134,8 @@ def read_table(path: str) -> Dict[float, Dict[str, Any]]:
             rows = [dict(row) for row in table]
             heads = table.fieldnames or []
     except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise SlopeError(path, f"must be a table in CSV, in UTF-8: {getattr(error, 'strerror', None) or error}") from None
+        why = getattr(error, "strerror", None) or error
+        raise SlopeError(path, f"must be a table in CSV, in UTF-8: {why}") from None
     if CLASS not in heads:
         raise SlopeError(path, f"must have the columns {CLASS} and {', '.join(VALUES)}", " ".join(heads) or "none")
     found: Dict[float, Dict[str, Any]] = {}
@@ -235,7 +236,8 @@ def write(zones: List[Zone], raster: Raster, folder: Path) -> None:
     for zone in zones:
         polygons.write(folder / zone.file, zone.geometry, raster)
     kinds = {"name": "str", "variables": "str", **dict.fromkeys((*VALUES, "area_m2", "share"), "float")}
-    rows = [(MultiPolygon(polygons_of(zone.geometry)), {**dict.fromkeys(kinds), **zone.about(raster)}) for zone in zones]
+    rows = [(MultiPolygon(polygons_of(zone.geometry)), {**dict.fromkeys(kinds), **zone.about(raster)})
+            for zone in zones]
     geopackage.write(folder / ALL, {"ground": geopackage.Layer("MultiPolygon", kinds, rows)}, raster)
 
 
