@@ -10,7 +10,6 @@ from ..digits import percent
 from ..ensembles import known_study
 from ..statistics import headline
 from ..statistics.answer import SHARE, Kind, Reason, Source
-from ..statistics.withheld import Kind as Rule
 from ..tables import answer_words, combinations, elastic, next_step
 from ..tables.quantities import ALL, DISTANCE
 from . import body, mobility_part, road_part, structures_part, warnings
