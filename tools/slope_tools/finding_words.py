@@ -116,6 +116,11 @@ WORDS: Dict[str, Union[str, Words]] = {
     "beyond toe": "the slip surface comes out beyond the toe: {area:,.0f} m2 of the body lie on level ground at its "
                   "foot, up to {depth:.3g} m deep, over which it slides without the ground's friction; is a shallower "
                   "body meant, or one that ends at the toe?",
+    "above ground": "the slip surface lies above the ground on {area:,.0f} m2 of the polygon, by up to {height:.3g} m: "
+                    "nothing is released there; is another surface meant, or a smaller polygon?",
+    "other thickness": Words("the calibrated values were found with {found:.2g} balls over the thickness of the body, "
+                             "these runs have {here:.2g}, and values belong to the size of the balls: calibrate with "
+                             "these"),
     "under road": "{file}: the slip surface comes out under the road, up to {depth:.3g} m below {area:,.0f} m2 of it, "
                   "where the ground's friction does not act; is that the body you mean?",
     "shift": "beside the body {file} lies {metres:.3g} m {side} the terrain (median), which counts in the depths: "
@@ -243,6 +248,9 @@ WORDS: Dict[str, Union[str, Words]] = {
                               "more points (--sample)", NOTE),
     "more per year": Words("peaks above the hazard curve's last may add up to {per_year:.2g} per year to more than "
                            "{volume:,.6g} m3", NOTE),
+    "chain raised": Words("the volumes are raised by what smaller balls brought in a run with them, {added:,.6g} m3 of "
+                          "{volume:,.6g} m3", NOTE),
+    "chain size": Words("smaller balls may bring more: the road is blocked at least so often", NOTE),
     # on a calibration
     "failed fits": Words("{failed} of {runs} runs failed and are left out: {which}", NOTE),
     "lost fits": Words("{lost} of {runs} runs lost up to {volume:,.0f} m3 over the edge of the terrain or the box: how "

@@ -1,4 +1,4 @@
-"""Where a slip surface comes out of the ground: on the slope, as it should, or beyond its toe, or under a road."""
+"""Where a slip surface comes out of the ground: on the slope, as it should, beyond the toe, under a road, or inside."""
 from typing import NamedTuple, Optional
 
 import numpy as np
@@ -9,7 +9,8 @@ from .release_area import Area
 
 FOOT = 0.2      # of the body's fall: its lowest part
 LEVEL = 0.25    # of the mean slope of its ground: flatter ground is level
-SOME = 0.02     # of its area; less level ground at its foot is none
+SOME = 0.02     # of its area; less level ground at its foot is none, nor less ground below the slip surface
+CLEAR = 0.05    # of the largest depth: a slip surface that lies less above the ground does not count
 
 
 class Level(NamedTuple):
@@ -35,6 +36,22 @@ def beyond_toe(area: Area, slip: np.ndarray) -> Optional[Level]:
     if level.sum() <= SOME * body.sum():
         return None
     return Level(float(level.sum()) * area.cell ** 2, float(depth[level].max()))
+
+
+def above_ground(z: np.ndarray, slip: np.ndarray, inside: np.ndarray, cell: float) -> Optional[Level]:
+    """Where a slip surface lies above the ground z (m) inside a polygon, None where it hardly does; depth: how high.
+
+    Ground that is lower than the whole body does not count: there the slip surface has come out, as it should.
+    """
+    with np.errstate(invalid="ignore"):
+        depth = np.where(inside, z - slip, 0.0)
+        body = depth > 0
+        if not body.any():
+            return None
+        above = (depth < -CLEAR * depth[body].max()) & (z > z[body].min())
+    if above.sum() <= SOME * body.sum():
+        return None
+    return Level(float(above.sum()) * cell ** 2, float(-depth[above].min()))
 
 
 def under(area: Area, slip: np.ndarray, road) -> Optional[Level]:
