@@ -8,10 +8,10 @@ from .. import digits
 from ..deposits import travel_shares
 from ..ensembles import known_study
 from ..mobility.results import percent
-from ..statistics import headline
+from ..statistics import headline, size_family
 from ..statistics.answer import SHARE, Code, Kind, Source
 from ..statistics.withheld import Kind as Rule
-from ..tables import combinations, next_step
+from ..tables import answer_words, combinations, next_step
 from ..tables.quantities import ALL, DISTANCE
 from . import body, mobility_part, road_part, structures_part, warnings
 from .numbers import farthest_of
@@ -32,7 +32,8 @@ def content(data, ground, numbers, answers: Sequence[Optional[Dict[str, Any]]], 
     """
     main, spoken = next((one for one in answers if one), None), of_headline(data, numbers)
     return {"body": body.sentence(body.of_data(data, ground)),
-            "answer": spoken or (of_answer(data, main, numbers) if main else of_reach(data, numbers)),
+            "answer": spoken or (floored(data, of_answer(data, main, numbers), numbers) if main else
+                                 of_reach(data, numbers)),
             "sentences": sentences(data, ground, numbers, bool(main))
             + road_part.on_first_page(data, numbers, bool(main and main["withheld"])),
             "caveats": warnings.first_page(found)[:warnings.MOST], "rest": warnings.rest_of(listed),
@@ -124,7 +125,18 @@ def of_floor(about: Mapping[str, Any], numbers) -> Dict[str, Any]:
     else:
         band = ""
     title = f"{REMOVE}, with {percent(share)}" if share else REMOVE
-    return {"title": title, "number": f"at least {text}", "unit": "m3", "band": band + of_paper(about, numbers)}
+    return {"title": title, "number": f"at least {text}", "unit": "m3",
+            "band": band + by_family(about, numbers) + of_paper(about, numbers)}
+
+
+def by_family(about: Mapping[str, Any], numbers) -> str:
+    """What the number becomes by the largest factor that a slide of the family grew by with smaller balls."""
+    growth = [one["numbers"]["growth"] for one in about["reasons"] if one["numbers"].get("growth")]
+    if not growth:
+        return ""
+    most = max(size_family.Growth(**one).covered(about["volume_m3"]) for one in growth)
+    text = numbers(f"{REMOVE.lower()}, by the largest growth with smaller balls", "m3", most)
+    return f" With as much more by smaller balls as the slide that grew most, {text} m3."
 
 
 def not_reached(about: Mapping[str, Any]) -> Dict[str, Any]:
@@ -181,13 +193,24 @@ def reason(code: Code, of: Mapping[str, Any]) -> str:
         return f"{of['points']:g} runs were added towards longer ones, and no more"
     if code is Code.FEW:
         return "the runs are too few to tell which settings go farther"
-    if code is Code.SIZE and of["balls_thick"] is None:
-        return "the run with smaller balls in the model, which may bring more, did not finish"
     if code is Code.SIZE:
-        return (f"the finest of the model's balls are {of['balls_thick']:.2g} over the thickness of the body, and "
-                f"smaller ones, {of['enough']:g} or more, may bring more")
+        return of_size(of)
     text = RULES[Rule(of["rule"])]
     return text if of["source"] == Source.PAPER.value else f"{text} (runs weighted by known events)"
+
+
+def of_size(of: Mapping[str, Any]) -> str:
+    """Why smaller balls may bring more, and how much they brought elsewhere."""
+    run, balls = of.get("run", "finished"), of["balls_thick"]       # older files have no run
+    if not run:
+        text = ("what smaller balls in the model would bring is not known, as no run with them was made, so that the "
+                "number cannot be called conservative")
+    elif run == "failed" or balls is None:
+        text = "the run with smaller balls in the model, which may bring more, did not finish"
+    else:
+        text = (f"the finest of the model's balls are {balls:.2g} over the thickness of the body, and smaller ones, "
+                f"{of['enough']:g} or more, may bring more")
+    return f"{text}{answer_words.grown(of)}"
 
 
 def metres(value: float) -> str:
@@ -219,6 +242,16 @@ def of_answer(data, answer: Dict[str, Any], numbers) -> Dict[str, Any]:
         band += "".join(f" {one[0].upper()}{one[1:]}." for one in combinations.starts(best))
     return {"kind": "number", "title": answer["title"], "number": answer["number"], "unit": answer.get("unit", "m3"),
             "reasons": [], "band": band, "step": None}
+
+
+def floored(data, answer: Dict[str, Any], numbers) -> Dict[str, Any]:
+    """The same as a floor, where the headline of the one study says so."""
+    about = (data.study or {}).get("headline")      # none in older files
+    if answer["number"] is None or not about or about["ensemble"] or Kind(about["kind"]) is not Kind.FLOOR:
+        return answer
+    return {**answer, "kind": Kind.FLOOR.value, "title": REMOVE, "number": f"at least {answer['number']}",
+            "reasons": reasons(about), "band": answer["band"] + by_family(about, numbers),
+            "step": next_step.of_reasons(next_step.Made(data.study, data.folder), about)}
 
 
 def of_reach(data, numbers) -> Dict[str, Any]:

@@ -1,5 +1,5 @@
 """The headline of study.yaml in words, for the console."""
-from typing import List, Optional
+from typing import Any, List, Mapping, Optional
 
 from ..digits import rounded
 from ..mobility.results import percent
@@ -59,9 +59,31 @@ def text(reason: Reason) -> str:
         return f"{of['points']} runs were added towards longer ones; a larger --sample allows more"
     if code is Code.FEW:
         return "the runs are too few to tell which parameters go farther: take more points"
-    if code is Code.SIZE and of["balls_thick"] is None:
-        return "the run with smaller balls, which may bring more, did not finish"
     if code is Code.SIZE:
-        return (f"the finest balls are {of['balls_thick']:.2g} over the thickness of the body: smaller ones, "
-                f"{of['enough']:g} or more, may bring more")
+        return of_size(of)
     return f"{STUDY[of['source']]}: withheld by the rule {of['rule']}"
+
+
+def of_size(of: Mapping[str, Any]) -> str:
+    """Why smaller balls may bring more, and how much they brought elsewhere."""
+    run, balls = of.get("run", "finished"), of["balls_thick"]
+    if not run:
+        text = "what smaller balls bring is not known, no run with them was made: the number is not conservative"
+    elif run == "failed" or balls is None:
+        text = "the run with smaller balls, which may bring more, did not finish"
+    else:
+        text = (f"the finest balls are {balls:.2g} over the thickness of the body: smaller ones, {of['enough']:g} or "
+                "more, may bring more")
+    return f"{text}{grown(of)}"
+
+
+def grown(of: Mapping[str, Any]) -> str:
+    """By which factors slides of the family grew with smaller balls, "" where none tells."""
+    growth = of.get("growth")       # none in older files
+    if not growth:
+        return ""
+    slides = f"{growth['slides']} slides" if growth["slides"] > 1 else "one slide"
+    factors = f"{growth['median']:.2f}" + (f" (median; {growth['low']:.2f} to {growth['high']:.2f})"
+                                           if growth["slides"] > 1 else "")
+    return (f"; from {of['balls_thick']:.2g} to up to {growth['finest']:.2g} balls over the thickness {slides} brought "
+            f"{factors} times as much")
