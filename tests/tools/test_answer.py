@@ -1,5 +1,6 @@
 """The number of a study: the larger of the paper's and an ensemble's, a floor, withheld, or nothing; by hand."""
 import os
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -11,7 +12,7 @@ from slope_tools.statistics import answer, size_family
 from slope_tools.statistics.answer import AtRoad, Code, Ensemble, Kind, Paper, Road, Source, Withheld
 from slope_tools.statistics.withheld import Kind as Rule
 from slope_tools.report import client_part
-from slope_tools.tables import answer_words, answered, fine_run
+from slope_tools.tables import answer_words, answered, fine_run, next_step
 
 STOPPED = answer.Reason(Code.TERRAIN, {"share": 0.12, "path_m": 900.0})
 
@@ -91,6 +92,8 @@ def test_without_a_fine_run_the_number_is_not_conservative(balls, kind):
         assert ["conservative" in text(one) and "not known" in text(one) for one in found.reasons] == \
             [True] * (kind is Kind.FLOOR)
     quantile = {"share": 0.95, "value": 100.0, "low": None, "high": None}
+    made = next_step.Made({"runs": [], "study": {}, "ensemble": None}, Path("out"))
+    assert kind is Kind.NUMBER or next_step.of_reasons(made, found.about()).command == "the same command with --fine 2"
     about = {"ensemble": {"known_events": {"to_remove": [quantile], "far": 0.0, "longest_m": 9.0}},
              "study": {"balls_thick": balls}, "size": None}
     assert answer.of(None, answered.ensemble_of(about), None).kind is kind
