@@ -210,7 +210,7 @@ def test_other_laws_differ_in_one_thing_each():
 
 def test_a_law_without_a_spring_is_one_of_the_deck(here):
     law = peers.Contact(1e9, 1e9, 1e6, 2e6, 30.0, 0.05)
-    scene = peers.Scene(2.5, 1.0, np.zeros((1, 9)), {3: np.ones((1, 3))}, {1: law, 3: law}, 0.1, 0.1)
+    scene = peers.Scene(2.5, 1.0, np.zeros((1, 9)), {3: np.ones((1, 3))}, {1: law, 2: law, 3: law}, 0.1, 0.1)
     peers.Slope(LMP).write(crosscheck_laws.variants(scene)["rolling without a spring"], here, 10)
     assert "rolling 0.05 rolling_spring 0.0 2000000.0" in (here / "in.scene").read_text()
 
