@@ -261,13 +261,14 @@ def tried(choices: Choices, parts: site_deck.Parts, found: release.Body, new: Pa
         return None, None
     d = site_budget.trial_diameter(choices, parts.body.volume)
     trial, reached = tried_with(d, choices, parts, found, new, machine.lmp, tell)
-    d = site_budget.other_diameter(choices, trial)
-    if d is None:
+    other_d = site_budget.other_diameter(choices, trial)
+    if other_d is None:
         return trial, reached
     middle = settings.middle(choices["study"]["rolling"])
     other = {**choices, "study": {**choices["study"], "rolling": [middle]}}
-    second, its_reach = tried_with(d, other, parts, found, new, machine.lmp, tell, f"another, rolling {middle:g}")
-    return site_budget.joined(trial, second), its_reach if d < trial.diameter else reached
+    second, its_reach = tried_with(other_d, other, parts, found, new, machine.lmp, tell,
+                                   f"another, rolling {middle:g}")
+    return site_budget.joined(trial, second), its_reach if other_d < trial.diameter else reached
 
 
 def tried_with(d: float, choices: Choices, parts: site_deck.Parts, found: release.Body, new: Path, lmp: Path, tell,
