@@ -80,6 +80,7 @@ def values(choices: Choices, parts: Parts, numbers: Numbers) -> Dict[str, Any]:
         ("rolling", choices["study"]["rolling"][0]), ("friction", model["friction"]), ("slip", model["slip_friction"]),
         ("restitution", model["restitution"]), ("field_e", model["field_restitution"]), ("density", model["density"]),
         ("thick", body.thick), ("stiffness_number", site_budget.STIFFNESS_NUMBER), ("rest", REST),
+        ("step", site_budget.STEP), ("close", site_budget.CLOSE),
         ("speed", numbers.speed), ("duration", numbers.duration), ("cell", numbers.cell),
         ("concrete", choices["structures"]["friction"]), ("concrete_e", choices["structures"]["restitution"]),
         ("scale", motion["scale"]), ("shaking", parts.motion.length if parts.motion else 0),

@@ -165,7 +165,7 @@ def elastic_of(setup: Setup, runs: List[repeats.Repeat]) -> Optional[elastic.Mad
     """What these runs tell, whatever the road; None: there are none."""
     if not runs:
         return None
-    rows, _ = results.rows_of(setup._replace(road=None), runs, results.Maps(()), pictures=False)
+    rows, _ = results.rows_of(setup._replace(road=None), runs, results.Maps(()))
     return elastic.Made(float(runs[0].chosen[elastic.VARIABLES[0]]), runs[0].chosen["rolling"], rows)
 
 
