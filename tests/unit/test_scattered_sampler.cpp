@@ -176,7 +176,8 @@ TEST(ScatteredSampler, at_a_seam_none_are_nearer_and_no_gap_is_larger_than_in_th
 {
   const double side = 24.0;
   for (double degrees : {0.0, 40.0})
-    for (const Zones &zones : {Zones{WIDEST, 0.5, 0.7}, Zones{0.4, WIDEST, 0.5}, Zones{WIDEST, 0.94, 0.3}}) {
+    for (const Zones &zones : {Zones{WIDEST, 0.5, 0.7}, Zones{0.4, WIDEST, 0.5}, Zones{WIDEST, 0.94, 0.3},
+                               Zones{WIDEST, 0.5, 0.94}}) {
       const Surface s = plane(degrees, 25.0);
       const std::vector<double> xyz = scatter_zones(side, zones, s);
       auto spacing = [&](size_t k) {
@@ -222,7 +223,7 @@ TEST(ScatteredSampler, zones_have_the_places_of_their_spacing_whatever_the_tiles
       inside++;
       same += std::binary_search(all.begin(), all.end(), p);
     }
-    EXPECT_GT(inside, 100);
+    EXPECT_GT(inside, 20);
     EXPECT_GT(same, 0.98 * inside);    // a chain of ranks may be long
   }
 }
