@@ -17,7 +17,7 @@ from .sections import Cell, Pairs, Section, Table
 CONTENT = List[Tuple[str, str]]
 RESISTANCE = "Resistance of the ground"
 ZONES = ("What the ground is, where: zones as on the map of the site, and the ground outside of them. Values are "
-         "those of the shown run; the stop angle is that of a sheet of three balls whose soil has them, too.")
+           "those of the shown run; the stop angle is that of a sheet of three balls whose soil has them, too.")
 
 
 def section(data, ground, numbers) -> Section:
@@ -54,10 +54,7 @@ def shown(numbers, degrees: float, label: str = "") -> str:
 
 
 def zones_of_ground(data, numbers) -> Optional[Section]:
-    """Which zones the ground has, with which values in the shown run.
-
-    None without zones, or where the values of the run are not known.
-    """
+    """Which zones the ground has, with which values in the shown run; None without zones, or where it is no site's."""
     site = data.site
     zones, variables = (site.get("found") or {}).get("zones") or [], data.result.row.get("variables") or {}
     if not zones or not set(site_zones.VALUES.values()) <= set(variables):
