@@ -6,6 +6,7 @@
 
 #include "scattered_sampler.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -98,20 +99,30 @@ void ScatteredSampler::make(Block &made, int64_t bi, int64_t bj) const
 {
   const int wide = BLOCK + 1;
   std::vector<Place> places(static_cast<size_t>(wide) * wide);
-  for (int b = 0; b < wide; b++)
-    for (int a = 0; a < wide; a++) places[b * wide + a] = place(bi * BLOCK + a, bj * BLOCK + b);
+  auto glances = [](int a, int b) {
+    return a % GLANCE == 0 && b % GLANCE == 0;
+  };
 
-  // What is kept takes long to find out. Where some places of a block are all kept, the others are asked
-  // when they would be balls; only a block that a rim runs through must know all of them.
+  // What is kept, and heights, take long to find out. Where some places of a block are all kept, the others are
+  // asked when they would be balls, where none is, not at all; only a block that a rim runs through must know all.
 
   int on = 0, off = 0;
   for (int b = 0; b < wide; b += GLANCE)
     for (int a = 0; a < wide; a += GLANCE) {
-      const Place &p = places[b * wide + a];
+      Place &p = places[b * wide + a];
+      p = place(bi * BLOCK + a, bj * BLOCK + b);
       if (p.on) (kept(p.x, p.y) ? on : off)++;
     }
-  for (Place &p : places)
-    if (off > 0) p.on = p.on && on > 0 && kept(p.x, p.y);
+  if (off > 0 && on == 0) {
+    std::fill(made.first, made.first + BLOCK * BLOCK + 1, 0);
+    return;
+  }
+  for (int b = 0; b < wide; b++)
+    for (int a = 0; a < wide; a++) {
+      Place &p = places[b * wide + a];
+      if (!glances(a, b)) p = place(bi * BLOCK + a, bj * BLOCK + b);
+      if (off > 0) p.on = p.on && kept(p.x, p.y);
+    }
 
   for (int b = 0; b < BLOCK; b++)
     for (int a = 0; a < BLOCK; a++) {
