@@ -253,11 +253,13 @@ PairGranRestitution *PairGranRestitution::of(LAMMPS *lmp)
 
 /* ---------------------------------------------------------------------- */
 
-void PairGranRestitution::announce_wall(ContactHolder *wall, int type, int groupbit,
+void PairGranRestitution::announce_wall(ContactHolder *wall, int type,
+                                        const std::vector<int> &other_types, int groupbit,
                                         const char *style)
 {
   walls.push_back(wall);
   table.add_wall(type, groupbit, style);
+  for (int other : other_types) table.add_wall(other, groupbit, style);
 }
 
 /* ----------------------------------------------------------------------

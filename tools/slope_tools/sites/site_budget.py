@@ -204,13 +204,16 @@ def plan(choices: Choices) -> Plan:
     each = 1 + len(study[PACKING])
     grounds = other_grounds(choices)
     fine = study["fine"] not in ("no", False)
-    parts = [(1.0, each * len(study["rolling"]) + len(grounds))]
+    elastic = each if study["largest_restitution"] else 0
+    parts = [(1.0, each * len(study["rolling"]) + len(grounds) + elastic)]
     if fine:        # one of the paper's study, one of the ensemble
         parts.append((1 / study["fine"], 1 + (points > 0)))
     text = (f"{sum(runs for _, runs in parts)} runs: {len(study['rolling'])} rolling resistances x {each} "
             "packings")
     if grounds:
         text += f", {len(grounds)} on other grounds"
+    if elastic:
+        text += f", {elastic} with the largest restitution"
     if fine:
         text += f", {'2' if points else '1'} with balls of 1/{study['fine']} of the diameter"
     if points:
