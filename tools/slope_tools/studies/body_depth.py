@@ -12,10 +12,11 @@ from ..tables import fine_run
 from .setup import Setup
 
 
-def mean(setup: Setup, row) -> float:
-    """Mean thickness (m) of the body of a run, its volume over its area in plan: that of a site as `slope site` found
+def mean(setup: Setup, row) -> Optional[float]:
+    """Mean thickness (m) of the body of a run, its volume over its area in plan; None where no raster shows it.
 
-    it, of another deck what the rasters of the run show; of several runs that with the smallest balls shows it best.
+    That of a site as `slope site` found it, of another deck what the rasters of the run show; of several runs the one
+    with the smallest balls shows it best.
     """
     site = setup.site or setup.deck.parent
     if setup.deck.name == site_deck.NAME and (site / site_choices.NAME).is_file():
