@@ -4,6 +4,7 @@ The paper's two codes differ by 8, 30 and 35 % in what is to be removed. Each va
 at its two rolling resistances above 0, and is compared with ours start by start.
 """
 import math
+from itertools import zip_longest
 from typing import Callable, Dict, List
 
 import numpy as np
@@ -69,8 +70,8 @@ def rows_of(found):
     for what, each in found.items():
         for quantity in QUANTITIES if what not in WAYS else ["to remove"]:
             mine, base = ([[one[quantity] for one in row] for row in several] for several in (each, found[OURS]))
-            compared = differences(mine, base) if what != OURS else [None] * len(mine)
-            for rolling, row, one in zip(ROLLING[1:], mine, compared):
+            compared = differences(mine, base) if what != OURS else []
+            for rolling, row, one in zip_longest(ROLLING[1:], mine, compared):
                 yield {"what": what, "quantity": quantity, "rolling": rolling, "mean": float(np.mean(row)),
                        "difference": one and one.share, "low": one and one.low, "high": one and one.high, "runs": row}
 

@@ -94,6 +94,8 @@ WORDS: Dict[str, Union[str, Words]] = {
     "datums": "tiles of {datums} are mixed and not converted: {what} may differ where they meet",
     "cut to input": "--bounds reaches beyond the input, {extent}: cut to it",
     "outside": "{file}: {percent:.2g} % of the area lies outside of {terrain}",
+    "zones overlap": "{file}: zones overlap on {area:,.0f} m2: the later feature counts there",
+    "zone covered": "{file}: zone {zone} lies below later features and counts nowhere",
     "no geometry": "{feature} has no geometry ({without} of {features} have none): left out",
     "no line": "{file}: {kinds} in it, where a line is asked for: left out",
     "drawn twice": "{file}: {percent:.3g} % of the length of its lines is drawn more than once, or there and back: "
@@ -116,6 +118,11 @@ WORDS: Dict[str, Union[str, Words]] = {
     "beyond toe": "the slip surface comes out beyond the toe: {area:,.0f} m2 of the body lie on level ground at its "
                   "foot, up to {depth:.3g} m deep, over which it slides without the ground's friction; is a shallower "
                   "body meant, or one that ends at the toe?",
+    "above ground": "the slip surface lies above the ground on {area:,.0f} m2 of the polygon, by up to {height:.3g} m: "
+                    "nothing is released there; is another surface meant, or a smaller polygon?",
+    "other thickness": Words("the calibrated values were found with {found:.2g} balls over the thickness of the body, "
+                             "these runs have {here:.2g}, and values belong to the size of the balls: calibrate with "
+                             "these"),
     "under road": "{file}: the slip surface comes out under the road, up to {depth:.3g} m below {area:,.0f} m2 of it, "
                   "where the ground's friction does not act; is that the body you mean?",
     "shift": "beside the body {file} lies {metres:.3g} m {side} the terrain (median), which counts in the depths: "
@@ -188,11 +195,49 @@ WORDS: Dict[str, Union[str, Words]] = {
     "ranks": "{runs} runs of {ranks} ranks at a time on {cores} cores: they slow each other down",
     "no effect": Words("{which} has no effect{on}, to the last digit: {then}", NOTE),
     # why the number of a study is withheld
-    "balls on the road": "on the road lies the volume of {balls}, fewer than {bound:g}",
-    "known events": "no run reaches {bound} m, as half of known events of this volume and height do; {longest}",
-    "left the terrain": "{percent:.2g} % of the released volume left the terrain before or beside the road, more than "
-                        "{most:g} %{where}",
-    "runs not at rest or failed": "{number} of {bound} runs failed or are not at rest at the end, more than {most:g} %",
+    "balls on the road": Words("on the road lies the volume of {balls}, fewer than {bound:g}", client=(
+        "Fewer than ten of the model's balls come to lie on the road, which are single blocks and no volume.")),
+    "known events": Words("no run reaches {bound} m, as half of known events of this volume and height do; {longest}",
+                          client="No run goes as far as half of known events of this volume and height."),
+    "left the terrain": Words("{percent:.2g} % of the released volume left the terrain before or beside the road, more "
+                              "than {most:g} %{where}", client=(
+                                  "A part of the mass left the elevation model before it came to the road, and is not "
+                                  "counted.")),
+    "runs not at rest or failed": Words("{number} of {bound} runs failed or are not at rest at the end, more than "
+                                        "{most:g} %", client=(
+                                            "More than a tenth of the runs failed, or had not come to rest when they "
+                                            "ended.")),
+    "rule": "{study}: withheld by the rule {rule}",
+    # why it is a floor, and why no more runs were added
+    "known beyond runs": Words("no run goes beyond {longest}, where {far} of known events go on", client=(
+        "{far} of known events of this volume and height go farther than the longest run, which ends after "
+        "{longest}.")),
+    "road not reached": Words("no run reaches the road, {near} along the fall path ({ends}), but {shares} of known "
+                              "events do", client="The road begins after {near} along the fall path, and {ends}."),
+    "one scatter reaches": Words("no run reaches the road, {near} along the fall path ({ends}), but {shares} of known "
+                                 "events do, by one of the two scatters that are known of them", client=(
+                                     "{shares} of them reach the road, as their scatter is taken: only the larger of "
+                                     "two estimates says more than 10 %.")),
+    "terrain ends": Words("the terrain shows the first {path} of the way, and {share} of known events go on: take a "
+                          "larger terrain", client=(
+                              "The elevation model shows the first {path} of the way, where {share} of known events go "
+                              "on.")),
+    "range ends": Words("no values within the ranges{ends} are expected to go farther: give wider ranges", client=(
+        "No values within the ranges that were tried are expected to go farther.")),
+    "no more runs": Words("{points} runs were added towards longer ones; a larger --sample allows more", client=(
+        "{points} runs were added towards longer ones, and no more.")),
+    "too few runs": Words("the runs are too few to tell which parameters go farther: take more points", client=(
+        "The runs are too few to tell which settings go farther.")),
+    "size of balls": Words("the finest balls are {balls:.2g} over the thickness of the body: smaller ones, {enough:g} "
+                           "or more, may bring more{grown}", client=(
+                               "The finest of the model's balls are {balls:.2g} over the thickness of the body, and "
+                               "smaller ones, {enough:g} or more, may bring more{grown}.")),
+    "fine run failed": Words("the run with smaller balls, which may bring more, did not finish{grown}", client=(
+        "The run with smaller balls in the model, which may bring more, did not finish{grown}.")),
+    "no fine run": Words("what smaller balls bring is not known, as no run with them was made: the number is not "
+                         "conservative{grown}", client=(
+                             "What smaller balls in the model would bring is not known, as no run with them was made, "
+                             "so that the number cannot be called conservative{grown}.")),
     # caveats on the volume to remove
     "single run": Words("nothing was varied: it comes from a single run", NOTE),
     "end of range": Words("it lies at the end of the range of {variable}, {low:g} to {high:g}", NOTE),
@@ -224,11 +269,11 @@ WORDS: Dict[str, Union[str, Words]] = {
     "emulator": Words("{quantity}: {verdict}", NOTE),
     "no event": Words("{text}", NOTE),
     "few lengths": Words("fewer than two runs have a deposit", NOTE),
-    "events beyond": Words("no run goes beyond {length} m; {share} of known events do: they count as exceeding every "
+    "events beyond": Words("no run goes beyond {length}; {share} of known events do: they count as exceeding every "
                            "value; {remedy}", NOTE),
-    "events before": Words("no run ends before {length} m; {share} of known events do: they count as the shortest "
+    "events before": Words("no run ends before {length}; {share} of known events do: they count as the shortest "
                            "runs, in the bounds as anything", NOTE),
-    "gap": Words("between {low} and {high} m no run ends; {share} of known events do: they count as the runs on either "
+    "gap": Words("between {low} and {high} no run ends; {share} of known events do: they count as the runs on either "
                  "side", NOTE),
     "few effective": Words("the weighted runs say as much as {effective:.0f} runs of equal weight: take more points",
                            NOTE),
@@ -237,12 +282,15 @@ WORDS: Dict[str, Union[str, Words]] = {
     "lengths lost": Words("{lost} of {runs} runs lost more than {percent:g} % of their volume over the edge: their "
                           "lengths, and so the weights, are those of what stayed; take a larger terrain", NOTE),
     "outside of set": "{text}; that set says nothing of this mass",
-    "path ends": "the path leaves the terrain after {length} m, where {share} of known events go on: take a larger "
+    "path ends": "the path leaves the terrain after {length}, where {share} of known events go on: take a larger "
                  "terrain",
     "body without run": Words("body {body} has no finished run: all of it, {volume:,.0f} m3, counts as on the road; "
                               "more points (--sample)", NOTE),
     "more per year": Words("peaks above the hazard curve's last may add up to {per_year:.2g} per year to more than "
                            "{volume:,.6g} m3", NOTE),
+    "chain raised": Words("the volumes are raised by what smaller balls brought in a run with them, {added:,.6g} m3 of "
+                          "{volume:,.6g} m3", NOTE),
+    "chain size": Words("smaller balls may bring more: the road is blocked at least so often", NOTE),
     # on a calibration
     "failed fits": Words("{failed} of {runs} runs failed and are left out: {which}", NOTE),
     "lost fits": Words("{lost} of {runs} runs lost up to {volume:,.0f} m3 over the edge of the terrain or the box: how "

@@ -32,6 +32,7 @@ OPTIONS = {"terrain": ("terrain", "files"), "crs": ("terrain", "crs"),
            "bodies": ("release", "bodies"),
            "road": ("road", "file"), "cut_angle": ("road", "cut_angle"), "mesh": ("road", "mesh"),
            **{option: ("road", roads.KEYS[field]) for option, field in road_arguments.OPTIONS.items()},
+           "ground": ("ground", "file"), "ground_table": ("ground", "table"),
            "structure": ("structures", "files"), "line": ("lines", "files"), "motion": ("motion", "file"),
            "peak_friction": ("motion", "peak_friction"), "friction": ("model", "friction"),
            "rolling": ("study", "rolling"), "slip_friction": ("model", "slip_friction"),
@@ -117,6 +118,12 @@ class Layers(road_arguments.Clearing):
     """What lies on it."""
     GROUP = "what lies on it"
     road: Optional[str] = option("for the volume to remove, " + road_arguments.ROAD, metavar="P")
+    ground: Optional[str] = option(
+        "zones of the ground: polygons with the attributes name, friction (degrees), rolling, restitution, spacing "
+        "(diameters); what a zone does not give, and the ground outside of all, has the values below. Or a raster of "
+        "classes", metavar="P|RASTER")
+    ground_table: Optional[str] = option("of these classes: CSV with the columns class and these attributes",
+                                         metavar="CSV")
     cut_angle: Optional[float] = option("rise of the cut from its edges (default 30)", metavar="DEG")
     mesh: Optional[float] = option("side of the mesh cells, m (default 10)", metavar="SIZE")
     structure: Optional[List[str]] = option(

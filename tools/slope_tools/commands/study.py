@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, List, Mapping, Optional
 
+from .. import disk
 from ..case import decks
 from ..case.settings import check_settings, one_value_each
 from ..ensembles import known_events, known_study, sample
@@ -147,14 +148,15 @@ def run_both(args: Request, asked: Site, points: int) -> None:
     if found:
         governs = site_study.STUDY if found.source is Source.PAPER else site_study.ENSEMBLE
     for name, about in made.items():
-        results.write(site / name, {**about, "study": {**about["study"], "governs": governs}, **(
-            {"headline": found.about()} if found else {}), elastic.ENTRY: (paper.about or {}).get(elastic.ENTRY)})
-    for name in made:
+        made[name] = {**about, "study": {**about["study"], "governs": governs}, **(
+            {"headline": found.about()} if found else {}), elastic.ENTRY: (paper.about or {}).get(elastic.ENTRY)}
+        results.write(site / name, made[name])
+    for name, about in made.items():
         if name != governs:
-            write_report(site / name, site / PAGES[name], film=False)
+            write_report(site / name, site / PAGES[name], about, asked, film=False)
     if found:
         print("\n".join(answer_words.lines(found)))
-    write_report(site / governs, site / "report.html")
+    write_report(site / governs, site / "report.html", made[governs], asked)
     if failed:
         raise failed
 
@@ -244,8 +246,8 @@ def chain_of(args: Request):
 def run_site(args: Request, site: Site, method: str) -> None:
     """The standard study of a site's folder, and the report."""
     done = site_study.run(site, setup_of(args), method, args.fine)
-    if done.study:
-        write_report(done.study, args.deck / "report.html")
+    if done.study and done.about:
+        write_report(done.study, args.deck / "report.html", done.about, site)
     if done.failed:
         raise done.failed
 
@@ -261,10 +263,12 @@ def refuse(args: Request, names) -> None:
                              None if first is True else f"{first:g}" if isinstance(first, float) else first)
 
 
-def write_report(folder, page, film=True):
+def write_report(folder: Path, page: Path, about: Mapping[str, Any], site: Site, film=True) -> None:
+    """The page on a study, of which study.yaml says this, unless it is there."""
     from ..report import document
     from ..report.heading import Asked
-    print("\n".join(document.write(Asked(folder, film=page.with_suffix(".mp4") if film else None), page)))
+    asked = Asked(folder, film=page.with_suffix(".mp4") if film else None, study=disk.plain(about), site=site.content)
+    print("\n".join(document.update(asked, page)))
 
 
 def run_site_ensemble(args: Request, site: Site) -> None:
@@ -272,10 +276,10 @@ def run_site_ensemble(args: Request, site: Site) -> None:
     refuse(args, OF_A_ROAD)
     site_study.check(site)
     wanted = of_ensemble(args, site)
-    run_deck(wanted)
-    if not args.dry_run:
+    about = run_deck(wanted)
+    if about:
         assert wanted.output is not None
-        write_report(wanted.output, args.deck / PAGES[site_study.ENSEMBLE])
+        write_report(wanted.output, args.deck / PAGES[site_study.ENSEMBLE], about, site)
 
 
 def of_ensemble(args: Request, asked: Site, method="") -> Request:

@@ -117,6 +117,8 @@ def write(found: Removal, folder: Path, picture: bool = True) -> None:
             volume_files.draw(new / "volume.png", run, found.road, found.axis, mesh, result, about, found.clearing)
         about["files"] = sorted(path.name for path in new.iterdir()) + ["volume.yaml"]
         disk.write_yaml(new / "volume.yaml", about, "slope volume: what must be removed; m, m2, m3, degrees")
+    if not picture:
+        (folder / "volume.png").unlink(missing_ok=True)     # of another result
 
 
 def check(wanted: Wanted) -> None:

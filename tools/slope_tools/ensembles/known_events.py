@@ -13,11 +13,10 @@ import numpy as np
 from .. import disk
 from ..case import logs, run_folders
 from ..deposits import deposit
-from ..digits import rounded
+from ..digits import metres, percent
 from ..errors import SlopeError
 from ..findings import Finding, entries, texts
 from ..mobility import body, exceedance, known, run_length, weights
-from ..mobility.results import percent
 from ..statistics import answer, emulator, hazard
 from ..tables import answer_words, combinations, quantities
 from . import conditioned, farther, known_influence, known_maps
@@ -211,12 +210,12 @@ def doubts(about: Mapping[str, Any], runs: Runs) -> List[Finding]:
     found, stopped = [], (about.get("added") or {}).get("stopped")
     if about["far"] >= 1 - farther.REACHED:
         remedy = answer_words.text(answer.Reason.read(stopped)) if stopped else "vary towards more mobile masses"
-        found.append(Finding("events beyond", {"length": rounded(about["longest_m"], 4), "share": percent(about["far"]),
+        found.append(Finding("events beyond", {"length": metres(about["longest_m"]), "share": percent(about["far"]),
                                                "remedy": remedy}))
     if about["reached"] < farther.REACHED and about["short"] > (1 - farther.REACHED) / 2:
-        found.append(Finding("events before", {"length": rounded(about["shortest_m"], 4),
+        found.append(Finding("events before", {"length": metres(about["shortest_m"]),
                                                "share": percent(about["short"])}))
-    found += [Finding("gap", {"low": rounded(gap["low_m"], 4), "high": rounded(gap["high_m"], 4),
+    found += [Finding("gap", {"low": metres(gap["low_m"]), "high": metres(gap["high_m"]),
                               "share": percent(gap["share"])}) for gap in about["gaps"]]
     if about["effective"] < LEAST_EFFECTIVE:
         found.append(Finding("few effective", {"effective": about["effective"]}))
@@ -262,7 +261,7 @@ def describe(about: Mapping[str, Any], of: Optional[str]) -> List[str]:
 def summary(about: Mapping[str, Any]) -> str:
     added = (about.get("added") or {}).get("points")
     more = f" (those of {added} points towards longer ones among them)" if added else ""
-    return (f"the runs reach from {rounded(about['shortest_m'], 4)} to {rounded(about['longest_m'], 4)} m, where "
+    return (f"the runs reach from {metres(about['shortest_m'])} to {metres(about['longest_m'])}, where "
             f"{percent(about['reached'])} of {about['events']} events of {about['set']} end ({percent(about['short'])} "
             f"before, {percent(about['far'])} beyond{by_lobe(about)}; {about['path']}); weighted by them the "
             f"{about['runs']} runs{more} say as much as {about['effective']:.0f}")

@@ -12,7 +12,7 @@ from ..deposits.rest import CUT
 from ..findings import Finding, entries
 from ..runs import jobs, repeats
 from ..statistics import backanalysis
-from ..studies import mapped, results
+from ..studies import body_depth, mapped, results
 from ..studies.setup import Setup
 from ..tables import judged, quantities
 from . import calibration, fit_words, observations
@@ -70,7 +70,7 @@ class Fit:
         """The rows of runs, which are made where they are not finished."""
         self.work.store.admit(todo)
         self.work.do(todo)
-        return list(results.rows_of(self.setup, todo, results.Maps(()), pictures=False)[0])
+        return list(results.rows_of(self.setup, todo, results.Maps(()))[0])
 
     def was_cut(self, one: repeats.Repeat, row: Mapping[str, Any]) -> bool:
         """Whether a run was stopped at its duration before it was at rest, and the duration may be another one."""
@@ -103,9 +103,11 @@ class Fit:
                  *backanalysis.judgement(found, self.variables)]
         doubts = self.doubts(found)
         failed = [one.name for one in plan.runs if one.error]
+        thick = body_depth.in_balls(self.setup, [row for row in self.rows.values() if row["status"] == "finished"])
         about: Dict[str, Any] = {
-            "calibration": {**plan.ledger.about, "runs": plan.number, "failed": len(failed), "package":
-                            self.work.package, "collected": provenance.now(), "machine": provenance.machine()},
+            "calibration": {**plan.ledger.about, "runs": plan.number, "failed": len(failed), "balls_thick": thick,
+                            "package": self.work.package, "collected": provenance.now(),
+                            "machine": provenance.machine()},
             "best": {"set": plan.ledger.points[plan.number - 1], "run": best.name,
                      "score": None if predicted is None else float(backanalysis.misfits(
                          predicted[None], found, targets)[0])},

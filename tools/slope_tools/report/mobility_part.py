@@ -4,9 +4,9 @@ The lengths of both are along the fall path, from crown to tip (mobility.run_len
 """
 from typing import Any, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
+from ..digits import percent
 from ..mobility import exceedance
 from ..mobility.landslides import NOT_OF_ROADS, Row
-from ..mobility.results import percent
 from ..studies.mapped import mass
 from ..tables.quantities import BEYOND_MAPPED as BEYOND, LENGTH, OVERLAP
 from .sections import Cell, Section, Table, Text

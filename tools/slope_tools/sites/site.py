@@ -130,14 +130,14 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
     layers = read_layers(choices, raster, new, tell, keep)
     title = choices["project"]["name"] or folder.absolute().name
     parts = site_deck.Parts(title, ", ".join(Path(name).name for name in choices["terrain"]["files"]), body,
-                            layers.structures, layers.lines, layers.motion, room_of(raster))
+                            layers.structures, layers.lines, layers.motion, room_of(raster), layers.zones)
     trial, reached = tried(choices, parts, found, new, machine, tell)
     size = settle(choices, parts, found, trial, machine, raster)
     for one in of_road(choices, found, layers, size):
         keep(one)
     derived = site_choices.derived(given, choices, known)
     say_size(choices, size, found, machine, tell)
-    for one in (*site_warnings.of_resistance(choices),
+    for one in (*site_warnings.of_resistance(choices), *site_warnings.of_zones(layers.zones),
                 *site_warnings.site_warnings(found.measures, size, trial)):
         keep(one)
     site_warnings.write(new, warnings)
@@ -152,6 +152,7 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
              "sources_sha256": site_choices.Site.of(choices, folder).sources(),
              "crs": crs_name(raster.crs),
              "origin": {"east": float(raster.offset[0]), "north": float(raster.offset[1])},
+             "zones": [zone.about(raster) for zone in layers.zones],
              "body": found.measures._asdict(), "bodies": site_bodies.about(several), "balls": size.balls,
              "trial": trial and trial._asdict(), "study": {"runs": size.runs, "seconds": size.seconds,
                                                            "gigabytes": size.gigabytes, "at_a_time": machine.jobs}}
@@ -245,8 +246,7 @@ def numbers(choices: Choices, soil: site_budget.Soil, trial: Optional[Trial], si
     d = diameter or (size.diameter if size else 0.0)
     seconds = None
     if trial and size:
-        steps = trial.typical / site_budget.time_step(d, soil)
-        seconds = trial.setup + steps * size.balls * trial.cost
+        seconds = trial.run(d, size.balls, soil, model["spacing"])
     return site_deck.Numbers(d, soil.speed,
                              model["duration"] or site_budget.LONGEST, model["cell"] or 1.0,
                              choices["motion"]["peak_friction"] or site_deck.LEAST_PEAK, trial and trial.typical,
@@ -254,20 +254,21 @@ def numbers(choices: Choices, soil: site_budget.Soil, trial: Optional[Trial], si
 
 
 def tried(choices: Choices, parts: site_deck.Parts, found: release.Body, new: Path, machine: Machine, tell):
-    """The Trial of runs with coarse balls, and its largest thickness; None, None where there is no LAMMPS."""
+    """The Trial of two runs with coarse balls, and its largest thickness; None, None where there is no LAMMPS."""
     if choices["motion"]["peak_friction"] is None and parts.motion:
         choices["motion"]["peak_friction"] = site_deck.peak_friction(found.measures.slip_slope)
     if machine.lmp is None:
         return None, None
     d = site_budget.trial_diameter(choices, parts.body.volume)
     trial, reached = tried_with(d, choices, parts, found, new, machine.lmp, tell)
-    finer = site_budget.finer_diameter(choices, trial)
-    if finer:
-        middle = settings.middle(choices["study"]["rolling"])
-        other = {**choices, "study": {**choices["study"], "rolling": [middle]}}
-        second, reached = tried_with(finer, other, parts, found, new, machine.lmp, tell, f"another, rolling {middle:g}")
-        trial = site_budget.joined(trial, second)
-    return trial, reached
+    other_d = site_budget.other_diameter(choices, trial)
+    if other_d is None:
+        return trial, reached
+    middle = settings.middle(choices["study"]["rolling"])
+    other = {**choices, "study": {**choices["study"], "rolling": [middle]}}
+    second, its_reach = tried_with(other_d, other, parts, found, new, machine.lmp, tell,
+                                   f"another, rolling {middle:g}")
+    return site_budget.joined(trial, second), its_reach if other_d < trial.diameter else reached
 
 
 def tried_with(d: float, choices: Choices, parts: site_deck.Parts, found: release.Body, new: Path, lmp: Path, tell,
@@ -334,4 +335,4 @@ def depth_of(found: release.Body) -> np.ndarray:
 def shown(found: release.Body, layers: Layers, reached: Optional[Raster]) -> Shown:
     """What the map shows; reached: the largest thickness of the trial run."""
     return Shown(found.raster, depth_of(found), found.geometry, layers.road, layers.observed, layers.structures,
-                 layers.lines, reached)
+                 layers.lines, reached, layers.zones)

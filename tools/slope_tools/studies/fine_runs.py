@@ -44,7 +44,7 @@ def of_median_length(setup: Setup, factor: Any, todo: Sequence[Repeat], defaults
     if factor in NONE:
         return []
     first = [one for one in todo if not one.batch and not one.repeat and not one.error]
-    rows, _ = results.rows_of(setup._replace(road=None), first, Maps(()), pictures=False)
+    rows, _ = results.rows_of(setup._replace(road=None), first, Maps(()))
     lengths = {row["run"]: row["length_m"] for row in rows if row.get("length_m") is not None}
     if not lengths:
         return []

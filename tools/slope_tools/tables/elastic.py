@@ -37,8 +37,9 @@ def evaluate(made: Made, rows: Sequence[Row], output: Path) -> Dict[str, Any]:
         same = [row for row in others if all(row["variables"].get(name) == elastic[0]["variables"].get(name)
                                              for name in row["set"] if name not in VARIABLES)]
         for key in COMPARED:
-            if (found := spread(elastic, key)) is not None:
-                about["quantities"][key] = {**found, "usual": spread(same, key), "study": spread(others, key)}
+            found = spread(elastic, key)
+            if found is not None:
+                about["quantities"][key] = dict(found, usual=spread(same, key), study=spread(others, key))
         disk.write(output / FILE, table(elastic, others))
     return {**about, "text": words(about)}
 
@@ -55,8 +56,8 @@ def with_area(rows, output: Path) -> List[Dict[str, Any]]:
 
 def spread(rows: Sequence[Row], key: str) -> Optional[Dict[str, float]]:
     """Mean and ends; None where there are no runs, or one without a number."""
-    values = [row.get(key) for row in rows]
-    if not values or None in values:
+    values = [float(row[key]) for row in rows if row.get(key) is not None]
+    if not values or len(values) < len(rows):
         return None
     return {"mean": sum(values) / len(values), "low": min(values), "high": max(values)}
 
