@@ -53,8 +53,8 @@ def page(tmp_path, monkeypatch):
     def make(asked):
         drawn.append(asked)
         table = SimpleNamespace(table=lambda: "a,b\n")
-        return SimpleNamespace(section=table, numbers=table, film=SimpleNamespace(content=b"film", text="", failed=False),
-                               warnings=[]), {}
+        film = SimpleNamespace(content=b"film", text="", failed=False)
+        return SimpleNamespace(section=table, numbers=table, film=film, warnings=[]), {}
 
     monkeypatch.setattr(document, "make", make)
     monkeypatch.setattr(document, "render", lambda content: "<html><head>\n" + (

@@ -74,7 +74,7 @@ def governing(site):
     """The folder of the study of a site that has its number: what both files say, or else the one made last by them."""
     there = {site / name: load(site / name / "study.yaml")["study"] for name in ("ensemble", "study")
              if (site / name / "study.yaml").exists()}
-    names = {about["governs"] for about in there.values()}
+    names = {about.get("governs") for about in there.values()}
     named = [folder for folder in there if names == {folder.name}]
     return named[0] if named else max(there, key=lambda folder: made(there[folder]))
 

@@ -13,7 +13,7 @@ import numpy as np
 from .. import disk
 from ..case import logs, run_folders
 from ..deposits import deposit
-from ..digits import metres, percent
+from ..digits import metres, percent, three_at_least
 from ..errors import SlopeError
 from ..findings import Finding, entries, texts
 from ..mobility import body, exceedance, known, run_length, weights
@@ -227,7 +227,7 @@ def doubts(about: Mapping[str, Any], runs: Runs) -> List[Finding]:
     if about["reached"] < farther.REACHED and about["short"] > (1 - farther.REACHED) / 2:
         found.append(Finding("events before", {"length": metres(about["shortest_m"]),
                                                "share": percent(about["short"])}))
-    found += [Finding("gap", {"low": metres(gap["low_m"]), "high": metres(gap["high_m"]),
+    found += [Finding("gap", {"low": three_at_least(gap["low_m"]), "high": metres(gap["high_m"]),
                               "share": percent(gap["share"])}) for gap in about["gaps"]]
     if about["effective"] < LEAST_EFFECTIVE:
         found.append(Finding("few effective", {"effective": about["effective"]}))
@@ -273,7 +273,7 @@ def describe(about: Mapping[str, Any], of: Optional[str]) -> List[str]:
 def summary(about: Mapping[str, Any]) -> str:
     added = (about.get("added") or {}).get("points")
     more = f" (those of {added} points towards longer ones among them)" if added else ""
-    return (f"the runs reach from {metres(about['shortest_m'])} to {metres(about['longest_m'])}, where "
+    return (f"the runs reach from {three_at_least(about['shortest_m'])} to {metres(about['longest_m'])}, where "
             f"{percent(about['reached'])} of {about['events']} events of {about['set']} end ({percent(about['short'])} "
             f"before, {percent(about['far'])} beyond{by_lobe(about)}; {about['path']}); weighted by them the "
             f"{about['runs']} runs{more} say as much as {about['effective']:.0f}")
