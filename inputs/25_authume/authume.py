@@ -213,7 +213,8 @@ def sensitivity(folder, jobs):
     sizes = np.resize((6 * masses / (np.pi * DENSITY)) ** (1 / 3), 205)        # five times the 41 blocks
     close = round(0.9 * (0.8 + float(sizes.min())) / 2 / 0.8, 3)                # for the smallest block
     cases = {
-        "as fitted": {}, "d 0.65 m": {"d": 0.65}, "d 0.95 m": {"d": 0.95},
+        "as fitted": {}, "e 0.48, rolling 0": {"e": 0.48, "rolling": 0}, "e 0.48": {"e": 0.48},
+        "rolling 0.05": {"rolling": 0.05}, "d 0.65 m": {"d": 0.65}, "d 0.95 m": {"d": 0.95},
         f"measured masses, spacing {close}": {"sizes": sizes, "spacing": close, "field_d": 0.8},
         f"d 0.80 m, spacing {close}": {"spacing": close},
         "shovel 2.5 m lower": {"lower": 2.5},

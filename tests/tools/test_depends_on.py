@@ -61,7 +61,7 @@ TRIAL = {"lmp", "jobs"}                         # what the trial run finds is wr
 LATER = {("project", "name"), ("project", "client"), ("project", "author"), ("road", "cut_angle"), ("road", "mesh"),
          *(("road", key) for key in ("width", "from", "blocked", "lane", "clearing", "loosening")),
          ("study", "rolling"), ("study", "spacing"), ("study", "points"), ("known", "set"), ("known", "confined"),
-         ("study", "packing"), ("study", "fine")}
+         ("study", "packing"), ("study", "fine"), ("study", "largest_restitution")}
 KEYS = [(section, key) for section, about in site_choices.sections() for key in about["properties"]]
 NOT_FILES = {("terrain", "crs"), ("terrain", "assign_crs"), ("terrain", "z_unit"), ("release", "shape"),
              ("release", "scar_is"), ("project", "name"), ("project", "client"), ("project", "author"),

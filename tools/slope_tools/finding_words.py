@@ -94,6 +94,8 @@ WORDS: Dict[str, Union[str, Words]] = {
     "datums": "tiles of {datums} are mixed and not converted: {what} may differ where they meet",
     "cut to input": "--bounds reaches beyond the input, {extent}: cut to it",
     "outside": "{file}: {percent:.2g} % of the area lies outside of {terrain}",
+    "zones overlap": "{file}: zones overlap on {area:,.0f} m2: the later feature counts there",
+    "zone covered": "{file}: zone {zone} lies below later features and counts nowhere",
     "no geometry": "{feature} has no geometry ({without} of {features} have none): left out",
     "no line": "{file}: {kinds} in it, where a line is asked for: left out",
     "drawn twice": "{file}: {percent:.3g} % of the length of its lines is drawn more than once, or there and back: "

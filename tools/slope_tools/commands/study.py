@@ -22,7 +22,7 @@ from ..statistics.answer import Source
 from ..studies import files, fine_runs, results, site_ground, site_study, study
 from ..studies.study import OfAKind, RunsFailed, check_more_than, check_thresholds, perform
 from ..survey import roads
-from ..tables import answer_words, answered, intensity
+from ..tables import answer_words, answered, elastic, intensity
 from . import known_arguments, road_arguments
 from .run_arguments import DECK, Intensity, Repeats, Runs, Sample, setup_of
 
@@ -149,7 +149,7 @@ def run_both(args: Request, asked: Site, points: int) -> None:
         governs = site_study.STUDY if found.source is Source.PAPER else site_study.ENSEMBLE
     for name, about in made.items():
         made[name] = {**about, "study": {**about["study"], "governs": governs}, **(
-            {"headline": found.about()} if found else {})}
+            {"headline": found.about()} if found else {}), elastic.ENTRY: (paper.about or {}).get(elastic.ENTRY)}
         files.write_about(site / name, made[name])
     for name, about in made.items():
         if name != governs:

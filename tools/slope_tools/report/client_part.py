@@ -10,7 +10,7 @@ from ..digits import percent
 from ..ensembles import known_study
 from ..statistics import headline
 from ..statistics.answer import SHARE, Code, Kind, Reason, Source
-from ..tables import answer_words, combinations, next_step
+from ..tables import answer_words, combinations, elastic, next_step
 from ..tables.quantities import ALL, DISTANCE
 from . import body, mobility_part, road_part, structures_part, warnings
 from .numbers import farthest_of
@@ -247,8 +247,20 @@ def distance(data, numbers, has_road_number: bool) -> str:
     known = weighted(data, numbers, DISTANCE)
     if known:
         return (f"In {percent(SHARE)} of known events 99 % of the volume stays within {known} of the highest point of "
-                f"the body, in plan; in single runs, {ALIKE}, within {far}.")
-    return f"{runs_of(data)} 99 % of the volume stays within {far} of the highest point of the body, in plan."
+                f"the body, in plan; in single runs, {ALIKE}, within {far}.{most_elastic(data, numbers)}")
+    return (f"{runs_of(data)} 99 % of the volume stays within {far} of the highest point of the body, in plan."
+            f"{most_elastic(data, numbers)}")
+
+
+def most_elastic(data, numbers) -> str:
+    """A sentence on how far it goes with the largest restitution; "" without such runs."""
+    about = (data.study or {}).get(elastic.ENTRY)
+    if not about or not about["runs"]:
+        return ""
+    text = f" With the most elastic rock, a restitution of {about['restitution']:g},"
+    far = elastic.far(about)
+    return f"{text} more than 1 % of it leaves the terrain." if far is None else \
+        f"{text} within {numbers.quantity(DISTANCE, far)} m."
 
 
 def road(data, numbers) -> str:

@@ -130,14 +130,14 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
     layers = read_layers(choices, raster, new, tell, keep)
     title = choices["project"]["name"] or folder.absolute().name
     parts = site_deck.Parts(title, ", ".join(Path(name).name for name in choices["terrain"]["files"]), body,
-                            layers.structures, layers.lines, layers.motion, room_of(raster))
+                            layers.structures, layers.lines, layers.motion, room_of(raster), layers.zones)
     trial, reached = tried(choices, parts, found, new, machine, tell)
     size = settle(choices, parts, found, trial, machine, raster)
     for one in of_road(choices, found, layers, size):
         keep(one)
     derived = site_choices.derived(given, choices, known)
     say_size(choices, size, found, machine, tell)
-    for one in (*site_warnings.of_resistance(choices),
+    for one in (*site_warnings.of_resistance(choices), *site_warnings.of_zones(layers.zones),
                 *site_warnings.site_warnings(found.measures, size, trial)):
         keep(one)
     site_warnings.write(new, warnings)
@@ -152,6 +152,7 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
              "sources_sha256": site_choices.Site.of(choices, folder).sources(),
              "crs": crs_name(raster.crs),
              "origin": {"east": float(raster.offset[0]), "north": float(raster.offset[1])},
+             "zones": [zone.about(raster) for zone in layers.zones],
              "body": found.measures._asdict(), "bodies": site_bodies.about(several), "balls": size.balls,
              "trial": trial and trial._asdict(), "study": {"runs": size.runs, "seconds": size.seconds,
                                                            "gigabytes": size.gigabytes, "at_a_time": machine.jobs}}
@@ -334,4 +335,4 @@ def depth_of(found: release.Body) -> np.ndarray:
 def shown(found: release.Body, layers: Layers, reached: Optional[Raster]) -> Shown:
     """What the map shows; reached: the largest thickness of the trial run."""
     return Shown(found.raster, depth_of(found), found.geometry, layers.road, layers.observed, layers.structures,
-                 layers.lines, reached)
+                 layers.lines, reached, layers.zones)

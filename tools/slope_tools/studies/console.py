@@ -4,7 +4,7 @@ from typing import Any, Callable, Mapping
 
 from ..ensembles import ensemble
 from ..seismic import chain_files
-from ..tables import combinations, intensity, road_runs, structures, study_table
+from ..tables import combinations, elastic, intensity, road_runs, structures, study_table
 from . import mapped
 from .outcome import Outcome
 
@@ -52,6 +52,8 @@ def tell_numbers(about: Mapping[str, Any], output: Path, say: Callable[[Any], An
             say(about["step"]["text"])
     if about["size"]:
         say(f"size of the balls: {about['size']['text']}")
+    if about[elastic.ENTRY]:
+        say(about[elastic.ENTRY]["text"])
     if about["ensemble"]:
         say("\n".join(ensemble.describe(about["ensemble"])))
         say(f"{output / ensemble.HAZARD}, {output / ensemble.INFLUENCE}: all curves and indices; "

@@ -5,7 +5,7 @@ from typing import Any, Dict, Mapping, Optional
 from .. import disk
 from ..ensembles import ensemble
 from ..seismic import chain_files
-from ..tables import answered, combinations, intensity, road_runs, structures, study_table
+from ..tables import answered, combinations, elastic, intensity, road_runs, structures, study_table
 from ..tables.study_maps import Maps
 from .outcome import Outcome
 
@@ -27,6 +27,7 @@ def write(outcome: Outcome, header: Mapping[str, Any], maps: Maps, output: Path,
     if outcome.chain:
         chain_files.write(outcome.chain, output)
     write_or_remove(output / intensity.FILE, about["intensity"] and intensity.table(about["intensity"]))
+    write_or_remove(output / elastic.FILE, read.elastic and elastic.table(read.elastic))
     structures.write(output, read.finished)
     disk.write(output / "study.csv", study_table.table(asked.settings, asked.repeated, read.rows, read.defaults))
     disk.write(output / "combinations.csv", combinations.table(outcome.groups, outcome.names, asked.settings))

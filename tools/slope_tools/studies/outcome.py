@@ -14,8 +14,8 @@ from ..runs import repeats
 from ..runs.repeats import Repeat
 from ..seismic import chain_files
 from ..statistics.headline import Scatter
-from ..tables import (answered, combinations, fine_run, intensity, judged, quantities, road_runs, step_check, usable,
-                      withheld_words)
+from ..tables import (answered, combinations, elastic, fine_run, intensity, judged, quantities, road_runs,
+                      step_check, usable, withheld_words)
 
 Row = Dict[str, Any]
 
@@ -32,6 +32,7 @@ class Questions(NamedTuple):
     site: Optional[Path] = None                     # folder of the site whose study it is
     fine: Optional[Repeat] = None                   # the run with smaller balls; None: none was asked for
     step: Optional[step_check.Step] = None          # the run with half the time step
+    most_elastic: Optional[elastic.Made] = None     # the runs with the largest restitution
     method: str = ""                                # of a site's study, in words
     chain: Optional[chain_files.Chain] = None       # of an ensemble: how likely its bodies fail in an earthquake
     known: Mapping[str, Any] = {}                   # of site.yaml: with which known events the runs are compared
@@ -48,8 +49,8 @@ class Read(NamedTuple):
 
     rows: one for each run, finished or failed; road: whether there is one; events: what known events did of the mass;
     mobility: of the mass, for the weights of an ensemble; observed: the mapped deposit, as study.yaml has it; fine: the
-    run with smaller balls; problem: why there are no maps over all runs; case: for the command that mends a reason,
-    None where no run finished; defaults: of the deck's variables.
+    run with smaller balls; elastic: those with the largest restitution; problem: why there are no maps over all runs;
+    case: for the command that mends a reason, None where no run finished; defaults: of the deck's variables.
     """
     rows: List[Row]
     road: bool
@@ -57,6 +58,7 @@ class Read(NamedTuple):
     mobility: Optional[Mobility]
     observed: Optional[Dict[str, Any]]
     fine: Optional[fine_run.Fine]
+    elastic: Optional[elastic.Runs]
     problem: Optional[str]
     case: Optional[withheld_words.Case]
     defaults: Mapping[str, str]
@@ -92,6 +94,7 @@ def evaluate(questions: Questions, read: Read) -> Outcome:
         "largest": {key: largest(finished, key) for key in keys if finished},
         "farthest": travel_shares.farthest(finished)["run"] if finished else None,
         "conservative": None, "size": None, "ensemble": None, "step": None,
+        elastic.ENTRY: elastic.evaluate(read.elastic) if read.elastic else None,
         "scatter": {name: known and {"deviation": known.deviation, "degrees_of_freedom": known.degrees_of_freedom}
                     for name, known in scatters.items()},
         "combinations": combinations.entries(groups, names), "envelope": None, "exceedance": None,

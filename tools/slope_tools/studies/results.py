@@ -15,7 +15,7 @@ from ..releases import release_toe
 from ..runs.repeats import Repeat
 from ..statistics import headline
 from ..survey import rasters, roads
-from ..tables import combinations, fine_run, judged, quantities, structures, usable, withheld_words
+from ..tables import combinations, elastic, fine_run, judged, quantities, structures, usable, withheld_words
 from ..tables.study_maps import Maps
 from . import console, files, mapped, site_ground
 from .outcome import Questions, Read, evaluate
@@ -58,7 +58,8 @@ def read(setup: Setup, questions: Questions, todo, maps: Maps, defaults: Mapping
         mobility = known_events.mobility_of(questions.order.condition, summary.parent, summary)
     if row and questions.fine:
         fine = compared(setup, questions.fine, rows, None if questions.order else combinations.grouped(rows))
-    return Read(rows, setup.road is not None, events, mobility, observed, fine, maps.problem,
+    most = elastic.read(questions.most_elastic, rows, setup.output) if row and questions.most_elastic else None
+    return Read(rows, setup.road is not None, events, mobility, observed, fine, most, maps.problem,
                 case_of(setup, questions, row) if row else None, defaults), thickness
 
 

@@ -19,7 +19,7 @@ from ..sites import ground, site_choices, site_deck, site_warnings
 from ..sites.site_choices import Choices, OFFSETS, PACKING, Site, other_grounds
 from ..sites.site_layers import OBSERVED, ROAD
 from ..survey.roads import Asked
-from ..tables import energy, named_run
+from ..tables import elastic, energy, named_run
 from ..tables.step_check import QUANTITY, Step, half_of
 from . import fine_runs, mapped, results, study
 from .setup import Road, Setup
@@ -63,11 +63,12 @@ def run(site: Site, engine: Setup, method: str, asked: Optional[str] = None) -> 
     if others:
         settings["spacing"] = list(dict.fromkeys([*settings["spacing"], *(one["spacing"] for one in others)]))
     half = half_steps(setup, middle, variables) if setup.road else []
+    elastics = elastic_runs(setup, several["largest_restitution"], settings["rolling"], repeated, variables)
     fine = fine_runs.in_the_middle(setup, fine_runs.factor_of(asked, choices), {"rolling": [middle]}, variables)
 
     def collect(_, work):
         questions = results.Questions(settings, repeated, THRESHOLDS, notes=warnings_of(folder), site=folder,
-                                      fine=fine[0] if fine else None,
+                                      fine=fine[0] if fine else None, most_elastic=elastic_of(setup, elastics),
                                       step=step_of(setup, half[0], middle, variables) if half else None, method=method,
                                       known=choices["known"])
         return results.collect(setup, questions, todo, work)
@@ -75,7 +76,8 @@ def run(site: Site, engine: Setup, method: str, asked: Optional[str] = None) -> 
     failed: Optional[Exception] = None
     try:
         # the longest first: a long run that starts last leaves the other cores idle
-        about = study.perform(setup, {**settings, **repeated}, [*todo, *fine, *half], collect, first=[*fine, *half])
+        about = study.perform(setup, {**settings, **repeated}, [*todo, *fine, *half, *elastics], collect,
+                              first=[*fine, *half])
     except study.RunsFailed as error:
         about = error.found
         failed = study.failure(setup.output, todo)      # what is said of the others is with their results
@@ -145,6 +147,25 @@ def step_of(setup: Setup, run_: repeats.Repeat, rolling: str, variables: Dict[st
     return Step(rolling, row[QUANTITY], energy=energy.read(Path(f"{prefix}.{energy.SUFFIX}"))
                 if LEDGER in variables else None, spacing=variables.get("spacing"),
                 step=float(run_.chosen["step"]))
+
+
+def elastic_runs(setup: Setup, largest: Optional[float], rolling: List[str], repeated: Dict[str, List[str]],
+                 variables: Dict[str, str]) -> List[repeats.Repeat]:
+    """The runs with the largest restitution, or what the deck has if that is larger, at the least rolling resistance;
+    none where none are asked for, or the deck has no such variables."""
+    if largest is None or not variables.keys() >= {*elastic.VARIABLES}:
+        return []
+    most = [f"{max(largest, *(float(variables[name]) for name in elastic.VARIABLES)):.10g}"]
+    settings = {"rolling": [min(rolling, key=float)], **dict.fromkeys(elastic.VARIABLES, most)}
+    return repeats.plan(setup.runs, settings, repeated, variables)
+
+
+def elastic_of(setup: Setup, runs: List[repeats.Repeat]) -> Optional[elastic.Made]:
+    """What these runs tell, whatever the road; None: there are none."""
+    if not runs:
+        return None
+    rows, _ = results.rows_of(setup._replace(road=None), runs, results.Maps(()))
+    return elastic.Made(float(runs[0].chosen[elastic.VARIABLES[0]]), runs[0].chosen["rolling"], rows)
 
 
 def scored(folder: Path, setup: Setup, about: Mapping[str, Any]) -> None:
