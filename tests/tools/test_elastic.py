@@ -50,7 +50,8 @@ def evaluated(here, made, rows):
 
 
 def test_reach_and_area_beside_the_usual_runs(tmp_path, rows):
-    about = evaluated(tmp_path, most(tmp_path), rows)
+    made = most(tmp_path)
+    about = evaluated(tmp_path, made, rows)
     assert about["quantities"]["distance_99_m"] == {
         "mean": 110, "low": 100, "high": 120, "usual": {"mean": 85, "low": 80, "high": 90},
         "study": {"mean": pytest.approx(265 / 3), "low": 80, "high": 95}}
@@ -61,7 +62,7 @@ def test_reach_and_area_beside_the_usual_runs(tmp_path, rows):
         "restitution 0.9 of soil, slip surface and ground, rolling 0, 3 runs: 99 % of the volume stays within 110 m "
         "(100 to 120) instead of 85 m (80 to 90); all other runs, up to 95 m; the deposit covers 92 m2 (80 to 108) "
         "instead of 44 m2 (40 to 48); all other runs, up to 56 m2")
-    text = elastic.table(elastic.read(elastic.Made(0.9, "0", most(tmp_path)), rows, tmp_path))
+    text = elastic.table(elastic.read(elastic.Made(0.9, "0", made), rows, tmp_path))
     table = list(csv.DictReader(text.splitlines()))
     assert [(one["run"], one["largest_restitution"]) for one in table] == [
         ("e1", "yes"), ("e2", "yes"), ("e3", "yes"), ("a", "no"), ("b", "no"), ("c", "no")]
