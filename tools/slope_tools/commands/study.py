@@ -19,7 +19,7 @@ from ..sites.site_choices import Site
 from ..sites.site_bodies import VARIABLE
 from ..sites.site_layers import ROAD
 from ..statistics.answer import Source
-from ..studies import fine_runs, results, site_ground, site_study, study
+from ..studies import files, fine_runs, results, site_ground, site_study, study
 from ..studies.study import OfAKind, RunsFailed, check_more_than, check_thresholds, perform
 from ..survey import roads
 from ..tables import answer_words, answered, elastic, intensity
@@ -150,7 +150,7 @@ def run_both(args: Request, asked: Site, points: int) -> None:
     for name, about in made.items():
         made[name] = {**about, "study": {**about["study"], "governs": governs}, **(
             {"headline": found.about()} if found else {}), elastic.ENTRY: (paper.about or {}).get(elastic.ENTRY)}
-        results.write(site / name, made[name])
+        files.write_about(site / name, made[name])
     for name, about in made.items():
         if name != governs:
             write_report(site / name, site / PAGES[name], about, asked, film=False)
