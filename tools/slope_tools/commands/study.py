@@ -99,7 +99,7 @@ class Request(Sample, known_arguments.Known, Repeats, Intensity, Runs):
 def run(args: Request) -> None:
     """Do the command; raises SlopeError on bad input, and after all other runs when one failed."""
     if args.deck.is_dir() and (args.output is None or (args.deck / site_choices.NAME).exists()):
-        with study.alone(args.deck, args.dry_run):
+        with study.alone(args.deck, args.dry_run or not (args.deck / site_choices.NAME).is_file()):
             return run_folder(args, site_choices.load(args.deck))
     if args.paper:
         raise SlopeError("--paper", "must be given with the folder of a site", args.deck)
