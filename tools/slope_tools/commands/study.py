@@ -16,7 +16,7 @@ from ..runs import repeats
 from ..sites import site_choices, site_deck
 from ..sites.site_bodies import VARIABLE
 from ..sites.site_layers import ROAD
-from ..studies import fine_runs, results, site_ground, site_study, study
+from ..studies import ahead, fine_runs, results, site_ground, site_study, study
 from ..studies.study import OfAKind, RunsFailed, check_more_than, check_thresholds, perform
 from ..survey import roads
 from ..tables import answer_words, answered, intensity
@@ -117,9 +117,9 @@ def run_folder(args: Request) -> None:
     if args.paper or why:
         condition_of(args)      # has no meaning here
         method = f"{known_study.PAPER}; {why}" if why else known_study.ASKED
-        say(args.deck, method, others=True)
+        say(args, method, 0)
         return run_site(args, method)
-    say(args.deck, f"{known_study.WEIGHTED}, which --paper makes alone", others=True)
+    say(args, f"{known_study.WEIGHTED}, which --paper makes alone", points)
     return run_both(args, points)
 
 
@@ -156,9 +156,10 @@ def written(path: Path) -> Optional[int]:
     return path.stat().st_mtime_ns if path.is_file() else None
 
 
-def say(folder, method, others=False):
-    """How the study of a site is made, and what its ground holds; others: the other grounds of the study, too."""
-    print("\n".join([method, *site_ground.lines(folder, others)]))
+def say(args: Request, method, points):
+    """How the study of a site is made, what its grounds hold, which runs are there; points: of the ensemble."""
+    print("\n".join([method, *site_ground.lines(args.deck, True),
+                     ahead.of_site(args.deck, setup_of(args), points, args.fine).text]), flush=True)
 
 
 def run_deck(args: Request) -> None:
@@ -278,12 +279,23 @@ def of_ensemble(args: Request, method="") -> Request:
     chance = site_choices.chance(decks.index_variables(site / site_deck.NAME))
     road = {name: about[roads.KEYS[field]] for name, field in road_arguments.OPTIONS.items()}
     road.update(road=site / ROAD, cut_angle=about["cut_angle"], mesh=about["mesh"])
+    vary = args.vary or ([] if args.fit else [*of_fragility(choices), chance] if args.fragility
+                         else [*known_study.VARY, chance])
     return replace(args, deck=site / site_deck.NAME, site=site, method=method,
+                   set=[*args.set, *not_varied(args, choices, vary)],
                    fine=args.fine or str(choices["study"]["fine"] or "no"),
                    output=args.output or site / site_study.ENSEMBLE,
                    wide={} if args.vary or args.fit or args.fragility else known_study.WIDE,
-                   vary=args.vary or ([] if args.fit else [*of_fragility(choices), chance] if args.fragility
-                                      else [*known_study.VARY, chance]), **(road if about["file"] else {}))
+                   vary=vary, **(road if about["file"] else {}))
+
+
+def not_varied(args: Request, choices, vary) -> List[str]:
+    """--set of what a site has a list of and an ensemble does not vary."""
+    names = {words.partition("=")[0] for words in (*vary, *args.set, *args.repeat)}
+    if args.fit:
+        from ..fitting import calibrated
+        names |= calibrated.texts_of(args.fit).keys()
+    return [f"{name}={value}" for name, value in site_choices.not_varied(choices, names).items()]
 
 
 def of_fragility(choices):

@@ -9,7 +9,7 @@ import json
 import math
 import os
 from pathlib import Path
-from typing import Any, Dict, Iterator, List, Mapping, Optional, Tuple
+from typing import Any, Collection, Dict, Iterator, List, Mapping, Optional, Tuple
 
 import yaml
 
@@ -36,8 +36,11 @@ WITHOUT_CRS = (("structures", "files"), ("motion", "file"))
 BESIDE = (".prj", ".shx", ".dbf", ".cpg", ".tfw", ".hdr", ".yaml")
 
 # keys that slope site fills in with what it finds
-DERIVED = (("balls", "diameter"), ("balls", "number"), ("model", "speed"), ("model", "duration"), ("model", "cell"),
-           ("motion", "peak_friction"))
+DERIVED = (("balls", "diameter"), ("balls", "number"), ("model", "speed"), ("model", "duration"), ("model", "film"),
+           ("model", "cell"), ("motion", "peak_friction"))
+
+# keys that came later: those who made a folder before did not count them
+LATER = (("model", "film"),)
 
 # keys of model in older sites, whose ground was a plan grid of one diameter; their decks keep it
 RETIRED = ("field_diameter", "field_ratio")
@@ -129,6 +132,13 @@ def chance(variables: Mapping[str, str]) -> str:
     return f"{PACKING}=1:1000000" if PACKING in variables else f"{OFFSETS[0]}=0:0.99"
 
 
+def not_varied(choices: Choices, varied: Collection[str]) -> Dict[str, str]:
+    """Values of the runs of an ensemble that varies variables of these names: of lists of the study that it does not,
+    the first one, as the deck has none.
+    """
+    return {} if "rolling" in varied else {"rolling": f"{choices['study']['rolling'][0]:.10g}"}
+
+
 def widest() -> float:
     """The largest spacing of the ground's balls, in diameters: through a wider one balls fall."""
     return schema()["properties"]["model"]["properties"]["spacing"]["maximum"]
@@ -187,6 +197,9 @@ def fingerprint(choices: Choices, folder: Path) -> str:
     made = with_files(choices, lambda name: in_folder(name, folder))
     for name in READ_LATER:
         made[name] = {key: value for key, value in made[name].items() if (name, key) in FILES}
+    for name, key in LATER:
+        if not made[name][key]:
+            del made[name][key]
     return hashlib.sha256(json.dumps(disk.plain(made), sort_keys=True).encode("utf-8")).hexdigest()
 
 

@@ -41,12 +41,25 @@ class Done(NamedTuple):
     failed: Optional[Exception]             # what failed beside it, to be raised once the report is there
 
 
-def run(folder: Path, engine: Setup, method: str, asked: Optional[str] = None) -> Done:
-    """Make or continue all runs of a site, and their results.
+class Planned(NamedTuple):
+    """The runs of the paper's study."""
+    choices: Choices
+    setup: Setup
+    variables: Dict[str, str]               # of the deck
+    settings: Dict[str, List[str]]
+    repeated: Dict[str, List[str]]
+    middle: str                             # rolling resistance of the fine run and of half the step
+    todo: List[repeats.Repeat]
+    fine: List[repeats.Repeat]
+    half: List[repeats.Repeat]
 
-    engine: how the runs are made; its deck, output and road do not count; method: of the study, in words; asked: of
-    --fine. Raises SlopeError on bad input, and if no run of the study finished.
-    """
+    @property
+    def runs(self) -> List[repeats.Repeat]:
+        return [*self.todo, *self.fine, *self.half]
+
+
+def plan(folder: Path, engine: Setup, asked: Optional[str] = None) -> Planned:
+    """All runs of a site by the paper's method; asked: of --fine. SlopeError on bad input."""
     choices = site_choices.read(folder)
     check(folder, choices)
     deck, road, several = folder / site_deck.NAME, choices["road"], choices["study"]
@@ -62,26 +75,38 @@ def run(folder: Path, engine: Setup, method: str, asked: Optional[str] = None) -
     todo = repeats.plan(setup.runs, settings, repeated, variables, others)
     if others:
         settings["spacing"] = list(dict.fromkeys([*settings["spacing"], *(one["spacing"] for one in others)]))
-    half = half_steps(setup, middle, variables) if setup.road else []
     fine = fine_runs.in_the_middle(setup, fine_runs.factor_of(asked, choices), {"rolling": [middle]}, variables)
+    half = half_steps(setup, middle, variables) if setup.road else []
+    return Planned(choices, setup, variables, settings, repeated, middle, todo, fine, half)
+
+
+def run(folder: Path, engine: Setup, method: str, asked: Optional[str] = None) -> Done:
+    """Make or continue all runs of a site, and their results.
+
+    engine: how the runs are made; its deck, output and road do not count; method: of the study, in words; asked: of
+    --fine. Raises SlopeError on bad input, and if no run of the study finished.
+    """
+    planned = plan(folder, engine, asked)
+    setup, todo, fine, half, variables = planned.setup, planned.todo, planned.fine, planned.half, planned.variables
 
     def collect(_, work):
-        questions = results.Questions(settings, repeated, THRESHOLDS, notes=warnings_of(folder), site=folder,
-                                      fine=fine[0] if fine else None,
-                                      step=step_of(setup, half[0], middle, variables) if half else None, method=method)
+        questions = results.Questions(
+            planned.settings, planned.repeated, THRESHOLDS, notes=warnings_of(folder), site=folder,
+            fine=fine[0] if fine else None,
+            step=step_of(setup, half[0], planned.middle, variables) if half else None, method=method)
         results.collect(setup, questions, todo, work)
 
     failed: Optional[Exception] = None
     try:
         # the longest first: a long run that starts last leaves the other cores idle
-        study.perform(setup, {**settings, **repeated}, [*todo, *fine, *half], collect, first=[*fine, *half])
+        study.perform(setup, {**planned.settings, **planned.repeated}, planned.runs, collect, first=[*fine, *half])
     except study.RunsFailed:
         failed = study.failure(setup.output, todo)      # what is said of the others is with their results
         if failed and all(one.error for one in todo):
             raise failed from None
     if setup.dry_run:
         return Done(None, failed)
-    if choices["observed"]["file"]:
+    if planned.choices["observed"]["file"]:
         shutil.rmtree(folder / SCORE, ignore_errors=True)       # of other runs
         try:
             scored(folder, setup)
