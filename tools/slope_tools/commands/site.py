@@ -18,7 +18,7 @@ from ..releases.release_scar import KINDS
 from ..runs import jobs
 from ..sites import site, site_choices, site_deck
 from ..slips import bodies
-from ..studies import ahead, site_ground
+from ..studies import ahead, outlook, site_ground
 from ..studies.setup import RUNS, Setup
 from ..survey import roads
 from ..survey.rasters import UNITS
@@ -199,6 +199,8 @@ def run(args: Request) -> None:
                          lambda line: print(line, flush=True), printer("site"), site_map.draw,
                          again=args.folder is not None, known=known)
     for line in site_ground.lines(folder):
+        print(line)
+    for line in outlook.lines(folder):
         print(line)
     if (folder / RUNS).is_dir():
         print(runs_ahead(args, folder, choices))

@@ -143,7 +143,11 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
     derived = site_choices.derived(given, choices, known)
     say_size(choices, size, found, machine, tell)
     for one in (*site_warnings.of_resistance(choices),
-                *site_warnings.site_warnings(found.measures, size, trial)):
+                *site_warnings.site_warnings(found.measures, size, trial),
+                *site_warnings.of_cells(found.area.z - found.slip, found.area.cell, max(
+                    map(rasters.surveyed_cell, choices["terrain"]["files"]))),
+                *site_warnings.of_road(layers.road, choices["road"]["width"], size.diameter, max(
+                    found.area.cell, choices["model"]["cell"]))):
         keep(one)
     site_warnings.write(new, warnings)
     deck = site_deck.text(choices, parts, numbers(choices, soil_of(choices, parts), trial, size))
