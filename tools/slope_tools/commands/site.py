@@ -35,7 +35,8 @@ OPTIONS = {"terrain": ("terrain", "files"), "crs": ("terrain", "crs"),
            "bodies": ("release", "bodies"),
            "road": ("road", "file"), "cut_angle": ("road", "cut_angle"), "mesh": ("road", "mesh"),
            **{option: ("road", roads.KEYS[field]) for option, field in road_arguments.OPTIONS.items()},
-           "structure": ("structures", "files"), "line": ("lines", "files"), "motion": ("motion", "file"),
+           "structure": ("structures", "files"), "wall": ("structures", "walls"), "height": ("structures", "height"),
+           "width": ("structures", "width"), "line": ("lines", "files"), "motion": ("motion", "file"),
            "peak_friction": ("motion", "peak_friction"), "friction": ("model", "friction"),
            "rolling": ("study", "rolling"), "slip_friction": ("model", "slip_friction"),
            "density": ("model", "density"), "spacing": ("model", "spacing"),
@@ -127,6 +128,11 @@ class Layers(road_arguments.Clearing):
     structure: Optional[List[str]] = option(
         "a wall or building of triangles, m, in local coordinates or the terrain's CRS; may be given several times",
         metavar="STL", action="append")
+    wall: Optional[List[str]] = option(
+        "a wall along this line, which stands on the ground and is --height high; may be given several times",
+        metavar="LINE", action="append")
+    height: Optional[float] = option("of the walls along lines, above the ground, m", metavar="H")
+    width: Optional[float] = option("of the walls along lines, m (default 1)", metavar="B")
     line: Optional[List[str]] = option(
         "control line: what crosses it is counted; may be given several times", metavar="LINE", action="append")
     motion: Optional[str] = option(

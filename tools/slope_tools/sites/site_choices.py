@@ -28,7 +28,7 @@ WHAT = "a site.yaml of `slope site`"
 FOUND = schemas.mapping({}, found=schemas.mapping({}, null=True))       # of any version
 # keys that hold one file, and lists of files
 FILES = (("terrain", "files"), ("release", "polygon"), ("release", "scar"), ("release", "bodies"), ("road", "file"),
-         ("structures", "files"), ("lines", "files"), ("motion", "file"), ("observed", "file"))
+         ("structures", "files"), ("structures", "walls"), ("lines", "files"), ("motion", "file"), ("observed", "file"))
 
 WITHOUT_CRS = (("structures", "files"), ("motion", "file"))
 
@@ -40,7 +40,7 @@ DERIVED = (("balls", "diameter"), ("balls", "number"), ("model", "speed"), ("mod
            ("model", "cell"), ("motion", "peak_friction"))
 
 # keys that came later: those who made a folder before did not count them
-LATER = (("model", "film"),)
+LATER = (("model", "film"), ("structures", "walls"), ("structures", "height"), ("structures", "width"))
 
 # keys of model in older sites, whose ground was a plan grid of one diameter; their decks keep it
 RETIRED = ("field_diameter", "field_ratio")
@@ -198,7 +198,7 @@ def fingerprint(choices: Choices, folder: Path) -> str:
     for name in READ_LATER:
         made[name] = {key: value for key, value in made[name].items() if (name, key) in FILES}
     for name, key in LATER:
-        if not made[name][key]:
+        if made[name][key] in (None, []):
             del made[name][key]
     return hashlib.sha256(json.dumps(disk.plain(made), sort_keys=True).encode("utf-8")).hexdigest()
 

@@ -30,8 +30,9 @@ def planned(choices: Choices) -> Set[str]:
     if choices["motion"]["file"]:
         names.add(site_inputs.MOTION)
     taken = set(site_inputs.TAKEN)
-    for section, suffix in (("structures", ".stl"), ("lines", ".csv")):
-        names |= {site_inputs.unused(site_inputs.stem(file), taken) + suffix for file in choices[section]["files"]}
+    for section, key, suffix in (("structures", "files", ".stl"), ("structures", "walls", ".stl"),
+                                 ("lines", "files", ".csv")):
+        names |= {site_inputs.unused(site_inputs.stem(file), taken) + suffix for file in choices[section][key]}
     return names
 
 
