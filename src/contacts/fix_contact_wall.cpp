@@ -61,7 +61,7 @@ void FixContactWall::init()
   if (!pair)
     error->all(FLERR, "{}: requires pair_style gran/restitution, which holds its coefficients",
                caller);
-  pair->announce_wall(this, wall_type, groupbit, style);
+  pair->announce_wall(this, wall_type, other_types, groupbit, style);
   check_group();
 
   // contacts must be stored by atom before any fix migrates atoms
@@ -114,12 +114,12 @@ void FixContactWall::reserve()
 
 /* ---------------------------------------------------------------------- */
 
-const Slope::ContactLaw &FixContactWall::law_of(int type) const
+const Slope::ContactLaw &FixContactWall::law_of(int type, int wall) const
 {
-  const Slope::ContactLaw *law = pair->law(type, wall_type);
+  const Slope::ContactLaw *law = pair->law(type, wall);
   if (!law)    // a type that came after init(), by fix pour or fix deposit
     error->one(FLERR, "{}: pair_coeff {} {} is not set (moving type {}, wall type {})", caller,
-               std::min(type, wall_type), std::max(type, wall_type), type, wall_type);
+               std::min(type, wall), std::max(type, wall), type, wall);
   return *law;
 }
 

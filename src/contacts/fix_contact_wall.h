@@ -13,6 +13,7 @@
 #include "restart_archive.h"
 
 #include <string>
+#include <vector>
 
 namespace LAMMPS_NS {
 
@@ -43,12 +44,14 @@ class FixContactWall : public Fix, public ContactHolder {
  protected:
   std::string caller;    // style and ID, for messages
   class PairGranRestitution *pair;
-  int wall_type;    // atom type that stands for the wall in pair_coeff
+  int wall_type;                   // atom type that stands for the wall in pair_coeff
+  std::vector<int> other_types;    // the same for parts of it
   Slope::ContactRecords records;
   bool contacts_in_lists;    // contacts have been updated since they were last stored by atom
 
   // law of balls of a type on the wall
-  const Slope::ContactLaw &law_of(int type) const;
+  const Slope::ContactLaw &law_of(int type) const { return law_of(type, wall_type); }
+  const Slope::ContactLaw &law_of(int type, int wall) const;
 
   // the last call of a constructor: LAMMPS cannot undo it for a fix whose constructor has failed
   void keep_by_atom();

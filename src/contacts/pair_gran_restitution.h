@@ -63,7 +63,8 @@ class PairGranRestitution : public Pair, public ContactHistoryOwner {
   // for the walls, which register at init: the contact law of a type pair, nullptr where no pair_coeff
   // set it; what contacts see of the balls
   const Slope::ContactLaw *law(int itype, int jtype) const;
-  void announce_wall(class ContactHolder *wall, int wall_type, int groupbit, const char *style);
+  void announce_wall(class ContactHolder *wall, int wall_type, const std::vector<int> &other_types,
+                     int groupbit, const char *style);
   Slope::MovingBalls moving_balls() { return states.balls(); }
   bool sizes_vary = false;    // between two neighbor lists, by fix adapt
   ContactGuards guards;

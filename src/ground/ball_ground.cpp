@@ -8,6 +8,7 @@
 #include "ball_body.h"
 #include "error.h"
 #include "lammps_compat.h"
+#include "region.h"
 #include "region_surface.h"
 #include "sunk_region.h"
 
@@ -27,8 +28,16 @@ BallGround::BallGround(LAMMPS *lmp, const PlacementArguments &a) :
     sine(std::sin(a.angle)), plan{0.0, 0.0, 0.0, 0.0, a.spacing, a.origin[0], a.origin[1]}
 {
   const double step = SEARCH_STEP * a.diameter;
-  if (!a.filter.empty())
-    columns.reset(new RegionSurface(lmp, a.caller, a.filter.c_str(), RegionSurface::LOWER, step));
+  const auto columns_of = [&](const std::string &id) {
+    return new RegionSurface(lmp, a.caller, id.c_str(), RegionSurface::LOWER, step);
+  };
+  if (!a.inside.empty()) within.reset(columns_of(a.inside));
+  if (!a.outside.empty()) columns.reset(columns_of(a.outside));
+  for (const PlacementArguments::Zone &zone : a.zones) {
+    std::unique_ptr<RegionSurface> its(columns_of(zone.region));
+    const Region *box = compat::find_region(lmp, zone.region);
+    zones.push_back({std::move(its), box->extent_xlo, box->extent_xhi, box->extent_ylo, box->extent_yhi});
+  }
   if (a.region.empty()) return;
   boundary.reset(new RegionSurface(lmp, a.caller, a.region.c_str(), a.side, step));
   if (!boundary->has_boundary())
@@ -40,7 +49,7 @@ BallGround::BallGround(LAMMPS *lmp, const PlacementArguments &a) :
 BallGround::~BallGround() = default;
 
 /* ----------------------------------------------------------------------
-   the bodies of sunk balls: the one that lies on these, and those that the filter leaves out
+   the bodies of sunk balls: the one that lies on these, and those outside of which they are
 ------------------------------------------------------------------------- */
 
 void BallGround::find_bodies()
@@ -63,26 +72,28 @@ void BallGround::find_bodies()
             a.caller, fix->id, left_out);
     }
 
-  if (a.filter.empty() || a.filter_inside) return;
-  if (a.filter_sink < 0.0) {
-    outside = a.filter;
+  if (a.outside.empty()) return;
+  if (a.outside_sink < 0.0) {
+    outside = a.outside;
     for (Fix *fix : others) {
       const Sunk body = dynamic_cast<BallBody &>(*fix).body();
-      if (body && (body->region == a.filter || body->lies_in(*columns))) bodies.push_back(body);
+      if (body && (body->region == a.outside || body->lies_in(*columns))) bodies.push_back(body);
     }
-  } else if (a.filter_sink > 0.0) {
+  } else if (a.outside_sink > 0.0) {
     if (!columns->has_boundary())
       error->all(FLERR, "{} sunk region {} must have a lower boundary, got INF", a.caller,
-                 a.filter);
-    bodies.push_back(std::make_shared<SunkRegion>(lmp, a.caller, a.filter, RegionSurface::LOWER,
-                                                  a.filter_sink, a.diameter));
+                 a.outside);
+    bodies.push_back(std::make_shared<SunkRegion>(lmp, a.caller, a.outside, RegionSurface::LOWER,
+                                                  a.outside_sink, a.diameter));
   }
 }
 
 bool BallGround::stands(std::string &changed) const
 {
-  for (const RegionSurface *s : {boundary.get(), columns.get()})
+  for (const RegionSurface *s : {boundary.get(), within.get(), columns.get()})
     if (s && !s->stands(changed)) return false;
+  for (const Zone &zone : zones)
+    if (!zone.columns->stands(changed)) return false;
   if (sunk && !sunk->stands(changed)) return false;
   for (const Sunk &body : bodies)
     if (!body->stands(changed)) return false;
@@ -121,7 +132,8 @@ void BallGround::check_floor() const
 }
 
 /* ----------------------------------------------------------------------
-   Columns of the filter's region, and of the sunk surface below it where the balls would be above it.
+   Columns of the region outside of which they are, and of the sunk surface below it where the balls would be
+   above it.
    A sunk surface reaches farther than its body.
 ------------------------------------------------------------------------- */
 
@@ -135,10 +147,11 @@ bool BallGround::keep(double x, double y) const
   double z, bottom;
   if (of_rim() && boundary->height(x, y, z) != (arguments.rim == PlacementArguments::WITHIN))
     return false;
+  if (within && !within->height(x, y, z)) return false;
   for (const Sunk &body : bodies)
     if (body->centre(x, y, bottom) && height(x, y, z) && bottom < z) return false;
-  if (!columns || (bodies.size() == 1 && bodies[0]->region == arguments.filter)) return true;
-  return columns->height(x, y, z) == arguments.filter_inside;
+  if (!columns || (bodies.size() == 1 && bodies[0]->region == arguments.outside)) return true;
+  return !columns->height(x, y, z);
 }
 
 bool BallGround::of_rim() const
@@ -205,16 +218,55 @@ Slope::Surface BallGround::surface() const
   s.height = [=](double x, double y, double &z) {
     return in_plan(x, y) && height(x, y, z);
   };
-  if (!columns && !of_rim()) return s;
+  if (!columns && !within && !of_rim()) return s;
   s.keep = [=](double x, double y) {
     return in_plan(x, y) && keep(x, y);
   };
 
   // what lies outside of a region borders on the scar that it leaves
 
-  if (columns && !arguments.filter_inside && (columns->has_boundary() || !bodies.empty()))
+  if (columns && (columns->has_boundary() || !bodies.empty()))
     s.scar = [=](double x, double y, double &z) {
       return in_plan(x, y) && scar(x, y, z);
     };
+  return s;
+}
+
+/* ----------------------------------------------------------------------
+   zones: the last one counts
+------------------------------------------------------------------------- */
+
+int BallGround::zone(double x, double y) const
+{
+  double z;
+  for (size_t k = zones.size(); k > 0; k--) {
+    const Zone &its = zones[k - 1];
+    if (x < its.xlo || x > its.xhi || y < its.ylo || y > its.yhi) continue;
+    if (its.columns->height(x, y, z)) return static_cast<int>(k);
+  }
+  return 0;
+}
+
+double BallGround::spacing(double x, double y) const
+{
+  const int its = zone(x, y);
+  return its ? arguments.zones[its - 1].spacing : arguments.spacing;
+}
+
+std::vector<double> BallGround::spacings() const
+{
+  std::vector<double> all = {arguments.spacing};
+  for (const PlacementArguments::Zone &zone : arguments.zones)
+    if (std::find(all.begin(), all.end(), zone.spacing) == all.end()) all.push_back(zone.spacing);
+  return all;
+}
+
+Slope::Surface BallGround::surface_of(double wanted) const
+{
+  Slope::Surface s = surface();
+  const auto whole = s.keep;
+  s.keep = [=](double x, double y) {
+    return spacing(x, y) == wanted && (!whole || whole(x, y));
+  };
   return s;
 }

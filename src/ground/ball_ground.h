@@ -18,7 +18,7 @@
 namespace LAMMPS_NS {
 
 // What placement_arguments.h says of each column of the ground: the region whose boundary it is, sunk
-// or not, the filter, the bodies of sunk balls that the filter leaves out.
+// or not, where balls are wanted, the bodies of sunk balls outside of which they are, the zones.
 class BallGround : protected Pointers {
  public:
   BallGround(class LAMMPS *, const PlacementArguments &);    // all ranks
@@ -26,7 +26,7 @@ class BallGround : protected Pointers {
 
   typedef std::shared_ptr<class SunkRegion> Sunk;
   Sunk sunk;                   // below which the balls are, nullptr: not sunk
-  std::vector<Sunk> bodies;    // sunk ones that the filter leaves out
+  std::vector<Sunk> bodies;    // sunk ones outside of which the balls are
   std::string outside;         // region, empty if the arguments say how it is sunk
 
   // All ranks: find the sunk surfaces. false if the plan is empty. May throw.
@@ -39,14 +39,26 @@ class BallGround : protected Pointers {
 
   // columns of ball centres; any rank alone
   bool keep(double x, double y) const;
+  int zone(double x, double y) const;    // from 1, 0: in none
   Slope::Surface surface() const;
+
+  // spacings of the balls, first that of what is in no zone; the surface where it is one of these
+  std::vector<double> spacings() const;
+  double spacing(double x, double y) const;
+  Slope::Surface surface_of(double spacing) const;
 
   // whether the regions are those of the constructor; if not, which one is not
   bool stands(std::string &changed) const;
 
  private:
   const PlacementArguments &arguments;
-  std::unique_ptr<class RegionSurface> boundary, columns;    // columns: of the filter
+  // within: of what they are inside of, columns: of what they are outside of
+  std::unique_ptr<class RegionSurface> boundary, within, columns;
+  struct Zone {
+    std::unique_ptr<RegionSurface> columns;
+    double xlo, xhi, ylo, yhi;
+  };
+  std::vector<Zone> zones;
   const double cosine, sine;                                 // of the angle of the grid
   Slope::NodeGrid plan;
 

@@ -60,9 +60,9 @@ static double part(double irrational, bigint k)
 /* ---------------------------------------------------------------------- */
 
 BallPlacement::BallPlacement(LAMMPS *lmp, const std::string &caller_in, double diameter,
-                             double smallest_in, int narg, char **arg, bool may_write) :
+                             double smallest_in, int narg, char **arg, bool of_wall) :
     Pointers(lmp),
-    caller(caller_in), arguments(lmp, caller_in, diameter, smallest_in, narg, arg, may_write),
+    caller(caller_in), arguments(lmp, caller_in, diameter, smallest_in, narg, arg, of_wall),
     dropped(0), counted(-1)
 {
   ground.reset(new BallGround(lmp, arguments));
@@ -77,6 +77,13 @@ BallPlacement::~BallPlacement() = default;
 std::shared_ptr<SunkRegion> BallPlacement::sunk() const
 {
   return arguments.rim == PlacementArguments::BEYOND ? nullptr : ground->sunk;
+}
+
+std::vector<int> BallPlacement::zone_types() const
+{
+  std::vector<int> types;
+  for (const PlacementArguments::Zone &zone : arguments.zones) types.push_back(zone.type);
+  return types;
 }
 
 const std::string &BallPlacement::outside() const
@@ -162,10 +169,17 @@ std::unique_ptr<Slope::BallSampler> BallPlacement::new_sampler() const
 {
   std::unique_ptr<Slope::BallSampler> made;
   const double half = 0.25 * (arguments.diameter + arguments.smallest);
-  if (arguments.scattered)
-    made.reset(new Slope::ScatteredSampler(ground->grid(), ground->surface(), arguments.seed));
-  else
+  if (!arguments.scattered) {
     made.reset(new Slope::SurfaceSampler(ground->grid(), half, ground->surface()));
+    return made;
+  }
+  const std::vector<double> spacings = ground->spacings();
+  const bool several = spacings.size() > 1;
+  auto scattered = new Slope::ScatteredSampler(
+      ground->grid(), several ? ground->surface_of(spacings[0]) : ground->surface(), arguments.seed);
+  made.reset(scattered);
+  for (size_t k = 1; k < spacings.size(); k++)
+    scattered->add(spacings[k], ground->surface_of(spacings[k]));
   return made;
 }
 
@@ -199,7 +213,10 @@ void BallPlacement::sample(Slope::BallSampler &from, int tile, std::vector<Place
 {
   const size_t before = balls.size();
   from.sample(tile, balls, counts);
-  for (size_t k = before; k < balls.size(); k++) ground->turn(balls[k].x, balls[k].y);
+  for (size_t k = before; k < balls.size(); k++) {
+    ground->turn(balls[k].x, balls[k].y);
+    balls[k].zone = ground->zone(balls[k].x, balls[k].y);
+  }
 }
 
 void BallPlacement::make(int tile, std::vector<PlacedBall> &balls)
@@ -249,8 +266,8 @@ bool BallPlacement::any() const
     first = static_cast<int>(std::max(first + 0.0, std::min(from / plan.size - 1.0, last + 1.0)));
     last = static_cast<int>(std::min(last + 0.0, std::max(to / plan.size + 1.0, first - 1.0)));
   };
-  if (arguments.filter_inside && !arguments.filter.empty() && arguments.angle == 0.0) {
-    const Region *box = compat::find_region(lmp, arguments.filter);
+  if (!arguments.inside.empty() && arguments.angle == 0.0) {
+    const Region *box = compat::find_region(lmp, arguments.inside);
     narrow(lo[0], hi[0], box->extent_xlo - plan.xlo, box->extent_xhi - plan.xlo);
     narrow(lo[1], hi[1], box->extent_ylo - plan.ylo, box->extent_yhi - plan.ylo);
   }
@@ -353,13 +370,14 @@ std::vector<PlacedBall> BallPlacement::all()
 void BallPlacement::report(const SurfaceCounts &counts, bool known) const
 {
   const PlacementArguments &a = arguments;
-  const std::string where =
-      fmt::format("{} region {}", a.filter_inside ? "inside" : "outside", a.filter);
+  std::string where;
+  if (!a.inside.empty()) where = "inside region " + a.inside;
+  if (!a.outside.empty()) where += (where.empty() ? "" : " and ") + ("outside region " + a.outside);
   std::string text = fmt::format("{}: ", caller);
   if (a.region.empty()) {
     text +=
         fmt::format("{} fixed balls of diameter {} (from file {}", counts.base, a.diameter, a.file);
-    if (!a.filter.empty()) text += fmt::format(", {} not {}", dropped, where);
+    if (!where.empty()) text += fmt::format(", {} not {}", dropped, where);
   } else {
     const double nodes = Slope::count_nodes(ground->grid());
     const std::string turned =
@@ -380,12 +398,16 @@ void BallPlacement::report(const SurfaceCounts &counts, bool known) const
                           counts.extra);
     if (counts.without_surface)
       text += fmt::format(", {} plan nodes without surface", counts.without_surface);
-    if (!a.filter.empty() && known && !a.scattered)
+    if (!where.empty() && known && !a.scattered)
       text += fmt::format(", {} plan nodes not", counts.dropped);
-    if (!a.filter.empty()) text += (known && !a.scattered ? " " : ", ") + where;
+    if (!where.empty()) text += (known && !a.scattered ? " " : ", ") + where;
   }
   for (size_t k = 0; k < ground->bodies.size(); k++)
     text += fmt::format("{} sunk by {}", k ? "," : "", ground->bodies[k]->sink);
+  for (const PlacementArguments::Zone &zone : a.zones) {
+    text += fmt::format(", type {} in region {}", zone.type, zone.region);
+    if (zone.spacing != a.spacing) text += fmt::format(" and one for each square of {}", zone.spacing);
+  }
   if (ground->sunk) {
     text += fmt::format(", sunk by {}", a.sink);
     if (a.rim == PlacementArguments::ENDED)
@@ -420,14 +442,28 @@ const std::vector<double> &BallPlacement::fingerprint()
   for (const double value :
        {plan.grid.spacing, plan.xfirst, plan.yfirst, plan.nx + 0.0, plan.ny + 0.0})
     marks.push_back(value);
+  const bool several = ground->spacings().size() > 1;
   for (int k = 0; k < std::min(nodes, MARKS + 0.0); k++) {
     const bigint node =
         static_cast<bigint>(nodes <= MARKS ? k : part(0.6180339887498949, k) * nodes);
-    marks.push_back(plan.probe(static_cast<int>(node % plan.nx), static_cast<int>(node / plan.nx)));
+    const int i = static_cast<int>(node % plan.nx), j = static_cast<int>(node / plan.nx);
+    marks.push_back(plan.probe(i, j));
+    if (several) marks.push_back(spacing_around(plan.x(i), plan.y(j)));
   }
   if (arguments.scattered) marks.push_back(arguments.seed);
   if (arguments.angle != 0.0) marks.insert(marks.end(), {arguments.angle, 0.0});
   return marks;
+}
+
+// -infinite where rounding may decide on it
+
+double BallPlacement::spacing_around(double x, double y) const
+{
+  const double its = ground->spacing(x, y), off = SAME_PLACE * arguments.spacing;
+  for (double dx : {-off, off})
+    for (double dy : {-off, off})
+      if (ground->spacing(x + dx, y + dy) != its) return -HUGE_VAL;
+  return its;
 }
 
 std::string BallPlacement::unlike(const std::vector<double> &there)
@@ -454,7 +490,7 @@ std::string BallPlacement::unlike(const std::vector<double> &there)
     if (std::isinf(here[k]) || std::isinf(there[k])) continue;    // rounding may decide there
     if (std::isnan(here[k]) != std::isnan(there[k]) ||
         std::fabs(here[k] - there[k]) > SAME_PLACE * d)
-      return "another surface";
+      return arguments.zones.empty() ? "another surface" : "another surface, or other zones";
   }
   return "";
 }
@@ -475,7 +511,8 @@ void BallPlacement::read_file()
                 file, row.line,
                 fmt::format("{} must be within +-{:g}, got {:g}", "xyz"[d], FARTHEST, x[d]));
         if (ground->keep(x[0], x[1]))
-          from_file.push_back({x[0], x[1], x[2], static_cast<int64_t>(from_file.size())});
+          from_file.push_back({x[0], x[1], x[2], static_cast<int64_t>(from_file.size()),
+                               ground->zone(x[0], x[1])});
         else
           dropped++;
         if (from_file.size() > MAX_BALLS)

@@ -26,7 +26,7 @@ namespace LAMMPS_NS {
 class BallPlacement : protected Pointers {
  public:
   BallPlacement(class LAMMPS *, const std::string &caller, double diameter, double smallest,
-                int narg, char **arg, bool may_write = false);
+                int narg, char **arg, bool of_wall = false);
   ~BallPlacement() override;
 
   // any rank alone: the tiles, and the balls of one of them, appended
@@ -52,6 +52,9 @@ class BallPlacement : protected Pointers {
   std::shared_ptr<class SunkRegion> sunk() const;
   const std::string &outside() const;
   double smallest() const { return arguments.smallest; }
+
+  // atom types of the zones; of a ball by its zone
+  std::vector<int> zone_types() const;
 
   // diameter of the smallest ball of a group, 0 if it has none; all ranks
   static double smallest_ball(class LAMMPS *, int groupbit);
@@ -81,6 +84,7 @@ class BallPlacement : protected Pointers {
   void write_file(std::vector<std::string> &text, bigint n) const;
   void read_file();
   void find_sums();
+  double spacing_around(double x, double y) const;
 };
 
 }    // namespace LAMMPS_NS

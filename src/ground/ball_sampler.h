@@ -22,6 +22,7 @@ namespace Slope {
 struct PlacedBall {
   double x, y, z;
   int64_t number;
+  int zone;    // that it lies in, 0: in none
 
   static constexpr int64_t OF_CELL = 1 << 20;    // numbers of the balls of one cell
   bool first_of_cell() const { return number % OF_CELL == 0; }

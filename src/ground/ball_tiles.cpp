@@ -41,6 +41,7 @@ void BallTiles::add(int number)
   tile.asked = now;
   place.resize(size);
   numbers.resize(size);
+  zones.resize(size);
   sort(tile);
   slot[number] = ntiles++;
 }
@@ -89,6 +90,7 @@ void BallTiles::sort(Tile &tile)
   for (const PlacedBall &b : fresh) {
     const size_t c = cell_of(b), k = tile.begin + next[c]++;
     numbers[k] = b.number;
+    zones[k] = static_cast<unsigned short>(b.zone);
     place[k] = {b.x, b.y, b.z};
     tile.top[c] = std::max(tile.top[c], std::nextafter(static_cast<float>(b.z), HUGE_VALF));
   }
@@ -114,6 +116,7 @@ void BallTiles::drop_unused()
     Tile tile = std::move(tiles[t]);
     std::copy(place.begin() + tile.begin, place.begin() + tile.end, place.begin() + balls);
     std::copy(numbers.begin() + tile.begin, numbers.begin() + tile.end, numbers.begin() + balls);
+    std::copy(zones.begin() + tile.begin, zones.begin() + tile.end, zones.begin() + balls);
     tile.end = balls + (tile.end - tile.begin);
     tile.begin = balls;
     balls = tile.end;
@@ -129,11 +132,14 @@ void BallTiles::drop_unused()
   place.swap(fewer);
   numbers.resize(balls);
   numbers.shrink_to_fit();
+  zones.resize(balls);
+  zones.shrink_to_fit();
 }
 
 double BallTiles::memory_usage() const
 {
   double bytes = place.capacity() * sizeof(Vector) + numbers.capacity() * sizeof(int64_t) +
+      zones.capacity() * sizeof(zones[0]) +
       slot.capacity() * sizeof(int) + tiles.capacity() * sizeof(Tile) +
       fresh.capacity() * sizeof(PlacedBall);
   for (const Tile &t : tiles)

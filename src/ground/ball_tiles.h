@@ -33,6 +33,7 @@ class BallTiles {
   // balls are known by k until drop_unused(); 32 bytes may be read at the last place
   const Vector *places() const { return place.data(); }
   int64_t number(int k) const { return numbers[k]; }
+  int zone(int k) const { return zones[k]; }
   size_t size() const { return place.size(); }
 
   // Between lists of neighbors: drop the tiles that none of the last lists asked for, if their balls
@@ -63,6 +64,7 @@ class BallTiles {
 
   std::vector<Vector> place;
   std::vector<int64_t> numbers;
+  std::vector<unsigned short> zones;
   std::vector<PlacedBall> fresh;
 
   Tile &at(int number)

@@ -55,6 +55,14 @@ FixWallGranBalls::FixWallGranBalls(LAMMPS *lmp, int narg, char **arg) :
       new BallTiles(placement->tiles(), diameter, [this](int tile, std::vector<PlacedBall> &made) {
         placement->make(tile, made);
       }));
+  types = {wall_type};
+  type_of_zone = {0};
+  for (int type : placement->zone_types()) {
+    const auto known = std::find(types.begin(), types.end(), type);
+    type_of_zone.push_back(static_cast<int>(known - types.begin()));
+    if (known == types.end()) types.push_back(type);
+  }
+  other_types.assign(types.begin() + 1, types.end());
 
   size_vector = 3;
   for (int k = 0; k < 3; k++) force_mine[k] = force_all[k] = 0.0;
@@ -123,23 +131,38 @@ const std::string &FixWallGranBalls::left_out() const
 }
 
 /* ----------------------------------------------------------------------
+   a list for each type of the fixed balls and each of the moving ones
+------------------------------------------------------------------------- */
+
+size_t FixWallGranBalls::list_of(int which, int moving) const
+{
+  return static_cast<size_t>(which) * (atom->ntypes + 1) + moving;
+}
+
+const ContactLaw &FixWallGranBalls::law_of_list(size_t k) const
+{
+  return law_of(static_cast<int>(k % (atom->ntypes + 1)), types[k / (atom->ntypes + 1)]);
+}
+
+/* ----------------------------------------------------------------------
    a contact's key: the number of the fixed ball, which stays the same when its index does not
 ------------------------------------------------------------------------- */
 
 void FixWallGranBalls::take_contacts()
 {
+  std::vector<int> left(atom->nlocal, 0);    // of a ball, in all lists; may be in several
   for (const ContactList &l : lists)
-    for (size_t k = 0, end; k < l.entries.size(); k = end) {
-      const int i = l.entries[k].i;    // its entries follow one another
-      int n = 0;
-      for (end = k; end < l.entries.size() && l.entries[end].i == i; end++) n += l.has_history(end);
-      if (n == 0 || i >= atom->nlocal) continue;
-      records.make(i, n);
-      for (n = 0; k < end; k++) {
-        if (!l.has_history(k)) continue;
-        *records.key(i, n) = static_cast<double>(balls->number(l.entries[k].j));
-        std::copy_n(l.histories[k], HISTORY, records.history(i, n++));
-      }
+    for (size_t k = 0; k < l.entries.size(); k++)
+      if (l.entries[k].i < atom->nlocal) left[l.entries[k].i] += l.has_history(k);
+  for (int i = 0; i < atom->nlocal; i++)
+    if (left[i] > 0) records.make(i, left[i]);
+  for (const ContactList &l : lists)
+    for (size_t k = 0; k < l.entries.size(); k++) {
+      const int i = l.entries[k].i;
+      if (i >= atom->nlocal || !l.has_history(k)) continue;
+      const int n = records.contacts(i) - left[i]--;
+      *records.key(i, n) = static_cast<double>(balls->number(l.entries[k].j));
+      std::copy_n(l.histories[k], HISTORY, records.history(i, n));
     }
 }
 
@@ -171,7 +194,7 @@ void FixWallGranBalls::give_histories()
 void FixWallGranBalls::post_neighbor()
 {
   balls->drop_unused();
-  lists.resize(atom->ntypes + 1);
+  lists.resize(types.size() * (atom->ntypes + 1));
   for (ContactList &l : lists) l.clear(true, false);
 
   double **x = atom->x;
@@ -181,8 +204,8 @@ void FixWallGranBalls::post_neighbor()
   try {
     for (int i = 0; i < atom->nlocal; i++) {
       if (!(mask[i] & groupbit)) continue;
-      ContactList &l = lists[type[i]];
       balls->visit_near(x[i], r[i] + beyond, [&](int k, double) {
+        ContactList &l = lists[list_of(type_of_zone[balls->zone(k)], type[i])];
         l.add(i, k, nullptr, false, r[i], radius, atom->rmass[i], 1.0);
       });
     }
@@ -247,10 +270,10 @@ void FixWallGranBalls::apply(bool repeat)
   };
   ContactTally tally = pair->works.wanted ? tally_of(visit) : ContactTally();
 
-  for (int type = 1; type <= atom->ntypes; type++) {
-    ContactList &l = lists[type];
+  for (size_t k = 0; k < lists.size(); k++) {
+    ContactList &l = lists[k];
     if (l.entries.empty()) continue;
-    law = &law_of(type);
+    law = &law_of_list(k);
     l.apply(*law, update->dt, repeat, moving, fixed, &tally);
   }
 
@@ -268,9 +291,9 @@ double FixWallGranBalls::elastic_energy() const
   const MovingBalls moving = pair->moving_balls();
   const FixedPartners fixed = partners();
   double energy = 0.0;
-  for (size_t type = 1; type < lists.size(); type++)
-    if (!lists[type].entries.empty())
-      energy += Slope::elastic_energy(lists[type], law_of(type), update->dt, moving, fixed,
+  for (size_t k = 0; k < lists.size(); k++)
+    if (!lists[k].entries.empty())
+      energy += Slope::elastic_energy(lists[k], law_of_list(k), update->dt, moving, fixed,
                                       [this](const ContactList::Entry &e, double overlap) {
                                         pair->guards.record_overlap(
                                             e.i, overlap, std::min(atom->radius[e.i], radius));

@@ -54,9 +54,15 @@ class FixWallGranBalls : public FixContactWall, public BallBody {
   std::unique_ptr<Slope::BallTiles> balls;    // those near the moving balls of this rank
   bool smaller_warned;
 
-  // what may touch until the next neighbor list, by type of the moving ball
+  // atom types of the fixed balls, wall_type first; which of them a ball has, by its zone
+
+  std::vector<int> types, type_of_zone;
+
+  // what may touch until the next neighbor list: for each of these, by type of the moving ball
 
   std::vector<Slope::ContactList> lists;
+  size_t list_of(int which, int moving) const;
+  const Slope::ContactLaw &law_of_list(size_t) const;
   std::vector<double> histories;    // of their entries
 
   double force_mine[3], force_all[3];    // on the fixed balls

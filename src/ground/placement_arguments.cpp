@@ -5,6 +5,7 @@
 
 #include "placement_arguments.h"
 
+#include "atom.h"
 #include "constants.h"
 #include "error.h"
 #include "region_surface.h"
@@ -22,19 +23,20 @@ static constexpr double LEAST_SINK = 0.05;    // in diameters: the closer, the m
 
 PlacementArguments::PlacementArguments(LAMMPS *lmp, const std::string &caller_in,
                                        double diameter_in, double smallest_in, int narg, char **arg,
-                                       bool may_write) :
+                                       bool of_wall) :
     Pointers(lmp),
     caller(caller_in), diameter(diameter_in), side(RegionSurface::UPPER),
-    spacing(0.0), origin{0.0, 0.0}, scattered(false), seed(1), angle(0.0), filter_inside(true),
-    rim(CONTINUED), sink(0.0), filter_sink(-1.0), smallest(smallest_in)
+    spacing(0.0), origin{0.0, 0.0}, scattered(false), seed(1), angle(0.0), rim(CONTINUED),
+    sink(0.0), outside_sink(-1.0), smallest(smallest_in)
 {
   if (!(diameter > 0.0) || !std::isfinite(diameter))
     error->all(FLERR, "{} diameter must be > 0, got {}", caller, diameter);
-  parse(narg, arg, may_write);
+  parse(narg, arg, of_wall);
   if (region.empty())
     smallest = 0.0;
   else if (!(smallest > 0.0 && smallest < diameter))
     smallest = diameter;
+  check_zones();
   if (scattered) check_pattern();
 }
 
@@ -53,7 +55,7 @@ double PlacementArguments::number(const char *what, int narg, char **arg) const
   return number_argument(lmp, fmt::format("{} {}", caller, arg[0]), arg[1]);
 }
 
-void PlacementArguments::parse(int narg, char **arg, bool may_write)
+void PlacementArguments::parse(int narg, char **arg, bool of_wall)
 {
   if (narg < 1) error->all(FLERR, "{} needs surface or file, got neither", caller);
   int iarg;
@@ -73,17 +75,17 @@ void PlacementArguments::parse(int narg, char **arg, bool may_write)
     iarg = 2;
   } else {
     error->all(FLERR, "{} needs {}, got {}", caller,
-               may_write ? "surface or file" : "surface, file or fill", arg[0]);
+               of_wall ? "surface or file" : "surface, file or fill", arg[0]);
   }
 
   while (iarg < narg) {
     int n = region.empty() ? 0 : parse_surface(narg - iarg, &arg[iarg]);
-    if (n == 0) n = parse_any(narg - iarg, &arg[iarg], may_write);
+    if (n == 0) n = parse_any(narg - iarg, &arg[iarg], of_wall);
     if (n == 0)
       error->all(FLERR, "{} keyword must be {}inside{}, got {}", caller,
                  region.empty() ? ""
                                 : "spacing, origin, pattern, angle, sink, sunk, smallest, rim, ",
-                 may_write ? ", outside or write" : " or outside", arg[iarg]);
+                 of_wall ? ", outside, zone or write" : " or outside", arg[iarg]);
     iarg += n;
   }
   if (!region.empty() && spacing == 0.0)
@@ -91,7 +93,7 @@ void PlacementArguments::parse(int narg, char **arg, bool may_write)
   if (rim != CONTINUED && !(sink > 0.0 && side == RegionSurface::LOWER))
     error->all(FLERR, "{} rim must be that of a lower surface with a sink > 0, got {}", caller,
                side == RegionSurface::LOWER ? "sink 0" : "upper");
-  if (filter_sink >= 0.0 && (filter.empty() || filter_inside))
+  if (outside_sink >= 0.0 && outside.empty())
     error->all(FLERR, "{} sunk needs outside REGION, got none", caller);
 }
 
@@ -106,8 +108,8 @@ int PlacementArguments::parse_surface(int narg, char **arg)
     sink = number("H", narg, arg);
     check_sink(sink, arg);
   } else if (strcmp(arg[0], "sunk") == 0) {
-    filter_sink = number("H", narg, arg);
-    check_sink(filter_sink, arg);
+    outside_sink = number("H", narg, arg);
+    check_sink(outside_sink, arg);
   } else if (strcmp(arg[0], "rim") == 0) {
     parse_rim(narg, arg);
   } else if (strcmp(arg[0], "smallest") == 0) {
@@ -169,12 +171,16 @@ void PlacementArguments::check_pattern() const
                "{} angle must be 0 with pattern scattered, which has no direction, got {:.6g}",
                caller, angle * 180.0 / Slope::PI);
   const double most = Slope::ScatteredSampler::WIDEST * 0.5 * (diameter + smallest);
-  if (spacing > most * (1.0 + 1.0e-9))
-    error->all(
-        FLERR,
-        "{} spacing must be <= {:.6g} with pattern scattered, {} of the distance at which a ball "
-        "of diameter {} touches, or it finds a way through, got {}",
-        caller, most, Slope::ScatteredSampler::WIDEST, smallest, spacing);
+  const auto check = [&](const std::string &of, double value) {
+    if (value > most * (1.0 + 1.0e-9))
+      error->all(
+          FLERR,
+          "{}{} spacing must be <= {:.6g} with pattern scattered, {} of the distance at which a ball "
+          "of diameter {} touches, or it finds a way through, got {}",
+          caller, of, most, Slope::ScatteredSampler::WIDEST, smallest, value);
+  };
+  check("", spacing);
+  for (const Zone &zone : zones) check(" zone " + zone.region, zone.spacing);
 }
 
 void PlacementArguments::check_sink(double value, char **arg) const
@@ -185,21 +191,52 @@ void PlacementArguments::check_sink(double value, char **arg) const
                least, LEAST_SINK, arg[1]);
 }
 
-int PlacementArguments::parse_any(int narg, char **arg, bool may_write)
+int PlacementArguments::parse_any(int narg, char **arg, bool of_wall)
 {
-  const bool inside = strcmp(arg[0], "inside") == 0;
-  if (inside || strcmp(arg[0], "outside") == 0) {
+  const bool within = strcmp(arg[0], "inside") == 0;
+  if (within || strcmp(arg[0], "outside") == 0) {
     need(1, "REGION", narg, arg);
+    std::string &filter = within ? inside : outside;
     if (!filter.empty())
-      error->all(FLERR, "{} can have one filter (inside or outside), got {} {} as well", caller,
-                 arg[0], arg[1]);
-    filter_inside = inside;
+      error->all(FLERR, "{} can be {} one region, got {} as well: a union", caller, arg[0], arg[1]);
     filter = arg[1];
-  } else if (strcmp(arg[0], "write") == 0 && may_write) {
+  } else if (strcmp(arg[0], "write") == 0 && of_wall) {
     need(1, "FILE", narg, arg);
     write = arg[1];
+  } else if (strcmp(arg[0], "zone") == 0 && of_wall) {
+    return parse_zone(narg, arg);
   } else {
     return 0;
   }
   return 2;
+}
+
+/* ----------------------------------------------------------------------
+   zone REGION TYPE [S]
+------------------------------------------------------------------------- */
+
+int PlacementArguments::parse_zone(int narg, char **arg)
+{
+  need(2, "REGION TYPE [S]", narg, arg);
+  const std::string of = fmt::format("{} zone {}", caller, arg[1]);
+  Zone zone = {arg[1], whole_number_argument(lmp, of + " type", arg[2]), 0.0};
+  if (zone.type < 1 || zone.type > atom->ntypes)
+    error->all(FLERR, "{} type must be 1 to {} (the atom types of the box), got {}", of,
+               atom->ntypes, arg[2]);
+  const bool has_spacing = narg > 3 && Slope::read_number(arg[3], zone.spacing);
+  if (has_spacing) zone.spacing = number_argument(lmp, of + " spacing", arg[3]);
+  if (has_spacing && zone.spacing <= 0.0)
+    error->all(FLERR, "{} spacing must be > 0, got {}", of, arg[3]);
+  zones.push_back(zone);
+  return has_spacing ? 4 : 3;
+}
+
+void PlacementArguments::check_zones()
+{
+  for (Zone &zone : zones) {
+    if (zone.spacing == 0.0) zone.spacing = spacing;
+    if (zone.spacing != spacing && !scattered)
+      error->all(FLERR, "{} zone {} spacing needs pattern scattered, got {}", caller, zone.region,
+                 region.empty() ? "a file" : "a plan grid");
+  }
 }

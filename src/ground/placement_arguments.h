@@ -9,22 +9,23 @@
 #include "pointers.h"
 
 #include <string>
+#include <vector>
 
 namespace LAMMPS_NS {
 
 // The arguments that say where fixed balls go, which fix wall/gran/balls and create_balls share:
 //
-//   surface REGION upper|lower spacing S [inside REGION | outside REGION [sunk H]] [origin x y]
+//   surface REGION upper|lower spacing S [inside REGION] [outside REGION [sunk H]] [origin x y]
 //     [sink H [rim continued|ended|within|beyond]] [smallest D] [pattern grid | pattern scattered [SEED]]
 //     [angle DEG]
-//   file FILE [inside REGION | outside REGION]
-//   write FILE     in addition, if may_write
+//   file FILE [inside REGION] [outside REGION]
+//   write FILE, zone REGION TYPE [S] ...     in addition, of a wall
 //
 // Errors end the run on all ranks; messages start with caller.
 class PlacementArguments : protected Pointers {
  public:
   PlacementArguments(class LAMMPS *, const std::string &caller, double diameter, double smallest,
-                     int narg, char **arg, bool may_write);
+                     int narg, char **arg, bool of_wall);
 
   const std::string caller;
   const double diameter;
@@ -35,12 +36,19 @@ class PlacementArguments : protected Pointers {
   bool scattered;
   int seed;        // of the scattered pattern
   double angle;    // of the plan grid, counterclockwise, radians
-  std::string filter;
-  bool filter_inside;
+  std::string inside, outside;    // regions, or empty
   // where a sunk body ends: continued up to the ground, or not; all of that, or only what is within the
   // body's plan or beyond it
   enum Rim { CONTINUED, ENDED, WITHIN, BEYOND } rim;
-  double sink, filter_sink;    // < 0: the sink of the fix that has sunk the filter's region
+  double sink, outside_sink;    // < 0: the sink of the fix that has sunk the region outside of which they are
+
+  // parts of the ground with a type, and perhaps a spacing, of their own: the last one counts where they overlap
+  struct Zone {
+    std::string region;
+    int type;
+    double spacing;    // of all, if it is not the zone's own
+  };
+  std::vector<Zone> zones;
 
   // diameter of the smallest moving ball, at most that of the fixed ones; 0: unknown (file)
   double smallest;
@@ -52,6 +60,8 @@ class PlacementArguments : protected Pointers {
   int parse_surface(int, char **);
   int parse_pattern(int, char **);
   void parse_rim(int, char **);
+  int parse_zone(int, char **);
+  void check_zones();
   void check_pattern() const;
   int parse_any(int, char **, bool);
   void check_sink(double, char **) const;

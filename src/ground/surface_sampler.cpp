@@ -73,7 +73,7 @@ void SurfaceSampler::sample(int tile, std::vector<PlacedBall> &balls, SurfaceCou
   for (int j = tj * size; j < j1; j++)
     for (int i = ti * size; i < i1; i++) {
       const PlanNodes::Look &look = nodes.at(i, j);
-      if (look.ball) balls.push_back({nodes.x(i), nodes.y(j), look.z, nodes.cell(i, j) * OF_CELL});
+      if (look.ball) balls.push_back({nodes.x(i), nodes.y(j), look.z, nodes.cell(i, j) * OF_CELL, 0});
       counts.base += look.ball;
       counts.dropped += look.surface() && !look.ball;
       counts.without_surface += !look.surface();
@@ -90,7 +90,7 @@ void SurfaceSampler::sample(int tile, std::vector<PlacedBall> &balls, SurfaceCou
       if (found == closed.end()) continue;
       int64_t number = cell * OF_CELL;
       for (const SurfaceCloser::Point &p : found->second)
-        balls.push_back({p.x, p.y, p.z, ++number});
+        balls.push_back({p.x, p.y, p.z, ++number, 0});
       counts.extra += found->second.size();
     }
 }

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from deck_helpers import run_deck
+from test_authume import CASE as AUTHUME, authume, prepared, stand_in  # noqa: F401
 from test_real_events import FRANK, S1000, frank, s1000  # noqa: F401
 
 INPUTS = Path(__file__).resolve().parents[2] / "inputs"
@@ -37,9 +38,11 @@ SHORT = {
     "21_earthquake/in.earthquake": {"d": 4, "duration": 15},
     "22_structures/in.structures": {"d": 4, "duration": 8},
     "16_flume/in.flume": {"length": 0.2, "height": 0.1},
+    "16_flume/in.sarno": {"ratio": 6, "settle": 0.4, "duration": 0.5},
     "17_pyramid/in.pyramid": {"wide": 10, "long": 10, "tend": 25},
     "18_penetration/in.penetration": {"balls": 2842, "time": 0.001, "settle": 0.02},
     "19_wall_force/in.wall_force": {"d": 0.05, "duration": 1},
+    "26_okada/in.okada": {"long": 2, "high": 2, "duration": 2},
 }
 # Where two free balls of one mass meet, the beginning takes up to a quarter of kn dt^2/(m/2) of what is dissipated,
 # 3.2 %, and 2.1 % on average; on a fixed ball half of that.
@@ -74,7 +77,7 @@ def rows_of(log):
 
 
 def test_every_deck_is_listed():
-    known = {f"{case.name}/in.{name}" for case, name in ((FRANK, "frank"), (S1000, "s1000"))}
+    known = {f"{case.name}/in.{name}" for case, name in ((AUTHUME, "authume"), (FRANK, "frank"), (S1000, "s1000"))}
     assert known | set(SHORT) == {str(path.relative_to(INPUTS)) for path in INPUTS.glob("*/in.*")}
 
 
@@ -98,6 +101,10 @@ def test_closes(tmp_path, deck):
     folder = tmp_path / "case"
     shutil.copytree((INPUTS / deck).parent, folder)
     check(folder, (INPUTS / deck).read_text(), SHORT[deck], BEGIN_END.get(deck, 0.02), deck in OTHERS)
+
+
+def test_closes_authume(prepared):  # noqa: F811
+    check(prepared, (AUTHUME / "in.authume").read_text(), {"x0": 0, "y0": 14, "z0": 31, "blocks": 30, "duration": 5})
 
 
 @pytest.mark.long

@@ -16,6 +16,7 @@ from slope_tools.programs import find_lmp
 from slope_tools.runs import jobs
 from . import peers
 from .crosscheck_cases import PEERS, Work, bounce, collapse, rolling, slide_roll
+from .crosscheck_laws import laws
 from .crosscheck_report import report
 from .crosscheck_table import table
 
@@ -30,7 +31,8 @@ example: four minutes; with balls of 2.5 m instead of 4 m, a quarter of an hour;
 
 Writes DIR/crosscheck.csv, DIR/crosscheck.yaml, DIR/crosscheck.png, and the input of every code in a folder of its own.
 """
-CASES = {"bounce": bounce, "slide_roll": slide_roll, "rolling": rolling, "collapse": collapse, "table": table}
+CASES = {"bounce": bounce, "slide_roll": slide_roll, "rolling": rolling, "collapse": collapse, "table": table,
+         "laws": laws}
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,6 +1,7 @@
 """The same scenes in other codes: bounce, slide, roll, rolling resistance, a collapse."""
 import math
 import re
+import resource
 import shutil
 import sys
 from pathlib import Path
@@ -140,7 +141,8 @@ class Work:
     def __init__(self, output, lmp, names, quick):
         self.output, self.lmp, self.quick = output, lmp, quick
         self.codes, self.checks, self.notes, self.versions, self.profiles = [], [], [], {}, {}
-        self.about_collapse = self.about_table = None
+        self.seconds: Dict[str, float] = {}        # of processor time, by code
+        self.about_collapse = self.about_table = self.about_laws = None
         for code in (*OURS, *(code for code in PEERS if code.name in names)):
             missing = code(lmp).missing()
             if missing:
@@ -169,7 +171,10 @@ class Work:
             self.say(f"{name}: {code.title}")
             folder = self.folder(f"{name}.{code.name}")
             code.write(scene, folder, steps, every)
+            before = resource.getrusage(resource.RUSAGE_CHILDREN)
             result = peer_runs.run(code, folder)
+            after = resource.getrusage(resource.RUSAGE_CHILDREN)
+            self.seconds[code.name] = self.seconds.get(code.name, 0.0) + after.ru_utime - before.ru_utime
             self.versions[code.name] = result.version
             found[code.name] = result.final, code.series(folder) if every else None
         return found

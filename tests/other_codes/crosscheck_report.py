@@ -16,10 +16,13 @@ def report(work):
     rows = [{**check._asdict(), "passed": check.passed} for check in work.checks]
     about = {"crosscheck": {"finished": provenance.now(), "machine": provenance.machine(),
                             "package": provenance.package_version(),
-                            "lmp_sha256": disk.sha256(work.lmp), "versions": work.versions, "quick": work.quick,
+                            "lmp_sha256": disk.sha256(work.lmp), "versions": work.versions,
+                            "processor_seconds": {name: round(value, 1) for name, value in work.seconds.items()},
+                            "quick": work.quick,
                             "compared": sum(row["passed"] is not None for row in rows),
                             "failed": sum(row["passed"] is False for row in rows)},
-             "collapse": work.about_collapse, "table": work.about_table, "checks": rows,
+             "collapse": work.about_collapse, "table": work.about_table,
+             "laws": work.about_laws, "checks": rows,
              "differs": {code.name: list(code.differs) for code in work.codes if code.differs}, "notes": work.notes}
     out = io.StringIO()
     writer = csv.DictWriter(out, [*Check._fields, "passed"], lineterminator="\n")
@@ -31,6 +34,8 @@ def report(work):
     written = ["crosscheck.yaml", "crosscheck.csv"]
     if work.about_table:
         written.append("table.csv")
+    if work.about_laws:
+        written.append("laws.csv")
     if work.profiles:
         draw(work.output / "crosscheck.png", work)
         written.append("crosscheck.png")
@@ -52,6 +57,11 @@ def report(work):
     for check in work.checks:
         if check.case == "table":
             print(f"{check.quantity}, {work.title[check.code]}: {check.reason}: {check.value}")
+    for row in work.about_laws["rows"] if work.about_laws else ():
+        if row["difference"] is not None:
+            print(f"{row['what']}: {row['quantity']}, mu_r {row['rolling']:g}: {100 * row['difference']:+.1f} % "
+                  f"({100 * row['low']:+.1f} to {100 * row['high']:+.1f})")
+    print("processor time, s: " + ", ".join(f"{work.title[name]} {value:.0f}" for name, value in work.seconds.items()))
     for code in work.codes:
         for text in code.differs:
             print(f"{code.title}: {text}")

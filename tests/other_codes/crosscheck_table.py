@@ -4,6 +4,8 @@ Each code runs the same starts and the same fixed balls, three of them at each r
 serves all codes: the places of the balls at the end go back into the deck, whose fix deposit/grid makes the rasters
 that `slope volume` reads. Two codes are compared start by start. The variance of a difference is taken in proportion to
 the mean, by all starts together; there is an interval of each mean difference, and a verdict by a bound.
+
+A control runs the first peer with twice the rolling resistance, which the table must find.
 """
 import math
 import re
@@ -19,7 +21,8 @@ from slope_tools.errors import SlopeError
 from . import peer_runs
 from .crosscheck_cases import INPUTS, OTHER_ROLLING as OTHER_LAW, START, Check, deposit, road_corners
 
-DECK = INPUTS / "20_embankment" / "in.embankment"
+DECK_NAME = "20_embankment/in.embankment"
+DECK = INPUTS / DECK_NAME
 ROAD = INPUTS / "20_embankment" / "road.csv"
 ROLLING = 0.0, 0.05, 0.10
 STARTS = 0.0, 0.25, 0.5         # of the lattice, in spacings: the repeats
@@ -29,6 +32,8 @@ CONFIDENCE = 0.95               # of all three intervals of a quantity and a cod
 QUANTITIES = {"to remove": ("m3", 0.05), "on the road": ("m3", 0.05), "beyond": ("m3", 0.05),
               "displacement of the centroid": ("m", 0.01)}
 FILE = "table.csv"
+CUT, MESH = 30.0, 5.0           # degrees, m
+WRONG = 2                       # times the rolling resistance, in the control
 
 
 class Difference(NamedTuple):
@@ -72,7 +77,7 @@ def table(work, case):
         for start in STARTS:
             name = f"{case}_{rolling:g}_{start:g}"
             settings = {"d": d, "rolling": rolling, "xoffset": start, "yoffset": start}
-            scene = work.scene(name, "20_embankment/in.embankment", settings)._replace(headroom=30.0)
+            scene = work.scene(name, DECK_NAME, settings)._replace(headroom=30.0)
             found = work.run(name, scene, round(SECONDS / scene.dt), codes=codes)
             for code, (final, _) in found.items():
                 volumes[code][-1].append(numbers_of(work, f"{name}.deck", settings, scene, final))
@@ -81,6 +86,28 @@ def table(work, case):
     for row in work.about_table["rows"]:
         if row["verdict"]:
             work.checks.append(check_of(case, row))
+    peer = next((code for code in codes[1:] if code.name not in OTHER_LAW), None)
+    if peer:
+        work.about_table["control"] = rows = control(work, case, peer, d, volumes["slope"])
+        found = [f"{row['quantity']} at {row['rolling']:g}" for row in rows if row["verdict"] == "differs"]
+        work.checks.append(Check(case, "rolling doubled, as a control", peer.name, "found" if found else "not found",
+                                 "SLOPE", "found", 0.0, f"{', '.join(found) or 'nothing'} differs"))
+
+
+def control(work, case, peer, d: float, ours) -> List[Dict[str, Any]]:
+    """The rows of a peer with a wrong law; ours: our volumes, of about()."""
+    wrong: List[List[Dict[str, float]]] = []
+    for rolling in ROLLING[1:]:
+        wrong.append([])
+        for start in STARTS:
+            settings = {"d": d, "rolling": rolling, "xoffset": start, "yoffset": start}
+            scene = work.scene(f"{case}_{rolling:g}_{start:g}", DECK_NAME, settings)._replace(headroom=30.0)
+            laws = {kind: one._replace(rolling=WRONG * one.rolling) for kind, one in scene.contacts.items()}
+            name = f"{case}_{rolling:g}_{start:g}"
+            final, _ = work.run(f"{name}_control", scene._replace(contacts=laws), round(SECONDS / scene.dt),
+                                codes=[peer])[peer.name]
+            wrong[-1].append(numbers_of(work, f"{name}.deck", settings, scene, final))
+    return [row for row in about({"slope": ours[1:], peer.name: wrong}, d, ROLLING[1:])["rows"] if row["verdict"]]
 
 
 def check_of(case, row) -> Check:
@@ -93,7 +120,7 @@ def check_of(case, row) -> Check:
                  None if told else 0.0, reason)
 
 
-def about(volumes, d: float) -> Dict[str, Any]:
+def about(volumes, d: float, several=ROLLING) -> Dict[str, Any]:
     """What crosscheck.yaml has of it: volumes {code: rows of rolling resistances of repeats of volumes}."""
     rows = []
     for quantity, (unit, bound) in QUANTITIES.items():
@@ -102,7 +129,7 @@ def about(volumes, d: float) -> Dict[str, Any]:
             compared: List[Optional[Difference]] = [None] * len(each)
             if code != "slope":
                 compared = [*differences(each, of["slope"])]
-            for rolling, row, ours, one in zip(ROLLING, each, of["slope"], compared):
+            for rolling, row, ours, one in zip(several, each, of["slope"], compared):
                 rows.append({"quantity": quantity, "unit": unit, "code": code, "rolling": rolling, "runs": row,
                              "mean": float(np.mean(row)), "slope": float(np.mean(ours)),
                              "difference": one and one.share, "low": one and one.low, "high": one and one.high,
@@ -135,13 +162,19 @@ def numbers_of(work, folder_name: str, settings, scene, final) -> Dict[str, floa
     bulk = run_folders.load_summary(folder / "embankment.summary.yaml", run_folders.OF_DEPOSIT)["bulk_factor"]
     options = [word for pair in {**settings, "bulk": bulk, "out": "end"}.items() for word in ("-var", *map(str, pair))]
     peer_runs.run_deck(work.lmp, folder, "in.end", 1, options)
-    found = volume.of_run(str(folder / "end"), volume.Wanted(ROAD, 5.0, local=True), folder / "terrain.asc")
+    found = evaluated(work, folder_name)
     run_, told = found.run, found.about["volume"]
     columns = run_.raster.transform.a * (np.arange(run_.raster.z.shape[1]) + 0.5)
     far = columns < road_corners()[:, 0].min()      # the mass comes from larger x
     return {"to remove": float(told["remove"]), "on the road": float(told["remove_on_road"]),
             "beyond": float(run_.raster.z[:, far].sum() * run_.cell ** 2),
             "displacement of the centroid": deposit(scene, final)["displacement of the centroid m"]}
+
+
+def evaluated(work, folder_name: str) -> volume.Removal:
+    """What is to be removed of the places that numbers_of() took last."""
+    folder = work.folder(folder_name)
+    return volume.of_run(str(folder / "end"), volume.Wanted(ROAD, MESH, CUT, local=True), folder / "terrain.asc")
 
 
 def deck_ids(folder) -> List[int]:

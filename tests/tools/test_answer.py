@@ -1,16 +1,17 @@
 """The number of a study: the larger of the paper's and an ensemble's, a floor, withheld, or nothing; by hand."""
 import os
-from types import SimpleNamespace
 
 import pytest
 import yaml
 
 from slope_tools import disk
 from slope_tools.commands import study
+from slope_tools.sites import site_choices
 from slope_tools.statistics import answer
 from slope_tools.statistics.answer import AtRoad, Code, Ensemble, Kind, Paper, Road, Source, Withheld
 from slope_tools.statistics.withheld import Kind as Rule
 from slope_tools.report import client_part
+from slope_tools.studies import site_study
 from slope_tools.tables import answer_words, answered, fine_run
 
 STOPPED = answer.Reason(Code.TERRAIN, {"share": 0.12, "path_m": 900.0})
@@ -155,44 +156,52 @@ def test_the_volume_is_the_one_that_the_study_shows():
 
 # --- which study governs ---
 
-def written(path, headline, at):
-    path.parent.mkdir(exist_ok=True)
-    path.write_text(yaml.safe_dump({"headline": headline, "study": {}}))
+def written(folder, governs, made, at=0):
+    """A study.yaml that was made at an hour and written, or copied, later."""
+    folder.mkdir(exist_ok=True)
+    path = folder / "study.yaml"
+    path.write_text(yaml.safe_dump({"study": {"governs": governs, "collected": f"2026-11-27T{made:02}:00:00+00:00"}}))
     os.utime(path, (at, at))
 
 
-def test_a_headline_of_both_governs_only_while_both_have_it(tmp_path):
-    paper, other, weighted = tmp_path / "study", tmp_path / "ensemble", ensemble()
-    of_both = answer.of(Paper(700.0), weighted, road(0.5, 0.6)).about()
-    assert of_both["source"] == "ensemble"
-    for name, at in ((paper, 200), (other, 100)):
-        written(name / "study.yaml", of_both, at)
-    assert answered.governing(paper, other) == other
-    written(paper / "study.yaml", answer.of(Paper(800.0), None, None).about(), 300)     # study --paper since
-    assert answered.governing(paper, other) == paper
+@pytest.mark.parametrize("last", ["study", "ensemble"])
+def test_which_study_governs_is_what_the_files_say(tmp_path, last):
+    """Of both, of one command; else the one that was made last: never that whose file is the newer one."""
+    paper, other = tmp_path / "study", tmp_path / "ensemble"
+    for newer in (paper, other):
+        for folder in (paper, other):
+            written(folder, last, 10, 200 if folder == newer else 100)
+        assert answered.governing(paper, other).name == last
+        for folder in (paper, other):       # the last one alone since, as study --paper
+            written(folder, folder.name, 12 if folder.name == last else 10, 200 if folder == newer else 100)
+        assert answered.governing(paper, other).name == last
+        (tmp_path / last / "study.yaml").unlink()
+        assert answered.governing(paper, other).name != last
 
 
 @pytest.mark.parametrize("fails, merged", [(True, 0), (False, 1)])
 def test_an_older_result_is_not_merged_where_all_runs_failed(tmp_path, monkeypatch, fails, merged):
     for name in ("study", "ensemble"):
-        written(tmp_path / name / "study.yaml", None, 100)
+        written(tmp_path / name, name, 9)
     calls = []
 
-    def runs(name, failed):
+    def runs(failed):
         if failed:
             raise study.RunsFailed(tmp_path, "all runs failed")
-        written(tmp_path / name / "study.yaml", None, 200)
-        return SimpleNamespace(failed=None)
+        return {"study": {"collected": "2026-11-27T10:00:00+00:00"}}
 
-    monkeypatch.setattr(study.site_study, "run", lambda *_: runs("study", False))
-    monkeypatch.setattr(study, "run_deck", lambda _: runs("ensemble", fails))
+    monkeypatch.setattr(study.site_study, "run", lambda *_: site_study.Done(tmp_path, runs(False), None))
+    monkeypatch.setattr(study, "run_deck", lambda _: runs(fails))
     monkeypatch.setattr(study, "of_ensemble", lambda *_: None)
     monkeypatch.setattr(study, "write_report", lambda *_, **__: None)
-    monkeypatch.setattr(study.answered, "of_both", lambda *paths: calls.append(paths))
-    asked = study.Request(deck=tmp_path)
+    monkeypatch.setattr(study.answered, "of_both", lambda *several: calls.append(several))
+    asked, site = study.Request(deck=tmp_path), site_choices.Site(tmp_path, {}, {}, {}, {})
     if fails:
         with pytest.raises(study.RunsFailed):
-            study.run_both(asked, 4)
+            study.run_both(asked, site, 4)
     else:
-        study.run_both(asked, 4)
+        study.run_both(asked, site, 4)
     assert len(calls) == merged
+    said = yaml.safe_load((tmp_path / "ensemble" / "study.yaml").read_text())["study"]["governs"]
+    assert said == "ensemble" and answered.governing(tmp_path / "study", tmp_path / "ensemble").name == (
+        "study" if fails else "ensemble")

@@ -454,7 +454,7 @@ def fit_of(tmp_path, monkeypatch, rest_after, duration="10", fixed=(), fails=())
     """A Fit whose runs are at rest from a duration (s) on, and what it tells; fails: durations of runs that fail."""
     told = []
 
-    def rows_of(setup, todo, maps, pictures):
+    def rows_of(setup, todo, maps):
         rows = []
         for one in todo:
             seconds = float(one.chosen.get("duration", duration))

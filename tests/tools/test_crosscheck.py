@@ -6,10 +6,13 @@ import re
 import shlex
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import shapely.geometry
 import yaml
+from affine import Affine
 
 from run_helpers import TOP, examples
 from tiny_collapse import LMP
@@ -17,8 +20,9 @@ from tiny_collapse import LMP
 sys.path.insert(0, str(TOP / "tests"))
 
 from other_codes import crosscheck as crosscheck_command, crosscheck_cases as crosscheck  # noqa: E402
-from other_codes import crosscheck_table, peers  # noqa: E402
+from other_codes import crosscheck_laws, crosscheck_table, peers  # noqa: E402
 from slope_tools.errors import SlopeError  # noqa: E402
+from slope_tools.survey import rasters  # noqa: E402
 
 
 COMMAND = "crosscheck"
@@ -153,8 +157,80 @@ def made(values):
     return [[dict.fromkeys(crosscheck_table.QUANTITIES, one) for one in row] for row in values]
 
 
+class Stub:
+    """Runs that do nothing; what they were given is kept."""
+    quick, about_table = True, None
+
+    def __init__(self, output, codes):
+        self.output, self.codes, self.checks, self.given = output, codes, [], []
+
+    def scene(self, name, deck, settings):
+        law = peers.Contact(1.0, 1.0, 1.0, 1.0, 30.0, settings["rolling"])
+        return peers.Scene(settings["d"], 1.0, np.zeros((1, 9)), {2: np.zeros((1, 3))},
+                           {1: law, 2: law._replace(rolling=0.0), 3: law}, 0.1, 0.1)
+
+    def run(self, name, scene, steps, codes):
+        self.given.append((name, codes[0].name, scene, steps))
+        return {code.name: (scene, None) for code in codes}
+
+
+def volumes_by_rolling(factor):
+    """The more rolling resistance on the field, the less of all: by twice as much as ours if factor is 2."""
+    return lambda work, folder, settings, scene, final: dict.fromkeys(
+        crosscheck_table.QUANTITIES, 1000.0 - factor * 500 * final.contacts[3].rolling + settings["xoffset"])
+
+
+@pytest.mark.parametrize("factor, verdict, passed", [(5, "found", True), (0.2, "not found", False)])
+def test_the_table_must_find_a_doubled_rolling_resistance(here, monkeypatch, factor, verdict, passed):
+    monkeypatch.setattr(crosscheck_table, "numbers_of", volumes_by_rolling(factor))
+    work = Stub(here, [peers.Slope(LMP), peers.Granular(LMP)])
+    crosscheck_table.table(work, "table")
+    last = work.checks[-1]
+    assert last.quantity == "rolling doubled, as a control"
+    assert (last.code, last.value, last.passed) == ("granular", verdict, passed)
+    wrong = [scene.contacts[3].rolling for name, code, scene, _ in work.given if name.endswith("_control")]
+    assert wrong == [0.1] * 3 + [0.2] * 3
+    assert {check.value for check in work.checks[:-1]} == {"agrees"}       # the same law
+
+
+def test_other_laws_differ_in_one_thing_each():
+    law = peers.Contact(1e9, 1e9, 1e6, 1e6, 30.0, 0.05)
+    laws = {1: law, 2: law._replace(friction=0.0, rolling=0.0), 3: law}
+    scene = peers.Scene(2.5, 1.0, np.zeros((1, 9)), {}, laws, 0.1, 0.1)
+    found = crosscheck_laws.variants(scene)
+    assert found.pop("half the time step") == scene._replace(dt=0.05)
+    changed = {name: {kind: {key: value for key, value in one.contacts[kind]._asdict().items()
+                             if value != scene.contacts[kind]._asdict()[key]} for kind in (1, 2, 3)}
+               for name, one in found.items()}
+    assert changed == {"rolling without a spring": {kind: {"kr": 0.0} for kind in (1, 2, 3)},
+                       "rolling with half the coefficient": {1: {"rolling": 0.025}, 2: {}, 3: {"rolling": 0.025}},
+                       "rolling with twice the coefficient": {1: {"rolling": 0.1}, 2: {}, 3: {"rolling": 0.1}},
+                       "rolling on the slip surface, too": {1: {}, 2: {"rolling": 0.05}, 3: {}}}
+
+
+def test_a_law_without_a_spring_is_one_of_the_deck(here):
+    law = peers.Contact(1e9, 1e9, 1e6, 2e6, 30.0, 0.05)
+    scene = peers.Scene(2.5, 1.0, np.zeros((1, 9)), {3: np.ones((1, 3))}, {1: law, 3: law}, 0.1, 0.1)
+    peers.Slope(LMP).write(crosscheck_laws.variants(scene)["rolling without a spring"], here, 10)
+    assert "rolling 0.05 rolling_spring 0.0 2000000.0" in (here / "in.scene").read_text()
+
+
+def test_other_ways_to_count_the_volume(here):
+    """Balls of 2 m on level ground beside and on a road: 30 degrees rise to 5.77 m within 10 m of its edge."""
+    base = np.zeros((10, 20))
+    raster = rasters.Raster(base, Affine(2, 0, 0, 0, -2, 20), None)
+    run = SimpleNamespace(base=base, raster=raster, cell=2.0)
+    removal = SimpleNamespace(run=run, road=shapely.geometry.box(0, 0, 10, 20))
+    #              on the road   below the cut   above it       in the same cell, lower
+    final = np.array([[5.1, 9, 1], [21, 9, 5.5], [21, 5, 7.5], [21.2, 5.2, 6.7]])
+    centres, columns = crosscheck_laws.other_ways(removal, final, 2.0)
+    assert centres == pytest.approx(3 * 2 ** 3)
+    rise = math.tan(math.radians(30)) * 11
+    assert columns == pytest.approx(4 * (2 + (5.5 + 1 - rise) + (7.5 + 1 - rise)))
+
+
 @pytest.mark.parametrize("arguments, message", [
-    ("--only fall", "--only: must be of bounce, slide_roll, rolling, collapse, table, got fall"),
+    ("--only fall", "--only: must be of bounce, slide_roll, rolling, collapse, table, laws, got fall"),
     ("--peers pfc", "--peers: must be of granular, liggghts, yade, got pfc"),
     ("--lmp none", "--lmp: must lead to the LAMMPS program"),
     ("-o file", "-o: must be a folder, got file"),

@@ -61,7 +61,7 @@ TRIAL = {"lmp", "jobs"}                         # what the trial run finds is wr
 LATER = {("project", "name"), ("project", "client"), ("project", "author"), ("road", "cut_angle"), ("road", "mesh"),
          *(("road", key) for key in ("width", "from", "blocked", "lane", "clearing", "loosening")),
          ("study", "rolling"), ("study", "spacing"), ("study", "points"), ("known", "set"), ("known", "confined"),
-         ("study", "packing"), ("study", "fine")}
+         ("study", "packing"), ("study", "fine"), ("study", "largest_restitution")}
 KEYS = [(section, key) for section, about in site_choices.sections() for key in about["properties"]]
 NOT_FILES = {("terrain", "crs"), ("terrain", "assign_crs"), ("terrain", "z_unit"), ("release", "shape"),
              ("release", "scar_is"), ("project", "name"), ("project", "client"), ("project", "author"),
@@ -86,10 +86,10 @@ def test_every_file_of_a_site_is_known():
 @pytest.mark.parametrize("section, key", KEYS)
 def test_a_choice_of_a_site_counts(tmp_path, section, key):
     choices = site_choices.complete({"terrain": {"files": [str(tmp_path / "dem.asc")]}})
-    before = site_choices.fingerprint(choices, tmp_path)
+    before = site_choices.Site.of(choices, tmp_path).fingerprint()
     several = isinstance(choices[section].get(key), list)
     choices[section][key] = [str(tmp_path / "other")] if several else str(tmp_path / "other")
-    assert (site_choices.fingerprint(choices, tmp_path) == before) == ((section, key) in LATER)
+    assert (site_choices.Site.of(choices, tmp_path).fingerprint() == before) == ((section, key) in LATER)
 
 
 @pytest.mark.parametrize("section, key", site_choices.FILES)
@@ -101,9 +101,9 @@ def test_a_file_of_a_site_counts_by_what_is_in_it(tmp_path, section, key, end):
     choices = site_choices.complete({})
     choices[section][key] = [str(source)] if isinstance(choices[section].get(key, []), list) else str(source)
     changed.write_text("1")
-    before = site_choices.sources(choices, tmp_path)
+    before = site_choices.Site.of(choices, tmp_path).sources()
     changed.write_text("2")
-    assert len(before) == 1 and site_choices.sources(choices, tmp_path) != before
+    assert len(before) == 1 and site_choices.Site.of(choices, tmp_path).sources() != before
 
 
 # --- results that are computed each time: their yaml says of what ---

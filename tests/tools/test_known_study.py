@@ -1,6 +1,4 @@
 """tools/slope study SITE: by the paper's method, and weighted by known events, for masses of all sizes."""
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
@@ -45,14 +43,15 @@ def small(mine, gis):  # noqa: F811
 
 @pytest.mark.parametrize("name, words", [("large", "big"), ("small", "mine")])
 def test_both_studies_of_masses_of_all_sizes(request, capsys, monkeypatch, name, words):
-    """The paper's 13 runs and a fine one, one with half the step where there is a road, 64 that known events weigh."""
+    """The paper's 13 runs, three with the largest restitution, a fine one, one with half the step where there is a
+    road; 64 that known events weigh."""
     request.getfixturevalue(name)
     status, out, err = study(capsys, monkeypatch, words)
     assert status == 0, err
     assert out.startswith("weighted by known events of this volume and height, beside the paper's method")
     assert " 64 runs, 0 of them finished" in f" {out.splitlines()[-1]}"
     assert sum("rolling_" in line and "friction_" in line for line in out.splitlines()) == 64
-    assert "14 runs, 0 of them finished" in out or "15 runs, 0 of them finished" in out
+    assert "17 runs, 0 of them finished" in out or "18 runs, 0 of them finished" in out
     assert study(capsys, monkeypatch, f"{words} --unconfined")[0] == 0
     status, _, err = study(capsys, monkeypatch, f"{words} --paper --unconfined")
     assert status == 2 and "must be given with --known" in err
@@ -69,7 +68,7 @@ def test_the_ensemble_varies_ground_and_restitution(large, capsys, monkeypatch):
     seen = []
     monkeypatch.setattr(study_command, "perform", lambda setup, *rest, **more: None)
     monkeypatch.setattr(study_command.results, "Questions", lambda *args, **more: seen.append(args[3]))
-    monkeypatch.setattr(study_command.site_study, "run", lambda *_: site_study.Done(None, None))
+    monkeypatch.setattr(study_command.site_study, "run", lambda *_: site_study.Done(None, None, None))
     assert study(capsys, monkeypatch, "big")[0] == 0
     [order] = seen
     assert {one.name: (one.low, one.high) for one in order.sample.variables} == {
@@ -92,9 +91,9 @@ def test_other_grounds_at_both_ends_of_rolling(mine, capsys, monkeypatch):  # no
                       for more in ("", "_packing_2", "_packing_3")),
                     *(f"rolling_{rolling}_spacing_{spacing}" for spacing in ("0.5", "0.7") for rolling in ("0", "0.1"))]
     # balls of half the size, and half the step
-    assert sum("_d_" in line for line in out.splitlines()) == 1 and "15 runs, 0 of them finished" in out
+    assert sum("_d_" in line for line in out.splitlines()) == 1 and "18 runs, 0 of them finished" in out
     status, out, _ = study(capsys, monkeypatch, "mine --paper --fine no")
-    assert status == 0 and "_d_" not in out and "14 runs, 0 of them finished" in out
+    assert status == 0 and "_d_" not in out and "17 runs, 0 of them finished" in out
     choices = site_choices.read(mine)
     choices["study"].update(spacing=[0.5, 0.9], rolling=[0.2])      # its own ground is none of the others
     assert site_choices.other_grounds(choices) == [(0.5, 0.2)]
@@ -124,32 +123,32 @@ def test_known_of_site_yaml_reaches_the_study(mine, capsys, monkeypatch):  # noq
     choices = (mine / "site.yaml").read_text()
     for given, path, named in (("null", "all", False), ("debris_flows:channelized", "channelized", True)):
         (mine / "site.yaml").write_text(choices.replace("  set: null", f"  set: {given}"))
-        asked = known_arguments.choice_of(None, [], None, mine)
-        condition = known_events.check(asked, None, mine / "in.site")
+        asked = known_arguments.choice_of(None, [], None, site_choices.load(mine))
+        condition = known_events.check(asked, None, mine)
         found = known_events.mobility_of(condition, mine, mine)
         assert found.law.path == path and found.in_range and (condition.found.strict is not None) == named
         assert asked.about() == {"set": None if given == "null" else given, "left_out": [], "confined": "unknown"}
-        setup = SimpleNamespace(deck=mine / "in.site")
-        assert results.known_of(setup, results.Questions({}, {}, ())) == {
-            "set": asked.about()["set"], "confined": "unknown"}
-        assert known.of_about(results.known_of(setup, results.Questions({}, {}, ()))).row == asked.row
+        kept = results.known_of(results.Questions({}, {}, (), known=site_choices.load(mine).choices["known"]))
+        assert kept == {"set": asked.about()["set"], "confined": "unknown"}
+        assert known.of_about(kept).row == asked.row
     with pytest.raises(SlopeError, match="--known: must be a set that covers the mass"):
-        known_events.check(known.choice("rock_avalanches"), "rock_avalanches", mine / "in.site")
+        known_events.check(known.choice("rock_avalanches"), "rock_avalanches", mine)
 
 
 def test_the_estimate_is_of_the_study_that_is_made(large):
     choices = site_choices.read(large)
-    assert site_choices.found(large)["study"]["runs"] == 15 + choices["study"]["points"] == 79
+    assert site_choices.found(large)["study"]["runs"] == 18 + choices["study"]["points"] == 82
     plan = site_budget.plan(choices)
-    assert plan.runs == 79 and not plan.half_step and "64 runs weighted by known events" in plan.text
+    assert plan.runs == 82 and not plan.half_step and "64 runs weighted by known events" in plan.text
     choices["study"]["points"] = 0
     plan = site_budget.plan(choices)
-    assert plan.runs == 14 and not plan.half_step       # no road: nothing to compare
+    assert plan.runs == 17 and not plan.half_step       # no road: nothing to compare
     assert site_budget.plan({**choices, "road": {**choices["road"], "file": "road.csv"}}).half_step
-    assert plan.text == ("14 runs: 3 rolling resistances x 3 packings, 4 on other grounds, 1 with balls of "
-                         "1/2 of the diameter")
-    assert site_budget.plan({**choices, "study": {**choices["study"], "spacing": []}}).runs == 10
-    assert site_budget.plan({**choices, "study": {**choices["study"], "fine": False}}).runs == 13
+    assert plan.text == ("17 runs: 3 rolling resistances x 3 packings, 4 on other grounds, 3 with the largest "
+                         "restitution, 1 with balls of 1/2 of the diameter")
+    assert site_budget.plan({**choices, "study": {**choices["study"], "spacing": []}}).runs == 13
+    assert site_budget.plan({**choices, "study": {**choices["study"], "fine": False}}).runs == 16
+    assert site_budget.plan({**choices, "study": {**choices["study"], "largest_restitution": None}}).runs == 14
 
 
 def test_the_method_is_in_the_results(mine, monkeypatch, capsys):  # noqa: F811

@@ -191,13 +191,13 @@ def test_both_studies_give_one_number(done, tmp_path, monkeypatch, capsys, fitte
     pages = []
     (mine / "site.yaml").write_text((mine / "site.yaml").read_text().replace("points: 64", "points: 8"))
     monkeypatch.setattr(farther, "MOST", 0.0)       # runs that are added are tested elsewhere
-    monkeypatch.setattr(study_command, "write_report", lambda study, page, film=True: pages.append(
+    monkeypatch.setattr(study_command, "write_report", lambda study, page, *_, film=True: pages.append(
         (study.name, page.name, film)))
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("LMP", LMP)
     assert cli.main(["study", "mine"]) == 0
     out = capsys.readouterr().out
-    assert "15 of 15 runs are finished already" in out and "headline: " in out
+    assert "18 of 18 runs are finished already" in out and "headline: " in out
     paper, both = (yaml.safe_load((mine / name / "study.yaml").read_text()) for name in ("study", "ensemble"))
     about = both["ensemble"]["known_events"]
     assert about["set"] == "translational_slides:all" and about["events"] == 69 and about["runs"] == 8
@@ -239,8 +239,29 @@ def test_the_report_of_a_sites_folder(done, tmp_path):
 def test_the_longest_runs_begin_first(done):
     """The fine run, then half the step; those of the study's own keep their names."""
     begun = [line.split()[1].rstrip(":") for line in done[2].splitlines() if line.endswith(": started")]
-    assert len(begun) == 15 and begun[0].startswith("rolling_0.05_d_") and begun[1].startswith("rolling_0.05_step_0.5")
+    assert len(begun) == 18 and begun[0].startswith("rolling_0.05_d_") and begun[1].startswith("rolling_0.05_step_0.5")
     assert not any("_d_" in name for name in begun[2:])
+
+
+def test_the_largest_restitution_is_none_of_the_volume(done):
+    """Three runs with it, in the table and on the page; the combinations and the volume are of the others."""
+    mine = done[0] / "mine"
+    about = yaml.safe_load((mine / "study" / "study.yaml").read_text())
+    found = about["largest_restitution"]
+    assert (found["restitution"], found["rolling"], len(found["runs"]), found["failed"]) == (0.9, "0", 3, [])
+    for name in found["runs"]:
+        chosen = yaml.safe_load((mine / "runs" / name / "variables.yaml").read_text())["variables"]
+        assert (chosen["restitution"], chosen["field_e"], chosen["rolling"]) == ("0.9", "0.9", "0")
+    assert not {*found["runs"]} & {row["run"] for row in about["runs"]} and len(about["runs"]) == 13
+    assert all("restitution" not in one["set"] for one in about["combinations"])
+    for key in ("front_m", "area_m2"):
+        reach = found["quantities"][key]
+        assert reach["low"] <= reach["mean"] <= reach["high"] and reach["mean"] != reach["usual"]["mean"]
+    page = (mine / "report.html").read_text()
+    assert "With the most elastic rock, a restitution of 0.9, more than 1 % of it leaves the terrain." in page
+    assert found["text"][1:] in page
+    assert "Reach and area with the most elastic rock" in page
+    assert len((mine / "study" / "largest_restitution.csv").read_text().splitlines()) == 1 + 3 + 13
 
 
 def test_the_study_is_resumed(done, monkeypatch):
@@ -250,7 +271,7 @@ def test_the_study_is_resumed(done, monkeypatch):
     before = {path: path.stat().st_mtime_ns for path in (folder / "mine").rglob("finished.yaml")}
     again = inside(folder, "study", "mine", "--paper")
     assert again.returncode == 0, again.stderr
-    assert len(before) == 15 and "started" not in again.stdout and "15 of 15 runs are finished already" in again.stdout
+    assert len(before) == 18 and "started" not in again.stdout and "18 of 18 runs are finished already" in again.stdout
     assert before == {path: path.stat().st_mtime_ns for path in before}
 
 
@@ -261,7 +282,7 @@ def runs_in(folder):
 def test_no_run_is_made_twice(done):
     values = [yaml.safe_load((path / "variables.yaml").read_text())["variables"]
               for path in runs_in(done[0] / "mine" / "runs")]
-    assert len({tuple(sorted(one.items())) for one in values}) == len(values) == 15
+    assert len({tuple(sorted(one.items())) for one in values}) == len(values) == 18
 
 
 def test_runs_of_an_older_version_are_taken_over(done, tmp_path, monkeypatch):
@@ -278,7 +299,7 @@ def test_runs_of_an_older_version_are_taken_over(done, tmp_path, monkeypatch):
         part = "step" if "_step_" in path.name else "study"
         path.rename(mine / part / path.name)
     again = inside(tmp_path, "study", "mine", "--paper")
-    assert again.returncode == 0 and "15 of 15 runs are finished already" in again.stdout, again.stderr
+    assert again.returncode == 0 and "18 of 18 runs are finished already" in again.stdout, again.stderr
     assert not runs_in(mine / "runs")
     assert before == {name: (mine / name).read_text() for name in before}
     rows = yaml.safe_load((mine / "study" / "study.yaml").read_text())["runs"]
@@ -341,8 +362,8 @@ def test_the_folder_is_made_anew_from_its_file(done, tmp_path):
 
     # runs of other values stay, and are not mixed with those of these
     listed = inside(folder, "study", "mine", "--paper", "--dry-run")
-    assert listed.returncode == 0 and "\n0 of 15 runs are there, 15 to make" in listed.stdout, listed.stderr
-    assert listed.stdout.endswith("15 runs, 0 of them finished\n")
+    assert listed.returncode == 0 and "\n0 of 18 runs are there, 18 to make" in listed.stdout, listed.stderr
+    assert listed.stdout.endswith("18 runs, 0 of them finished\n")
 
     # a deck that was changed by hand is not lost
     deck = mine / "in.site"

@@ -274,7 +274,7 @@ def older(mine, **model):
     deck.write_text(re.sub("variable  ground_seed .*\n", "", text))
     (mine / "site.yaml").write_text(yaml.safe_dump(about))
     about["found"].update(deck_sha256=disk.sha256(deck),
-                          choices_sha256=site_choices.fingerprint(site_choices.read(mine), mine))
+                          choices_sha256=site_choices.load(mine).fingerprint())
     (mine / "site.yaml").write_text(yaml.safe_dump(about))
 
 
@@ -282,11 +282,11 @@ def test_the_study_of_an_older_site_is_as_it_was(mine):
     older(mine)
     choices = site_choices.read(mine)
     assert choices["model"]["field_diameter"] == 2 and choices["model"]["spacing"] == 1
-    site_study.check(mine, choices)
+    site_study.check(site_choices.load(mine))
     assert site_study.grounds(choices, decks.index_variables(mine / site_deck.NAME)) == []
     edit(mine, "model", field_diameter=3.0)
     with pytest.raises(SlopeError, match="must not have been changed since"):
-        site_study.check(mine, site_choices.read(mine))
+        site_study.check(site_choices.load(mine))
 
 
 def test_an_older_site_is_rebuilt_with_the_ground_of_now(inside, mine):
@@ -315,7 +315,7 @@ def with_lattice(mine):
                            deck.read_text()))
     (mine / "site.yaml").write_text(yaml.safe_dump(about))
     about["found"].update(deck_sha256=disk.sha256(deck),
-                          choices_sha256=site_choices.fingerprint(site_choices.read(mine), mine))
+                          choices_sha256=site_choices.load(mine).fingerprint())
     (mine / "site.yaml").write_text(yaml.safe_dump(about))
 
 

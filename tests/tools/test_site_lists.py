@@ -70,8 +70,8 @@ def mine(whole, inside, gis, trials, monkeypatch):  # noqa: F811
 
 def finish(folder, points=POINTS):
     """Make the folders of all runs that are ahead."""
-    planned = site_study.plan(folder, ENGINE)
-    more, _ = ahead.points_of(folder, planned, points)
+    planned = site_study.plan(site_choices.load(folder), ENGINE)
+    more, _ = ahead.points_of(planned, points)
     files = data_files(planned.setup.deck, {**planned.settings, **planned.repeated})
     fine = site_study.fine_runs.smaller(planned.setup.runs, more[0].combination, 2, planned.variables["d"])
     with study.prepared(planned.setup, files, 1) as work:
@@ -84,22 +84,25 @@ def finish(folder, points=POINTS):
 
 
 def counts(folder, points=POINTS):
-    found = ahead.of_site(folder, ENGINE, points)
+    found = ahead.of_site(site_choices.load(folder), ENGINE, points)
     return found.there, found.new
 
 
-# of 3 rolling resistances x 3 packings, 2 other grounds at both ends, a fine one, half the step; then the ensemble
-ALL = 15 + POINTS + 1
+# of 3 rolling resistances x 3 packings, 2 other grounds at both ends, a fine one, half the step, 3 packings with the
+# largest restitution at the least rolling resistance; then the ensemble
+ALL = 18 + POINTS + 1
 CHANGES = [
     # 0.05 and 0.1 in the middle are there; 0.15 is not, nor are the fine run and half the step of another middle
-    ("study", {"rolling": [0.05, 0.1, 0.15]}, "--rolling 0.05 0.1 0.15", 6 + POINTS + 1, 3 + 4 + 2),
-    ("study", {"rolling": [0.05]}, "--rolling 0.05", 5 + POINTS + 1, 2),        # other grounds at this one
-    ("study", {"spacing": []}, None, 11 + POINTS + 1, 0),
-    ("study", {"spacing": [0.5, 0.6]}, None, 13 + POINTS + 1, 2),
-    ("study", {"packing": [3]}, None, 12 + POINTS + 1, 0),
-    ("study", {"packing": [2, 3, 4]}, None, ALL, 3),
+    ("study", {"rolling": [0.05, 0.1, 0.15]}, "--rolling 0.05 0.1 0.15", 6 + POINTS + 1, 3 + 4 + 2 + 3),
+    ("study", {"rolling": [0.05]}, "--rolling 0.05", 5 + POINTS + 1, 2 + 3),        # other grounds at this one
+    ("study", {"spacing": []}, None, ALL - 4, 0),
+    ("study", {"spacing": [0.5, 0.6]}, None, ALL - 2, 2),
+    ("study", {"packing": [3]}, None, ALL - 4, 0),
+    ("study", {"packing": [2, 3, 4]}, None, ALL, 4),
     ("study", {"fine": "no"}, None, ALL - 2, 0),
     ("study", {"fine": 3}, None, ALL - 2, 2),
+    ("study", {"largest_restitution": None}, None, ALL - 3, 0),
+    ("study", {"largest_restitution": 0.6}, None, ALL - 3, 3),
     ("road", {"cut_angle": 45.0}, "--cut-angle 45", ALL, 0),
     ("road", {"lane": 3.5, "clearing": 60.0, "loosening": 1.2}, "--lane 3.5 --clearing 60 --loosening 1.2", ALL, 0),
     ("road", {"loosening": 1.3}, "--loosening 1.3", ALL, 0),
@@ -129,7 +132,7 @@ def test_a_list_that_changes_and_changes_back_keeps_all_runs(mine, inside, trial
 
 def test_the_number_of_points(mine):
     """The first ones of a larger design are those of a smaller one; its median run is another."""
-    for points, there, new in ((16, ALL - 1, 9), (POINTS, ALL, 0), (0, 15, 0)):
+    for points, there, new in ((16, ALL - 1, 9), (POINTS, ALL, 0), (0, 18, 0)):
         edit(mine, "study", points=points)
         assert counts(mine, points) == (there, new)
 
@@ -160,7 +163,7 @@ def test_other_values_of_the_model_leave_the_runs_where_they_are(mine, inside, t
     """Those of the paper's study are other ones; the ensemble's have a friction of their own."""
     runs = set((mine / "runs").iterdir())
     inside("mine --friction 25")
-    assert counts(mine) == (POINTS + 1, 15)
+    assert counts(mine) == (POINTS + 1, 18)
     finish(mine)
     assert set((mine / "runs").iterdir()) > runs and counts(mine) == (ALL, 0)
     inside("mine --friction 30")
@@ -174,7 +177,7 @@ def test_an_ensemble_that_does_not_vary_a_list_takes_its_first_value(mine, monke
     monkeypatch.setattr(study_command, "write_report", lambda *_: None)
     request = study_command.Request(deck=mine, sample=8)
     for words in (["friction=5:30"], ["friction=5:30", "rolling=0:0.1"], []):
-        study_command.run_site_ensemble(study_command.replace(request, vary=words))
+        study_command.run_site_ensemble(study_command.replace(request, vary=words), site_choices.load(mine))
     assert [fixed for fixed, _ in seen] == [["rolling=0.1"], [], []]
 
 
@@ -183,11 +186,11 @@ def test_what_is_ahead_is_said_before_anything_runs(mine, monkeypatch, capsys):
     said = []
     monkeypatch.setattr(study_command, "run_both", lambda *_: said.append(capsys.readouterr().out))
     study_command.run(study_command.Request(deck=mine))
-    assert re.search(rf"^{7 + POINTS} of {16 + POINTS} runs are there, 9 to make, (\d+ s|\d+ minutes); up to {POINTS} "
+    assert re.search(rf"^{7 + POINTS} of {19 + POINTS} runs are there, 12 to make, (\d+ s|\d+ minutes); up to {POINTS} "
                      "more where known events go farther$", said[0], re.MULTILINE), said
-    seconds = ahead.of_site(mine, ENGINE, POINTS).seconds
+    seconds = ahead.of_site(site_choices.load(mine), ENGINE, POINTS).seconds
     finish(mine)
-    assert ahead.of_site(mine, ENGINE, POINTS).seconds is None and seconds > 0
+    assert ahead.of_site(site_choices.load(mine), ENGINE, POINTS).seconds is None and seconds > 0
 
 
 def test_a_trial_run_is_kept_until_what_it_depends_on_changes(mine, inside, trials, monkeypatch):  # noqa: F811

@@ -15,6 +15,7 @@ from slope_tools.mobility import body, steeper
 from slope_tools.report import limits_part
 from slope_tools.report.numbers import Numbers
 from slope_tools.sites.stop_angle import stop_angle
+from slope_tools.sites import site_choices
 from slope_tools.studies import site_ground
 
 TAN = {20: np.tan(np.radians(20)), 35: np.tan(np.radians(35))}
@@ -69,9 +70,9 @@ def test_a_site_and_its_study_say_it_of_each_ground(inside, mine):  # noqa: F811
     """The site of its own; the study of the others at both ends of the rolling resistances; what is unknown is not."""
     own = (f"the ground, spacing 0.9: stop angle {angles(0.9, 0, 0.05, 0.1)} degrees at a rolling resistance of 0, "
            "0.05, 0.1")
-    said = site_ground.lines(mine)
+    said = site_ground.lines(site_choices.load(mine))
     assert len(said) == 1 and said[0].startswith(own) and said[0] in inside("mine --balls 70").out
-    both = site_ground.lines(mine, others=True)
+    both = site_ground.lines(site_choices.load(mine), others=True)
     assert both[0] == said[0] and [line.split(":")[0] for line in both] == [
         f"the ground, spacing {spacing}" for spacing in ("0.9", "0.5", "0.7")]
     assert f"stop angle {angles(0.7, 0, 0.1)} degrees at a rolling resistance of 0, 0.1; of" in both[2]
@@ -80,9 +81,9 @@ def test_a_site_and_its_study_say_it_of_each_ground(inside, mine):  # noqa: F811
     about = yaml.safe_load((mine / "site.yaml").read_text())
     about["study"]["rolling"] = [0, 0.9]
     (mine / "site.yaml").write_text(yaml.safe_dump(about))
-    assert re.search("resistance of 0;", site_ground.lines(mine)[0])
+    assert re.search("resistance of 0;", site_ground.lines(site_choices.load(mine))[0])
     inside("mine --friction 60")
-    assert site_ground.lines(mine, others=True) == []
+    assert site_ground.lines(site_choices.load(mine), others=True) == []
 
 
 def shown(below, **row):

@@ -21,6 +21,7 @@ from run_helpers import called, examples
 from tiny_collapse import LMP, TOP, edit, processes_in, read_asc, serial, write_case
 
 from slope_tools.case import decks, logs, settings
+from slope_tools.releases import release_toe
 from slope_tools.runs import job_display
 from slope_tools.statistics import headline
 from slope_tools.studies import results, study
@@ -236,7 +237,9 @@ def test_a_road_on_the_body(ring, expected):
     released = np.zeros((12, 12), bool)
     released[2:10, 2:10] = True
     released[3:9:2, 3:9:2] = False
-    assert results.on_body(raster, released, Polygon(ring), 27.0) == pytest.approx(expected)
+    found = release_toe.on_body(results.body_of(released, raster, 27.0), raster, Polygon(ring),
+                                release_toe.rim(27.0, 2.0))
+    assert (found.area if found else 0.0) == pytest.approx(expected)
 
 
 def test_without_repeats_the_largest_volume_is_called_that(finished):

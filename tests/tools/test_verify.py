@@ -9,7 +9,7 @@ import yaml
 from run_helpers import TOP, run_command, examples
 
 from slope_tools.errors import SlopeError
-from slope_tools.validation import verification
+from slope_tools.validation import verification, verify
 from slope_tools.validation.verification import claims
 from slope_tools.validation.verification.claims import AtLeast, AtMost, Between, Claim, Control, Near, Run, Verdict
 from slope_tools.validation.verification.errata import errata
@@ -244,6 +244,16 @@ def test_the_page_has_every_erratum():
     shown = page[page.index("Errata of the paper"):page.index("\nA dropped ball")]
     assert shown.count("  Printed: ") == len(errata())
     assert all(f"**{one.title}.**  Printed: {one.printed}  {one.right}\n" in shown for one in errata())
+
+
+def test_the_page_has_the_second_table_of_the_paper():
+    """As a report has it, of the case's file of reference values."""
+    page = (TOP / "doc" / "src" / "verification.rst").read_text(encoding="ascii")
+    section = page[page.index("The paper's second Table 5\n---"):page.index("\nA dropped ball")]
+    shown = list(csv.reader(line.strip() for line in section.splitlines() if line.startswith('   "')))
+    about = verify.second_table()
+    assert shown == about["rows"] and ["company J", "24,048", "26,009", "22,340"] in shown
+    assert len(shown) >= 5 and about["remark"] in " ".join(section.split())
 
 
 @pytest.mark.parametrize("command", examples("verify"))

@@ -149,7 +149,7 @@ static void expect_to_find_all(Make make, double angle)
     if (k == 1) {
       EXPECT_LE(made, 4);
     }
-    PlacedBall here = {-3.0 + unit(random) * (SIDE + 6.0), -3.0 + unit(random) * (0.8 * SIDE + 6.0), 0.0, 0};
+    PlacedBall here = {-3.0 + unit(random) * (SIDE + 6.0), -3.0 + unit(random) * (0.8 * SIDE + 6.0), 0.0, 0, 0};
     const double reach = 0.5 + 2.0 * unit(random);
     here.z = 0.7 * here.x + 8.0 * (unit(random) - 0.5);
     turn(here);
@@ -204,7 +204,7 @@ TEST(BallTiles, a_single_tile_of_scattered_balls_is_kept)
 {
   int made = 0;
   BallTiles tiles({0.0, 0.0, HUGE_VAL, 1, 1}, 1.0, [&](int, std::vector<PlacedBall> &balls) {
-    balls = {{-1000.0, 3.0, 0.0, 0}, {2000.0, -50.0, 5.0, 1}};
+    balls = {{-1000.0, 3.0, 0.0, 0, 0}, {2000.0, -50.0, 5.0, 1, 2}};
     made++;
   });
   const double at[3] = {1999.5, -50.0, 5.0}, far[3] = {0.0, 0.0, 0.0};

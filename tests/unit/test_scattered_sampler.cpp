@@ -146,6 +146,87 @@ TEST(ScatteredSampler, seeds_differ_and_the_plan_does_not_matter)
   EXPECT_EQ(same, inside);
 }
 
+// Zones of other spacings: a triangle, a strip that is narrower than a spacing, and what is around them
+
+struct Zones {
+  double around, triangle, strip;
+  double of(double x, double y) const
+  {
+    if (x > 9.0 && y > 6.0 && x + 0.7 * y < 26.0) return triangle;
+    return std::fabs(y - 3.0 - 0.1 * x) < 0.2 ? strip : around;
+  }
+};
+
+std::vector<double> scatter_zones(double side, const Zones &zones, const Surface &s, int tile = 32)
+{
+  auto part = [&](double spacing) {
+    Surface its = s;
+    its.keep = [=](double x, double y) {
+      return zones.of(x, y) == spacing;
+    };
+    return its;
+  };
+  ScatteredSampler sampler({0.0, side, 0.0, side, zones.around, 0.3, 0.1}, part(zones.around), 5, tile);
+  sampler.add(zones.triangle, part(zones.triangle));
+  sampler.add(zones.strip, part(zones.strip));
+  return places(sampler);
+}
+
+TEST(ScatteredSampler, at_a_seam_none_are_nearer_and_no_gap_is_larger_than_in_the_zones)
+{
+  const double side = 24.0;
+  for (double degrees : {0.0, 40.0})
+    for (const Zones &zones : {Zones{WIDEST, 0.5, 0.7}, Zones{0.4, WIDEST, 0.5}, Zones{WIDEST, 0.94, 0.3}}) {
+      const Surface s = plane(degrees, 25.0);
+      const std::vector<double> xyz = scatter_zones(side, zones, s);
+      auto spacing = [&](size_t k) {
+        return zones.of(xyz[k], xyz[k + 1]);
+      };
+      for (size_t a = 0; a < xyz.size(); a += 3)
+        for (size_t b = 0; b < a; b += 3)
+          ASSERT_GT(std::sqrt(std::pow(xyz[a] - xyz[b], 2) + std::pow(xyz[a + 1] - xyz[b + 1], 2) +
+                              std::pow(xyz[a + 2] - xyz[b + 2], 2)),
+                    0.79 * std::min(spacing(a), spacing(b)));
+      const Nearest nearest(xyz);
+      double worst = 0.0, z;    // in spacings, at most (0.795 + sqrt(2) / 6) on level ground
+      for (double x = 0.0; x <= side; x += 0.05)
+        for (double y = 0.0; y <= side; y += 0.05) {
+          s.height(x, y, z);
+          worst = std::max(worst, nearest(x, y, z) * R / zones.of(x, y));
+        }
+      EXPECT_LT(worst, 1.031) << degrees << " degrees, spacings " << zones.around << " " << zones.triangle << " "
+                              << zones.strip;
+    }
+}
+
+TEST(ScatteredSampler, zones_have_the_places_of_their_spacing_whatever_the_tiles)
+{
+  const Surface s = plane(30.0, 25.0);
+  const Zones zones = {0.9, 0.5, 0.7};
+  auto sorted = [](const std::vector<double> &xyz) {
+    std::vector<std::array<double, 3>> all;
+    for (size_t k = 0; k < xyz.size(); k += 3) all.push_back({{xyz[k], xyz[k + 1], xyz[k + 2]}});
+    std::sort(all.begin(), all.end());
+    return all;
+  };
+  const auto all = sorted(scatter_zones(24.0, zones, s));
+  EXPECT_EQ(all, sorted(scatter_zones(24.0, zones, s, 4)));
+  for (double one : {zones.around, zones.triangle}) {    // away from the seams
+    ScatteredSampler alone({0.0, 24.0, 0.0, 24.0, one, 0.3, 0.1}, s, 5);
+    int inside = 0, same = 0;
+    for (const auto &p : sorted(places(alone))) {
+      bool deep = true;
+      for (double dx : {-3.0, 0.0, 3.0})
+        for (double dy : {-3.0, 0.0, 3.0}) deep = deep && zones.of(p[0] + dx, p[1] + dy) == one;
+      if (!deep) continue;
+      inside++;
+      same += std::binary_search(all.begin(), all.end(), p);
+    }
+    EXPECT_GT(inside, 20);
+    EXPECT_EQ(same, inside);
+  }
+}
+
 TEST(ScatteredSampler, refuses_what_makes_no_plan)
 {
   const Surface s = plane(0.0, 0.0);

@@ -4,6 +4,7 @@ import re
 from typing import Tuple
 
 DIGITS = 5      # of a number in a message; more is known of none
+SIGNIFICANT = 3     # of a number for those who read
 UNITS = re.compile(r"\b(m)([23])\b")
 
 
@@ -30,9 +31,41 @@ def at_least(value: float, digits: int = DIGITS) -> str:
     return f"{math.ceil(value * power) / power:.15g}"
 
 
+def percent(share: float, exact: bool = False) -> str:
+    """A share with two digits, from 10 % on in whole per cents, near 100 % in tenths.
+
+    exact: of something that was counted or measured, which may be none or all of it; else a probability, or a share
+    that stands for one: never a certain 0 or 100 %.
+    """
+    value, least = 100 * share, 0.01 if exact else 0.1
+    if exact and value in (0, 100):
+        return f"{value:.0f} %"
+    if abs(value) < least:
+        return f"less than {least:g} %"
+    if value > 99.9:
+        return "more than 99.9 %"
+    return f"{value:.2g} %" if abs(value) < 9.95 else f"{value:.0f} %" if value < 99 else f"{value:.1f} %"
+
+
+def measured(share: float) -> str:
+    """percent() of something that was counted or measured."""
+    return percent(share, exact=True)
+
+
+def chance(share: float, low: float, high: float) -> str:
+    """A probability that so many of some runs show, with its bounds; where none or all of them do, the bound alone."""
+    if share <= 0:
+        return f"at most {percent(high)}"
+    return f"at least {percent(low)}" if share >= 1 else f"{percent(share)} ({percent(low)} to {percent(high)})"
+
+
+def metres(value: float) -> str:
+    """A length with its unit, with three digits at least, on the console as on a page: 0.523 m, 167 m, 1,234 m."""
+    return f"{rounded(value, SIGNIFICANT)} m"
+
+
 # --- the rule of reports: three significant digits, SI prefixes, words for nothing ---
 
-SIGNIFICANT = 3
 PREFIXES = ((1e12, "T"), (1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""))
 MILLION = 1e6       # m³, from which volumes are in millions
 

@@ -37,9 +37,9 @@ WORDS: Dict[str, Union[str, Words]] = {
     "body volume": Words(f"{DOUBTFUL}it is {{off}} {{side}} than the body of {{body:,.0f}} m3", NOTE, NOT_BODY),
     "balls removed": Words(f"{DOUBTFUL}{{off}} of the balls were removed at the start, and the body that the others "
                            "represent is unknown (fix deposit/grid ... bulk region)", NOTE, NOT_BODY),
-    "road on body": Words("{file}: a part of the road lies on the body, and goes with it: the volume to remove does "
+    "road on body": Words("{file}: {part} lies on the body, and goes with it: the volume to remove does "
                           "not tell what it takes to build the road anew", client=(
-                              "A part of the road lies on the mass that is released, and goes with it: what it takes "
+                              "{Part} lies on the mass that is released, and goes with it: what it takes "
                               "to build it anew is not in the volume.")),
     "soft": Words("the contacts are soft for the weight on them, K {number:,.0f} instead of {limit:,.0f} and more: "
                   "volumes and distances may be some percent too large (choosing parameters, stiffness)", NOTE),
@@ -94,6 +94,8 @@ WORDS: Dict[str, Union[str, Words]] = {
     "datums": "tiles of {datums} are mixed and not converted: {what} may differ where they meet",
     "cut to input": "--bounds reaches beyond the input, {extent}: cut to it",
     "outside": "{file}: {percent:.2g} % of the area lies outside of {terrain}",
+    "zones overlap": "{file}: zones overlap on {area:,.0f} m2: the later feature counts there",
+    "zone covered": "{file}: zone {zone} lies below later features and counts nowhere",
     "no geometry": "{feature} has no geometry ({without} of {features} have none): left out",
     "no line": "{file}: {kinds} in it, where a line is asked for: left out",
     "drawn twice": "{file}: {percent:.3g} % of the length of its lines is drawn more than once, or there and back: "
@@ -190,13 +192,47 @@ WORDS: Dict[str, Union[str, Words]] = {
     "beyond the curve": "{which}: peaks above the hazard curve's last may add up to {per_year:.2g} failures per year",
     # of a study
     "ranks": "{runs} runs of {ranks} ranks at a time on {cores} cores: they slow each other down",
-    "no effect": Words("a repeated variable has no effect, to the last digit: left out", NOTE),
+    "no effect": Words("{which} has no effect{on}, to the last digit: {then}", NOTE),
     # why the number of a study is withheld
-    "balls on the road": "on the road lies the volume of {balls}, fewer than {bound:g}",
-    "known events": "no run reaches {bound} m, as half of known events of this volume and height do; {longest}",
-    "left the terrain": "{percent:.2g} % of the released volume left the terrain before or beside the road, more than "
-                        "{most:g} %{where}",
-    "runs not at rest or failed": "{number} of {bound} runs failed or are not at rest at the end, more than {most:g} %",
+    "balls on the road": Words("on the road lies the volume of {balls}, fewer than {bound:g}", client=(
+        "Fewer than ten of the model's balls come to lie on the road, which are single blocks and no volume.")),
+    "known events": Words("no run reaches {bound} m, as half of known events of this volume and height do; {longest}",
+                          client="No run goes as far as half of known events of this volume and height."),
+    "left the terrain": Words("{percent:.2g} % of the released volume left the terrain before or beside the road, more "
+                              "than {most:g} %{where}", client=(
+                                  "A part of the mass left the elevation model before it came to the road, and is not "
+                                  "counted.")),
+    "runs not at rest or failed": Words("{number} of {bound} runs failed or are not at rest at the end, more than "
+                                        "{most:g} %", client=(
+                                            "More than a tenth of the runs failed, or had not come to rest when they "
+                                            "ended.")),
+    "rule": "{study}: withheld by the rule {rule}",
+    # why it is a floor, and why no more runs were added
+    "known beyond runs": Words("no run goes beyond {longest}, where {far} of known events go on", client=(
+        "{far} of known events of this volume and height go farther than the longest run, which ends after "
+        "{longest}.")),
+    "road not reached": Words("no run reaches the road, {near} along the fall path ({ends}), but {shares} of known "
+                              "events do", client="The road begins after {near} along the fall path, and {ends}."),
+    "one scatter reaches": Words("no run reaches the road, {near} along the fall path ({ends}), but {shares} of known "
+                                 "events do, by one of the two scatters that are known of them", client=(
+                                     "{shares} of them reach the road, as their scatter is taken: only the larger of "
+                                     "two estimates says more than 10 %.")),
+    "terrain ends": Words("the terrain shows the first {path} of the way, and {share} of known events go on: take a "
+                          "larger terrain", client=(
+                              "The elevation model shows the first {path} of the way, where {share} of known events go "
+                              "on.")),
+    "range ends": Words("no values within the ranges{ends} are expected to go farther: give wider ranges", client=(
+        "No values within the ranges that were tried are expected to go farther.")),
+    "no more runs": Words("{points} runs were added towards longer ones; a larger --sample allows more", client=(
+        "{points} runs were added towards longer ones, and no more.")),
+    "too few runs": Words("the runs are too few to tell which parameters go farther: take more points", client=(
+        "The runs are too few to tell which settings go farther.")),
+    "size of balls": Words("the finest balls are {balls:.2g} over the thickness of the body: smaller ones, {enough:g} "
+                           "or more, may bring more", client=(
+                               "The finest of the model's balls are {balls:.2g} over the thickness of the body, and "
+                               "smaller ones, {enough:g} or more, may bring more.")),
+    "no fine run": Words("the run with smaller balls, which may bring more, did not finish", client=(
+        "The run with smaller balls in the model, which may bring more, did not finish.")),
     # caveats on the volume to remove
     "single run": Words("nothing was varied: it comes from a single run", NOTE),
     "end of range": Words("it lies at the end of the range of {variable}, {low:g} to {high:g}", NOTE),
@@ -228,11 +264,11 @@ WORDS: Dict[str, Union[str, Words]] = {
     "emulator": Words("{quantity}: {verdict}", NOTE),
     "no event": Words("{text}", NOTE),
     "few lengths": Words("fewer than two runs have a deposit", NOTE),
-    "events beyond": Words("no run goes beyond {length} m; {share} of known events do: they count as exceeding every "
+    "events beyond": Words("no run goes beyond {length}; {share} of known events do: they count as exceeding every "
                            "value; {remedy}", NOTE),
-    "events before": Words("no run ends before {length} m; {share} of known events do: they count as the shortest "
+    "events before": Words("no run ends before {length}; {share} of known events do: they count as the shortest "
                            "runs, in the bounds as anything", NOTE),
-    "gap": Words("between {low} and {high} m no run ends; {share} of known events do: they count as the runs on either "
+    "gap": Words("between {low} and {high} no run ends; {share} of known events do: they count as the runs on either "
                  "side", NOTE),
     "few effective": Words("the weighted runs say as much as {effective:.0f} runs of equal weight: take more points",
                            NOTE),
@@ -241,7 +277,7 @@ WORDS: Dict[str, Union[str, Words]] = {
     "lengths lost": Words("{lost} of {runs} runs lost more than {percent:g} % of their volume over the edge: their "
                           "lengths, and so the weights, are those of what stayed; take a larger terrain", NOTE),
     "outside of set": "{text}; that set says nothing of this mass",
-    "path ends": "the path leaves the terrain after {length} m, where {share} of known events go on: take a larger "
+    "path ends": "the path leaves the terrain after {length}, where {share} of known events go on: take a larger "
                  "terrain",
     "body without run": Words("body {body} has no finished run: all of it, {volume:,.0f} m3, counts as on the road; "
                               "more points (--sample)", NOTE),

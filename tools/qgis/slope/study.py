@@ -1,4 +1,5 @@
 """A deck, or a site, over lists of values: slope study."""
+import datetime
 from pathlib import Path
 
 from qgis.core import QgsProcessingException
@@ -62,17 +63,25 @@ class Study(Algorithm):
 
     def collect(self, asked, results):
         folder = self.site(asked)
-        made = newest(folder) if folder else Path(asked.output("OUTPUT"))
-        show(made, results)
+        shown = governing(folder) if folder else Path(asked.output("OUTPUT"))
+        show(shown, results)
         if folder:
-            page = next((path for path in (folder / "report.html", made / "report.html") if path.exists()), None)
+            page = next((path for path in (folder / "report.html", shown / "report.html") if path.exists()), None)
             results.put(REPORT=page and str(page))
 
 
-def newest(site):
-    """The folder of a site's last study: the ensemble that known events weigh, or the paper's alone."""
-    tables = [site / name / "study.yaml" for name in ("study", "ensemble")]
-    return max((path for path in tables if path.exists()), key=lambda path: path.stat().st_mtime).parent
+def governing(site):
+    """The folder of the study of a site that has its number: what both files say, or else the one made last by them."""
+    there = {site / name: load(site / name / "study.yaml")["study"] for name in ("ensemble", "study")
+             if (site / name / "study.yaml").exists()}
+    names = {about.get("governs") for about in there.values()}
+    named = [folder for folder in there if names == {folder.name}]
+    return named[0] if named else max(there, key=lambda folder: made(there[folder]))
+
+
+def made(about):
+    """When a study was made."""
+    return datetime.datetime.fromisoformat(about["collected"]).astimezone(datetime.timezone.utc)
 
 
 def show(folder, results):

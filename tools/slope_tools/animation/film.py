@@ -30,6 +30,7 @@ class Film(NamedTuple):
     """An MP4, and a sentence on it; no content: why there is none."""
     content: Optional[bytes]
     text: str
+    failed: bool = False        # it may be made another time
 
 
 def film(data, ground, section, layers, frames: Optional[Frames], name: str) -> Film:
@@ -49,7 +50,7 @@ def film(data, ground, section, layers, frames: Optional[Frames], name: str) -> 
         with pictures.settings(STYLE):
             content = encode(program, picture, times)
     except (OSError, subprocess.SubprocessError) as error:
-        return Film(None, f"No film: ffmpeg could not make it ({' '.join(str(error).split())[:200]}).")
+        return Film(None, f"No film: ffmpeg could not make it ({' '.join(str(error).split())[:200]}).", True)
     return Film(content, f"The same as a film, in plan and along the section, {len(times) / RATE:.0f} s "
                          f"long{'' if pace == 1 else f', {speed(pace)} real time'}{note}: {name}, beside this page.")
 

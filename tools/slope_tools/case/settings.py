@@ -15,6 +15,14 @@ def as_number(text):
         return text
 
 
+def middle(several):
+    """The value in the middle of a list by size, whatever its order; of values that are no numbers by the order."""
+    try:
+        return sorted(several, key=float)[len(several) // 2]
+    except ValueError:
+        return several[len(several) // 2]
+
+
 def check_names(names, deck, option, options):
     """The names that options NAME=... give, all of them different index variables of the deck; SlopeError otherwise."""
     found = decks.variables(deck)

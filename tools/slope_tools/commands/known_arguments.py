@@ -1,6 +1,5 @@
 """Arguments of the commands that compare a mass with known events: which ones, and whether its path is confined."""
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, List, Optional
 
 from ..mobility import known, landslides
@@ -37,7 +36,7 @@ class Known(Confined):
 
 
 def choice_of(events: Optional[str], left_out: List[str], confined: Optional[str],
-              site: Optional[Path] = None) -> known.Choice:
-    """What these options ask for; what they leave open is that of a site (a folder), if there is one."""
-    own = site_choices.read(site)["known"] if site else {}
+              site: Optional[site_choices.Site] = None) -> known.Choice:
+    """What these options ask for; what they leave open is that of a site, if there is one."""
+    own = site.choices["known"] if site else {}
     return known.choice(events or own.get("set"), left_out, confined or own.get("confined", "unknown"))

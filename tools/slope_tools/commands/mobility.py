@@ -47,9 +47,9 @@ class Request(Body, known_arguments.Known, road_arguments.Width, Overwrite):
 def run(args: Request) -> None:
     """Do the command; raises SlopeError on bad input. Prints what was found and written."""
     disk.check_folder(args.output, results.FILES, [args.terrain], args.overwrite)
-    site = Path(args.terrain).is_dir()
+    site = site_choices.load(Path(args.terrain)) if Path(args.terrain).is_dir() else None
     asked = known_arguments.choice_of(args.known, args.left_out, args.confined,       # before the terrain is read
-                                      Path(args.terrain) if site else None)
+                                      site)
     tell = printer("mobility")
     mass = of_site(args) if site else of_release(args, tell)
     lane = road_of(args, site, mass)
@@ -81,7 +81,7 @@ def of_release(args: Request, tell) -> body.Body:
     return body.of_release(found, asked.where)
 
 
-def road_of(args: Request, site: bool, mass: body.Body):
+def road_of(args: Request, site: Optional[site_choices.Site], mass: body.Body):
     """The road in local metres; None without one."""
     asked = road_arguments.asked(args)
     roads.check(asked)
@@ -93,7 +93,7 @@ def road_of(args: Request, site: bool, mass: body.Body):
     own = Path(args.terrain, ROAD)
     if not (site and own.is_file()):
         return None
-    asked = roads.Asked.of(site_choices.read(Path(args.terrain))["road"])
+    asked = roads.Asked.of(site.choices["road"])
     return roads.read_local(own, mass.raster, asked, local=True).polygon
 
 

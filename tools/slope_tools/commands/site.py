@@ -35,19 +35,21 @@ OPTIONS = {"terrain": ("terrain", "files"), "crs": ("terrain", "crs"),
            "bodies": ("release", "bodies"),
            "road": ("road", "file"), "cut_angle": ("road", "cut_angle"), "mesh": ("road", "mesh"),
            **{option: ("road", roads.KEYS[field]) for option, field in road_arguments.OPTIONS.items()},
+           "ground": ("ground", "file"), "ground_table": ("ground", "table"),
            "structure": ("structures", "files"), "wall": ("structures", "walls"), "height": ("structures", "height"),
            "width": ("structures", "width"), "line": ("lines", "files"), "motion": ("motion", "file"),
            "peak_friction": ("motion", "peak_friction"), "friction": ("model", "friction"),
            "rolling": ("study", "rolling"), "slip_friction": ("model", "slip_friction"),
            "density": ("model", "density"), "spacing": ("model", "spacing"),
            "field_restitution": ("model", "field_restitution"),
+           "largest_restitution": ("study", "largest_restitution"),
            "observed": ("observed", "file"), "known": ("known", "set"),
            "confined": ("known", "confined"), "diameter": ("balls", "diameter"), "balls": ("balls", "number"),
            "minutes": ("balls", "minutes"), "memory": ("balls", "memory"), "name": ("project", "name"),
            "client": ("project", "client"), "author": ("project", "author")}
 # options that change neither the body nor its runs: what was determined for these is kept
 BESIDE = {"road", *road_arguments.OPTIONS, "cut_angle", "mesh", "line", "observed", "known", "confined", "rolling",
-          "name", "client", "author"}
+          "largest_restitution", "name", "client", "author"}
 # of each group, an option that is given replaces the others
 ONE_OF = (("depth", "volume", "curvature"), ("diameter", "balls", "minutes", "memory"))
 OF_SOIL = ("friction", "rolling", "spacing", "field_restitution", "density", "slip_friction")
@@ -123,6 +125,12 @@ class Layers(road_arguments.Clearing):
     """What lies on it."""
     GROUP = "what lies on it"
     road: Optional[str] = option("for the volume to remove, " + road_arguments.ROAD, metavar="P")
+    ground: Optional[str] = option(
+        "zones of the ground: polygons with the attributes name, friction (degrees), rolling, restitution, spacing "
+        "(diameters); what a zone does not give, and the ground outside of all, has the values below. Or a raster of "
+        "classes", metavar="P|RASTER")
+    ground_table: Optional[str] = option("of these classes: CSV with the columns class and these attributes",
+                                         metavar="CSV")
     cut_angle: Optional[float] = option("rise of the cut from its edges (default 30)", metavar="DEG")
     mesh: Optional[float] = option("side of the mesh cells, m (default 10)", metavar="SIZE")
     structure: Optional[List[str]] = option(
@@ -163,6 +171,8 @@ class Model:
     spacing: Optional[float] = option(
         "of the ground's balls, in diameters, its roughness: up to 0.95 (default 0.9); less is smoother", metavar="S")
     field_restitution: Optional[float] = option("on the ground (default 0.1)", metavar="E")
+    largest_restitution: Optional[float] = option(
+        "that rock may have: runs with it, of reach and area alone (default 0.9)", metavar="E")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -204,7 +214,7 @@ def run(args: Request) -> None:
         made = site.make(choices, folder, site.Machine(program(args.lmp), cores),
                          lambda line: print(line, flush=True), printer("site"), site_map.draw,
                          again=args.folder is not None, known=known)
-    for line in site_ground.lines(folder):
+    for line in site_ground.lines(site_choices.load(folder)):
         print(line)
     for line in outlook.lines(folder):
         print(line)
@@ -219,7 +229,8 @@ def runs_ahead(args: Request, folder: Path, choices) -> str:
     engine = Setup(folder / site_deck.NAME, folder, jobs=args.jobs, lmp=args.lmp)
     points = choices["study"]["points"]
     try:
-        return f"the study: {ahead.of_site(folder, engine, 0 if known_study.why_not(folder) else points).text}"
+        points = 0 if known_study.why_not(folder) else points
+        return f"the study: {ahead.of_site(site_choices.load(folder), engine, points).text}"
     except SlopeError as error:
         return f"the study: {error}"
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, List, Mapping, Optional
 
+from .. import disk
 from ..case import decks
 from ..case.settings import check_settings, one_value_each
 from ..ensembles import known_events, known_study, sample
@@ -14,12 +15,14 @@ from ..errors import SlopeError
 from ..options import flag, option, positional, several
 from ..runs import repeats
 from ..sites import site_choices, site_deck
+from ..sites.site_choices import Site
 from ..sites.site_bodies import VARIABLE
 from ..sites.site_layers import ROAD
+from ..statistics.answer import Source
 from ..studies import ahead, fine_runs, results, site_ground, site_study, study
 from ..studies.study import OfAKind, RunsFailed, check_more_than, check_thresholds, perform
 from ..survey import roads
-from ..tables import answer_words, answered, intensity
+from ..tables import answer_words, answered, elastic, intensity
 from . import known_arguments, road_arguments
 from .run_arguments import DECK, Intensity, Repeats, Runs, Sample, setup_of
 
@@ -66,6 +69,7 @@ DIR/combinations.csv (mean and scatter), DIR/study.yaml, and the maps envelope_*
 class Request(Sample, known_arguments.Known, Repeats, Intensity, Runs):
     method: str = ""        # of a site's study, in words
     weigh: bool = False     # by the known events of a site, also without --known
+    around: Optional[Site] = None       # in whose folder the deck is
     wide: Mapping[str, Any] = field(default_factory=dict)       # {variable: its range outside of the given one}
     deck: Path = positional(f"{DECK}; or a folder made by `slope site`: its standard study is run", metavar="DECK|SITE")
     set: List[str] = several(
@@ -95,75 +99,76 @@ class Request(Sample, known_arguments.Known, Repeats, Intensity, Runs):
 def run(args: Request) -> None:
     """Do the command; raises SlopeError on bad input, and after all other runs when one failed."""
     if args.deck.is_dir() and (args.output is None or (args.deck / site_choices.NAME).exists()):
-        return run_folder(args)
+        with study.alone(args.deck, args.dry_run):
+            return run_folder(args, site_choices.load(args.deck))
     if args.paper:
         raise SlopeError("--paper", "must be given with the folder of a site", args.deck)
-    return run_deck(args)
+    return run_deck(replace(args, around=site_choices.around(args.deck)))
 
 
-def run_folder(args: Request) -> None:
+def run_folder(args: Request, site: Site) -> None:
     """The study of a site's folder: by the paper's method, and weighted by known events."""
     if args.sample is not None or args.fit is not None:
         if args.paper:
             raise SlopeError("--paper", "must not be given with --sample or --from, which make an ensemble")
-        return run_site_ensemble(args)
+        return run_site_ensemble(args, site)
     if args.fragility is not None:
         raise SlopeError("--sample", "must be given with --fragility: how many runs")
     refuse(args, NOT_OF_A_SITE)
-    choices = site_choices.read(args.deck)
-    site_study.check(args.deck, choices)
-    points = choices["study"]["points"]
+    site_study.check(site)
+    points = site.choices["study"]["points"]
     why = "" if args.paper else known_study.why_not(args.deck) if points else known_study.NONE
     if args.paper or why:
-        condition_of(args)      # has no meaning here
+        condition_of(replace(args, around=site))        # has no meaning here
         method = f"{known_study.PAPER}; {why}" if why else known_study.ASKED
-        say(args, method, 0)
-        return run_site(args, method)
-    say(args, f"{known_study.WEIGHTED}, which --paper makes alone", points)
-    return run_both(args, points)
+        say(args, site, method, 0)
+        return run_site(args, site, method)
+    say(args, site, f"{known_study.WEIGHTED}, which --paper makes alone", points)
+    return run_both(args, site, points)
 
 
-def run_both(args: Request, points: int) -> None:
+def run_both(args: Request, asked: Site, points: int) -> None:
     """The paper's study and the ensemble of a site, the number that both give, and a report of each."""
-    site = args.deck
-    both = [site / name / "study.yaml" for name in (site_study.STUDY, site_study.ENSEMBLE)]
-    before = [written(path) for path in both]
-    paper = site_study.run(site, setup_of(args), known_study.BESIDE, args.fine)
-    failed = paper.failed
+    site, before = asked.folder, site_study.digests(asked)
+    paper = site_study.run(asked, setup_of(args), known_study.BESIDE, args.fine)
+    failed, weighted = paper.failed, None
+    if site_study.digests(asked) != before:
+        raise SlopeError(site, f"must not change while its study is made: {site_deck.NAME} and its data are not those "
+                         "of the runs so far; the same command again, with --anew")
     try:
-        run_deck(of_ensemble(replace(args, sample=points, known=None, weigh=True), known_study.WEIGHTED))
+        weighted = run_deck(of_ensemble(replace(args, sample=points, known=None, weigh=True), asked,
+                                        known_study.WEIGHTED))
     except RunsFailed as error:     # the others count
-        failed = failed or error
+        failed, weighted = failed or error, error.found
     if args.dry_run:
         return
-    # where all runs of one failed there may be an older result of it
-    new = all(written(path) not in (None, old) for path, old in zip(both, before))
-    found = answered.of_both(*both) if new else None
-    governs = answered.governing(*(path.parent for path in both)).name
-    for name in (site_study.STUDY, site_study.ENSEMBLE):
-        if name != governs and (site / name / "study.yaml").is_file():
-            write_report(site / name, site / PAGES[name], film=False)
+    made = {name: about for name, about in ((site_study.STUDY, paper.about), (site_study.ENSEMBLE, weighted))
+            if about}
+    found, governs = answered.of_both(*made.values()) if len(made) == 2 else None, list(made)[-1]
+    if found:
+        governs = site_study.STUDY if found.source is Source.PAPER else site_study.ENSEMBLE
+    for name, about in made.items():
+        made[name] = {**about, "study": {**about["study"], "governs": governs}, **(
+            {"headline": found.about()} if found else {}), elastic.ENTRY: (paper.about or {}).get(elastic.ENTRY)}
+        results.write(site / name, made[name])
+    for name, about in made.items():
+        if name != governs:
+            write_report(site / name, site / PAGES[name], about, asked, film=False)
     if found:
         print("\n".join(answer_words.lines(found)))
-    if (site / governs / "study.yaml").is_file():
-        write_report(site / governs, site / "report.html")
+    write_report(site / governs, site / "report.html", made[governs], asked)
     if failed:
         raise failed
 
 
-def written(path: Path) -> Optional[int]:
-    """When a file was written; None: there is none."""
-    return path.stat().st_mtime_ns if path.is_file() else None
-
-
-def say(args: Request, method, points):
+def say(args: Request, site: Site, method: str, points: int) -> None:
     """How the study of a site is made, what its grounds hold, which runs are there; points: of the ensemble."""
-    print("\n".join([method, *site_ground.lines(args.deck, True),
-                     ahead.of_site(args.deck, setup_of(args), points, args.fine).text]), flush=True)
+    print("\n".join([method, *site_ground.lines(site, others=True),
+                     ahead.of_site(site, setup_of(args), points, args.fine).text]), flush=True)
 
 
-def run_deck(args: Request) -> None:
-    """The runs of a deck."""
+def run_deck(args: Request) -> Any:
+    """The runs of a deck; what study.yaml says of them, None of a dry run."""
     if args.output is None and not args.deck.exists():
         raise SlopeError(args.deck, "must be a deck or the folder of a site, there is none of that name")
     if args.output is None:
@@ -188,7 +193,7 @@ def run_deck(args: Request) -> None:
     setup = setup_of(args)
     fine = fine_runs.in_the_middle(setup, fine_runs.factor_of(args.fine), settings, defaults)
     questions = results.Questions(settings, repeated, thresholds, None, args.intensity, args.more_than or (),
-                                  fine=fine[0] if fine else None)
+                                  fine=fine[0] if fine else None, known=known_of(args))
     return perform(setup, {**settings, **repeated}, [*todo, *fine],
                    lambda _, work: results.collect(setup, questions, todo, work), first=fine)
 
@@ -199,10 +204,14 @@ def of_a_kind(args: Request) -> OfAKind:
 
 def condition_of(args: Request) -> Optional[known_events.Condition]:
     """What --known and its company ask for; SlopeError if some are there without it."""
-    site = args.deck.parent if (args.deck.parent / site_choices.NAME).is_file() else None
-    choice = known_arguments.choice_of(args.known, args.left_out, args.confined, site) \
+    choice = known_arguments.choice_of(args.known, args.left_out, args.confined, args.around) \
         if args.known is not None or args.weigh else None
-    return study.condition_of(choice, args.known, args.deck, args.left_out, args.confined)
+    return study.condition_of(choice, args.known, args.around and args.around.folder, args.left_out, args.confined)
+
+
+def known_of(args: Request) -> Mapping[str, Any]:
+    """With which known events the runs of a site's deck are compared."""
+    return args.around.choices["known"] if args.around else {}
 
 
 def check_fit(args: Request) -> None:
@@ -222,7 +231,7 @@ def chain_of(args: Request):
         if given is not None:
             raise SlopeError(f"--{name}", "must not be given with --fragility, whose runs are of several bodies "
                              "and of the volume on the road", given)
-    if args.sample is None or args.site is None:
+    if args.sample is None or args.site is None or args.around is None:
         raise SlopeError("--fragility", "must be given with the folder of a site and --sample", args.fragility)
     if not args.road:
         raise SlopeError("--fragility", "needs a site with a road: what counts is the volume on it", args.fragility)
@@ -230,16 +239,16 @@ def chain_of(args: Request):
         if words.startswith(f"{VARIABLE}="):
             raise SlopeError("--vary", f"must not have {VARIABLE}, which --fragility draws", words)
     found = chain_files.check(fragility_files.read(args.fragility),
-                              site_choices.found(args.site).get("bodies") or {}, args.site, args.more_than or ())
+                              args.around.found.get("bodies") or {}, args.site, args.more_than or ())
     fixed, drawn = chain_files.options(found)
     return replace(args, set=[*args.set, *fixed], vary=[*args.vary, *drawn], more_than=None), found
 
 
-def run_site(args: Request, method: str) -> None:
+def run_site(args: Request, site: Site, method: str) -> None:
     """The standard study of a site's folder, and the report."""
-    done = site_study.run(args.deck, setup_of(args), method, args.fine)
-    if done.study:
-        write_report(done.study, args.deck / "report.html")
+    done = site_study.run(site, setup_of(args), method, args.fine)
+    if done.study and done.about:
+        write_report(done.study, args.deck / "report.html", done.about, site)
     if done.failed:
         raise done.failed
 
@@ -255,33 +264,35 @@ def refuse(args: Request, names) -> None:
                              None if first is True else f"{first:g}" if isinstance(first, float) else first)
 
 
-def write_report(folder, page, film=True):
+def write_report(folder: Path, page: Path, about: Mapping[str, Any], site: Site, film=True) -> None:
+    """The page on a study, of which study.yaml says this, unless it is there."""
     from ..report import document
     from ..report.heading import Asked
-    print("\n".join(document.write(Asked(folder, film=page.with_suffix(".mp4") if film else None), page)))
+    asked = Asked(folder, film=page.with_suffix(".mp4") if film else None, study=disk.plain(about), site=site.content)
+    print("\n".join(document.update(asked, page)))
 
 
-def run_site_ensemble(args: Request) -> None:
+def run_site_ensemble(args: Request, site: Site) -> None:
     """An ensemble of a site's deck with its road, in a folder of the site's, and the report."""
     refuse(args, OF_A_ROAD)
-    wanted = of_ensemble(args)
-    run_deck(wanted)
-    if not args.dry_run:
+    site_study.check(site)
+    wanted = of_ensemble(args, site)
+    about = run_deck(wanted)
+    if about:
         assert wanted.output is not None
-        write_report(wanted.output, args.deck / PAGES[site_study.ENSEMBLE])
+        write_report(wanted.output, args.deck / PAGES[site_study.ENSEMBLE], about, site)
 
 
-def of_ensemble(args: Request, method="") -> Request:
+def of_ensemble(args: Request, asked: Site, method="") -> Request:
     """The request with a site's deck, its road, and a folder of the site's."""
-    site, choices = args.deck, site_choices.read(args.deck)
-    site_study.check(site, choices)
+    site, choices = asked.folder, asked.choices
     about = choices["road"]
     chance = site_choices.chance(decks.index_variables(site / site_deck.NAME))
     road = {name: about[roads.KEYS[field]] for name, field in road_arguments.OPTIONS.items()}
     road.update(road=site / ROAD, cut_angle=about["cut_angle"], mesh=about["mesh"])
     vary = args.vary or ([] if args.fit else [*of_fragility(choices), chance] if args.fragility
                          else [*known_study.VARY, chance])
-    return replace(args, deck=site / site_deck.NAME, site=site, method=method,
+    return replace(args, deck=site / site_deck.NAME, site=site, around=asked, method=method,
                    set=[*args.set, *not_varied(args, choices, vary)],
                    fine=args.fine or str(choices["study"]["fine"] or "no"),
                    output=args.output or site / site_study.ENSEMBLE,
@@ -304,8 +315,8 @@ def of_fragility(choices):
     return [f"rolling={min(rolling):.10g}:{max(rolling):.10g}"] * (min(rolling) < max(rolling))
 
 
-def run_ensemble(args: Request, settings, repeated, thresholds, defaults, condition, chain=None) -> None:
-    """The runs of --sample, and what they say together."""
+def run_ensemble(args: Request, settings, repeated, thresholds, defaults, condition, chain=None) -> Any:
+    """The runs of --sample; what study.yaml says of them."""
     from ..ensembles import ensemble, ensemble_maps, farther
     from ..fitting import calibrated
     from ..studies import farther_runs
@@ -328,7 +339,7 @@ def run_ensemble(args: Request, settings, repeated, thresholds, defaults, condit
     several = sample.settings_of(todo)
     order = ensemble.Order(plan, of, levels, condition, condition and farther.Added(setup.output, plan))
     questions = results.Questions(several, repeated, thresholds, order, site=args.site, method=args.method,
-                                  chain=chain)
+                                  chain=chain, known=known_of(args))
 
     def collect(todo, work):
         fine = fine_runs.of_median_length(setup, fine_runs.factor_of(args.fine), todo, defaults)
@@ -337,8 +348,8 @@ def run_ensemble(args: Request, settings, repeated, thresholds, defaults, condit
             farther_runs.make(setup, order, fixed, repeats.chances_of(repeated, {**defaults, **fixed}), todo, work,
                               fine)
         work.do(fine)
-        results.collect(setup, questions._replace(settings=sample.settings_of(todo), fine=fine[0] if fine else None),
-                        todo, work)
+        return results.collect(setup, questions._replace(settings=sample.settings_of(todo),
+                                                         fine=fine[0] if fine else None), todo, work)
 
-    perform(setup, {**sample.all_values(several, plan), **repeated}, todo, collect,
-            begin=lambda: sample.keep(setup.output, plan))
+    return perform(setup, {**sample.all_values(several, plan), **repeated}, todo, collect,
+                   begin=lambda: sample.keep(setup.output, plan))

@@ -80,8 +80,8 @@ def summary(about, folder):
     if "other_bulk_factor" in about:
         lines[-1] += (f"; at {about['other_bulk_factor']:.6g}: {about['volume_at_other_bulk_factor']['remove']:.1f} m3 "
                       "to remove")
-    lines.append(f"axis: blocked over {axis['blocked_length']:.1f} of {axis['length']:.1f} m, where thicker than "
-                 f"{axis['blocked_above']:g} m; up to {axis['largest_thickness']:.2f} m")
+    lines.append(f"axis: thicker than {axis['blocked_above']:g} m over {axis['blocked_length']:.1f} of "
+                 f"{axis['length']:.1f} m, up to {axis['largest_thickness']:.2f} m")
     lines += of_stretches(about["stretches"], about["clearing"])
     lines += of_mass(about["divided"], about["left"])
     lines.append(f"mesh of {about['mesh']['size']:g} m: {about['mesh']['cells_to_clear']} cells to clear")

@@ -2,6 +2,8 @@
 from dataclasses import dataclass
 from typing import Any, Mapping, Optional
 
+from ..digits import measured
+
 FAST = 0.1              # m/s: what is slower creeps or jitters (motion: fast_... of fix deposit/grid)
 MOST_FAST = 0.01        # share of the released volume that may be faster in a deposit at rest, in older summaries
 CUT = "run completed"   # what a summary calls the end of a run that no criterion ended
@@ -23,7 +25,7 @@ class Rest:
     @property
     def moves(self) -> str:
         """What moves: `2.3 % of the volume (940 m3) is faster than 0.1 m/s, up to 30 m/s`."""
-        text = f"{percent(self.share)} of the volume"
+        text = f"{measured(self.share)} of the volume"
         if self.volume is not None:
             text += f" ({self.volume:,.3g} m3)" if self.volume < 1000 else f" ({self.volume:,.0f} m3)"
         text += f" is faster than {self.threshold:g} m/s"
@@ -40,13 +42,6 @@ class Rest:
         if self.at_rest:
             return "at rest"
         return "moves" if self.halted else "duration" if self.ended == ENDS[CUT] else "cut"
-
-
-def percent(share: float) -> str:
-    """Two digits, or one from 10 % on; what is small is said to be below a hundredth of a percent."""
-    if 0 < share < 1e-4:
-        return "< 0.01 %"
-    return f"{100 * share:.2g} %" if share < 0.1 else f"{100 * share:.0f} %"
 
 
 def state(summary: Mapping[str, Any]) -> Rest:

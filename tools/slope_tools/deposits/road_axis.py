@@ -5,12 +5,12 @@ import math
 import numpy as np
 from shapely import wkb
 from shapely.affinity import rotate
-from shapely.geometry import LineString, MultiLineString
+from shapely.geometry import LineString, MultiLineString, MultiPolygon, Point
 
 from .. import geometry
 from ..errors import SlopeError
 from ..survey.lines import lines_of
-from .axis import Axis
+from .axis import SAME, Axis, Span, merged
 
 STATIONS = 500         # cross sections of a curved road
 STRAIGHT = 0.98        # share of the centre line of a straight road that lies in the road
@@ -19,12 +19,13 @@ STRAIGHT = 0.98        # share of the centre line of a straight road that lies i
 def middle(road):
     """The road's middle, and how it was found: the centre line of its smallest rectangle, where that lies in the road,
 
-    else the middles of its cross sections, square to the long side of that rectangle. A study has one road.
+    else the middles of its cross sections, square to the long side of that rectangle. Where there is no road, as at a
+    tunnel between two polygons, there is no axis: what lies on either side has its own. A study has one road.
     """
     return _middle(road.wkb)
 
 
-@functools.lru_cache(maxsize=4)
+@functools.lru_cache(maxsize=8)
 def _middle(of):
     road = wkb.loads(of)
     corners = np.array(road.minimum_rotated_rectangle.exterior.coords)[:4]
@@ -32,11 +33,16 @@ def _middle(of):
     if sides[0] > sides[1]:
         corners = np.roll(corners, -1, axis=0)  # the first side is a short one
     ends = (corners[:2].mean(axis=0), corners[2:].mean(axis=0))
+    angle = math.degrees(math.atan2(*(ends[1] - ends[0])[::-1]))
+    level = rotate(road, -angle, origin=(0, 0))
+    several = polygons_along(level)
+    if len(several) > 1:
+        found = [_middle(rotate(one, angle, origin=(0, 0)).wkb) for one in several]
+        return eastward(MultiLineString([line for lines, _ in found for line in lines.geoms])), \
+            " and ".join(dict.fromkeys(source for _, source in found))
     inside = lines_of(LineString(ends).intersection(road))
     if inside.length >= STRAIGHT * max(sides):
         return eastward(inside), "centre line of the road's smallest rectangle"
-    angle = math.degrees(math.atan2(*(ends[1] - ends[0])[::-1]))
-    level = rotate(road, -angle, origin=(0, 0))
     west, south, east, north = level.bounds
     tiny = 1e-9 * (east - west)
     points = []
@@ -45,6 +51,13 @@ def _middle(of):
         if chords:
             points.append(max(chords, key=lambda chord: chord.length).interpolate(0.5, normalized=True).coords[0])
     return eastward(rotate(lines_of(LineString(points)), angle, origin=(0, 0))), "middles of the road's cross sections"
+
+
+def polygons_along(level):
+    """The polygons of a road whose long side is level, those together between which there is no gap along it."""
+    each = [(Span(one.bounds[0], one.bounds[2]), one) for one in geometry.polygons_of(level)]
+    return [MultiPolygon([one for span, one in each if part.low <= span.low <= part.high])
+            for part in merged([span for span, _ in each], SAME)]
 
 
 def axis_of(line, polygon, asked):
@@ -84,10 +97,11 @@ def axes_of(axis, asked):
     return found
 
 
-def along(axis, run_, removed, asked):
+def along(axis, run_, removed, asked, road=None):
     """Profile along the axis, a dict of arrays: one entry per cell that it crosses. Lengths are exact.
 
-    asked: roads.Asked, whose start is the chainage of the axis' first point.
+    asked: roads.Asked, whose start is the chainage of the axis' first point; road: polygons, beside which nothing is
+    blocked; None: the axis is nowhere beside it.
     """
     shape = run_.raster.z.shape
     parts = [np.asarray(line.coords)[:, :2] for line in geometry.to_index(axis, run_.raster).geoms]
@@ -105,8 +119,10 @@ def along(axis, run_, removed, asked):
     to = 1000 * asked.start + np.cumsum(length)
     x, y = run_.raster.transform * tuple(centre.T)
     thickness = run_.raster.z[row, column]
+    on_road = True if road is None or not road.intersects(axis) else np.array([
+        road.intersects(Point(place)) for place in zip(x, y)])
     return {"from": to - length, "to": to, "x": x, "y": y, "ground": run_.base[row, column], "thickness": thickness,
-            "removed": removed[row, column], "blocked": (thickness > asked.blocked).astype(int)}
+            "removed": removed[row, column], "blocked": ((thickness > asked.blocked) & on_road).astype(int)}
 
 
 def stretches(profile):

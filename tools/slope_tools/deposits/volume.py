@@ -82,7 +82,7 @@ def of_run(prefix, wanted: Wanted, terrain=None, tell: Callable[[str], None] = l
     roads.check_lane(asked.lane, width)
     try:
         result = evaluate(run, road, wanted.cut_angle, mesh, wanted.samples)
-        profile = along(axis, run, result.removed, asked)
+        profile = along(axis, run, result.removed, asked, road if wanted.axis else None)
         cleared = clearing.of_road(run, result, profile, axes_of(axis, asked), width,
                                    road if given.line is None else None, asked, mesh, wanted.cut_angle, wanted.samples)
     except cut.NoGround as error:
@@ -117,6 +117,8 @@ def write(found: Removal, folder: Path, picture: bool = True) -> None:
             volume_files.draw(new / "volume.png", run, found.road, found.axis, mesh, result, about, found.clearing)
         about["files"] = sorted(path.name for path in new.iterdir()) + ["volume.yaml"]
         disk.write_yaml(new / "volume.yaml", about, "slope volume: what must be removed; m, m2, m3, degrees")
+    if not picture:
+        (folder / "volume.png").unlink(missing_ok=True)     # of another result
 
 
 def check(wanted: Wanted) -> None:

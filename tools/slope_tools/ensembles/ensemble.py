@@ -15,7 +15,7 @@ from ..deposits import travel_shares
 from ..errors import SlopeError
 from ..findings import Finding, entries, texts
 from ..statistics import emulator, hazard
-from ..tables import quantities, withheld_words
+from ..tables import combinations, quantities, withheld_words
 from ..tables.quantities import On
 from . import ensemble_maps, farther, known_events
 from .sample import Sample
@@ -75,7 +75,7 @@ def evaluate(order: Order, rows: Sequence[Mapping[str, Any]], output: Path, plac
     analyses = {name: emulator.analyse(order.sample.names, places, column(finished, name), point, order.sample.snap)
                 for name in main}
     about["influence"] = {name: one.about() for name, one in analyses.items()}
-    about["doubts"] = entries(doubts(about))
+    about["doubts"] = entries([*no_effect(finished), *doubts(about)])
     about["maps"] = [] if grids else ensemble_maps.write(
         output / MAPS, [run_folders.prefix_of(run_folders.summary_of(output, row)) for row in finished],
         len(set(point)), failed, order.levels, place)
@@ -90,9 +90,10 @@ def evaluate(order: Order, rows: Sequence[Mapping[str, Any]], output: Path, plac
 
 
 def points_of(sample: Sample, finished: Sequence[Mapping[str, Any]]) -> List[int]:
-    """Which point of the design each run is of."""
+    """Which point of the design each run is of; points whose runs are the same, to the last digit, are one."""
     known: Dict[tuple, int] = {}
-    return [known.setdefault(tuple(row["set"][name] for name in sample.names), len(known)) for row in finished]
+    first = combinations.same_as(finished)
+    return [known.setdefault(tuple(finished[k]["set"][name] for name in sample.names), len(known)) for k in first]
 
 
 def column(finished: Sequence[Mapping[str, Any]], name: str) -> np.ndarray:
@@ -106,7 +107,25 @@ def numbers(values: np.ndarray, point: Sequence[int], failed: int) -> Dict[str, 
     return {"mean": float(values.mean()),
             "standard_deviation": float(values.std(ddof=1)) if len(values) > 1 else None,
             "smallest": float(values.min()), "largest": float(values.max()),
-            "quantiles": [one._asdict() for one in hazard.quantiles(values, point, failed)]}
+            "quantiles": [(one if several(point) else one._replace(low=None, high=None))._asdict()
+                          for one in hazard.quantiles(values, point, failed)]}
+
+
+def several(point: Sequence[int]) -> bool:
+    """Whether the runs are more than one, so that they have bounds; one run alone has that of its distribution."""
+    return len(point) == 1 or len(set(point)) > 1
+
+
+def no_effect(finished: Sequence[Mapping[str, Any]]) -> List[Finding]:
+    """The caveat that runs are the same as others, though their values differ."""
+    first = combinations.same_as(finished)
+    same = [k for k in range(len(finished)) if first.count(first[k]) > 1]
+    if not same:
+        return []
+    number = len({first[k] for k in same})
+    then = "they are one run, which has no bounds" if len(set(first)) == 1 else f"the bounds count them as {number}"
+    return [Finding("no effect", {"which": "what was varied", "on": f" on {len(same)} of {len(finished)} runs",
+                                  "then": then}, [finished[k]["run"] for k in same])]
 
 
 def doubts(about: Mapping[str, Any]) -> List[Finding]:

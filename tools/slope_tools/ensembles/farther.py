@@ -17,8 +17,7 @@ import numpy as np
 import yaml
 
 from .. import disk, schemas
-from ..digits import rounded
-from ..mobility.results import percent
+from ..digits import metres, percent
 from ..schemas import NUMBER, OBJECT, TEXT, listed, mapping, named
 from ..statistics import backanalysis, designs, distributions, emulator
 from ..statistics.answer import Code, Reason
@@ -146,7 +145,7 @@ class Added:
 
     def line(self, batch: Batch, lengths: np.ndarray, beyond: np.ndarray) -> str:
         """What is done, for the console."""
-        return (f"no run goes beyond {rounded(float(max(lengths)), 4)} m; {percent(float(min(beyond)))} of known "
+        return (f"no run goes beyond {metres(float(max(lengths)))}; {percent(float(min(beyond)))} of known "
                 f"events do; {len(batch.points)} more points towards {self.text(batch)}")
 
     def about(self) -> Dict[str, Any]:

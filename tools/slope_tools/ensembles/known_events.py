@@ -13,14 +13,12 @@ import numpy as np
 from .. import disk
 from ..case import logs, run_folders
 from ..deposits import deposit
-from ..digits import rounded
+from ..digits import metres, percent
 from ..errors import SlopeError
 from ..findings import Finding, entries, texts
 from ..mobility import body, exceedance, known, run_length, weights
-from ..mobility.results import percent
-from ..sites import site_choices
 from ..statistics import answer, emulator, hazard
-from ..tables import answer_words, quantities
+from ..tables import answer_words, combinations, quantities
 from . import conditioned, farther, known_influence, known_maps
 from .sample import Sample
 
@@ -41,12 +39,12 @@ class Condition:
     named: bool = True
 
 
-def check(asked: known.Choice, name: Optional[str], deck: Path) -> Condition:
-    """The Condition of a choice; SlopeError if a set that was named (name; None: none was) does not cover the deck's
-    site: of others the landslides count then."""
+def check(asked: known.Choice, name: Optional[str], site: Optional[Path]) -> Condition:
+    """The Condition of a choice; SlopeError if a set that was named (name; None: none was) does not cover the body of a
+    site's folder, if there is one: of others the landslides count then."""
     found = None
-    if (deck.parent / site_choices.NAME).is_file():
-        found = known.of_body(body.of_site(deck.parent), asked)
+    if site:
+        found = known.of_body(body.of_site(site), asked)
         if name is not None and not found.strict:
             assert found.by_set
             raise SlopeError("--known", f"must be a set that covers the mass: {'; '.join(found.by_set.outside)}", name)
@@ -81,7 +79,8 @@ class Runs:
         self.sample, self.added = sample, added
         self.rows = [row for row in rows if row["status"] == "finished" and row.get("length_m") is not None]
         self.failed = len(rows) - len(self.rows)
-        self.point = [tuple(row["set"][name] for name in sample.names) for row in self.rows]
+        first = combinations.same_as(self.rows)         # the same run, to the last digit, is one point
+        self.point = [tuple(self.rows[k]["set"][name] for name in sample.names) for k in first]
         self.lengths = self.column("length_m") if self.rows else np.empty(0)
         self.exceedance = found.exceedance
         self.beyond = np.asarray(found.exceedance(self.lengths), float)
@@ -166,7 +165,10 @@ def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: S
 
 def quantiles(curve: hazard.Curve, runs: Runs, name: str, shares: Sequence[float]) -> List[Dict[str, Any]]:
     """What study.yaml says of those of a quantity."""
-    return [one._asdict() for one in conditioned.quantiles(curve, shares, runs.column(name), runs.mass)]
+    found = conditioned.quantiles(curve, shares, runs.column(name), runs.mass)
+    if len(set(runs.point)) == 1:       # one run has no bounds
+        found = [one._replace(low=None, high=None) for one in found]
+    return [one._asdict() for one in found]
 
 
 def reach(runs: Runs, found: exceedance.Mobility) -> Dict[str, Any]:
@@ -178,7 +180,7 @@ def reach(runs: Runs, found: exceedance.Mobility) -> Dict[str, Any]:
                             for k in range(len(run_length.OTHERS))],
             "gaps": [{"low_m": gap.low, "high_m": gap.high, "share": gap.share} for gap in one.gaps],
             "shortest_m": float(runs.lengths.min()), "longest_m": float(runs.lengths.max()),
-            "half_beyond_m": found.length_at(0.5), "path_m": float(found.path.length[-1]),
+            "half_beyond_m": found.length_at(0.5), "path_m": found.end(float(runs.lengths.max())),
             "beyond_path": found.beyond_path()}
 
 
@@ -208,12 +210,12 @@ def doubts(about: Mapping[str, Any], runs: Runs) -> List[Finding]:
     found, stopped = [], (about.get("added") or {}).get("stopped")
     if about["far"] >= 1 - farther.REACHED:
         remedy = answer_words.text(answer.Reason.read(stopped)) if stopped else "vary towards more mobile masses"
-        found.append(Finding("events beyond", {"length": rounded(about["longest_m"], 4), "share": percent(about["far"]),
+        found.append(Finding("events beyond", {"length": metres(about["longest_m"]), "share": percent(about["far"]),
                                                "remedy": remedy}))
     if about["reached"] < farther.REACHED and about["short"] > (1 - farther.REACHED) / 2:
-        found.append(Finding("events before", {"length": rounded(about["shortest_m"], 4),
+        found.append(Finding("events before", {"length": metres(about["shortest_m"]),
                                                "share": percent(about["short"])}))
-    found += [Finding("gap", {"low": rounded(gap["low_m"], 4), "high": rounded(gap["high_m"], 4),
+    found += [Finding("gap", {"low": metres(gap["low_m"]), "high": metres(gap["high_m"]),
                               "share": percent(gap["share"])}) for gap in about["gaps"]]
     if about["effective"] < LEAST_EFFECTIVE:
         found.append(Finding("few effective", {"effective": about["effective"]}))
@@ -259,7 +261,7 @@ def describe(about: Mapping[str, Any], of: Optional[str]) -> List[str]:
 def summary(about: Mapping[str, Any]) -> str:
     added = (about.get("added") or {}).get("points")
     more = f" (those of {added} points towards longer ones among them)" if added else ""
-    return (f"the runs reach from {rounded(about['shortest_m'], 4)} to {rounded(about['longest_m'], 4)} m, where "
+    return (f"the runs reach from {metres(about['shortest_m'])} to {metres(about['longest_m'])}, where "
             f"{percent(about['reached'])} of {about['events']} events of {about['set']} end ({percent(about['short'])} "
             f"before, {percent(about['far'])} beyond{by_lobe(about)}; {about['path']}); weighted by them the "
             f"{about['runs']} runs{more} say as much as {about['effective']:.0f}")

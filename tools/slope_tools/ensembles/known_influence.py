@@ -7,7 +7,7 @@ from typing import Any, Dict
 
 import numpy as np
 
-from ..mobility.results import percent
+from ..digits import percent
 from ..statistics import dependent, emulator
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..errors import SlopeError
 from ..releases import release, release_area
-from ..sites import site_choices, site_folder
+from ..sites import site_folder
 from ..survey import rasters
 from ..survey.rasters import Raster
 from ..survey.resampling import sample
@@ -84,8 +84,7 @@ def of_ground(raster: Raster, base: np.ndarray, terrain: Path, where: str) -> Bo
 
 
 def of_site(folder: Path) -> Body:
-    """The body of a folder that slope site made."""
-    site_choices.read(folder)       # a site, and one of this version
+    """The body of a folder that slope site made, whose site.yaml was read."""
     terrain, depth = folder / site_folder.TERRAIN, folder / f"{site_folder.BODY}.depth.asc"
     raster, found = rasters.read_asc_local(terrain), rasters.read_asc_local(depth, heights=False)
     if found.z.shape != raster.z.shape or not found.transform.almost_equals(raster.transform):

@@ -64,6 +64,11 @@ class Mobility(NamedTuple):
         """
         return np.interp(length, self.path.length, self.curves[kind or self.chosen])
 
+    def end(self, longest: float) -> float:
+        """Length (m) up to which the terrain shows the way: that of the path, or of the longest run where this one ends
+        beside the path, farther from its beginning than the path's end (run_length)."""
+        return max(float(self.path.length[-1]), longest)
+
     def beyond_path(self, kind: Optional[str] = None) -> float:
         """Share that goes beyond the end of the path."""
         return float(self.curves[kind or self.chosen][-1])

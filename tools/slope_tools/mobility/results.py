@@ -7,7 +7,7 @@ from shapely.geometry import LineString
 from shapely.geometry.base import BaseGeometry
 
 from .. import disk
-from ..digits import rounded, volume
+from ..digits import metres, percent, volume
 from ..findings import Finding, entries
 from ..provenance import version
 from ..survey import geopackage
@@ -67,7 +67,7 @@ def doubts(found: Found) -> List[Finding]:
     counts = found.decides
     several = [Finding("outside of set", {"text": text}) for text in (found.by_set.outside if found.by_set else [])]
     if counts.length_at(0.5) is None and counts.path.end == TERRAIN:
-        several.append(Finding("path ends", {"length": rounded(counts.path.length[-1], 4),
+        several.append(Finding("path ends", {"length": metres(counts.path.length[-1]),
                                              "share": percent(counts.beyond_path())}))
     return several
 
@@ -133,7 +133,7 @@ def words(found: Found, source: Source, road: Optional[AtRoad]) -> List[str]:
     counts, path = found.decides, found.decides.path
     x, y, z = path.crown
     lines = [f"{volume(1e6 * counts.volume)}, crown at {x:.1f} {y:.1f}, elevation {z:.1f} m",
-             f"fall path of {rounded(path.length[-1], 4)} m, down to {rounded(path.fall[-1], 4)} m below the crown, "
+             f"fall path of {metres(path.length[-1])}, down to {metres(path.fall[-1])} below the crown, "
              + path.end]
     for one in found.each:
         name = f"{len(source.asked.known)} events of {source.asked.file.name}" if one is found.by_set else \
@@ -145,8 +145,8 @@ def words(found: Found, source: Source, road: Optional[AtRoad]) -> List[str]:
         lines += [f"  {WORDS[kind]}: {lengths(one, kind)}" for kind in one.curves]
     if road:
         where = "the road, first met" if road.met else \
-            f"the path does not meet the road, and is nearest to it, {rounded(road.beside, 4)} m beside,"
-        lines.append(f"{where} after {rounded(road.length, 4)} m, {rounded(road.fall, 4)} m below the crown: "
+            f"the path does not meet the road, and is nearest to it, {metres(road.beside)} beside,"
+        lines.append(f"{where} after {metres(road.length)}, {metres(road.fall)} below the crown: "
                      f"{of_road(counts, road)}")
     return lines
 
@@ -157,9 +157,9 @@ def lengths(one: Mobility, kind: str) -> str:
     for share in SHARES:
         length, most = one.length_at(share, kind), one.at_most(share, kind)
         if most is not None:
-            parts.append(f"{percent(share)} beyond at most {rounded(most, 4)} m")
+            parts.append(f"{percent(share)} beyond at most {metres(most)}")
         elif length is not None:
-            parts.append(f"{percent(share)} beyond {rounded(length, 4)} m")
+            parts.append(f"{percent(share)} beyond {metres(length)}")
     return (f"{', '.join(parts) or 'nearly all beyond the path'}; beyond the "
             f"{'terrain' if one.path.end == TERRAIN else 'path'}: {percent(one.beyond_path(kind))}")
 
@@ -174,16 +174,6 @@ def of_road(counts: Mobility, road: AtRoad) -> str:
         "its near edge" if road.met else "that point of the path")
     return text + f", {percent(float(counts.exceedance(road.passed)))} beyond its far edge" * (
         road.passed > road.length and counts.says(road.passed))
-
-
-def percent(share: float) -> str:
-    """A share as a user reads it: two digits, never a certain 0 or 100 %."""
-    value = 100 * share
-    if value < 0.1:
-        return "less than 0.1 %"
-    if value > 99.9:
-        return "more than 99.9 %"
-    return f"{value:.2g} %" if value < 10 else f"{value:.0f} %" if value < 99 else f"{value:.1f} %"
 
 
 def write(folder: Path, found: Found, source: Source, road: Optional[AtRoad]) -> None:

@@ -1,15 +1,21 @@
 """Where a slip surface comes out of the ground: on the slope, as it should, or beyond its toe, or under a road."""
+import math
 from typing import NamedTuple, Optional
 
 import numpy as np
 from affine import Affine
 from rasterio.features import geometry_mask
+from scipy.ndimage import binary_erosion
 
+from .. import geometry
+from ..findings import Finding
+from ..survey.rasters import Raster
 from .release_area import Area
 
 FOOT = 0.2      # of the body's fall: its lowest part
 LEVEL = 0.25    # of the mean slope of its ground: flatter ground is level
 SOME = 0.02     # of its area; less level ground at its foot is none
+WHOLLY = 0.99   # of a road's area on the body: all of it
 
 
 class Level(NamedTuple):
@@ -35,6 +41,41 @@ def beyond_toe(area: Area, slip: np.ndarray) -> Optional[Level]:
     if level.sum() <= SOME * body.sum():
         return None
     return Level(float(level.sum()) * area.cell ** 2, float(depth[level].max()))
+
+
+class OnBody(NamedTuple):
+    """What of a road lies on a body, and goes with it."""
+    area: float         # m2
+    wholly: bool        # all of the road does
+
+    @property
+    def part(self) -> str:
+        """Which part of the road, in words."""
+        return "the road" if self.wholly else "a part of the road"
+
+    def finding(self, file: str) -> Finding:
+        return Finding("road on body", {"file": file, "part": self.part, "Part": self.part.capitalize()})
+
+
+def on_body(body: np.ndarray, raster: Raster, road, rim: int) -> Optional[OnBody]:
+    """The OnBody of a road (polygons in local metres); None where it meets the rim only, so many cells wide.
+
+    body: mask of the cells of the raster, whose values do not count.
+    """
+    rows, columns = body.shape
+    lines, grid = (np.arange(columns + 1.0), np.arange(rows + 1.0)), geometry.box_of(raster)
+    inside = road.intersection(grid)
+    share = sum(geometry.coverage(part, *lines)[0]
+                for part in geometry.polygons_of(geometry.to_index(inside, raster)))
+    if not (share * binary_erosion(body, iterations=rim)).any():
+        return None
+    area = float((share * body).sum() * raster.transform.a ** 2)
+    return OnBody(area, area >= WHOLLY * road.area)
+
+
+def rim(ball: float, cell: float) -> int:
+    """How many cells (m) the rim of a body of balls is wide, each of which stands for so much ground (m3)."""
+    return 1 + math.ceil(ball ** (1 / 3) / cell / 2)
 
 
 def under(area: Area, slip: np.ndarray, road) -> Optional[Level]:

@@ -4,7 +4,6 @@ from typing import Any, Dict, NamedTuple, Optional
 from .. import digits
 from ..statistics import headline
 from ..survey.rasters import crs_name
-from .heading import site_of
 
 SHAPES = {"sphere": "a spherical slip surface", "ellipsoid": "an ellipsoidal slip surface",
           "plane": "a plane slip surface", "slbl": "a slip surface by the sloping local base level"}
@@ -26,7 +25,7 @@ class Body(NamedTuple):
 
 def of_data(data, ground) -> Body:
     """The body of a data.Data on its ground.Ground: by the site's file where there is one, else by the rasters."""
-    site = site_of(data.folder)
+    site = data.site
     found = (site.get("found") or {}).get("body") or {}
     release = site.get("release") or {}
     mask = ground.slip_depth > LEAST

@@ -6,12 +6,11 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence
 
 from .. import digits
 from ..deposits import travel_shares
+from ..digits import percent
 from ..ensembles import known_study
-from ..mobility.results import percent
 from ..statistics import headline
-from ..statistics.answer import SHARE, Code, Kind, Source
-from ..statistics.withheld import Kind as Rule
-from ..tables import combinations, next_step
+from ..statistics.answer import SHARE, Kind, Reason, Source
+from ..tables import answer_words, combinations, elastic, next_step
 from ..tables.quantities import ALL, DISTANCE
 from . import body, mobility_part, road_part, structures_part, warnings
 from .numbers import farthest_of
@@ -45,11 +44,6 @@ REMOVE = "Volume to remove from the road"
 WHO = "known events of this volume and height"
 ALIKE = "each counted alike"
 ON_ROAD = "remove_on_road_m3"
-RULES = {
-    Rule.BALLS: "fewer than ten of the model's balls come to lie on the road, which are single blocks and no volume",
-    Rule.MOBILITY: f"no run goes as far as half of {WHO}",
-    Rule.LEFT: "a part of the mass left the elevation model before it came to the road, and is not counted",
-    Rule.RUNS: "more than a tenth of the runs failed, or had not come to rest when they ended"}
 
 
 def of_headline(data, numbers) -> Optional[Dict[str, Any]]:
@@ -131,7 +125,7 @@ def not_reached(about: Mapping[str, Any]) -> Dict[str, Any]:
     road = about["road"]
     if not road:
         return {"title": REMOVE, "number": "more than 0", "unit": "m3", "band": ""}
-    return {"title": "No run reaches the road, but known events do", "number": shares_of(road["reached"]),
+    return {"title": "No run reaches the road, but known events do", "number": answer_words.shares(road["reached"]),
             "unit": "of known events reach it",
             "band": "More than 0 m3 is to be removed then; how much, these runs do not show."}
 
@@ -143,55 +137,17 @@ def of_withheld(about: Mapping[str, Any], numbers) -> Dict[str, Any]:
 
 def of_nothing(about: Mapping[str, Any], numbers) -> Dict[str, Any]:
     road = about["road"]
-    band = f"{shares_of(road['reached'])} of {WHO} reach the road." if road else \
+    band = f"{answer_words.shares(road['reached'])} of {WHO} reach the road." if road else \
         "No known events can be compared with this mass."
     return {"title": REMOVE, "number": numbers(REMOVE.lower(), "m3", 0.0), "unit": "m3",
             "band": f"Nothing comes to lie on the road in any run. {band}"}
-
-
-def shares_of(shares) -> str:
-    """Shares by the smaller and the larger scatter, as one text."""
-    return " to ".join(dict.fromkeys(map(percent, shares)))
 
 
 # --- why ---
 
 def reasons(about: Mapping[str, Any]) -> List[str]:
     """A sentence each, without its full stop; the one that decides comes first."""
-    return [text for one in about["reasons"] if (text := reason(Code(one["code"]), one["numbers"]))]
-
-
-def reason(code: Code, of: Mapping[str, Any]) -> str:
-    if code is Code.BEYOND:
-        return (f"{percent(of['far'])} of {WHO} go farther than the longest run, which ends after "
-                f"{metres(of['longest_m'])}")
-    if code is Code.NOT_REACHED:
-        ends = "no run leaves a deposit" if of["longest_m"] is None else \
-            f"the longest run ends after {metres(of['longest_m'])}"
-        return f"the road begins after {metres(of['near_m'])} along the fall path, and {ends}"
-    if code is Code.ONE_SCATTER:
-        return (f"{shares_of((of['low'], of['high']))} of them reach the road, as their scatter is taken: only the "
-                "larger of two estimates says more than 10 %")
-    if code is Code.TERRAIN:
-        return (f"the elevation model ends after {metres(of['path_m'])} along the fall path, where "
-                f"{percent(of['share'])} of known events go on")
-    if code is Code.RANGE:
-        return "no values within the ranges that were tried are expected to go farther"
-    if code is Code.RUNS:
-        return f"{of['points']:g} runs were added towards longer ones, and no more"
-    if code is Code.FEW:
-        return "the runs are too few to tell which settings go farther"
-    if code is Code.SIZE and of["balls_thick"] is None:
-        return "the run with smaller balls in the model, which may bring more, did not finish"
-    if code is Code.SIZE:
-        return (f"the finest of the model's balls are {of['balls_thick']:.2g} over the thickness of the body, and "
-                f"smaller ones, {of['enough']:g} or more, may bring more")
-    text = RULES[Rule(of["rule"])]
-    return text if of["source"] == Source.PAPER.value else f"{text} (runs weighted by known events)"
-
-
-def metres(value: float) -> str:
-    return f"{digits.rounded(value, 3)} m"
+    return [answer_words.client(Reason.read(one)) for one in about["reasons"]]
 
 
 # --- the number of one study ---
@@ -287,8 +243,20 @@ def distance(data, numbers, has_road_number: bool) -> str:
     known = weighted(data, numbers, DISTANCE)
     if known:
         return (f"In {percent(SHARE)} of known events 99 % of the volume stays within {known} of the highest point of "
-                f"the body, in plan; in single runs, {ALIKE}, within {far}.")
-    return f"{runs_of(data)} 99 % of the volume stays within {far} of the highest point of the body, in plan."
+                f"the body, in plan; in single runs, {ALIKE}, within {far}.{most_elastic(data, numbers)}")
+    return (f"{runs_of(data)} 99 % of the volume stays within {far} of the highest point of the body, in plan."
+            f"{most_elastic(data, numbers)}")
+
+
+def most_elastic(data, numbers) -> str:
+    """A sentence on how far it goes with the largest restitution; "" without such runs."""
+    about = (data.study or {}).get(elastic.ENTRY)
+    if not about or not about["runs"]:
+        return ""
+    text = f" With the most elastic rock, a restitution of {about['restitution']:g},"
+    far = elastic.far(about)
+    return f"{text} more than 1 % of it leaves the terrain." if far is None else \
+        f"{text} within {numbers.quantity(DISTANCE, far)} m."
 
 
 def road(data, numbers) -> str:

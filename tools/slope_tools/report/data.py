@@ -15,6 +15,7 @@ from ..survey import rasters
 from ..tables import judged, named_run, quantities
 from ..tables.released import Release
 from ..tables.study_file import read_study
+from . import heading
 
 MOST_SHOWN = 9          # runs that get a map and a line in the section
 
@@ -77,22 +78,25 @@ class Data:
     repeats: the variables that are chance; result: the run of the maps, drawn: those beside it on maps and
     section, the same one among them; road: a polygon or None; removed: what is to be removed in the shown run, its
     thickness in the cells and a Raster of volumes in a mesh; volumes: those of its volume.yaml; mapped: the
-    score.Observed of a mapped deposit, or None; over_all: {file: values} of the maps over all runs.
+    score.Observed of a mapped deposit, or None; over_all: {file: values} of the maps over all runs; site: what the
+    site's file says.
     """
 
-    def __init__(self, folder, shown=None):
-        self.folder, self.study = folder, None
+    def __init__(self, folder, shown=None, study=None, site=None):
+        """study, site: what study.yaml and the site's file say; None: they are read."""
+        self.folder, self.study = folder, study
+        self.site = heading.site_of(folder) if site is None else site
         self.rows, self.finished, self.settings, self.repeats = [], [], {}, {}
         self.road = self.road_line = self.removed = self.mapped = self._length = None
         self.over_all, self.volumes = {}, {}
-        if (folder / "study.yaml").is_file():
+        if study is not None or (folder / "study.yaml").is_file():
             self._read_study(shown)
         else:
             self._read_single(shown)
 
     def _read_study(self, shown):
         path = self.folder / "study.yaml"
-        self.study = read_study(path)
+        self.study = self.study or read_study(path)
         self.rows = self.study["runs"]
         self.finished = [row for row in self.rows if row["status"] == "finished"]
         about = self.study["study"]

@@ -2,19 +2,27 @@
 import base64
 import functools
 import hashlib
+import json
+import os
 import re
+import shutil
 from contextlib import contextmanager
 from pathlib import Path
 from shlex import quote
-from typing import List
+from typing import Any, Dict, List, Mapping, Optional
 
 from .. import digits, disk
+from ..case import run_folders
 from ..errors import SlopeError
 from ..findings import WARNING
-from .heading import Asked
+from .heading import Asked, site_file
 
 
 MADE_BY = "Made by tools/slope report"      # in each page
+TOOLS = Path(__file__).resolve().parents[1]
+HEAD = 4096             # bytes of a page that hold its digest
+MADE_OF = re.compile(rb'<meta name="slope-made-of" content="(\w+) ?([^"]*)">')
+BESIDE = ("collected", "machine", "jobs")       # of a study: when and where its runs were evaluated
 
 
 def mark(folder: Path) -> str:
@@ -40,13 +48,27 @@ def write_pictures(output):
     print(f"{output.with_suffix('.1.png')} to {len(pictures)}: its maps")
 
 
-def write(asked: Asked, output: Path) -> List[str]:
-    """Write the page, its tables and its film, if one is asked for; returns lines for the user, the files first."""
-    page, html = make(asked)
+def update(asked: Asked, output: Path) -> List[str]:
+    """write() the page of a study, unless it is there, made of the same numbers and runs by the same tools."""
+    assert asked.study
+    made_of = digest_of(asked, asked.study)
+    if is_made_of(output, made_of):
+        return [f"{output}: unchanged, as all that it is made of"]
+    return write(asked, output, made_of)
+
+
+def write(asked: Asked, output: Path, made_of: Optional[str] = None) -> List[str]:
+    """Write the page, its tables and its film, if one is asked for; returns lines for the user, the files first.
+
+    made_of: digest_of() the page.
+    """
+    page, content = make(asked)
     tables = {output.with_suffix(".section.csv"): page.section.table(),
               output.with_suffix(".numbers.csv"): page.numbers.table()}
     films = {asked.film: page.film.content} if asked.film and page.film.content else {}
-    for path, text in {output: html, **tables, **films}.items():
+    beside = {**tables, **films}
+    html = render({**content, "made_of": made_of_text(made_of if films or not page.film.failed else None, beside)})
+    for path, text in {**beside, output: html}.items():     # the page, which says what it is made of, last
         disk.write(path, text)
     view = ", a 3-D view" if 'id="scene"' in html else ""
     written = (f"{output}: {len(html) / 1e6:.1f} MB, {html.count('<figure')} pictures{view}; "
@@ -55,12 +77,58 @@ def write(asked: Asked, output: Path) -> List[str]:
             *(f"{'WARNING' if level == WARNING else level}: {text}" for level, text in page.warnings)]
 
 
+# --- whether a page would be drawn as it is ---
+
+def digest_of(asked: Asked, study: Mapping[str, Any]) -> str:
+    """Of the page that is asked for on a study: what its runs say, their files, the site, and these tools."""
+    about = {**study, "study": {key: value for key, value in study["study"].items() if key not in BESIDE}}
+    site = site_file(asked.folder)
+    found = {"asked": disk.plain({**asked._asdict(), "study": None, "site": None}), "about": disk.plain(about),
+             "site": asked.site if asked.site is not None else site and disk.sha256(site),
+             "runs": {row["run"]: files_of(run_folders.summary_of(asked.folder, row).parent)
+                      for row in study["runs"] if "summary" in row},
+             "tools": tools(), "film": str(shutil.which("ffmpeg")) if asked.film else ""}
+    return hashlib.sha256(json.dumps(found, sort_keys=True, default=str).encode("utf-8")).hexdigest()
+
+
+def files_of(folder: Path) -> Dict[str, Any]:
+    """What tells whether a run is the same: what was written at its end, and the sizes and times of its files."""
+    marker = folder / run_folders.MARKER
+    return {"marker": disk.sha256(marker) if marker.is_file() else None,
+            "files": sorted((one.name, one.stat().st_size, one.stat().st_mtime_ns) for one in os.scandir(folder)
+                            if one.is_file())}
+
+
+def tools() -> str:
+    """Digest of the package's own files."""
+    found = sorted(path for path in TOOLS.rglob("*") if path.is_file() and "__pycache__" not in path.parts)
+    return hashlib.sha256("".join(disk.sha256(path) for path in found).encode("ascii")).hexdigest()
+
+
+def is_made_of(page: Path, made_of: str) -> bool:
+    """Whether a page and what belongs to it is there, made of what has this digest."""
+    try:
+        with open(page, "rb") as file:
+            found = MADE_OF.search(file.read(HEAD))
+    except OSError:
+        return False
+    return found is not None and found[1].decode() == made_of and all(
+        (page.parent / name).is_file() for name in found[2].decode().split("/") if name)
+
+
+def made_of_text(made_of: Optional[str], beside) -> str:
+    """What the page has: the digest, and the names of the files beside it."""
+    return " ".join([made_of, "/".join(path.name for path in beside)]) if made_of else ""
+
+
+# --- the page ---
+
 def make(asked: Asked):
-    """The Page and its HTML."""
+    """The Page and what its template takes."""
     from .page import Page
     with trusted(asked.folder):
         page = Page(asked)
-    return page, render({**page.content(), "mark": mark(asked.folder)})
+    return page, {**page.content(), "mark": mark(asked.folder), "made_of": ""}
 
 
 def reproduce(folder: Path) -> List[str]:

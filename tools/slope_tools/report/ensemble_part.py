@@ -4,11 +4,11 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence
 
 import numpy as np
 
+from ..digits import percent
 from ..drawing import figures, palettes
 from ..ensembles import ensemble, known_events
 from ..errors import SlopeError
 from ..findings import texts
-from ..mobility.results import percent
 from ..plots import ensemble_charts, figure_maps
 from ..statistics import emulator
 from ..tables import quantities, withheld_words

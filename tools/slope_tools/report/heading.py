@@ -24,13 +24,19 @@ class Asked(NamedTuple):
     client: Optional[str] = None
     author: Optional[str] = None
     film: Optional[Path] = None                 # file of the film, which is made, but written by the caller
+    study: Optional[Dict[str, Any]] = None      # what study.yaml says; None: it is read
+    site: Optional[Dict[str, Any]] = None       # what site.yaml says; None: it is read
 
 
-def heading(folder: Path, given: Dict[str, Optional[str]]) -> Dict[str, Optional[str]]:
-    """{field: text, None where unknown} of project, client, author and survey; given: the options, which come first."""
+def heading(folder: Path, given: Dict[str, Optional[str]],
+            site: Optional[Dict[str, Any]] = None) -> Dict[str, Optional[str]]:
+    """{field: text, None where unknown} of project, client, author and survey; given: the options, which come first.
+
+    site: what the file of the folder's site says; None: it is read.
+    """
     for name, text in given.items():
         check_text(f"--{FIELDS.get(name, name)}", text)
-    found = of_site(folder)
+    found = of_site(folder, site_of(folder) if site is None else site)
     return {name: given.get(name) or found.get(name) for name in (*FIELDS, "survey")}
 
 
@@ -45,12 +51,11 @@ def site_of(folder: Path) -> Dict[str, Any]:
     return schemas.load(path, "a file of `slope site`", SECTIONS) if path else {}
 
 
-def of_site(folder: Path) -> Dict[str, str]:
+def of_site(folder: Path, site: Dict[str, Any]) -> Dict[str, str]:
     """What the file of the site says, in the folder or in the one above it; a site without a name has its folder's."""
     path = site_file(folder)
     if path is None:
         return {}
-    site = site_of(folder)
     about = site.get("project") or {}
     found = {"project": path.absolute().parent.name, "survey": survey(site)}
     for name, key in FIELDS.items():

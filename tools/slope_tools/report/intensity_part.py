@@ -1,8 +1,8 @@
 """What a report shows of a study over an intensity: volume on the road against it, and how likely more is."""
+from ..digits import chance, measured, percent
 from ..drawing.figures import HALF
 from ..plots import figure_charts
 from ..plots.figure_charts import Series
-from ..tables.intensity import percent
 from .sections import Figures, Picture, Section, Table
 
 AXIS = {"peak": "peak acceleration (gal)", "pga": "peak acceleration (gal)"}
@@ -35,9 +35,8 @@ def rows(about, numbers):
                             f"{about['variable']} {point['at']:g}"])
             cells = [numbers(f"on the road, {what}", "m3", point[f"{what}_m3"], of)
                      for what in ("mean", "smallest", "largest")]
-            cells.append(f"{100 * point['share_of_released']:.2g} %")
-            cells += [f"{percent(one['probability'])} ({percent(one['low'])} to {percent(one['high'])})"
-                      for one in point["exceed"]]
+            cells.append(measured(point["share_of_released"]))
+            cells += [chance(one["probability"], one["low"], one["high"]) for one in point["exceed"]]
             found.append([*line["set"].values(), f"{point['at']:g}", point["runs"], *cells])
     return found
 

@@ -7,6 +7,7 @@ from ..deposits import travel_shares
 from ..digits import rounded
 from ..errors import SlopeError
 from ..statistics import headline
+from ..tables.elastic import ENTRY
 from ..tables.quantities import STOP
 from . import mobility_part
 from .sections import Pairs, Section
@@ -80,6 +81,9 @@ def uncertainty(data, numbers) -> CONTENT:
                    "What half the time step changes was not tried (the study of a site does, or --set step=0.5)."))
     if energy := (step or {}).get("energy"):
         chance.append(("Energy", f"In the run with half the time step, {energy['text']}."))
+    if most := (study or {}).get(ENTRY):
+        chance.append(("Largest restitution", f"{most['text'][0].upper()}{most['text'][1:]}. Reach and area only: "
+                       "these runs are none of those that the volume is of."))
     return chance
 
 

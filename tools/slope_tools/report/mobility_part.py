@@ -4,9 +4,9 @@ The lengths of both are along the fall path, from crown to tip (mobility.run_len
 """
 from typing import Any, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
+from ..digits import percent
 from ..mobility import exceedance
 from ..mobility.landslides import NOT_OF_ROADS, Row
-from ..mobility.results import percent
 from ..studies.mapped import mass
 from ..tables.quantities import BEYOND_MAPPED as BEYOND, LENGTH, OVERLAP
 from .sections import Cell, Section, Table, Text
@@ -66,20 +66,22 @@ def sentence(found: Lies, numbers, label: str) -> str:
     if isinstance(law, Row):
         return (f"{who} {reach} m: as far as {shares[0]} of landslides of this volume and height do ({law.name}; "
                 f"{chosen}; {shares[1]} by the smaller, {shares[2]} by the larger); the others go farther; "
-                f"{NOT_OF_ROADS}." + beyond_the_terrain(found.mobility, others, numbers, label))
+                f"{NOT_OF_ROADS}." + beyond_the_terrain(found, others, numbers, label))
     return (f"{who} {reach} m: as far as {shares[0]} of rock avalanches of this volume and height do "
             f"({chosen}; {shares[1]} of those on a laterally confined path, "
             f"{shares[2]} of the others); the others go farther."
-            + beyond_the_terrain(found.mobility, others[::-1], numbers, label))
+            + beyond_the_terrain(found, others[::-1], numbers, label))
 
 
-def beyond_the_terrain(mobility: exceedance.Mobility, kinds: Sequence[str], numbers, label: str) -> str:
+def beyond_the_terrain(found: Lies, kinds: Sequence[str], numbers, label: str) -> str:
     """What the edge of the terrain hides, if half of the events of either of two kinds go beyond; else nothing."""
+    mobility = found.mobility
+    assert mobility is not None
     shares = [mobility.beyond_path(kind) for kind in kinds]
     if max(shares) <= 0.5:      # with hardly any left, the path ends within the terrain
         return ""
-    length = numbers("fall path within the terrain", "m", mobility.path.length[-1], label)
-    return (f" The fall path leaves the terrain after {length} m, where {percent(shares[0])} ({percent(shares[1])}) of "
+    length = numbers("way within the terrain", "m", mobility.end(found.lengths[-1]), label)
+    return (f" The terrain shows the first {length} m of the way, where {percent(shares[0])} ({percent(shares[1])}) of "
             "them go on: no run shows what lies there.")
 
 

@@ -4,6 +4,7 @@ import io
 
 from .. import disk
 from ..deposits import rest, travel_shares
+from ..digits import measured
 from ..mobility.run_length import ON_PATH
 from ..statistics import headline
 from ..tables import withheld_words
@@ -213,7 +214,7 @@ def rest_card(data):
     if data.study:
         note = f"{data.label_of(worst)}: {worst['end']}, at {worst['stop_time_s']:.1f} s" if worst else \
             "ended by their rest criterion, at most " \
-            f"{rest.percent(max(end['moves_share'] for end in ends))} of the volume faster than {rest.FAST:g} m/s"
+            f"{measured(max(end['moves_share'] for end in ends))} of the volume faster than {rest.FAST:g} m/s"
         return {"what": "At rest at the end", "number": f"{len(resting)} of {len(ends)}", "unit": "runs", "note": note,
                 "status": status}
     return {"what": "At the end of the run", "number": f"{ends[0]['stop_time_s']:.1f}", "unit": "s", "status": status,

@@ -5,8 +5,8 @@ from ..plots.ground import Ground
 from ..plots.section import Section
 from ..tables import quantities
 from ..tables.quantities import On
-from . import (body, chain_part, client_part, convergence_part, ensemble_part, heading, intensity_part, limits_part,
-               mobility_part, reference, road_part, run_part, study_part)
+from . import (body, chain_part, client_part, convergence_part, ensemble_part, ground_part, heading,
+               intensity_part, limits_part, mobility_part, reference, road_part, run_part, study_part)
 from .data import Data
 from .heading import Asked
 from .maps_part import Maps
@@ -20,7 +20,7 @@ class Page:
     """A page: data, ground, section, findings, warnings (level, text), and numbers."""
 
     def __init__(self, asked: Asked):
-        self.data = Data(asked.folder, asked.shown)
+        self.data = Data(asked.folder, asked.shown, asked.study, asked.site)
         self.ground = Ground(self.data)
         self.section = Section(self.data, self.ground, asked.section, asked.local)
         self.reference = reference.read(asked.reference, quantities.known(On.ASKED, self.data.compared)) \
@@ -30,7 +30,8 @@ class Page:
         self.findings = findings(self.data, self.ground)
         self.warnings = listed(self.findings, self.data.names())
         self.numbers = Numbers()
-        self.heading = heading.heading(asked.folder, {name: getattr(asked, name) for name in heading.FIELDS})
+        self.heading = heading.heading(asked.folder, {name: getattr(asked, name) for name in heading.FIELDS},
+                                       self.data.site)
         self.frames, self.no_frames = frames.read(self.data.result)
         self.film_file, self.film = asked.film, film.Film(None, "")
 
@@ -55,6 +56,7 @@ class Page:
             study_part.section(data, numbers, self.reference, maps),
             mobility_part.mapped(data, numbers),
             road_part.section(data, numbers, maps),
+            ground_part.section(data, numbers),
             chain_part.section(data, numbers),
             intensity_part.section(data, numbers),
             Structures(data, numbers, ground).section(),

@@ -6,7 +6,7 @@ from typing import Any, List
 from .. import digits, provenance
 from ..case import decks
 from ..deposits import rest, travel_shares
-from ..mobility.results import percent
+from ..digits import percent
 from ..mobility.run_length import LEAST, OF_99, OTHERS
 from .charts import TERMS
 from .data import find_deck

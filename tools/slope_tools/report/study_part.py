@@ -1,5 +1,5 @@
 """What a report shows of a study: the table of its runs, means, differences, charts, and the maps over all runs."""
-from ..tables import quantities
+from ..tables import elastic, quantities
 from ..tables.quantities import LENGTH, REMOVE, On
 from .charts import TERMS, Charts, differences
 from .sections import Cell, Figures, Listing, Section, Table, Text
@@ -21,6 +21,7 @@ def section(data, numbers, reference, maps):
         Text(f"Variables: {terms}.", "soft") if (terms := study.terms()) else None,
         means,
         Listing(different) if different else None,
+        study.most_elastic(),
         Figures(drawn[:first], "two-thirds") if first and drawn else None,
         Figures(drawn[first:], "columns"),
         Figures([maps.removal(numbers.quantity(REMOVE, one.row[REMOVE], data.label(one)) if REMOVE in one.row else "")],
@@ -125,3 +126,21 @@ class Runs:
                  for entry in study["combinations"]]
         return Table("Means of the repeats \N{PLUS-MINUS SIGN} the standard deviation of a run.",
                      [*self.varied, "runs", *map(self.head, averaged)], rows, (), marks)
+
+    def most_elastic(self):
+        """The table of reach and area with the largest restitution; None without such runs."""
+        about = self.data.study.get(elastic.ENTRY)
+        if not about or not about["quantities"]:
+            return None
+        rows = []
+        for key, one in about["quantities"].items():
+            name, unit = elastic.name_of(key, about)
+            rows.append([Cell(name, unit), *(self.numbers(f"{end}: {name}, restitution {about['restitution']:g}", unit,
+                                                          one[end]) for end in ("mean", "low", "high")),
+                         *(self.numbers(f"{what}: {name}", unit, (one[of] or {}).get(end))
+                           for what, of, end in (("mean", "usual", "mean"), ("largest", "study", "high")))])
+        return Table(f"Reach and area with the most elastic rock: soil, slip surface and ground with a restitution of "
+                     f"{about['restitution']:g}, rolling resistance {about['rolling']}; {len(about['runs'])} runs, "
+                     "which are none of those that the volume is of.",
+                     ["", "mean", "least", "most", "mean of the same runs with the usual restitution",
+                      "most of all other runs"], rows)

@@ -14,12 +14,13 @@ from ..case.slip_deck import PREFIX
 from ..ensembles import ensemble, ensemble_maps, sample
 from ..errors import SlopeError
 from ..runs import jobs
-from ..sites import site, site_budget, site_choices, site_deck
+from ..sites import site, site_budget, site_choices, site_deck, site_zones
 from ..sites.site_layers import ROAD
 from ..slips import bodies
 from ..statistics import designs
 from ..studies import results, site_study, study
 from ..studies.setup import Road, Setup
+from ..survey import polygons, rasters
 from ..tables.study_file import read_study
 from .choices import Choices
 from .corridor import TERRAIN
@@ -48,11 +49,12 @@ def make_site(choices: Choices, folder: Path, about: Mapping[str, Any], number: 
     if not (place / site_choices.NAME).is_file() or site.site_folder.was_not_made(place):
         place.parent.mkdir(exist_ok=True)
         site.make(choices_of(choices, slips, about, number), place, machine, tell, warn, draw)
-    known = site_choices.read(place)
-    site_study.check(place, known)
+    made = site_choices.load(place)
+    site_study.check(made)
+    known = made.choices
     changed = {section: {**known[section], **now} for section, now in later(choices, about).items()}
     if any(known[section] != now for section, now in changed.items()):
-        disk.write(place / site_choices.NAME, site_choices.text({**known, **changed}, site_choices.found(place), place))
+        disk.write(place / site_choices.NAME, site_choices.text({**known, **changed}, made.found, place))
     return place
 
 
@@ -72,6 +74,9 @@ def choices_of(choices: Choices, slips: Path, about: Mapping[str, Any], number: 
     found["release"].update(scar=base, scar_is="surface",
                             bodies=[base] if (slips / f"{PREFIX}{bodies.END}").is_file() else [])
     found["road"]["file"] = str(slips / "road.csv")
+    zones = site_zones.Source(choices.ground, choices.ground_table, None, polygons.ADVICE) if choices.ground else None
+    if zones and site_zones.touch(zones, rasters.read_asc_local(slips / TERRAIN)):
+        found["ground"] = {"file": zones.path, "table": zones.table}
     for section, now in later(choices, about).items():
         found[section].update(now)
     found["balls"]["number"] = choices.balls
@@ -85,17 +90,17 @@ def choices_of(choices: Choices, slips: Path, about: Mapping[str, Any], number: 
 
 def asked_of(choices: Choices, place: Path, engine: Setup) -> Asked:
     """The study of a body's site, as `slope study SITE --sample N --seed BODY --vary ...` makes it."""
-    deck, of_site = place / site_deck.NAME, site_choices.read(place)
-    given = of_site["road"]
+    deck, known = place / site_deck.NAME, site_choices.read(place)
+    given = known["road"]
     road = Road(place / ROAD, given["cut_angle"], given["mesh"], asked=choices.asked.of(given))
     setup = engine._replace(deck=deck, output=place / STUDY, site=place, road=road)
-    fixed = site_choices.not_varied(of_site, {words.partition("=")[0] for words in choices.vary})
+    fixed = site_choices.not_varied(known, {words.partition("=")[0] for words in choices.vary})
     plan = sample.check(choices.sample, designs.SOBOL, int(place.name), choices.vary, deck, fixed, {})
     todo = sample.plan(setup.runs, plan, fixed, {}, decks.index_variables(deck))
     thresholds = list(site_study.THRESHOLDS)
     order = ensemble.Order(plan, ensemble.check_quantity(None, True),
                            ensemble_maps.Thresholds(thresholds, [5.0], [1e5]))
-    questions = results.Questions(sample.settings_of(todo), {}, thresholds, order, site=place)
+    questions = results.Questions(sample.settings_of(todo), {}, thresholds, order, site=place, known=known["known"])
     return Asked(setup, questions, plan, todo)
 
 

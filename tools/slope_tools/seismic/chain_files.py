@@ -9,6 +9,7 @@ from typing import Any, Dict, List, Mapping, NamedTuple, Sequence, Tuple
 import numpy as np
 
 from .. import disk
+from ..digits import percent
 from ..errors import SlopeError
 from ..findings import Finding, entries, finding, texts
 from ..sites.site_bodies import VARIABLE
@@ -156,10 +157,6 @@ def sentences(about: Mapping[str, Any]) -> List[str]:
         found.append(f"an earthquake of {about['peaks_gal'][k]:.4g} gal blocks the road by more than "
                      f"{one['more_than_m3']:,.6g} m3 with {value} ({sure}: {low} to {high})")
     return found
-
-
-def percent(share: float) -> str:
-    return f"{100 * share:.2g} %"
 
 
 def describe(about: Mapping[str, Any], output: Path) -> List[str]:

@@ -15,7 +15,7 @@ from typing import Any, Callable, Dict, List, NamedTuple, Optional, Tuple
 import numpy as np
 
 from .. import disk, geometry, provenance
-from ..case import decks
+from ..case import decks, settings
 from ..errors import SlopeError
 from ..findings import Finding, finding
 from ..releases import release, release_files, release_toe
@@ -130,19 +130,19 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
     several = site_bodies.write(choices, new, BODY, wanted, keep)
     body = site_bodies.around(write_body(new, wanted, found), BODY, several)
     layers = read_layers(choices, raster, new, tell, keep)
-    if layers.road and (under := release_toe.under(found.area, found.slip, layers.road)):
-        keep(Finding("under road", {"file": choices["road"]["file"], **under._asdict()}))
     title = choices["project"]["name"] or folder.absolute().name
     parts = site_deck.Parts(title, ", ".join(Path(name).name for name in choices["terrain"]["files"]), body,
-                            layers.structures, layers.lines, layers.motion, room_of(raster))
+                            layers.structures, layers.lines, layers.motion, room_of(raster), layers.zones)
     first = tried(given, choices, known, parts, found, new, folder, machine, tell)
     trial = first and first.trial
     if first:
         site_trial.keep(new, first, raster)
     size = settle(choices, parts, found, trial, machine, raster)
+    for one in of_road(choices, found, layers, size):
+        keep(one)
     derived = site_choices.derived(given, choices, known)
     say_size(choices, size, found, machine, tell)
-    for one in (*site_warnings.of_resistance(choices),
+    for one in (*site_warnings.of_resistance(choices), *site_warnings.of_zones(layers.zones),
                 *site_warnings.site_warnings(found.measures, size, trial),
                 *site_warnings.of_cells(found.area.z - found.slip, found.area.cell, max(
                     map(rasters.surveyed_cell, choices["terrain"]["files"]))),
@@ -157,16 +157,29 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
     about = {"slope_version": provenance.version(), "made": provenance.now(), "files": files,
              "derived": derived,
              "deck_sha256": disk.sha256(new / site_deck.NAME),
-             "choices_sha256": site_choices.fingerprint(choices, folder),
-             "sources_sha256": site_choices.sources(choices, folder),
+             "choices_sha256": site_choices.Site.of(choices, folder).fingerprint(),
+             "sources_sha256": site_choices.Site.of(choices, folder).sources(),
              "crs": crs_name(raster.crs),
              "origin": {"east": float(raster.offset[0]), "north": float(raster.offset[1])},
+             "zones": [zone.about(raster) for zone in layers.zones],
              "body": found.measures._asdict(), "bodies": site_bodies.about(several), "balls": size.balls,
              "trial": trial and trial._asdict(), "trial_of": first and first.about,
              "study": {"runs": size.runs, "seconds": size.seconds, "gigabytes": size.gigabytes,
                        "at_a_time": machine.jobs}}
     disk.write(new / site_choices.NAME, site_choices.text(choices, about, folder.absolute()))
     return Made(folder, files, size)
+
+
+def of_road(choices: Choices, found: release.Body, layers: Layers, size: Size) -> List[Finding]:
+    """That the road, or a part of it, lies on the body, or that the slip surface comes out under it."""
+    file, road = choices["road"]["file"], layers.road
+    if road is None:
+        return []
+    raster = found.raster
+    on = release_toe.on_body(depth_of(found) > 0, raster, road, release_toe.rim(size.diameter ** 3, raster.transform.a))
+    under = None if on and on.wholly else release_toe.under(found.area, found.slip, road)
+    return [*([on.finding(file)] if on else []),
+            *([Finding("under road", {"file": file, **under._asdict()})] if under else [])]
 
 
 # --- ground ---
@@ -276,7 +289,7 @@ def tried(given: Choices, choices: Choices, known: Derived, parts: site_deck.Par
     trial, reached = tried_with(place, min(rolling), own, found, machine.lmp, tell)
     finer = site_budget.finer_diameter(own, trial)
     if finer:
-        middle = rolling[len(rolling) // 2]
+        middle = settings.middle(rolling)
         place = trial_folder(finer, own, parts, found, new)
         second, reached = tried_with(place, middle, own, found, machine.lmp, tell, f"another, rolling {middle:g}")
         trial = site_budget.joined(trial, second)
@@ -347,11 +360,16 @@ def say_size(choices: Choices, size: Size, found: release.Body, machine: Machine
 
 # --- map ---
 
-def shown(found: release.Body, layers: Layers, reached: Optional[Raster]) -> Shown:
-    """What the map shows; reached: the largest thickness of the trial run."""
+def depth_of(found: release.Body) -> np.ndarray:
+    """The depth (m) of a body on the grid of its terrain, 0 beside it."""
     depth = np.zeros(found.raster.z.shape)
     row, column = found.area.corner
     rows, columns = found.slip.shape
     depth[row:row + rows, column:column + columns] = np.nan_to_num(found.area.z - found.slip)
-    return Shown(found.raster, depth, found.geometry, layers.road, layers.observed, layers.structures, layers.lines,
-                 reached)
+    return depth
+
+
+def shown(found: release.Body, layers: Layers, reached: Optional[Raster]) -> Shown:
+    """What the map shows; reached: the largest thickness of the trial run."""
+    return Shown(found.raster, depth_of(found), found.geometry, layers.road, layers.observed, layers.structures,
+                 layers.lines, reached, layers.zones)

@@ -36,6 +36,8 @@ SLOW = 1.0              # m/s, least speed; that of the trial run, which has the
 GRAVITY = 9.80665       # m/s2
 STIFFNESS_NUMBER = 2e4          # K: least stiffness over density of the ground, gravity, thickness and diameter
 LAYERS = 7.0            # balls; bodies thicker than this need harder contacts, in proportion
+STEP = 1.5              # of the rule's step: the longest that holds the restitution where several contacts begin at once,
+CLOSE = 0.4             # with fixed balls not closer than this, in diameters (tests/step_restitution.py)
 OVERLAP = 0.05          # of the diameter: that of a contact at the largest speed
 AIR = 1.2               # margin of the stiffness over the trial run's largest speed
 PATIENCE = 3.0          # duration: times the trial's time to rest
@@ -187,13 +189,16 @@ def plan(choices: Choices) -> Plan:
     each = 1 + len(study[PACKING])
     grounds = other_grounds(choices)
     fine = study["fine"] not in ("no", False)
-    parts = [(1.0, each * len(study["rolling"]) + len(grounds))]
+    elastic = each if study["largest_restitution"] else 0
+    parts = [(1.0, each * len(study["rolling"]) + len(grounds) + elastic)]
     if fine:        # one of the paper's study, one of the ensemble
         parts.append((1 / study["fine"], 1 + (points > 0)))
     text = (f"{sum(runs for _, runs in parts)} runs: {len(study['rolling'])} rolling resistances x {each} "
             "packings")
     if grounds:
         text += f", {len(grounds)} on other grounds"
+    if elastic:
+        text += f", {elastic} with the largest restitution"
     if fine:
         text += f", {'2' if points else '1'} with balls of 1/{study['fine']} of the diameter"
     if points:

@@ -9,7 +9,7 @@ import json
 import math
 import os
 from pathlib import Path
-from typing import Any, Collection, Dict, Iterator, List, Mapping, Optional, Tuple
+from typing import Any, Collection, Dict, Iterator, List, Mapping, NamedTuple, Optional, Tuple
 
 import yaml
 
@@ -28,9 +28,10 @@ WHAT = "a site.yaml of `slope site`"
 FOUND = schemas.mapping({}, found=schemas.mapping({}, null=True))       # of any version
 # keys that hold one file, and lists of files
 FILES = (("terrain", "files"), ("release", "polygon"), ("release", "scar"), ("release", "bodies"), ("road", "file"),
-         ("structures", "files"), ("structures", "walls"), ("lines", "files"), ("motion", "file"), ("observed", "file"))
+         ("ground", "file"), ("ground", "table"), ("structures", "files"), ("structures", "walls"), ("lines", "files"),
+         ("motion", "file"), ("observed", "file"))
 
-WITHOUT_CRS = (("structures", "files"), ("motion", "file"))
+WITHOUT_CRS = (("ground", "table"), ("structures", "files"), ("motion", "file"))
 
 # beside a raster, a shapefile or a table: CRS, place, attributes
 BESIDE = (".prj", ".shx", ".dbf", ".cpg", ".tfw", ".hdr", ".yaml")
@@ -40,7 +41,8 @@ DERIVED = (("balls", "diameter"), ("balls", "number"), ("model", "speed"), ("mod
            ("model", "cell"), ("motion", "peak_friction"))
 
 # keys that came later: those who made a folder before did not count them
-LATER = (("model", "film"), ("structures", "walls"), ("structures", "height"), ("structures", "width"))
+LATER = (("ground", "file"), ("ground", "table"), ("model", "film"), ("structures", "walls"), ("structures", "height"),
+         ("structures", "width"))
 
 # keys of model in older sites, whose ground was a plan grid of one diameter; their decks keep it
 RETIRED = ("field_diameter", "field_ratio")
@@ -177,14 +179,69 @@ def check_text(where: str, text: Any) -> None:
         raise SlopeError(where, f"must be one line of at most {LONGEST_TEXT} letters", repr(text))
 
 
-def read(folder: Path) -> Choices:
-    """The complete choices of a site's folder; paths of files relative to the working folder."""
+class Site(NamedTuple):
+    """A site's folder, and its site.yaml: a command reads it once, and passes it on."""
+    folder: Path
+    choices: Choices        # complete; paths of files relative to the working folder
+    written: Choices        # the same with the paths that the file has, which are those from the folder
+    found: Dict[str, Any]   # what slope site found when it made the folder
+    content: Dict[str, Any]     # of the file
+
+    @classmethod
+    def of(cls, choices: Choices, folder: Path) -> "Site":
+        """The same of choices that were not read."""
+        return cls(folder, choices, with_files(choices, lambda name: in_folder(name, folder)), {}, {})
+
+    def fingerprint(self) -> str:
+        """Of all choices that the deck and its data depend on; not of those that `slope study` takes from site.yaml.
+
+        Files count by the paths that site.yaml has: the folder may have moved.
+        """
+        made = with_files(self.written, os.path.normpath)
+        for name in READ_LATER:
+            made[name] = {key: value for key, value in made[name].items() if (name, key) in FILES}
+        for name, key in LATER:
+            if made[name][key] in (None, []):
+                del made[name][key]
+        made = {name: section for name, section in made.items() if section or name in READ_LATER}
+        return hashlib.sha256(json.dumps(disk.plain(made), sort_keys=True).encode("utf-8")).hexdigest()
+
+    def sources(self) -> Dict[str, str]:
+        """{path as in site.yaml: digest} of the files that the choices name and that exist, with the files beside them
+        that say what they mean."""
+        digests: Dict[str, str] = {}
+        for place, name in zip(source_files(self.choices), source_files(self.written)):
+            path = vectors.source(place).path
+            if os.path.isfile(path):
+                beside = [str(Path(path).with_suffix(suffix)) for suffix in BESIDE] + [f"{path}.aux.xml"]
+                parts = [os.path.basename(one) + disk.sha256(one) for one in (path, *beside) if os.path.isfile(one)]
+                digests[os.path.normpath(vectors.source(name).path)] = hashlib.sha256(
+                    "\n".join(parts).encode("utf-8")).hexdigest()
+        return digests
+
+
+def load(folder: Path) -> Site:
+    """The Site of a folder; SlopeError unless its site.yaml is one of this version."""
     path = folder / NAME
     if not path.is_file():
         raise SlopeError(folder, f"must be a folder with {NAME}, which slope site makes")
-    given = without_dropped(disk.parse_yaml(path, WHAT))
+    content = disk.parse_yaml(path, WHAT)
+    given = without_dropped(content)
     check(without_lattice(without_old_ground(given)) if isinstance(given, dict) else given, str(path))
-    return with_files(complete(given), lambda name: os.path.normpath(folder / name))
+    schemas.check(content, FOUND, path, WHAT)
+    written, place = complete(given), real(folder)
+    return Site(folder, with_files(written, lambda name: os.path.normpath(place / name)), written,
+                content.get("found") or {}, content)
+
+
+def around(deck: Path) -> Optional[Site]:
+    """The Site in whose folder a deck lies; None of any other deck."""
+    return load(deck.parent) if (deck.parent / NAME).is_file() else None
+
+
+def read(folder: Path) -> Choices:
+    """The complete choices of a site's folder; paths of files relative to the working folder."""
+    return load(folder).choices
 
 
 def found(folder: Path) -> Dict[str, Any]:
@@ -192,32 +249,15 @@ def found(folder: Path) -> Dict[str, Any]:
     return schemas.load(folder / NAME, WHAT, FOUND).get("found") or {}
 
 
-def fingerprint(choices: Choices, folder: Path) -> str:
-    """Of all choices that the deck and its data depend on; not of those that `slope study` reads from site.yaml."""
-    made = with_files(choices, lambda name: in_folder(name, folder))
-    for name in READ_LATER:
-        made[name] = {key: value for key, value in made[name].items() if (name, key) in FILES}
-    for name, key in LATER:
-        if made[name][key] in (None, []):
-            del made[name][key]
-    return hashlib.sha256(json.dumps(disk.plain(made), sort_keys=True).encode("utf-8")).hexdigest()
+def real(folder: Path) -> Path:
+    """A folder from which `..` leads where the system goes: without symbolic links on the way to it."""
+    place = os.path.realpath(folder)
+    return folder if place == os.path.abspath(folder) else Path(place)
 
 
 def in_folder(name: str, folder: Path) -> str:
     """The path of a file as site.yaml in a folder has it."""
-    return Path(os.path.relpath(name, folder)).as_posix()
-
-
-def sources(choices: Choices, folder: Path) -> Dict[str, str]:
-    """{path as in site.yaml: digest} of the files that the choices name and that exist, with the files beside them that
-    say what they mean."""
-    found_: Dict[str, str] = {}
-    for name in (vectors.source(one).path for one in source_files(choices)):
-        if os.path.isfile(name):
-            beside = [str(Path(name).with_suffix(suffix)) for suffix in BESIDE] + [f"{name}.aux.xml"]
-            parts = [os.path.basename(one) + disk.sha256(one) for one in (name, *beside) if os.path.isfile(one)]
-            found_[in_folder(name, folder)] = hashlib.sha256("\n".join(parts).encode("utf-8")).hexdigest()
-    return found_
+    return Path(os.path.relpath(name, real(folder))).as_posix()
 
 
 def derived(before: Choices, after: Choices, known: Derived) -> Derived:

@@ -2,7 +2,7 @@
 import math
 import re
 from pathlib import Path
-from typing import Any, Dict, NamedTuple, Optional, Sequence
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence
 
 import jinja2
 
@@ -12,6 +12,7 @@ from ..slips.bodies import rank_of
 from . import site_budget
 from .site_choices import Choices, widest
 from .site_inputs import Line, Motion, Structure
+from .site_zones import LIMITS, VALUES, Zone, whole
 
 NAME = "in.site"
 TEMPLATE = "in.site.j2"
@@ -23,6 +24,9 @@ BINS = 1000             # of the neighbor list for a ball, at most: each is clea
 REACH, WIDEST = 1.2, 5.0        # diameters: of the neighbor list; wider bins gain no more, and cost in a dense mass
 STEEPER = 7.0           # degrees: default of a strength that holds a body, above the slope of its slip surface
 LEAST_PEAK, MOST_PEAK = 33.0, 80.0
+# what the variables of a zone are
+OF_ZONE = {"friction": "degrees; 0 <= friction < 90", "rolling": "rolling resistance",
+           "restitution": "restitution; 0 < field_e <= 1", "spacing": f"diameters; 0 < spacing <= {widest():g}"}
 
 
 class Parts(NamedTuple):
@@ -34,6 +38,7 @@ class Parts(NamedTuple):
     lines: Sequence[Line]
     motion: Optional[Motion]
     room: float             # m3, of the box around the ground
+    zones: Sequence[Zone] = ()
 
 
 class Numbers(NamedTuple):
@@ -64,7 +69,8 @@ def values(choices: Choices, parts: Parts, numbers: Numbers) -> Dict[str, Any]:
         "title": parts.title, "terrain": parts.terrain, "deck": NAME, "volume": f"{body.volume:,.0f}",
         "balls": f"about {balls:,.0f}", "rest_s": "some" if numbers.rest is None else f"{numbers.rest:.0f}",
         "run_time": run_time(numbers.run_seconds), "lower": math.ceil(body.lower),
-        "box": " ".join(plain(value) for value in body.box), "types": 4 if parts.structures else 3,
+        "box": " ".join(plain(value) for value in body.box), "types": types_before(parts) + len(parts.zones),
+        "zones": zone_values(parts, model),
         "bins": bins(parts.room, body.volume),
         "slip_file": body.slip, "body": choices["release"]["bodies"] and body_number(choices),
         "structures": [{"name": one.name, "file": one.file, "point": words(one.point),
@@ -75,12 +81,51 @@ def values(choices: Choices, parts: Parts, numbers: Numbers) -> Dict[str, Any]:
         ("rolling", ROLLING), ("friction", model["friction"]), ("slip", model["slip_friction"]),
         ("restitution", model["restitution"]), ("field_e", model["field_restitution"]), ("density", model["density"]),
         ("thick", body.thick), ("stiffness_number", site_budget.STIFFNESS_NUMBER), ("rest", REST),
+        ("step", site_budget.STEP), ("close", site_budget.CLOSE),
         ("speed", numbers.speed), ("duration", numbers.duration), ("cell", numbers.cell), ("film", numbers.film),
         ("concrete", choices["structures"]["friction"]), ("concrete_e", choices["structures"]["restitution"]),
         ("scale", motion["scale"]), ("shaking", parts.motion.length if parts.motion else 0),
         ("peak_friction", numbers.peak_friction), ("peak_rolling", motion["peak_rolling"]),
         ("trigger", motion["trigger"]))})
     return parameters
+
+
+def types_before(parts: Parts) -> int:
+    """Types of balls beside those of the zones."""
+    return 4 if parts.structures else 3
+
+
+def zone_values(parts: Parts, model: Mapping[str, Any]) -> List[Dict[str, Any]]:
+    """What the template needs of the zones of the ground.
+
+    What a zone has changes by the factor by which the site's own value, the variable without the zone's name, is
+    changed; not so the rolling resistance, which may be 0 there. What it does not have is the site's.
+    """
+    found = []
+    for number, zone in enumerate(parts.zones, types_before(parts) + 1):
+        own, now = [], []
+        used = {"spacing": "", "friction": "${friction}", "rolling": "${rolling}", "field_e": "${field_e}"}
+        for name, value in zone.values.items():
+            variable = VALUES[name]
+            mine = f"{variable}_{zone.word}"
+            own.append({"name": mine, "value": plain(value), "what": OF_ZONE[name]})
+            used[variable] = f"${{{mine}}}"
+            of = whole(name, model)
+            if not of:
+                continue
+            low, high = LIMITS[name]
+            now += [{"name": f"x_{mine}", "formula": f"v_{mine}*(v_{variable}/{plain(of)})"},
+                    {"name": f"low_{mine}", "formula": f"(v_{mine}<{plain(low)})*v_{mine}"
+                                                       f"+(v_{mine}>={plain(low)})*{plain(low)}"},
+                    {"name": f"now_{mine}", "formula": limited(f"v_x_{mine}", f"v_low_{mine}", plain(high))}]
+            used[variable] = f"${{now_{mine}}}"
+        found.append({"word": zone.word, "file": zone.file, "type": number, "own": own, "now": now, "used": used})
+    return found
+
+
+def limited(name: str, low: str, high: str) -> str:
+    """A value within limits, as a formula of LAMMPS."""
+    return f"({name}<{low})*{low}+({name}>={low})*({name}<={high})*{name}+({name}>{high})*{high}"
 
 
 def bins(room: float, volume: float) -> str:

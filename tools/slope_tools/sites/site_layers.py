@@ -15,9 +15,10 @@ from ..releases import release_area
 from ..survey import beside, polygons, rasters, roads, vectors
 from ..survey.crs import as_crs, same_crs
 from ..survey.rasters import Raster, crs_name
-from . import site_choices, site_inputs
+from . import site_choices, site_inputs, site_zones
 from .site_choices import Choices
 from .site_inputs import Line, Motion, Structure
+from .site_zones import Zone
 
 ROAD = "road.csv"
 OBSERVED = "observed"       # .csv of an outline, .tif of a raster
@@ -31,6 +32,7 @@ class Layers(NamedTuple):
     structures: List[Structure]
     lines: List[Line]
     motion: Optional[Motion]
+    zones: List[Zone]
 
 
 class Shown(NamedTuple):
@@ -43,6 +45,7 @@ class Shown(NamedTuple):
     structures: Sequence[Structure]
     lines: Sequence[Line]
     reached: Optional[Raster]           # largest thickness of the trial run, m
+    zones: Sequence[Zone] = ()          # of the ground
 
 
 def read_layers(choices: Choices, raster: Raster, folder: Path, tell, warn) -> Layers:
@@ -59,6 +62,10 @@ def read_layers(choices: Choices, raster: Raster, folder: Path, tell, warn) -> L
                                     taken, warn)
     lines = site_inputs.control_lines(drawn(choices, choices["lines"]["files"]), raster, folder, taken, warn)
     motion = site_inputs.motion(choices["motion"]["file"], folder) if choices["motion"]["file"] else None
+    path = choices["ground"]["file"]
+    zones = site_zones.of_choices(choices, site_zones.Source(path, choices["ground"]["table"], assigned(choices, path),
+                                                             advice(choices, path)),
+                                  raster, folder, tell, warn) if path else []
     for one in structures:
         tell(one.summary)
     for line in lines:
@@ -66,7 +73,7 @@ def read_layers(choices: Choices, raster: Raster, folder: Path, tell, warn) -> L
     if motion:
         tell(f"{motion.file}: {motion.length:g} s, up to {100 * motion.peak * choices['motion']['scale']:.4g} gal "
              "horizontally")
-    return Layers(road, observed, structures, lines, motion)
+    return Layers(road, observed, structures, lines, motion, zones)
 
 
 def drawn(choices: Choices, files: Sequence[str]) -> List[site_inputs.Drawn]:

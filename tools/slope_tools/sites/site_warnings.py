@@ -15,6 +15,7 @@ from ..findings import Finding, entries
 from ..releases.release_solve import Measures
 from .site_budget import Size, Trial
 from .site_choices import Choices
+from .site_zones import Zone
 
 NAME = "warnings.yaml"
 ROUGH = 3.0             # balls, mean thickness of the body: below, the numbers are rough
@@ -62,6 +63,14 @@ def of_resistance(choices: Choices) -> List[Finding]:
         angles["--cut-angle"] = choices["road"]["cut_angle"]
     return [*of_angles(angles), *(Finding("large rolling", {"rolling": value, "limit": ROLLS_NOT})
                                   for value in choices["study"]["rolling"] if value > ROLLS_NOT)]
+
+
+def of_zones(zones: Sequence[Zone]) -> List[Finding]:
+    """The same of the zones of the ground."""
+    return [one for zone in zones for one in
+            (*of_angles({f"friction of zone {zone.name}": zone.values.get("friction", 0.0)}),
+             *(Finding("large rolling", {"rolling": value, "limit": ROLLS_NOT})
+               for value in [zone.values.get("rolling", 0.0)] if value > ROLLS_NOT))]
 
 
 def of_angles(angles: Mapping[str, float]) -> List[Finding]:

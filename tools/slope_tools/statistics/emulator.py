@@ -13,6 +13,7 @@ import numpy as np
 from scipy import linalg, stats
 from scipy.stats import qmc
 
+from ..digits import measured
 from . import dependent
 
 FOLDS = 8
@@ -203,8 +204,8 @@ def analyse(names: Sequence[str], points: np.ndarray, values: np.ndarray, point:
         return without(f"{different} points are too few for an emulator of {len(names)} variables")
     whole, parts, check = validated(points, values, of)
     if check.verdict == "bad":
-        return without(f"no indices: of runs that it has not seen the emulator explains {percent(check.explained)} of "
-                       "the variance", check)
+        return without("no indices: of runs that it has not seen the emulator explains "
+                       f"{measured(max(check.explained, 0.0))} of the variance", check)
     if weighting is None:
         first, total = indices(whole, len(names), snap)
         many = np.array([indices(part, len(names), snap, BASE_OF_FOLD) for part in parts])
@@ -214,7 +215,7 @@ def analyse(names: Sequence[str], points: np.ndarray, values: np.ndarray, point:
                          for part, weight in zip(parts, weighting.parts)])
     jackknife = (len(parts) - 1) / len(parts) * ((many - many.mean(axis=0)) ** 2).sum(axis=0)
     errors = np.sqrt(jackknife + check.unseen ** 2 + (weighting.unseen ** 2 if weighting else 0))
-    text = f"the emulator explains {percent(check.explained)} of the variance of runs that it has not seen"
+    text = f"the emulator explains {measured(max(check.explained, 0.0))} of the variance of runs that it has not seen"
     if check.verdict == "rough":
         text += ": take the indices as rough"
     return Analysis(check, [Influence(name, ranks[i][0], ranks[i][1], float(first[i]), float(errors[0][i]),
@@ -248,7 +249,3 @@ def indices(emulator: Emulator, dimensions: int, snap=lambda u: u, base: int = B
         first[i] = 1 - float(np.mean((of_b - of_mixed) ** 2)) / (2 * variance) if variance > 0 else 0.0
         total[i] = float(np.mean((of_a - of_mixed) ** 2)) / (2 * variance) if variance > 0 else 0.0
     return np.clip(first, 0, 1), np.clip(total, 0, None)
-
-
-def percent(share: float) -> str:
-    return f"{100 * max(share, 0.0):.0f} %"

@@ -6,7 +6,7 @@ command that mends it.
 from enum import Enum
 from typing import List, NamedTuple, Optional
 
-from ..digits import rounded
+from ..digits import metres
 from ..findings import Finding
 
 BALLS = 10              # on the road: fewer are not a volume but single balls
@@ -51,7 +51,7 @@ def few_balls(facts: Facts) -> Optional[Finding]:
 def short(facts: Facts) -> Optional[Finding]:
     if facts.median is None or facts.length is not None and facts.length >= facts.median:
         return None
-    longest = "there is no deposit" if facts.length is None else f"the longest one ends at {rounded(facts.length, 3)} m"
+    longest = "there is no deposit" if facts.length is None else f"the longest one ends at {metres(facts.length)}"
     return Finding(Kind.MOBILITY.value, {"number": facts.length, "bound": facts.median, "longest": longest})
 
 

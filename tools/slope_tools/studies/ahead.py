@@ -1,5 +1,4 @@
 """What is ahead of the study of a site: which of its runs are there, how many are to be made, how long they take."""
-from pathlib import Path
 from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 from .. import disk
@@ -8,6 +7,7 @@ from ..ensembles import farther, known_study, sample
 from ..runs import dependencies, jobs, repeats, store
 from ..sites import site_budget, site_choices
 from ..sites.site_budget import Soil, Trial
+from ..sites.site_choices import Site
 from ..statistics import designs
 from . import fine_runs, site_study, study
 from .setup import Setup
@@ -34,12 +34,12 @@ class Ahead(NamedTuple):
         return said + (f"; up to {self.more} more where known events go farther" if self.more else "")
 
 
-def of_site(folder: Path, engine: Setup, points: int, asked: Optional[str] = None) -> Ahead:
+def of_site(site: Site, engine: Setup, points: int, asked: Optional[str] = None) -> Ahead:
     """Of the study that site.yaml describes; points: of the ensemble, 0: the paper's study alone; asked: of --fine.
 
     SlopeError on bad input, and if a run is there with other data and engine.anew does not ask for it again.
     """
-    planned = site_study.plan(folder, engine, asked)
+    planned = site_study.plan(site, engine, asked)
     setup = planned.setup
     files = data_files(setup.deck, {**planned.settings, **planned.repeated})
     depends = dependencies.Dependencies(setup.deck, {name: disk.sha256(path) for name, path in files.items()},
@@ -52,7 +52,7 @@ def of_site(folder: Path, engine: Setup, points: int, asked: Optional[str] = Non
     design: List[repeats.Repeat] = []
     factor = fine_runs.factor_of(asked, planned.choices)
     if points:
-        todo, more = points_of(folder, planned, points)
+        todo, more = points_of(planned, points)
         runs.admit(todo)
         once = store.once(todo)
         design = [one for one in once if not one.finished]
@@ -66,17 +66,17 @@ def of_site(folder: Path, engine: Setup, points: int, asked: Optional[str] = Non
     if fines + fine:
         parts.append((1 / int(factor), fines + fine))
     known = new and setup.engine == "local"
-    return Ahead(there, new, seconds(folder, planned, parts, half > 0, len(design)) if known else None, more)
+    return Ahead(there, new, seconds(site, planned, parts, half > 0, len(design)) if known else None, more)
 
 
-def points_of(folder: Path, planned: site_study.Planned, points: int):
+def points_of(planned: site_study.Planned, points: int):
     """The runs of the ensemble that is weighted by known events, with those that were added; how many more may be."""
     chance = site_choices.chance(planned.variables)
     vary = [*known_study.VARY, chance]
     fixed = site_choices.not_varied(planned.choices, {words.partition("=")[0] for words in vary})
     plan = sample.check(points, designs.SOBOL, SEED, vary, planned.setup.deck, fixed, {}).widened(known_study.WIDE)
     todo = sample.plan(planned.setup.runs, plan, fixed, {}, planned.variables)
-    added = farther.Added(folder / site_study.ENSEMBLE, plan)
+    added = farther.Added(planned.setup.home / site_study.ENSEMBLE, plan)
     for batch in added.batches:
         todo += repeats.with_repeats(planned.setup.runs, [{**fixed, **one} for one in batch.points], (), plan.names)
     return todo, int(farther.MOST * points) - added.number
@@ -90,10 +90,10 @@ def fine_of(setup: Setup, runs: store.Store, factor: int, todo: Sequence[repeats
         yield found[0].finished
 
 
-def seconds(folder: Path, planned: site_study.Planned, parts: List[Tuple[float, int]], half: bool,
+def seconds(site: Site, planned: site_study.Planned, parts: List[Tuple[float, int]], half: bool,
             points: int) -> Optional[float]:
     """What runs take on this machine; parts, half, points: as of site_budget.Plan."""
-    found = site_choices.found(folder)
+    found = site.found
     trial = found.get("trial") or {}
     if set(trial) != set(Trial._fields) or not found.get("body"):
         return None

@@ -28,7 +28,7 @@ def make(setup: Setup, order: Order, fixed: Mapping[str, str], chances: Sequence
         runs = known_events.Runs(order.sample, added.batches, rows, found)
         if found.outside or len(runs.rows) < 2:
             return
-        end = farther.End(float(found.path.length[-1]), found.beyond_path())
+        end = farther.End(found.end(float(runs.lengths.max())), found.beyond_path())
         new = added.propose(runs.places, runs.lengths, runs.beyond, end)
         if new is None:
             return
@@ -54,4 +54,4 @@ def batch(setup: Setup, order: Order, fixed: Mapping[str, str], chances: Sequenc
 
 def rows_of(setup: Setup, todo: Sequence[repeats.Repeat]) -> List[Dict[str, Any]]:
     """The runs' rows of study.csv, without the road."""
-    return results.rows_of(setup._replace(road=None), todo, results.Maps(()), pictures=False)[0]
+    return results.rows_of(setup._replace(road=None), todo, results.Maps(()))[0]

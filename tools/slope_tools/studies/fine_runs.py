@@ -5,7 +5,7 @@ What it says of the size of the balls: tables/fine_run.
 import statistics
 from typing import Any, Dict, List, Mapping, Optional, Sequence
 
-from ..case.settings import as_number
+from ..case.settings import as_number, middle
 from ..errors import SlopeError
 from ..runs import repeats
 from ..runs.repeats import Repeat
@@ -31,12 +31,12 @@ def in_the_middle(setup: Setup, factor: Any, settings: Mapping[str, Sequence[str
     """At the middle of the values of each variable, or none; defaults: of the deck's index variables."""
     if factor in NONE:
         return []
-    middle = {name: several[len(several) // 2] for name, several in settings.items()}
-    known = {**defaults, **middle}
+    values = {name: middle(several) for name, several in settings.items()}
+    known = {**defaults, **values}
     if VARIABLE not in known:
         raise SlopeError(OPTION, f"must be of a deck whose variable {VARIABLE} is the diameter of the balls",
                          setup.deck)
-    return smaller(setup.runs, middle, int(factor), known[VARIABLE])
+    return smaller(setup.runs, values, int(factor), known[VARIABLE])
 
 
 def of_median_length(setup: Setup, factor: Any, todo: Sequence[Repeat], defaults: Mapping[str, str]) -> List[Repeat]:
@@ -44,7 +44,7 @@ def of_median_length(setup: Setup, factor: Any, todo: Sequence[Repeat], defaults
     if factor in NONE:
         return []
     first = [one for one in todo if not one.batch and not one.repeat and not one.error]
-    rows, _ = results.rows_of(setup._replace(road=None), first, Maps(()), pictures=False)
+    rows, _ = results.rows_of(setup._replace(road=None), first, Maps(()))
     lengths = {row["run"]: row["length_m"] for row in rows if row.get("length_m") is not None}
     if not lengths:
         return []

@@ -24,7 +24,8 @@ FARTHEST = 20.0         # times as far as the path may the end of known events b
 
 def lines(folder: Path) -> List[str]:
     """In words: what is known without a run, what the study takes, and whether it can be more than a floor."""
-    choices, found = site_choices.read(folder), site_choices.found(folder)
+    site = site_choices.load(folder)
+    choices, found = site.choices, site.found
     said, floors = [], []
     try:
         mass = body.of_site(folder)

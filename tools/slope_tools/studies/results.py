@@ -11,13 +11,13 @@ from ..case import run_folders
 from ..deposits import gone, travel_shares
 from ..ensembles import ensemble, known_study
 from ..findings import Finding, entries, finding
+from ..releases import release_toe
 from ..runs import repeats
 from ..runs.repeats import Repeat
 from ..seismic import chain_files
-from ..sites import site_choices
 from ..statistics import headline
 from ..survey import rasters, roads
-from ..tables import (answered, combinations, fine_run, intensity, judged, quantities, road_runs, step_check,
+from ..tables import (answered, combinations, elastic, fine_run, intensity, judged, quantities, road_runs, step_check,
                       structures, study_table, usable, withheld_words)
 from ..tables.study_maps import Maps
 from . import mapped, site_ground
@@ -39,18 +39,21 @@ class Questions(NamedTuple):
     site: Optional[Path] = None                     # folder of the site whose study it is
     fine: Optional[Repeat] = None                   # the run with smaller balls; None: none was asked for
     step: Optional[step_check.Step] = None          # the run with half the time step
+    most_elastic: Optional[elastic.Made] = None     # the runs with the largest restitution
     method: str = ""                                # of a site's study, in words
     chain: Optional[chain_files.Chain] = None       # of an ensemble: how likely its bodies fail in an earthquake
+    known: Mapping[str, Any] = {}                   # of site.yaml: with which known events the runs are compared
 
 
-def collect(setup: Setup, questions: Questions, todo, work) -> None:
-    """Table, maps and study.yaml over all runs that finished."""
+def collect(setup: Setup, questions: Questions, todo, work) -> Optional[Dict[str, Any]]:
+    """Table, maps and study.yaml over all runs that finished; what the latter says, None where no run of an ensemble
+    finished."""
     settings, repeated, thresholds, order = questions[:4]
     output, deck = setup.output, setup.deck
     if order and all(run.error for run in todo):
-        return      # study.perform says so
+        return None     # study.perform says so
     maps = Maps(thresholds)
-    rows, thickness = rows_of(setup, todo, maps, pictures=order is None)
+    rows, thickness = rows_of(setup, todo, maps)
     warnings = [finding(one) for one in questions.notes]
     warned = {one.kind for one in warnings if not one.part}
     warnings += [one for one in judged.of_runs(rows) if one.kind not in warned]
@@ -65,16 +68,17 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
     written = maps.write(output, terrain_place(first) if first else None)
     keys = ["front_m", "thickness_m", "max_thickness_m", "max_speed_m_s"]
     keys += [key for key in (travel_shares.DISTANCE, "length_m") if key in names]
-    among = known_of(setup, questions)
+    among = known_of(questions)
     events = events_of(setup, first, finished[0], among) if setup.road and finished else None
     about = {
         "study": {"deck": deck.name, "known": among,
                   "set": settings, "repeat": repeated, "runs": len(rows), "finished": len(finished),
                   "method": questions.method, "ranks": work.ranks, "jobs": work.jobs, "package": work.package,
-                  "collected": provenance.now(), "machine": provenance.machine()},
+                  "governs": output.name, "collected": provenance.now(), "machine": provenance.machine()},
         "largest": {key: largest(finished, key) for key in keys if finished},
         "farthest": travel_shares.farthest(finished)["run"] if finished else None,
         "conservative": None, "size": None, "ensemble": None, "step": None,
+        elastic.ENTRY: None,
         "scatter": {name: known and {"deviation": known.deviation, "degrees_of_freedom": known.degrees_of_freedom}
                     for name, known in scatters.items()},
         "combinations": combinations.entries(groups, names), **written, "observed": observed,
@@ -83,6 +87,9 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
         about["study"]["road"] = write_road(output, setup.road, first, thickness)
     if questions.fine and finished:
         about["size"] = fine_run.evaluate(compared(setup, questions.fine, rows, None if order else groups))
+    (output / elastic.FILE).unlink(missing_ok=True)
+    if questions.most_elastic and finished:
+        about[elastic.ENTRY] = elastic.evaluate(questions.most_elastic, rows, output)
     if order:
         about["ensemble"] = ensemble.evaluate(order, rows, output, first and terrain_place(first), maps.problem)
         case = case_of(setup, questions, finished[0])._replace(sampled=True)
@@ -113,7 +120,7 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
         setup.warn(one)
     disk.write(output / "study.csv", study_table.table(settings, repeated, rows, work.defaults))
     disk.write(output / "combinations.csv", combinations.table(groups, names, settings))
-    disk.write(output / "study.yaml", disk.yaml_text(answered.TITLE, about))
+    write(output, about)
     if not order or len(rows) <= SHOWN:
         setup.tell(study_table.runs_shown(
             settings, rows, scatters,
@@ -130,6 +137,8 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
             setup.tell(about["step"]["text"])
     if about["size"]:
         setup.tell(f"size of the balls: {about['size']['text']}")
+    if questions.most_elastic and finished:
+        setup.tell(about[elastic.ENTRY]["text"])
     if about["ensemble"]:
         setup.tell("\n".join(ensemble.describe(about["ensemble"])))
         setup.tell(f"{output / ensemble.HAZARD}, {output / ensemble.INFLUENCE}: all curves and indices; "
@@ -140,6 +149,12 @@ def collect(setup: Setup, questions: Questions, todo, work) -> None:
         setup.tell("\n".join(chain_files.describe(about["chain"], output)))
     for entry in [*(written["envelope"] or {}).values(), *(written["exceedance"] or ())]:
         setup.tell(f"{output / entry['file']}: {entry['what']}")
+    return about
+
+
+def write(output: Path, about: Mapping[str, Any]) -> None:
+    """study.yaml."""
+    disk.write(output / "study.yaml", disk.yaml_text(answered.TITLE, about))
 
 
 def compared(setup: Setup, fine: Repeat, rows: Sequence[Mapping[str, Any]],
@@ -147,7 +162,7 @@ def compared(setup: Setup, fine: Repeat, rows: Sequence[Mapping[str, Any]],
     """The fine run beside the rows with the same values; groups: of a study with repeats, None of an ensemble."""
     if fine.error:
         return fine_run.Fine(None, (), 0.0, lambda key: None, f"{fine.name}: {fine.error}")
-    [row], _ = rows_of(setup, [fine], Maps(()), pictures=False)
+    [row], _ = rows_of(setup, [fine], Maps(()))
     coarse = [one for one in rows if one["status"] == "finished"
               and all(row["variables"][name] == one["variables"][name]
                       for name in one["set"] if name != fine_run.VARIABLE)]
@@ -178,13 +193,10 @@ def depth_of(setup: Setup, row: Mapping[str, Any]) -> float:
     return row["released_m3"] / (float(cells) * arrival.transform.a ** 2)
 
 
-def known_of(setup: Setup, questions: Questions) -> Mapping[str, Any]:
+def known_of(questions: Questions) -> Mapping[str, Any]:
     """With which known events the runs are compared: the ensemble's, or those of site.yaml; for known.of_about()."""
     condition = questions.order and questions.order.condition
-    if condition:
-        return condition.asked.about()
-    site = questions.site or setup.deck.parent
-    return site_choices.read(site)["known"] if (site / site_choices.NAME).is_file() else {}
+    return condition.asked.about() if condition else questions.known
 
 
 def events_of(setup: Setup, run, row, among: Mapping[str, Any]) -> Optional[usable.Events]:
@@ -208,11 +220,8 @@ def unseen(repeated, defaults):
         if offsets else []
 
 
-def rows_of(setup: Setup, todo, maps, pictures=True):
-    """A row for each run, finished or failed, and the final thickness of the last one that finished.
-
-    pictures: whether `slope volume` draws its map of each, which takes longest.
-    """
+def rows_of(setup: Setup, todo, maps):
+    """A row for each run, finished or failed, and the final thickness of the last one that finished."""
     rows, thickness = [], None
     for run in rasters.progress(todo, "collecting the runs"):
         row = {"run": run.name, "status": "failed" if run.error else "finished", "set": run.combination,
@@ -222,7 +231,7 @@ def rows_of(setup: Setup, todo, maps, pictures=True):
             continue
         row, thickness = result(run, row, maps, setup.output)
         if setup.road:
-            row.update(on_road(run, setup, row, thickness, pictures))
+            row.update(on_road(run, setup, row, thickness))
         rows.append(row)
     return rows, thickness
 
@@ -258,8 +267,9 @@ def result(run, row, maps, output):
     return row, thickness
 
 
-def on_road(run, setup: Setup, row, thickness, picture=True) -> Dict[str, Any]:
-    """What `slope volume` says of a run, all of which goes to the folder volume of the run; and what lies beyond."""
+def on_road(run, setup: Setup, row, thickness) -> Dict[str, Any]:
+    """What `slope volume` says of a run, which goes to the folder volume of the run, without the picture; and what lies
+    beyond."""
     from ..deposits import volume
     road, summary = setup.road, run_folders.summary_of(setup.output, row)
     assert road
@@ -267,14 +277,15 @@ def on_road(run, setup: Setup, row, thickness, picture=True) -> Dict[str, Any]:
     terrain = terrain_of(run)
     wanted = volume.Wanted(road.file, road.mesh, road.cut_angle, road.local, asked=road.asked)
     found = volume.of_run(str(prefix), wanted, terrain)
-    volume.write(found, run.folder / "volume", picture)
+    volume.write(found, run.folder / "volume", picture=False)
     about = disk.plain(found.about)       # numpy has no place in study.yaml
     released = run_folders.load_raster(prefix, "arrival").z == 0
     polygon, total = road.read(placed(thickness, run)).polygon, about["clearing"]
-    taken = on_body(thickness, released, polygon, row["ball_m3"])
-    if taken > 0:
-        found.warnings.append(Finding("road on body", {"file": road.file.name}))
-    return {"road_on_body_m2": taken, "remove_m3": about["volume"]["remove"],
+    taken = release_toe.on_body(body_of(released, thickness, row["ball_m3"]), thickness, polygon,
+                                release_toe.rim(row["ball_m3"], thickness.transform.a))
+    if taken:
+        found.warnings.append(taken.finding(road.file.name))
+    return {"road_on_body_m2": taken.area if taken else 0.0, "remove_m3": about["volume"]["remove"],
             "remove_on_road_m3": about["volume"]["remove_on_road"],
             "remove_beside_road_m3": about["volume"]["remove_beside_road"],
             **quantities.of_division(about["divided"], about["left"]),
@@ -301,23 +312,6 @@ def body_of(released, raster, ball_m3):
     near = math.ceil(ball_m3 ** (1 / 3) / raster.transform.a)
     rows, columns = released.shape
     return binary_closing(np.pad(released, near), iterations=near)[near:near + rows, near:near + columns]
-
-
-def on_body(thickness, released, road, ball_m3) -> float:
-    """Area (m2) of the road (local metres) on the body; 0 if it meets the rim only, a cell and half a ball wide.
-
-    released, ball_m3: see body_of().
-    """
-    from scipy.ndimage import binary_erosion
-    from .. import geometry
-    cell = thickness.transform.a
-    body, rim = body_of(released, thickness, ball_m3), 1 + math.ceil(ball_m3 ** (1 / 3) / cell / 2)
-    rows, columns = released.shape
-    lines = np.arange(columns + 1.0), np.arange(rows + 1.0)
-    share = sum(geometry.coverage(part, *lines)[0] for part in geometry.polygons_of(geometry.to_index(road, thickness)))
-    if not (share * binary_erosion(body, iterations=rim)).any():
-        return 0.0
-    return float((share * body).sum() * cell ** 2)
 
 
 def placed(raster, run):

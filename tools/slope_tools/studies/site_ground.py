@@ -1,11 +1,11 @@
 """What the ground of a site holds: its stop angle, and how much of the slope below the body is steeper."""
-from pathlib import Path
 from typing import Any, Dict, List, Mapping, Optional
 
 from ..case import decks
 from ..errors import SlopeError
 from ..mobility import body, steeper
-from ..sites import ground, site_choices, site_deck
+from ..sites import ground, site_choices, site_deck, site_zones
+from ..sites.site_choices import Site
 from ..sites.stop_angle import stop_angle
 
 FIELD_SIZE = 1e-6       # of d; the table is of grounds of balls as large as the soil's
@@ -25,12 +25,20 @@ def of_variables(variables: Optional[Mapping[str, Any]]) -> Optional[float]:
         return None     # of a deck that has no such ground
 
 
-def stop_angles(folder: Path, others: bool = False) -> Dict[str, Dict[str, float]]:
-    """Of a site's folder: {spacing: {rolling resistance: stop angle (degrees)}}, without what is outside of the table.
+def of_zone(zone: Mapping[str, Any], model: Mapping[str, Any], variables: Mapping[str, Any]) -> Optional[float]:
+    """The stop angle of a zone, as if the soil had its friction and rolling resistance, too; None where unknown."""
+    try:
+        return of_variables({**variables, **site_zones.now(zone, model, variables)})
+    except (KeyError, ValueError):
+        return None
+
+
+def stop_angles(site: Site, others: bool = False) -> Dict[str, Dict[str, float]]:
+    """Of a site: {spacing: {rolling resistance: stop angle (degrees)}}, without what is outside of the table.
 
     others: those of the other grounds of its study, too.
     """
-    variables, choices = decks.index_variables(folder / site_deck.NAME), site_choices.read(folder)
+    variables, choices = decks.index_variables(site.folder / site_deck.NAME), site.choices
     runs = [(variables.get("spacing", ""), f"{one:g}") for one in choices["study"]["rolling"]]
     if others and ground.SEED in variables:
         runs += [(f"{spacing:g}", f"{rolling:g}") for spacing, rolling in site_choices.other_grounds(choices)]
@@ -42,11 +50,11 @@ def stop_angles(folder: Path, others: bool = False) -> Dict[str, Dict[str, float
     return found
 
 
-def lines(folder: Path, others: bool = False) -> List[str]:
+def lines(site: Site, others: bool = False) -> List[str]:
     """In words, a line for each ground; none where the stop angle is unknown."""
-    grounds = stop_angles(folder, others)
+    grounds = stop_angles(site, others)
     try:
-        slope = steeper.below(body.of_site(folder)) if grounds else None
+        slope = steeper.below(body.of_site(site.folder)) if grounds else None
     except SlopeError:      # a level body has no fall path
         slope = None
     texts = []
@@ -58,4 +66,14 @@ def lines(folder: Path, others: bool = False) -> List[str]:
             text += ("; of the slope below the body "
                      f"{', '.join(f'{100 * slope.steeper(degrees):.0f}' for degrees in known.values())} % is steeper")
         texts.append(text)
-    return texts
+    return texts + [text for zone in site.found.get("zones") or () if (text := zone_line(site, zone))]
+
+
+def zone_line(site: Site, zone: Mapping[str, Any]) -> str:
+    """The stop angle of a zone at the site's own spacing, in words; empty where it is unknown."""
+    variables, choices = decks.index_variables(site.folder / site_deck.NAME), site.choices
+    rolling = [zone["rolling"]] if "rolling" in zone else choices["study"]["rolling"]
+    runs = {f"{one:g}": of_zone(zone, choices["model"], {**variables, "rolling": one}) for one in rolling}
+    known = {name: f"{degrees:.1f}" for name, degrees in runs.items() if degrees is not None}
+    return (f"zone {zone['name']}: stop angle {', '.join(known.values())} degrees at a rolling resistance of "
+            f"{', '.join(known)}" if known else "")

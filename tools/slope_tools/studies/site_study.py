@@ -6,19 +6,20 @@ Order of the work: plan all runs, make them (study), what the fine run and half 
 import shutil
 from pathlib import Path
 from shlex import quote
-from typing import Dict, Iterable, List, NamedTuple, Optional
+from typing import Any, Dict, Iterable, List, NamedTuple, Optional
 
-from .. import schemas
+from .. import disk, schemas
 from ..case import decks, run_folders
+from ..case.settings import middle as middle_of
 from ..errors import SlopeError
 from ..findings import Finding, finding
 from ..runs import repeats
 from ..schemas import FINDINGS
 from ..sites import ground, site_choices, site_deck, site_warnings
-from ..sites.site_choices import Choices, OFFSETS, PACKING, other_grounds
+from ..sites.site_choices import Choices, OFFSETS, PACKING, Site, other_grounds
 from ..sites.site_layers import OBSERVED, ROAD
 from ..survey.roads import Asked
-from ..tables import energy, named_run
+from ..tables import elastic, energy, named_run
 from ..tables.step_check import QUANTITY, Step, half_of
 from ..tables.study_file import read_study
 from . import fine_runs, mapped, results, study
@@ -38,6 +39,7 @@ def words(numbers: Iterable[float]) -> List[str]:
 class Done(NamedTuple):
     """What was made."""
     study: Optional[Path]                   # its folder, None of a dry run
+    about: Optional[Dict[str, Any]]         # what its study.yaml says
     failed: Optional[Exception]             # what failed beside it, to be raised once the report is there
 
 
@@ -52,23 +54,23 @@ class Planned(NamedTuple):
     todo: List[repeats.Repeat]
     fine: List[repeats.Repeat]
     half: List[repeats.Repeat]
+    elastics: List[repeats.Repeat]          # with the largest restitution
 
     @property
     def runs(self) -> List[repeats.Repeat]:
-        return [*self.todo, *self.fine, *self.half]
+        return [*self.todo, *self.fine, *self.half, *self.elastics]
 
 
-def plan(folder: Path, engine: Setup, asked: Optional[str] = None) -> Planned:
-    """All runs of a site by the paper's method; asked: of --fine. SlopeError on bad input."""
-    choices = site_choices.read(folder)
-    check(folder, choices)
+def plan(site: Site, engine: Setup, asked: Optional[str] = None) -> Planned:
+    """All runs of a site by the paper's method; asked: of --fine."""
+    folder, choices = site.folder, site.choices
     deck, road, several = folder / site_deck.NAME, choices["road"], choices["study"]
     setup = engine._replace(deck=deck, output=folder / STUDY, site=folder, road=None)
     if road["file"]:
         setup = setup._replace(road=Road(folder / ROAD, road["cut_angle"], road["mesh"], asked=Asked.of(road)))
     settings, variables = {"rolling": words(several["rolling"])}, decks.index_variables(deck)
     repeated = {name: words(several[name]) for name in (PACKING, *OFFSETS) if name in variables and several.get(name)}
-    middle = settings["rolling"][len(several["rolling"]) // 2]
+    middle = middle_of(settings["rolling"])
     others = grounds(choices, variables)
     if others:
         settings["spacing"] = [variables["spacing"]]
@@ -77,60 +79,70 @@ def plan(folder: Path, engine: Setup, asked: Optional[str] = None) -> Planned:
         settings["spacing"] = list(dict.fromkeys([*settings["spacing"], *(one["spacing"] for one in others)]))
     fine = fine_runs.in_the_middle(setup, fine_runs.factor_of(asked, choices), {"rolling": [middle]}, variables)
     half = half_steps(setup, middle, variables) if setup.road else []
-    return Planned(choices, setup, variables, settings, repeated, middle, todo, fine, half)
+    elastics = elastic_runs(setup, several["largest_restitution"], settings["rolling"], repeated, variables)
+    return Planned(choices, setup, variables, settings, repeated, middle, todo, fine, half, elastics)
 
 
-def run(folder: Path, engine: Setup, method: str, asked: Optional[str] = None) -> Done:
+def run(site: Site, engine: Setup, method: str, asked: Optional[str] = None) -> Done:
     """Make or continue all runs of a site, and their results.
 
     engine: how the runs are made; its deck, output and road do not count; method: of the study, in words; asked: of
     --fine. Raises SlopeError on bad input, and if no run of the study finished.
     """
-    planned = plan(folder, engine, asked)
+    folder, planned = site.folder, plan(site, engine, asked)
     setup, todo, fine, half, variables = planned.setup, planned.todo, planned.fine, planned.half, planned.variables
 
     def collect(_, work):
         questions = results.Questions(
             planned.settings, planned.repeated, THRESHOLDS, notes=warnings_of(folder), site=folder,
-            fine=fine[0] if fine else None,
-            step=step_of(setup, half[0], planned.middle, variables) if half else None, method=method)
-        results.collect(setup, questions, todo, work)
+            fine=fine[0] if fine else None, most_elastic=elastic_of(setup, planned.elastics),
+            step=step_of(setup, half[0], planned.middle, variables) if half else None, method=method,
+            known=planned.choices["known"])
+        return results.collect(setup, questions, todo, work)
 
     failed: Optional[Exception] = None
     try:
         # the longest first: a long run that starts last leaves the other cores idle
-        study.perform(setup, {**planned.settings, **planned.repeated}, planned.runs, collect, first=[*fine, *half])
-    except study.RunsFailed:
+        about = study.perform(setup, {**planned.settings, **planned.repeated}, planned.runs, collect,
+                              first=[*fine, *half])
+    except study.RunsFailed as error:
+        about = error.found
         failed = study.failure(setup.output, todo)      # what is said of the others is with their results
         if failed and all(one.error for one in todo):
             raise failed from None
     if setup.dry_run:
-        return Done(None, failed)
+        return Done(None, None, failed)
     if planned.choices["observed"]["file"]:
         shutil.rmtree(folder / SCORE, ignore_errors=True)       # of other runs
         try:
             scored(folder, setup)
         except Exception as error:      # whatever it is, the runs took hours: their report comes first
             failed = failed or error
-    return Done(setup.output, failed)
+    return Done(setup.output, about, failed)
 
 
-def check(folder: Path, choices: Choices) -> None:
+def check(site: Site) -> None:
     """Raise SlopeError unless all files of a site exist and match its choices."""
-    found = site_choices.found(folder)
+    folder, found = site.folder, site.found
     for name in (site_deck.NAME, *(found.get("files") or ())):
         if not (folder / name).is_file():
             raise SlopeError(folder / name, f"must exist; `slope site {quote(str(folder))}` rebuilds it")
-    if found.get("choices_sha256", "") not in ("", site_choices.fingerprint(choices, folder)):
+    if found.get("choices_sha256", "") not in ("", site.fingerprint()):
         raise SlopeError(folder / site_choices.NAME, f"must not have been changed since {site_deck.NAME} was made from "
                          f"it: `slope site {quote(str(folder))}` rebuilds the deck (project, road, study and "
                          "known may change)")
     before = found.get("sources_sha256") or {}
-    for name, digest in site_choices.sources(choices, folder).items():      # a folder may have gone without its sources
+    for name, digest in site.sources().items():      # a folder may have gone without its sources
         if before.get(name, digest) != digest:
             raise SlopeError(folder / name, f"must not have changed since {site_deck.NAME} was made from it: "
                              f"`slope site {quote(str(folder))}` rebuilds the deck")
     mapped.check(folder)
+
+
+def digests(site: Site) -> Dict[str, str]:
+    """{file: digest} of the deck and its data."""
+    return {name: disk.sha256(site.folder / name) for name in (site_deck.NAME, *(site.found.get("files") or ()))
+            if name != site_choices.NAME and (site.folder / name).is_file()}
 
 
 def warnings_of(folder: Path) -> List[Finding]:
@@ -155,13 +167,32 @@ def half_steps(setup: Setup, rolling: str, variables: Dict[str, str]) -> List[re
 
 def step_of(setup: Setup, run_: repeats.Repeat, rolling: str, variables: Dict[str, str]) -> Step:
     """What that run tells."""
-    [row], _ = results.rows_of(setup, [run_], results.Maps(()), pictures=False)
+    [row], _ = results.rows_of(setup, [run_], results.Maps(()))
     if run_.error:
         return Step(rolling, None, f"{run_.name}: {run_.error}", step=float(run_.chosen["step"]))
     prefix = run_folders.prefix_of(run_folders.summary_of(setup.output, row))
     return Step(rolling, row[QUANTITY], energy=energy.read(Path(f"{prefix}.{energy.SUFFIX}"))
                 if LEDGER in variables else None, spacing=variables.get("spacing"),
                 step=float(run_.chosen["step"]))
+
+
+def elastic_runs(setup: Setup, largest: Optional[float], rolling: List[str], repeated: Dict[str, List[str]],
+                 variables: Dict[str, str]) -> List[repeats.Repeat]:
+    """The runs with the largest restitution, or what the deck has if that is larger, at the least rolling resistance;
+    none where none are asked for, or the deck has no such variables."""
+    if largest is None or not variables.keys() >= {*elastic.VARIABLES}:
+        return []
+    most = [f"{max(largest, *(float(variables[name]) for name in elastic.VARIABLES)):.10g}"]
+    settings = {"rolling": [min(rolling, key=float)], **dict.fromkeys(elastic.VARIABLES, most)}
+    return repeats.plan(setup.runs, settings, repeated, variables)
+
+
+def elastic_of(setup: Setup, runs: List[repeats.Repeat]) -> Optional[elastic.Made]:
+    """What these runs tell, whatever the road; None: there are none."""
+    if not runs:
+        return None
+    rows, _ = results.rows_of(setup._replace(road=None), runs, results.Maps(()))
+    return elastic.Made(float(runs[0].chosen[elastic.VARIABLES[0]]), runs[0].chosen["rolling"], rows)
 
 
 def scored(folder: Path, setup: Setup) -> None:

@@ -11,7 +11,7 @@ from .. import disk, provenance
 from ..case import decks
 from ..case.settings import as_number, check_settings
 from ..errors import SlopeError
-from ..findings import Finding, entries
+from ..findings import entries
 from ..runs import repeats
 from ..statistics import convergence, headline
 from ..tables import combinations, fine_run, judged, study_table
@@ -69,10 +69,7 @@ def collect(planned: Plan, of, work) -> None:
         for row in finished:
             if row[name] is None:
                 raise SlopeError("--of", f"must be known of every run; {name} is not of {row['run']}")
-    warnings = judged.of_runs(rows)
-    same = [row["run"] for group in groups for row in group.same]
-    if same:
-        warnings.append(Finding("no effect", runs=same))
+    warnings = [*judged.of_runs(rows), *combinations.no_effect(groups)]
     balls = [results.depth_of(setup, group.rows[0]) / float(group.set[variable]) if variable == fine_run.VARIABLE
              else None for group in groups]
     found = {name: convergence.compare([(float(group.set[variable]), list(group.of(name).volumes.values()))

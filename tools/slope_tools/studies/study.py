@@ -3,7 +3,7 @@ import argparse
 import contextlib
 import functools
 from pathlib import Path
-from typing import Callable, NamedTuple, Optional, Sequence
+from typing import Any, Callable, Iterator, NamedTuple, Optional, Sequence
 
 from .. import disk
 from ..case import decks
@@ -22,7 +22,9 @@ from .setup import Road, Setup
 
 
 def perform(setup: Setup, settings, todo, collect, begin=None, first=()):
-    """Run what is not finished of todo, then collect(todo, work); RunsFailed after that if a run failed.
+    """Run what is not finished of todo; gives what collect(todo, work) then finds, None of a dry run.
+
+    RunsFailed, with the same, if a run failed.
 
     begin: called once the folder is there, before the first run; first: runs of todo that are made before the others.
     """
@@ -34,17 +36,20 @@ def perform(setup: Setup, settings, todo, collect, begin=None, first=()):
         digests = {name: disk.sha256(source) for name, source in files.items()}
         depends = dependencies.Dependencies(setup.deck, digests, program_of(setup))
         store.Store(setup.runs, depends, setup.older, setup.anew).admit(todo)
-        return setup.tell("\n".join(listed(store.once(todo))))
+        setup.tell("\n".join(listed(store.once(todo))))
+        return None
     with prepared(setup, files, len(todo)) as work:
         work.store.admit(todo)
         if begin:
             begin()
         once = store.once(todo)     # of runs that share a folder the first in todo is made
         work.do([*(run for run in first if run in once), *todo])
-        collect(todo, work)
+        found = collect(todo, work)
     error = failure(setup.output, todo)
     if error:
+        error.found = found
         raise error
+    return found
 
 
 def program_of(setup: Setup) -> Optional[Path]:
@@ -55,6 +60,18 @@ def program_of(setup: Setup) -> Optional[Path]:
         if setup.lmp:
             raise
         return None
+
+
+@contextlib.contextmanager
+def alone(folder: Path, only_read: bool = False) -> Iterator[None]:
+    """No other command works in a folder meanwhile, unless this one only reads."""
+    with contextlib.ExitStack() as stack:
+        try:
+            if not only_read:
+                stack.enter_context(disk.alone_in(folder))
+        except OSError as error:
+            raise SlopeError(folder, f"cannot be used: {error.strerror}") from error
+        yield
 
 
 @contextlib.contextmanager
@@ -84,7 +101,8 @@ def prepared(setup: Setup, files, number):
 
 
 class RunsFailed(SlopeError):
-    """Runs failed; all others were made and collected."""
+    """Runs failed; all others were made and collected: found, what these say."""
+    found: Any = None
 
 
 def failure(output, todo) -> Optional[RunsFailed]:
@@ -128,11 +146,11 @@ def check_more_than(volumes: Sequence[float], variable: Optional[str], settings,
                          "pga or ...intensity) and --road", ",".join(f"{one:g}" for one in volumes))
 
 
-def condition_of(choice: Optional[known.Choice], named: Optional[str], deck: Path, left_out: Sequence[str],
+def condition_of(choice: Optional[known.Choice], named: Optional[str], site: Optional[Path], left_out: Sequence[str],
                  confined: Optional[str]) -> Optional[known_events.Condition]:
     """The condition that known events make, None without a choice of them; SlopeError if these say more of none."""
     if choice:
-        return known_events.check(choice, named, deck)
+        return known_events.check(choice, named, site)
     for name, given in (("--except", left_out), ("--confined or --unconfined", confined is not None)):
         if given:
             raise SlopeError(name, "must be given with --known")

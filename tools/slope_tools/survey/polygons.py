@@ -83,26 +83,29 @@ def _read_local(path, raster, local, crs, advice, warn):
     return _placed(path, polygons, raster, local, plain, crs or own, advice)
 
 
-def of_feature(where, geometry, raster, crs, advice=ADVICE):
-    """What read_local() gives, of one geometry of a vectors.Found; where: its file and feature, for messages."""
+def of_feature(where, geometry, raster, crs, advice=ADVICE, anywhere=False):
+    """What read_local() gives, of one geometry of a vectors.Found; where: its file and feature, for messages.
+
+    anywhere: it may lie beside the terrain.
+    """
     try:
         parts = _parts(where, geometry)
         if not parts:
             raise SlopeError(where, "must hold a polygon, it is empty")
-        return _placed(where, parts, raster, False, False, crs, advice)
+        return _placed(where, parts, raster, False, False, crs, advice, anywhere)
     except ShapelyError as error:
         raise SlopeError(where, "must be polygons whose points differ by more than rounding") from error
 
 
-def _placed(path, polygons, raster, local, plain, crs, advice):
-    """Polygons as one geometry in the local metres of a terrain, which it overlaps."""
+def _placed(path, polygons, raster, local, plain, crs, advice, anywhere=False):
+    """Polygons as one geometry in the local metres of a terrain, which it overlaps, unless it may be anywhere."""
     geometry = polygons[0] if len(polygons) == 1 else unary_union(polygons)
     as_it_stands = geometry.envelope
     if not local:
         geometry = _to_local(path, geometry, crs, raster, plain, advice)
     geometry = _checked(path, geometry)
     bounds = getattr(raster, "extent", None) or extent(raster)
-    if geometry.intersection(box(*bounds)).area == 0:
+    if not anywhere and geometry.intersection(box(*bounds)).area == 0:
         hint = " (with --local it would)" if plain and as_it_stands.intersection(box(*bounds)).area > 0 else ""
         if exchanged(geometry, raster, local).intersection(box(*bounds)).area > 0:
             hint = " (with x and y exchanged it would)"

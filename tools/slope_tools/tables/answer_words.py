@@ -1,8 +1,8 @@
 """The headline of study.yaml in words, for the console."""
-from typing import List, Optional
+from typing import Any, Iterable, List, Mapping, Optional
 
-from ..digits import rounded
-from ..mobility.results import percent
+from ..digits import metres, percent
+from ..findings import Finding
 from ..statistics.answer import Answer, Code, Kind, Reason, Source
 from . import quantities
 
@@ -37,31 +37,51 @@ def of_other(what: str, volume: Optional[float]) -> str:
     return "" if volume is None else f"; {what}: {quantities.number(volume)} m3"
 
 
+# --- why ---
+
 def text(reason: Reason) -> str:
     """A reason as a sentence without its full stop."""
+    return finding(reason).text
+
+
+def client(reason: Reason) -> str:
+    """The same for the first page of a report."""
     code, of = reason.code, reason.numbers
-    if code is Code.BEYOND:
-        return f"no run goes beyond {rounded(of['longest_m'], 4)} m, where {percent(of['far'])} of known events go on"
-    if code in (Code.NOT_REACHED, Code.ONE_SCATTER):
-        shares = " to ".join(dict.fromkeys(map(percent, (of["low"], of["high"]))))
-        longest = "no run leaves a deposit" if of["longest_m"] is None else \
-            f"the longest one ends at {rounded(of['longest_m'], 4)} m"
-        return (f"no run reaches the road, {rounded(of['near_m'], 4)} m along the fall path ({longest}), but {shares} "
-                "of known events do" + (", by one of the two scatters that are known of them" if code is
-                                        Code.ONE_SCATTER else ""))
-    if code is Code.TERRAIN:
-        return (f"the fall path, or the terrain, ends at {rounded(of['path_m'], 4)} m, which {percent(of['share'])} of "
-                "known events go beyond: take a larger terrain")
-    if code is Code.RANGE:
-        ends = f", which end at {of['ends']}," if of["ends"] else ""
-        return f"no values within the ranges{ends} are expected to go farther: give wider ranges"
-    if code is Code.RUNS:
-        return f"{of['points']} runs were added towards longer ones; a larger --sample allows more"
-    if code is Code.FEW:
-        return "the runs are too few to tell which parameters go farther: take more points"
-    if code is Code.SIZE and of["balls_thick"] is None:
-        return "the run with smaller balls, which may bring more, did not finish"
+    if code is not Code.RULE:
+        return finding(reason).client().rstrip(".")
+    return Finding(of["rule"]).client().rstrip(".") + (
+        "" if of["source"] == Source.PAPER.value else " (runs weighted by known events)")
+
+
+def finding(reason: Reason) -> Finding:
+    """A reason as the Finding that has its words."""
+    code, of = reason.code, reason.numbers
+    if code is Code.RULE:
+        return Finding("rule", {"study": STUDY[of["source"]], "rule": of["rule"]})
     if code is Code.SIZE:
-        return (f"the finest balls are {of['balls_thick']:.2g} over the thickness of the body: smaller ones, "
-                f"{of['enough']:g} or more, may bring more")
-    return f"{STUDY[of['source']]}: withheld by the rule {of['rule']}"
+        return Finding("no fine run") if of["balls_thick"] is None else \
+            Finding(code.value, {"balls": of["balls_thick"], "enough": of["enough"]})
+    words = {"longest": lambda: metres(of["longest_m"]), "far": lambda: percent(of["far"]),
+             "near": lambda: metres(of["near_m"]), "path": lambda: metres(of["path_m"]),
+             "share": lambda: percent(of["share"]), "shares": lambda: shares((of["low"], of["high"])),
+             "ends": lambda: ends(of), "points": lambda: f"{of['points']:g}"}
+    return Finding(code.value, {name: words[name]() for name in TAKES.get(code, ())})
+
+
+# of each code the words that its sentence takes
+TAKES = {Code.BEYOND: ("longest", "far"), Code.NOT_REACHED: ("near", "shares", "ends"),
+         Code.ONE_SCATTER: ("near", "shares", "ends"), Code.TERRAIN: ("path", "share"), Code.RANGE: ("ends",),
+         Code.RUNS: ("points",)}
+
+
+def ends(of: Mapping[str, Any]) -> str:
+    """Where the longest run ends, or where the ranges do."""
+    if "ends" in of:
+        return f", which end at {of['ends']}," if of["ends"] else ""
+    return "no run leaves a deposit" if of["longest_m"] is None else \
+        f"the longest run ends after {metres(of['longest_m'])}"
+
+
+def shares(several: Iterable[float]) -> str:
+    """Shares by the smaller and the larger scatter, as one text."""
+    return " to ".join(dict.fromkeys(map(percent, several)))

@@ -1,9 +1,10 @@
 """The headline of study.yaml (statistics.answer): of what a study says, and of both studies of a site."""
+import datetime
 import functools
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, Optional
+from typing import Any, List, Mapping, Optional
 
-from .. import disk, schemas
+from .. import schemas
 from ..schemas import OBJECT, mapping
 from ..statistics import answer
 from ..statistics.answer import Answer, AtRoad, Code, Ensemble, Paper, Reason, Road, Withheld
@@ -74,26 +75,33 @@ def road_of(about: Mapping[str, Any]) -> Optional[Road]:
 
 
 def governing(paper: Path, ensemble: Path) -> Path:
-    """Of the folders of both studies of a site that whose number it is; the one that there is, if it is one."""
+    """Of the folders of both studies of a site that whose number it is; the one that there is, if it is one.
+
+    What both files say of it where one command made them; else the study that was made last, as the files say.
+    """
     there = [one for one in (ensemble, paper) if (one / "study.yaml").is_file()]
     if len(there) < 2:
         return there[0] if there else paper
-    said, of_paper = (schemas.load(one / "study.yaml", "what `slope study` wrote", SCHEMA).get("headline")
-                      for one in (ensemble, paper))
-    if said and said == of_paper:       # of both, entered by of_both()
-        return paper if said["source"] == "paper" else ensemble
-    return max(there, key=lambda one: (one / "study.yaml").stat().st_mtime)      # not of one command
+    said = {one: schemas.load(one / "study.yaml", "what `slope study` wrote", SCHEMA) for one in there}
+    names = {(about.get("study") or {}).get("governs") for about in said.values()}
+    if len(names) == 1 and (named := [one for one in there if one.name in names]):
+        return named[0]
+    return max(there, key=lambda one: made(said[one]))
 
 
-def of_both(paper: Path, ensemble: Path) -> Optional[Answer]:
-    """Of both study.yaml of a site, in which it is entered; None, and nothing is done, without a road."""
-    said: Dict[Path, Any] = {path: schemas.load(path, "what `slope study` wrote", SCHEMA) for path in (paper, ensemble)}
-    roads = [one for one in map(road_of, said.values()) if one]
+def made(about: Mapping[str, Any]) -> datetime.datetime:
+    """When a study was, by its study.yaml; the beginning of time where that does not say it."""
+    text = str((about.get("study") or {}).get("collected"))
+    try:
+        return datetime.datetime.fromisoformat(text).astimezone(datetime.timezone.utc)
+    except ValueError:
+        return datetime.datetime.min.replace(tzinfo=datetime.timezone.utc)
+
+
+def of_both(paper: Mapping[str, Any], ensemble: Mapping[str, Any]) -> Optional[Answer]:
+    """Of both studies of a site, of one command; None without a road."""
+    roads = [one for one in map(road_of, (paper, ensemble)) if one]
     road = roads[-1]._replace(
         longest=max((one.longest for one in roads if one.longest is not None), default=None),
         brought=functools.reduce(AtRoad.and_of, [one.brought for one in roads])) if roads else None
-    found = answer.of(paper_of(said[paper]), ensemble_of(said[ensemble]), road)
-    if found:
-        for path, about in said.items():
-            disk.write(path, disk.yaml_text(TITLE, {**about, "headline": found.about()}))
-    return found
+    return answer.of(paper_of(paper), ensemble_of(ensemble), road)

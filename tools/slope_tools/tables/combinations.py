@@ -31,6 +31,12 @@ class Group:
         return Combination(self.name, {key_of(row["repeat"]): row[column] for row in self.rows})
 
 
+def same_as(rows: Sequence[Row]) -> List[int]:
+    """Of each finished run the place of the first one that has the same numbers, its own where there is none."""
+    first: Dict[tuple, int] = {}
+    return [first.setdefault(tuple(row.get(name) for name in SAME), k) for k, row in enumerate(rows)]
+
+
 def grouped(rows: Sequence[Row]) -> List[Group]:
     """The finished runs by their combinations, in the order of the rows."""
     found: Dict[tuple, Group] = {}
@@ -38,9 +44,12 @@ def grouped(rows: Sequence[Row]) -> List[Group]:
         if row["status"] != "finished":
             continue
         group = found.setdefault(tuple(row["set"].values()), Group(jobs.name_of(row["set"]), row["set"]))
-        numbers = [row.get(name) for name in SAME]
-        same = any([other.get(name) for name in SAME] == numbers for other in group.rows)
-        (group.same if same else group.rows).append(row)
+        group.rows.append(row)
+    for group in found.values():
+        mine = group.rows
+        first = same_as(mine)
+        group.rows = [row for k, row in enumerate(mine) if first[k] == k]
+        group.same = [row for k, row in enumerate(mine) if first[k] != k]
     return list(found.values())
 
 
@@ -161,9 +170,7 @@ def doubts(settings, rows, groups: Sequence[Group], best: headline.Headline, dif
         if entry["clear"] is not False and value == as_number(entry["largest_at"]) and value != 0 \
                 and all(isinstance(one, float) for one in numbers) and value in (min(numbers), max(numbers)):
             found.append(Finding("end of range", {"variable": name, "low": min(numbers), "high": max(numbers)}))
-    same = [row["run"] for group in groups for row in group.same]
-    if same:
-        found.append(Finding("no effect", runs=same))
+    found += no_effect(groups)
     released = max(row["released_m3"] for row in finished)
     if best.volume > released:
         found.append(Finding("more than released", {"released": headline.nearest(released, best.place)}))
@@ -182,6 +189,12 @@ def doubts(settings, rows, groups: Sequence[Group], best: headline.Headline, dif
         mine, others = (headline.nearest(one, headline.place(odd[1] or odd[0])) for one in odd)
         found.append(Finding("scatters more", {"mine": mine, "others": others}))
     return found
+
+
+def no_effect(groups: Sequence[Group]) -> List[Finding]:
+    """The caveat that runs are left out, as others have the same numbers."""
+    same = [row["run"] for group in groups for row in group.same]
+    return [Finding("no effect", {"which": "a repeated variable", "on": "", "then": "left out"}, same)] if same else []
 
 
 def outcome(group: Group, few: Sequence[Row]) -> Finding:

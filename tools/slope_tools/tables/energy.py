@@ -5,7 +5,7 @@ from typing import Any, Dict, List, Optional, Sequence
 
 import numpy as np
 
-from ..digits import si, three
+from ..digits import measured, si
 from ..errors import SlopeError
 
 SUFFIX = "energy"       # of the file, after the run's prefix
@@ -56,11 +56,7 @@ def words(joules: Dict[str, float]) -> str:
     if not taken > 0:
         return "nothing has moved"
     gained = joules["gravity"] + joules["ground_motion"]
-    shares = ", ".join(f"{percent(joules[name] / taken)} by {what}" for name, what in TAKEN.items())
+    shares = ", ".join(f"{measured(joules[name] / taken)} by {what}" for name, what in TAKEN.items())
     left = f"; {si(joules['left'], 'J')} left with balls" if joules["left"] > 0 else ""
     return (f"of {si(gained, 'J')} that weight and ground motion put in, {si(taken, 'J')} was taken: {shares}{left}; "
-            f"not accounted for: {percent(abs(joules['residual']) / taken)}")
-
-
-def percent(share: float) -> str:
-    return "less than 0.01 %" if 0 <= share < 1e-4 else f"{three(100 * share)} %"
+            f"not accounted for: {measured(abs(joules['residual']) / taken)}")

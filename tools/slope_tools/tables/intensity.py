@@ -12,6 +12,7 @@ from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple
 from rich.table import Table
 
 from .. import disk
+from ..digits import chance
 from ..case.settings import as_number
 from ..errors import SlopeError
 from ..findings import Finding
@@ -130,10 +131,6 @@ def table(about: Mapping[str, Any]) -> str:
          for line in about["lines"] for one in line["points"]))
 
 
-def percent(share: float) -> str:
-    return f"{100 * share:.0f} %"
-
-
 def shown_of(about: Mapping[str, Any]) -> Table:
     """The table on the screen."""
     shown = Table(title=f"volume on the road (m3 of ground) against {about['variable']}, and P(V > v), in brackets the "
@@ -145,8 +142,7 @@ def shown_of(about: Mapping[str, Any]) -> Table:
         for one in line["points"]:
             shown.add_row(*line["set"].values(), f"{one['at']:g}", str(one["runs"]),
                           *(f"{one[key]:,.0f}" for key in ("mean_m3", "smallest_m3", "largest_m3")),
-                          *(f"{percent(each['probability'])} ({percent(each['low'])} to {percent(each['high'])})"
-                            for each in one["exceed"]))
+                          *(chance(each["probability"], each["low"], each["high"]) for each in one["exceed"]))
     return shown
 
 

@@ -6,7 +6,8 @@ entry, with its place in a summary; else studies/results gives its value.
 from enum import Flag, auto
 from typing import Any, Callable, Dict, Iterable, List, Mapping, NamedTuple, Optional, Union
 
-from ..deposits import rest, travel_shares
+from ..deposits import travel_shares
+from ..digits import measured, to_three
 from ..mobility.run_length import ON_PATH, STRAIGHT
 
 Row = Mapping[str, Any]
@@ -92,7 +93,7 @@ OF_RUN = (
     Quantity("at_rest", "at rest", ""),
     Quantity("end", "how the run ended", ""),
     Quantity("end_short", "end", "", On.HIDDEN, screen=AS_IS, keeps=13),
-    Quantity("moves_share", "moves", "", On.HIDDEN, screen=rest.percent, keeps=5),
+    Quantity("moves_share", "moves", "", On.HIDDEN, screen=measured, keeps=5),
     Quantity("wall_s", "wall time", "s", head="wall", screen=WHOLE, keeps=1, maybe=True))
 # of runs with a road
 OF_ROAD = (
@@ -183,5 +184,6 @@ def of_division(divided: Optional[Row], left: Optional[Row]) -> Dict[str, Any]:
 
 
 def number(value, sign=""):
-    """Whole numbers from 100 on, else three digits."""
+    """Three digits, whole numbers from 100 on: as a page has it."""
+    value = to_three(value)
     return f"{value:{sign},.0f}" if abs(value) >= 100 else f"{value:{sign}.3g}"

@@ -4,9 +4,11 @@ from typing import List, NamedTuple, Optional
 
 from .. import digits, disk
 from ..case import logs
+from ..digits import measured
 from ..findings import Finding
 from ..releases import packing
 
+NOTHING = 5e-5         # of a body
 CUBIC = 6 / math.pi         # bulk volume of balls on a simple cubic lattice / volume of the balls
 DOUBTFUL = 0.15             # the bulk factor is farther from the usual one only if the balls are not the body
 
@@ -48,13 +50,13 @@ class Release(NamedTuple):
             why = "there are more balls than the body has room for" if self.off < 0 else (
                 f"the balls fill only {100 / (1 + self.off):.0f} % of the body, and each stands for more ground "
                 "than it has room for")
-            return [Finding("bulk factor", {"factor": self.factor, "off": percent(abs(self.off)), "why": why,
+            return [Finding("bulk factor", {"factor": self.factor, "off": measured(abs(self.off)), "why": why,
                                             "usual": self.usual, "side": "below" if self.off < 0 else "above", **also})]
         if self.left_out is not None and abs(self.left_out) > DOUBTFUL:
-            return [Finding("body volume", {"off": percent(abs(self.left_out)), "body": self.body,
+            return [Finding("body volume", {"off": measured(abs(self.left_out)), "body": self.body,
                                             "side": "less" if self.left_out > 0 else "more", **also})]
         if self.body is None and self.removed is not None and 1 / (1 - self.removed) > 1 + DOUBTFUL:
-            return [Finding("balls removed", {"off": percent(self.removed), **also})]
+            return [Finding("balls removed", {"off": measured(self.removed), **also})]
         return []
 
 
@@ -64,12 +66,12 @@ def over_runs(releases, factor=True):
     about = [span(bodies)] if bodies and len(bodies) == len(releases) else ["body unknown"]
     removed = sorted(one.removed for one in releases if one.removed is not None)
     if removed and removed[-1] > 0:
-        about.append(f"{span([percent(removed[0]), percent(removed[-1])])} of the balls overlapped the slip surface or "
-                     "the ground and were removed")
+        about.append(f"{span([measured(removed[0]), measured(removed[-1])])} of the balls overlapped the slip surface "
+                     "or the ground and were removed")
     if releases and factor:
         factors = sorted(one.factor for one in releases)
         farthest = max(releases, key=lambda one: abs(one.off))
-        side = f"{percent(abs(farthest.off))} {'above' if farthest.off > 0 else 'below'} {farthest.usual}"
+        side = f"{measured(abs(farthest.off))} {'above' if farthest.off > 0 else 'below'} {farthest.usual}"
         most = "at most " if factors[0] < factors[-1] else ""
         about.append(f"bulk factor {span([f'{factors[0]:.4g}', f'{factors[-1]:.4g}'])}, "
                      + (farthest.usual if abs(farthest.off) < 5e-4 else most + side)
@@ -79,21 +81,13 @@ def over_runs(releases, factor=True):
 
 def released_share(left_out):
     """What became of the body; left_out: the share of it that is not released, < 0 if more is."""
-    if percent(abs(left_out)) == "0 %":
+    if abs(left_out) < NOTHING:
         return "all of it released"
-    return f"{percent(left_out)} of it not released" if left_out > 0 else f"{percent(-left_out)} more released"
+    return f"{measured(left_out)} of it not released" if left_out > 0 else f"{measured(-left_out)} more released"
 
 
 def span(texts):
     return texts[0] if texts[0] == texts[-1] else f"{texts[0]} to {texts[-1]}"
-
-
-def percent(share):
-    """Two digits, but whole numbers from 10 % on, and no more than hundredths."""
-    value = 100 * share
-    if abs(value) < 0.05:
-        return f"{value:.2f} %" if abs(value) >= 0.005 else "0 %"
-    return f"{value:.0f} %" if abs(value) >= 10 else f"{value:.1f} %"
 
 
 def release(summary, texts):

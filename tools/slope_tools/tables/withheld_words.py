@@ -4,8 +4,8 @@ from pathlib import Path
 from shlex import quote
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence
 
+from ..digits import percent
 from ..findings import Finding, entries, texts
-from ..mobility.results import percent
 from ..statistics.withheld import BALLS, CONFIDENCE, Kind, exceeded_at_most
 
 UNUSABLE = "not usable as a conservative volume"

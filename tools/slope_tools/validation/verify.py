@@ -17,13 +17,14 @@ from ..errors import SlopeError
 from ..runs import jobs
 from ..schemas import ANY, OBJECT, listed, mapping, numbers
 from . import verification
-from .verification.claims import Result
+from .verification.claims import INPUTS, Result
 from .verification.errata import errata
 
 NAME = "verification"       # of the files
 FINISHED = "finished"       # in the folder of a run that ended well: checksums of the program and of the run
 COLUMNS = ("case", "claim", "name", "source", "unit", "expected", "tolerance", "got", "passed", "control",
            "control_got", "control_fails", "remark", "commands")
+TABLE = INPUTS / "20_embankment" / "reference.yaml"
 # crosscheck.yaml
 PEERS = mapping({
     "crosscheck": mapping({"versions": OBJECT, "package": ANY, "finished": ANY, **numbers("compared", "failed")}),
@@ -205,6 +206,16 @@ def compared(path):
             **{key: about[key] for key in ("versions", "package", "compared", "failed")}}
 
 
+def second_table() -> Dict[str, Any]:
+    """The paper's second Table 5 beside what inputs/20 gives, of its file of reference values: heads and rows."""
+    about = yaml.safe_load(TABLE.read_text(encoding="utf-8"))
+    one = about["quantities"]["remove_m3"]
+    heads = sorted({x for series in one["series"].values() for x in series})
+    rows = [[name, *(f"{series[x]:,.0f}" for x in heads)] for name, series in one["series"].items()]
+    rows += [[name, f"{value:,.0f}", *[""] * (len(heads) - 1)] for name, value in one["levels"].items()]
+    return {"heads": ["", *(f"{x:.2f}" for x in heads)], "rows": rows, "remark": " ".join(about["remark"].split())}
+
+
 def write(output, outcomes, about, peers=None):
     """The report in its four forms."""
     rows = [row(outcome) for outcome in outcomes]
@@ -220,7 +231,8 @@ def write(output, outcomes, about, peers=None):
                        for entry in of_module(case)],
               "commands": list(dict.fromkeys(command for entry in of_module(case) for command in entry["commands"]))}
              for case in verification.cases()]
-    content = {"about": about, "peers": peers, "cases": [case for case in cases if case["rows"]],
+    content = {"about": about, "peers": peers, "table": second_table(),
+               "cases": [case for case in cases if case["rows"]],
                "errata": [{**erratum._asdict(), "rows": [entry for case in cases for entry in case["rows"]
                                                          if entry["name"] in erratum.claims]}
                           for erratum in errata()]}

@@ -2,7 +2,7 @@
 
 inputs/16_flume: dam-breaks of sand, 0.2 and 0.4 m deep, and a column of glass beads. Thickness: balls within 0.02 m of
 a place, over those per length of the bed before, times its height. Front: the first slice of a diameter with less than
-half a layer, so that single balls that roll ahead do not count.
+half a layer, so that single balls that roll ahead do not count. The beads' numbers are means of three fillings.
 """
 import numpy as np
 
@@ -51,6 +51,16 @@ def runout(result):
     return front(result) - states(result)[2]
 
 
+def mean(of):
+    """Of several runs."""
+    return lambda *results: float(np.mean([of(result) for result in results]))
+
+
+def fillings(run):
+    """The same with other places of the balls."""
+    return tuple(run(seed=seed) for seed in (1, 2, 3))
+
+
 SLIPPERY, STIFF = "friction 5 degrees, mu_r 0", "friction 60 degrees, mu_r 1"
 CLAIMS = [
     Claim("dam_break_04", "Sand 0.2 m deep, balls of 20 mm: thickness 0.4 m from the back", "m", EVANGELISTA, (SAND,),
@@ -60,10 +70,10 @@ CLAIMS = [
     Claim("dam_break_toe", "Sand 0.4 m deep, balls of 20 mm: front, from the back", "m", EVANGELISTA, (DEEP,), front,
           Near(1.1, 0.1), Control(STIFF, (DEEP(**SLOW),)), quick=False),
     Claim("glass_front", "Column of glass beads 0.2 m long, 0.14 m high, balls of 10 mm: front beyond the gate", "m",
-          "Lube et al. (2005), Lajeunesse et al. (2005)", (BEADS,), runout, Between(1.2 * 0.14, 1.8 * 0.14, 0.25),
-          Control(STIFF, (BEADS(**SLOW),)),
-          remark="Mangeney et al. (2010) measured 0.275 m: not met, 0.180 m with balls of 10 mm, 0.205 m with 5 mm. "
-                 "Margin of small columns, as in inputs/11."),
-    Claim("glass_height", "The same: thickness at the back", "m", MANGENEY, (BEADS,), thickness(NEAR), Near(0.14, 0.01),
-          Control(SLIPPERY, (BEADS(**SLIDING),))),
+          "Lube et al. (2005), Lajeunesse et al. (2005)", fillings(BEADS), mean(runout),
+          Between(1.2 * 0.14, 1.8 * 0.14, 0.25), Control(STIFF, (BEADS(**SLOW),)),
+          remark="Mangeney et al. (2010) measured 0.275 m: not met, 0.160 to 0.190 m in the three fillings, 0.215 m "
+                 "with balls of 5 mm. Margin of small columns, as in inputs/11."),
+    Claim("glass_height", "The same: thickness at the back", "m", MANGENEY, fillings(BEADS), mean(thickness(NEAR)),
+          Near(0.14, 0.01), Control(SLIPPERY, (BEADS(**SLIDING),))),
 ]

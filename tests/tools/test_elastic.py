@@ -1,0 +1,108 @@
+"""Reach and area with the largest restitution: runs beside those of a site's study, none of which the volume is of."""
+import csv
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from affine import Affine
+
+from slope_tools.report import client_part
+from slope_tools.report.numbers import Numbers
+from slope_tools.runs import jobs
+from slope_tools.studies import site_study
+from slope_tools.survey import rasters
+from slope_tools.tables import elastic
+
+VARIABLES = {"rolling": "0", "spacing": "0.9", "restitution": "0.48", "field_e": "0.1", "packing": "1"}
+SET = {"rolling": "0", "spacing": "0.9"}
+
+
+def row(here, name, distance, cells, variables, **more):
+    """A finished run with a deposit that covers so many cells of 2 m."""
+    thickness = np.zeros((5, 10))
+    thickness.flat[:cells] = 0.3
+    thickness.flat[40:] = elastic.THICK        # no more than that: not covered
+    (here / name).mkdir()
+    rasters.write_asc_local(here / name / "site.thickness.asc", rasters.Raster(
+        thickness, Affine(2, 0, 0, 0, -2, 10), None), {"what": "thickness"})
+    return {"run": name, "status": "finished", "at_rest": True, "set": dict(SET), "repeat": {}, "length_m": distance,
+            "distance_99_m": distance, "front_m": distance + 5, "variables": {**VARIABLES, **variables},
+            "summary": f"{name}/site.summary.yaml", **more}
+
+
+@pytest.fixture
+def rows(tmp_path):
+    """Usual runs, the third with another rolling resistance, the fourth added by an ensemble."""
+    smooth = {"rolling": "0.1"}
+    return [row(tmp_path, "a", 80.0, 10, {}), row(tmp_path, "b", 90.0, 12, {"packing": "2"}, repeat={"packing": "2"}),
+            row(tmp_path, "c", 95.0, 14, smooth, set={**SET, **smooth}), row(tmp_path, "d", 500.0, 30, {}, batch=1)]
+
+
+def most(here, **more):
+    high = {"restitution": "0.9", "field_e": "0.9"}
+    return [row(here, f"e{k}", distance, cells, {**high, "packing": str(k)}, set={"rolling": "0", **high}, **more)
+            for k, distance, cells in ((1, 100.0, 20), (2, 110.0, 22), (3, 120.0, 27))]
+
+
+def test_reach_and_area_beside_the_usual_runs(tmp_path, rows):
+    about = elastic.evaluate(elastic.Made(0.9, "0", most(tmp_path)), rows, tmp_path)
+    assert about["quantities"]["distance_99_m"] == {
+        "mean": 110, "low": 100, "high": 120, "usual": {"mean": 85, "low": 80, "high": 90},
+        "study": {"mean": pytest.approx(265 / 3), "low": 80, "high": 95}}
+    assert about["quantities"]["area_m2"] == {
+        "mean": 92, "low": 80, "high": 108, "usual": {"mean": 44, "low": 40, "high": 48},
+        "study": {"mean": 48, "low": 40, "high": 56}}
+    assert about["text"] == (
+        "restitution 0.9 of soil, slip surface and ground, rolling 0, 3 runs: 99 % of the volume stays within 110 m "
+        "(100 to 120) instead of 85 m (80 to 90); all other runs, up to 95 m; the deposit covers 92 m2 (80 to 108) "
+        "instead of 44 m2 (40 to 48); all other runs, up to 56 m2")
+    with open(tmp_path / elastic.FILE, encoding="ascii") as file:
+        table = list(csv.DictReader(file))
+    assert [(one["run"], one["largest_restitution"]) for one in table] == [
+        ("e1", "yes"), ("e2", "yes"), ("e3", "yes"), ("a", "no"), ("b", "no"), ("c", "no")]
+    assert [float(one["area_m2"]) for one in table] == [80, 88, 108, 40, 48, 56]
+    assert elastic.far(about) == 120
+
+
+def test_what_left_the_terrain_is_no_distance(tmp_path, rows):
+    about = elastic.evaluate(elastic.Made(0.9, "0", [{**one, "distance_99_m": None} for one in most(tmp_path)]), rows,
+                             tmp_path)
+    assert "how far the mass goes is not known, as more than 1 % of it left the terrain; the deposit" in about["text"]
+    assert elastic.far(about) is None
+    assert first_page(about) == (" With the most elastic rock, a restitution of 0.9, more than 1 % of it leaves the "
+                                 "terrain.")
+
+
+def test_failed_and_moving_runs_are_said(tmp_path, rows):
+    made = most(tmp_path, at_rest=False)
+    made[0] = {"run": "e1", "status": "failed", "error": "diverged"}
+    about = elastic.evaluate(elastic.Made(0.9, "0", made), rows, tmp_path)
+    assert about["text"].endswith("; 1 failed; 2 had not come to rest") and about["runs"] == ["e2", "e3"]
+    none = elastic.evaluate(elastic.Made(0.9, "0", made[:1]), rows, tmp_path)
+    assert none["text"] == "not known: e1 failed" and first_page(none) == ""
+    alone = elastic.evaluate(elastic.Made(0.9, "0", made[1:]), [], tmp_path)        # none of the usual ones finished
+    assert "instead of" not in alone["text"] and alone["quantities"]["distance_99_m"]["usual"] is None
+
+
+def first_page(about):
+    return client_part.most_elastic(SimpleNamespace(study={elastic.ENTRY: about}), Numbers())
+
+
+def test_the_first_page_has_the_farthest(tmp_path, rows):
+    about = elastic.evaluate(elastic.Made(0.9, "0", most(tmp_path)), rows, tmp_path)
+    assert first_page(about) == " With the most elastic rock, a restitution of 0.9, within 120 m."
+    assert client_part.most_elastic(SimpleNamespace(study={}), Numbers()) == ""     # of an older version
+
+
+@pytest.mark.parametrize("largest, variables, expected", [
+    (0.9, VARIABLES, {"0.9"}), (0.9, {**VARIABLES, "restitution": "0.95"}, {"0.95"}), (0.7, VARIABLES, {"0.7"}),
+    (None, VARIABLES, set()), (0.9, {"rolling": "0", "restitution": "0.48"}, set())])
+def test_runs(largest, variables, expected):
+    """Never less elastic than the others; none where the deck does not know its ground's restitution."""
+    setup = SimpleNamespace(runs=Path("runs"))
+    runs = site_study.elastic_runs(setup, largest, ["0.05", "0", "0.1"], {"packing": ["2", "3"]}, variables)
+    assert {one.chosen["restitution"] for one in runs} == {one.chosen["field_e"] for one in runs} == expected
+    assert [one.chosen["rolling"] for one in runs] == ["0"] * 3 * bool(expected)
+    assert {one.key for one in runs} == ({"base", "packing 2", "packing 3"} if expected else set())
+    assert len({jobs.Run("runs", one.chosen).folder for one in runs}) == len(runs)

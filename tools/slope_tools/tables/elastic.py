@@ -1,0 +1,116 @@
+"""How far the mass goes with the most elastic rock: runs with soil, slip surface and ground at the largest restitution.
+
+They estimate reach and area on the safe side (Nakase et al., conclusion) and are none of those that the volume is of.
+"""
+from pathlib import Path
+from typing import Any, Dict, List, NamedTuple, Optional, Sequence, Tuple
+
+from .. import disk
+from ..case import run_folders
+from ..digits import rounded
+from .quantities import ALL, DISTANCE, LENGTH, Row
+
+ENTRY = "largest_restitution"           # of study.yaml
+FILE = f"{ENTRY}.csv"
+VARIABLES = "restitution", "field_e"    # of a site's deck: soil and slip surface, ground
+AREA, THICK = "area_m2", 0.1            # where the deposit is thicker than this, m
+COMPARED = DISTANCE, LENGTH, "front_m", AREA
+
+
+class Made(NamedTuple):
+    """Runs with the largest restitution, at the least rolling resistance."""
+    restitution: float
+    rolling: str
+    rows: Sequence[Row]
+
+
+def evaluate(made: Made, rows: Sequence[Row], output: Path) -> Dict[str, Any]:
+    """The entry of study.yaml; rows: of the study's own runs. Writes FILE."""
+    elastic = with_area(made.rows, output)
+    about: Dict[str, Any] = {
+        "restitution": made.restitution, "rolling": made.rolling, "thicker_than_m": THICK,
+        "runs": [row["run"] for row in elastic],
+        "failed": [row["run"] for row in made.rows if row["status"] != "finished"],
+        "moving": [row["run"] for row in elastic if not row["at_rest"]], "quantities": {}}
+    if elastic:
+        others = with_area((row for row in rows if not row.get("batch")), output)
+        same = [row for row in others if all(row["variables"].get(name) == elastic[0]["variables"].get(name)
+                                             for name in row["set"] if name not in VARIABLES)]
+        for key in COMPARED:
+            found = spread(elastic, key)
+            if found is not None:
+                about["quantities"][key] = dict(found, usual=spread(same, key), study=spread(others, key))
+        disk.write(output / FILE, table(elastic, others))
+    return {**about, "text": words(about)}
+
+
+def with_area(rows, output: Path) -> List[Dict[str, Any]]:
+    """Those that finished, with the area of the deposit."""
+    found = []
+    for row in rows:
+        if row["status"] == "finished":
+            deposit = run_folders.load_raster(run_folders.prefix_of(run_folders.summary_of(output, row)), "thickness")
+            found.append({**row, AREA: float((deposit.z > THICK).sum()) * deposit.transform.a ** 2})
+    return found
+
+
+def spread(rows: Sequence[Row], key: str) -> Optional[Dict[str, float]]:
+    """Mean and ends; None where there are no runs, or one without a number."""
+    values = [float(row[key]) for row in rows if row.get(key) is not None]
+    if not values or len(values) < len(rows):
+        return None
+    return {"mean": sum(values) / len(values), "low": min(values), "high": max(values)}
+
+
+def table(elastic: Sequence[Row], others: Sequence[Row]) -> str:
+    """A line for each run, those with the largest restitution first."""
+    return disk.csv_text(["run", ENTRY, *COMPARED],
+                         ([row["run"], largest, *(row.get(key) for key in COMPARED)]
+                          for largest, several in (("yes", elastic), ("no", others)) for row in several))
+
+
+# --- words ---
+
+def words(about: Dict[str, Any]) -> str:
+    """A sentence without its full stop."""
+    runs = len(about["runs"])
+    if not runs:
+        return f"not known: {', '.join(about['failed'])} failed"
+    text = (f"restitution {about['restitution']:g} of soil, slip surface and ground, rolling {about['rolling']}, "
+            f"{runs} run{'s' * (runs != 1)}: ")
+    distance, area = (about["quantities"].get(key) for key in (DISTANCE, AREA))
+    if distance is None:
+        text += "how far the mass goes is not known, as more than 1 % of it left the terrain"
+    else:
+        text += f"99 % of the volume stays within {shown(distance, 'm')}{instead(distance, 'm')}"
+    if area:
+        text += f"; the deposit covers {shown(area, 'm2')}{instead(area, 'm2')}"
+    for key, what in (("failed", "failed"), ("moving", "had not come to rest")):
+        if about[key]:
+            text += f"; {len(about[key])} {what}"
+    return text
+
+
+def shown(one: Dict[str, float], unit: str) -> str:
+    ends = [rounded(one[end], 3) for end in ("low", "high")]
+    return f"{rounded(one['mean'], 3)} {unit}" + (f" ({' to '.join(ends)})" if ends[0] != ends[1] else "")
+
+
+def instead(one: Dict[str, Any], unit: str) -> str:
+    """What the study's own runs have: the same ones otherwise, and the largest of all."""
+    if not one["usual"] or not one["study"]:
+        return ""
+    return f" instead of {shown(one['usual'], unit)}; all other runs, up to {rounded(one['study']['high'], 3)} {unit}"
+
+
+def name_of(key: str, about: Row) -> Tuple[str, str]:
+    """What one of COMPARED is called, and its unit."""
+    if key == AREA:
+        return f"area under more than {about['thicker_than_m']:g} m", "m2"
+    return ALL[key].name, ALL[key].unit
+
+
+def far(about: Row) -> Optional[float]:
+    """The largest distance that 99 % of the volume stay within, m; None where it is not known. about: the entry."""
+    one = about["quantities"].get(DISTANCE)
+    return one and one["high"]
