@@ -178,7 +178,7 @@ def test_inside_and_outside_together(site):
     (f"{SURFACE} zone fan 9", "zone fan type must be 1 to 5 .*, got 9"),
     (f"{SURFACE} zone fan 3 0.99", "zone fan spacing must be <= 0.95 .*, got 0.99"),
     (f"{SURFACE} zone fan 3 -1", "zone fan spacing must be > 0, got -1"),
-    (f"{SURFACE} zone fan", "zone must be followed by REGION TYPE"),
+    (f"{SURFACE} zone fan", "zone fan type must be a whole number, got smallest"),
     (f"{SURFACE} zone none 3", "region none does not exist"),
     ("surface ground upper spacing 0.9 zone fan 3 0.6", "zone fan spacing needs pattern scattered, got a plan grid"),
     (f"{SURFACE} outside fan", "can be outside one region, got fan as well")])

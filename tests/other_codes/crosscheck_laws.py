@@ -13,7 +13,7 @@ from shapely.prepared import prep
 
 from slope_tools import disk, geometry
 from slope_tools.deposits import cut, volume
-from .crosscheck_cases import BULK, Plain
+from .crosscheck_cases import Plain
 from .crosscheck_table import CUT, DECK_NAME, QUANTITIES, ROLLING, SECONDS, STARTS, differences, evaluated, numbers_of
 from .peers import Contact, Scene
 
@@ -83,8 +83,8 @@ def csv_of(rows) -> str:
 
 
 def other_ways(removal: volume.Removal, final, d: float):
-    """What is to be removed, m3: each ball whose centre is above the cut counts d^3, as in the paper; columns of the
-    raster's cells between the cut and the top of their highest ball."""
+    """What is to be removed, m3: the ground of each ball whose centre is above the cut; columns of the raster's cells
+    between the cut and the top of their highest ball."""
     run = removal.run
     ground, road = cut.Ground(run.base), geometry.to_index(removal.road, run.raster)
     edge, on = cut.Edge(road, ground, math.tan(math.radians(CUT)) * run.cell), prep(road)
@@ -96,7 +96,7 @@ def other_ways(removal: volume.Removal, final, d: float):
         return np.where(inside, height, np.maximum(height, edge.cut(x, y)))
 
     x, y = ~run.raster.transform * final[:, :2].T
-    by_centres = float((final[:, 2] > level(x, y)).sum()) * BULK * math.pi / 6 * d ** 3
+    by_centres = float((final[:, 2] > level(x, y)).sum()) * run.bulk * math.pi / 6 * d ** 3
     top = np.full(run.base.shape, -np.inf)
     np.maximum.at(top, (y.astype(int), x.astype(int)), final[:, 2] + d / 2)
     rows, columns = np.nonzero(np.isfinite(top))

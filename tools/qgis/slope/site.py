@@ -2,7 +2,7 @@
 import shutil
 from pathlib import Path
 
-from . import process, terrain
+from . import process, styles, terrain
 from .algorithm import Algorithm
 from .options import of
 from .release import SCAR, SHAPE

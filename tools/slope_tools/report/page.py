@@ -5,8 +5,8 @@ from ..plots.ground import Ground
 from ..plots.section import Section
 from ..tables import quantities
 from ..tables.quantities import On
-from . import (body, chain_part, client_part, convergence_part, ensemble_part, ground_part, heading,
-               intensity_part, limits_part, mobility_part, reference, road_part, run_part, study_part)
+from . import (body, chain_part, client_part, convergence_part, ensemble_part, heading, intensity_part, limits_part,
+               mobility_part, reference, road_part, run_part, study_part)
 from .data import Data
 from .heading import Asked
 from .maps_part import Maps
@@ -56,7 +56,7 @@ class Page:
             study_part.section(data, numbers, self.reference, maps),
             mobility_part.mapped(data, numbers),
             road_part.section(data, numbers, maps),
-            ground_part.section(data, numbers),
+            limits_part.zones_of_ground(data, numbers),
             chain_part.section(data, numbers),
             intensity_part.section(data, numbers),
             Structures(data, numbers, ground).section(),

@@ -256,8 +256,7 @@ def numbers(choices: Choices, soil: site_budget.Soil, trial: Optional[Trial], si
     d = diameter or (size.diameter if size else 0.0)
     seconds = None
     if trial and size:
-        steps = trial.typical / site_budget.time_step(d, soil)
-        seconds = trial.setup + steps * size.balls * trial.cost
+        seconds = trial.run(d, size.balls, soil, model["spacing"])
     return site_deck.Numbers(d, soil.speed,
                              model["duration"] or site_budget.LONGEST, model["cell"] or 1.0, model["film"] or 1.0,
                              choices["motion"]["peak_friction"] or site_deck.LEAST_PEAK, trial and trial.typical,
@@ -266,8 +265,8 @@ def numbers(choices: Choices, soil: site_budget.Soil, trial: Optional[Trial], si
 
 def tried(given: Choices, choices: Choices, known: Derived, parts: site_deck.Parts, found: release.Body, new: Path,
           folder: Path, machine: Machine, tell) -> Optional[Tried]:
-    """The trial run with coarse balls, or two; what the site's folder has of it, if that is still right; None where
-    there is no LAMMPS. It knows nothing of what is determined from it.
+    """Two trial runs with coarse balls; what the site's folder has of them, if that is still right; None where there is
+    no LAMMPS. They know nothing of what is determined from them.
     """
     if choices["motion"]["peak_friction"] is None and parts.motion:
         choices["motion"]["peak_friction"] = site_deck.peak_friction(found.measures.slip_slope)
@@ -276,24 +275,23 @@ def tried(given: Choices, choices: Choices, known: Derived, parts: site_deck.Par
     own = copy.deepcopy(choices)
     site_choices.forget(own, known)
     own["motion"]["peak_friction"] = choices["motion"]["peak_friction"]
-    rolling = choices["study"]["rolling"]
+    least, middle = min(choices["study"]["rolling"]), settings.middle(choices["study"]["rolling"])
     settled = all(given[section][key] for section, key in site_choices.DERIVED if section == "model") and bool(
         given["balls"]["diameter"])
     place = trial_folder(site_budget.trial_diameter(own, parts.body.volume), own, parts, found, new)
-    about = site_trial.about(place, site_deck.NAME, machine.lmp, min(rolling))
+    about = site_trial.about(place, site_deck.NAME, machine.lmp, [least, middle])
     before = site_trial.kept(folder, about, settled)
     if before and (settled or not own["balls"]["minutes"]):
         shutil.rmtree(place)
         tell(f"the trial run is there: {trial_text(before.trial)}")
         return before
-    trial, reached = tried_with(place, min(rolling), own, found, machine.lmp, tell)
-    finer = site_budget.finer_diameter(own, trial)
-    if finer:
-        middle = settings.middle(rolling)
-        place = trial_folder(finer, own, parts, found, new)
-        second, reached = tried_with(place, middle, own, found, machine.lmp, tell, f"another, rolling {middle:g}")
-        trial = site_budget.joined(trial, second)
-    return Tried(trial, reached, about)
+    trial, reached = tried_with(place, least, own, found, machine.lmp, tell)
+    other_d = site_budget.other_diameter(own, trial)
+    if other_d is None:
+        return Tried(trial, reached, about)
+    place = trial_folder(other_d, own, parts, found, new)
+    second, its_reach = tried_with(place, middle, own, found, machine.lmp, tell, f"another, rolling {middle:g}")
+    return Tried(site_budget.joined(trial, second), its_reach if other_d < trial.diameter else reached, about)
 
 
 def trial_folder(d: float, choices: Choices, parts: site_deck.Parts, found: release.Body, new: Path) -> Path:

@@ -1,7 +1,7 @@
 """The trial run of a site, which is kept: it is not repeated as long as nothing that it depends on has changed."""
 import hashlib
 from pathlib import Path
-from typing import Any, Dict, NamedTuple, Optional
+from typing import Any, Dict, List, NamedTuple, Optional
 
 from rasterio.transform import Affine
 
@@ -20,10 +20,10 @@ class Tried(NamedTuple):
     """What a trial run measured, where its mass went, and of what it was."""
     trial: Trial
     reached: Raster             # largest thickness, m, in local metres
-    about: Dict[str, Any]       # digest of deck, data and machine; the rolling resistance, which those do not hold
+    about: Dict[str, Any]       # digest of deck, data and machine; the rolling resistances, which those do not hold
 
 
-def about(folder: Path, deck: str, lmp: Path, rolling: float) -> Dict[str, Any]:
+def about(folder: Path, deck: str, lmp: Path, rolling: List[float]) -> Dict[str, Any]:
     """Of a trial run whose files are in a folder."""
     parts = [repr(decks.without_comments(folder / deck)), disk.sha256(lmp), provenance.machine()["processor"]]
     parts += [path.name + disk.sha256(path) for path in sorted(folder.iterdir()) if path.name != deck]
@@ -34,7 +34,7 @@ def about(folder: Path, deck: str, lmp: Path, rolling: float) -> Dict[str, Any]:
 def kept(folder: Path, wanted: Dict[str, Any], settled: bool) -> Optional[Tried]:
     """What a site's folder has of such a trial run; None: nothing.
 
-    settled: nothing is to be determined from it, so that its rolling resistance does not matter.
+    settled: nothing is to be determined from it, so that its rolling resistances do not matter.
     """
     if not (folder / site_choices.NAME).is_file():
         return None
