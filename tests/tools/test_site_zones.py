@@ -239,6 +239,12 @@ def test_the_deck_has_the_values_of_a_run(gis, mine, changed):
     site = site_choices.load(folder)
     variables, model = decks.index_variables(folder / "in.site"), site.choices["model"]
     d = float(variables["d"])
+
+    # 1.5 times the rule's step; on ground closer than 0.4 d, of a zone, too, the rule's
+    kn, dt = (float(re.findall(pattern, log, re.M)[-1])
+              for pattern in (r"^Stiffness: kn (\S+)", r"^timestep +([0-9]\S*)"))
+    rule = 0.25 * (float(variables["density"]) * np.pi / 6 * d ** 3 / kn) ** 0.5
+    assert dt == pytest.approx((1.0 if "spacing" in changed else 1.5) * rule, rel=1e-3)
     for number, zone in enumerate(site.found["zones"], 4):
         now = site_zones.now(zone, model, {**variables, **changed})
         coeff = re.findall(rf"^pair_coeff  1 {number} .*restitution (\S+) friction (\S+) rolling (\S+)$", log, re.M)[-1]
