@@ -5,17 +5,19 @@
 
 Means and ranges of the repeats at each rolling resistance, m3 of ground, by two bulk factors: that of the runs, by
 which the body is released whatever the balls, and the paper's, 6/pi, by which a ball of diameter d counts d^3. By
-another bulk factor the same balls make a deposit of another thickness, above the same cut.
+another bulk factor the same balls, as the last dump has them, make other cubes of ground, above the same cut.
 """
 import argparse
 import math
 import sys
 from pathlib import Path
 
+import numpy as np
+
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parents[1] / "tools")]
 import make_terrain  # noqa: E402
-from slope_tools.deposits import volume  # noqa: E402
+from slope_tools.deposits import dumps, volume  # noqa: E402
 from slope_tools.errors import SlopeError  # noqa: E402
 from slope_tools.tables.study_file import Study  # noqa: E402
 
@@ -25,12 +27,29 @@ MESH = 5.0      # m
 WHAT = "released", "to remove", "on the road", "beyond"
 
 
+def thickness(prefix, raster, bulk):
+    """Of the deposit by a bulk factor, m: the cubes of ground that the balls stand for, in the cells of a Raster."""
+    columns, balls = dumps.frames(sorted(prefix.parent.glob(f"{prefix.name}.*.dump"))[-1])[-1]
+    x, y, d = (balls[:, columns.index(name)] for name in ("x", "y", "diameter"))
+    side, cell = d * (bulk * math.pi / 6) ** (1 / 3), raster.transform.a
+    low = [place - side / cell / 2 for place in ~raster.transform * (x, y)]
+    first = [np.floor(one).astype(int) for one in low]
+    found = np.zeros(raster.z.shape)
+    for i, j in np.ndindex(2 * (math.ceil(side.max() / cell) + 1,)):
+        column, row = first[0] + i, first[1] + j
+        across, along = (np.clip(np.minimum(one + side / cell, k + 1) - np.maximum(one, k), 0, None)
+                         for one, k in zip(low, (column, row)))
+        inside = (column >= 0) & (row >= 0) & (column < found.shape[1]) & (row < found.shape[0])
+        np.add.at(found, (row[inside], column[inside]), (across * along * side)[inside])
+    return found
+
+
 def volumes(prefix, bulk=None, cut=CUT):
     """Of a run, m3 by name of WHAT; bulk: another bulk factor than the run's."""
     found = volume.of_run(str(prefix), volume.Wanted(HERE / "road.csv", MESH, cut, local=True),
                           prefix.parent / "terrain.asc", tell=lambda said: None)
     run, factor = found.run, bulk / found.run.bulk if bulk else 1.0
-    raster = run.raster._replace(z=run.raster.z * factor)
+    raster = run.raster._replace(z=thickness(prefix, run.raster, bulk)) if bulk else run.raster
     result = volume.evaluate(run._replace(raster=raster), found.road, cut, found.mesh)
     far = round(make_terrain.ROAD[0] / raster.transform.a)
     return dict(zip(WHAT, (factor * run.summary["volume"]["released"], result.total(result.volume),

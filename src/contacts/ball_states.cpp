@@ -23,7 +23,7 @@ using namespace Slope;
    its end. At the set-up of a new run those of the end are known, and the force is not.
 ------------------------------------------------------------------------- */
 
-void BallStates::begin_step(Continuation &last, bool repeat, bool exact)
+void BallStates::begin_step(Continuation &last, bool repeat, bool exact, bool held)
 {
   continuation = &last;
   if (repeat)
@@ -33,6 +33,8 @@ void BallStates::begin_step(Continuation &last, bool repeat, bool exact)
 
   const int nlocal = atom->nlocal, nall = nlocal + atom->nghost;
   counts.clear(nall);
+  shared = held;
+  fixed.assign(shared ? nall : nlocal, FixedContacts());
   ahead_known = exact && (!last.v.empty() || !repeat);
   if (!ahead_known) return;
   const Vector *const v = last.v.empty() ? vectors(atom->v) : last.v.data();
@@ -58,13 +60,41 @@ int BallStates::pack_forward(int n, const int *list, double *buf) const
   int m = counts.pack_forward(n, list, buf);
   for (int k = 0; k < n && ahead_known; k++, m += 3)
     memcpy(&buf[m], &ahead[list[k]], sizeof(Vector));
+  for (int k = 0; k < n && shared; k++, m += 4)
+    memcpy(&buf[m], &fixed[list[k]], sizeof(FixedContacts));
   return m;
 }
 
 void BallStates::unpack_forward(int n, int begin, const double *buf)
 {
   counts.unpack_forward(n, begin, buf);
-  if (ahead_known) memcpy(&ahead[begin], &buf[n], n * sizeof(Vector));
+  buf += n;
+  if (ahead_known) {
+    memcpy(&ahead[begin], buf, n * sizeof(Vector));
+    buf += 3 * n;
+  }
+  if (shared) memcpy(&fixed[begin], buf, n * sizeof(FixedContacts));
+}
+
+int BallStates::pack_reverse(int n, int begin, double *buf) const
+{
+  int m = counts.pack_reverse(n, begin, buf);
+  if (!shared) return m;
+  memcpy(&buf[m], &fixed[begin], n * sizeof(FixedContacts));
+  return m + 4 * n;
+}
+
+void BallStates::unpack_reverse(int n, const int *list, const double *buf)
+{
+  counts.unpack_reverse(n, list, buf);
+  buf += n;
+  for (int k = 0; k < n && shared; k++, buf += 4) {
+    FixedContacts &sum = fixed[list[k]];
+    sum.normals.x += buf[0];
+    sum.normals.y += buf[1];
+    sum.normals.z += buf[2];
+    sum.number += buf[3];
+  }
 }
 
 /* ---------------------------------------------------------------------- */
@@ -81,7 +111,8 @@ MovingBalls BallStates::balls()
           vectors(atom->f),
           vectors(atom->torque),
           ahead_known ? ahead.data() : v,
-          counts.now.data()};
+          counts.now.data(),
+          fixed.data()};
 }
 
 MovingPartners BallStates::partners(const MovingBalls &balls) const
@@ -91,5 +122,6 @@ MovingPartners BallStates::partners(const MovingBalls &balls) const
 
 double BallStates::memory_usage() const
 {
-  return counts.now.capacity() + ahead.capacity() * sizeof(Vector);
+  return counts.now.capacity() + fixed.capacity() * sizeof(FixedContacts) +
+      ahead.capacity() * sizeof(Vector);
 }

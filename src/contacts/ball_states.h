@@ -21,10 +21,13 @@ namespace LAMMPS_NS {
 
 class BallStates : protected Pointers {
  public:
-  explicit BallStates(LAMMPS *lmp) : Pointers(lmp), continuation(nullptr), ahead_known(false) {}
+  explicit BallStates(LAMMPS *lmp) :
+      Pointers(lmp), continuation(nullptr), shared(false), ahead_known(false)
+  {
+  }
 
-  // of this step; repeat: of the last one, once more, at a set-up. exact: dashpots look ahead
-  void begin_step(class Continuation &, bool repeat, bool exact);
+  // of this step; repeat: of the last one, once more, at a set-up. exact: dashpots look ahead; held: some balls are
+  void begin_step(class Continuation &, bool repeat, bool exact, bool held);
   void share_counts(class Pair *);    // when this rank has counted; collective
 
   Slope::MovingBalls balls();
@@ -33,15 +36,19 @@ class BallStates : protected Pointers {
   // of the pair style that is handed over
   int pack_forward(int n, const int *list, double *buf) const;
   void unpack_forward(int n, int begin, const double *buf);
-  static constexpr int FORWARD = 4, REVERSE = 1;    // values of a ball
-  Slope::ContactCounts counts;
+  int pack_reverse(int n, int begin, double *buf) const;
+  void unpack_reverse(int n, const int *list, const double *buf);
+  static constexpr int FORWARD = 8, REVERSE = 5;    // most values of a ball
 
   double memory_usage() const;
 
  private:
   const Continuation *continuation;
-  std::vector<Slope::Vector> ahead;    // velocities that normal dashpots act on, if they are
-  bool ahead_known;                    // others than those of the middle of the step
+  Slope::ContactCounts counts;
+  std::vector<Slope::FixedContacts> fixed;    // of ghosts, too, if ranks share them:
+  bool shared;                                // where balls are held, which may be another's
+  std::vector<Slope::Vector> ahead;           // velocities that normal dashpots act on, if they are
+  bool ahead_known;                           // others than those of the middle of the step
 };
 
 // LAMMPS keeps the rows of such an array one after the other

@@ -15,6 +15,12 @@
 
 namespace Slope {
 
+// the contacts of a ball with fixed ones: the sum of their unit normals, and how many there are
+struct FixedContacts {
+  Vector normals;
+  double number;
+};
+
 // all that moves; positions in m, velocities at the middle of the step in m/s and rad/s
 struct MovingBalls {
   const Vector *x, *v, *omega;
@@ -22,6 +28,7 @@ struct MovingBalls {
   Vector *f, *torque;
   const Vector *ahead;     // velocities that normal dashpots act on: see contact_force.h
   unsigned char *count;    // contacts of each ball now; up to 255
+  FixedContacts *fixed;    // of each ball of this rank
 };
 
 // The partners of the moving balls: other moving balls ...

@@ -44,8 +44,8 @@ static constexpr double POINT = 3.5;
 //   takes other coefficients, with which the steps of a lone contact lie on an oscillation of the law's
 //   damping ratio (contact_step());
 //   gives the steps in which a contact begins and ends the part of the dashpot that is theirs (ContactOf);
-//   reduces the dashpots of balls that have so many contacts that together they would take more of a motion
-//   than there is (held_back()).
+//   gives contacts of a ball that has several the dashpots of contacts that act together, and less where they would
+//   take more of a motion than there is (acting_together(), held_back()).
 // Derivation: doc/src/theory.rst.
 static constexpr double AHEAD = 0.25;
 
@@ -117,17 +117,17 @@ SLOPE_INLINE ContactStepOf<N> contact_step(const ContactLaw &law, N inverse_i, N
   s.rolling = law.rolling;
   s.fn_least = law.fn_least;
   s.share_i = inverse_i / inverse;
-  s.share_j = inverse_j / inverse;
   s.kn = law.kn;
   s.kt = N() + law.kt;
   s.kr = N() + law.kr;
   s.cn = law.cn_given + law.cn_root * root_mass;
   s.ct = law.ct_given + law.ct_root * root_mass;
   s.cr = law.cr_given + law.cr_root * root_mass;
-  s.taken_n = s.taken_t = s.taken_r = N();
+  s.taken_n = s.taken_t = s.taken_r = s.spring_n = N();
   if (law.exact > 0.0) {
     const double square = dt * dt, half = 0.5 * dt;
-    s.taken_n = share_taken(N(s.kn * square * inverse), N(s.cn * half * inverse));
+    s.spring_n = s.kn * square * inverse;
+    s.taken_n = share_taken(s.spring_n, N(s.cn * half * inverse));
     s.cn = s.taken_n / (dt * inverse);
     const N decay_t = decay_factor(N(s.ct * dt * point)),
             decay_r = decay_factor(N(s.cr * dt * inverse_rolling));
@@ -156,6 +156,7 @@ template <class T, class N = T> struct ContactOf {
   T rw[3];             // R_i w_i + R_j w_j, m/s
   T w[3];              // w_i - w_j, rad/s
   N rolling_radius;    // m
+  T along;             // contacts of its balls that act along n, itself included
 
   // 1 (weight, touches, grown) or 0 (the others), but in the steps in which the contact begins and ends: see
   // ContactPasses::find_times()
@@ -169,7 +170,7 @@ template <class T, class N = T> struct ContactOf {
 
   SLOPE_INLINE void follow_whole_step()
   {
-    weight = touches = grown = all<T>(1.0);
+    along = weight = touches = grown = all<T>(1.0);
     beyond = turn = first = early = T();
   }
 };
@@ -246,37 +247,69 @@ SLOPE_INLINE void set_force(const ContactOf<T, N> &c, T fn, const T *ft, Contact
 template <class T, class N>
 SLOPE_INLINE T mean_contacts(const ContactStepOf<N> &step, T contacts_i, T contacts_j)
 {
-  return step.share_i * contacts_i + step.share_j * contacts_j;
+  return contacts_j + step.share_i * (contacts_i - contacts_j);
 }
 
-// Factor of a dashpot that takes so much of a motion in a step, beside others of the same ball: their sum is
-// held to so much. In three dimensions n contacts resist a motion as n/3 along it would, n sliding
-// contacts a spin as 0.48 n, rolling ones as 0.67 n: with the numbers below they take at most 0.67, 0.57 and
-// 0.5 of it on average, and less than 2 in the directions that they resist most, springs included.
-static constexpr double MOST_NORMAL = 2.0, MOST_SLIDING = 1.2, MOST_ROLLING = 0.75;
+// Factor of a sliding or rolling dashpot that takes so much of a motion in a step, beside others of the same ball: their
+// sum is held to so much. In three dimensions n sliding contacts resist a spin as 0.48 n along it would, rolling ones as
+// 0.67 n: with the numbers below they take at most 0.57 and 0.5 of it on average, and less than 2 in the directions that
+// they resist most, springs included.
+static constexpr double MOST_SLIDING = 1.2, MOST_ROLLING = 0.75;
 template <class T, class N> SLOPE_INLINE T held_back(N taken, T contacts, double most)
 {
   return most / larger(T(taken * contacts), all<T>(most));
 }
 
-// The dashpots of nearly parallel contacts add up to more than that. If they take more than MOST_AHEAD of a motion
-// in a step, velocities ahead make their steps unstable, and they make energy: then they act on those of
-// the middle.
-static constexpr double MOST_AHEAD = 4.0 / 3.0;
-template <class T, class N>
-SLOPE_INLINE T acts_on(const ContactStepOf<N> &step, const ContactOf<T, N> &c, T contacts, T vn)
+// Contacts of a ball that act along the normal of one, itself included: contacts with normals n_k are as
+// sum_k (n n_k)^2 parallel ones, for a symmetric group n sum_k n_k. Of fixed balls all may lie in one direction, so
+// their normals are summed up; those that move add a third, as in all directions.
+template <class T> SLOPE_INLINE T along_fixed(const T *n, const T *normals, T fixed, T contacts)
 {
-  return choose(T(step.taken_n * contacts) > all<T>(MOST_AHEAD), vn, c.ahead);
+  const T facing = n[0] * normals[0] + n[1] * normals[1] + n[2] * normals[2];
+  return larger(facing, T()) + (1.0 / 3.0) * (contacts - fixed);
 }
 
-// In a step in which such contacts begin or end they take at most all of the motion: the weights of up to 3/2 would
+// Balls that move do not overlap: two of a few contacts lie in one direction, half of many at most
+template <class T> SLOPE_INLINE T along_moving(T contacts)
+{
+  return larger(smaller(contacts, all<T>(2.0)), T(0.5 * contacts));
+}
+
+// n parallel contacts are one of n times the spring a and the dashpot H. Its steps are stable for n (a + 3 H) < 4, and
+// for n (a + 2 H) < 4 if dashpots act on the velocities of the middle: these do where n (H + a/4) exceeds MOST_AHEAD,
+// which leaves room for the weight of a first step, up to 3/2, and they are held to n H < MOST_NORMAL - n a/2. The H with
+// which n have the law's damping ratio is less than that of one, because each of these corrects for its own spring and
+// dashpot alone: by 0.36 (n - 1) a, of those of the middle by H - a and (n - 1) H (tests/step_restitution.py).
+static constexpr double MOST_NORMAL = 1.9, MOST_AHEAD = 1.1;
+template <class T, class N>
+SLOPE_INLINE auto crowded(const ContactStepOf<N> &step, T along) -> decltype(along > along)
+{
+  return T((step.taken_n + 0.25 * step.spring_n) * along) > all<T>(MOST_AHEAD);
+}
+
+// Factor of the normal dashpot of one of so many; 1 of a lone one
+template <class T, class N> SLOPE_INLINE T acting_together(const ContactStepOf<N> &step, T along)
+{
+  const N taken = step.taken_n, spring = step.spring_n;
+  const auto late = crowded(step, along);
+  const N both = 1.0 - 2.0 * step.share_i * (1.0 - step.share_i);    // 1/2 of equal balls: each has others
+  const T others = both * larger(T(along - 1.0), T());
+  const T up = choose(late, T(1.0 - AHEAD * (taken - spring) + T()), all<T>(1.0));
+  const T down = 1.0 + others * choose(late, T(0.2 * taken + T()), T(0.36 * spring + T()));
+  const T most = larger(T(MOST_NORMAL - 0.5 * spring * along), all<T>(0.25 * MOST_NORMAL));
+  const T sum = taken * along;
+  const auto free = T(up * sum) < T(most * down);
+  return choose(free, up, most) / choose(free, down, sum);
+}
+
+// In a step in which crowded contacts begin or end they take at most all of the motion: the weights of up to 3/2 would
 // make them turn it around.
 template <class T, class N>
-SLOPE_INLINE void hold_beginning(const ContactStepOf<N> &step, T contacts, ContactOf<T, N> &c)
+SLOPE_INLINE void hold_beginning(const ContactStepOf<N> &step, ContactOf<T, N> &c)
 {
-  const T taken = step.taken_n * contacts;
-  const T most = larger(T(1.0 / taken), all<T>(1.0 / MOST_NORMAL));
-  c.weight = choose(taken > all<T>(MOST_AHEAD), smaller(c.weight, most), c.weight);
+  const T taken = step.taken_n * c.along * acting_together(step, c.along);
+  const T most = larger(T(1.0 / taken), all<T>(0.5));
+  c.weight = choose(crowded(step, c.along), smaller(c.weight, most), c.weight);
 }
 
 // Rolling: the same construction as sliding on Rr (wi - wj) in the tangent plane, torque arm Rr.
@@ -305,8 +338,8 @@ SLOPE_INLINE void contact_force(const ContactStepOf<N> &step, const ContactOf<T,
   const T *n = c.n;
   const T vn = normal_velocity(c), zero = T();
   const T elastic = spring_force(step, T(larger(c.overlap, zero) + c.beyond));
-  const T cn = step.cn * held_back(step.taken_n, contacts, MOST_NORMAL);
-  const T ahead = acts_on(step, c, contacts, vn);
+  const T cn = step.cn * acting_together(step, c.along);
+  const T ahead = choose(crowded(step, c.along), vn, c.ahead);
   const T own =
       1.0 + AHEAD * c.first * c.weight * step.taken_n;    // its force is not in c.ahead yet
   const T fn = larger(T(elastic - cn * c.weight * (ahead + c.turn) / own), all<T>(step.fn_least));

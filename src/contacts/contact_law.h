@@ -107,7 +107,8 @@ template <class N> struct ContactOwnOf {
   N cn, kt, ct, kr, cr;           // N/m, N s/m: as velocity Verlet needs them
   N taken_n, taken_t, taken_r;    // share of a motion that its dashpot takes in a step; 0: plain
   N per_kt, per_kr;               // 1 / kt, 1 / kr; 0 without a spring
-  N share_i, share_j;    // of the two balls in the inverse of the contact's mass; their sum is 1
+  N spring_n;                     // kn dt^2 over the contact's mass; 0: plain
+  N share_i;    // of the ball in the inverse of the contact's mass; 1 - share_i: of the partner
 };
 struct ContactShared {
   double dt, grow;    // s; grow: what the springs grow by, 0 at set-up

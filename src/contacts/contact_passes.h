@@ -37,7 +37,7 @@ class ContactPasses : ContactView {
         bits[block].touching = equal ? touching_bits<double>(block, balls, partners)
                                      : touching_bits<Four>(block, balls, partners);
       }
-      count(block, bits[block].touching, balls.count, partners);
+      count(block, bits[block].touching, balls, partners);
     }
   }
 
@@ -76,15 +76,35 @@ class ContactPasses : ContactView {
   SLOPE_INLINE static void increase(unsigned char &n) { n += n < 255; }
 
   template <class Partners>
-  SLOPE_INLINE void count(size_t block, std::uint64_t left, unsigned char *counts,
+  SLOPE_INLINE void count(size_t block, std::uint64_t left, const MovingBalls &balls,
                           const Partners &partners) const
   {
     const Entry *e = entries + block * BLOCK;
     for (; left; left &= left - 1) {
       const Entry &contact = e[__builtin_ctzll(left)];
-      increase(counts[contact.i]);
-      if (Partners::MOVE && partners.gets_force(contact.j)) increase(counts[contact.j]);
+      increase(balls.count[contact.i]);
+      const bool both = Partners::MOVE && partners.gets_force(contact.j);
+      if (both) increase(balls.count[contact.j]);
+      if (moves.j == 0.0)
+        add_normal(1.0, contact.i, contact, balls, partners);
+      else if (moves.i == 0.0 && both)
+        add_normal(-1.0, contact.j, contact, balls, partners);
     }
+  }
+
+  // of a ball's contact with a fixed one
+  template <class Partners>
+  SLOPE_INLINE static void add_normal(double sign, int ball, const Entry &e,
+                                      const MovingBalls &balls, const Partners &partners)
+  {
+    const Vector &x = balls.x[e.i], &from = partners.x(e.j);
+    const double scale =
+        sign / (balls.radius[e.i] + partners.radius(e.j));    // nearly the distance
+    FixedContacts &sum = balls.fixed[ball];
+    sum.normals.x += scale * (x.x - from.x);
+    sum.normals.y += scale * (x.y - from.y);
+    sum.normals.z += scale * (x.z - from.z);
+    sum.number += 1.0;
   }
 
   // what depends on the sizes of four contacts: N = double if they are equal, otherwise Four
@@ -297,9 +317,10 @@ class ContactPasses : ContactView {
     find_velocities(e, ri, rj, balls, partners, c);
     c.follow_whole_step();
     const T many = contacts<T>(e, sizes.step, balls, partners);
+    c.along = moves.i * moves.j > 0.0 ? along_moving(many) : beside_fixed(e, balls, c.n, many);
     if (CHANGES) {
       find_times(k, repeat, delta, rinv, T(reach + T()), same.step.dt, c);
-      hold_beginning(sizes.step, many, c);
+      hold_beginning(sizes.step, c);
     }
 
     T history[6];
@@ -380,6 +401,25 @@ class ContactPasses : ContactView {
       if (Partners::MOVE) nj[m] = balls.count[e[m].j];
     }
     return mean_contacts(step, ni, nj);
+  }
+
+  template <class T>
+  SLOPE_INLINE T beside_fixed(const Entry *e, const MovingBalls &balls, const T *n, T many) const
+  {
+    const FixedContacts *of[lanes<T>()];
+    T normals[3], number;
+    for (int m = 0; m < lanes<T>(); m++) {
+      of[m] = &balls.fixed[moves.i > 0.0 ? e[m].i : e[m].j];
+      number[m] = of[m]->number;
+    }
+    gather(
+        [&](int m) -> Four {
+          return four(&of[m]->normals.x);
+        },
+        normals);
+    const double sign = moves.i > 0.0 ? 1.0 : -1.0;
+    const T towards[3] = {sign * n[0], sign * n[1], sign * n[2]};
+    return along_fixed(towards, normals, number, many);
   }
 
   // Contacts that begin or end in the step. A force acts from the middle of a step to the middle of the

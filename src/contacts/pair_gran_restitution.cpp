@@ -303,12 +303,12 @@ void PairGranRestitution::unpack_forward_comm(int n, int begin, double *buf)
 
 int PairGranRestitution::pack_reverse_comm(int n, int begin, double *buf)
 {
-  return states.counts.pack_reverse(n, begin, buf);
+  return states.pack_reverse(n, begin, buf);
 }
 
 void PairGranRestitution::unpack_reverse_comm(int n, int *list, double *buf)
 {
-  states.counts.unpack_reverse(n, list, buf);
+  states.unpack_reverse(n, list, buf);
 }
 
 /* ----------------------------------------------------------------------
@@ -343,7 +343,7 @@ void PairGranRestitution::compute(int eflag, int vflag)
 
   // what touches, here and at the walls, and the number of contacts of each ball
 
-  states.begin_step(fix_history->continuation, repeat, table.is_exact());
+  states.begin_step(fix_history->continuation, repeat, table.is_exact(), freeze_group_bit != 0);
   const MovingBalls balls = states.balls();
   const MovingPartners partners = states.partners(balls);
   lists.find(repeat, balls, partners);

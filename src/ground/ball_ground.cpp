@@ -36,7 +36,8 @@ BallGround::BallGround(LAMMPS *lmp, const PlacementArguments &a) :
   for (const PlacementArguments::Zone &zone : a.zones) {
     std::unique_ptr<RegionSurface> its(columns_of(zone.region));
     const Region *box = compat::find_region(lmp, zone.region);
-    zones.push_back({std::move(its), box->extent_xlo, box->extent_xhi, box->extent_ylo, box->extent_yhi});
+    zones.push_back(
+        {std::move(its), box->extent_xlo, box->extent_xhi, box->extent_ylo, box->extent_yhi});
   }
   if (a.region.empty()) return;
   boundary.reset(new RegionSurface(lmp, a.caller, a.region.c_str(), a.side, step));

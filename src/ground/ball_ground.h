@@ -59,7 +59,7 @@ class BallGround : protected Pointers {
     double xlo, xhi, ylo, yhi;
   };
   std::vector<Zone> zones;
-  const double cosine, sine;                                 // of the angle of the grid
+  const double cosine, sine;    // of the angle of the grid
   Slope::NodeGrid plan;
 
   void find_bodies();

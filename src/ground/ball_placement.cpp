@@ -176,7 +176,8 @@ std::unique_ptr<Slope::BallSampler> BallPlacement::new_sampler() const
   const std::vector<double> spacings = ground->spacings();
   const bool several = spacings.size() > 1;
   auto scattered = new Slope::ScatteredSampler(
-      ground->grid(), several ? ground->surface_of(spacings[0]) : ground->surface(), arguments.seed);
+      ground->grid(), several ? ground->surface_of(spacings[0]) : ground->surface(),
+      arguments.seed);
   made.reset(scattered);
   for (size_t k = 1; k < spacings.size(); k++)
     scattered->add(spacings[k], ground->surface_of(spacings[k]));
@@ -406,7 +407,8 @@ void BallPlacement::report(const SurfaceCounts &counts, bool known) const
     text += fmt::format("{} sunk by {}", k ? "," : "", ground->bodies[k]->sink);
   for (const PlacementArguments::Zone &zone : a.zones) {
     text += fmt::format(", type {} in region {}", zone.type, zone.region);
-    if (zone.spacing != a.spacing) text += fmt::format(" and one for each square of {}", zone.spacing);
+    if (zone.spacing != a.spacing)
+      text += fmt::format(" and one for each square of {}", zone.spacing);
   }
   if (ground->sunk) {
     text += fmt::format(", sunk by {}", a.sink);
@@ -511,8 +513,8 @@ void BallPlacement::read_file()
                 file, row.line,
                 fmt::format("{} must be within +-{:g}, got {:g}", "xyz"[d], FARTHEST, x[d]));
         if (ground->keep(x[0], x[1]))
-          from_file.push_back({x[0], x[1], x[2], static_cast<int64_t>(from_file.size()),
-                               ground->zone(x[0], x[1])});
+          from_file.push_back(
+              {x[0], x[1], x[2], static_cast<int64_t>(from_file.size()), ground->zone(x[0], x[1])});
         else
           dropped++;
         if (from_file.size() > MAX_BALLS)

@@ -139,9 +139,8 @@ void BallTiles::drop_unused()
 double BallTiles::memory_usage() const
 {
   double bytes = place.capacity() * sizeof(Vector) + numbers.capacity() * sizeof(int64_t) +
-      zones.capacity() * sizeof(zones[0]) +
-      slot.capacity() * sizeof(int) + tiles.capacity() * sizeof(Tile) +
-      fresh.capacity() * sizeof(PlacedBall);
+      zones.capacity() * sizeof(zones[0]) + slot.capacity() * sizeof(int) +
+      tiles.capacity() * sizeof(Tile) + fresh.capacity() * sizeof(PlacedBall);
   for (const Tile &t : tiles)
     bytes += t.first.capacity() * sizeof(int) + t.top.capacity() * sizeof(float);
   return bytes;

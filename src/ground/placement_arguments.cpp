@@ -173,11 +173,11 @@ void PlacementArguments::check_pattern() const
   const double most = Slope::ScatteredSampler::WIDEST * 0.5 * (diameter + smallest);
   const auto check = [&](const std::string &of, double value) {
     if (value > most * (1.0 + 1.0e-9))
-      error->all(
-          FLERR,
-          "{}{} spacing must be <= {:.6g} with pattern scattered, {} of the distance at which a ball "
-          "of diameter {} touches, or it finds a way through, got {}",
-          caller, of, most, Slope::ScatteredSampler::WIDEST, smallest, value);
+      error->all(FLERR,
+                 "{}{} spacing must be <= {:.6g} with pattern scattered, {} of the distance at "
+                 "which a ball "
+                 "of diameter {} touches, or it finds a way through, got {}",
+                 caller, of, most, Slope::ScatteredSampler::WIDEST, smallest, value);
   };
   check("", spacing);
   for (const Zone &zone : zones) check(" zone " + zone.region, zone.spacing);

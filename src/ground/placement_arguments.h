@@ -34,13 +34,14 @@ class PlacementArguments : protected Pointers {
   int side;                           // of RegionSurface
   double spacing, origin[2];
   bool scattered;
-  int seed;        // of the scattered pattern
-  double angle;    // of the plan grid, counterclockwise, radians
+  int seed;                       // of the scattered pattern
+  double angle;                   // of the plan grid, counterclockwise, radians
   std::string inside, outside;    // regions, or empty
   // where a sunk body ends: continued up to the ground, or not; all of that, or only what is within the
   // body's plan or beyond it
   enum Rim { CONTINUED, ENDED, WITHIN, BEYOND } rim;
-  double sink, outside_sink;    // < 0: the sink of the fix that has sunk the region outside of which they are
+  double sink,
+      outside_sink;    // < 0: the sink of the fix that has sunk the region outside of which they are
 
   // parts of the ground with a type, and perhaps a spacing, of their own: the last one counts where they overlap
   struct Zone {

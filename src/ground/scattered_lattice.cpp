@@ -12,7 +12,7 @@ using namespace Slope;
 
 constexpr int ScatteredLattice::FINER;
 
-static constexpr int RIM_STEPS = 8;    // halvings between a place on the surface and one off it
+static constexpr int RIM_STEPS = 8;        // halvings between a place on the surface and one off it
 static constexpr int OF_EDGE = 1 << 13;    // candidates between two neighbors, at most
 
 // mixes all bits of a number (the finalizer of the SplitMix64 generator, Steele et al. 2014)
@@ -30,7 +30,8 @@ static uint64_t mix(uint64_t x)
 ScatteredLattice::ScatteredLattice(const NodeGrid &g, const Surface &s, uint64_t seed_in,
                                    int64_t before_in) :
     spacing(g.spacing),
-    cell(g.spacing / FINER), glance(GLANCE), grid(g), surface(s), seed(mix(seed_in)), before(before_in)
+    cell(g.spacing / FINER), glance(GLANCE), grid(g), surface(s), seed(mix(seed_in)),
+    before(before_in)
 {
   if (!(g.spacing > 0.0)) throw std::invalid_argument("the spacing must be > 0");
   if (!(g.xlo <= g.xhi) || !(g.ylo <= g.yhi))

@@ -30,7 +30,7 @@ class ScatteredLattice {
   enum State { UNKNOWN, BALL, NONE };
   struct Candidate {
     double x, y, z;
-    uint64_t rank;    // of two that are near the lower one is a ball
+    uint64_t rank;     // of two that are near the lower one is a ball
     int64_t number;    // of the ball
     State state;
   };
@@ -45,7 +45,7 @@ class ScatteredLattice {
   // the number of the next lattice's first cell
   int64_t end() const { return before + n[0] * n[1]; }
 
-  int glance;          // cells between places at which a block is looked for a rim
+  int glance;    // cells between places at which a block is looked for a rim
   bool kept(double x, double y) const { return !surface.keep || surface.keep(x, y); }
 
   // whether a ball may be in any of the cells, asked at each spacing

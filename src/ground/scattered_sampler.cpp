@@ -13,7 +13,7 @@ using namespace Slope;
 
 constexpr double ScatteredSampler::WIDEST;
 
-static constexpr double NEAREST = 0.795;    // of the spacing: gives one ball per spacing^2
+static constexpr double NEAREST = 0.795;          // of the spacing: gives one ball per spacing^2
 static constexpr size_t MOST_BLOCKS = 1 << 14;    // that are remembered
 
 /* ---------------------------------------------------------------------- */

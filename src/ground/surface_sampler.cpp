@@ -73,7 +73,8 @@ void SurfaceSampler::sample(int tile, std::vector<PlacedBall> &balls, SurfaceCou
   for (int j = tj * size; j < j1; j++)
     for (int i = ti * size; i < i1; i++) {
       const PlanNodes::Look &look = nodes.at(i, j);
-      if (look.ball) balls.push_back({nodes.x(i), nodes.y(j), look.z, nodes.cell(i, j) * OF_CELL, 0});
+      if (look.ball)
+        balls.push_back({nodes.x(i), nodes.y(j), look.z, nodes.cell(i, j) * OF_CELL, 0});
       counts.base += look.ball;
       counts.dropped += look.surface() && !look.ball;
       counts.without_surface += !look.surface();

@@ -4,6 +4,7 @@ The paper's two codes differ by 8, 30 and 35 % in what is to be removed. Each va
 at its two rolling resistances above 0, and is compared with ours start by start.
 """
 import math
+from itertools import zip_longest
 from typing import Callable, Dict, List
 
 import numpy as np
@@ -12,7 +13,7 @@ from shapely.prepared import prep
 
 from slope_tools import disk, geometry
 from slope_tools.deposits import cut, volume
-from .crosscheck_cases import BULK, Plain
+from .crosscheck_cases import Plain
 from .crosscheck_table import CUT, DECK_NAME, QUANTITIES, ROLLING, SECONDS, STARTS, differences, evaluated, numbers_of
 from .peers import Contact, Scene
 
@@ -69,8 +70,8 @@ def rows_of(found):
     for what, each in found.items():
         for quantity in QUANTITIES if what not in WAYS else ["to remove"]:
             mine, base = ([[one[quantity] for one in row] for row in several] for several in (each, found[OURS]))
-            compared = [*differences(mine, base)] if what != OURS else [None for _ in mine]
-            for rolling, row, one in zip(ROLLING[1:], mine, compared):
+            compared = differences(mine, base) if what != OURS else []
+            for rolling, row, one in zip_longest(ROLLING[1:], mine, compared):
                 yield {"what": what, "quantity": quantity, "rolling": rolling, "mean": float(np.mean(row)),
                        "difference": one and one.share, "low": one and one.low, "high": one and one.high, "runs": row}
 
@@ -82,8 +83,8 @@ def csv_of(rows) -> str:
 
 
 def other_ways(removal: volume.Removal, final, d: float):
-    """What is to be removed, m3: each ball whose centre is above the cut counts d^3, as in the paper; columns of the
-    raster's cells between the cut and the top of their highest ball."""
+    """What is to be removed, m3: the ground of each ball whose centre is above the cut; columns of the raster's cells
+    between the cut and the top of their highest ball."""
     run = removal.run
     ground, road = cut.Ground(run.base), geometry.to_index(removal.road, run.raster)
     edge, on = cut.Edge(road, ground, math.tan(math.radians(CUT)) * run.cell), prep(road)
@@ -95,7 +96,7 @@ def other_ways(removal: volume.Removal, final, d: float):
         return np.where(inside, height, np.maximum(height, edge.cut(x, y)))
 
     x, y = ~run.raster.transform * final[:, :2].T
-    by_centres = float((final[:, 2] > level(x, y)).sum()) * BULK * math.pi / 6 * d ** 3
+    by_centres = float((final[:, 2] > level(x, y)).sum()) * run.bulk * math.pi / 6 * d ** 3
     top = np.full(run.base.shape, -np.inf)
     np.maximum.at(top, (y.astype(int), x.astype(int)), final[:, 2] + d / 2)
     rows, columns = np.nonzero(np.isfinite(top))

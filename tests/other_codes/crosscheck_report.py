@@ -1,5 +1,6 @@
 """What the comparison of codes found: tables, a picture."""
 import csv
+import math
 import sys
 
 import io
@@ -58,7 +59,7 @@ def report(work):
         if check.case == "table":
             print(f"{check.quantity}, {work.title[check.code]}: {check.reason}: {check.value}")
     for row in work.about_laws["rows"] if work.about_laws else ():
-        if row["difference"] is not None:
+        if row["difference"] is not None and math.isfinite(row["difference"]):
             print(f"{row['what']}: {row['quantity']}, mu_r {row['rolling']:g}: {100 * row['difference']:+.1f} % "
                   f"({100 * row['low']:+.1f} to {100 * row['high']:+.1f})")
     print("processor time, s: " + ", ".join(f"{work.title[name]} {value:.0f}" for name, value in work.seconds.items()))

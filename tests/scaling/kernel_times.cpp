@@ -84,7 +84,8 @@ int main(int argc, char **argv)
   law.exact = 1.0;
   const MovingBalls balls = {lattice.x.data(),      lattice.v.data(),    lattice.omega.data(),
                              lattice.radius.data(), lattice.mass.data(), lattice.f.data(),
-                             lattice.torque.data(), lattice.ahead.data(), lattice.count.data()};
+                             lattice.torque.data(), lattice.ahead.data(), lattice.count.data(),
+                             nullptr};
   const MovingPartners partners = {balls, static_cast<int>(lattice.x.size())};
 
   const auto &kernels = ContactKernels::all();

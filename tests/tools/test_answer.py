@@ -1,5 +1,6 @@
 """The number of a study: the larger of the paper's and an ensemble's, a floor, withheld, or nothing; by hand."""
 import os
+from pathlib import Path
 
 import pytest
 import yaml
@@ -7,12 +8,11 @@ import yaml
 from slope_tools import disk
 from slope_tools.commands import study
 from slope_tools.sites import site_choices
-from slope_tools.statistics import answer
+from slope_tools.statistics import answer, size_family
 from slope_tools.statistics.answer import AtRoad, Code, Ensemble, Kind, Paper, Road, Source, Withheld
 from slope_tools.statistics.withheld import Kind as Rule
-from slope_tools.report import client_part
 from slope_tools.studies import site_study
-from slope_tools.tables import answer_words, answered, fine_run
+from slope_tools.tables import answer_words, answered, fine_run, next_step
 
 STOPPED = answer.Reason(Code.TERRAIN, {"share": 0.12, "path_m": 900.0})
 
@@ -79,9 +79,37 @@ def test_a_fine_run_that_failed_makes_a_floor_too():
     found = answer.of(answered.paper_of(about), None, None)
     assert (found.kind, found.volume, codes(found)) == (Kind.FLOOR, 1200.0, [Code.SIZE])
     assert "did not finish" in answer_words.text(found.reasons[0]) and "d_1: diverged" in entry["text"]
-    assert "did not finish" in client_part.reason(found.reasons[0].code, found.reasons[0].numbers)
-    # none was asked for: size is not known, which the page says, and the number is as before
-    assert answer.of(answered.paper_of({**about, "size": None}), None, None).kind is Kind.NUMBER
+    assert "did not finish" in answer_words.client(found.reasons[0])
+
+
+@pytest.mark.parametrize("balls, kind", [(None, Kind.FLOOR), (5.0, Kind.FLOOR), (16.0, Kind.NUMBER)])
+def test_without_a_fine_run_the_number_is_not_conservative(balls, kind):
+    """Unless its own balls are small enough; the page says why."""
+    about = {"conservative": {"volume_m3": 1200.0}, "study": {"balls_thick": balls}, "size": None}
+    found = answer.of(answered.paper_of(about), None, None)
+    assert (found.kind, found.volume) == (kind, 1200.0)
+    for text in (answer_words.text, answer_words.client):
+        assert ["conservative" in text(one) and "not known" in text(one) for one in found.reasons] == \
+            [True] * (kind is Kind.FLOOR)
+    quantile = {"share": 0.95, "value": 100.0, "low": None, "high": None}
+    made = next_step.Made({"runs": [], "study": {}, "ensemble": None}, Path("out"))
+    assert kind is Kind.NUMBER or next_step.of_reasons(made, found.about()).command == "the same command with --fine 2"
+    about = {"ensemble": {"known_events": {"to_remove": [quantile], "far": 0.0, "longest_m": 9.0}},
+             "study": {"balls_thick": balls}, "size": None}
+    assert answer.of(None, answered.ensemble_of(about), None).kind is kind
+
+
+def test_the_growth_of_the_family_stands_beside_a_floor():
+    """Where it tells: not from more balls of thickness than any slide of it has."""
+    size = {"run": "d_1", "open": True, "balls_thick": 2.0, "effects": {}}
+    about = {"conservative": {"volume_m3": 1200.0}, "size": size}
+    [reason] = answer.of(answered.paper_of(about), None, None).reasons
+    growth = size_family.growth(2.0)
+    assert reason.numbers["growth"] == growth._asdict() and growth.low <= growth.median <= growth.high
+    for text in (answer_words.text(reason), answer_words.client(reason)):
+        assert f"{growth.median:.2f}" in text and text.endswith("times as much")
+    [reason] = answer.of(answered.paper_of({**about, "size": {**size, "balls_thick": 15.99}}), None, None).reasons
+    assert reason.numbers["growth"] == (found and found._asdict() if (found := size_family.growth(15.99)) else None)
 
 
 def test_a_floor_where_known_events_lie_beyond_the_runs():
@@ -150,7 +178,8 @@ def test_what_study_yaml_says():
 
 def test_the_volume_is_the_one_that_the_study_shows():
     best = {"volume_m3": 21700.6, "rounded": {"volume_m3": 21710.0}, "withheld": []}
-    assert answered.paper_of({"conservative": best}) == Paper(21710.0, [])
+    done = {"run": "d_1", "open": False, "effects": {}}
+    assert answered.paper_of({"conservative": best, "size": done}) == Paper(21710.0, [])
     assert answered.paper_of({"conservative": {**best, "volume_m3": None}}).volume is None
 
 

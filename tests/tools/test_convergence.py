@@ -12,7 +12,8 @@ from run_helpers import called
 from tiny_collapse import edit, rows_of
 
 from slope_tools.statistics import convergence
-from slope_tools.studies import size_study
+from slope_tools.studies import body_depth, size_study
+from slope_tools.studies.setup import Setup
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 ROAD = "--road case/road.csv --local"
@@ -190,3 +191,35 @@ def test_a_deck_without_a_diameter_has_no_fine_run(slope):
     status, _, err = slope(f"--set rolling=0 {ROAD} -o out --fine 2", "study")
     assert status == 2 and "--fine: must be of a deck whose variable d is the diameter of the balls" in err
     assert not Path("out").exists()
+
+
+# --- the thickness in balls ---
+
+def test_the_thickness_of_a_site_is_that_of_the_command(here):
+    """Not that of the cells with balls, which the thin rim lacks; of a body of several that of this one."""
+    Path("mine").mkdir()
+    found = {"body": {"mean_depth": 3.0}, "bodies": {}}
+    Path("mine/site.yaml").write_text(yaml.safe_dump({"slope_site": 1, "found": found}))
+    setup = Setup(Path("mine/in.site"), Path("mine/study"))
+    rows = [{"variables": {"d": "2", "body": "1"}}, {"variables": {"d": "1", "body": "2"}}]
+    assert body_depth.mean(setup, rows[0]) == 3.0 and body_depth.in_balls(setup, rows) == 1.5
+    found["bodies"] = {1: {"mean_depth_m": 4.0}, 2: {"mean_depth_m": 5.0}}
+    Path("mine/site.yaml").write_text(yaml.safe_dump({"slope_site": 1, "found": found}))
+    assert [body_depth.mean(setup, row) for row in rows] == [4.0, 5.0]
+    assert body_depth.in_balls(setup, [{"variables": {"q": "2"}}]) is None and body_depth.in_balls(setup, []) is None
+
+
+def test_calibrated_values_belong_to_the_thickness_in_balls(succeed):
+    """calibrate keeps it, and a study with another one says so in a line."""
+    words = "--vary friction=20:40 --front 25 --runs 5 --set steps=200"
+    succeed(f"{words} --jobs 2 -o fit", "calibrate")
+    about = yaml.safe_load(Path("fit/calibrate.yaml").read_text())
+    mine = about["calibration"]["balls_thick"]
+    assert mine > 1
+    for factor, warned in ((1.0, False), (1.6, True), (1 / 1.6, True)):
+        about["calibration"]["balls_thick"] = factor * mine
+        Path("fit/calibrate.yaml").write_text(yaml.safe_dump(about))
+        succeed("--from fit --sample 2 --set steps=200 --exceed 0.1 --jobs 2 -o out", "study")
+        found = yaml.safe_load(Path("out/study.yaml").read_text())
+        assert found["study"]["balls_thick"] == pytest.approx(mine, rel=0.05)
+        assert [one["kind"] for one in found["warnings"]].count("other thickness") == warned

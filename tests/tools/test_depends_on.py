@@ -168,7 +168,7 @@ NAMES_NONE = {
     "output", "outside", "overlap", "pattern", "point", "rest", "restitution", "rim", "rolling", "rolling_radius",
     "rolling_spring", "rotate", "scale", "scattered", "scheme", "seed", "seismic", "series", "shape", "side", "sink",
     "smallest", "spacing", "stiffness", "strength", "sunk", "surface", "units", "upper", "volume", "water", "window",
-    "within", "write"}
+    "within", "write", "zone"}
 WORD = re.compile(r'(?:strcmp\(\w+\[[^]]*\], |given\(|\b(?:keyword|word|key|name) == )"([a-z_]+)"')
 
 

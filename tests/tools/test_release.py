@@ -464,6 +464,25 @@ def test_a_slip_surface_that_comes_out_beyond_the_toe_is_warned_of(body, middle,
         assert 0.6 * depth[level].max() < said["depth"] <= depth[level].max() + 1e-3
 
 
+@pytest.mark.parametrize("words", ["--shape ellipsoid --depth 9", "--scar after.asc"])
+@pytest.mark.parametrize("gully", [0, 12])
+def test_a_slip_surface_above_the_ground_is_warned_of(body, words, gully):
+    """Where a gully through the polygon is deeper than the body; what is lower than the body is no matter."""
+    def plain(x, y):
+        return 0.6 * x - 9 * np.clip(1 - np.hypot(x - 120, y - 100) / 40, 0, None)
+
+    def ground(x, y):
+        return 0.6 * x - gully * (abs(y - 122) < 5)
+    terrain(ground)
+    terrain(plain, "after.asc")
+    polygon(Point(120, 100).buffer(40))
+    _, about = body(f"t.asc --polygon p.csv {words}")
+    assert ("above ground" in warned(about)) == (gully > 0)
+    if gully:
+        said = warned(about)["above ground"]
+        assert 0.1 * 10 * 70 < said["area"] < 14 * 70 and 0.3 * gully < said["height"] <= gully
+
+
 @pytest.mark.parametrize("shift", [-0.6, 0.0, 0.6])
 def test_two_surveys_over_different_datums(succeed, no_picture, shift):
     """That the datums are not compared is said; what the two differ by beside the body is, too."""

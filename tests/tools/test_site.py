@@ -451,7 +451,7 @@ def test_a_volume_of_frank_by_polygon(tmp_path):
 
 # --- the budget ---
 
-SOIL = site_budget.Soil(2000.0, 5.0, 47.0)
+SOIL = site_budget.Soil(2000.0, 5.0, 47.0, 0.9)
 
 
 def budget(**balls):
@@ -475,13 +475,15 @@ def test_the_size_of_the_balls_comes_from_the_budget():
 
 
 def test_the_run_time_in_the_deck_is_that_of_one_run():
-    """Set-up, and what balls and steps cost: 15 s in steps of a quarter of sqrt(m/k)."""
+    """Set-up, and what steps and balls cost: 15 s in steps of 1.5 quarters of sqrt(m/k), of 1 on close ground."""
     choices = site_choices.complete({"terrain": {"files": ["dem.tif"]}})
-    trial = site_budget.Trial(800, 3.5, 15.0, True, 13.0, 1e-7, 0.5, 2.0, 0.0)
+    trial = site_budget.Trial(800, 3.5, 15.0, True, 13.0, 1e-7, 0.5, 2.0, 0.0, step=3e-5)
     size = budget(number=2240)
-    step = 0.25 * 0.05 * size.diameter / 60.0       # at 60 m/s a contact overlaps by a twentieth of the diameter
+    step = 1.5 * 0.25 * 0.05 * size.diameter / 60.0     # at 60 m/s a contact overlaps by a twentieth of the diameter
     found = site_numbers(choices, SOIL._replace(speed=60.0), trial, size)
-    assert found.run_seconds == pytest.approx(0.5 + 15 / step * size.balls * 1e-7)
+    assert found.run_seconds == pytest.approx(0.5 + 15 / step * (3e-5 + size.balls * 1e-7))
+    found = site_numbers(choices, SOIL._replace(speed=60.0, spacing=0.35), trial, size)
+    assert found.run_seconds == pytest.approx(0.5 + 1.5 * 15 / step * (3e-5 + size.balls * 1e-7))
 
 
 @pytest.mark.parametrize("d, thick, number", [(1.0, 7.0, 2e4), (0.5, 3.0, 2e4), (1.0, 14.0, 4e4), (0.5, 14.0, 8e4)])
@@ -490,8 +492,9 @@ def test_a_slow_mass_has_the_stiffness_that_its_weight_needs(d, thick, number):
     mass = 2000 * np.pi / 6 * d ** 3
     kn = number * 2000 * 0.6 * 9.80665 * thick * d
     for speed in (1.0, 10.0):
-        soil = site_budget.Soil(2000.0, thick, speed)
-        assert site_budget.time_step(d, soil) == pytest.approx(0.25 * (mass / kn) ** 0.5)
+        soil = site_budget.Soil(2000.0, thick, speed, 0.9)
+        assert site_budget.time_step(d, soil) == pytest.approx(1.5 * 0.25 * (mass / kn) ** 0.5)
+        assert site_budget.time_step(d, soil._replace(spacing=0.39)) == pytest.approx(0.25 * (mass / kn) ** 0.5)
     assert site_budget.time_step(d, soil._replace(speed=300.0)) < site_budget.time_step(d, soil)
 
 
@@ -499,8 +502,8 @@ def test_a_slow_mass_has_the_stiffness_that_its_weight_needs(d, thick, number):
 @pytest.mark.parametrize("speed", [3.0, 90.0])
 def test_scaled_lengths_have_a_scaled_step(factor, speed):
     """Froude: times and speeds go with the root of the lengths, by weight and by speed."""
-    soil = site_budget.Soil(3000.0, 12.0, speed)
-    other = site_budget.Soil(3000.0, 12.0 * factor, speed * factor ** 0.5)
+    soil = site_budget.Soil(3000.0, 12.0, speed, 0.9)
+    other = site_budget.Soil(3000.0, 12.0 * factor, speed * factor ** 0.5, 0.9)
     assert site_budget.time_step(1.5 * factor, other) == pytest.approx(factor ** 0.5 * site_budget.time_step(1.5, soil))
 
 
@@ -525,10 +528,31 @@ def test_a_second_trial_tells_how_long_most_runs_take():
     wanted = site_budget.plan(choices)
     took = [site_budget.study_seconds(2.0, 3e4, one, SOIL, wanted, 2) for one in (fine, both)]
     assert took[0] == took[1]
-    assert site_budget.finer_diameter(choices, coarse) == pytest.approx(3.6 / 3 ** (1 / 3), rel=2e-3)
-    assert site_budget.finer_diameter(choices, coarse._replace(seconds=3.0)) is None    # 13 s, more than a fifth of it
+
+
+def test_the_second_trial_has_other_balls():
+    """Finer for a budget of time, otherwise coarser; none where it would have hardly any."""
+    trial = site_budget.Trial(800, 3.6, 45.0, True, 21.0, 1e-7, 0.5, 2.0, 0.0)
+    choices = site_choices.complete({"terrain": {"files": ["dem.tif"]}, "balls": {"minutes": 1.0}})
+    fine, coarse = pytest.approx(3.6 / 3 ** (1 / 3), rel=2e-3), pytest.approx(3.6 * 3 ** (1 / 3), rel=2e-3)
+    assert site_budget.other_diameter(choices, trial) == fine
+    assert site_budget.other_diameter(choices, trial._replace(seconds=3.0)) == coarse       # 13 s, more than a fifth
     choices["balls"]["number"] = 3000
-    assert site_budget.finer_diameter(choices, coarse) is None
+    assert site_budget.other_diameter(choices, trial) == coarse
+    assert site_budget.other_diameter(choices, trial._replace(balls=299)) is None
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_two_trials_tell_what_a_step_costs_and_what_a_ball(order):
+    """A step of 30 us and 50 ns for each ball in it: a run with 16,000 balls takes 830 us a step."""
+    first, second = (site_budget.Trial(n, 3.6, 45.0, True, 21.0, 30e-6 / n + 50e-9, 0.5, 2.0, 0.0)
+                     for n in (800, 266)[::order])
+    both = site_budget.joined(first, second)
+    assert (both.balls, both.step, both.cost) == (800, pytest.approx(30e-6), pytest.approx(50e-9))
+    steps = 45.0 / site_budget.time_step(1.0, SOIL)
+    assert both.run(1.0, 16000, SOIL) == pytest.approx(0.5 + steps * 830e-6)
+    same = site_budget.joined(first, second._replace(cost=first.cost / 2 if order > 0 else first.cost * 2))
+    assert same.step >= 0 and same.cost > 0         # noise: nothing is below 0
 
 
 def test_bins_of_a_small_body_in_a_large_box_are_wide():

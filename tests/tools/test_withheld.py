@@ -104,7 +104,11 @@ def judged(several, events=None):
 def test_a_number_that_may_stand():
     best = judged(rows(90.0, 100, 110), events(400.0, 0.6))
     assert best["withheld"] == [] and best["volume_m3"] > 110 and best["zero"] is None
-    assert combinations.describe(best)[0].startswith("conservative volume to remove: ")
+    [first, *_] = combinations.describe(best)
+    assert first.startswith("volume to remove, not conservative: ")
+    assert "smaller balls would change is not known" in first
+    assert combinations.describe({**best, "rounded": {**best["rounded"], "size_m3": 0.0}})[0].startswith(
+        "conservative volume to remove: ")
 
 
 def test_a_number_that_is_withheld_is_nowhere():

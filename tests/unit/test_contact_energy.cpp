@@ -87,7 +87,7 @@ TEST(ContactEnergy, ShareOfThisRank)
   std::vector<double> radius(4, RADIUS), mass(4, MASS);
   std::vector<unsigned char> counts(4, 0);
   const MovingBalls balls = {x.data(),     still.data(), still.data(), radius.data(), mass.data(),
-                             still.data(), still.data(), still.data(), counts.data()};
+                             still.data(), still.data(), still.data(), counts.data(), nullptr};
   double history[3][HISTORY] = {};
   ContactList list;
   for (int j = 1; j < 4; j++) list.add(0, j, history[j - 1], false, RADIUS, RADIUS, MASS, MASS);

@@ -37,6 +37,7 @@ struct Cloud {
   std::vector<Vector> x, v, omega, ahead, f, torque;
   std::vector<double> radius, mass;
   std::vector<unsigned char> count;
+  std::vector<FixedContacts> fixed;
   std::vector<std::array<double, HISTORY>> history;
   ContactList list;
 
@@ -76,6 +77,7 @@ struct Cloud {
     f.assign(x.size(), {0.0, 0.0, 0.0});
     torque = f;
     count.assign(x.size(), 0);
+    fixed.resize(x.size());
     fill_list(touched);
   }
 
@@ -110,7 +112,7 @@ struct Cloud {
   MovingBalls balls()
   {
     return {x.data(), v.data(), omega.data(), radius.data(), mass.data(), f.data(), torque.data(), ahead.data(),
-            count.data()};
+            count.data(), fixed.data()};
   }
 
   void forget_forces() { torque = f = std::vector<Vector>(x.size(), {0.0, 0.0, 0.0}); }
@@ -194,7 +196,8 @@ struct Reference {
     }
     (!now ? ended : was ? lasted : began)++;
     const double contacts = mean_contacts(step, 1.0 * count[i], 1.0 * count[j]);
-    if (exact && now != was) hold_beginning(step, contacts, c);
+    c.along = along_moving(contacts);
+    if (exact && now != was) hold_beginning(step, c);
     ContactForce out;
     if (law.rolling > 0.0) contact_force<true>(step, c, contacts, h, out);
     else contact_force<false>(step, c, contacts, h, out);
@@ -329,6 +332,47 @@ TEST_P(ContactLists, CountsEndAt255)
   EXPECT_EQ(cloud.count[1], 255);
 }
 
+// of a ball on four fixed ones, walls' or held atoms of either side; the ball's dashpots know how they lie
+TEST_P(ContactLists, FixedContactsOfABall)
+{
+  const double high = 0.14, out = std::sqrt(0.19 * 0.19 - high * high);
+  std::vector<Vector> x = {{0.0, 0.0, high}}, still(5, {0.0, 0.0, 0.0}), v = still;
+  for (int k = 0; k < 4; k++) x.push_back({out * std::cos(k * PI / 2.0), out * std::sin(k * PI / 2.0), 0.0});
+  v[0].z = -1.0;
+  const std::vector<double> radius(5, 0.1), mass(5, MASS);
+  double up[3];
+  for (int way = 0; way < 3; way++) {    // the ball first, last, on a wall
+    std::vector<Vector> f = still, torque = still;
+    std::vector<unsigned char> count(5, 0);
+    std::vector<FixedContacts> fixed(5);
+    const MovingBalls balls = {x.data(), v.data(), still.data(), radius.data(), mass.data(), f.data(),
+                               torque.data(), v.data(), count.data(), fixed.data()};
+    double histories[5][HISTORY] = {};
+    ContactList list;
+    list.clear(way != 1, way == 1);
+    for (int k = 1; k < 5; k++)
+      list.add(way == 1 ? k : 0, way == 1 ? 0 : k, histories[k], true, 0.1, 0.1, MASS, MASS);
+    const FixedPartners wall(x.data(), radius.data(), FixedPartners::ONE);
+    if (way == 2) {
+      list.find(false, balls, wall);
+      list.apply(law_of(0.1), 1.5 * rule_step(), false, balls, wall);
+    } else {
+      const MovingPartners partners = {balls, 5};
+      list.find(false, balls, partners);
+      list.apply(law_of(0.1), 1.5 * rule_step(), false, balls, partners);
+    }
+    EXPECT_EQ(fixed[0].number, 4.0);
+    EXPECT_NEAR(fixed[0].normals.z, 4.0 * high / 0.2, 1e-12);
+    EXPECT_NEAR(fixed[0].normals.x, 0.0, 1e-12);
+    up[way] = f[0].z;
+  }
+  const ContactStep step = on_fixed(law_of(0.1), 1.5 * rule_step());
+  const double z = high / 0.19, cn = step.cn * acting_together(step, 4.0 * z * high / 0.2);
+  EXPECT_NEAR(up[2], 4.0 * z * (KN * (touching(0.1, 0.1) - 0.19) + cn * z), 1e-6 * up[2]);
+  EXPECT_NEAR(up[0], up[2], 1e-9 * up[2]);
+  EXPECT_NEAR(up[1], up[2], 1e-9 * up[2]);
+}
+
 // two balls of the paper, and a third that may touch the first
 struct Trio {
   Vector x[3], v[3], omega[3], ahead[3], before[3], f[3], torque[3];
@@ -351,7 +395,7 @@ struct Trio {
     list.add(0, 2, history[1], false, 0.1, 0.1, MASS, MASS);
   }
 
-  MovingBalls balls() { return {x, v, omega, radius, mass, f, torque, ahead, count}; }
+  MovingBalls balls() { return {x, v, omega, radius, mass, f, torque, ahead, count, nullptr}; }
 
   void half_kick()
   {

@@ -118,6 +118,11 @@ WORDS: Dict[str, Union[str, Words]] = {
     "beyond toe": "the slip surface comes out beyond the toe: {area:,.0f} m2 of the body lie on level ground at its "
                   "foot, up to {depth:.3g} m deep, over which it slides without the ground's friction; is a shallower "
                   "body meant, or one that ends at the toe?",
+    "above ground": "the slip surface lies above the ground on {area:,.0f} m2 of the polygon, by up to {height:.3g} m: "
+                    "nothing is released there; is another surface meant, or a smaller polygon?",
+    "other thickness": Words("the calibrated values were found with {found:.2g} balls over the thickness of the body, "
+                             "these runs have {here:.2g}, and values belong to the size of the balls: calibrate with "
+                             "these"),
     "under road": "{file}: the slip surface comes out under the road, up to {depth:.3g} m below {area:,.0f} m2 of it, "
                   "where the ground's friction does not act; is that the body you mean?",
     "shift": "beside the body {file} lies {metres:.3g} m {side} the terrain (median), which counts in the depths: "
@@ -224,11 +229,15 @@ WORDS: Dict[str, Union[str, Words]] = {
     "too few runs": Words("the runs are too few to tell which parameters go farther: take more points", client=(
         "The runs are too few to tell which settings go farther.")),
     "size of balls": Words("the finest balls are {balls:.2g} over the thickness of the body: smaller ones, {enough:g} "
-                           "or more, may bring more", client=(
+                           "or more, may bring more{grown}", client=(
                                "The finest of the model's balls are {balls:.2g} over the thickness of the body, and "
-                               "smaller ones, {enough:g} or more, may bring more.")),
-    "no fine run": Words("the run with smaller balls, which may bring more, did not finish", client=(
-        "The run with smaller balls in the model, which may bring more, did not finish.")),
+                               "smaller ones, {enough:g} or more, may bring more{grown}.")),
+    "fine run failed": Words("the run with smaller balls, which may bring more, did not finish{grown}", client=(
+        "The run with smaller balls in the model, which may bring more, did not finish{grown}.")),
+    "no fine run": Words("what smaller balls bring is not known, as no run with them was made: the number is not "
+                         "conservative{grown}", client=(
+                             "What smaller balls in the model would bring is not known, as no run with them was made, "
+                             "so that the number cannot be called conservative{grown}.")),
     # caveats on the volume to remove
     "single run": Words("nothing was varied: it comes from a single run", NOTE),
     "end of range": Words("it lies at the end of the range of {variable}, {low:g} to {high:g}", NOTE),
@@ -279,6 +288,9 @@ WORDS: Dict[str, Union[str, Words]] = {
                               "more points (--sample)", NOTE),
     "more per year": Words("peaks above the hazard curve's last may add up to {per_year:.2g} per year to more than "
                            "{volume:,.6g} m3", NOTE),
+    "chain raised": Words("the volumes are raised by what smaller balls brought in a run with them, {added:,.6g} m3 of "
+                          "{volume:,.6g} m3", NOTE),
+    "chain size": Words("smaller balls may bring more: the road is blocked at least so often", NOTE),
     # on a calibration
     "failed fits": Words("{failed} of {runs} runs failed and are left out: {which}", NOTE),
     "lost fits": Words("{lost} of {runs} runs lost up to {volume:,.0f} m3 over the edge of the terrain or the box: how "

@@ -66,7 +66,7 @@ TEST(ContactGuards, Start)
   g.deck.one("fix move one nve/sphere");
   g.guards.start(0);
   g.guards.start(0);    // each is noted once
-  g.expect({"2 times the largest", "delay 5"});
+  g.expect({"2 times the rule's", "delay 5"});
 }
 
 // only a run that makes a step moves balls, and only what could have moved hangs

@@ -2,7 +2,7 @@
 import shutil
 from pathlib import Path
 
-from . import process, terrain
+from . import process, styles, terrain
 from .algorithm import Algorithm
 from .options import of
 from .release import SCAR, SHAPE
@@ -32,6 +32,9 @@ class Site(Algorithm):
         *SHAPE,
         of("site", "road", "Road: the volume to remove from it", kind="road"),
         *CLEARING, CUT_ANGLE, MESH,
+        of("site", "ground", "Zones of the ground: friction, rolling, restitution, spacing", kind="polygons"),
+        of("site", "ground", "Zones of the ground, classes", kind="raster", key="GROUND_CLASSES", advanced=True),
+        of("site", "ground_table", "Table of these classes (CSV)", kind="file", filter="CSV (*.csv)", advanced=True),
         of("site", "structure", "Wall or building (STL, m)", kind="file", filter="STL (*.stl)"),
         of("site", "line", "Control line: what crosses it is counted", kind="line"),
         of("site", "motion", "Motion of the ground, as slope quake wrote it (s, m/s2)", kind="file"),
@@ -47,6 +50,7 @@ class Site(Algorithm):
         of("site", "author", "Author, for the report"),
         of("site", "output", "New folder of the site", kind="new folder"))
     outputs = (("raster", "DEPTH_LAYER", "Depth of the body (m)"), ("raster", "TERRAIN_LAYER", "Terrain (m)"),
+               ("vector", "ZONES", "Zones of the ground"),
                ("number", "RELEASED", "Volume of the body (m3)"), ("number", "NUMBER_OF_BALLS", "Balls in the body"),
                ("number", "STUDY_MINUTES", "Estimated time of the study (minutes)"),
                ("file", "SITE", "Choices of the site (site.yaml), for the algorithm Study"), ("file", "PICTURE", "Map"))
@@ -67,6 +71,8 @@ class Site(Algorithm):
         terrain.show(results, "TERRAIN_LAYER", folder / "terrain.asc", "ground", "terrain")
         terrain.show(results, "DEPTH_LAYER", folder / "release.depth.asc", "depth", "depth of the body (m)")
         found = load(folder / "site.yaml")["found"]
+        if found.get("zones"):
+            results.layer("ZONES", folder / "ground.gpkg", styles.ZONES, "zones of the ground")
         seconds = found["study"]["seconds"]
         results.put(OUTPUT=str(folder), RELEASED=found["body"]["volume"], NUMBER_OF_BALLS=found["balls"],
                     STUDY_MINUTES=None if seconds is None else seconds / 60, SITE=str(folder / "site.yaml"),

@@ -32,6 +32,7 @@ RASTERS = {
 SERIES = {"thin to thick": (1, 2, 5), "powers": (1, 3)}     # upper bounds, times powers of ten
 GROUND = "ground"               # as a shaded relief
 STRETCHES = "stretches"         # of a road, lines
+ZONES = "zones"                 # of the ground, polygons
 MESH = "mesh cells"             # of `slope volume`, polygons
 OF_MESH = "remove"              # their column, m3
 # upper bounds that do not follow from the values
@@ -40,7 +41,10 @@ FIXED = {"shares": (0.05, 0.25, 0.5, 0.75, 1.0),
 
 
 def apply(layer, kind):
-    """Give a layer the renderer of a kind: of RASTERS, GROUND, MESH or STRETCHES."""
+    """Give a layer the renderer of a kind: of RASTERS, GROUND, MESH, STRETCHES or ZONES."""
+    if kind == ZONES:
+        return layer.setRenderer(QgsSingleSymbolRenderer(QgsFillSymbol.createSimple(
+            {"style": "no", "outline_color": "#7a4d1f", "outline_width": "0.4"})))
     if kind == STRETCHES:
         return layer.setRenderer(QgsSingleSymbolRenderer(QgsLineSymbol.createSimple(
             {"line_color": YELLOW_RED[-2], "line_width": "1.2"})))

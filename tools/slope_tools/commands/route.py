@@ -59,6 +59,8 @@ class Request(road_arguments.Clearing, Engine):
     keep: Optional[int] = option("bodies of a window of the search (default 3)", metavar="N", type=count)
     below: Optional[float] = option("bodies with a factor of safety below F may fail (default 1.5)", metavar="F")
     bodies: Optional[str] = option("no search: polygons with an attribute depth (m) or volume (m3)", metavar="POLYGONS")
+    ground: Optional[str] = option("zones of the ground, as slope site takes them", metavar="P|RASTER")
+    ground_table: Optional[str] = option("of the classes of such a raster", metavar="CSV")
     reach: Optional[float] = option(
         "bodies of which a smaller share of known events go as far as the road are left out (default 0.01)",
         metavar="P")

@@ -2,7 +2,7 @@
 import dataclasses
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, Sequence, Tuple
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -24,6 +24,7 @@ class Sample:
     kind: str
     seed: int
     variables: Tuple[Any, ...]
+    balls_thick: Optional[float] = None     # over the thickness of the body, where its values were found; None: unknown
 
     @property
     def names(self) -> List[str]:

@@ -6,7 +6,7 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 from .. import disk, schemas
 from ..ensembles.sample import Sample
 from ..errors import SlopeError
-from ..schemas import TEXT, listed, mapping, named
+from ..schemas import MAYBE, TEXT, listed, mapping, named
 from ..statistics import distributions
 from .fit import ABOUT
 
@@ -14,7 +14,7 @@ KIND = "calibrated"
 NUMBER = 32             # of the sets, unless --sample says otherwise
 WHAT = "what `slope calibrate` wrote, with its sets"
 TEXTS = named(TEXT, 1)
-SCHEMA = mapping({"calibration": mapping({"variables": TEXTS}), "sets": listed(TEXTS, 2)})
+SCHEMA = mapping({"calibration": mapping({"variables": TEXTS}, balls_thick=MAYBE), "sets": listed(TEXTS, 2)})
 
 
 @dataclass(frozen=True)
@@ -51,4 +51,4 @@ def sample(folder: Path, number: Optional[int], deck: Path, fixed: Mapping[str, 
         raise SlopeError("--sample", f"must be from {len(variables) + 1} to {len(different)} with --from {folder}, of "
                          "which that many sets differ", number)
     return Calibrated(number or min(NUMBER, len(different)), KIND, found["calibration"].get("seed", 1),
-                      tuple(variables), tuple(different), disk.sha256(path))
+                      tuple(variables), found["calibration"].get("balls_thick"), tuple(different), disk.sha256(path))

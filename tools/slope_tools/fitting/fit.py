@@ -12,7 +12,7 @@ from ..deposits.rest import CUT
 from ..findings import Finding, entries
 from ..runs import jobs, repeats
 from ..statistics import backanalysis
-from ..studies import mapped, results
+from ..studies import body_depth, mapped, results
 from ..studies.setup import Setup
 from ..tables import judged, quantities
 from . import calibration, fit_words, observations
@@ -103,9 +103,11 @@ class Fit:
                  *backanalysis.judgement(found, self.variables)]
         doubts = self.doubts(found)
         failed = [one.name for one in plan.runs if one.error]
+        thick = body_depth.in_balls(self.setup, [row for row in self.rows.values() if row["status"] == "finished"])
         about: Dict[str, Any] = {
-            "calibration": {**plan.ledger.about, "runs": plan.number, "failed": len(failed), "package":
-                            self.work.package, "collected": provenance.now(), "machine": provenance.machine()},
+            "calibration": {**plan.ledger.about, "runs": plan.number, "failed": len(failed), "balls_thick": thick,
+                            "package": self.work.package, "collected": provenance.now(),
+                            "machine": provenance.machine()},
             "best": {"set": plan.ledger.points[plan.number - 1], "run": best.name,
                      "score": None if predicted is None else float(backanalysis.misfits(
                          predicted[None], found, targets)[0])},

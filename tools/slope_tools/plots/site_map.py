@@ -16,6 +16,7 @@ from .sheets import Entry
 
 RELEASE = {"color": figures.RELEASE, "lw": 1.0, "ls": "--"}
 OBSERVED = {"color": "#d1603d", "lw": 1.1}
+ZONE = {"color": "#7a4d1f", "lw": 0.9, "ls": "-."}
 TRIAL = {"color": "#1f7a4d", "lw": 1.0, "ls": ":"}
 REACHED = 0.1       # m of thickness
 
@@ -72,6 +73,12 @@ def draw_outlines(axes, layers: Shown) -> List[Entry]:
             outline(axes, geometry, color=style["color"], linewidth=style["lw"], linestyle=style.get("ls", "-"),
                     zorder=6)
             entries.append(Entry(name, style))
+    for zone in layers.zones:
+        outline(axes, zone.geometry, color=ZONE["color"], linewidth=ZONE["lw"], linestyle=ZONE["ls"], zorder=4)
+        place = zone.geometry.representative_point()
+        axes.annotate(zone.name, (place.x, place.y), fontsize=6, color=ZONE["color"], annotation_clip=True, zorder=8)
+    if layers.zones:
+        entries.append(Entry("zone of the ground", ZONE))
     for one in layers.structures:
         (xlo, ylo), (xhi, yhi) = one.low[:2], one.high[:2]
         axes.plot([xlo, xhi, xhi, xlo, xlo], [ylo, ylo, yhi, yhi, ylo], color=WALL["color"], lw=WALL["lw"],

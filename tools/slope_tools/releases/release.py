@@ -14,6 +14,7 @@ from ..survey.crs import as_crs
 from . import release_area, release_bodies, release_scar, release_solve, release_toe
 
 SHAPES = ("sphere", "ellipsoid", "plane", "slbl")
+ABOVE = "above_ground"      # of a body's choices: where its slip surface is, in the polygon
 LITTLE = 0.75   # share of the polygon; a base level that takes less of it is a doubtful body
 SCAR_REMEDY = ": --polygon takes a part of the scar, --least D leaves out the noise of two surveys"
 CLIFF = 60.0    # degrees, mean of a body's ground; it may be in feet
@@ -165,17 +166,19 @@ def scar_of(wanted: Wanted, raster) -> release_scar.Scar:
 
 def from_scar(wanted: Wanted, scar: release_scar.Scar, geometry):
     """Area, slip surface on its nodes and choices of a body that a raster gives."""
-    raster, depth, inside = scar.ground, scar.depth, None
+    raster, depth, inside, above = scar.ground, scar.depth, None, None
     if geometry is not None:
         inside = release_area.nodes_inside(raster, geometry)
         depth = np.where(inside, depth, 0.0)
         if not depth.any():
             raise SlopeError(wanted.polygon, f"must hold some of the scar in {wanted.scar}")
+        if scar.above is not None:
+            above = release_toe.above_ground(raster.z, raster.z - scar.above, inside, float(raster.transform.a))
     area = release_area.area_of(raster, depth > 0, wanted.where, wanted.terrain, SCAR_REMEDY)
     row, column = area.corner
     part = depth[row:row + area.z.shape[0], column:column + area.z.shape[1]]
     return area, area.z - part, {"shape": "scar", "scar": wanted.scar, "scar_is": scar.kind, "least": wanted.least,
-                                 "beside_m": release_scar.off_beside(scar, inside)}
+                                 "beside_m": release_scar.off_beside(scar, inside), ABOVE: above and above._asdict()}
 
 
 def from_shape(wanted: Wanted, raster, geometry):
@@ -209,6 +212,8 @@ def from_shape(wanted: Wanted, raster, geometry):
     choices = {"shape": shape.name, "given": {"depth_m": wanted.depth, "volume_m3": wanted.volume,
                                               "curvature_per_m": wanted.curvature},
                shape.number: free, **shape.about}
+    above = release_toe.above_ground(area.z, shape.surface(free), area.inside, area.cell)
+    choices[ABOVE] = above and above._asdict()
     if wanted.shape == "slbl":
         choices["tolerance_m"] = free * area.cell ** 2 / 4
     return area, area.z - depth, choices
@@ -235,6 +240,8 @@ def warnings(choices, found, area, slip) -> List[Finding]:
                                              "or a survey without what came to rest there?"}))
     if level := release_toe.beyond_toe(area, slip):
         doubts.append(Finding("beyond toe", level._asdict()))
+    if above := choices.get(ABOVE):
+        doubts.append(Finding("above ground", {"area": above["area"], "height": above["depth"]}))
     if found.mean_slope > CLIFF:
         doubts.append(Finding("cliff", {"degrees": found.mean_slope, "in_feet": plausible.in_feet(found.mean_slope)}))
     if found.cells < COARSE:

@@ -1,4 +1,4 @@
-"""Where a slip surface comes out of the ground: on the slope, as it should, or beyond its toe, or under a road."""
+"""Where a slip surface comes out of the ground: on the slope, as it should, beyond the toe, under a road, or inside."""
 import math
 from typing import NamedTuple, Optional
 
@@ -14,7 +14,8 @@ from .release_area import Area
 
 FOOT = 0.2      # of the body's fall: its lowest part
 LEVEL = 0.25    # of the mean slope of its ground: flatter ground is level
-SOME = 0.02     # of its area; less level ground at its foot is none
+SOME = 0.02     # of its area; less level ground at its foot is none, nor less ground below the slip surface
+CLEAR = 0.05    # of the largest depth: a slip surface that lies less above the ground does not count
 WHOLLY = 0.99   # of a road's area on the body: all of it
 
 
@@ -76,6 +77,22 @@ def on_body(body: np.ndarray, raster: Raster, road, rim: int) -> Optional[OnBody
 def rim(ball: float, cell: float) -> int:
     """How many cells (m) the rim of a body of balls is wide, each of which stands for so much ground (m3)."""
     return 1 + math.ceil(ball ** (1 / 3) / cell / 2)
+
+
+def above_ground(z: np.ndarray, slip: np.ndarray, inside: np.ndarray, cell: float) -> Optional[Level]:
+    """Where a slip surface lies above the ground z (m) inside a polygon, None where it hardly does; depth: how high.
+
+    Ground that is lower than the whole body does not count: there the slip surface has come out, as it should.
+    """
+    with np.errstate(invalid="ignore"):
+        depth = np.where(inside, z - slip, 0.0)
+        body = depth > 0
+        if not body.any():
+            return None
+        above = (depth < -CLEAR * depth[body].max()) & (z > z[body].min())
+    if above.sum() <= SOME * body.sum():
+        return None
+    return Level(float(above.sum()) * cell ** 2, float(-depth[above].min()))
 
 
 def under(area: Area, slip: np.ndarray, road) -> Optional[Level]:

@@ -8,7 +8,7 @@ from .. import digits
 from ..deposits import travel_shares
 from ..digits import percent
 from ..ensembles import known_study
-from ..statistics import headline
+from ..statistics import headline, size_family
 from ..statistics.answer import SHARE, Kind, Reason, Source
 from ..tables import answer_words, combinations, elastic, next_step
 from ..tables.quantities import ALL, DISTANCE
@@ -31,7 +31,8 @@ def content(data, ground, numbers, answers: Sequence[Optional[Dict[str, Any]]], 
     """
     main, spoken = next((one for one in answers if one), None), of_headline(data, numbers)
     return {"body": body.sentence(body.of_data(data, ground)),
-            "answer": spoken or (of_answer(data, main, numbers) if main else of_reach(data, numbers)),
+            "answer": spoken or (floored(data, of_answer(data, main, numbers), numbers) if main else
+                                 of_reach(data, numbers)),
             "sentences": sentences(data, ground, numbers, bool(main))
             + road_part.on_first_page(data, numbers, bool(main and main["withheld"])),
             "caveats": warnings.first_page(found)[:warnings.MOST], "rest": warnings.rest_of(listed),
@@ -118,7 +119,18 @@ def of_floor(about: Mapping[str, Any], numbers) -> Dict[str, Any]:
     else:
         band = ""
     title = f"{REMOVE}, with {percent(share)}" if share else REMOVE
-    return {"title": title, "number": f"at least {text}", "unit": "m3", "band": band + of_paper(about, numbers)}
+    return {"title": title, "number": f"at least {text}", "unit": "m3",
+            "band": band + by_family(about, numbers) + of_paper(about, numbers)}
+
+
+def by_family(about: Mapping[str, Any], numbers) -> str:
+    """What the number becomes by the largest factor that a slide of the family grew by with smaller balls."""
+    growth = [one["numbers"]["growth"] for one in about["reasons"] if one["numbers"].get("growth")]
+    if not growth:
+        return ""
+    most = max(size_family.Growth(**one).covered(about["volume_m3"]) for one in growth)
+    text = numbers(f"{REMOVE.lower()}, by the largest growth with smaller balls", "m3", most)
+    return f" With as much more by smaller balls as the slide that grew most, {text} m3."
 
 
 def not_reached(about: Mapping[str, Any]) -> Dict[str, Any]:
@@ -175,6 +187,16 @@ def of_answer(data, answer: Dict[str, Any], numbers) -> Dict[str, Any]:
         band += "".join(f" {one[0].upper()}{one[1:]}." for one in combinations.starts(best))
     return {"kind": "number", "title": answer["title"], "number": answer["number"], "unit": answer.get("unit", "m3"),
             "reasons": [], "band": band, "step": None}
+
+
+def floored(data, answer: Dict[str, Any], numbers) -> Dict[str, Any]:
+    """The same as a floor, where the headline of the one study says so."""
+    about = (data.study or {}).get("headline")      # none in older files
+    if answer["number"] is None or not about or about["ensemble"] or Kind(about["kind"]) is not Kind.FLOOR:
+        return answer
+    return {**answer, "kind": Kind.FLOOR.value, "title": REMOVE, "number": f"at least {answer['number']}",
+            "reasons": reasons(about), "band": answer["band"] + by_family(about, numbers),
+            "step": next_step.of_reasons(next_step.Made(data.study, data.folder), about)}
 
 
 def of_reach(data, numbers) -> Dict[str, Any]:

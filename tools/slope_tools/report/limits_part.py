@@ -1,19 +1,23 @@
 """The table of a report on how uncertain its numbers are, and what they do not include."""
 import math
-from typing import List, Tuple
+from typing import List, Optional, Tuple
 
 from .. import disk
 from ..deposits import travel_shares
 from ..digits import rounded
 from ..errors import SlopeError
+from ..sites import site_zones
 from ..statistics import headline
+from ..studies import site_ground
 from ..tables.elastic import ENTRY
 from ..tables.quantities import STOP
 from . import mobility_part
-from .sections import Pairs, Section
+from .sections import Cell, Pairs, Section, Table
 
 CONTENT = List[Tuple[str, str]]
 RESISTANCE = "Resistance of the ground"
+ZONES = ("What the ground is, where: zones as on the map of the site, and the ground outside of them. Values are "
+           "those of the shown run; the stop angle is that of a sheet of three balls whose soil has them, too.")
 
 
 def section(data, ground, numbers) -> Section:
@@ -47,6 +51,26 @@ def shown(numbers, degrees: float, label: str = "") -> str:
     """A stop angle, which is known to half a degree."""
     numbers.rows.append(("stop angle of the ground", "degrees", label, f"{degrees:.1f}", degrees))
     return f"{degrees:.1f}"
+
+
+def zones_of_ground(data, numbers) -> Optional[Section]:
+    """Which zones the ground has, with which values in the shown run; None without zones, or where it is no site's."""
+    site = data.site
+    zones, variables = (site.get("found") or {}).get("zones") or [], data.result.row.get("variables") or {}
+    if not zones or not set(site_zones.VALUES.values()) <= set(variables):
+        return None
+    rest = {"name": "outside of all zones", "variables": "", "share": 1 - sum(zone["share"] for zone in zones)}
+    rows = []
+    for zone in (*zones, rest):
+        now = site_zones.now(zone, site["model"], variables)
+        degrees = site_ground.of_zone(zone, site["model"], variables)
+        numbers.rows.append((f"ground: {zone['name']}: share of the terrain", "%", "", f"{100 * zone['share']:.3g}",
+                             100 * zone["share"]))
+        rows.append((zone["name"], f"{100 * zone['share']:.3g}", *(f"{value:.3g}" for value in now.values()),
+                     "" if degrees is None else f"{degrees:.1f}"))
+    heads = ["zone", Cell("share of the terrain", "%"), Cell("friction", "degrees"), "rolling resistance",
+             "restitution", Cell("spacing", "diameters"), Cell("stop angle", "degrees")]
+    return Section("ground", "The ground", [Table(ZONES, heads, rows)])
 
 
 # --- uncertainty ---

@@ -104,8 +104,10 @@ def answer(data, numbers):
         parts.append({"sign": "+", "number": UNKNOWN, "what": "chance",
                       "note": "no run was repeated (study --repeat seed=..., xoffset=...)"})
     parts.append(size_part(data.study.get("size"), part("size_m3")))
-    title = "Conservative volume to remove from the road" if predicted else \
-        f"Volume to remove from the road: {best['kind']}"
+    title = f"Volume to remove from the road: {best['kind']}"
+    if predicted:
+        title = "Conservative volume to remove from the road" if best["size_m3"] is not None else \
+            "Volume to remove from the road, not conservative: smaller balls may bring more"
     return {"number": part("volume_m3"), "title": title, "parts": parts, "predicted": predicted, "road": road,
             "zero": (best.get("zero") or {}).get("text"), "withheld": [],
             "below": below_ground(data, numbers), "ground": best.get("ground") or ""}

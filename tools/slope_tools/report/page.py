@@ -56,6 +56,7 @@ class Page:
             study_part.section(data, numbers, self.reference, maps),
             mobility_part.mapped(data, numbers),
             road_part.section(data, numbers, maps),
+            limits_part.zones_of_ground(data, numbers),
             chain_part.section(data, numbers),
             intensity_part.section(data, numbers),
             Structures(data, numbers, ground).section(),

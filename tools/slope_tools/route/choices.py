@@ -12,7 +12,8 @@ from ..survey import roads
 NAME = "route.yaml"
 VERSION = 1
 WHAT = "what `slope route` wrote"
-FILES = ("terrain", "road", "bodies", "fragility")                      # paths, kept as from the folder
+# paths, kept as from the folder
+FILES = ("terrain", "road", "bodies", "ground", "ground_table", "fragility")
 TABLE = "bodies.yaml"
 # what is made before that table, and of which options
 MADE = ("terrain.asc", "terrain.yaml", "road.csv", "windows")
@@ -52,6 +53,8 @@ class Choices(NamedTuple):
     keep: int = 3
     below: float = 1.5
     bodies: Optional[str] = None
+    ground: Optional[str] = None
+    ground_table: Optional[str] = None
     reach: float = 0.01
     confined: str = "unknown"
     sample: int = 4

@@ -14,12 +14,13 @@ from ..case.slip_deck import PREFIX
 from ..ensembles import ensemble, ensemble_maps, sample
 from ..errors import SlopeError
 from ..runs import jobs
-from ..sites import site, site_budget, site_choices, site_deck
+from ..sites import site, site_budget, site_choices, site_deck, site_zones
 from ..sites.site_layers import ROAD
 from ..slips import bodies
 from ..statistics import designs
 from ..studies import results, site_study, study
 from ..studies.setup import Road, Setup
+from ..survey import polygons, rasters
 from ..tables.study_file import read_study
 from .choices import Choices
 from .corridor import TERRAIN
@@ -73,6 +74,9 @@ def choices_of(choices: Choices, slips: Path, about: Mapping[str, Any], number: 
     found["release"].update(scar=base, scar_is="surface",
                             bodies=[base] if (slips / f"{PREFIX}{bodies.END}").is_file() else [])
     found["road"]["file"] = str(slips / "road.csv")
+    zones = site_zones.Source(choices.ground, choices.ground_table, None, polygons.ADVICE) if choices.ground else None
+    if zones and site_zones.touch(zones, rasters.read_asc_local(slips / TERRAIN)):
+        found["ground"] = {"file": zones.path, "table": zones.table}
     for section, now in later(choices, about).items():
         found[section].update(now)
     found["balls"]["number"] = choices.balls

@@ -4,7 +4,7 @@ The mathematics are in chain.py; here are the checks, the tables, the entry of s
 """
 import math
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, NamedTuple, Sequence, Tuple
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -14,7 +14,8 @@ from ..errors import SlopeError
 from ..findings import Finding, entries, finding, texts
 from ..sites.site_bodies import VARIABLE
 from ..statistics import hazard
-from ..tables import intensity
+from ..statistics.size_effect import Effect
+from ..tables import fine_run, intensity
 from . import chain
 from .fragility_files import Fragility
 
@@ -66,8 +67,14 @@ def options(asked: Chain) -> Tuple[List[str], List[str]]:
 
 # --- after them ---
 
-def left(asked: Chain, rows: Sequence[Mapping[str, Any]]) -> List[chain.Left]:
-    """What each body leaves on the road; of those that never fail nothing."""
+def left(asked: Chain, rows: Sequence[Mapping[str, Any]], effect: Optional[Effect] = None) -> List[chain.Left]:
+    """What each body leaves on the road; of those that never fail nothing.
+
+    effect: of smaller balls on it, by which each run is raised, up to the whole body.
+    """
+    def raised(volume: float, body: float) -> float:
+        return volume if effect is None else max(volume, min(volume + effect.added(volume), body))
+
     found = []
     for name in asked.fragility.bodies:
         if name not in asked.weights:
@@ -77,15 +84,20 @@ def left(asked: Chain, rows: Sequence[Mapping[str, Any]]) -> List[chain.Left]:
         done = [row for row in mine if row["status"] == "finished"]
         point = [tuple(row["set"].values()) for row in done]
         known = {one: k for k, one in enumerate(dict.fromkeys(point))}
-        found.append(chain.left([float(row[QUANTITY]) for row in done], [known[one] for one in point],
+        found.append(chain.left([raised(float(row[QUANTITY]), asked.volumes[name]) for row in done],
+                                [known[one] for one in point],
                                 asked.volumes[name], len(mine) - len(done)))
     return found
 
 
 def evaluate(asked: Chain, rows: Sequence[Mapping[str, Any]], output: Path,
-             withheld: Sequence[Mapping[str, Any]]) -> Dict[str, Any]:
-    """The entry of study.yaml; writes the tables. rows: of study.csv; withheld: why their volumes may not be used."""
-    found, bodies = asked.fragility, left(asked, rows)
+             withheld: Sequence[Mapping[str, Any]], size: Optional[Mapping[str, Any]] = None) -> Dict[str, Any]:
+    """The entry of study.yaml; writes the tables. rows: of study.csv; withheld: why their volumes may not be used.
+
+    size: of its fine run, as study.yaml has it.
+    """
+    effect = fine_run.read_effect(size, QUANTITY)
+    found, bodies = asked.fragility, left(asked, rows, effect)
     seen = [float(row[QUANTITY]) for row in rows if row["status"] == "finished"]
     more_than = list(asked.more_than) or intensity.round_volumes(max(seen)) or [0.0]
     largest = sum(float(one.value.volumes[1:].max(initial=0.0)) for one in bodies)
@@ -110,7 +122,7 @@ def evaluate(asked: Chain, rows: Sequence[Mapping[str, Any]], output: Path,
         disk.write(output / PER_YEAR, table(("volume_m3", "per_year", "low", "high"), zip(volumes, *yearly.total)))
         about["per_year"] = [of_year(yearly, volume, k) for volume, k in zip(more_than, at)]
         about["files"].append(PER_YEAR)
-    about["doubts"] = entries(doubts(about, found.warnings))
+    about["doubts"] = entries([*doubts(about, found.warnings), *of_size(size, effect, max(seen))])
     return about
 
 
@@ -136,6 +148,16 @@ def doubts(about: Mapping[str, Any], warnings: Sequence[Any]) -> List[Finding]:
               for one in about["bodies"] if one["weight"] > 0 and not one["finished"]),
             *(Finding("more per year", {"per_year": one["more_at_most"], "volume": one["more_than_m3"]})
               for one in about["per_year"] or () if one["more_at_most"] > BEYOND * one["value"])]
+
+
+def of_size(size: Optional[Mapping[str, Any]], effect: Optional[Effect], largest: float) -> List[Finding]:
+    """What the size of the balls does to the volumes; largest: of the runs, m3."""
+    found = []
+    if effect is not None and effect.added(largest) > 0:
+        found.append(Finding("chain raised", {"added": effect.added(largest), "volume": largest}))
+    if effect is None or (size or {}).get("open"):
+        found.append(Finding("chain size"))
+    return found
 
 
 def table(head: Sequence[str], rows) -> str:

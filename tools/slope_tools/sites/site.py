@@ -234,9 +234,10 @@ def room_of(raster: Raster) -> float:
 
 
 def soil_of(choices: Choices, parts: site_deck.Parts) -> site_budget.Soil:
-    """What the stiffness depends on; of the trial run, where the speed is still unknown, by weight alone."""
+    """What the step depends on; of the trial run, where the speed is still unknown, by weight alone."""
     model = choices["model"]
-    return site_budget.Soil(model["density"], parts.body.thick, model["speed"] or site_budget.SLOW)
+    spacing = min([model["spacing"], *(zone.values.get("spacing", model["spacing"]) for zone in parts.zones)])
+    return site_budget.Soil(model["density"], parts.body.thick, model["speed"] or site_budget.SLOW, spacing)
 
 
 def numbers(choices: Choices, soil: site_budget.Soil, trial: Optional[Trial], size: Optional[Size],
@@ -246,8 +247,7 @@ def numbers(choices: Choices, soil: site_budget.Soil, trial: Optional[Trial], si
     d = diameter or (size.diameter if size else 0.0)
     seconds = None
     if trial and size:
-        steps = trial.typical / site_budget.time_step(d, soil)
-        seconds = trial.setup + steps * size.balls * trial.cost
+        seconds = trial.run(d, size.balls, soil)
     return site_deck.Numbers(d, soil.speed,
                              model["duration"] or site_budget.LONGEST, model["cell"] or 1.0,
                              choices["motion"]["peak_friction"] or site_deck.LEAST_PEAK, trial and trial.typical,
@@ -255,20 +255,21 @@ def numbers(choices: Choices, soil: site_budget.Soil, trial: Optional[Trial], si
 
 
 def tried(choices: Choices, parts: site_deck.Parts, found: release.Body, new: Path, machine: Machine, tell):
-    """The Trial of runs with coarse balls, and its largest thickness; None, None where there is no LAMMPS."""
+    """The Trial of two runs with coarse balls, and its largest thickness; None, None where there is no LAMMPS."""
     if choices["motion"]["peak_friction"] is None and parts.motion:
         choices["motion"]["peak_friction"] = site_deck.peak_friction(found.measures.slip_slope)
     if machine.lmp is None:
         return None, None
     d = site_budget.trial_diameter(choices, parts.body.volume)
     trial, reached = tried_with(d, choices, parts, found, new, machine.lmp, tell)
-    finer = site_budget.finer_diameter(choices, trial)
-    if finer:
-        middle = settings.middle(choices["study"]["rolling"])
-        other = {**choices, "study": {**choices["study"], "rolling": [middle]}}
-        second, reached = tried_with(finer, other, parts, found, new, machine.lmp, tell, f"another, rolling {middle:g}")
-        trial = site_budget.joined(trial, second)
-    return trial, reached
+    other_d = site_budget.other_diameter(choices, trial)
+    if other_d is None:
+        return trial, reached
+    middle = settings.middle(choices["study"]["rolling"])
+    other = {**choices, "study": {**choices["study"], "rolling": [middle]}}
+    second, its_reach = tried_with(other_d, other, parts, found, new, machine.lmp, tell,
+                                   f"another, rolling {middle:g}")
+    return site_budget.joined(trial, second), its_reach if other_d < trial.diameter else reached
 
 
 def tried_with(d: float, choices: Choices, parts: site_deck.Parts, found: release.Body, new: Path, lmp: Path, tell,

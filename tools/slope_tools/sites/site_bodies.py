@@ -18,6 +18,7 @@ class Known(NamedTuple):
     """A body of a site."""
     deck: release_deck.Body
     base_sha256: str        # of the file that slope stability wrote
+    mean_depth: float       # m
 
 
 def slip_name(name: str, rank: object) -> str:
@@ -44,7 +45,7 @@ def write(choices: Choices, folder: Path, name: str, wanted: release.Wanted, war
                                 body.raster._replace(z=release_files.ground_without(body.raster, body.area, body.slip)),
                                 {"terrain": Path(wanted.terrain).name, "body": rank}, exact=True)
         deck = release_files.deck_body(folder / name, wanted.terrain, body.raster, body.area, body.slip)
-        found[rank] = Known(deck, disk.sha256(Path(path)))
+        found[rank] = Known(deck, disk.sha256(Path(path)), body.measures.mean_depth)
     return found
 
 
@@ -61,4 +62,5 @@ def around(body: release_deck.Body, name: str, several: Dict[int, Known]) -> rel
 
 def about(several: Dict[int, Known]) -> Dict[int, Dict[str, Any]]:
     """What site.yaml says of them."""
-    return {rank: {"volume_m3": one.deck.volume, "base_sha256": one.base_sha256} for rank, one in several.items()}
+    return {rank: {"volume_m3": one.deck.volume, "mean_depth_m": one.mean_depth, "base_sha256": one.base_sha256}
+            for rank, one in several.items()}

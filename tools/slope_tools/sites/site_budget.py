@@ -1,8 +1,8 @@
-"""How large the balls of a site are: from a budget, and a trial run with coarse balls that measures this machine.
+"""How large the balls of a site are: from a budget, and two trial runs with coarse balls that measure this machine.
 
-A run takes (steps) x (balls) x (time of a ball and step). The trial run measures the last one, as processor time, the
-seconds until the mass is at rest, and the largest speed, which sets the stiffness and with it the step. Times in s,
-lengths in m.
+A run takes (steps) x ((time of a step) + (balls) x (time of a ball in it)). Two trial runs with different numbers of
+balls measure these, as processor time, the seconds until the mass is at rest at the lowest and the middle rolling
+resistance, and the largest speed, which sets the stiffness and with it the step. Times in s, lengths in m.
 """
 import math
 import re
@@ -20,8 +20,9 @@ from .site_choices import Choices, PACKING, other_grounds
 
 DEFAULT = 2000          # balls, if no budget is given: 12 to 18 minutes on two cores for 6 million m3 of rock
 TRIAL = 800             # balls of the trial run
-FINER = 3               # times as many balls has a second trial run, for a budget of time
+OTHER = 3               # times as many balls has the second trial run for a budget of time, otherwise as few
 FINER_SHARE = 0.2       # of that budget, which it takes at most
+LEAST_SHARE = 0.3       # of the time of the second trial's balls is that of the balls, not of the steps
 FEWEST = 100            # balls that a budget must allow for
 MOST = 10 ** 9          # far below LAMMPS' own limit, and more than any memory holds
 PER_BALL = 800e-9       # GB, see the page on scaling
@@ -36,6 +37,8 @@ SLOW = 1.0              # m/s, least speed; that of the trial run, which has the
 GRAVITY = 9.80665       # m/s2
 STIFFNESS_NUMBER = 2e4          # K: least stiffness over density of the ground, gravity, thickness and diameter
 LAYERS = 7.0            # balls; bodies thicker than this need harder contacts, in proportion
+STEP = 1.5              # of the rule's: the longest that holds the restitution where several contacts begin at once,
+CLOSE = 0.4             # with fixed balls not closer than this, in diameters (tests/step_restitution.py)
 OVERLAP = 0.05          # of the diameter: that of a contact at the largest speed
 AIR = 1.2               # margin of the stiffness over the trial run's largest speed
 PATIENCE = 3.0          # duration: times the trial's time to rest
@@ -55,16 +58,22 @@ class Trial(NamedTuple):
     rest: float             # s of the collapse, until it is at rest or the run ends
     at_rest: bool
     speed: float            # largest, m/s
-    cost: float             # s of a core of this machine per ball and step
+    cost: float             # s of a core of this machine per ball and step: all of it, or what each ball adds
     setup: float            # s of a core for what does not depend on balls and steps
     seconds: float          # s of a core that it took
     left: float             # share of the mass that left the terrain
     middle: Optional[float] = None      # rest of a second trial, with the rolling resistance in the study's middle
+    step: float = 0.0       # s of a core per step, whatever the number of balls
 
     @property
     def typical(self) -> float:
         """s of the collapse in most runs of the study; rest is of the first, lowest rolling resistance."""
         return self.rest if self.middle is None else self.middle
+
+    def run(self, d: float, balls: float, soil: "Soil", longer: float = 1.0) -> float:
+        """s of a core that a run with balls of diameter d (m) takes."""
+        steps = longer * self.typical / time_step(d, soil)
+        return self.setup + steps * (self.step + balls * self.cost)
 
 
 class Size(NamedTuple):
@@ -79,19 +88,20 @@ class Size(NamedTuple):
 
 
 class Soil(NamedTuple):
-    """What the stiffness of contacts depends on, beside the diameter of the balls."""
+    """What the time step depends on, beside the diameter of the balls."""
     density: float          # of a ball, kg/m3
     thick: float            # largest thickness of the body, m
     speed: float            # largest, m/s
+    spacing: float          # the least of the ground's balls, diameters: the step depends on it, too
 
 
 def time_step(d: float, soil: Soil) -> float:
     """The deck's time step (s) for balls of diameter d (m)."""
-    density, thick, speed = soil
+    density, thick, speed, spacing = soil
     mass = density * math.pi / 6 * d ** 3
     by_weight = STIFFNESS_NUMBER * max(1.0, thick / (LAYERS * d)) * density * packing.SOLID * GRAVITY * thick * d
     by_speed = mass * (speed / (OVERLAP * d)) ** 2
-    return 0.25 * math.sqrt(mass / max(by_weight, by_speed))
+    return (STEP if spacing >= CLOSE else 1.0) * 0.25 * math.sqrt(mass / max(by_weight, by_speed))
 
 
 def three_digits(value: float) -> float:
@@ -112,19 +122,29 @@ def trial_diameter(choices: Choices, volume: float) -> float:
     return three_digits(packing.diameter(volume, max(number, 1)))
 
 
-def finer_diameter(choices: Choices, trial: Trial) -> Optional[float]:
-    """Of the balls of a second trial run (m); None where there is no budget of time, or not for that."""
-    minutes = choices["balls"]["minutes"]
-    if choices["balls"]["diameter"] or choices["balls"]["number"] or not minutes:
-        return None
-    seconds = trial.seconds * FINER ** (4 / 3)
-    return three_digits(trial.diameter / FINER ** (1 / 3)) if seconds <= FINER_SHARE * 60 * minutes else None
+def other_diameter(choices: Choices, trial: Trial) -> Optional[float]:
+    """Of the balls of a second trial run (m): finer where a budget of time allows it; None with too few balls."""
+    balls = choices["balls"]
+    minutes = balls["minutes"]
+    for_time = minutes and not balls["diameter"] and not balls["number"]
+    if for_time and trial.seconds * OTHER ** (4 / 3) <= FINER_SHARE * 60 * minutes:
+        return three_digits(trial.diameter * OTHER ** (-1 / 3))
+    return three_digits(trial.diameter * OTHER ** (1 / 3)) if trial.balls >= OTHER * FEWEST else None
 
 
-def joined(coarse: Trial, fine: Trial) -> Trial:
-    """The finer of two trials, at the rolling resistance in the middle, with what the coarse one found at the first."""
-    return fine._replace(rest=max(coarse.rest, fine.rest), at_rest=coarse.at_rest and fine.at_rest,
-                         speed=max(coarse.speed, fine.speed), left=max(coarse.left, fine.left), middle=fine.rest)
+def joined(first: Trial, second: Trial) -> Trial:
+    """The finer of two trials, with what each found: first at the lowest rolling resistance, second in the middle.
+
+    The time of a ball and step falls with the number of balls n as step / n + cost.
+    """
+    fine, coarse = (first, second) if first.balls > second.balls else (second, first)
+    step = 0.0
+    if fine.balls > coarse.balls:
+        step = max(0.0, (coarse.cost - fine.cost) / (1 / coarse.balls - 1 / fine.balls))
+        step = min(step, (1 - LEAST_SHARE) * fine.cost * fine.balls)
+    return fine._replace(rest=max(first.rest, second.rest), at_rest=first.at_rest and second.at_rest,
+                         speed=max(first.speed, second.speed), left=max(first.left, second.left), middle=second.rest,
+                         step=step, cost=fine.cost - step / fine.balls)
 
 
 def measure(folder: Path, deck: str, lmp: Path) -> Trial:
@@ -206,8 +226,7 @@ def plan(choices: Choices) -> Plan:
 def study_seconds(d: float, volume: float, trial: Trial, soil: Soil, wanted: Plan, jobs: int) -> Tuple[float, float]:
     """What a study takes on this machine, with balls of diameter d in a body of that volume (m3); and at most."""
     def run(size: float, longer: float = 1.0) -> float:
-        steps = longer * trial.typical / time_step(size, soil)
-        return trial.setup + steps * packing.number(volume, size) * trial.cost
+        return trial.run(size, packing.number(volume, size), soil, longer)
 
     total = sum(runs * run(factor * d) for factor, runs in wanted.parts)
     if wanted.half_step:

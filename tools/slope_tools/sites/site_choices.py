@@ -28,7 +28,8 @@ WHAT = "a site.yaml of `slope site`"
 FOUND = schemas.mapping({}, found=schemas.mapping({}, null=True))       # of any version
 # keys that hold one file, and lists of files
 FILES = (("terrain", "files"), ("release", "polygon"), ("release", "scar"), ("release", "bodies"), ("road", "file"),
-         ("ground", "file"), ("ground", "table"), ("structures", "files"), ("lines", "files"), ("motion", "file"), ("observed", "file"))
+         ("ground", "file"), ("ground", "table"), ("structures", "files"), ("lines", "files"), ("motion", "file"),
+         ("observed", "file"))
 
 WITHOUT_CRS = (("ground", "table"), ("structures", "files"), ("motion", "file"))
 

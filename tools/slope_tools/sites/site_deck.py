@@ -12,7 +12,7 @@ from ..slips.bodies import rank_of
 from . import site_budget
 from .site_choices import Choices, widest
 from .site_inputs import Line, Motion, Structure
-from .site_zones import VALUES, Zone
+from .site_zones import LIMITS, VALUES, Zone, whole
 
 NAME = "in.site"
 TEMPLATE = "in.site.j2"
@@ -23,8 +23,6 @@ BINS = 1000             # of the neighbor list for a ball, at most: each is clea
 REACH, WIDEST = 1.2, 5.0        # diameters: of the neighbor list; wider bins gain no more, and cost in a dense mass
 STEEPER = 7.0           # degrees: default of a strength that holds a body, above the slope of its slip surface
 LEAST_PEAK, MOST_PEAK = 33.0, 80.0
-# of a zone's value, as far as its own one lies within them
-LIMITS = {"friction": (0.0, 89.0), "restitution": (0.001, 1.0), "spacing": (0.2, widest())}
 # what the variables of a zone are
 OF_ZONE = {"friction": "degrees; 0 <= friction < 90", "rolling": "rolling resistance",
            "restitution": "restitution; 0 < field_e <= 1", "spacing": f"diameters; 0 < spacing <= {widest():g}"}
@@ -69,7 +67,8 @@ def values(choices: Choices, parts: Parts, numbers: Numbers) -> Dict[str, Any]:
         "title": parts.title, "terrain": parts.terrain, "deck": NAME, "volume": f"{body.volume:,.0f}",
         "balls": f"about {balls:,.0f}", "rest_s": "some" if numbers.rest is None else f"{numbers.rest:.0f}",
         "run_time": run_time(numbers.run_seconds), "lower": math.ceil(body.lower),
-        "box": " ".join(plain(value) for value in body.box), "types": types_before(parts) + len(parts.zones), "zones": zone_values(parts, model),
+        "box": " ".join(plain(value) for value in body.box), "types": types_before(parts) + len(parts.zones),
+        "zones": zone_values(parts, model),
         "bins": bins(parts.room, body.volume),
         "film": plain(frame(numbers.rest or numbers.duration / 3)),
         "slip_file": body.slip, "body": choices["release"]["bodies"] and body_number(choices),
@@ -81,6 +80,7 @@ def values(choices: Choices, parts: Parts, numbers: Numbers) -> Dict[str, Any]:
         ("rolling", choices["study"]["rolling"][0]), ("friction", model["friction"]), ("slip", model["slip_friction"]),
         ("restitution", model["restitution"]), ("field_e", model["field_restitution"]), ("density", model["density"]),
         ("thick", body.thick), ("stiffness_number", site_budget.STIFFNESS_NUMBER), ("rest", REST),
+        ("step", site_budget.STEP), ("close", site_budget.CLOSE),
         ("speed", numbers.speed), ("duration", numbers.duration), ("cell", numbers.cell),
         ("concrete", choices["structures"]["friction"]), ("concrete_e", choices["structures"]["restitution"]),
         ("scale", motion["scale"]), ("shaking", parts.motion.length if parts.motion else 0),
@@ -109,21 +109,23 @@ def zone_values(parts: Parts, model: Mapping[str, Any]) -> List[Dict[str, Any]]:
             mine = f"{variable}_{zone.word}"
             own.append({"name": mine, "value": plain(value), "what": OF_ZONE[name]})
             used[variable] = f"${{{mine}}}"
-            whole = model["field_restitution" if name == "restitution" else name] if name != "rolling" else 0
-            if not whole:
+            of = whole(name, model)
+            if not of:
                 continue
-            low, high = min(value, LIMITS[name][0]), LIMITS[name][1]
-            now += [{"name": f"x_{mine}", "formula": f"v_{mine}*(v_{variable}/{plain(whole)})"},
-                    {"name": f"now_{mine}", "formula": limited(f"v_x_{mine}", low, high)}]
+            low, high = map(plain, LIMITS[name])
+            own_ = f"v_{mine}"
+            now += [{"name": f"x_{mine}", "formula": f"{own_}*(v_{variable}/{plain(of)})"},
+                    {"name": f"low_{mine}", "formula": f"({own_}<{low})*{own_}+({own_}>={low})*{low}"},
+                    {"name": f"high_{mine}", "formula": f"({own_}>{high})*{own_}+({own_}<={high})*{high}"},
+                    {"name": f"now_{mine}", "formula": limited(f"v_x_{mine}", f"v_low_{mine}", f"v_high_{mine}")}]
             used[variable] = f"${{now_{mine}}}"
         found.append({"word": zone.word, "file": zone.file, "type": number, "own": own, "now": now, "used": used})
     return found
 
 
-def limited(name: str, low: float, high: float) -> str:
+def limited(name: str, low: str, high: str) -> str:
     """A value within limits, as a formula of LAMMPS."""
-    return (f"({name}<{plain(low)})*{plain(low)}+({name}>={plain(low)})*({name}<={plain(high)})*{name}"
-            f"+({name}>{plain(high)})*{plain(high)}")
+    return f"({name}<{low})*{low}+({name}>={low})*({name}<={high})*{name}+({name}>{high})*{high}"
 
 
 def bins(room: float, volume: float) -> str:

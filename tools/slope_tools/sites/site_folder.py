@@ -6,7 +6,7 @@ from .. import disk
 from ..errors import SlopeError
 from ..releases import release_files
 from ..survey import vectors
-from . import site_bodies, site_choices, site_deck, site_inputs, site_warnings
+from . import site_bodies, site_choices, site_deck, site_inputs, site_warnings, site_zones
 from .site_choices import Choices
 from .site_layers import OBSERVED, RASTERS, ROAD
 
@@ -28,6 +28,8 @@ def planned(choices: Choices) -> Set[str]:
         names.add(ROAD)
     if choices["motion"]["file"]:
         names.add(site_inputs.MOTION)
+    if choices["ground"]["file"]:
+        names.add(site_zones.ALL)
     taken = set(site_inputs.TAKEN)
     for section, suffix in (("structures", ".stl"), ("lines", ".csv")):
         names |= {site_inputs.unused(site_inputs.stem(file), taken) + suffix for file in choices[section]["files"]}

@@ -13,26 +13,29 @@ import numpy as np
 from rasterio import features
 from rasterio.crs import CRS
 from shapely.errors import ShapelyError
-from shapely.geometry import box, shape
+from shapely.geometry import MultiPolygon, box, shape
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
-from .. import disk, schemas
+from .. import schemas
 from ..errors import SlopeError
 from ..findings import Finding
 from ..geometry import box_of, extent, polygons_of
-from ..survey import beside, polygons, vectors
+from ..survey import beside, geopackage, polygons, vectors
 from ..survey.rasters import Raster
 from . import site_choices, site_inputs
 from .site_choices import Choices
 
 # what a zone may have: the key of site.yaml's model, or of study where it is a list, and what the deck calls it
 VALUES = {"friction": "friction", "rolling": "rolling", "restitution": "field_e", "spacing": "spacing"}
+# of a value that changes with the site's, as far as its own one lies within them: those of the runs of a study
+LIMITS = {"friction": (0.0, 89.0), "restitution": (0.001, 0.9), "spacing": (0.2, site_choices.widest())}
 SHORT = {"restitutio": "restitution"}       # a shapefile's names have ten letters
 NAME, CLASS = "name", "class"
 LIKE = 0.75             # of a name that is meant to be one of these
 RASTERS = {".tif", ".tiff", ".asc", ".vrt", ".img", ".bil"}
 FILE = "ground.{}.csv"  # of a zone, in the site's folder
+ALL = "ground.gpkg"     # all of them, for a GIS
 MOST = 200              # zones: each has a type of balls
 
 
@@ -83,6 +86,12 @@ def read(source: Source, raster: Raster, warn) -> List[Zone]:
                                                   or "zone", taken)) for zone in zones]
 
 
+def touch(source: Source, raster: Raster) -> bool:
+    """Whether any zone lies on a terrain."""
+    reader = of_raster if source.table else of_features
+    return any(True for _ in reader(source, raster, vectors.ignore))
+
+
 # --- files ---
 
 def of_features(source: Source, raster: Raster, warn) -> Iterator[Zone]:
@@ -125,7 +134,8 @@ def read_table(path: str) -> Dict[float, Dict[str, Any]]:
             rows = [dict(row) for row in table]
             heads = table.fieldnames or []
     except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise SlopeError(path, f"must be a table in CSV, in UTF-8: {getattr(error, 'strerror', None) or error}") from None
+        why = getattr(error, "strerror", None) or error
+        raise SlopeError(path, f"must be a table in CSV, in UTF-8: {why}") from None
     if CLASS not in heads:
         raise SlopeError(path, f"must have the columns {CLASS} and {', '.join(VALUES)}", " ".join(heads) or "none")
     found: Dict[float, Dict[str, Any]] = {}
@@ -222,9 +232,34 @@ def together(path: str, parts: List[Zone], warn) -> List[Zone]:
 
 
 def write(zones: List[Zone], raster: Raster, folder: Path) -> None:
-    """A file for each zone, for the deck."""
+    """A file for each zone, for the deck, and one of all for a GIS."""
     for zone in zones:
         polygons.write(folder / zone.file, zone.geometry, raster)
+    kinds = {"name": "str", "variables": "str", **dict.fromkeys((*VALUES, "area_m2", "share"), "float")}
+    rows = [(MultiPolygon(polygons_of(zone.geometry)), {**dict.fromkeys(kinds), **zone.about(raster)})
+            for zone in zones]
+    geopackage.write(folder / ALL, {"ground": geopackage.Layer("MultiPolygon", kinds, rows)}, raster)
+
+
+# --- what the values are in a run ---
+
+def whole(name: str, model: Mapping[str, Any]) -> float:
+    """The site's value, with which that of a zone changes; 0: it does not, as a rolling resistance, which may be 0."""
+    return 0.0 if name == "rolling" else model["field_restitution" if name == "restitution" else name]
+
+
+def now(zone: Mapping[str, Any], model: Mapping[str, Any], variables: Mapping[str, Any]) -> Dict[str, float]:
+    """{variable of the ground: its value in a zone} in a run with these variables; zone: Zone.about()."""
+    found = {}
+    for name, variable in VALUES.items():
+        value = float(variables[variable])
+        if name in zone:
+            own = float(variables.get(f"{variable}_{zone['variables']}", zone[name]))
+            of = whole(name, model)
+            low, high = LIMITS.get(name, (0.0, 0.0))
+            value = min(max(own * (value / of), min(own, low)), max(own, high)) if of else own
+        found[variable] = value
+    return found
 
 
 def of_choices(choices: Choices, source: Source, raster: Raster, folder: Path, tell, warn) -> List[Zone]:

@@ -1,5 +1,4 @@
 """What came out of the runs of a study: their numbers, the table, the maps over all runs, the conservative volume."""
-import math
 import os
 from pathlib import Path
 from typing import Any, Dict, Mapping, NamedTuple, Optional, Sequence
@@ -20,10 +19,11 @@ from ..survey import rasters, roads
 from ..tables import (answered, combinations, elastic, fine_run, intensity, judged, quantities, road_runs, step_check,
                       structures, study_table, usable, withheld_words)
 from ..tables.study_maps import Maps
-from . import mapped, site_ground
+from . import body_depth, mapped, site_ground
 from .setup import Road, Setup
 
 OF_SUMMARY = ("moves", "not counted")      # kinds of warnings
+LIKE = 1.5              # times as many balls over the thickness: values found with fewer, or more, are of another model
 SHOWN = 20              # runs of an ensemble whose table is printed
 
 
@@ -85,6 +85,7 @@ def collect(setup: Setup, questions: Questions, todo, work) -> Optional[Dict[str
         "warnings": entries(warnings), "runs": rows}
     if setup.road and finished:
         about["study"]["road"] = write_road(output, setup.road, first, thickness)
+    about["study"]["balls_thick"] = body_depth.in_balls(setup, finished)
     if questions.fine and finished:
         about["size"] = fine_run.evaluate(compared(setup, questions.fine, rows, None if order else groups))
     (output / elastic.FILE).unlink(missing_ok=True)
@@ -106,7 +107,8 @@ def collect(setup: Setup, questions: Questions, todo, work) -> Optional[Dict[str
     if setup.road and finished:
         known = (about["ensemble"] or {}).get("known_events") or {}
         about["stretches"] = stretches_of(output, finished, known.get("weights"))
-    about["chain"] = chain_files.evaluate(questions.chain, rows, output, about["ensemble"]["withheld"]) \
+    about["chain"] = chain_files.evaluate(
+        questions.chain, rows, output, about["ensemble"]["withheld"], about["size"]) \
         if questions.chain and order and finished else None
     about["intensity"] = intensity.collect(
         output, questions.intensity, questions.more_than, settings, bool(setup.road), groups, setup.tell) \
@@ -116,6 +118,9 @@ def collect(setup: Setup, questions: Questions, todo, work) -> Optional[Dict[str
     else:
         about["conservative"]["doubts"] += entries(intensity.doubts(about["intensity"]))
     structures.collect(output, finished, setup.tell)
+    if other := other_thickness(order and order.sample.balls_thick, about["study"]["balls_thick"]):
+        warnings.append(other)
+    about["warnings"] = entries(warnings)
     for one in warnings:
         setup.warn(one)
     disk.write(output / "study.csv", study_table.table(settings, repeated, rows, work.defaults))
@@ -177,20 +182,14 @@ def compared(setup: Setup, fine: Repeat, rows: Sequence[Mapping[str, Any]],
                          and all(row.get(key) is not None for row in group.rows))]
         return headline.scatter_of(parts, mine) if mine.mean > 0 else headline.pooled(parts)
 
-    return fine_run.Fine(row, coarse, depth_of(setup, coarse[0]) if coarse else 0.0, scatter)
+    return fine_run.Fine(row, coarse, body_depth.mean(setup, row), scatter)
 
 
-def depth_of(setup: Setup, row: Mapping[str, Any]) -> float:
-    """Mean thickness (m) of the body that a run released: its volume over its area in plan.
-
-    The middles of balls lie half a ball within the rim.
-    """
-    from scipy.ndimage import binary_dilation
-    arrival = run_folders.load_raster(run_folders.prefix_of(run_folders.summary_of(setup.output, row)), "arrival")
-    body = body_of(arrival.z == 0, arrival, row["ball_m3"])
-    rim = round(row["ball_m3"] ** (1 / 3) / arrival.transform.a / 2)
-    cells = (binary_dilation(np.pad(body, rim), iterations=rim) if rim else body).sum()
-    return row["released_m3"] / (float(cells) * arrival.transform.a ** 2)
+def other_thickness(found: Optional[float], here: Optional[float]) -> Optional[Finding]:
+    """That calibrated values were found with so many balls over the thickness of the body, and are used with others."""
+    if found is None or here is None or max(found, here) <= LIKE * min(found, here):
+        return None
+    return Finding("other thickness", {"found": found, "here": here})
 
 
 def known_of(questions: Questions) -> Mapping[str, Any]:
@@ -281,7 +280,7 @@ def on_road(run, setup: Setup, row, thickness) -> Dict[str, Any]:
     about = disk.plain(found.about)       # numpy has no place in study.yaml
     released = run_folders.load_raster(prefix, "arrival").z == 0
     polygon, total = road.read(placed(thickness, run)).polygon, about["clearing"]
-    taken = release_toe.on_body(body_of(released, thickness, row["ball_m3"]), thickness, polygon,
+    taken = release_toe.on_body(body_depth.body_of(released, thickness, row["ball_m3"]), thickness, polygon,
                                 release_toe.rim(row["ball_m3"], thickness.transform.a))
     if taken:
         found.warnings.append(taken.finding(road.file.name))
@@ -301,17 +300,6 @@ def in_folder(one: Finding, folder: Path) -> Finding:
     """The same, whose files are named as from a run's folder: one warning for all runs."""
     return one._replace(numbers={name: value.replace(f"{folder}/", "") if isinstance(value, str) else value
                                  for name, value in one.numbers.items()})
-
-
-def body_of(released, raster, ball_m3):
-    """Mask of the cells of the body: those that middles of its balls are in (released), and what lies between them.
-
-    raster: whose cells they are; ball_m3: of ground, for which each ball stands.
-    """
-    from scipy.ndimage import binary_closing
-    near = math.ceil(ball_m3 ** (1 / 3) / raster.transform.a)
-    rows, columns = released.shape
-    return binary_closing(np.pad(released, near), iterations=near)[near:near + rows, near:near + columns]
 
 
 def placed(raster, run):

@@ -4,7 +4,7 @@ from typing import Any, Dict, List, Mapping, Optional
 from ..case import decks
 from ..errors import SlopeError
 from ..mobility import body, steeper
-from ..sites import ground, site_choices, site_deck
+from ..sites import ground, site_choices, site_deck, site_zones
 from ..sites.site_choices import Site
 from ..sites.stop_angle import stop_angle
 
@@ -23,6 +23,14 @@ def of_variables(variables: Optional[Mapping[str, Any]]) -> Optional[float]:
                           float(values["field_e"]), "scattered" if scattered else "grid").degrees
     except (KeyError, ValueError):
         return None     # of a deck that has no such ground
+
+
+def of_zone(zone: Mapping[str, Any], model: Mapping[str, Any], variables: Mapping[str, Any]) -> Optional[float]:
+    """The stop angle of a zone, as if the soil had its friction and rolling resistance, too; None where unknown."""
+    try:
+        return of_variables({**variables, **site_zones.now(zone, model, variables)})
+    except (KeyError, ValueError):
+        return None
 
 
 def stop_angles(site: Site, others: bool = False) -> Dict[str, Dict[str, float]]:
@@ -58,4 +66,14 @@ def lines(site: Site, others: bool = False) -> List[str]:
             text += ("; of the slope below the body "
                      f"{', '.join(f'{100 * slope.steeper(degrees):.0f}' for degrees in known.values())} % is steeper")
         texts.append(text)
-    return texts
+    return texts + [text for zone in site.found.get("zones") or () if (text := zone_line(site, zone))]
+
+
+def zone_line(site: Site, zone: Mapping[str, Any]) -> str:
+    """The stop angle of a zone at the site's own spacing, in words; empty where it is unknown."""
+    variables, choices = decks.index_variables(site.folder / site_deck.NAME), site.choices
+    rolling = [zone["rolling"]] if "rolling" in zone else choices["study"]["rolling"]
+    runs = {f"{one:g}": of_zone(zone, choices["model"], {**variables, "rolling": one}) for one in rolling}
+    known = {name: f"{degrees:.1f}" for name, degrees in runs.items() if degrees is not None}
+    return (f"zone {zone['name']}: stop angle {', '.join(known.values())} degrees at a rolling resistance of "
+            f"{', '.join(known)}" if known else "")

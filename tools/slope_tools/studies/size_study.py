@@ -16,7 +16,7 @@ from ..runs import repeats
 from ..statistics import convergence, headline
 from ..tables import combinations, fine_run, judged, study_table
 from ..tables.quantities import ALL
-from . import results, study
+from . import body_depth, results, study
 from .setup import Setup
 
 OPTION = "--converge"
@@ -70,8 +70,9 @@ def collect(planned: Plan, of, work) -> None:
             if row[name] is None:
                 raise SlopeError("--of", f"must be known of every run; {name} is not of {row['run']}")
     warnings = [*judged.of_runs(rows), *combinations.no_effect(groups)]
-    balls = [results.depth_of(setup, group.rows[0]) / float(group.set[variable]) if variable == fine_run.VARIABLE
-             else None for group in groups]
+    finest = min(groups, key=lambda group: float(group.set[variable])).rows[0]
+    depth = body_depth.mean(setup, finest) if variable == fine_run.VARIABLE else None
+    balls = [depth and depth / float(group.set[variable]) for group in groups]
     found = {name: convergence.compare([(float(group.set[variable]), list(group.of(name).volumes.values()))
                                         for group in groups], balls) for name in of}
     sentences = {name: convergence.words(one, variable, *names[name], writer(one)) for name, one in found.items()}

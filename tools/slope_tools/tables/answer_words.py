@@ -59,13 +59,31 @@ def finding(reason: Reason) -> Finding:
     if code is Code.RULE:
         return Finding("rule", {"study": STUDY[of["source"]], "rule": of["rule"]})
     if code is Code.SIZE:
-        return Finding("no fine run") if of["balls_thick"] is None else \
-            Finding(code.value, {"balls": of["balls_thick"], "enough": of["enough"]})
+        return of_size(of)
     words = {"longest": lambda: metres(of["longest_m"]), "far": lambda: percent(of["far"]),
              "near": lambda: metres(of["near_m"]), "path": lambda: metres(of["path_m"]),
              "share": lambda: percent(of["share"]), "shares": lambda: shares((of["low"], of["high"])),
              "ends": lambda: ends(of), "points": lambda: f"{of['points']:g}"}
     return Finding(code.value, {name: words[name]() for name in TAKES.get(code, ())})
+
+
+def of_size(of: Mapping[str, Any]) -> Finding:
+    """Why smaller balls may bring more, and how much they brought elsewhere."""
+    run, balls = of.get("run", "finished"), of["balls_thick"]       # older files have no run
+    if run == "finished" and balls is not None:
+        return Finding(Code.SIZE.value, {"balls": balls, "enough": of["enough"], "grown": grown(of)})
+    return Finding("fine run failed" if run else "no fine run", {"grown": grown(of)})
+
+
+def grown(of: Mapping[str, Any]) -> str:
+    """By which factors slides of the family grew with smaller balls, "" where none tells."""
+    growth = of.get("growth")       # none in older files
+    if not growth:
+        return ""
+    several = growth["slides"] > 1
+    factors = f"{growth['median']:.2f}" + several * f" (median; {growth['low']:.2f} to {growth['high']:.2f})"
+    return (f"; from {of['balls_thick']:.2g} to up to {growth['finest']:.2g} balls over the thickness "
+            f"{growth['slides'] if several else 'one'} slide{'s' * several} brought {factors} times as much")
 
 
 # of each code the words that its sentence takes

@@ -6,7 +6,7 @@ from typing import Any, List, Mapping, Optional
 
 from .. import schemas
 from ..schemas import OBJECT, mapping
-from ..statistics import answer
+from ..statistics import answer, size_family
 from ..statistics.answer import Answer, AtRoad, Code, Ensemble, Paper, Reason, Road, Withheld
 from ..statistics.size_effect import RESOLVED
 from ..statistics.withheld import Kind as Rule
@@ -50,11 +50,21 @@ def ensemble_of(about: Mapping[str, Any]) -> Optional[Ensemble]:
 
 
 def size_of(about: Mapping[str, Any]) -> Optional[Reason]:
-    """Why smaller balls may bring more than its fine run showed; None: they do not, or there is no such run."""
-    size = about.get("size") or {}
-    if not size.get("open"):
+    """Why smaller balls may bring more than its number has; None: the fine run, or the study's own balls, are small
+
+    enough. run: how the fine run ended, "" where there is none; balls_thick: of it, else of the study; None: unknown.
+    """
+    size, balls = about.get("size") or {}, (about.get("study") or {}).get("balls_thick")
+    done = size.get("run") is not None
+    if done:
+        if not size["open"]:
+            return None
+        balls = size["balls_thick"]
+    elif not size and balls is not None and balls >= RESOLVED:
         return None
-    return Reason(Code.SIZE, {"balls_thick": size["balls_thick"], "enough": RESOLVED})
+    grown = None if balls is None else size_family.growth(balls)
+    return Reason(Code.SIZE, {"run": "finished" if done else "failed" if size else "", "balls_thick": balls,
+                              "enough": RESOLVED, "growth": grown and grown._asdict()})
 
 
 def rules(entries) -> List[Withheld]:

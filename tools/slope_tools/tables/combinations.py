@@ -242,7 +242,8 @@ def describe(best: Mapping[str, Any]) -> List[str]:
             text += f", of which {number(parts['size'])} for the size of the balls"
         text += f"; run {best['run']}"
     else:
-        text = (f"conservative volume to remove: {number(parts['volume'])} m3 = {number(parts['mean'])}, mean of "
+        of = "conservative volume to remove" if parts["size"] is not None else "volume to remove, not conservative"
+        text = (f"{of}: {number(parts['volume'])} m3 = {number(parts['mean'])}, mean of "
                 f"{best['repeats']} runs ({best['label'] or best['combination']}) + {number(parts['chance'])}, chance "
                 f"(s {number(best['scatter_m3'])}, {best['degrees_of_freedom']:.3g} degrees of freedom)")
         text += (f" + {number(parts['size'])}, size of the balls" if parts["size"] is not None

@@ -17,7 +17,7 @@ class Fine(NamedTuple):
     """A fine run and the coarse ones that are otherwise the same; row: None where it failed, why says so."""
     row: Optional[Row]
     coarse: Sequence[Row]
-    depth: float                # m, mean thickness of the body
+    depth: Optional[float]      # m, mean thickness of the body; None: not known
     scatter: Callable[[str], Optional[Scatter]]     # of a coarse run in a column of the study's table; None: not known
     why: str = ""
 
@@ -34,11 +34,12 @@ def evaluate(fine: Fine) -> Dict[str, Any]:
         volumes = Combination(key, {key_of(row["repeat"]): float(row[key]) for row in fine.coarse})
         effects[key] = effect(volumes, float(fine.row[key]), fine.scatter(key),
                               ball if quantities.ALL[key].unit in VOLUMES else None)
-    balls = fine.depth / d
+    balls = fine.depth and fine.depth / d
     found = {"run": fine.row["run"], "d": d, "balls_thick": balls, "coarse_d": coarse_d,
-             "coarse_balls_thick": fine.depth / coarse_d, "coarse_runs": [row["run"] for row in fine.coarse],
+             "coarse_balls_thick": fine.depth and fine.depth / coarse_d,
+             "coarse_runs": [row["run"] for row in fine.coarse],
              "effects": {key: of_effect(one) for key, one in effects.items()},
-             "open": balls < RESOLVED}
+             "open": balls is None or balls < RESOLVED}
     return {**found, "text": words(found)}
 
 
@@ -59,8 +60,9 @@ def words(found: Mapping[str, Any]) -> str:
     """What the fine run says of the volume to remove, else of the length; and what is left open."""
     key = next((one for one in (quantities.REMOVE, quantities.LENGTH, quantities.DISTANCE) if one in found["effects"]),
                None)
-    sizes = (f"balls of {found['d']:.3g} m ({found['balls_thick']:.2g} of them thick) instead of "
-             f"{found['coarse_d']:.3g} m ({found['coarse_balls_thick']:.2g})")
+    thick, coarse = ("" if found[key] is None else f" ({found[key]:.2g}{more})" for key, more in
+                     (("balls_thick", " of them thick"), ("coarse_balls_thick", "")))
+    sizes = f"balls of {found['d']:.3g} m{thick} instead of {found['coarse_d']:.3g} m{coarse}"
     if key is None:
         return f"{sizes}: nothing to compare"
     one, what = found["effects"][key], quantities.ALL[key]

@@ -62,7 +62,7 @@ def step_of(made: Made, code: Code, of: Mapping[str, Any]) -> Optional[Step]:
         return Step("runs with less resistance than the least that was tried", ensemble(made, wider=True),
                     made.seconds)
     if code is Code.SIZE:
-        return finer_balls(made)
+        return finer_balls(made) if of.get("run", "finished") == "finished" else fine_run(made)
     if code is not Code.RULE:
         return None
     rule = Rule(of["rule"])
@@ -106,6 +106,12 @@ def finer_balls(made: Made) -> Optional[Step]:
     number = round(8 * row["released_m3"] / row["ball_m3"], -2)
     return Step("smaller balls in the model", f"tools/slope site {quote(str(site))} --balls {number:.0f} && "
                 f"tools/slope study {quote(str(site))} --anew", None if whole is None else 16 * whole)
+
+
+def fine_run(made: Made) -> Step:
+    """The same study with a run whose balls are smaller."""
+    command = f"tools/slope study {quote(str(made.site))}" if made.site else "the same command with"
+    return Step("a run with smaller balls in the model", f"{command} --fine 2", None)
 
 
 def larger_terrain(made: Made, add: str = "") -> Tuple[str, str]:

@@ -1,0 +1,64 @@
+"""inputs/20_embankment/paper_table.py: means and ranges of a study, by two bulk factors; and the longer terrain."""
+import importlib.util
+import math
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from deck_helpers import LMP
+
+CASE = Path(__file__).resolve().parents[2] / "inputs" / "20_embankment"
+
+
+@pytest.fixture(scope="module")
+def script():
+    spec = importlib.util.spec_from_file_location("paper_table", CASE / "paper_table.py")
+    module = importlib.util.module_from_spec(spec)
+    before = list(sys.path)
+    spec.loader.exec_module(module)
+    sys.path[:] = before
+    return module
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory):
+    """The same balls of 8 m on the slip surface, by both bulk factors."""
+    folders = {}
+    for name, bulk in (("body", "region slip"), ("ball", f"{6 / math.pi:.15g}")):
+        folders[name] = tmp_path_factory.mktemp(name)
+        for file in ("in.embankment", "terrain.asc"):
+            shutil.copy(CASE / file, folders[name])
+        subprocess.run([LMP, "-in", "in.embankment", "-screen", "none", "-var", "d", "8", "-var", "sink", "0", "-var",
+                        "bulk", bulk], cwd=folders[name], check=True, stdin=subprocess.DEVNULL)
+    return folders
+
+
+def test_another_bulk_factor_is_that_of_the_deck(script, runs):
+    """From one run: what the deck gives by the other factor, which is no multiple of its volumes."""
+    expected = script.volumes(runs["ball"] / "embankment")
+    found = script.volumes(runs["body"] / "embankment", script.PAPER_BULK)
+    usual = script.volumes(runs["body"] / "embankment")
+    assert found == pytest.approx(expected, rel=1e-3) and usual["released"] == pytest.approx(48858, rel=1e-3)
+    factor = found["released"] / usual["released"]
+    assert factor < 0.8 and abs(found["to remove"] / factor / usual["to remove"] - 1) > 0.02
+    again = script.volumes(runs["body"] / "embankment", float(script.volume.deposit.read(
+        runs["body"] / "embankment", None, lambda said: None).bulk))
+    assert again == pytest.approx(usual, rel=1e-3)      # the deck's own rasters from the same balls
+
+
+def test_mean_and_range(script):
+    assert script.text([15268.9, 14698.6, 15208.4]) == "15,059 (14,699 to 15,269)"
+    assert script.text([48858.3, 48858.4]) == "48,858"
+
+
+def test_the_longer_terrain_has_the_same_heights(script):
+    short, long = (np.loadtxt(CASE / f"{name}.asc", skiprows=6) for name in ("terrain", "terrain_long"))
+    assert np.array_equal(long[:, -short.shape[1]:], short)
+    assert long.shape == (short.shape[0], short.shape[1] + 160)
+    head = dict(line.split() for line in (CASE / "terrain_long.asc").read_text().splitlines()[:6])
+    assert (head["xllcorner"], head["cellsize"]) == ("-400", "2.5")
+    assert script.make_terrain.heights(west=script.make_terrain.FAR) == pytest.approx(long, abs=6e-4)

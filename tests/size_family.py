@@ -1,0 +1,240 @@
+#!/usr/bin/python3
+"""A family of slides whose balls are made smaller, for tests/size.sh; one run of one of them, as a line of CSV.
+
+tests/size_family.py site CASE FOLDER: terrain, body and road of a case, and its site by `slope site`, in a new folder
+tests/size_family.py row CASE FOLDER PREFIX FINER SEED DIAMETER [SECONDS]: the line of a run there
+tests/size_family.py list: all cases; tests/size_family.py head: of the lines
+tests/size_family.py table SIZE.csv: size_family.csv; tests/size_family.py judge SIZE.csv: what page 1 would have said
+"""
+import csv
+import math
+import statistics
+import subprocess
+import sys
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import yaml
+
+TOP = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(TOP / "tools"))
+BALLS = 800             # of a run whose balls are not made smaller
+CELL = 1.0              # m, of the terrain
+SIDE = 45.0             # m, beside the body
+BEHIND = 25.0           # m, beyond its upper edge
+CORNERS = 48            # of an oval outline
+FLOW = 4.0              # m, of the cells in which the flow is averaged
+MOVES = 0.5             # m/s
+GRAVITY, SOLID = 9.80665, 0.60
+HEAD = "case,finer,seed,d,balls,balls_thick,remove,on_road,beyond,length,travel,inertial,released,time,cpu_s"
+
+
+class Slide(NamedTuple):
+    """Lengths in m, in plan; angles in degrees. The face rises along x, from the break in slope on."""
+    shape: str              # slab: of one depth with flanks of 45 degrees; else as `slope site --shape` has them
+    length: float
+    width: float
+    depth: float
+    face: float
+    below: float            # slope of the ground below the break; that of the face: there is none
+    friction: float
+    rolling: float
+    road: float             # of the road's near edge, below the break
+    slip: float = 0.0       # friction angle of the slip surface
+    gap: float = 4.0        # from the break to the body's lower edge
+    room: float = 100.0     # of the terrain below the break
+    wide: float = 8.0       # of the road
+    balls: int = BALLS      # of a run whose balls are not made smaller
+
+
+# those that take least time first
+CASES = {
+    "thin": Slide("slab", 40, 40, 3, 35, 10, 25, 0.10, 10, 20),
+    "compact": Slide("slab", 26, 24, 7, 33, 0, 30, 0.05, 4, 20),
+    "rough": Slide("slab", 30, 30, 5, 36, 18, 20, 0.15, 12, 10),
+    "oval": Slide("ellipsoid", 40, 30, 8, 30, 0, 35, 0.10, 4),
+    "wide": Slide("sphere", 24, 50, 5, 40, 15, 20, 0.15, 10),
+    "bowl": Slide("sphere", 44, 30, 7, 36, 0, 30, 0.0, 10),
+    "narrow": Slide("ellipsoid", 44, 14, 5, 38, 5, 25, 0.0, 16),
+    "deep": Slide("sphere", 50, 34, 10, 40, 0, 35, 0.05, 10),
+    "gentle": Slide("ellipsoid", 40, 30, 8, 28, 12, 25, 0.10, 4),
+    "steady": Slide("slab", 30, 24, 6, 25, 25, 35, 0.15, 4, 30, room=130),
+}
+
+# not of the family: 8 m thick at right angles to the face, balls of 1.45 m
+OTHERS = {"slide": Slide("slab", 33.5, 32, 9.54, 33, 0, 30, 0.05, 0, 30, 20, room=80, wide=10, balls=2500)}
+ALL = {**CASES, **OTHERS}
+
+
+# --- geometry ---
+
+def size(one: Slide):
+    """Cells of the terrain along x and y."""
+    return (round((one.room + one.gap + one.length + BEHIND) / CELL), round((one.width + 2 * SIDE) / CELL))
+
+
+def centres(one: Slide):
+    """x from the break and y from the middle of the body, of the cells, rows from the north."""
+    columns, rows = size(one)
+    return np.meshgrid((np.arange(columns) + 0.5) * CELL - one.room,
+                       (rows - 0.5 - np.arange(rows)) * CELL - rows * CELL / 2)
+
+
+def heights(one: Slide):
+    """Of the ground."""
+    x, _ = centres(one)
+    return 100 + np.where(x > 0, x * math.tan(math.radians(one.face)), x * math.tan(math.radians(one.below)))
+
+
+def thicknesses(one: Slide):
+    """Of a slab on the ground, at right angles to it."""
+    x, y = centres(one)
+    within = np.minimum(one.length / 2 - abs(x - one.gap - one.length / 2), one.width / 2 - abs(y))
+    return np.clip(within, 0, one.depth)
+
+
+def write_asc(path: Path, z) -> None:
+    rows, columns = z.shape
+    head = f"ncols {columns}\nnrows {rows}\nxllcorner 0\nyllcorner 0\ncellsize {CELL}\nNODATA_value -9999\n"
+    path.write_text(head + "".join(" ".join(f"{value:.6f}" for value in row) + "\n" for row in z))
+
+
+def write_polygon(path: Path, points) -> None:
+    path.write_text("".join(f"{x:.3f},{y:.3f}\n" for x, y in points))
+
+
+def write_case(one: Slide, folder: Path) -> list:
+    """dem.asc, road.csv and the body's file; the words of `slope site` for the body."""
+    middle = size(one)[1] * CELL / 2
+    write_asc(folder / "dem.asc", heights(one))
+    near = one.room - one.road
+    far = near - one.wide
+    write_polygon(folder / "road.csv", [(far, 0), (near, 0), (near, 2 * middle), (far, 2 * middle)])
+    if one.shape == "slab":
+        write_asc(folder / "height.asc", thicknesses(one))
+        return ["--scar", "height.asc", "--scar-is", "height"]
+    turn = 2 * math.pi * np.arange(CORNERS) / CORNERS
+    write_polygon(folder / "release.csv", np.transpose([
+        one.room + one.gap + one.length / 2 * (1 + np.cos(turn)), middle + one.width / 2 * np.sin(turn)]))
+    return ["--release", "release.csv", "--shape", one.shape, "--depth", f"{one.depth:g}"]
+
+
+def make_site(one: Slide, folder: Path) -> None:
+    """The site in folder/site."""
+    folder.mkdir(parents=True)
+    words = write_case(one, folder)
+    subprocess.run([sys.executable, str(TOP / "tools" / "slope"), "site", "--terrain", "dem.asc", *words,
+                    "--road", "road.csv", "--friction", f"{one.friction:g}", "--rolling", f"{one.rolling:g}",
+                    "--slip-friction", f"{one.slip:g}",
+                    "--balls", str(one.balls), "-o", "site"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
+
+
+# --- a run ---
+
+def inertial_number(one: Slide, prefix: Path, d: float, ball: float) -> float:
+    """Of the flow below the break, the median over its mass: d (u / h) / sqrt(pressure / density of a ball).
+
+    u: velocity averaged over the depth, h: thickness, in cells of FLOW, in all snapshots; pressure: of the weight, at
+    half the thickness; ball: m3 of ground, for which each ball stands.
+    """
+    numbers, weights = [], []
+    for path in sorted(prefix.parent.glob(f"{prefix.name}.*.dump")):
+        x, y, *v = np.loadtxt(path, skiprows=9, usecols=(3, 4, 6, 7, 8), ndmin=2).T
+        below = x < one.room
+        if not below.any():
+            continue
+        _, cell, count = np.unique(np.floor(np.array([x, y])[:, below] / FLOW), axis=1, return_inverse=True,
+                                   return_counts=True)
+        u = np.sqrt(sum((np.bincount(cell.ravel(), part[below]) / count) ** 2 for part in v))
+        h = count * ball / FLOW ** 2
+        numbers.append((d * u / h / np.sqrt(SOLID * GRAVITY * h / 2))[u > MOVES])
+        weights.append(count[u > MOVES])
+    values, weight = np.concatenate(numbers), np.concatenate(weights)
+    order = np.argsort(values)
+    return float(values[order][np.searchsorted(np.cumsum(weight[order]), weight.sum() / 2)])
+
+
+def row(name: str, folder: Path, prefix: Path, finer: str, seed: str, d: float, seconds: str = "") -> list:
+    """The line of a run, as HEAD has it: volumes in m3, lengths in m."""
+    from slope_tools.deposits import deposit, volume
+    from slope_tools.mobility import run_length
+    terrain = folder / "site" / "terrain.asc"
+    about = volume.of_run(str(prefix), volume.Wanted(folder / "road.csv", 10.0, local=True), terrain).about
+    summary = yaml.safe_load(Path(f"{prefix}.summary.yaml").read_text())
+    body = yaml.safe_load((folder / "site" / "site.yaml").read_text())["found"]["body"]
+    left = deposit.read(str(prefix), terrain, lambda said: None)
+    balls, released = summary["balls"]["released"], summary["volume"]["released"]
+    return [name, finer, seed, d, balls, body["mean_depth"] / d, about["volume"]["remove"],
+            about["volume"]["remove_on_road"], about["divided"]["past"], run_length.of_run(left, terrain).distance,
+            summary["travel"]["centroid"], inertial_number(ALL[name], prefix, d, released / balls), released,
+            summary["stop"]["time"], seconds]
+
+
+# --- the table ---
+
+def table(path: Path) -> list:
+    """The lines of size_family.csv of a table of tests/size.sh: means of each case and size."""
+    with open(path, newline="", encoding="ascii") as lines:
+        rows = list(csv.DictReader(lines))
+    found = []
+    for key in dict.fromkeys((one["case"], one["finer"]) for one in rows):
+        mine = [one for one in rows if (one["case"], one["finer"]) == key]
+        found.append([*key, *(sum(float(one[name]) for one in mine) / len(mine)
+                              for name in ("balls_thick", "remove", "beyond", "length"))])
+    found.sort(key=lambda one: (list(ALL).index(one[0]), int(one[1])))
+    return ["case,balls,remove,beyond,length",
+            *(",".join([name, *(f"{value:.4g}" for value in values)]) for name, _, *values in found)]
+
+
+def judge(path: Path) -> None:
+    """Print what page 1 would have said of the volume to remove, by runs with d and one with d/2, against d/4.
+
+    The growth is that of the other cases.
+    """
+    from slope_tools.statistics import headline, size_effect, size_family
+    slides = size_family.read(table(path))
+    with open(path, newline="", encoding="ascii") as lines:
+        rows = list(csv.DictReader(lines))
+    covered = []
+    print("case,balls_thick,coarse,fine,said,upper,truth,covered,upper_over_truth")
+    for name in CASES:
+        of = {finer: [one for one in rows if (one["case"], one["finer"]) == (name, finer)] for finer in "124"}
+        if not all(of.values()):
+            continue
+        coarse = headline.Combination(name, {one["seed"]: float(one["remove"]) for one in of["1"]})
+        fine, truth = (float(of[finer][0]["remove"]) for finer in "24")
+        scatter = headline.pooled([coarse])
+        ball = float(of["1"][0]["released"]) / int(of["1"][0]["balls"])
+        said = headline.headline([coarse], size_effect.effect(coarse, fine, scatter, ball).added).volume
+        balls = float(of["2"][0]["balls_thick"])
+        grown = size_family.growth(balls, slides={key: one for key, one in slides.items() if key != name})
+        upper = grown.covered(said) if grown else said
+        covered.append((upper >= truth, upper / truth))
+        print(f"{name},{balls:.3g},{coarse.mean:.4g},{fine:.4g},{said:.4g},{upper:.4g},{truth:.4g},{upper >= truth},"
+              f"{upper / truth:.3f}")
+    if covered:
+        print(f"{sum(one for one, _ in covered)} of {len(covered)} covered; upper end over truth, median "
+              f"{statistics.median(ratio for _, ratio in covered):.3f}")
+
+
+def main(words):
+    if words == ["list"]:
+        print(*CASES)
+    elif words == ["head"]:
+        print(HEAD)
+    elif words[:1] == ["table"] and len(words) == 2:
+        print("\n".join(table(Path(words[1]))))
+    elif words[:1] == ["judge"] and len(words) == 2:
+        judge(Path(words[1]))
+    elif words[:1] == ["site"] and len(words) == 3:
+        make_site(ALL[words[1]], Path(words[2]))
+    elif words[:1] == ["row"] and len(words) >= 7:
+        values = row(words[1], Path(words[2]), Path(words[3]), words[4], words[5], float(words[6]), *words[7:])
+        print(",".join(f"{value:.5g}" if isinstance(value, float) else str(value) for value in values))
+    else:
+        raise SystemExit(__doc__)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
