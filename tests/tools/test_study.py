@@ -24,7 +24,7 @@ from slope_tools.case import decks, logs, settings
 from slope_tools.releases import release_toe
 from slope_tools.runs import job_display
 from slope_tools.statistics import headline
-from slope_tools.studies import results, study
+from slope_tools.studies import body_depth, study
 from slope_tools.survey import rasters
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
@@ -237,7 +237,7 @@ def test_a_road_on_the_body(ring, expected):
     released = np.zeros((12, 12), bool)
     released[2:10, 2:10] = True
     released[3:9:2, 3:9:2] = False
-    found = release_toe.on_body(results.body_of(released, raster, 27.0), raster, Polygon(ring),
+    found = release_toe.on_body(body_depth.body_of(released, raster, 27.0), raster, Polygon(ring),
                                 release_toe.rim(27.0, 2.0))
     assert (found.area if found else 0.0) == pytest.approx(expected)
 
