@@ -292,7 +292,8 @@ template <class T, class N> SLOPE_INLINE T acting_together(const ContactStepOf<N
 {
   const N taken = step.taken_n, spring = step.spring_n;
   const auto late = crowded(step, along);
-  const N both = 1.0 - 2.0 * step.share_i * (1.0 - step.share_i);    // 1/2 of equal balls: each has others
+  const N both =
+      1.0 - 2.0 * step.share_i * (1.0 - step.share_i);    // 1/2 of equal balls: each has others
   const T others = both * larger(T(along - 1.0), T());
   const T up = choose(late, T(1.0 - AHEAD * (taken - spring) + T()), all<T>(1.0));
   const T down = 1.0 + others * choose(late, T(0.2 * taken + T()), T(0.36 * spring + T()));
