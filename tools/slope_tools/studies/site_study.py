@@ -42,12 +42,26 @@ class Done(NamedTuple):
     failed: Optional[Exception]             # what failed beside it, to be raised once the report is there
 
 
-def run(site: Site, engine: Setup, method: str, asked: Optional[str] = None) -> Done:
-    """Make or continue all runs of a site, and their results.
+class Planned(NamedTuple):
+    """The runs of the paper's study."""
+    choices: Choices
+    setup: Setup
+    variables: Dict[str, str]               # of the deck
+    settings: Dict[str, List[str]]
+    repeated: Dict[str, List[str]]
+    middle: str                             # rolling resistance of the fine run and of half the step
+    todo: List[repeats.Repeat]
+    fine: List[repeats.Repeat]
+    half: List[repeats.Repeat]
+    elastics: List[repeats.Repeat]          # with the largest restitution
 
-    engine: how the runs are made; its deck, output and road do not count; method: of the study, in words; asked: of
-    --fine. Raises SlopeError on bad input, and if no run of the study finished.
-    """
+    @property
+    def runs(self) -> List[repeats.Repeat]:
+        return [*self.todo, *self.fine, *self.half, *self.elastics]
+
+
+def plan(site: Site, engine: Setup, asked: Optional[str] = None) -> Planned:
+    """All runs of a site by the paper's method; asked: of --fine."""
     folder, choices = site.folder, site.choices
     deck, road, several = folder / site_deck.NAME, choices["road"], choices["study"]
     setup = engine._replace(deck=deck, output=folder / STUDY, site=folder, road=None)
@@ -62,21 +76,33 @@ def run(site: Site, engine: Setup, method: str, asked: Optional[str] = None) -> 
     todo = repeats.plan(setup.runs, settings, repeated, variables, others)
     if others:
         settings["spacing"] = list(dict.fromkeys([*settings["spacing"], *(one["spacing"] for one in others)]))
+    fine = fine_runs.in_the_middle(setup, fine_runs.factor_of(asked, choices), {"rolling": [middle]}, variables)
     half = half_steps(setup, middle, variables) if setup.road else []
     elastics = elastic_runs(setup, several["largest_restitution"], settings["rolling"], repeated, variables)
-    fine = fine_runs.in_the_middle(setup, fine_runs.factor_of(asked, choices), {"rolling": [middle]}, variables)
+    return Planned(choices, setup, variables, settings, repeated, middle, todo, fine, half, elastics)
+
+
+def run(site: Site, engine: Setup, method: str, asked: Optional[str] = None) -> Done:
+    """Make or continue all runs of a site, and their results.
+
+    engine: how the runs are made; its deck, output and road do not count; method: of the study, in words; asked: of
+    --fine. Raises SlopeError on bad input, and if no run of the study finished.
+    """
+    folder, planned = site.folder, plan(site, engine, asked)
+    setup, todo, fine, half, variables = planned.setup, planned.todo, planned.fine, planned.half, planned.variables
 
     def collect(_, work):
-        questions = results.Questions(settings, repeated, THRESHOLDS, notes=warnings_of(folder), site=folder,
-                                      fine=fine[0] if fine else None, most_elastic=elastic_of(setup, elastics),
-                                      step=step_of(setup, half[0], middle, variables) if half else None, method=method,
-                                      known=choices["known"])
+        questions = results.Questions(
+            planned.settings, planned.repeated, THRESHOLDS, notes=warnings_of(folder), site=folder,
+            fine=fine[0] if fine else None, most_elastic=elastic_of(setup, planned.elastics),
+            step=step_of(setup, half[0], planned.middle, variables) if half else None, method=method,
+            known=planned.choices["known"])
         return results.collect(setup, questions, todo, work)
 
     failed: Optional[Exception] = None
     try:
         # the longest first: a long run that starts last leaves the other cores idle
-        about = study.perform(setup, {**settings, **repeated}, [*todo, *fine, *half, *elastics], collect,
+        about = study.perform(setup, {**planned.settings, **planned.repeated}, planned.runs, collect,
                               first=[*fine, *half])
     except study.RunsFailed as error:
         about = error.found
@@ -85,7 +111,7 @@ def run(site: Site, engine: Setup, method: str, asked: Optional[str] = None) -> 
             raise failed from None
     if setup.dry_run:
         return Done(None, None, failed)
-    if choices["observed"]["file"]:
+    if planned.choices["observed"]["file"]:
         shutil.rmtree(folder / SCORE, ignore_errors=True)       # of other runs
         try:
             scored(folder, setup, about)
