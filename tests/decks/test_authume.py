@@ -106,6 +106,16 @@ def test_blocks_stop_where_rolling_resistance_has_them_stop(authume, prepared):
     assert ((rough[:, 0] > 15) & (rough[:, 0] < 40)).mean() > np.isfinite(gone[:, 0]).mean() + 0.2
 
 
+def test_each_zone_has_its_own_coefficients(authume, prepared):
+    authume.run(prepared, "zones", zones="yes", e=0.1, vegetated_e=0.2, red_e=0.3, rolling=0.1, vegetated_rolling=0.2,
+                red_rolling=0.3, duration=0.01)
+    log = (prepared / "zones" / "log.authume").read_text()
+    for kind, value in ((2, 0.1), (3, 0.2), (4, 0.3)):
+        *_, fixed, friction, rolling, _ = re.search(rf"^ +1 +{kind} +(.*)$", log, re.MULTILINE)[1].split()
+        angle = np.degrees(np.arctan(value))
+        assert (float(fixed), float(friction)) == (value, 30) and float(rolling) == pytest.approx(angle, rel=1e-3)
+
+
 def test_profiles_sizes_and_heights_are_those_asked_for(authume, prepared):
     sizes = np.array([0.7, 0.8, 0.9])
     authume.run(prepared, "sizes", profile=2, sizes=sizes, lower=0.4, field_d=0.8, spacing=0.8, duration=0.01)
