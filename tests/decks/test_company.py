@@ -185,7 +185,7 @@ pair_style gran/restitution scheme exact
 pair_coeff * * stiffness 2e4 2e4 restitution {e} friction 30 rolling 0.1
 neighbor 0.002 bin
 neigh_modify every 1 delay 0 check yes
-timestep $(0.25*sqrt(2500*PI*1e-6/6/2e4))
+timestep $({part}*0.25*sqrt(2500*PI*1e-6/6/2e4))
 fix base all wall/gran/balls 2 0.01 surface base upper spacing 0.01
 fix g all gravity 9.81 vector 0 0 -1
 fix mv all nve/sphere
@@ -198,9 +198,9 @@ print "MOST $(c_most/0.005:%.3e) OF $(atoms)"
 """
 
 
-@pytest.mark.parametrize("e", [0.05, 0.3])
-def test_heap_comes_to_rest(tmp_path, e):
-    log = run_deck(HEAP.format(e=e), tmp_path)
+@pytest.mark.parametrize("e, part", [(0.05, 1), (0.3, 1), (0.05, 1.5), (0.48, 1.5)])
+def test_heap_comes_to_rest(tmp_path, e, part):
+    log = run_deck(HEAP.format(e=e, part=part), tmp_path)
     most, balls = log.split("MOST ")[-1].split("\n")[0].split(" OF ")
     assert int(balls) > 100
     assert float(most) < 1e-5       # of a radius, in a second

@@ -6,7 +6,7 @@ Each of so many (40) ensembles of 100 runs has the share of known events whose v
 levels, with bounds of 90 %. Printed: how many of them hold that of 4000 runs of a Sobol design (that of as many
 independent runs scatters itself, by up to 0.014, where a band is 0.06 wide); their mean width over the 90 % range of
 the estimates of 400 ensembles, of each level and of all. Some minutes on one core. What came out is in
-doc/src/tool_study.rst.
+doc/src/ensembles.rst.
 """
 import sys
 from pathlib import Path

@@ -2,7 +2,7 @@
 
     /usr/bin/python3 tests/statistics/ensembles.py [indices] [bands] [intervals] [ideal] [twins]
 
-Some minutes on one core. What came out is in doc/src/tool_study.rst and doc/src/tool_calibrate.rst.
+Some minutes on one core. What came out is in doc/src/ensembles.rst and doc/src/tool_calibrate.rst.
 """
 import sys
 from pathlib import Path

@@ -5,7 +5,7 @@
 Of so many (40) ensembles of 64 runs, without and with the added ones: how many bounds of 90 % hold the reference of
 40,000 runs at four volumes, the mean width of the bounds, and means of the share beyond the longest run, of the
 effective number, and of the errors of the weighted mean of log10 L and of the shares above the volumes. Less than a
-minute on one core. What came out is in doc/src/tool_study.rst, "Runs towards longer ones".
+minute on one core. What came out is in doc/src/ensembles.rst, "Runs towards longer ones".
 """
 import sys
 import tempfile

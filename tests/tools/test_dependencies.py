@@ -255,6 +255,29 @@ def test_what_a_run_does_not_read_may_change(slope, here, monkeypatch):
     assert status == 0 and "1 of 1 runs are finished already" in told, err
 
 
+def test_a_default_that_a_run_does_not_take_from_the_deck_does_not_count(slope, here):
+    """Runs are known by their values, wherever these come from; a run of other ones stays beside them."""
+    in_deck("rolling  index 0.0", "rolling  index 0.1")
+    assert slope()[0] == 0
+    in_deck("rolling  index 0.1", "rolling  index 0.2   # of a list")
+    status, told, err = slope()
+    assert status == 0 and "1 of 1 runs are finished already" in told, err
+    in_deck("friction index 30", "friction index 20")
+    status, told, err = slope("--dry-run")
+    assert status == 0 and told.endswith("1 run, 0 of them finished\n"), err
+    in_deck("friction index 20", "friction index 30")
+    assert "1 of 1 runs are finished already" in slope()[1]
+
+
+def test_a_sidecar_may_name_its_sources_otherwise(slope, here):
+    write_yaml("EPSG:6677")
+    assert slope()[0] == 0
+    path = here / "case" / "terrain.yaml"
+    path.write_text(f"# another head\n{path.read_text()}sources:\n- /elsewhere/dem.tif\nsteps: []\n")
+    status, told, err = slope()
+    assert status == 0 and "1 of 1 runs are finished already" in told, err
+
+
 @pytest.mark.parametrize("one, other, same", [
     ("run 1 # a\n", "run  1 # b\n\n# c\n", True),
     ("run 1\n", "run 2\n", False),

@@ -17,10 +17,12 @@ from tiny_collapse import LMP
 
 from slope_tools.case import decks
 from slope_tools.errors import SlopeError
+from slope_tools.route import runs
+from slope_tools.route.choices import Choices
 from slope_tools.sites import site_choices, site_zones
 from slope_tools.studies import site_ground
 from slope_tools.survey import polygons
-from slope_tools.survey.rasters import Raster
+from slope_tools.survey.rasters import Raster, write_asc_local
 
 TERRAIN = Raster(np.full((40, 60), 100.0), Affine(2, 0, 0, 0, -2, 80), CRS.from_epsg(6677), (EAST, NORTH))
 SCREE, FOREST, STRIP = ([(0, 0), (40, 0), (40, 40), (0, 40)], [(30, 30), (70, 30), (70, 70), (30, 70)],
@@ -239,6 +241,12 @@ def test_the_deck_has_the_values_of_a_run(gis, mine, changed):
     site = site_choices.load(folder)
     variables, model = decks.index_variables(folder / "in.site"), site.choices["model"]
     d = float(variables["d"])
+
+    # 1.5 times the rule's step; on ground closer than 0.4 d, of a zone, too, the rule's
+    kn, dt = (float(re.findall(pattern, log, re.M)[-1])
+              for pattern in (r"^Stiffness: kn (\S+)", r"^timestep +([0-9]\S*)"))
+    rule = 0.25 * (float(variables["density"]) * np.pi / 6 * d ** 3 / kn) ** 0.5
+    assert dt == pytest.approx((1.0 if "spacing" in changed else 1.5) * rule, rel=1e-3)
     for number, zone in enumerate(site.found["zones"], 4):
         now = site_zones.now(zone, model, {**variables, **changed})
         coeff = re.findall(rf"^pair_coeff  1 {number} .*restitution (\S+) friction (\S+) rolling (\S+)$", log, re.M)[-1]
@@ -266,3 +274,15 @@ def test_a_deck_without_zones_has_no_word_of_them(gis):
 def test_a_changed_file_of_zones_is_noticed(gis, tmp_path):
     """As every other source of a site."""
     assert "../zones.geojson" in site_choices.load(gis / "mine").sources()
+
+
+def test_the_sites_of_a_route_have_the_zones_that_lie_on_them(tmp_path):
+    write_asc_local(tmp_path / runs.TERRAIN, TERRAIN, {})
+    write_zones(tmp_path / "here.geojson", THREE)
+    write_zones(tmp_path / "far.geojson", [([(x + 9000, y) for x, y in SCREE], {"friction": 35})])
+    about = {"body": 1, "name": "a body", "road_from_m": 0.0}
+    for name, there in (("here.geojson", True), ("far.geojson", False)):
+        path = str(tmp_path / name)
+        choices = Choices([], "", 5.0, 100.0, None, None, 1800.0, ground=path)
+        found = runs.choices_of(choices, tmp_path, about, 1)["ground"]
+        assert found == {"file": path if there else None, "table": None}

@@ -1,4 +1,5 @@
 """The folder of the runs: each is known by the values of its deck's variables, made once, and again when asked."""
+import re
 import shutil
 from pathlib import Path
 from types import SimpleNamespace
@@ -57,10 +58,18 @@ def test_runs_of_other_values_or_decks_are_not(here, about):
 
 
 def test_a_folder_that_one_run_gets_is_no_others(here):
-    """A deck whose default has changed: the folder of a name has the values of another run, until it is made anew."""
+    """A deck whose default has changed: the folder of a name has the values of another run, which stays."""
     make({"rolling": "0.1"}, friction="25")
     one, other = folders({"rolling": "0.1"}, {"friction": "25", "rolling": "0.1"})
-    assert one == "out/rolling_0.1" and other == "out/friction_25_rolling_0.1"
+    assert re.fullmatch("out/rolling_0.1_[0-9a-f]{6}", one) and other == "out/rolling_0.1"
+    make({"rolling": "0.1"}, Path(one).name)
+    assert folders({"rolling": "0.1"}) == [one]
+
+
+def test_a_folder_of_a_deck_with_other_variables_is_looked_at(here):
+    """Whether it may be taken over: its values cannot be compared."""
+    make({"rolling": "0.1"}, friction="25", more="1")
+    assert folders({"rolling": "0.1"}) == ["out/rolling_0.1"]
 
 
 def test_of_two_folders_the_finished_one_counts(here):

@@ -593,6 +593,32 @@ def test_a_command_that_fails_at_the_end_changes_nothing(cleared, slope, monkeyp
     assert {path: path.read_bytes() for path in here.rglob("*") if path.is_file()} == before
 
 
+def write_site(road):
+    """The folder of a site with a study of two runs; the second one governs, and has twice the thickness."""
+    for run, thickness in (("one", 3.0), ("two", 6.0)):
+        Path("mine/study", run).mkdir(parents=True)
+        write_sidecar(80, 100, 2.5, f"mine/study/{run}/terrain.asc")
+        write_run(strip(thickness=thickness), 0.0, 2.5, f"mine/study/{run}/site")
+    Path("mine/study/study.yaml").write_text("conservative: {run: two}")
+    Path("mine/road.csv").write_text("".join(f"{x},{y}\n" for x, y in road.exterior.coords[:-1]))
+
+
+def test_a_folder_stands_for_the_run_that_export_takes(slope, no_map):
+    write_site(box(90, 0, 110, 200))
+    removed = {}
+    for name, folder in (("mine", "mine/volume"), ("mine/study", "mine/study/volume"),
+                         ("mine/study/one", "mine/study/one/volume"),
+                         ("mine/study/two/site.thickness.asc", "mine/study/two/site.volume")):
+        status, out, err = slope(f"{name} --road mine/road.csv --local --mesh 10")
+        assert status == 0 and f"written to {folder}: " in out, err
+        assert ("two, the governing run of mine/study: mine/study/two/site" in out) == (name in ("mine", "mine/study"))
+        removed[name] = yaml.safe_load(Path(folder, "volume.yaml").read_text())["volume"]["remove"]
+    assert removed["mine"] == removed["mine/study"] == removed["mine/study/two/site.thickness.asc"]
+    assert removed["mine"] > 1.5 * removed["mine/study/one"] > 0
+    status, _, err = slope("mine/study/three --road mine/road.csv --local --mesh 10")
+    assert status == 2 and err.count("\n") == 1
+
+
 # --- the page ---
 
 @pytest.mark.parametrize("command", examples("volume"))
@@ -605,6 +631,7 @@ def test_every_example_of_the_page_and_the_help_runs(slope, no_map, command):
     Path("road.csv").write_text("".join(f"{x},{y}\n" for x, y in road.exterior.coords[:-1]))
     for name in ("centre", "axis"):
         write_geojson(f"{name}.geojson", translate(LineString([(100, 0), (100, 200)]), EAST, NORTH), crs=CRS_M)
+    write_site(road)
     status, out, err = slope(command)
     assert (status, err) == (0, "")
     assert "--help" in command or "to remove: " in out

@@ -131,6 +131,10 @@ WORDS: Dict[str, Union[str, Words]] = {
     # of a body and its balls
     "no program": "no LAMMPS program (LMP, --lmp, build/lmp): no trial run, time and speeds are unknown",
     "left terrain": "{percent:.2g} % of the mass left the terrain in the trial run: use a larger elevation model",
+    "narrow road": "the road is about {width:.3g} m wide, {balls:.2g} balls of {d:g} m and {cells:.2g} cells of "
+                   "{cell:g} m: narrower than a ball or two cells, so what lies on it is a guess: use {remedy}",
+    "few across": "the body is about {across:.2g} cells of {cell:.3g} m across, below {limit:g}: its surface and "
+                  "volume are rough; use a finer elevation model",
     "not at rest": "the trial run was not at rest after {seconds:.0f} s: the run time of the study is a guess",
     "first look": "the body is {balls:.1f} balls thick at most, below {limit:g}: a first look; to repeat it, use more "
                   "balls (--balls, --minutes)",

@@ -1,4 +1,5 @@
 """LAMMPS input decks: the commands, variables and files of one."""
+import collections
 import re
 from pathlib import Path
 from typing import Any, Callable, Dict, Iterable, List, Mapping, Sequence, Set, Tuple
@@ -26,13 +27,20 @@ def words_of(line: str) -> List[str]:
     return words
 
 
-def without_comments(deck: Path) -> List[List[str]]:
+def without_comments(deck: Path, defaults=True) -> List[List[str]]:
     """What tells two decks apart: lines of words without comments and blanks, left as they are where quotes or
-    continued lines make it uncertain what is a comment."""
+    continued lines make it uncertain what is a comment.
+
+    defaults: False leaves out the value of each index variable that has one of one word, for those who compare values.
+    """
     text = deck.read_text(encoding="utf-8", errors="surrogateescape")
     uncertain = any(line.count('"""') % 2 for line in text.splitlines())        # quotes over several lines
     lines = [[line] if uncertain or any(c in line for c in "\"'&") else line.split("#")[0].split()
              for line in text.splitlines()]
+    if not defaults:
+        defined = collections.Counter(words[1] for words in commands(deck) if words[0] == "variable" and len(words) > 1)
+        lines = [line[:3] if len(line) == 4 and line[0] == "variable" and line[2] == "index" and defined[line[1]] == 1
+                 else line for line in lines]
     return [line for line in lines if line]
 
 

@@ -5,6 +5,8 @@ from pathlib import Path
 from shlex import quote
 from typing import Any, Dict, List, Optional
 
+from ..case import decks
+from ..ensembles import known_study
 from ..errors import SlopeError
 from ..findings import printer
 from ..options import Program, option, positional, whole
@@ -14,9 +16,10 @@ from ..releases import packing
 from ..releases.release import SHAPES
 from ..releases.release_scar import KINDS
 from ..runs import jobs
-from ..sites import site, site_choices
+from ..sites import site, site_choices, site_deck
 from ..slips import bodies
-from ..studies import site_ground
+from ..studies import ahead, outlook, site_ground
+from ..studies.setup import RUNS, Setup
 from ..survey import roads
 from ..survey.rasters import UNITS
 from . import known_arguments, road_arguments
@@ -33,7 +36,8 @@ OPTIONS = {"terrain": ("terrain", "files"), "crs": ("terrain", "crs"),
            "road": ("road", "file"), "cut_angle": ("road", "cut_angle"), "mesh": ("road", "mesh"),
            **{option: ("road", roads.KEYS[field]) for option, field in road_arguments.OPTIONS.items()},
            "ground": ("ground", "file"), "ground_table": ("ground", "table"),
-           "structure": ("structures", "files"), "line": ("lines", "files"), "motion": ("motion", "file"),
+           "structure": ("structures", "files"), "wall": ("structures", "walls"), "height": ("structures", "height"),
+           "width": ("structures", "width"), "line": ("lines", "files"), "motion": ("motion", "file"),
            "peak_friction": ("motion", "peak_friction"), "friction": ("model", "friction"),
            "rolling": ("study", "rolling"), "slip_friction": ("model", "slip_friction"),
            "density": ("model", "density"), "spacing": ("model", "spacing"),
@@ -44,7 +48,7 @@ OPTIONS = {"terrain": ("terrain", "files"), "crs": ("terrain", "crs"),
            "minutes": ("balls", "minutes"), "memory": ("balls", "memory"), "name": ("project", "name"),
            "client": ("project", "client"), "author": ("project", "author")}
 # options that change neither the body nor its runs: what was determined for these is kept
-BESIDE = {"road", *road_arguments.OPTIONS, "cut_angle", "mesh", "line", "observed", "known", "confined",
+BESIDE = {"road", *road_arguments.OPTIONS, "cut_angle", "mesh", "line", "observed", "known", "confined", "rolling",
           "largest_restitution", "name", "client", "author"}
 # of each group, an option that is given replaces the others
 ONE_OF = (("depth", "volume", "curvature"), ("diameter", "balls", "minutes", "memory"))
@@ -71,8 +75,11 @@ a scar from two surveys; a wall, an earthquake and a line behind the wall; finer
 a light and smooth ground:
   tools/slope site mine --friction 25 --rolling 0 0.05 --spacing 0.8 --density 1600
 
-FOLDER/site.yaml holds every choice, and what each means; change it and give FOLDER alone to rebuild the folder.
-"""
+FOLDER/site.yaml holds every choice, and what each means; change it and give FOLDER alone to rebuild the folder. Changes
+of road, known and study take effect in the next `slope study FOLDER`, which makes only the runs that are not there.
+Keys of it that no option has:
+""" + "\n".join(f"  {section}.{key}: {entry.get('description', '')}" for section, about in site_choices.sections()
+                for key, entry in about["properties"].items() if (section, key) not in OPTIONS.values()) + "\n"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -129,6 +136,11 @@ class Layers(road_arguments.Clearing):
     structure: Optional[List[str]] = option(
         "a wall or building of triangles, m, in local coordinates or the terrain's CRS; may be given several times",
         metavar="STL", action="append")
+    wall: Optional[List[str]] = option(
+        "a wall along this line, which stands on the ground and is --height high; may be given several times",
+        metavar="LINE", action="append")
+    height: Optional[float] = option("of the walls along lines, above the ground, m", metavar="H")
+    width: Optional[float] = option("of the walls along lines, m (default 1)", metavar="B")
     line: Optional[List[str]] = option(
         "control line: what crosses it is counted; may be given several times", metavar="LINE", action="append")
     motion: Optional[str] = option(
@@ -204,8 +216,23 @@ def run(args: Request) -> None:
                          again=args.folder is not None, known=known)
     for line in site_ground.lines(site_choices.load(folder)):
         print(line)
+    for line in outlook.lines(folder):
+        print(line)
+    if (folder / RUNS).is_dir():
+        print(runs_ahead(args, folder, choices))
     print(f"written to {folder}: {' '.join(made.files)}")
     print(f"look at {folder / site.MAP}, then: tools/slope study {quote(str(folder))}")
+
+
+def runs_ahead(args: Request, folder: Path, choices) -> str:
+    """Which runs of the study are there now."""
+    engine = Setup(folder / site_deck.NAME, folder, jobs=args.jobs, lmp=args.lmp)
+    points = choices["study"]["points"]
+    try:
+        points = 0 if known_study.why_not(folder) else points
+        return f"the study: {ahead.of_site(site_choices.load(folder), engine, points).text}"
+    except SlopeError as error:
+        return f"the study: {error}"
 
 
 def chosen(args: Request):
@@ -228,6 +255,9 @@ def chosen(args: Request):
         if older or given.keys() - BESIDE:
             site_choices.forget(choices, known)
             known = {}
+        elif choices["model"]["film"] is None and (folder / site_deck.NAME).is_file():      # an older folder has none
+            film = decks.index_variables(folder / site_deck.NAME).get("film", "")
+            choices["model"]["film"] = float(film) if film else None
     else:
         if args.terrain is None or args.output is None:
             raise SlopeError("--terrain" if args.terrain is None else "-o", "must be given, or the folder of a site")

@@ -19,7 +19,7 @@ from ..sites.site_choices import Site
 from ..sites.site_bodies import VARIABLE
 from ..sites.site_layers import ROAD
 from ..statistics.answer import Source
-from ..studies import fine_runs, results, site_ground, site_study, study
+from ..studies import ahead, files, fine_runs, results, site_ground, site_study, study
 from ..studies.study import OfAKind, RunsFailed, check_more_than, check_thresholds, perform
 from ..survey import roads
 from ..tables import answer_words, answered, elastic, intensity
@@ -99,7 +99,7 @@ class Request(Sample, known_arguments.Known, Repeats, Intensity, Runs):
 def run(args: Request) -> None:
     """Do the command; raises SlopeError on bad input, and after all other runs when one failed."""
     if args.deck.is_dir() and (args.output is None or (args.deck / site_choices.NAME).exists()):
-        with study.alone(args.deck, args.dry_run):
+        with study.alone(args.deck, args.dry_run or not (args.deck / site_choices.NAME).is_file()):
             return run_folder(args, site_choices.load(args.deck))
     if args.paper:
         raise SlopeError("--paper", "must be given with the folder of a site", args.deck)
@@ -121,9 +121,9 @@ def run_folder(args: Request, site: Site) -> None:
     if args.paper or why:
         condition_of(replace(args, around=site))        # has no meaning here
         method = f"{known_study.PAPER}; {why}" if why else known_study.ASKED
-        say(site, method)
+        say(args, site, method, 0)
         return run_site(args, site, method)
-    say(site, f"{known_study.WEIGHTED}, which --paper makes alone")
+    say(args, site, f"{known_study.WEIGHTED}, which --paper makes alone", points)
     return run_both(args, site, points)
 
 
@@ -150,7 +150,7 @@ def run_both(args: Request, asked: Site, points: int) -> None:
     for name, about in made.items():
         made[name] = {**about, "study": {**about["study"], "governs": governs}, **(
             {"headline": found.about()} if found else {}), elastic.ENTRY: (paper.about or {}).get(elastic.ENTRY)}
-        results.write(site / name, made[name])
+        files.write_about(site / name, made[name])
     for name, about in made.items():
         if name != governs:
             write_report(site / name, site / PAGES[name], about, asked, film=False)
@@ -161,9 +161,10 @@ def run_both(args: Request, asked: Site, points: int) -> None:
         raise failed
 
 
-def say(site: Site, method: str) -> None:
-    """How the study of a site is made, and what its grounds hold."""
-    print("\n".join([method, *site_ground.lines(site, others=True)]))
+def say(args: Request, site: Site, method: str, points: int) -> None:
+    """How the study of a site is made, what its grounds hold, which runs are there; points: of the ensemble."""
+    print("\n".join([method, *site_ground.lines(site, others=True),
+                     ahead.of_site(site, setup_of(args), points, args.fine).text]), flush=True)
 
 
 def run_deck(args: Request) -> Any:
@@ -289,12 +290,23 @@ def of_ensemble(args: Request, asked: Site, method="") -> Request:
     chance = site_choices.chance(decks.index_variables(site / site_deck.NAME))
     road = {name: about[roads.KEYS[field]] for name, field in road_arguments.OPTIONS.items()}
     road.update(road=site / ROAD, cut_angle=about["cut_angle"], mesh=about["mesh"])
+    vary = args.vary or ([] if args.fit else [*of_fragility(choices), chance] if args.fragility
+                         else [*known_study.VARY, chance])
     return replace(args, deck=site / site_deck.NAME, site=site, around=asked, method=method,
+                   set=[*args.set, *not_varied(args, choices, vary)],
                    fine=args.fine or str(choices["study"]["fine"] or "no"),
                    output=args.output or site / site_study.ENSEMBLE,
                    wide={} if args.vary or args.fit or args.fragility else known_study.WIDE,
-                   vary=args.vary or ([] if args.fit else [*of_fragility(choices), chance] if args.fragility
-                                      else [*known_study.VARY, chance]), **(road if about["file"] else {}))
+                   vary=vary, **(road if about["file"] else {}))
+
+
+def not_varied(args: Request, choices, vary) -> List[str]:
+    """--set of what a site has a list of and an ensemble does not vary."""
+    names = {words.partition("=")[0] for words in (*vary, *args.set, *args.repeat)}
+    if args.fit:
+        from ..fitting import calibrated
+        names |= calibrated.texts_of(args.fit).keys()
+    return [f"{name}={value}" for name, value in site_choices.not_varied(choices, names).items()]
 
 
 def of_fragility(choices):

@@ -10,12 +10,13 @@ from .. import disk, findings
 from ..deposits import left_words, volume
 from ..deposits.volume import CUT_ANGLE, MUCH_BELOW, SAMPLES
 from ..options import Overwrite, flag, option, positional, whole
+from ..tables import named_run
 from . import road_arguments
 
 DESCRIPTION = ("Volume to remove from a road, per mesh cell and in total, above a cut surface that rises from the "
                "road's edges.")
 EPILOG = """\
-units: metres, m3, degrees. PREFIX is what fix deposit/grid was given as output.
+units: metres, m3, degrees. PREFIX is what fix deposit/grid was given as output, or a folder.
 
 example: meshes of 10 m, the road from a GIS, and the volume also as loosened ground (bulk factor 2.3):
   tools/slope volume embankment --road route4.geojson --cut-angle 30 --mesh 10 --bulk 2.3 -o removal
@@ -31,14 +32,17 @@ volume.png.
 
 @dataclass(frozen=True, kw_only=True)
 class Request(road_arguments.Clearing, Overwrite):
-    prefix: str = positional("output of fix deposit/grid: PREFIX.thickness.asc and so on", metavar="PREFIX")
+    prefix: str = positional(
+        "output of fix deposit/grid: PREFIX.thickness.asc and so on; or one of these files; or the folder of a run, "
+        "or of a study or site, which stands for its governing run", metavar="PREFIX")
     road: Path = option(road_arguments.ROAD, metavar="POLYGON|LINE")
     cut_angle: float = option(
         f"rise of the cut surface with distance from the road's edges, degrees (default "
         f"{CUT_ANGLE:g})", metavar="DEG", default=CUT_ANGLE)
     mesh: float = option(
         "side of the mesh cells, m; their corners are at multiples of it in local x and y", metavar="SIZE")
-    output: Optional[Path] = option("folder for the results (default PREFIX.volume)", "-o", metavar="DIR")
+    output: Optional[Path] = option("folder for the results (default PREFIX.volume; of a folder, FOLDER/volume)", "-o",
+                                    metavar="DIR")
     terrain: Optional[Path] = option(
         "the run's terrain, whose sidecar holds the CRS (default: terrain.asc beside PREFIX)", metavar="TERRAIN.asc")
     local: bool = flag("the road and the axis are in local metres, not in a CRS")
@@ -57,10 +61,13 @@ def run(args: Request) -> None:
     wanted = volume.Wanted(args.road, args.mesh, args.cut_angle, args.local, args.axis, args.bulk,
                            road_arguments.asked(args), args.samples)
     volume.check(wanted)
-    folder = args.output or Path(f"{args.prefix}.volume")
-    disk.check_folder(folder, volume.FILES, [args.prefix, args.road], args.overwrite)
-    found = volume.of_run(args.prefix, wanted, args.terrain, findings.printer("volume"))
+    named = named_run.read(args.prefix)
+    folder = args.output or (named.folder / "volume" if named.folder else Path(f"{named.prefix}.volume"))
+    disk.check_folder(folder, volume.FILES, [named.prefix, args.road], args.overwrite)
+    found = volume.of_run(named.prefix, wanted, args.terrain, findings.printer("volume"))
     volume.write(found, folder, picture=not args.no_picture)
+    if named.study:
+        print(f"{named.run}, the governing run of {named.study}: {named.prefix}")
     print(summary(found.about, folder))
 
 

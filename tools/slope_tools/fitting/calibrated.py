@@ -31,13 +31,23 @@ class Calibrated(Sample):
         return [dict(one) for one in self.sets[:self.number]]
 
 
-def sample(folder: Path, number: Optional[int], deck: Path, fixed: Mapping[str, str],
-           repeated: Mapping[str, Sequence[str]]) -> Calibrated:
-    """The sets of a calibration's folder for a deck that has its variables; number: of them (None: NUMBER)."""
+def texts_of(folder: Path) -> Dict[str, str]:
+    """{variable: distribution} of a calibration's folder."""
+    return load(folder)["calibration"]["variables"]
+
+
+def load(folder: Path) -> Dict[str, Any]:
+    """What a calibration's folder holds; SlopeError if it is none."""
     path = folder / ABOUT
     if not path.is_file():
         raise SlopeError("--from", f"must be a folder with {ABOUT}, which slope calibrate writes", folder)
-    found = schemas.load(path, WHAT, SCHEMA)
+    return schemas.load(path, WHAT, SCHEMA)
+
+
+def sample(folder: Path, number: Optional[int], deck: Path, fixed: Mapping[str, str],
+           repeated: Mapping[str, Sequence[str]]) -> Calibrated:
+    """The sets of a calibration's folder for a deck that has its variables; number: of them (None: NUMBER)."""
+    path, found = folder / ABOUT, load(folder)
     texts = found["calibration"]["variables"]
     variables = distributions.parse([f"{name}={text}" for name, text in texts.items()], deck, "--from", True)
     for option, names in (("--set", fixed), ("--repeat", repeated)):

@@ -17,7 +17,7 @@ from .sections import Cell, Pairs, Section, Table
 CONTENT = List[Tuple[str, str]]
 RESISTANCE = "Resistance of the ground"
 ZONES = ("What the ground is, where: zones as on the map of the site, and the ground outside of them. Values are "
-           "those of the shown run; the stop angle is that of a sheet of three balls whose soil has them, too.")
+         "those of the shown run; the stop angle is that of a sheet of three balls whose soil has them, too.")
 
 
 def section(data, ground, numbers) -> Section:

@@ -94,8 +94,9 @@ def asked_of(choices: Choices, place: Path, engine: Setup) -> Asked:
     given = known["road"]
     road = Road(place / ROAD, given["cut_angle"], given["mesh"], asked=choices.asked.of(given))
     setup = engine._replace(deck=deck, output=place / STUDY, site=place, road=road)
-    plan = sample.check(choices.sample, designs.SOBOL, int(place.name), choices.vary, deck, {}, {})
-    todo = sample.plan(setup.runs, plan, {}, {}, decks.index_variables(deck))
+    fixed = site_choices.not_varied(known, {words.partition("=")[0] for words in choices.vary})
+    plan = sample.check(choices.sample, designs.SOBOL, int(place.name), choices.vary, deck, fixed, {})
+    todo = sample.plan(setup.runs, plan, fixed, {}, decks.index_variables(deck))
     thresholds = list(site_study.THRESHOLDS)
     order = ensemble.Order(plan, ensemble.check_quantity(None, True),
                            ensemble_maps.Thresholds(thresholds, [5.0], [1e5]))

@@ -8,15 +8,19 @@ import re
 import shutil
 import subprocess
 from pathlib import Path
-from typing import Dict, Iterable, Mapping, NamedTuple, Optional, Set
+from typing import Any, Dict, FrozenSet, Iterable, Mapping, NamedTuple, Optional, Set, Tuple
 
-from .. import disk
+import yaml
+
+from .. import disk, written_yaml
 from ..case import decks, run_folders
+from ..case.settings import as_number
 
 PLUGINS = "LAMMPS_PLUGIN_PATH"      # folders of plugins that LAMMPS loads when it starts
 LIBRARIES = "LD_LIBRARY_PATH"       # folders in which a plugin that a deck loads by its bare name is looked for
 SYSTEM = ("/lib", "/usr/lib")        # folders of the system's own libraries
 BESIDE = (".yaml", ".prj")          # sidecars of a raster or a table: terrain.yaml of terrain.asc
+HISTORY = ("sources", "steps")      # of a sidecar: from which files its raster was made, and how
 
 
 class State(NamedTuple):
@@ -93,7 +97,7 @@ class Dependencies:
         before = {**(about.get("inputs") or {}), **(marker.get("inputs") or {})}
         before = {name: digest for name, digest in before.items() if os.path.isabs(name) or self._used(name, words)}
         for name in sorted({*now.files, *before}, key=lambda name: (name != self.deck.name, name)):
-            if now.files.get(name) != before.get(name) and not (name == self.deck.name and self._same_deck(run)):
+            if now.files.get(name) != before.get(name) and not self._means_the_same(run, name):
                 return name
         return None
 
@@ -101,16 +105,27 @@ class Dependencies:
         """The first input that the folder of a run does not hold as it was given: a continued run would read it."""
         for name, digest in self.now(run).files.items():
             path = run.folder / name
-            if os.path.isabs(name) or (name == self.deck.name and self._same_deck(run)):
+            if os.path.isabs(name) or (path.is_file() and disk.sha256(path) == digest):
                 continue
-            if not path.is_file() or disk.sha256(path) != digest:
+            if not self._means_the_same(run, name):
                 return name
         return None
 
-    def _same_deck(self, run) -> bool:
-        """Whether a run's copy of the deck differs from it in comments and blanks at most."""
-        copy = run.folder / self.deck.name
-        return copy.is_file() and decks.without_comments(copy) == decks.without_comments(self.deck)
+    def _means_the_same(self, run, name: str) -> bool:
+        """Whether a run's copy of the deck, or of a sidecar, says the same as that of now in other words."""
+        copy, now = run.folder / name, self.deck.parent / name
+        if not (copy.is_file() and now.is_file()):
+            return False
+        if name == self.deck.name:
+            return self._same_deck(run, copy)
+        return name.endswith(".yaml") and bool(sidecar_of(name, self.digests)) and place_of(copy) == place_of(now)
+
+    def _same_deck(self, run, copy: Path) -> bool:
+        """Whether a run's copy of the deck differs at most in comments and blanks, and in values of index variables
+        that the run has from elsewhere."""
+        had = run_folders.begun(run.folder).get("variables") or {}
+        defaults = by_value(had) != by_value({**decks.index_variables(self.deck), **run.chosen})
+        return decks.without_comments(copy, defaults) == decks.without_comments(self.deck, defaults)
 
     def _words(self, run) -> str:
         """All words that may name files which a run reads, a line each."""
@@ -122,6 +137,21 @@ class Dependencies:
         """Whether a file in the run folder counts: the deck, what a word names in whatever spelling, its sidecars."""
         return name == self.deck.name or any(
             os.path.basename(one) in words for one in (name, *sidecar_of(name, self.digests)))
+
+
+def by_value(variables: Mapping[str, str]) -> FrozenSet[Tuple[str, Any]]:
+    """What a run is known by: its variables with numbers as numbers, so that 0.1 and 0.10 are one value."""
+    return frozenset((name, as_number(str(value))) for name, value in variables.items())
+
+
+def place_of(sidecar: Path) -> Any:
+    """What a sidecar says of its raster, without where that came from; as it stands, where that is no mapping."""
+    text = sidecar.read_text(encoding="utf-8", errors="surrogateescape")
+    try:
+        about = written_yaml.load(text)
+    except (yaml.YAMLError, ValueError, RecursionError):
+        return text
+    return {key: value for key, value in about.items() if key not in HISTORY} if isinstance(about, dict) else text
 
 
 def sidecar_of(name: str, names: Iterable[str]) -> Set[str]:

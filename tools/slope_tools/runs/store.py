@@ -5,14 +5,13 @@ from pathlib import Path
 from typing import Any, Dict, FrozenSet, Iterable, List, Mapping, Optional, Sequence, Tuple
 
 from ..case import decks, run_folders
-from ..case.settings import as_number
 from ..errors import SlopeError
 from . import dependencies
 
 MOST_LETTERS = 200      # of a folder's name; file systems take 255
 LETTERS = 6             # of a digest, where a name alone does not tell two runs apart
 
-Values = FrozenSet[Tuple[str, Any]]
+Values = FrozenSet[Tuple[str, Any]]     # of dependencies.by_value
 
 
 def once(todo: Iterable[Any]) -> List[Any]:
@@ -51,21 +50,30 @@ class Store:
                                  "with all others of which that holds")
 
     def _values(self, chosen: Mapping[str, Any]) -> Values:
-        return frozenset((name, as_number(str(value))) for name, value in {**self.defaults, **chosen}.items())
+        return dependencies.by_value({**self.defaults, **chosen})
 
     def _place(self, run, values: Values) -> Path:
         """The folder of a run: that of its name, or the one that has its values already."""
         usual = self.folder / run.name
         mine = usual not in self.places.values() and len(run.name) <= MOST_LETTERS
         if mine and usual.exists():
-            mine = (usual / run_folders.VARIABLES).is_file() and run_folders.begun(usual).get("set") == run.chosen
-            if mine:
+            if self._has(usual, run, values):
                 return usual
+            mine = False
         if not mine:
             digest = hashlib.sha256(repr(sorted(values, key=str)).encode("utf-8")).hexdigest()[:LETTERS]
             usual = self.folder / f"{run.name[:MOST_LETTERS]}_{digest}"
         found = self._made().get(values, usual)
         return usual if found in self.places.values() else found     # of another run, which will have other values
+
+    def _has(self, folder: Path, run, values: Values) -> bool:
+        """Whether a folder of a run's name is the run's: of the same values, or of a deck with other variables."""
+        if not (folder / run_folders.VARIABLES).is_file():
+            return False
+        about = run_folders.begun(folder)
+        had = about.get("variables") or {}
+        return about.get("set") == run.chosen and (set(had) != {name for name, _ in values}
+                                                   or dependencies.by_value(had) == values)
 
     def _made(self) -> Dict[Values, Path]:
         """The runs that are there, finished ones before others."""

@@ -5,6 +5,7 @@ Order of the work: terrain and body (survey), layers (site_inputs), trial run an
 places (site_folder).
 """
 import contextlib
+import copy
 import os
 import shutil
 from pathlib import Path
@@ -14,17 +15,18 @@ from typing import Any, Callable, Dict, List, NamedTuple, Optional, Tuple
 import numpy as np
 
 from .. import disk, geometry, provenance
-from ..case import settings
+from ..case import decks, settings
 from ..errors import SlopeError
 from ..findings import Finding, finding
 from ..releases import release, release_files, release_toe
 from ..survey import local_terrain, polygons, rasters
 from ..survey.rasters import Raster, crs_name
-from . import site_bodies, site_budget, site_choices, site_deck, site_folder, site_warnings
+from . import site_bodies, site_budget, site_choices, site_deck, site_folder, site_trial, site_warnings
 from .site_budget import Size, Trial
 from .site_choices import Choices, Derived
 from .site_folder import BODY, BODY_DECK, MAP, TERRAIN
 from .site_layers import Layers, Shown, advice, read_layers, swapped
+from .site_trial import Tried
 
 
 class Machine(NamedTuple):
@@ -131,19 +133,26 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
     title = choices["project"]["name"] or folder.absolute().name
     parts = site_deck.Parts(title, ", ".join(Path(name).name for name in choices["terrain"]["files"]), body,
                             layers.structures, layers.lines, layers.motion, room_of(raster), layers.zones)
-    trial, reached = tried(choices, parts, found, new, machine, tell)
+    first = tried(given, choices, known, parts, found, new, folder, machine, tell)
+    trial = first and first.trial
+    if first:
+        site_trial.keep(new, first, raster)
     size = settle(choices, parts, found, trial, machine, raster)
     for one in of_road(choices, found, layers, size):
         keep(one)
     derived = site_choices.derived(given, choices, known)
     say_size(choices, size, found, machine, tell)
     for one in (*site_warnings.of_resistance(choices), *site_warnings.of_zones(layers.zones),
-                *site_warnings.site_warnings(found.measures, size, trial)):
+                *site_warnings.site_warnings(found.measures, size, trial),
+                *site_warnings.of_cells(found.area.z - found.slip, found.area.cell, max(
+                    map(rasters.surveyed_cell, choices["terrain"]["files"]))),
+                *site_warnings.of_road(layers.road, choices["road"]["width"], size.diameter, max(
+                    found.area.cell, choices["model"]["cell"]))):
         keep(one)
     site_warnings.write(new, warnings)
     deck = site_deck.text(choices, parts, numbers(choices, soil_of(choices, parts), trial, size))
     disk.write(new / site_deck.NAME, deck)
-    draw(new / MAP, shown(found, layers, reached), f"{title}: {found.measures.volume:,.0f} m\u00b3")
+    draw(new / MAP, shown(found, layers, first and first.reached), f"{title}: {found.measures.volume:,.0f} m\u00b3")
     files = sorted([path.name for path in new.iterdir()] + [site_choices.NAME])
     about = {"slope_version": provenance.version(), "made": provenance.now(), "files": files,
              "derived": derived,
@@ -154,8 +163,9 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
              "origin": {"east": float(raster.offset[0]), "north": float(raster.offset[1])},
              "zones": [zone.about(raster) for zone in layers.zones],
              "body": found.measures._asdict(), "bodies": site_bodies.about(several), "balls": size.balls,
-             "trial": trial and trial._asdict(), "study": {"runs": size.runs, "seconds": size.seconds,
-                                                           "gigabytes": size.gigabytes, "at_a_time": machine.jobs}}
+             "trial": trial and trial._asdict(), "trial_of": first and first.about,
+             "study": {"runs": size.runs, "seconds": size.seconds, "gigabytes": size.gigabytes,
+                       "at_a_time": machine.jobs}}
     disk.write(new / site_choices.NAME, site_choices.text(choices, about, folder.absolute()))
     return Made(folder, files, size)
 
@@ -249,32 +259,44 @@ def numbers(choices: Choices, soil: site_budget.Soil, trial: Optional[Trial], si
     if trial and size:
         seconds = trial.run(d, size.balls, soil)
     return site_deck.Numbers(d, soil.speed,
-                             model["duration"] or site_budget.LONGEST, model["cell"] or 1.0,
+                             model["duration"] or site_budget.LONGEST, model["cell"] or 1.0, model["film"] or 1.0,
                              choices["motion"]["peak_friction"] or site_deck.LEAST_PEAK, trial and trial.typical,
                              seconds)
 
 
-def tried(choices: Choices, parts: site_deck.Parts, found: release.Body, new: Path, machine: Machine, tell):
-    """The Trial of two runs with coarse balls, and its largest thickness; None, None where there is no LAMMPS."""
+def tried(given: Choices, choices: Choices, known: Derived, parts: site_deck.Parts, found: release.Body, new: Path,
+          folder: Path, machine: Machine, tell) -> Optional[Tried]:
+    """Two trial runs with coarse balls; what the site's folder has of them, if that is still right; None where there is
+    no LAMMPS. They know nothing of what is determined from them.
+    """
     if choices["motion"]["peak_friction"] is None and parts.motion:
         choices["motion"]["peak_friction"] = site_deck.peak_friction(found.measures.slip_slope)
     if machine.lmp is None:
-        return None, None
-    d = site_budget.trial_diameter(choices, parts.body.volume)
-    trial, reached = tried_with(d, choices, parts, found, new, machine.lmp, tell)
-    other_d = site_budget.other_diameter(choices, trial)
+        return None
+    own = copy.deepcopy(choices)
+    site_choices.forget(own, known)
+    own["motion"]["peak_friction"] = choices["motion"]["peak_friction"]
+    least, middle = min(choices["study"]["rolling"]), settings.middle(choices["study"]["rolling"])
+    settled = all(given[section][key] for section, key in site_choices.DERIVED if section == "model") and bool(
+        given["balls"]["diameter"])
+    place = trial_folder(site_budget.trial_diameter(own, parts.body.volume), own, parts, found, new)
+    about = site_trial.about(place, site_deck.NAME, machine.lmp, [least, middle])
+    before = site_trial.kept(folder, about, settled)
+    if before and (settled or not own["balls"]["minutes"]):
+        shutil.rmtree(place)
+        tell(f"the trial run is there: {trial_text(before.trial)}")
+        return before
+    trial, reached = tried_with(place, least, own, found, machine.lmp, tell)
+    other_d = site_budget.other_diameter(own, trial)
     if other_d is None:
-        return trial, reached
-    middle = settings.middle(choices["study"]["rolling"])
-    other = {**choices, "study": {**choices["study"], "rolling": [middle]}}
-    second, its_reach = tried_with(other_d, other, parts, found, new, machine.lmp, tell,
-                                   f"another, rolling {middle:g}")
-    return site_budget.joined(trial, second), its_reach if other_d < trial.diameter else reached
+        return Tried(trial, reached, about)
+    place = trial_folder(other_d, own, parts, found, new)
+    second, its_reach = tried_with(place, middle, own, found, machine.lmp, tell, f"another, rolling {middle:g}")
+    return Tried(site_budget.joined(trial, second), its_reach if other_d < trial.diameter else reached, about)
 
 
-def tried_with(d: float, choices: Choices, parts: site_deck.Parts, found: release.Body, new: Path, lmp: Path, tell,
-               what="trial run"):
-    """The Trial of a run with balls of diameter d (m), and its largest thickness."""
+def trial_folder(d: float, choices: Choices, parts: site_deck.Parts, found: release.Body, new: Path) -> Path:
+    """A folder with the deck of a trial run with balls of diameter d (m)."""
     coarse = {**choices, "model": {**choices["model"], "cell": max(found.area.cell, d / 2)}}
     folder = new / "trial"
     folder.mkdir()
@@ -283,17 +305,29 @@ def tried_with(d: float, choices: Choices, parts: site_deck.Parts, found: releas
             os.symlink(f"../{path.name}", folder / path.name)
     soil = soil_of(coarse, parts)
     disk.write(folder / site_deck.NAME, site_deck.text(coarse, parts, numbers(coarse, soil, None, None, d)))
+    return folder
+
+
+def tried_with(folder: Path, rolling: float, choices: Choices, found: release.Body, lmp: Path, tell, what="trial run"):
+    """The Trial of a run in a folder, which is removed, and its largest thickness."""
+    deck = folder / site_deck.NAME
+    d = float(decks.index_variables(deck)["d"])
     try:
-        trial = site_budget.measure(folder, site_deck.NAME, lmp)._replace(diameter=d)
+        trial = site_budget.measure(folder, deck.name, lmp, {"rolling": rolling})._replace(diameter=d)
     except SlopeError as error:
-        if parts.motion:
+        if choices["motion"]["file"]:
             site_warnings.require_standing(error, choices["motion"]["peak_friction"], found.measures.mean_slope)
         raise
     reached = rasters.read(next(iter(folder.glob("*.max_thickness.asc"))), heights=False)
     shutil.rmtree(folder)
-    tell(f"{what}, {trial.balls} balls of {d:g} m: {'at rest' if trial.at_rest else 'not at rest'} after "
-         f"{trial.rest:.0f} s, up to {trial.speed:.0f} m/s; took {trial.seconds:.1f} s")
+    tell(f"{what}, {trial_text(trial)}; took {trial.seconds:.1f} s")
     return trial, reached
+
+
+def trial_text(trial: Trial) -> str:
+    """What a trial run showed, in words."""
+    return (f"{trial.balls} balls of {trial.diameter:g} m: {'at rest' if trial.at_rest else 'not at rest'} after "
+            f"{trial.rest:.0f} s, up to {trial.speed:.0f} m/s")
 
 
 def settle(choices: Choices, parts: site_deck.Parts, found: release.Body, trial: Optional[Trial], machine: Machine,
@@ -302,6 +336,7 @@ def settle(choices: Choices, parts: site_deck.Parts, found: release.Body, trial:
     model, balls = choices["model"], choices["balls"]
     model["speed"] = model["speed"] or site_budget.stiff_to(trial)
     model["duration"] = model["duration"] or site_budget.duration(trial)
+    model["film"] = model["film"] or site_deck.frame(trial.typical if trial else model["duration"] / 3)
     size = site_budget.size(choices, parts.body.volume, soil_of(choices, parts), trial, machine.jobs, raster.z.size)
     balls["diameter"] = size.diameter
     model["cell"] = model["cell"] or max(found.area.cell, site_budget.three_digits(size.diameter / 2))

@@ -9,7 +9,7 @@ import re
 import resource
 import subprocess
 from pathlib import Path
-from typing import Callable, List, NamedTuple, Optional, Tuple
+from typing import Callable, List, Mapping, NamedTuple, Optional, Tuple
 
 from .. import processes
 from ..case import last_words, logs, run_folders
@@ -147,8 +147,9 @@ def joined(first: Trial, second: Trial) -> Trial:
                          step=step, cost=fine.cost - step / fine.balls)
 
 
-def measure(folder: Path, deck: str, lmp: Path) -> Trial:
-    """Run a site's deck in its folder and read what it measured; SlopeError with LAMMPS' own message if it fails.
+def measure(folder: Path, deck: str, lmp: Path, values: Mapping[str, float]) -> Trial:
+    """Run a site's deck with values of its variables in its folder and read what it measured; SlopeError with LAMMPS'
+    own message if it fails.
 
     The caller sets the diameter and removes the files of the run.
     """
@@ -156,7 +157,8 @@ def measure(folder: Path, deck: str, lmp: Path) -> Trial:
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     with open(folder / "screen.txt", "wb") as screen:
         try:
-            process = processes.start([str(lmp), "-in", deck, "-log", log.name], folder, screen)
+            given = [word for name, value in values.items() for word in ("-var", name, f"{value:.10g}")]
+            process = processes.start([str(lmp), "-in", deck, "-log", log.name, *given], folder, screen)
         except OSError as error:
             raise SlopeError(lmp, f"cannot be run: {error.strerror}") from None
         try:

@@ -9,7 +9,7 @@ import json
 import math
 import os
 from pathlib import Path
-from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Tuple
+from typing import Any, Collection, Dict, Iterator, List, Mapping, NamedTuple, Optional, Tuple
 
 import yaml
 
@@ -28,8 +28,8 @@ WHAT = "a site.yaml of `slope site`"
 FOUND = schemas.mapping({}, found=schemas.mapping({}, null=True))       # of any version
 # keys that hold one file, and lists of files
 FILES = (("terrain", "files"), ("release", "polygon"), ("release", "scar"), ("release", "bodies"), ("road", "file"),
-         ("ground", "file"), ("ground", "table"), ("structures", "files"), ("lines", "files"), ("motion", "file"),
-         ("observed", "file"))
+         ("ground", "file"), ("ground", "table"), ("structures", "files"), ("structures", "walls"), ("lines", "files"),
+         ("motion", "file"), ("observed", "file"))
 
 WITHOUT_CRS = (("ground", "table"), ("structures", "files"), ("motion", "file"))
 
@@ -37,8 +37,12 @@ WITHOUT_CRS = (("ground", "table"), ("structures", "files"), ("motion", "file"))
 BESIDE = (".prj", ".shx", ".dbf", ".cpg", ".tfw", ".hdr", ".yaml")
 
 # keys that slope site fills in with what it finds
-DERIVED = (("balls", "diameter"), ("balls", "number"), ("model", "speed"), ("model", "duration"), ("model", "cell"),
-           ("motion", "peak_friction"))
+DERIVED = (("balls", "diameter"), ("balls", "number"), ("model", "speed"), ("model", "duration"), ("model", "film"),
+           ("model", "cell"), ("motion", "peak_friction"))
+
+# keys that came later: those who made a folder before did not count them
+LATER = (("ground", "file"), ("ground", "table"), ("model", "film"), ("structures", "walls"), ("structures", "height"),
+         ("structures", "width"))
 
 # keys of model in older sites, whose ground was a plan grid of one diameter; their decks keep it
 RETIRED = ("field_diameter", "field_ratio")
@@ -130,6 +134,13 @@ def chance(variables: Mapping[str, str]) -> str:
     return f"{PACKING}=1:1000000" if PACKING in variables else f"{OFFSETS[0]}=0:0.99"
 
 
+def not_varied(choices: Choices, varied: Collection[str]) -> Dict[str, str]:
+    """Values of the runs of an ensemble that varies variables of these names: of lists of the study that it does not,
+    the first one, as the deck has none.
+    """
+    return {} if "rolling" in varied else {"rolling": f"{choices['study']['rolling'][0]:.10g}"}
+
+
 def widest() -> float:
     """The largest spacing of the ground's balls, in diameters: through a wider one balls fall."""
     return schema()["properties"]["model"]["properties"]["spacing"]["maximum"]
@@ -189,6 +200,10 @@ class Site(NamedTuple):
         made = with_files(self.written, os.path.normpath)
         for name in READ_LATER:
             made[name] = {key: value for key, value in made[name].items() if (name, key) in FILES}
+        for name, key in LATER:
+            if made[name][key] in (None, []):
+                del made[name][key]
+        made = {name: section for name, section in made.items() if section or name in READ_LATER}
         return hashlib.sha256(json.dumps(disk.plain(made), sort_keys=True).encode("utf-8")).hexdigest()
 
     def sources(self) -> Dict[str, str]:

@@ -17,6 +17,7 @@ from .site_zones import LIMITS, VALUES, Zone, whole
 NAME = "in.site"
 TEMPLATE = "in.site.j2"
 KNOB = re.compile(r"variable +\w+ +index ")
+ROLLING = 0.05          # of a run by hand; a deck has no value of a list, so that a run is the same whatever the list
 REST = 0.02             # share of the mass that may be faster than 0.1 m/s in a deposit at rest
 FRAMES = 40             # snapshots of a run, about
 BINS = 1000             # of the neighbor list for a ball, at most: each is cleared whenever the list is built
@@ -46,6 +47,7 @@ class Numbers(NamedTuple):
     speed: float            # m/s
     duration: float         # s
     cell: float             # m
+    film: float             # s
     peak_friction: float    # degrees
     rest: Optional[float] = None        # s, expected
     run_seconds: Optional[float] = None
@@ -70,18 +72,17 @@ def values(choices: Choices, parts: Parts, numbers: Numbers) -> Dict[str, Any]:
         "box": " ".join(plain(value) for value in body.box), "types": types_before(parts) + len(parts.zones),
         "zones": zone_values(parts, model),
         "bins": bins(parts.room, body.volume),
-        "film": plain(frame(numbers.rest or numbers.duration / 3)),
         "slip_file": body.slip, "body": choices["release"]["bodies"] and body_number(choices),
         "structures": [{"name": one.name, "file": one.file, "point": words(one.point),
                         "move": f" move {words(one.move)}" if any(one.move) else ""} for one in parts.structures],
         "lines": parts.lines, "motion": parts.motion.file if parts.motion else "", }
     parameters.update({name: plain(value) for name, value in (
         ("d", numbers.diameter), ("spacing", model["spacing"]), ("widest", widest()),
-        ("rolling", choices["study"]["rolling"][0]), ("friction", model["friction"]), ("slip", model["slip_friction"]),
+        ("rolling", ROLLING), ("friction", model["friction"]), ("slip", model["slip_friction"]),
         ("restitution", model["restitution"]), ("field_e", model["field_restitution"]), ("density", model["density"]),
         ("thick", body.thick), ("stiffness_number", site_budget.STIFFNESS_NUMBER), ("rest", REST),
         ("step", site_budget.STEP), ("close", site_budget.CLOSE),
-        ("speed", numbers.speed), ("duration", numbers.duration), ("cell", numbers.cell),
+        ("speed", numbers.speed), ("duration", numbers.duration), ("cell", numbers.cell), ("film", numbers.film),
         ("concrete", choices["structures"]["friction"]), ("concrete_e", choices["structures"]["restitution"]),
         ("scale", motion["scale"]), ("shaking", parts.motion.length if parts.motion else 0),
         ("peak_friction", numbers.peak_friction), ("peak_rolling", motion["peak_rolling"]),

@@ -6,7 +6,7 @@ from .. import disk
 from ..errors import SlopeError
 from ..releases import release_files
 from ..survey import vectors
-from . import site_bodies, site_choices, site_deck, site_inputs, site_warnings, site_zones
+from . import site_bodies, site_choices, site_deck, site_inputs, site_trial, site_warnings, site_zones
 from .site_choices import Choices
 from .site_layers import OBSERVED, RASTERS, ROAD
 
@@ -17,9 +17,10 @@ BODY_DECK = f"{BODY}.deck.txt"      # is not kept: its lines are in the deck
 
 
 def planned(choices: Choices) -> Set[str]:
-    """Names of the files that will be made."""
+    """Names of the files that will be made, with a trial run."""
     names = {MAP, TERRAIN, Path(TERRAIN).with_suffix(".yaml").name, f"{BODY}.csv", site_deck.NAME, site_choices.NAME,
-             site_warnings.NAME, *(path.name for path in release_files.paths(Path(BODY)))} - {BODY_DECK}
+             site_warnings.NAME, site_trial.REACHED,
+             *(path.name for path in release_files.paths(Path(BODY)))} - {BODY_DECK}
     names |= site_bodies.planned(choices, BODY)
     observed = choices["observed"]["file"]
     if observed:
@@ -31,8 +32,9 @@ def planned(choices: Choices) -> Set[str]:
     if choices["ground"]["file"]:
         names.add(site_zones.ALL)
     taken = set(site_inputs.TAKEN)
-    for section, suffix in (("structures", ".stl"), ("lines", ".csv")):
-        names |= {site_inputs.unused(site_inputs.stem(file), taken) + suffix for file in choices[section]["files"]}
+    for section, key, suffix in (("structures", "files", ".stl"), ("structures", "walls", ".stl"),
+                                 ("lines", "files", ".csv")):
+        names |= {site_inputs.unused(site_inputs.stem(file), taken) + suffix for file in choices[section][key]}
     return names
 
 

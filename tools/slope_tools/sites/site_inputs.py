@@ -10,11 +10,13 @@ from typing import Iterable, List, NamedTuple, Optional, Set, Tuple
 import numpy as np
 from rasterio.crs import CRS
 
+from .. import disk
 from ..errors import SlopeError
 from ..geometry import extent
 from ..quakes import motion_file
 from ..survey import lines, polygons, vectors
 from ..survey.rasters import Raster, crs_name
+from . import site_walls
 
 # names of the deck's own fixes and groups, and of files that a run writes beside them
 TAKEN = {"all", "soil", "slip", "beyond", "field", "spread", "move", "weight", "deposit", "rest", "shake", "drag",
@@ -115,8 +117,36 @@ def structure(path: str, raster: Raster, folder: Path, taken: Set[str]) -> Struc
                          f"{a[2]:.6g} to {b[2]:.6g}")
     name = unused(Path(path).stem, taken)
     copy(path, folder / f"{name}.stl")
-    point = float(a[0] + b[0]) / 2, float(a[1] + b[1]) / 2, float(a[2])
-    return Structure(name, f"{name}.stl", move, point, a, b, len(points))
+    return placed(name, points + move)._replace(move=move)
+
+
+def placed(name: str, points: np.ndarray) -> Structure:
+    """A mesh of triangles (n, 3, 3) in local metres."""
+    low, high = points.min(axis=(0, 1)), points.max(axis=(0, 1))
+    point = float(low[0] + high[0]) / 2, float(low[1] + high[1]) / 2, float(low[2])
+    return Structure(name, f"{name}.stl", (0.0, 0.0, 0.0), point, low, high, len(points))
+
+
+def walls(drawn: Iterable["Drawn"], raster: Raster, height: Optional[float], width: Optional[float], folder: Path,
+          taken: Set[str], warn) -> List[Structure]:
+    """Walls of a height and a width (m) along lines, which are written into a folder."""
+    found = []
+    for path, crs, advice in drawn:
+        if height is None:
+            raise SlopeError("--height", "must be given with --wall: of the wall above the ground, m")
+        line = one_line(lines.read_local(path, raster, False, advice=advice, crs=crs, warn=warn), path)
+        wall = np.round(site_walls.triangles(path, line, raster, height, width or site_walls.WIDTH), 4)
+        name = unused(stem(path), taken)
+        disk.write(folder / f"{name}.stl", site_walls.stl(name, wall))
+        found.append(placed(name, wall))
+    return found
+
+
+def one_line(found, path: str):
+    """The one line that a file holds; SlopeError if it holds several."""
+    if len(found.geoms) != 1:
+        raise SlopeError(path, "must hold one line", f"{len(found.geoms)} that do not meet")
+    return found.geoms[0]
 
 
 # --- lines ---
@@ -132,10 +162,8 @@ def control_lines(files: Iterable[Drawn], raster: Raster, folder: Path, taken: S
     """Write control lines in local metres into a folder."""
     found = []
     for path, crs, advice in files:
-        parts = lines.read_local(path, raster, False, advice=advice, crs=crs, warn=warn).geoms
-        if len(parts) != 1:
-            raise SlopeError(path, "must hold one line", f"{len(parts)} that do not meet")
-        points = np.round(np.asarray(parts[0].coords)[:, :2], 4) + 0.0
+        line = one_line(lines.read_local(path, raster, False, advice=advice, crs=crs, warn=warn), path)
+        points = np.round(np.asarray(line.coords)[:, :2], 4) + 0.0
         xlo, ylo, xhi, yhi = extent(raster)
         if not ((points >= (xlo, ylo)) & (points <= (xhi, yhi))).all():
             raise SlopeError(path, f"must lie within the terrain, local x y {polygons.numbers((xlo, ylo, xhi, yhi))}",

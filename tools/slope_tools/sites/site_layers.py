@@ -57,9 +57,10 @@ def read_layers(choices: Choices, raster: Raster, folder: Path, tell, warn) -> L
     observed = observed_layer(choices, raster, folder, tell, warn)
     taken: Set[str] = set(site_inputs.TAKEN)
     structures = site_inputs.structures(choices["structures"]["files"], raster, folder, taken)
-    drawn = [site_inputs.Drawn(path, assigned(choices, path), advice(choices, path))
-             for path in choices["lines"]["files"]]
-    lines = site_inputs.control_lines(drawn, raster, folder, taken, warn)
+    along = choices["structures"]
+    structures += site_inputs.walls(drawn(choices, along["walls"]), raster, along["height"], along["width"], folder,
+                                    taken, warn)
+    lines = site_inputs.control_lines(drawn(choices, choices["lines"]["files"]), raster, folder, taken, warn)
     motion = site_inputs.motion(choices["motion"]["file"], folder) if choices["motion"]["file"] else None
     path = choices["ground"]["file"]
     zones = site_zones.of_choices(choices, site_zones.Source(path, choices["ground"]["table"], assigned(choices, path),
@@ -73,6 +74,11 @@ def read_layers(choices: Choices, raster: Raster, folder: Path, tell, warn) -> L
         tell(f"{motion.file}: {motion.length:g} s, up to {100 * motion.peak * choices['motion']['scale']:.4g} gal "
              "horizontally")
     return Layers(road, observed, structures, lines, motion, zones)
+
+
+def drawn(choices: Choices, files: Sequence[str]) -> List[site_inputs.Drawn]:
+    """Files with lines."""
+    return [site_inputs.Drawn(path, assigned(choices, path), advice(choices, path)) for path in files]
 
 
 def advice(choices: Choices, path: str) -> polygons.Advice:

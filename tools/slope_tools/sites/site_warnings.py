@@ -3,9 +3,13 @@ import math
 from pathlib import Path
 from typing import List, Mapping, Optional, Sequence
 
+import numpy as np
 import yaml
+from shapely.geometry import MultiPoint
+from shapely.geometry.base import BaseGeometry
 
 from .. import disk
+from ..digits import at_most
 from ..errors import SlopeError
 from ..findings import Finding, entries
 from ..releases.release_solve import Measures
@@ -18,6 +22,8 @@ ROUGH = 3.0             # balls, mean thickness of the body: below, the numbers 
 THICK = 10.0            # balls, largest thickness: below, a site should be repeated with more balls
 LARGE = 1e6             # m3: larger masses run farther than laboratory friction suggests
 LOST = 0.001            # share of the mass that may leave the terrain
+LEAST_CELLS = 2         # across a road
+ACROSS = 10.0           # cells across a body
 COEFFICIENT = 3.0       # degrees: smaller angles of friction, or of a cut, may be meant as tangents
 ROLLS_NOT = 1.0         # larger coefficients of rolling resistance may be meant as angles or percents
 STEEP = 65.0            # degrees; tried: some faces of balls stand at 60, none at 70 and 80, whatever their friction
@@ -80,6 +86,29 @@ def of_thickness(mean: float, largest: float) -> List[Finding]:
     if largest < THICK:
         return [Finding("first look", {"balls": largest, "limit": THICK})]
     return []
+
+
+def of_road(road: Optional[BaseGeometry], width: Optional[float], d: float, cell: float) -> List[Finding]:
+    """Whether balls (d, m) and cells (m) are small enough for a road; width: of a line, m."""
+    if road is None:
+        return []
+    wide = width or 2 * road.area / road.length         # of a strip, whose ends hardly count
+    if wide >= max(d, LEAST_CELLS * cell):
+        return []
+    remedy = [f"more balls (--diameter {at_most(wide, 2)})"] * (wide < d)
+    remedy += ["a finer elevation model, or a smaller model.cell"] * (wide < LEAST_CELLS * cell)
+    return [Finding("narrow road", {"width": wide, "d": d, "balls": wide / d, "cell": cell, "cells": wide / cell,
+                                    "remedy": " and ".join(remedy)})]
+
+
+def of_cells(depth: np.ndarray, cell: float, surveyed: float) -> List[Finding]:
+    """Whether the elevation model is fine enough for a body: its depth (m) on cells (m), that may have been surveyed as
+    larger ones."""
+    row, column = np.nonzero(np.nan_to_num(depth) > 0)
+    around = np.array(MultiPoint(np.column_stack([column, row])).buffer(0.5).minimum_rotated_rectangle.exterior.coords)
+    size = max(cell, surveyed)
+    across = float(np.hypot(*np.diff(around, axis=0).T).min()) * cell / size
+    return [Finding("few across", {"across": across, "cell": size, "limit": ACROSS})] if across < ACROSS else []
 
 
 def require_standing(error: SlopeError, peak_friction: float, slope: float) -> None:

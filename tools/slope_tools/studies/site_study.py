@@ -6,7 +6,7 @@ Order of the work: plan all runs, make them (study), what the fine run and half 
 import shutil
 from pathlib import Path
 from shlex import quote
-from typing import Any, Dict, Iterable, List, NamedTuple, Optional
+from typing import Any, Dict, Iterable, List, Mapping, NamedTuple, Optional
 
 from .. import disk, schemas
 from ..case import decks, run_folders
@@ -21,7 +21,6 @@ from ..sites.site_layers import OBSERVED, ROAD
 from ..survey.roads import Asked
 from ..tables import elastic, energy, named_run
 from ..tables.step_check import QUANTITY, Step, half_of
-from ..tables.study_file import read_study
 from . import fine_runs, mapped, results, study
 from .setup import Road, Setup
 
@@ -43,12 +42,26 @@ class Done(NamedTuple):
     failed: Optional[Exception]             # what failed beside it, to be raised once the report is there
 
 
-def run(site: Site, engine: Setup, method: str, asked: Optional[str] = None) -> Done:
-    """Make or continue all runs of a site, and their results.
+class Planned(NamedTuple):
+    """The runs of the paper's study."""
+    choices: Choices
+    setup: Setup
+    variables: Dict[str, str]               # of the deck
+    settings: Dict[str, List[str]]
+    repeated: Dict[str, List[str]]
+    middle: str                             # rolling resistance of the fine run and of half the step
+    todo: List[repeats.Repeat]
+    fine: List[repeats.Repeat]
+    half: List[repeats.Repeat]
+    elastics: List[repeats.Repeat]          # with the largest restitution
 
-    engine: how the runs are made; its deck, output and road do not count; method: of the study, in words; asked: of
-    --fine. Raises SlopeError on bad input, and if no run of the study finished.
-    """
+    @property
+    def runs(self) -> List[repeats.Repeat]:
+        return [*self.todo, *self.fine, *self.half, *self.elastics]
+
+
+def plan(site: Site, engine: Setup, asked: Optional[str] = None) -> Planned:
+    """All runs of a site by the paper's method; asked: of --fine."""
     folder, choices = site.folder, site.choices
     deck, road, several = folder / site_deck.NAME, choices["road"], choices["study"]
     setup = engine._replace(deck=deck, output=folder / STUDY, site=folder, road=None)
@@ -63,21 +76,33 @@ def run(site: Site, engine: Setup, method: str, asked: Optional[str] = None) -> 
     todo = repeats.plan(setup.runs, settings, repeated, variables, others)
     if others:
         settings["spacing"] = list(dict.fromkeys([*settings["spacing"], *(one["spacing"] for one in others)]))
+    fine = fine_runs.in_the_middle(setup, fine_runs.factor_of(asked, choices), {"rolling": [middle]}, variables)
     half = half_steps(setup, middle, variables) if setup.road else []
     elastics = elastic_runs(setup, several["largest_restitution"], settings["rolling"], repeated, variables)
-    fine = fine_runs.in_the_middle(setup, fine_runs.factor_of(asked, choices), {"rolling": [middle]}, variables)
+    return Planned(choices, setup, variables, settings, repeated, middle, todo, fine, half, elastics)
+
+
+def run(site: Site, engine: Setup, method: str, asked: Optional[str] = None) -> Done:
+    """Make or continue all runs of a site, and their results.
+
+    engine: how the runs are made; its deck, output and road do not count; method: of the study, in words; asked: of
+    --fine. Raises SlopeError on bad input, and if no run of the study finished.
+    """
+    folder, planned = site.folder, plan(site, engine, asked)
+    setup, todo, fine, half, variables = planned.setup, planned.todo, planned.fine, planned.half, planned.variables
 
     def collect(_, work):
-        questions = results.Questions(settings, repeated, THRESHOLDS, notes=warnings_of(folder), site=folder,
-                                      fine=fine[0] if fine else None, most_elastic=elastic_of(setup, elastics),
-                                      step=step_of(setup, half[0], middle, variables) if half else None, method=method,
-                                      known=choices["known"])
+        questions = results.Questions(
+            planned.settings, planned.repeated, THRESHOLDS, notes=warnings_of(folder), site=folder,
+            fine=fine[0] if fine else None, most_elastic=elastic_of(setup, planned.elastics),
+            step=step_of(setup, half[0], planned.middle, variables) if half else None, method=method,
+            known=planned.choices["known"])
         return results.collect(setup, questions, todo, work)
 
     failed: Optional[Exception] = None
     try:
         # the longest first: a long run that starts last leaves the other cores idle
-        about = study.perform(setup, {**settings, **repeated}, [*todo, *fine, *half, *elastics], collect,
+        about = study.perform(setup, {**planned.settings, **planned.repeated}, planned.runs, collect,
                               first=[*fine, *half])
     except study.RunsFailed as error:
         about = error.found
@@ -86,10 +111,10 @@ def run(site: Site, engine: Setup, method: str, asked: Optional[str] = None) -> 
             raise failed from None
     if setup.dry_run:
         return Done(None, None, failed)
-    if choices["observed"]["file"]:
+    if planned.choices["observed"]["file"]:
         shutil.rmtree(folder / SCORE, ignore_errors=True)       # of other runs
         try:
-            scored(folder, setup)
+            scored(folder, setup, about)
         except Exception as error:      # whatever it is, the runs took hours: their report comes first
             failed = failed or error
     return Done(setup.output, about, failed)
@@ -169,13 +194,11 @@ def elastic_of(setup: Setup, runs: List[repeats.Repeat]) -> Optional[elastic.Mad
     return elastic.Made(float(runs[0].chosen[elastic.VARIABLES[0]]), runs[0].chosen["rolling"], rows)
 
 
-def scored(folder: Path, setup: Setup) -> None:
-    """Compare the governing run with the mapped deposit."""
+def scored(folder: Path, setup: Setup, about: Mapping[str, Any]) -> None:
+    """Compare the governing run with the mapped deposit; about: what study.yaml says."""
     from ..deposits import score_run
-    path = setup.output / "study.yaml"
-    read_study(path)        # SlopeError unless it is one
-    name, place = run_folders.governing_run(path, named_run.farthest)
-    [summary] = run_folders.summaries(place)
+    name = run_folders.governing(about, named_run.farthest)
+    summary = next(run_folders.summary_of(setup.output, row) for row in about["runs"] if row["run"] == name)
     outline = folder / f"{OBSERVED}.csv"
     setup.tell(f"{name} against the mapped deposit:")
     setup.tell(score_run.make(str(run_folders.prefix_of(summary)),

@@ -42,6 +42,7 @@ TAGS = {"m": "m", "metre": "m", "meter": "m", "metres": "m", "meters": "m", "ft"
         "international foot": "ft", "us survey foot": "us-ft", "us survey feet": "us-ft", "ftus": "us-ft",
         "us-ft": "us-ft", "foot_us": "us-ft"}      # how files spell them, in lower case
 NO_UNIT = {"", "unspecified", "unknown", "undefined", "none"}       # how files spell that they do not say one
+DEGREE = 111_195.0      # m along a meridian
 
 
 class Raster(NamedTuple):
@@ -281,6 +282,20 @@ def read_asc_local(path, heights=True, unit=None, marks=None):
     if place.size != raster.z.shape or not np.allclose(raster.transform * (0, 0), place.extent[::3], rtol=0, atol=1e-3):
         raise SlopeError(Path(path).with_suffix(".yaml"), f"must be the sidecar of {path}: size and extent differ")
     return raster._replace(crs=place.crs, offset=place.offset)
+
+
+def surveyed_cell(path) -> float:
+    """The size (m) of the cells of a raster as it was surveyed, about; 0 where it has none, such as FG-GML."""
+    try:
+        with warnings.catch_warnings(), rasterio.Env():
+            warnings.simplefilter("ignore", NotGeoreferencedWarning)
+            with rasterio.open(path) as source:
+                _, side = source.res
+                if source.crs is None:
+                    return side
+                return side * (DEGREE if source.crs.is_geographic else source.crs.linear_units_factor[1])
+    except (RasterioError, OSError):
+        return 0.0
 
 
 class Place(NamedTuple):

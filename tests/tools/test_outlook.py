@@ -1,0 +1,105 @@
+"""What `slope site` says before the study: where the terrain ends, what is too coarse, the disk."""
+import re
+
+import numpy as np
+import pytest
+from shapely.geometry import LineString
+
+from run_helpers import write_tif
+from test_site import BODY, CELL, COLUMNS, EAST, ROWS, gis, height, told, write_layer  # noqa: F401
+from test_site_anew import inside, mine, once  # noqa: F401
+
+from slope_tools.commands import site as site_command
+from slope_tools.sites import site_choices, site_disk, site_warnings
+from slope_tools.studies import outlook
+
+STANDARD = " ".join(["--release release.geojson", *BODY, "--road road.geojson"])
+
+
+@pytest.fixture(autouse=True)
+def nothing_drawn(monkeypatch):
+    monkeypatch.setattr(site_command.site_map, "draw", lambda path, *_: path.write_bytes(b""))
+
+
+def test_where_the_terrain_ends_and_what_is_to_be_added(inside, gis):  # noqa: F811
+    """With as much level ground as it asks for, hardly any event goes beyond the terrain."""
+    out = inside(f"--terrain dem.tif {STANDARD} -o first").out
+    share, length, metres = re.search(
+        r"at best a floor, at least so much, because (\d+) % of known events go beyond the terrain, which the fall "
+        r"path leaves after ([\d.]+) m: add about ([\d.]+) m of terrain in the west", out).groups()
+    assert float(share) > 20 and 85 < float(length) < 95 and f"fall path of {length} m" in out
+    assert re.search(r"^69 known events, translational_slides:all: .*50 % beyond [\d.]+ m.*; beyond the terrain: "
+                     rf"{share} %$", out, re.MULTILINE)
+    assert re.search(r"^the road, first met after [\d.]+ m: \d+ % go beyond its near edge, \d+ % beyond its far edge$",
+                     out, re.MULTILINE)
+    more = int(np.ceil(float(metres) / CELL)) + 2
+    z = np.broadcast_to(100 + np.concatenate([np.zeros(more), height((np.arange(COLUMNS) + 0.5) * CELL)]),
+                        (ROWS, COLUMNS + more))
+    write_tif(gis / "larger.tif", z, CELL, xlo=EAST - more * CELL, crs="EPSG:6677")
+    out = inside(f"--terrain larger.tif {STANDARD} -o second").out
+    assert "go beyond the terrain" not in out
+    assert "at best a floor, at least so much, because the finest balls are " in out        # that is another reason
+
+
+def test_balls_that_show_what_smaller_ones_bring(mine):  # noqa: F811
+    """As many as it asks for make sixteen over the thickness of the body."""
+    choices, found = site_choices.read(mine), site_choices.found(mine)
+    thick, balls = re.fullmatch(r"the finest balls are (\S+) over .* \(--balls (\d+)\)", outlook.coarse(choices, found)
+                                ).groups()
+    assert float(thick) == pytest.approx(2 * found["body"]["mean_depth"] / choices["balls"]["diameter"], rel=0.02)
+    choices["balls"]["diameter"] *= (found["balls"] / int(balls)) ** (1 / 3) / 1.02
+    assert outlook.coarse(choices, found) is None
+    choices["study"]["fine"] = "no"
+    assert outlook.coarse(choices, found).startswith("the finest balls are 8")
+
+
+@pytest.mark.parametrize("side, x, y", [("west", 0.5, 40.0), ("east", 119.5, 40.0), ("south", 60.0, 0.5),
+                                        ("north", 60.0, 79.5), ("south and the west", 1.0, 1.0)])
+def test_the_side_at_which_a_path_leaves(mine, side, x, y):  # noqa: F811
+    mass = outlook.body.of_site(mine)
+    ends = np.array([60.0, x]), np.array([40.0, y])
+    path = outlook.FallPath(*ends, np.zeros(2), np.zeros(2), outlook.TERRAIN, (0.0, 0.0, 0.0))
+    assert outlook.side_of(path, mass.raster) == side
+
+
+@pytest.mark.parametrize("words, balls, cells", [
+    ("--road-width 1", "0.81", "0.5"), ("--road-width 3 --diameter 1", "3", "1.5"),
+    ("--road-width 4 --diameter 1", "", "")])
+def test_a_road_narrower_than_a_ball_or_two_cells(inside, gis, words, balls, cells):  # noqa: F811
+    write_layer(gis / "axis.geojson", [(28, 0), (28, 80)], kind=LineString)
+    err = inside(f"--terrain dem.tif {STANDARD} --road axis.geojson {words} -o line".replace(
+        "--road road.geojson ", "")).err
+    said = re.search(r"the road is about (\S+) m wide, (\S+) balls of \S+ m and (\S+) cells of 2 m: narrower", err)
+    assert (said is None) == (not balls), err
+    if said:
+        assert said[3] == cells and said[2].startswith(balls)
+
+
+def test_a_narrow_polygon_is_a_narrow_road():
+    strip = LineString([(0, 0), (50, 10), (100, 0)]).buffer(3, cap_style=2)
+    found, = site_warnings.of_road(strip, None, 7.9, 2.0)
+    assert found.numbers["width"] == pytest.approx(6, rel=0.07) and "--diameter 5." in found.numbers["remedy"]
+    assert site_warnings.of_road(strip, None, 5.0, 2.5) == [] == site_warnings.of_road(None, None, 5.0, 2.5)
+
+
+def test_a_coarse_elevation_model(inside, gis):  # noqa: F811
+    """Of cells that are as coarse as it, or that were made smaller."""
+    z = np.broadcast_to(100 + height((np.arange(12) + 0.5) * 10), (8, 12))
+    write_tif(gis / "coarse.tif", z, 10.0, crs="EPSG:6677")
+    for words in ("", "--cell 2"):
+        err = inside(f"--terrain coarse.tif {STANDARD} {words} -o coarse{len(words)}").err
+        assert re.search(r"the body is about (3|4)(\.\d)? cells of 10 m across, below 10: its surface and volume", err)
+    assert "cells of" not in inside(f"--terrain dem.tif {STANDARD} -o fine").err
+
+
+def test_the_disk_of_a_study_grows_with_balls_and_runs(mine):  # noqa: F811
+    choices, found = site_choices.read(mine), site_choices.found(mine)
+    whole = site_disk.study(mine, choices, found)
+    choices["study"]["points"] = 0
+    paper = site_disk.study(mine, choices, found)
+    choices["study"]["fine"] = "no"
+    without = site_disk.study(mine, choices, found)
+    assert whole > 3 * paper > 3 * without
+    choices["balls"]["diameter"] /= 2
+    assert 3 < (site_disk.study(mine, choices, found) - site_disk.PAGES) / (without - site_disk.PAGES) < 8
+    assert site_disk.text(1.53e9) == "1.53 GB" and site_disk.text(2.931e8) == "293 MB"

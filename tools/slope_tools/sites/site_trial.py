@@ -1,0 +1,58 @@
+"""The trial run of a site, which is kept: it is not repeated as long as nothing that it depends on has changed."""
+import hashlib
+from pathlib import Path
+from typing import Any, Dict, List, NamedTuple, Optional
+
+from rasterio.transform import Affine
+
+from .. import disk, provenance
+from ..case import decks
+from ..errors import SlopeError
+from ..survey import rasters
+from ..survey.rasters import Raster
+from . import site_choices
+from .site_budget import Trial
+
+REACHED = "trial.tif"       # largest thickness of the trial run, m
+
+
+class Tried(NamedTuple):
+    """What a trial run measured, where its mass went, and of what it was."""
+    trial: Trial
+    reached: Raster             # largest thickness, m, in local metres
+    about: Dict[str, Any]       # digest of deck, data and machine; the rolling resistances, which those do not hold
+
+
+def about(folder: Path, deck: str, lmp: Path, rolling: List[float]) -> Dict[str, Any]:
+    """Of a trial run whose files are in a folder."""
+    parts = [repr(decks.without_comments(folder / deck)), disk.sha256(lmp), provenance.machine()["processor"]]
+    parts += [path.name + disk.sha256(path) for path in sorted(folder.iterdir()) if path.name != deck]
+    return {"sha256": hashlib.sha256("\n".join(parts).encode("utf-8", "surrogateescape")).hexdigest(),
+            "rolling": rolling}
+
+
+def kept(folder: Path, wanted: Dict[str, Any], settled: bool) -> Optional[Tried]:
+    """What a site's folder has of such a trial run; None: nothing.
+
+    settled: nothing is to be determined from it, so that its rolling resistances do not matter.
+    """
+    if not (folder / site_choices.NAME).is_file():
+        return None
+    found = site_choices.found(folder)
+    had, trial = found.get("trial_of") or {}, found.get("trial") or {}
+    if had.get("sha256") != wanted["sha256"] or not (settled or had.get("rolling") == wanted["rolling"]) or \
+            set(trial) != set(Trial._fields):
+        return None
+    try:
+        raster = rasters.read(folder / REACHED, heights=False)
+    except SlopeError:
+        return None
+    east, north = (found["origin"][side] for side in ("east", "north"))
+    return Tried(Trial(**trial), raster._replace(transform=Affine.translation(-east, -north) * raster.transform,
+                                                 crs=None), had)
+
+
+def keep(folder: Path, tried: Tried, terrain: Raster) -> None:
+    """Write where the mass went into a site's folder, in the terrain's CRS."""
+    rasters.write_geotiff(folder / REACHED, {"largest thickness of the trial run, m": tried.reached.z},
+                          tried.reached._replace(crs=terrain.crs, offset=terrain.offset))

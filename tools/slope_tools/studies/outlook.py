@@ -1,0 +1,103 @@
+"""What the study of a site can say, before it takes its time: by fall path, known events, road, balls and disk."""
+import math
+from pathlib import Path
+from typing import Any, Dict, List, Optional
+
+import numpy as np
+
+from ..digits import rounded, three
+from ..ensembles.farther import REACHED
+from ..errors import SlopeError
+from ..geometry import extent
+from ..mobility import body, known, results, road
+from ..mobility.exceedance import Mobility
+from ..mobility.fall_path import TERRAIN, FallPath
+from ..sites import site_choices, site_disk
+from ..sites.site_layers import ROAD
+from ..statistics.size_effect import RESOLVED
+from ..survey import roads
+from ..survey.rasters import Raster
+
+SIDES = (("west", "east"), ("south", "north"))
+FARTHEST = 20.0         # times as far as the path may the end of known events be looked for
+
+
+def lines(folder: Path) -> List[str]:
+    """In words: what is known without a run, what the study takes, and whether it can be more than a floor."""
+    site = site_choices.load(folder)
+    choices, found = site.choices, site.found
+    said, floors = [], []
+    try:
+        mass = body.of_site(folder)
+        asked = known.choice(choices["known"]["set"], (), choices["known"]["confined"])
+        decides = known.of_body(mass, asked)
+    except SlopeError as error:
+        said.append(f"the mass cannot be compared with known events: {error}")
+    else:
+        counts = decides.decides
+        length, fall = (rounded(float(values[-1]), 4) for values in (counts.path.length, counts.path.fall))
+        said += [f"fall path of {length} m, down to {fall} m below the crown, {counts.path.end}",
+                 events_text(counts, asked)]
+        if choices["road"]["file"]:
+            lane = roads.read_local(folder / ROAD, mass.raster, roads.Asked.of(choices["road"]), local=True).polygon
+            said.append(road_text(counts, road.at_road(counts.path, lane)))
+        floors += [why] if (why := terrain_ends(counts, mass.raster)) else []
+    floors += [why] if (why := coarse(choices, found)) else []
+    said.append(f"the study takes about {site_disk.text(site_disk.study(folder, choices, found))} of disk")
+    if floors:
+        said.append(f"the number will be at best a floor, at least so much, because {'; and because '.join(floors)}")
+    return said
+
+
+def events_text(counts: Mobility, asked: known.Choice) -> str:
+    """How far known events went."""
+    name = f"{asked.number(counts)} known events, {asked.name(counts)}"
+    return f"{name}: " + (results.lengths(counts, counts.chosen) if counts.in_range else "; ".join(counts.outside))
+
+
+def road_text(counts: Mobility, met: road.AtRoad) -> str:
+    """Which share of known events reaches and passes the road."""
+    where = "first met" if met.met else f"which the fall path passes {rounded(met.beside, 4)} m beside,"
+    return f"the road, {where} after {rounded(met.length, 4)} m: {results.of_road(counts, met)}"
+
+
+def terrain_ends(counts: Mobility, raster: Raster) -> Optional[str]:
+    """Why known events that count go beyond the terrain, and what is to be added; None where hardly any do."""
+    path, beyond = counts.path, counts.beyond_path()
+    if path.end != TERRAIN or not counts.in_range or beyond < 1 - REACHED:
+        return None
+    more = missing(counts)
+    how = "" if more is None else f": add about {three(more)} m of terrain in the {side_of(path, raster)}"
+    return (f"{results.percent(beyond)} of known events go beyond the terrain, which the fall path leaves after "
+            f"{rounded(float(path.length[-1]), 4)} m{how}")
+
+
+def missing(counts: Mobility) -> Optional[float]:
+    """How many metres the path is too short for all but a few of the events, were the ground beyond it level; None:
+    more than anybody has."""
+    path, volume = counts.path, counts.volume
+    length = path.length[-1] * np.geomspace(1.0, FARTHEST, 400)
+    share = counts.law.beyond(counts.chosen, length, volume, np.full(len(length), path.fall[-1]))
+    enough = np.flatnonzero(share <= 1 - REACHED)
+    return float(length[enough[0]] - path.length[-1]) if len(enough) else None
+
+
+def side_of(path: FallPath, raster: Raster) -> str:
+    """The side, or both sides of a corner, of a terrain at which a path ends."""
+    xlo, ylo, xhi, yhi = extent(raster)
+    x, y = float(path.x[-1]), float(path.y[-1])
+    far = {"west": x - xlo, "east": xhi - x, "south": y - ylo, "north": yhi - y}
+    near = [name for name, metres in far.items() if metres <= min(far.values()) + 2 * raster.transform.a]
+    return " and the ".join(sorted(near, key=lambda name: name in SIDES[0]))
+
+
+def coarse(choices: Dict[str, Any], found: Dict[str, Any]) -> Optional[str]:
+    """Why balls that are smaller than the finest may bring more, and how many would tell; None where they do not."""
+    d, fine, depth = choices["balls"]["diameter"], choices["study"]["fine"], found["body"]["mean_depth"]
+    factor = 1 if fine in ("no", False) else fine
+    thick = factor * depth / d
+    if thick >= RESOLVED:
+        return None
+    balls = math.ceil(found["balls"] * (RESOLVED / thick) ** 3)
+    return (f"the finest balls are {rounded(thick, 2)} over the mean thickness of the body, {RESOLVED:g} show what "
+            f"smaller ones bring (--balls {float(f'{balls:.2g}'):.0f})")
