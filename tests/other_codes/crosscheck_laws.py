@@ -27,7 +27,7 @@ LAWS: Dict[str, Callable[[Contacts], Contacts]] = {
     "rolling with half the coefficient": lambda laws: times(laws, 0.5),
     "rolling with twice the coefficient": lambda laws: times(laws, 2.0),
     "rolling on the slip surface, too": lambda laws: {**laws, SLIP: laws[SLIP]._replace(rolling=laws[1].rolling)}}
-WAYS = "balls whose centres are above the cut", "columns up to the tops of the balls"
+BY_CENTRES = "balls whose centres are above the cut"
 
 
 def times(laws: Contacts, factor: float) -> Contacts:
@@ -56,8 +56,7 @@ def laws(work, case):
                 numbers = numbers_of(work, f"{name}.deck", settings, scene, final)
                 several = {what: numbers}
                 if what == OURS:
-                    ways = other_ways(evaluated(work, f"{name}.deck"), final, d)
-                    several.update((way, {**numbers, "to remove": value}) for way, value in zip(WAYS, ways))
+                    several[BY_CENTRES] = {"to remove": by_centres(evaluated(work, f"{name}.deck"), final, d)}
                 for each, values in several.items():
                     found.setdefault(each, [[] for _ in ROLLING[1:]])[i].append(values)
     rows = list(rows_of(found))
@@ -68,7 +67,7 @@ def laws(work, case):
 def rows_of(found):
     """Of each variant the mean of each quantity at each rolling resistance, and its difference from ours."""
     for what, each in found.items():
-        for quantity in QUANTITIES if what not in WAYS else ["to remove"]:
+        for quantity in QUANTITIES if what != BY_CENTRES else ["to remove"]:
             mine, base = ([[one[quantity] for one in row] for row in several] for several in (each, found[OURS]))
             compared = differences(mine, base) if what != OURS else []
             for rolling, row, one in zip_longest(ROLLING[1:], mine, compared):
@@ -82,9 +81,8 @@ def csv_of(rows) -> str:
                          ([*(row[head] for head in heads), *row["runs"]] for row in rows))
 
 
-def other_ways(removal: volume.Removal, final, d: float):
-    """What is to be removed, m3: the ground of each ball whose centre is above the cut; columns of the raster's cells
-    between the cut and the top of their highest ball."""
+def by_centres(removal: volume.Removal, final, d: float) -> float:
+    """What is to be removed, m3: the ground of each ball whose centre is above the cut."""
     run = removal.run
     ground, road = cut.Ground(run.base), geometry.to_index(removal.road, run.raster)
     edge, on = cut.Edge(road, ground, math.tan(math.radians(CUT)) * run.cell), prep(road)
@@ -96,9 +94,4 @@ def other_ways(removal: volume.Removal, final, d: float):
         return np.where(inside, height, np.maximum(height, edge.cut(x, y)))
 
     x, y = ~run.raster.transform * final[:, :2].T
-    by_centres = float((final[:, 2] > level(x, y)).sum()) * run.bulk * math.pi / 6 * d ** 3
-    top = np.full(run.base.shape, -np.inf)
-    np.maximum.at(top, (y.astype(int), x.astype(int)), final[:, 2] + d / 2)
-    rows, columns = np.nonzero(np.isfinite(top))
-    above = top[rows, columns] - level(columns + 0.5, rows + 0.5)
-    return by_centres, float(np.clip(above, 0, None).sum()) * run.cell ** 2
+    return float((final[:, 2] > level(x, y)).sum()) * run.bulk * math.pi / 6 * d ** 3
