@@ -349,13 +349,17 @@ bool SunkSurface::height(double x, double y, double &lowest) const
   double cx = x, cy = y;
   auto touch = [&](double px_, double py_, double pz) {
     const double dx = px_ - x, dy = py_ - y, d2 = sink2 - dx * dx - dy * dy;
-    if (d2 < 0.0) return;
-    const double centre = pz - std::sqrt(d2);
-    if (centre >= lowest) return;
-    lowest = centre;
+    const double above = pz - lowest;
+    if (d2 < 0.0 || (above >= 0.0 && above * above >= d2)) return;    // most need no root
+    lowest = pz - std::sqrt(d2);
     cx = px_;
     cy = py_;
   };
+
+  // the column below is close to the best, and leaves few that may be better
+
+  const int inear = static_cast<int>((x - xlo) / px), jnear = static_cast<int>((y - ylo) / py);
+  if (has(inear, jnear)) touch(column_x(inear), column_y(jnear), z.get(inear, jnear));
 
   const int jlo = std::max(0, static_cast<int>(std::ceil((y - sink - ylo) / py)));
   const int jhi = std::min(ny - 1, static_cast<int>((y + sink - ylo) / py));

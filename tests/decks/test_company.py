@@ -91,21 +91,24 @@ def test_lone_impact(tmp_path, e, partner):
     assert abs(got - e).max() <= 0.01 * shorter
 
 
-# Where a step is too long for contacts that act together, as the page on limits says; the last
-# geometry is that of six balls that overlap each other.
-BEYOND = {(4, 0.67, 0.3): (0.015, 0.04), (6, 0.5, 0.1): (0.015, 0.04), (6, 0.87, 0.3): (0.02, 0.04),
-          (6, 0.87, 0.5): (0.05, 0.07)}
-
-
 # normal motion on several fixed balls is that of the same oscillator with the damping ratio times sqrt(n) nz
 @pytest.mark.parametrize("contacts, height", [(2, 0.87), (3, 0.6), (4, 0.67), (6, 0.5), (6, 0.87)])
 @pytest.mark.parametrize("e", [0.05, 0.1, 0.3, 0.5, 0.9])
 def test_several_fixed_balls(tmp_path, contacts, height, e):
     got = velocities(tmp_path, PHASES, on_ring(contacts, height), e)[:, 0, 2]
     wanted = restitution(zeta(e) * np.sqrt(contacts) * height)
-    mean, each = BEYOND.get((contacts, height, e), (0.01, 0.04))
-    assert abs(got.mean() - wanted) <= mean
-    assert abs(got - wanted).max() <= each
+    assert abs(got.mean() - wanted) <= 0.02
+    assert abs(got - wanted).max() <= 0.04
+
+
+# at the longest step that is not warned of; 4 on a spacing of 0.5, 5 on 0.8, 6 on 0.4 and 0.87
+@pytest.mark.parametrize("contacts, height", [(2, 0.87), (4, 0.935), (5, 0.73), (6, 0.917), (6, 0.49)])
+@pytest.mark.parametrize("e", [0.05, 0.1, 0.3, 0.48, 0.7])
+def test_several_fixed_balls_at_one_and_a_half_steps(tmp_path, contacts, height, e):
+    got = velocities(tmp_path, PHASES, on_ring(contacts, height), e, part=1.5)[:, 0, 2]
+    wanted = restitution(zeta(e) * np.sqrt(contacts) * height)
+    assert abs(got.mean() - wanted) <= 0.03
+    assert abs(got - wanted).max() <= 0.08
 
 
 # contacts that begin together from nearly the same direction, on rings of spacing 0.35 and 0.2, and of four

@@ -149,8 +149,8 @@ def test_words_of_a_quantile_in_a_gap(gap):
     """Console, card, table and numbers have both ends, and no single value."""
     one = {"share": 0.5, "value": 2950.0, "low": 1500.0, "high": 3100.0, "gap": gap}
     line = known_events.quantile_text(one, "m")
-    assert ("between 1,888 and 2,950 m" in line) == bool(gap) and ("stay within" in line) != bool(gap)
-    assert ensemble_part.cell_of(one) == ("1,888 to 2,950" if gap else "2,950")
+    assert ("between 1,890 and 2,950 m" in line) == bool(gap) and ("stay within" in line) != bool(gap)
+    assert ensemble_part.cell_of(one) == ("1,890 to 2,950" if gap else "2,950")
     about = {"reached": 0.9, "effective": 12.0, "doubts": [], "variables": {}, "quantities": {
         "length_m": {"name": "length", "unit": "m", "quantiles": [one]}}}
     data = type("Data", (), {"study": {"ensemble": {"known_events": about, "of": "length_m", "confidence": 0.9}}})
@@ -160,7 +160,7 @@ def test_words_of_a_quantile_in_a_gap(gap):
     assert shown["number"] == ("1,890 to 2,950" if gap else "2,950")
     assert ("no run ends" in shown["note"]) == bool(gap) and "Between 1,500 m" in shown["note"]
     assert sum("gap" in row[0] for row in numbers.rows) == (2 if gap else 0)
-    assert part.tables()[0].rows[0][1] == ("1,888 to 2,950" if gap else "2,950")
+    assert part.tables()[0].rows[0][1] == ("1,890 to 2,950" if gap else "2,950")
 
 
 def test_runs_that_reach_no_event_say_nothing():

@@ -45,8 +45,13 @@ def most(here, **more):
             for k, distance, cells in ((1, 100.0, 20), (2, 110.0, 22), (3, 120.0, 27))]
 
 
+def evaluated(here, made, rows):
+    return elastic.evaluate(elastic.read(elastic.Made(0.9, "0", made), rows, here))
+
+
 def test_reach_and_area_beside_the_usual_runs(tmp_path, rows):
-    about = elastic.evaluate(elastic.Made(0.9, "0", most(tmp_path)), rows, tmp_path)
+    made = most(tmp_path)
+    about = evaluated(tmp_path, made, rows)
     assert about["quantities"]["distance_99_m"] == {
         "mean": 110, "low": 100, "high": 120, "usual": {"mean": 85, "low": 80, "high": 90},
         "study": {"mean": pytest.approx(265 / 3), "low": 80, "high": 95}}
@@ -57,8 +62,8 @@ def test_reach_and_area_beside_the_usual_runs(tmp_path, rows):
         "restitution 0.9 of soil, slip surface and ground, rolling 0, 3 runs: 99 % of the volume stays within 110 m "
         "(100 to 120) instead of 85 m (80 to 90); all other runs, up to 95 m; the deposit covers 92 m2 (80 to 108) "
         "instead of 44 m2 (40 to 48); all other runs, up to 56 m2")
-    with open(tmp_path / elastic.FILE, encoding="ascii") as file:
-        table = list(csv.DictReader(file))
+    text = elastic.table(elastic.read(elastic.Made(0.9, "0", made), rows, tmp_path))
+    table = list(csv.DictReader(text.splitlines()))
     assert [(one["run"], one["largest_restitution"]) for one in table] == [
         ("e1", "yes"), ("e2", "yes"), ("e3", "yes"), ("a", "no"), ("b", "no"), ("c", "no")]
     assert [float(one["area_m2"]) for one in table] == [80, 88, 108, 40, 48, 56]
@@ -66,8 +71,7 @@ def test_reach_and_area_beside_the_usual_runs(tmp_path, rows):
 
 
 def test_what_left_the_terrain_is_no_distance(tmp_path, rows):
-    about = elastic.evaluate(elastic.Made(0.9, "0", [{**one, "distance_99_m": None} for one in most(tmp_path)]), rows,
-                             tmp_path)
+    about = evaluated(tmp_path, [{**one, "distance_99_m": None} for one in most(tmp_path)], rows)
     assert "how far the mass goes is not known, as more than 1 % of it left the terrain; the deposit" in about["text"]
     assert elastic.far(about) is None
     assert first_page(about) == (" With the most elastic rock, a restitution of 0.9, more than 1 % of it leaves the "
@@ -77,11 +81,11 @@ def test_what_left_the_terrain_is_no_distance(tmp_path, rows):
 def test_failed_and_moving_runs_are_said(tmp_path, rows):
     made = most(tmp_path, at_rest=False)
     made[0] = {"run": "e1", "status": "failed", "error": "diverged"}
-    about = elastic.evaluate(elastic.Made(0.9, "0", made), rows, tmp_path)
+    about = evaluated(tmp_path, made, rows)
     assert about["text"].endswith("; 1 failed; 2 had not come to rest") and about["runs"] == ["e2", "e3"]
-    none = elastic.evaluate(elastic.Made(0.9, "0", made[:1]), rows, tmp_path)
+    none = evaluated(tmp_path, made[:1], rows)
     assert none["text"] == "not known: e1 failed" and first_page(none) == ""
-    alone = elastic.evaluate(elastic.Made(0.9, "0", made[1:]), [], tmp_path)        # none of the usual ones finished
+    alone = evaluated(tmp_path, made[1:], [])        # none of the usual ones finished
     assert "instead of" not in alone["text"] and alone["quantities"]["distance_99_m"]["usual"] is None
 
 
@@ -90,7 +94,7 @@ def first_page(about):
 
 
 def test_the_first_page_has_the_farthest(tmp_path, rows):
-    about = elastic.evaluate(elastic.Made(0.9, "0", most(tmp_path)), rows, tmp_path)
+    about = evaluated(tmp_path, most(tmp_path), rows)
     assert first_page(about) == " With the most elastic rock, a restitution of 0.9, within 120 m."
     assert client_part.most_elastic(SimpleNamespace(study={}), Numbers()) == ""     # of an older version
 

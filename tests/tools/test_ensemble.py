@@ -467,9 +467,8 @@ def test_what_an_ensemble_says_in_words():
         "caveat: why"]
 
 
-@pytest.mark.parametrize("key", ["text", "told"])       # the latter in older files
-def test_a_report_says_what_the_emulator_is_worth(key):
-    entry = {key: "as it is", "variables": {"a": dict.fromkeys(ensemble.emulator.SIGN, 0.5)}}
+def test_a_report_says_what_the_emulator_is_worth():
+    entry = {"text": "as it is", "variables": {"a": dict.fromkeys(ensemble.emulator.SIGN, 0.5)}}
     study = {"ensemble": {"of": None, "quantities": {"front_m": {"name": "farthest ball"}},
                           "influence": {"front_m": entry}}}
     part = ensemble_part.Ensemble(types.SimpleNamespace(study=study), None)

@@ -128,7 +128,7 @@ def test_known_of_site_yaml_reaches_the_study(mine, capsys, monkeypatch):  # noq
         found = known_events.mobility_of(condition, mine, mine)
         assert found.law.path == path and found.in_range and (condition.found.strict is not None) == named
         assert asked.about() == {"set": None if given == "null" else given, "left_out": [], "confined": "unknown"}
-        kept = results.known_of(results.Questions({}, {}, (), known=site_choices.load(mine).choices["known"]))
+        kept = results.Questions({}, {}, (), known=site_choices.load(mine).choices["known"]).among
         assert kept == {"set": asked.about()["set"], "confined": "unknown"}
         assert known.of_about(kept).row == asked.row
     with pytest.raises(SlopeError, match="--known: must be a set that covers the mass"):

@@ -27,7 +27,8 @@ from slope_tools.drawing import figures
 from slope_tools.plots import (figure_charts, figure_maps, ground as report_ground,
                                section as report_section)
 from slope_tools.report import data as report_data, paper
-from slope_tools.studies import results
+from slope_tools.deposits import travel_shares
+from slope_tools.studies import outcome
 from slope_tools.tables import judged
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
@@ -140,14 +141,14 @@ def change(folder, function):
             if row["status"] == "finished" and row["summary"] == str(path.relative_to(folder)):
                 known = judged.columns(summary, SimpleNamespace(notes=[], warnings=[]))
                 row.update({key: known[key] for key in known if key not in ("release", "log_warnings", "released_m3")},
-                           front_m=summary["travel"]["front"], **results.travel_shares.columns(summary))
-                key = results.travel_shares.DISTANCE
+                           front_m=summary["travel"]["front"], **travel_shares.columns(summary))
+                key = travel_shares.DISTANCE
                 about["largest"].pop(key, None)
     if about:
         finished = [row for row in about["runs"] if row["status"] == "finished"]
-        about["largest"]["front_m"] = results.largest(finished, "front_m")
+        about["largest"]["front_m"] = outcome.largest(finished, "front_m")
         if all(row[key] is not None for row in finished):
-            about["largest"][key] = results.largest(finished, key)
+            about["largest"][key] = outcome.largest(finished, key)
         (folder / "study.yaml").write_text(yaml.safe_dump(about))
 
 
@@ -456,7 +457,7 @@ def test_the_run_that_lost_most_went_farthest(slope, here):
         for row, share, distance, front in zip(about["runs"], lost, distances, fronts):
             row.update(lost_m3=share * row["released_m3"], distance_99_m=distance, front_m=front)
         path.write_text(yaml.safe_dump(about))
-        assert results.travel_shares.farthest(about["runs"]) is farthest
+        assert travel_shares.farthest(about["runs"]) is farthest
         assert report_data.Data(Path("out")).result.name == farthest["run"]
 
 

@@ -132,6 +132,30 @@ def test_what_stands_first(slope, here, case):
         assert f"<code>{html.escape(remedy)}</code>" in page
 
 
+GROWTH = {"median": 1.2, "low": 0.9, "high": 1.5, "slides": 10, "finest": 17.0}
+
+
+@pytest.mark.parametrize("run, balls, growth, said", [
+    ("", None, None, "so that the number cannot be called conservative."),
+    ("", 2.5, GROWTH, "from 2.5 to up to 17 balls over the thickness 10 slides brought 1.20 (median; 0.90 to 1.50)"),
+    ("finished", 5.0, GROWTH, "finest of the model's balls are 5 over the thickness"),
+    ("failed", None, None, "not finish")])
+def test_a_study_alone_whose_balls_are_coarse_says_at_least(slope, here, run, balls, growth, said):
+    """With its band and parts, why, by which factors others grew, and what the largest of them makes of it."""
+    best, path = stands("repeated"), here / "repeated" / "study.yaml"
+    size = {"code": "size of balls", "numbers": {"run": run, "balls_thick": balls, "enough": 16.0, "growth": growth}}
+    path.write_text(yaml.safe_dump({**yaml.safe_load(path.read_text()), "headline": headline_of(
+        "floor", volume_m3=best["rounded"]["volume_m3"], source="paper", ensemble=None, reasons=[size])}))
+    assert slope("repeated")[0] == 0
+    text = " ".join(client(here / "repeated" / "report.html").split())
+    volume = best["rounded"]["volume_m3"]
+    assert f"at least {volume:,.6g} m³" in text and "Another run gives" in text and said in text
+    assert ("the slide that grew most" in text) == bool(growth) and not TOOLS_WORDS.search(text)
+    if growth:
+        grown = float(re.search(r"the slide that grew most, ([\d,.]+) m³", text)[1].replace(",", ""))
+        assert grown == pytest.approx(1.5 * volume, rel=0.01)
+
+
 def weighted(quantities=None, reached=0.9, gap=None):
     """The data of a study of three runs that known events weigh."""
     rows = [{"run": name, "distance_99_m": far, "remove_on_road_m3": on, "blocked_m": 40.0, "beyond_road_m3": 0.0}

@@ -449,7 +449,7 @@ def test_a_volume_of_frank_by_polygon(tmp_path):
 
 # --- the budget ---
 
-SOIL = site_budget.Soil(2000.0, 5.0, 47.0)
+SOIL = site_budget.Soil(2000.0, 5.0, 47.0, 0.9)
 
 
 def budget(**balls):
@@ -480,8 +480,7 @@ def test_the_run_time_in_the_deck_is_that_of_one_run():
     step = 1.5 * 0.25 * 0.05 * size.diameter / 60.0     # at 60 m/s a contact overlaps by a twentieth of the diameter
     found = site_numbers(choices, SOIL._replace(speed=60.0), trial, size)
     assert found.run_seconds == pytest.approx(0.5 + 15 / step * (3e-5 + size.balls * 1e-7))
-    choices["model"]["spacing"] = 0.35
-    found = site_numbers(choices, SOIL._replace(speed=60.0), trial, size)
+    found = site_numbers(choices, SOIL._replace(speed=60.0, spacing=0.35), trial, size)
     assert found.run_seconds == pytest.approx(0.5 + 1.5 * 15 / step * (3e-5 + size.balls * 1e-7))
 
 
@@ -491,20 +490,19 @@ def test_a_slow_mass_has_the_stiffness_that_its_weight_needs(d, thick, number):
     mass = 2000 * np.pi / 6 * d ** 3
     kn = number * 2000 * 0.6 * 9.80665 * thick * d
     for speed in (1.0, 10.0):
-        soil = site_budget.Soil(2000.0, thick, speed)
-        assert site_budget.time_step(d, soil, 0.9) == pytest.approx(1.5 * 0.25 * (mass / kn) ** 0.5)
-        assert site_budget.time_step(d, soil, 0.39) == pytest.approx(0.25 * (mass / kn) ** 0.5)
-    assert site_budget.time_step(d, soil._replace(speed=300.0), 0.9) < site_budget.time_step(d, soil, 0.9)
+        soil = site_budget.Soil(2000.0, thick, speed, 0.9)
+        assert site_budget.time_step(d, soil) == pytest.approx(1.5 * 0.25 * (mass / kn) ** 0.5)
+        assert site_budget.time_step(d, soil._replace(spacing=0.39)) == pytest.approx(0.25 * (mass / kn) ** 0.5)
+    assert site_budget.time_step(d, soil._replace(speed=300.0)) < site_budget.time_step(d, soil)
 
 
 @pytest.mark.parametrize("factor", [10.0, 0.1])
 @pytest.mark.parametrize("speed", [3.0, 90.0])
 def test_scaled_lengths_have_a_scaled_step(factor, speed):
     """Froude: times and speeds go with the root of the lengths, by weight and by speed."""
-    soil = site_budget.Soil(3000.0, 12.0, speed)
-    other = site_budget.Soil(3000.0, 12.0 * factor, speed * factor ** 0.5)
-    assert site_budget.time_step(1.5 * factor, other, 0.9) == pytest.approx(
-        factor ** 0.5 * site_budget.time_step(1.5, soil, 0.9))
+    soil = site_budget.Soil(3000.0, 12.0, speed, 0.9)
+    other = site_budget.Soil(3000.0, 12.0 * factor, speed * factor ** 0.5, 0.9)
+    assert site_budget.time_step(1.5 * factor, other) == pytest.approx(factor ** 0.5 * site_budget.time_step(1.5, soil))
 
 
 def test_no_speed_is_below_that_of_the_trial_run():
@@ -526,7 +524,7 @@ def test_a_second_trial_tells_how_long_most_runs_take():
 
     choices = site_choices.complete({"terrain": {"files": ["dem.tif"]}, "balls": {"minutes": 1.0}})
     wanted = site_budget.plan(choices)
-    took = [site_budget.study_seconds(2.0, 3e4, one, SOIL, 0.9, wanted, 2) for one in (fine, both)]
+    took = [site_budget.study_seconds(2.0, 3e4, one, SOIL, wanted, 2) for one in (fine, both)]
     assert took[0] == took[1]
 
 
@@ -549,8 +547,8 @@ def test_two_trials_tell_what_a_step_costs_and_what_a_ball(order):
                      for n in (800, 266)[::order])
     both = site_budget.joined(first, second)
     assert (both.balls, both.step, both.cost) == (800, pytest.approx(30e-6), pytest.approx(50e-9))
-    steps = 45.0 / site_budget.time_step(1.0, SOIL, 0.9)
-    assert both.run(1.0, 16000, SOIL, 0.9) == pytest.approx(0.5 + steps * 830e-6)
+    steps = 45.0 / site_budget.time_step(1.0, SOIL)
+    assert both.run(1.0, 16000, SOIL) == pytest.approx(0.5 + steps * 830e-6)
     same = site_budget.joined(first, second._replace(cost=first.cost / 2 if order > 0 else first.cost * 2))
     assert same.step >= 0 and same.cost > 0         # noise: nothing is below 0
 

@@ -59,9 +59,14 @@ def chance(share: float, low: float, high: float) -> str:
     return f"at least {percent(low)}" if share >= 1 else f"{percent(share)} ({percent(low)} to {percent(high)})"
 
 
+def three_at_least(value: float) -> str:
+    """A number as lengths are written, on the console as on a page: 0.523, 167, 1,234."""
+    return rounded(value, SIGNIFICANT)
+
+
 def metres(value: float) -> str:
-    """A length with its unit, with three digits at least, on the console as on a page: 0.523 m, 167 m, 1,234 m."""
-    return f"{rounded(value, SIGNIFICANT)} m"
+    """A length with its unit."""
+    return f"{three_at_least(value)} m"
 
 
 # --- the rule of reports: three significant digits, SI prefixes, words for nothing ---

@@ -135,29 +135,15 @@ def is_number(value):
         return False
 
 
-_ours = set()       # folders that this process works in
-
-
 @contextmanager
 def alone_in(folder, what="study"):
-    """No other process works in a folder meanwhile; the lock goes when the process does. SlopeError if one does.
-
-    A part of a command that has the folder already does not wait for it.
-    """
-    place = os.path.realpath(folder)
-    if place in _ours:
-        yield
-        return
+    """No other process works in a folder meanwhile; the lock goes when the process does. SlopeError if one does."""
     with open(Path(folder) / ".lock", "w", encoding="ascii") as lock:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
             raise SlopeError(folder, f"must not be in use by another {what}: wait for it, or end it") from None
-        _ours.add(place)
-        try:
-            yield
-        finally:
-            _ours.discard(place)
+        yield
 
 
 def beside_folder(folder: Path) -> Path:

@@ -19,7 +19,7 @@ from ..sites.site_choices import Site
 from ..sites.site_bodies import VARIABLE
 from ..sites.site_layers import ROAD
 from ..statistics.answer import Source
-from ..studies import ahead, fine_runs, results, site_ground, site_study, study
+from ..studies import ahead, files, fine_runs, results, site_ground, site_study, study
 from ..studies.study import OfAKind, RunsFailed, check_more_than, check_thresholds, perform
 from ..survey import roads
 from ..tables import answer_words, answered, elastic, intensity
@@ -99,7 +99,7 @@ class Request(Sample, known_arguments.Known, Repeats, Intensity, Runs):
 def run(args: Request) -> None:
     """Do the command; raises SlopeError on bad input, and after all other runs when one failed."""
     if args.deck.is_dir() and (args.output is None or (args.deck / site_choices.NAME).exists()):
-        with study.alone(args.deck, args.dry_run):
+        with study.alone(args.deck, args.dry_run or not (args.deck / site_choices.NAME).is_file()):
             return run_folder(args, site_choices.load(args.deck))
     if args.paper:
         raise SlopeError("--paper", "must be given with the folder of a site", args.deck)
@@ -150,7 +150,7 @@ def run_both(args: Request, asked: Site, points: int) -> None:
     for name, about in made.items():
         made[name] = {**about, "study": {**about["study"], "governs": governs}, **(
             {"headline": found.about()} if found else {}), elastic.ENTRY: (paper.about or {}).get(elastic.ENTRY)}
-        results.write(site / name, made[name])
+        files.write_about(site / name, made[name])
     for name, about in made.items():
         if name != governs:
             write_report(site / name, site / PAGES[name], about, asked, film=False)

@@ -5,7 +5,7 @@ Order of the work: the numbers of each quantity (hazard.py), which variables it 
 """
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, Optional, Sequence
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from ..case import run_folders
 from ..deposits import travel_shares
 from ..errors import SlopeError
 from ..findings import Finding, entries, texts
+from ..mobility.exceedance import Mobility
 from ..statistics import emulator, hazard
 from ..tables import combinations, quantities, withheld_words
 from ..tables.quantities import On
@@ -51,11 +52,20 @@ def check_quantity(of: Optional[str], road: bool) -> str:
     return of
 
 
-def evaluate(order: Order, rows: Sequence[Mapping[str, Any]], output: Path, place, grids: Optional[str]):
-    """What study.yaml says of an ensemble (None where all runs failed); writes its tables and maps to output.
+class Evaluated(NamedTuple):
+    """about: what study.yaml says of an ensemble, but for its maps; curves, analyses: of its quantities; finished: rows
+    of the planned runs that did, of so many points, as failed did not; known: weighted by known events."""
+    about: Dict[str, Any]
+    curves: Mapping[str, hazard.Curve]
+    analyses: Mapping[str, emulator.Analysis]
+    finished: Sequence[Mapping[str, Any]]
+    points: int
+    failed: int
+    known: Optional[known_events.Evaluated]
 
-    rows: of study.csv, finished and failed; place: CRS and offset of the maps; grids: why there can be no maps.
-    """
+
+def evaluate(order: Order, rows: Sequence[Mapping[str, Any]], mobility: Optional[Mobility]) -> Optional[Evaluated]:
+    """What an ensemble says, None where all runs failed; rows: of study.csv; mobility: of an order with a condition."""
     planned = [row for row in rows if not row.get("batch")]
     finished = [row for row in planned if row["status"] == "finished"]
     if not finished:
@@ -76,17 +86,29 @@ def evaluate(order: Order, rows: Sequence[Mapping[str, Any]], output: Path, plac
                 for name in main}
     about["influence"] = {name: one.about() for name, one in analyses.items()}
     about["doubts"] = entries([*no_effect(finished), *doubts(about)])
-    about["maps"] = [] if grids else ensemble_maps.write(
-        output / MAPS, [run_folders.prefix_of(run_folders.summary_of(output, row)) for row in finished],
-        len(set(point)), failed, order.levels, place)
-    about["known_events"] = None
+    about.update(maps=[], known_events=None)
+    known = None
     if order.condition:
-        assert order.added
-        about["known_events"] = known_events.evaluate(
-            order.condition, order.sample, order.added, rows, output, of_quantity, main, order.levels, place, grids)
-    disk.write(output / HAZARD, hazard.table(curves))
-    disk.write(output / INFLUENCE, influence_table(analyses))
-    return about
+        assert order.added and mobility
+        known = known_events.evaluate(order.condition, order.sample, order.added, rows, mobility, of_quantity, main)
+        about["known_events"] = known.about
+    return Evaluated(about, curves, analyses, finished, len(set(point)), failed, known)
+
+
+def write(found: Evaluated, levels: ensemble_maps.Thresholds, output: Path, place,
+          grids: Optional[str]) -> Dict[str, Any]:
+    """Tables and maps; the entries of the maps, as study.yaml has them, of the ensemble and of its known events.
+
+    place: CRS and offset of the maps; grids: why there can be none.
+    """
+    maps: Dict[str, Any] = {"maps": [] if grids else ensemble_maps.write(
+        output / MAPS, [run_folders.prefix_of(run_folders.summary_of(output, row)) for row in found.finished],
+        found.points, found.failed, levels, place)}
+    if found.known:
+        maps["known_events"] = {**found.known.about, **known_events.write(found.known, levels, output, place, grids)}
+    disk.write(output / HAZARD, hazard.table(found.curves))
+    disk.write(output / INFLUENCE, influence_table(found.analyses))
+    return maps
 
 
 def points_of(sample: Sample, finished: Sequence[Mapping[str, Any]]) -> List[int]:

@@ -6,14 +6,14 @@ Order of the work: where known events end on the path of this mass (mobility), t
 """
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
 from .. import disk
 from ..case import logs, run_folders
 from ..deposits import deposit
-from ..digits import metres, percent
+from ..digits import metres, percent, three_at_least
 from ..errors import SlopeError
 from ..findings import Finding, entries, texts
 from ..mobility import body, exceedance, known, run_length, weights
@@ -117,27 +117,29 @@ class Runs:
                                   self.sample.snap)
 
 
-def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: Sequence[Mapping[str, Any]],
-             output: Path, names: Mapping[str, Tuple[str, str]], main: Sequence[str], levels, place,
-             grids) -> Dict[str, Any]:
-    """What study.yaml says of the weighted runs; writes their tables and maps to output.
+class Evaluated(NamedTuple):
+    """about: what study.yaml says of the weighted runs, but for their maps; runs: None where nothing weighs them."""
+    about: Dict[str, Any]
+    runs: Optional[Runs]
+    curves: Mapping[str, hazard.Curve]
 
-    rows: of study.csv, finished and failed; names: {column: (what, unit)} of the quantities; main: those whose
-    dependence counts; levels, place, grids: of the maps, see ensemble.evaluate.
+
+def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: Sequence[Mapping[str, Any]],
+             found: exceedance.Mobility, names: Mapping[str, Tuple[str, str]], main: Sequence[str]) -> Evaluated:
+    """What the weighted runs say.
+
+    rows: of study.csv, finished and failed; found: the mass among known events; names: {column: (what, unit)} of the
+    quantities; main: those whose dependence counts.
     """
-    first = next(row for row in rows if row["status"] == "finished")
-    summary = run_folders.summary_of(output, first)
-    found, asked = mobility_of(condition, summary.parent, summary), condition.asked
+    asked = condition.asked
     about: Dict[str, Any] = {
         "set": asked.name(found), "events": asked.number(found), "left_out": list(asked.left_out),
         "confined": asked.confined, "path": exceedance.WORDS[found.chosen], "volume_Mm3": found.volume,
         "outside": found.outside}
-    for name in (HAZARD, WEIGHTS):
-        (output / name).unlink(missing_ok=True)         # of a study before this one
     runs = Runs(sample, added.batches, rows, found)
     if found.outside or len(runs.rows) < 2:
-        return {**about, "reached": None, "doubts": entries(
-            [Finding("no event", {"text": text}) for text in found.outside] or [Finding("few lengths")])}
+        return Evaluated({**about, "reached": None, "doubts": entries(
+            [Finding("no event", {"text": text}) for text in found.outside] or [Finding("few lengths")])}, None, {})
     about.update(reach(runs, found), added=added.about())
     names = {name: one for name, one in names.items()
              if name not in NOT_FARTHER and not name.endswith("_deg") and runs.have(name)}
@@ -155,12 +157,22 @@ def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: S
     about["influence"] = {name: known_influence.evaluate(runs, name) for name in main[:1]}
     about["doubts"] = entries(doubts(about, runs))
     about["weights"] = whole_weights(runs)
-    about["maps"] = [] if grids else known_maps.write(
-        output / FOLDER, [run_folders.prefix_of(run_folders.summary_of(output, row)) for row in runs.rows], runs.mass,
-        runs.several, runs.failed_share, levels, place)
-    disk.write(output / HAZARD, hazard.table(curves))
+    about["maps"] = []
+    return Evaluated(about, runs, curves)
+
+
+def write(one: Evaluated, levels, output: Path, place, grids: Optional[str]) -> Dict[str, Any]:
+    """Tables and maps; the entries of the maps, as study.yaml has them. levels, place, grids: see ensemble.write."""
+    runs = one.runs
+    if runs is None:
+        for name in (HAZARD, WEIGHTS):
+            (output / name).unlink(missing_ok=True)         # of a study before this one
+        return {}
+    disk.write(output / HAZARD, hazard.table(one.curves))
     disk.write(output / WEIGHTS, weights_table(runs))
-    return disk.plain(about)
+    return {"maps": [] if grids else known_maps.write(
+        output / FOLDER, [run_folders.prefix_of(run_folders.summary_of(output, row)) for row in runs.rows], runs.mass,
+        runs.several, runs.failed_share, levels, place)}
 
 
 def quantiles(curve: hazard.Curve, runs: Runs, name: str, shares: Sequence[float]) -> List[Dict[str, Any]]:
@@ -215,7 +227,7 @@ def doubts(about: Mapping[str, Any], runs: Runs) -> List[Finding]:
     if about["reached"] < farther.REACHED and about["short"] > (1 - farther.REACHED) / 2:
         found.append(Finding("events before", {"length": metres(about["shortest_m"]),
                                                "share": percent(about["short"])}))
-    found += [Finding("gap", {"low": metres(gap["low_m"]), "high": metres(gap["high_m"]),
+    found += [Finding("gap", {"low": three_at_least(gap["low_m"]), "high": metres(gap["high_m"]),
                               "share": percent(gap["share"])}) for gap in about["gaps"]]
     if about["effective"] < LEAST_EFFECTIVE:
         found.append(Finding("few effective", {"effective": about["effective"]}))
@@ -261,7 +273,7 @@ def describe(about: Mapping[str, Any], of: Optional[str]) -> List[str]:
 def summary(about: Mapping[str, Any]) -> str:
     added = (about.get("added") or {}).get("points")
     more = f" (those of {added} points towards longer ones among them)" if added else ""
-    return (f"the runs reach from {metres(about['shortest_m'])} to {metres(about['longest_m'])}, where "
+    return (f"the runs reach from {three_at_least(about['shortest_m'])} to {metres(about['longest_m'])}, where "
             f"{percent(about['reached'])} of {about['events']} events of {about['set']} end ({percent(about['short'])} "
             f"before, {percent(about['far'])} beyond{by_lobe(about)}; {about['path']}); weighted by them the "
             f"{about['runs']} runs{more} say as much as {about['effective']:.0f}")

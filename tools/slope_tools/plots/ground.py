@@ -42,9 +42,7 @@ class Ground:
         self.obstacles = obstacles.of_run(one)
         self.mapped = data.mapped
         self.volume = data.largest_release()
-        about = (data.study or {}).get("study", {})
-        # of older files only whether it is confined, if that
-        self.events = {"confined": about.get("confined", "unknown"), **(about.get("known") or {})}
+        self.events = {"confined": "unknown", **((data.study or {}).get("study", {}).get("known") or {})}
         if not self.touched.any():
             raise SlopeError(f"{one.prefix}.max_thickness.asc", "must have a cell that the mass ever touched")
 

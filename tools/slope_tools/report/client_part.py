@@ -9,7 +9,7 @@ from ..deposits import travel_shares
 from ..digits import percent
 from ..ensembles import known_study
 from ..statistics import headline, size_family
-from ..statistics.answer import SHARE, Kind, Reason, Source
+from ..statistics.answer import SHARE, Code, Kind, Reason, Source
 from ..tables import answer_words, combinations, elastic, next_step
 from ..tables.quantities import ALL, DISTANCE
 from . import body, mobility_part, road_part, structures_part, warnings
@@ -159,7 +159,11 @@ def of_nothing(about: Mapping[str, Any], numbers) -> Dict[str, Any]:
 
 def reasons(about: Mapping[str, Any]) -> List[str]:
     """A sentence each, without its full stop; the one that decides comes first."""
-    return [answer_words.client(Reason.read(one)) for one in about["reasons"]]
+    return [reason(Code(one["code"]), one["numbers"]) for one in about["reasons"]]
+
+
+def reason(code: Code, numbers: Mapping[str, Any]) -> str:
+    return answer_words.client(Reason(code, numbers))
 
 
 # --- the number of one study ---

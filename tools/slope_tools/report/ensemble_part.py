@@ -112,10 +112,9 @@ class Ensemble:
                 continue
             what = self.about["quantities"][name]["name"]
             bars = [ensemble_charts.Bar(key, *(one[part] for part in emulator.SIGN)) for key, one in variables.items()]
-            text = entry["text"] if "text" in entry else entry["told"]      # the latter in older files
             title = f"What matters: {what}"
             found.append(Picture(ensemble_charts.influence(bars, title), title,
-                                 f"Sobol indices for {what}, with the error of the total ones; {text}."))
+                                 f"Sobol indices for {what}, with the error of the total ones; {entry['text']}."))
         return found
 
     def scatter(self):

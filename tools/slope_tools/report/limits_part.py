@@ -54,10 +54,7 @@ def shown(numbers, degrees: float, label: str = "") -> str:
 
 
 def zones_of_ground(data, numbers) -> Optional[Section]:
-    """Which zones the ground has, with which values in the shown run.
-
-    None without zones, or where the values of the run are not known.
-    """
+    """Which zones the ground has, with which values in the shown run; None without zones, or where it is no site's."""
     site = data.site
     zones, variables = (site.get("found") or {}).get("zones") or [], data.result.row.get("variables") or {}
     if not zones or not set(site_zones.VALUES.values()) <= set(variables):

@@ -90,12 +90,15 @@ def left(asked: Chain, rows: Sequence[Mapping[str, Any]], effect: Optional[Effec
     return found
 
 
-def evaluate(asked: Chain, rows: Sequence[Mapping[str, Any]], output: Path,
-             withheld: Sequence[Mapping[str, Any]], size: Optional[Mapping[str, Any]] = None) -> Dict[str, Any]:
-    """The entry of study.yaml; writes the tables. rows: of study.csv; withheld: why their volumes may not be used.
+class Evaluated(NamedTuple):
+    """about: the entry of study.yaml; tables: {name of a file: its text}."""
+    about: Dict[str, Any]
+    tables: Dict[str, str]
 
-    size: of its fine run, as study.yaml has it.
-    """
+
+def evaluate(asked: Chain, rows: Sequence[Mapping[str, Any]], withheld: Sequence[Mapping[str, Any]],
+             size: Optional[Mapping[str, Any]] = None) -> Evaluated:
+    """What the runs say; rows: of study.csv; withheld: why their volumes may not be used; size: of the fine run."""
     effect = fine_run.read_effect(size, QUANTITY)
     found, bodies = asked.fragility, left(asked, rows, effect)
     seen = [float(row[QUANTITY]) for row in rows if row["status"] == "finished"]
@@ -104,10 +107,10 @@ def evaluate(asked: Chain, rows: Sequence[Mapping[str, Any]], output: Path,
     volumes = np.unique([*np.linspace(0.0, max(largest, 1.0), LEVELS), *more_than])
     at = np.searchsorted(volumes, more_than)
     family = chain.family(found.capacity, found.peaks, bodies, volumes)
-    disk.write(output / CURVES, table(
+    tables = {CURVES: table(
         ("peak_gal", "volume_m3", "probability", "low", "high"),
         ((peak, volume, *(side[i, k] for side in family)) for i, peak in enumerate(found.peaks)
-         for k, volume in enumerate(volumes))))
+         for k, volume in enumerate(volumes)))}
     about: Dict[str, Any] = {
         "fragility": found.folder.name, "quantity": QUANTITY, "confidence": hazard.CONFIDENCE,
         "bodies": [of_body(asked, name, rows) for name in found.bodies], "more_than_m3": more_than,
@@ -116,14 +119,20 @@ def evaluate(asked: Chain, rows: Sequence[Mapping[str, Any]], output: Path,
                                                zip(("probability", "low", "high"), family)}}
                    for volume, k in zip(more_than, at)],
         "per_year": None, "withheld": list(withheld), "files": [CURVES]}
-    (output / PER_YEAR).unlink(missing_ok=True)      # of a study before this one in the folder
     if found.rate is not None:
         yearly = chain.frequency(found.capacity, found.rate, found.peaks, bodies, volumes)
-        disk.write(output / PER_YEAR, table(("volume_m3", "per_year", "low", "high"), zip(volumes, *yearly.total)))
+        tables[PER_YEAR] = table(("volume_m3", "per_year", "low", "high"), zip(volumes, *yearly.total))
         about["per_year"] = [of_year(yearly, volume, k) for volume, k in zip(more_than, at)]
         about["files"].append(PER_YEAR)
     about["doubts"] = entries([*doubts(about, found.warnings), *of_size(size, effect, max(seen))])
-    return about
+    return Evaluated(about, tables)
+
+
+def write(found: Evaluated, output: Path) -> None:
+    """The tables."""
+    (output / PER_YEAR).unlink(missing_ok=True)      # of a study before this one in the folder
+    for name, text in found.tables.items():
+        disk.write(output / name, text)
 
 
 def of_body(asked: Chain, name: str, rows: Sequence[Mapping[str, Any]]) -> Dict[str, Any]:

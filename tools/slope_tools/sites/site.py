@@ -244,9 +244,10 @@ def room_of(raster: Raster) -> float:
 
 
 def soil_of(choices: Choices, parts: site_deck.Parts) -> site_budget.Soil:
-    """What the stiffness depends on; of the trial run, where the speed is still unknown, by weight alone."""
+    """What the step depends on; of the trial run, where the speed is still unknown, by weight alone."""
     model = choices["model"]
-    return site_budget.Soil(model["density"], parts.body.thick, model["speed"] or site_budget.SLOW)
+    spacing = min([model["spacing"], *(zone.values.get("spacing", model["spacing"]) for zone in parts.zones)])
+    return site_budget.Soil(model["density"], parts.body.thick, model["speed"] or site_budget.SLOW, spacing)
 
 
 def numbers(choices: Choices, soil: site_budget.Soil, trial: Optional[Trial], size: Optional[Size],
@@ -256,7 +257,7 @@ def numbers(choices: Choices, soil: site_budget.Soil, trial: Optional[Trial], si
     d = diameter or (size.diameter if size else 0.0)
     seconds = None
     if trial and size:
-        seconds = trial.run(d, size.balls, soil, model["spacing"])
+        seconds = trial.run(d, size.balls, soil)
     return site_deck.Numbers(d, soil.speed,
                              model["duration"] or site_budget.LONGEST, model["cell"] or 1.0, model["film"] or 1.0,
                              choices["motion"]["peak_friction"] or site_deck.LEAST_PEAK, trial and trial.typical,

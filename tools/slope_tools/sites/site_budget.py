@@ -70,9 +70,9 @@ class Trial(NamedTuple):
         """s of the collapse in most runs of the study; rest is of the first, lowest rolling resistance."""
         return self.rest if self.middle is None else self.middle
 
-    def run(self, d: float, balls: float, soil: "Soil", spacing: float, longer: float = 1.0) -> float:
+    def run(self, d: float, balls: float, soil: "Soil", longer: float = 1.0) -> float:
         """s of a core that a run with balls of diameter d (m) takes."""
-        steps = longer * self.typical / time_step(d, soil, spacing)
+        steps = longer * self.typical / time_step(d, soil)
         return self.setup + steps * (self.step + balls * self.cost)
 
 
@@ -88,15 +88,16 @@ class Size(NamedTuple):
 
 
 class Soil(NamedTuple):
-    """What the stiffness of contacts depends on, beside the diameter of the balls."""
+    """What the time step depends on, beside the diameter of the balls."""
     density: float          # of a ball, kg/m3
     thick: float            # largest thickness of the body, m
     speed: float            # largest, m/s
+    spacing: float          # the least of the ground's balls, diameters: the step depends on it, too
 
 
-def time_step(d: float, soil: Soil, spacing: float) -> float:
-    """The deck's time step (s) for balls of diameter d (m) on ground of that spacing (diameters)."""
-    density, thick, speed = soil
+def time_step(d: float, soil: Soil) -> float:
+    """The deck's time step (s) for balls of diameter d (m)."""
+    density, thick, speed, spacing = soil
     mass = density * math.pi / 6 * d ** 3
     by_weight = STIFFNESS_NUMBER * max(1.0, thick / (LAYERS * d)) * density * packing.SOLID * GRAVITY * thick * d
     by_speed = mass * (speed / (OVERLAP * d)) ** 2
@@ -224,11 +225,10 @@ def plan(choices: Choices) -> Plan:
     return Plan(parts, bool(choices["road"]["file"]), points, text)
 
 
-def study_seconds(d: float, volume: float, trial: Trial, soil: Soil, spacing: float, wanted: Plan,
-                  jobs: int) -> Tuple[float, float]:
+def study_seconds(d: float, volume: float, trial: Trial, soil: Soil, wanted: Plan, jobs: int) -> Tuple[float, float]:
     """What a study takes on this machine, with balls of diameter d in a body of that volume (m3); and at most."""
     def run(size: float, longer: float = 1.0) -> float:
-        return trial.run(size, packing.number(volume, size), soil, spacing, longer)
+        return trial.run(size, packing.number(volume, size), soil, longer)
 
     total = sum(runs * run(factor * d) for factor, runs in wanted.parts)
     if wanted.half_step:
@@ -278,7 +278,7 @@ def size(choices: Choices, volume: float, soil: Soil, trial: Optional[Trial], jo
 
     def seconds(d: float) -> Tuple[float, float]:
         assert trial is not None
-        return study_seconds(d, volume, trial, soil, choices["model"]["spacing"], wanted, jobs)
+        return study_seconds(d, volume, trial, soil, wanted, jobs)
 
     if balls["diameter"]:
         d = balls["diameter"]

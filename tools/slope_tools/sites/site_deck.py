@@ -113,11 +113,12 @@ def zone_values(parts: Parts, model: Mapping[str, Any]) -> List[Dict[str, Any]]:
             of = whole(name, model)
             if not of:
                 continue
-            low, high = LIMITS[name]
-            now += [{"name": f"x_{mine}", "formula": f"v_{mine}*(v_{variable}/{plain(of)})"},
-                    {"name": f"low_{mine}", "formula": f"(v_{mine}<{plain(low)})*v_{mine}"
-                                                       f"+(v_{mine}>={plain(low)})*{plain(low)}"},
-                    {"name": f"now_{mine}", "formula": limited(f"v_x_{mine}", f"v_low_{mine}", plain(high))}]
+            low, high = map(plain, LIMITS[name])
+            own_ = f"v_{mine}"
+            now += [{"name": f"x_{mine}", "formula": f"{own_}*(v_{variable}/{plain(of)})"},
+                    {"name": f"low_{mine}", "formula": f"({own_}<{low})*{own_}+({own_}>={low})*{low}"},
+                    {"name": f"high_{mine}", "formula": f"({own_}>{high})*{own_}+({own_}<={high})*{high}"},
+                    {"name": f"now_{mine}", "formula": limited(f"v_x_{mine}", f"v_low_{mine}", f"v_high_{mine}")}]
             used[variable] = f"${{now_{mine}}}"
         found.append({"word": zone.word, "file": zone.file, "type": number, "own": own, "now": now, "used": used})
     return found

@@ -28,8 +28,8 @@ from .site_choices import Choices
 
 # what a zone may have: the key of site.yaml's model, or of study where it is a list, and what the deck calls it
 VALUES = {"friction": "friction", "rolling": "rolling", "restitution": "field_e", "spacing": "spacing"}
-# of a value that changes with the site's, as far as its own one lies within them
-LIMITS = {"friction": (0.0, 89.0), "restitution": (0.001, 1.0), "spacing": (0.2, site_choices.widest())}
+# of a value that changes with the site's, as far as its own one lies within them: those of the runs of a study
+LIMITS = {"friction": (0.0, 89.0), "restitution": (0.001, 0.9), "spacing": (0.2, site_choices.widest())}
 SHORT = {"restitutio": "restitution"}       # a shapefile's names have ten letters
 NAME, CLASS = "name", "class"
 LIKE = 0.75             # of a name that is meant to be one of these
@@ -257,7 +257,7 @@ def now(zone: Mapping[str, Any], model: Mapping[str, Any], variables: Mapping[st
             own = float(variables.get(f"{variable}_{zone['variables']}", zone[name]))
             of = whole(name, model)
             low, high = LIMITS.get(name, (0.0, 0.0))
-            value = min(max(own * (value / of), min(own, low)), high) if of else own
+            value = min(max(own * (value / of), min(own, low)), max(own, high)) if of else own
         found[variable] = value
     return found
 

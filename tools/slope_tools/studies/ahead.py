@@ -100,6 +100,6 @@ def seconds(site: Site, planned: site_study.Planned, parts: List[Tuple[float, in
     d, density, thick, speed = (float(planned.variables[name]) for name in ("d", "density", "thick", "speed"))
     setup = planned.setup
     wanted = site_budget.plan(planned.choices)._replace(parts=parts, half_step=half, points=points)
-    return site_budget.study_seconds(d, found["body"]["volume"], Trial(**trial), Soil(density, thick, speed),
-                                     site.choices["model"]["spacing"], wanted,
+    soil = Soil(density, thick, speed, site.choices["model"]["spacing"])
+    return site_budget.study_seconds(d, found["body"]["volume"], Trial(**trial), soil, wanted,
                                      setup.jobs or max(1, jobs.cores() // setup.ranks))[0]

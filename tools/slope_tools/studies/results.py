@@ -1,165 +1,67 @@
-"""What came out of the runs of a study: their numbers, the table, the maps over all runs, the conservative volume."""
+"""The runs of a study: read, evaluated (outcome), and shown in files and on the console, side by side."""
 import os
 from pathlib import Path
-from typing import Any, Dict, Mapping, NamedTuple, Optional, Sequence
+from typing import Any, Dict, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 
 from .. import disk, provenance
 from ..case import run_folders
-from ..deposits import gone, travel_shares
-from ..ensembles import ensemble, known_study
-from ..findings import Finding, entries, finding
+from ..deposits import gone
+from ..ensembles import known_events, known_study
+from ..findings import Finding, entries
 from ..releases import release_toe
-from ..runs import repeats
 from ..runs.repeats import Repeat
-from ..seismic import chain_files
 from ..statistics import headline
 from ..survey import rasters, roads
-from ..tables import (answered, combinations, elastic, fine_run, intensity, judged, quantities, road_runs, step_check,
-                      structures, study_table, usable, withheld_words)
+from ..tables import combinations, elastic, fine_run, judged, quantities, structures, usable, withheld_words
 from ..tables.study_maps import Maps
-from . import body_depth, mapped, site_ground
+from . import body_depth, console, files, mapped, site_ground
+from .outcome import Questions, Read, evaluate
 from .setup import Road, Setup
 
 OF_SUMMARY = ("moves", "not counted")      # kinds of warnings
-LIKE = 1.5              # times as many balls over the thickness: values found with fewer, or more, are of another model
-SHOWN = 20              # runs of an ensemble whose table is printed
-
-
-class Questions(NamedTuple):
-    """What is asked of the runs of a study together."""
-    settings: Mapping[str, Sequence[str]]           # of --set: choices
-    repeated: Mapping[str, Sequence[str]]           # of --repeat: chance
-    thresholds: Sequence[float]                     # m, of the maps of exceedance
-    order: Any = None                               # the ensemble.Order that the runs were made for, None of lists
-    intensity: Optional[str] = None                 # variable that is one; None: the one that is called so
-    more_than: Sequence[float] = ()                 # m3, volumes exceeded at each intensity
-    notes: Sequence[Any] = ()                       # warnings of what was before the study, which go into its results
-    site: Optional[Path] = None                     # folder of the site whose study it is
-    fine: Optional[Repeat] = None                   # the run with smaller balls; None: none was asked for
-    step: Optional[step_check.Step] = None          # the run with half the time step
-    most_elastic: Optional[elastic.Made] = None     # the runs with the largest restitution
-    method: str = ""                                # of a site's study, in words
-    chain: Optional[chain_files.Chain] = None       # of an ensemble: how likely its bodies fail in an earthquake
-    known: Mapping[str, Any] = {}                   # of site.yaml: with which known events the runs are compared
 
 
 def collect(setup: Setup, questions: Questions, todo, work) -> Optional[Dict[str, Any]]:
-    """Table, maps and study.yaml over all runs that finished; what the latter says, None where no run of an ensemble
-    finished."""
-    settings, repeated, thresholds, order = questions[:4]
-    output, deck = setup.output, setup.deck
-    if order and all(run.error for run in todo):
+    """Read the runs, evaluate them, write and tell what they say; what study.yaml says, None where no run of an
+    ensemble finished."""
+    if questions.order and all(run.error for run in todo):
         return None     # study.perform says so
-    maps = Maps(thresholds)
-    rows, thickness = rows_of(setup, todo, maps)
-    warnings = [finding(one) for one in questions.notes]
-    warned = {one.kind for one in warnings if not one.part}
-    warnings += [one for one in judged.of_runs(rows) if one.kind not in warned]
-    if maps.problem:
-        warnings.append(finding(maps.problem))
-    finished = [row for row in rows if row["status"] == "finished"]
-    observed = mapped.compare(mapped.of_site(questions.site), output, rows, [terrain_of(run) for run in todo])
-    groups = combinations.grouped(rows)
-    names = combinations.averaged(groups)
-    scatters = combinations.scatters(groups)
+    maps = Maps(questions.thresholds)
     first = next((run for run in todo if not run.error), None)
-    written = maps.write(output, terrain_place(first) if first else None)
-    keys = ["front_m", "thickness_m", "max_thickness_m", "max_speed_m_s"]
-    keys += [key for key in (travel_shares.DISTANCE, "length_m") if key in names]
-    among = known_of(questions)
-    events = events_of(setup, first, finished[0], among) if setup.road and finished else None
-    about = {
-        "study": {"deck": deck.name, "known": among,
-                  "set": settings, "repeat": repeated, "runs": len(rows), "finished": len(finished),
-                  "method": questions.method, "ranks": work.ranks, "jobs": work.jobs, "package": work.package,
-                  "governs": output.name, "collected": provenance.now(), "machine": provenance.machine()},
-        "largest": {key: largest(finished, key) for key in keys if finished},
-        "farthest": travel_shares.farthest(finished)["run"] if finished else None,
-        "conservative": None, "size": None, "ensemble": None, "step": None,
-        elastic.ENTRY: None,
-        "scatter": {name: known and {"deviation": known.deviation, "degrees_of_freedom": known.degrees_of_freedom}
-                    for name, known in scatters.items()},
-        "combinations": combinations.entries(groups, names), **written, "observed": observed,
-        "warnings": entries(warnings), "runs": rows}
-    if setup.road and finished:
-        about["study"]["road"] = write_road(output, setup.road, first, thickness)
-    about["study"]["balls_thick"] = body_depth.in_balls(setup, finished)
-    if questions.fine and finished:
-        about["size"] = fine_run.evaluate(compared(setup, questions.fine, rows, None if order else groups))
-    (output / elastic.FILE).unlink(missing_ok=True)
-    if questions.most_elastic and finished:
-        about[elastic.ENTRY] = elastic.evaluate(questions.most_elastic, rows, output)
-    if order:
-        about["ensemble"] = ensemble.evaluate(order, rows, output, first and terrain_place(first), maps.problem)
-        case = case_of(setup, questions, finished[0])._replace(sampled=True)
-        about["ensemble"]["withheld"] = usable.reasons_of_ensemble(rows, events, case) if setup.road else []
-    elif setup.road and finished:
-        best = about["conservative"] = combinations.conservative(
-            settings, rows, groups, fine_run.read_effect(about["size"], quantities.REMOVE))
-        best["doubts"] += entries(unseen(repeated, work.defaults))
-        if questions.step:
-            about["step"] = step_check.compare(questions.step, groups)
-            best["doubts"] += about["step"].pop("doubts")
-        usable.judge(best, rows, events, case_of(setup, questions, finished[0]))
-    about["headline"] = (said := answered.of_study(about, events and events.road(finished))) and said.about()
-    if setup.road and finished:
-        known = (about["ensemble"] or {}).get("known_events") or {}
-        about["stretches"] = stretches_of(output, finished, known.get("weights"))
-    about["chain"] = chain_files.evaluate(
-        questions.chain, rows, output, about["ensemble"]["withheld"], about["size"]) \
-        if questions.chain and order and finished else None
-    about["intensity"] = intensity.collect(
-        output, questions.intensity, questions.more_than, settings, bool(setup.road), groups, setup.tell) \
-        if finished and not order else None      # of values that are drawn, each has one run
-    if not about["intensity"]:
-        (output / intensity.FILE).unlink(missing_ok=True)       # of a study before this one in the folder
-    else:
-        about["conservative"]["doubts"] += entries(intensity.doubts(about["intensity"]))
-    structures.collect(output, finished, setup.tell)
-    if other := other_thickness(order and order.sample.balls_thick, about["study"]["balls_thick"]):
-        warnings.append(other)
-    about["warnings"] = entries(warnings)
-    for one in warnings:
-        setup.warn(one)
-    disk.write(output / "study.csv", study_table.table(settings, repeated, rows, work.defaults))
-    disk.write(output / "combinations.csv", combinations.table(groups, names, settings))
-    write(output, about)
-    if not order or len(rows) <= SHOWN:
-        setup.tell(study_table.runs_shown(
-            settings, rows, scatters,
-            f"{deck.name}: {len(rows)} run{'s' * (len(rows) != 1)}, volumes in m3 of ground"))
-    if any(scatters.values()) and not order:
-        setup.tell(study_table.combinations_shown(settings, groups, scatters))
-    if about.get("stretches"):
-        setup.tell(f"{output / road_runs.FILE}: {len(about['stretches']['stretches'])} stretches of the road that runs "
-                   "block")
-    setup.tell(f"{output / 'study.yaml'}, {output / 'study.csv'}, {output / 'combinations.csv'}: all numbers")
-    if about["conservative"]:
-        setup.tell("\n".join(combinations.describe(about["conservative"])))
-        if about["step"]:
-            setup.tell(about["step"]["text"])
-    if about["size"]:
-        setup.tell(f"size of the balls: {about['size']['text']}")
-    if questions.most_elastic and finished:
-        setup.tell(about[elastic.ENTRY]["text"])
-    if about["ensemble"]:
-        setup.tell("\n".join(ensemble.describe(about["ensemble"])))
-        setup.tell(f"{output / ensemble.HAZARD}, {output / ensemble.INFLUENCE}: all curves and indices; "
-                   f"{output / ensemble.MAPS}: {len(about['ensemble']['maps'])} maps of quantiles and exceedance")
-    if observed:
-        setup.tell("\n".join(mapped.describe(observed, rows)))
-    if about["chain"]:
-        setup.tell("\n".join(chain_files.describe(about["chain"], output)))
-    for entry in [*(written["envelope"] or {}).values(), *(written["exceedance"] or ())]:
-        setup.tell(f"{output / entry['file']}: {entry['what']}")
+    found, thickness = read(setup, questions, todo, maps, work.defaults)
+    outcome = evaluate(questions, found)
+    header = {"deck": setup.deck.name, "known": questions.among, "set": questions.settings,
+              "repeat": questions.repeated, "runs": len(found.rows), "finished": len(found.finished),
+              "method": questions.method, "ranks": work.ranks, "jobs": work.jobs, "package": work.package,
+              "governs": setup.output.name, "balls_thick": found.balls_thick, "collected": provenance.now(),
+              "machine": provenance.machine()}
+    if setup.road and first:
+        header["road"] = write_road(setup.output, setup.road, first, thickness)
+    about = files.write(outcome, header, maps, setup.output, terrain_place(first) if first else None)
+    console.tell(outcome, about, setup.output, setup.tell, setup.warn)
     return about
 
 
-def write(output: Path, about: Mapping[str, Any]) -> None:
-    """study.yaml."""
-    disk.write(output / "study.yaml", disk.yaml_text(answered.TITLE, about))
+def read(setup: Setup, questions: Questions, todo, maps: Maps, defaults: Mapping[str, str]) -> Tuple[Read, Any]:
+    """What an Outcome is evaluated from, and the thickness of the last run that finished; rasters go to the maps."""
+    rows, thickness = rows_of(setup, todo, maps)
+    observed = mapped.compare(mapped.of_site(questions.site), setup.output, rows, [terrain_of(run) for run in todo])
+    first = next((run for run in todo if not run.error), None)
+    row = next((row for row in rows if row["status"] == "finished"), None)
+    events = mobility = fine = None
+    if row and setup.road:
+        events = events_of(setup, first, row, questions.among)
+    if row and questions.order and questions.order.condition:
+        summary = run_folders.summary_of(setup.output, row)
+        mobility = known_events.mobility_of(questions.order.condition, summary.parent, summary)
+    if row and questions.fine:
+        fine = compared(setup, questions.fine, rows, None if questions.order else combinations.grouped(rows))
+    most = elastic.read(questions.most_elastic, rows, setup.output) if row and questions.most_elastic else None
+    return Read(rows, setup.road is not None, events, mobility, observed, fine, most, maps.problem,
+                case_of(setup, questions, row) if row else None,
+                body_depth.in_balls(setup, [one for one in rows if one["status"] == "finished"]), defaults), thickness
 
 
 def compared(setup: Setup, fine: Repeat, rows: Sequence[Mapping[str, Any]],
@@ -185,19 +87,6 @@ def compared(setup: Setup, fine: Repeat, rows: Sequence[Mapping[str, Any]],
     return fine_run.Fine(row, coarse, body_depth.mean(setup, row), scatter)
 
 
-def other_thickness(found: Optional[float], here: Optional[float]) -> Optional[Finding]:
-    """That calibrated values were found with so many balls over the thickness of the body, and are used with others."""
-    if found is None or here is None or max(found, here) <= LIKE * min(found, here):
-        return None
-    return Finding("other thickness", {"found": found, "here": here})
-
-
-def known_of(questions: Questions) -> Mapping[str, Any]:
-    """With which known events the runs are compared: the ensemble's, or those of site.yaml; for known.of_about()."""
-    condition = questions.order and questions.order.condition
-    return condition.asked.about() if condition else questions.known
-
-
 def events_of(setup: Setup, run, row, among: Mapping[str, Any]) -> Optional[usable.Events]:
     """What known events did of the mass of a run, of its row."""
     summary = run_folders.summary_of(setup.output, row)
@@ -210,13 +99,6 @@ def case_of(setup: Setup, questions: Questions, row) -> withheld_words.Case:
     asked = " --paper" if questions.method == known_study.ASKED else ""
     return withheld_words.Case(setup.deck, questions.site, row["variables"], round(row["released_m3"] / row["ball_m3"]),
                                asked=asked)
-
-
-def unseen(repeated, defaults):
-    """The caveat that the scatter is incomplete: only seeds were repeated, though the deck can place its balls anew."""
-    offsets = repeats.only_seeds(repeated, defaults)
-    return [Finding("not repeated", {"repeated": ", ".join(repeated), "offsets": ", ".join(offsets)})] \
-        if offsets else []
 
 
 def rows_of(setup: Setup, todo, maps):
@@ -315,16 +197,6 @@ def write_road(output, road: Road, run, thickness) -> Dict[str, Any]:
     return {**road.about(), "local": "road.csv"}
 
 
-def stretches_of(output, rows, known) -> Dict[str, Any]:
-    """What study.yaml says of the stretches that finished runs block; known: weights by known events, or None."""
-    weights = known or {row["run"]: 1.0 for row in rows if not row.get("batch")}
-    about = road_runs.evaluate([road_runs.Run(weights[row["run"]], row["stretches"], row["clearing"])
-                                for row in rows if row["run"] in weights])
-    head, *lines = road_runs.rows(about)
-    disk.write(output / road_runs.FILE, disk.csv_text(head, lines))
-    return {**about, "of_known_events": bool(known)}
-
-
 def terrain_place(run):
     """CRS and offset of the runs' local metres, from the sidecar of their terrain; None without one."""
     return run.log.terrain and rasters.read_sidecar(run.folder / run.log.terrain)
@@ -333,9 +205,3 @@ def terrain_place(run):
 def terrain_of(run):
     """The terrain file of a run, None without one."""
     return run.folder / run.log.terrain if run.log.terrain else None
-
-
-def largest(rows, key):
-    """The largest value of a column and the first run that has it."""
-    best = max(rows, key=lambda row: row[key])
-    return {"value": best[key], "run": best["run"]}

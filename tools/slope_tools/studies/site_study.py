@@ -6,7 +6,7 @@ Order of the work: plan all runs, make them (study), what the fine run and half 
 import shutil
 from pathlib import Path
 from shlex import quote
-from typing import Any, Dict, Iterable, List, NamedTuple, Optional
+from typing import Any, Dict, Iterable, List, Mapping, NamedTuple, Optional
 
 from .. import disk, schemas
 from ..case import decks, run_folders
@@ -21,7 +21,6 @@ from ..sites.site_layers import OBSERVED, ROAD
 from ..survey.roads import Asked
 from ..tables import elastic, energy, named_run
 from ..tables.step_check import QUANTITY, Step, half_of
-from ..tables.study_file import read_study
 from . import fine_runs, mapped, results, study
 from .setup import Road, Setup
 
@@ -115,7 +114,7 @@ def run(site: Site, engine: Setup, method: str, asked: Optional[str] = None) -> 
     if planned.choices["observed"]["file"]:
         shutil.rmtree(folder / SCORE, ignore_errors=True)       # of other runs
         try:
-            scored(folder, setup)
+            scored(folder, setup, about)
         except Exception as error:      # whatever it is, the runs took hours: their report comes first
             failed = failed or error
     return Done(setup.output, about, failed)
@@ -195,13 +194,11 @@ def elastic_of(setup: Setup, runs: List[repeats.Repeat]) -> Optional[elastic.Mad
     return elastic.Made(float(runs[0].chosen[elastic.VARIABLES[0]]), runs[0].chosen["rolling"], rows)
 
 
-def scored(folder: Path, setup: Setup) -> None:
-    """Compare the governing run with the mapped deposit."""
+def scored(folder: Path, setup: Setup, about: Mapping[str, Any]) -> None:
+    """Compare the governing run with the mapped deposit; about: what study.yaml says."""
     from ..deposits import score_run
-    path = setup.output / "study.yaml"
-    read_study(path)        # SlopeError unless it is one
-    name, place = run_folders.governing_run(path, named_run.farthest)
-    [summary] = run_folders.summaries(place)
+    name = run_folders.governing(about, named_run.farthest)
+    summary = next(run_folders.summary_of(setup.output, row) for row in about["runs"] if row["run"] == name)
     outline = folder / f"{OBSERVED}.csv"
     setup.tell(f"{name} against the mapped deposit:")
     setup.tell(score_run.make(str(run_folders.prefix_of(summary)),

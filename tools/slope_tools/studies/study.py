@@ -3,7 +3,7 @@ import argparse
 import contextlib
 import functools
 from pathlib import Path
-from typing import Any, Callable, Iterator, NamedTuple, Optional, Sequence
+from typing import Any, Callable, Iterator, NamedTuple, Optional, Sequence, Set
 
 from .. import disk
 from ..case import decks
@@ -62,13 +62,19 @@ def program_of(setup: Setup) -> Optional[Path]:
         return None
 
 
+_ours: Set[Path] = set()      # folders that this command works in
+
+
 @contextlib.contextmanager
 def alone(folder: Path, only_read: bool = False) -> Iterator[None]:
-    """No other command works in a folder meanwhile, unless this one only reads."""
+    """No other command works in a folder meanwhile, unless this one only reads; within it, a study has it already."""
+    place = folder.resolve()
     with contextlib.ExitStack() as stack:
         try:
-            if not only_read:
+            if not only_read and place not in _ours:
                 stack.enter_context(disk.alone_in(folder))
+                _ours.add(place)
+                stack.callback(_ours.discard, place)
         except OSError as error:
             raise SlopeError(folder, f"cannot be used: {error.strerror}") from error
         yield
@@ -92,7 +98,7 @@ def prepared(setup: Setup, files, number):
     try:
         setup.home.mkdir(parents=True, exist_ok=True)
         inputs = setup.runs / ".inputs"
-        with disk.alone_in(setup.home), jobs.signals_interrupt(), jobs.copied(files, inputs) as digests:
+        with alone(setup.home), jobs.signals_interrupt(), jobs.copied(files, inputs) as digests:
             setup.output.mkdir(parents=True, exist_ok=True)
             yield make(setup.deck, digests, inputs, lmp, setup.ranks, most, setup.launcher, setup.older, setup.anew)
     except OSError as error:

@@ -78,10 +78,9 @@ def road_of(about: Mapping[str, Any]) -> Optional[Road]:
     one = (about.get("headline") or {}).get("road")
     if not one:
         return None
-    (reached, more_reached), (passed, more_passed), longest = one["reached"], one["passed"], one["longest_m"]
-    near = longest is not None and longest >= one["near_m"]     # of an older version
-    brought = AtRoad(**one["brought"]) if one.get("brought") else AtRoad(1, int(near), 0, 0.0, 0.0)
-    return Road(one["near_m"], one["far_m"], (reached, more_reached), (passed, more_passed), longest, brought)
+    (reached, more_reached), (passed, more_passed) = one["reached"], one["passed"]
+    return Road(one["near_m"], one["far_m"], (reached, more_reached), (passed, more_passed), one["longest_m"],
+                AtRoad(**one["brought"]))
 
 
 def governing(paper: Path, ensemble: Path) -> Path:
@@ -96,6 +95,9 @@ def governing(paper: Path, ensemble: Path) -> Path:
     names = {(about.get("study") or {}).get("governs") for about in said.values()}
     if len(names) == 1 and (named := [one for one in there if one.name in names]):
         return named[0]
+    number, other = (about.get("headline") for about in said.values())
+    if number and number == other:
+        return paper if number["source"] == answer.Source.PAPER.value else ensemble
     return max(there, key=lambda one: made(said[one]))
 
 

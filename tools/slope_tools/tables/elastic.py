@@ -24,23 +24,33 @@ class Made(NamedTuple):
     rows: Sequence[Row]
 
 
-def evaluate(made: Made, rows: Sequence[Row], output: Path) -> Dict[str, Any]:
-    """The entry of study.yaml; rows: of the study's own runs. Writes FILE."""
-    elastic = with_area(made.rows, output)
+class Runs(NamedTuple):
+    """Those that finished, with the areas of their deposits; others: of the study's own runs."""
+    made: Made
+    elastic: Sequence[Row]
+    others: Sequence[Row]
+
+
+def read(made: Made, rows: Sequence[Row], output: Path) -> Runs:
+    """rows: of the study's own runs, in whose folder their summaries are named."""
+    return Runs(made, with_area(made.rows, output), with_area((row for row in rows if not row.get("batch")), output))
+
+
+def evaluate(runs: Runs) -> Dict[str, Any]:
+    """The entry of study.yaml."""
+    made, elastic, others = runs
     about: Dict[str, Any] = {
         "restitution": made.restitution, "rolling": made.rolling, "thicker_than_m": THICK,
         "runs": [row["run"] for row in elastic],
         "failed": [row["run"] for row in made.rows if row["status"] != "finished"],
         "moving": [row["run"] for row in elastic if not row["at_rest"]], "quantities": {}}
     if elastic:
-        others = with_area((row for row in rows if not row.get("batch")), output)
         same = [row for row in others if all(row["variables"].get(name) == elastic[0]["variables"].get(name)
                                              for name in row["set"] if name not in VARIABLES)]
         for key in COMPARED:
             found = spread(elastic, key)
             if found is not None:
                 about["quantities"][key] = dict(found, usual=spread(same, key), study=spread(others, key))
-        disk.write(output / FILE, table(elastic, others))
     return {**about, "text": words(about)}
 
 
@@ -62,11 +72,13 @@ def spread(rows: Sequence[Row], key: str) -> Optional[Dict[str, float]]:
     return {"mean": sum(values) / len(values), "low": min(values), "high": max(values)}
 
 
-def table(elastic: Sequence[Row], others: Sequence[Row]) -> str:
-    """A line for each run, those with the largest restitution first."""
+def table(runs: Runs) -> str:
+    """The CSV: a line for each run, those with the largest restitution first; "" where none of these finished."""
+    if not runs.elastic:
+        return ""
     return disk.csv_text(["run", ENTRY, *COMPARED],
                          ([row["run"], largest, *(row.get(key) for key in COMPARED)]
-                          for largest, several in (("yes", elastic), ("no", others)) for row in several))
+                          for largest, several in (("yes", runs.elastic), ("no", runs.others)) for row in several))
 
 
 # --- words ---

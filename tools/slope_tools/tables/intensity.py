@@ -6,8 +6,7 @@ than a volume v: P(V > v) is k/n, with the interval of Clopper and Pearson (Biom
 """
 import math
 import re
-from pathlib import Path
-from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 from rich.table import Table
 
@@ -146,13 +145,8 @@ def shown_of(about: Mapping[str, Any]) -> Table:
     return shown
 
 
-def collect(output: Path, named: Optional[str], more_than: Sequence[float], settings: Settings, road: bool,
-            groups: Sequence[Group], tell: Callable[[Any], None]) -> Optional[Dict[str, Any]]:
-    """The entry of study.yaml, None without an intensity; writes intensity.csv and tells the table."""
+def evaluate(named: Optional[str], more_than: Sequence[float], settings: Settings, road: bool,
+             groups: Sequence[Group]) -> Optional[Dict[str, Any]]:
+    """The entry of study.yaml, None without an intensity."""
     name = check(named, settings, road)
-    about = entry(name, groups, more_than) if name else None
-    if about:
-        disk.write(output / FILE, table(about))
-        tell(shown_of(about))
-        tell(f"{output / FILE}: volume on the road against {name}, and how likely more is")
-    return about
+    return entry(name, groups, more_than) if name else None

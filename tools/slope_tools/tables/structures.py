@@ -6,7 +6,7 @@ this one's. Forces in N, times in s, pressures in Pa, volumes in m3 of ground, e
 import csv
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Callable, Dict, List, Mapping, Sequence, Tuple
+from typing import Any, Dict, Iterator, List, Mapping, Sequence, Tuple
 from xml.etree import ElementTree
 
 import numpy as np
@@ -205,8 +205,8 @@ def cell(value, unit):
     return "-" if value is None else f"{value / unit:,.3g}" if abs(value) < 1000 * unit else f"{value / unit:,.0f}"
 
 
-def collect(output: Path, rows: Sequence[Mapping[str, Any]], tell: Callable[[Any], None]) -> List[Path]:
-    """Write structures.csv and lines.csv and tell the tables, where there is something; the files."""
+def write(output: Path, rows: Sequence[Mapping[str, Any]]) -> List[Path]:
+    """structures.csv and lines.csv, where there is something; the files."""
     written = []
     for what, file in FILES.items():
         text = table(rows, what)
@@ -215,13 +215,18 @@ def collect(output: Path, rows: Sequence[Mapping[str, Any]], tell: Callable[[Any
             continue
         disk.write(output / file, text)
         written.append(output / file)
-        shown = Table(title=TITLES[what])
-        for head in ("run", what[:-1], *(head for head, _, _ in SHOWN[what])):
-            shown.add_column(head, justify="right")
+    return written
+
+
+def shown(rows: Sequence[Mapping[str, Any]]) -> Iterator[Table]:
+    """The tables on the screen."""
+    for what, heads in SHOWN.items():
+        if not any(row.get(what) for row in rows):
+            continue
+        one = Table(title=TITLES[what])
+        for head in ("run", what[:-1], *(head for head, _, _ in heads)):
+            one.add_column(head, justify="right")
         for row in rows:
             for name, numbers in (row.get(what) or {}).items():
-                shown.add_row(row["run"], name, *(cell(numbers.get(key), unit) for _, key, unit in SHOWN[what]))
-        tell(shown)
-    if written:
-        tell(f"{', '.join(map(str, written))}: of each run")
-    return written
+                one.add_row(row["run"], name, *(cell(numbers.get(key), unit) for _, key, unit in heads))
+        yield one

@@ -1,0 +1,60 @@
+"""What a study tells on the console: its tables and numbers, in words, and where they are."""
+from pathlib import Path
+from typing import Any, Callable, Mapping
+
+from ..ensembles import ensemble
+from ..seismic import chain_files
+from ..tables import combinations, elastic, intensity, road_runs, structures, study_table
+from . import mapped
+from .outcome import Outcome
+
+SHOWN = 20              # runs of an ensemble whose table is printed
+
+
+def tell(outcome: Outcome, about: Mapping[str, Any], output: Path, say: Callable[[Any], Any],
+         warn: Callable[[Any], Any]) -> None:
+    """about: what study.yaml says; say: what gets lines and tables; warn: what gets findings."""
+    asked, rows, finished = outcome.questions, outcome.read.rows, outcome.read.finished
+    if about["intensity"]:
+        say(intensity.shown_of(about["intensity"]))
+        say(f"{output / intensity.FILE}: volume on the road against {about['intensity']['variable']}, and how likely "
+            "more is")
+    for table in structures.shown(finished):
+        say(table)
+    files = [str(output / name) for what, name in structures.FILES.items() if any(row.get(what) for row in finished)]
+    if files:
+        say(f"{', '.join(files)}: of each run")
+    for one in outcome.warnings:
+        warn(one)
+    if not asked.order or len(rows) <= SHOWN:
+        say(study_table.runs_shown(asked.settings, rows, outcome.scatters,
+                                   f"{about['study']['deck']}: {len(rows)} run{'s' * (len(rows) != 1)}, volumes in m3 "
+                                   "of ground"))
+    if any(outcome.scatters.values()) and not asked.order:
+        say(study_table.combinations_shown(asked.settings, outcome.groups, outcome.scatters))
+    if about.get("stretches"):
+        say(f"{output / road_runs.FILE}: {len(about['stretches']['stretches'])} stretches of the road that runs block")
+    say(f"{output / 'study.yaml'}, {output / 'study.csv'}, {output / 'combinations.csv'}: all numbers")
+    tell_numbers(about, output, say)
+    if about["observed"]:
+        say("\n".join(mapped.describe(about["observed"], rows)))
+    if about["chain"]:
+        say("\n".join(chain_files.describe(about["chain"], output)))
+    for entry in [*(about["envelope"] or {}).values(), *(about["exceedance"] or ())]:
+        say(f"{output / entry['file']}: {entry['what']}")
+
+
+def tell_numbers(about: Mapping[str, Any], output: Path, say: Callable[[Any], Any]) -> None:
+    """The conservative volume, the effects of step and size, the ensemble."""
+    if about["conservative"]:
+        say("\n".join(combinations.describe(about["conservative"])))
+        if about["step"]:
+            say(about["step"]["text"])
+    if about["size"]:
+        say(f"size of the balls: {about['size']['text']}")
+    if about[elastic.ENTRY]:
+        say(about[elastic.ENTRY]["text"])
+    if about["ensemble"]:
+        say("\n".join(ensemble.describe(about["ensemble"])))
+        say(f"{output / ensemble.HAZARD}, {output / ensemble.INFLUENCE}: all curves and indices; "
+            f"{output / ensemble.MAPS}: {len(about['ensemble']['maps'])} maps of quantiles and exceedance")

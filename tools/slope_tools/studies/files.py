@@ -1,0 +1,48 @@
+"""The files of a study: study.yaml, tables and maps over all runs, which are prints of its Outcome."""
+from pathlib import Path
+from typing import Any, Dict, Mapping, Optional
+
+from .. import disk
+from ..ensembles import ensemble
+from ..seismic import chain_files
+from ..tables import answered, combinations, elastic, intensity, road_runs, structures, study_table
+from ..tables.study_maps import Maps
+from .outcome import Outcome
+
+
+def write(outcome: Outcome, header: Mapping[str, Any], maps: Maps, output: Path, place) -> Dict[str, Any]:
+    """All of them; what study.yaml says.
+
+    header: what it says of what was asked, and of the programs; place: CRS and offset of the maps, None without.
+    """
+    asked, read = outcome.questions, outcome.read
+    about: Dict[str, Any] = {"study": dict(header), **outcome.about, **maps.write(output, place)}
+    if outcome.ensemble:
+        assert asked.order
+        about["ensemble"] = {**about["ensemble"], **ensemble.write(outcome.ensemble, asked.order.levels, output, place,
+                                                                   read.problem)}
+    if about.get("stretches"):
+        head, *lines = road_runs.rows(about["stretches"])
+        disk.write(output / road_runs.FILE, disk.csv_text(head, lines))
+    if outcome.chain:
+        chain_files.write(outcome.chain, output)
+    write_or_remove(output / intensity.FILE, about["intensity"] and intensity.table(about["intensity"]))
+    write_or_remove(output / elastic.FILE, read.elastic and elastic.table(read.elastic))
+    structures.write(output, read.finished)
+    disk.write(output / "study.csv", study_table.table(asked.settings, asked.repeated, read.rows, read.defaults))
+    disk.write(output / "combinations.csv", combinations.table(outcome.groups, outcome.names, asked.settings))
+    write_about(output, about)
+    return about
+
+
+def write_or_remove(path: Path, text: Optional[str]) -> None:
+    """A file, or none of a study before this one in the folder."""
+    if text:
+        disk.write(path, text)
+    else:
+        path.unlink(missing_ok=True)
+
+
+def write_about(output: Path, about: Mapping[str, Any]) -> None:
+    """study.yaml."""
+    disk.write(output / "study.yaml", disk.yaml_text(answered.TITLE, about))

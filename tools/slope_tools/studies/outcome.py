@@ -1,0 +1,183 @@
+"""What the runs of a study say together: an Outcome, evaluated from what was read of them; nothing is written or told.
+
+Files, console and pages are made of it side by side (files, console, report); results reads the runs.
+"""
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence
+
+from ..deposits import travel_shares
+from ..ensembles import ensemble
+from ..findings import Finding, entries, finding
+from ..mobility.exceedance import Mobility
+from ..runs import repeats
+from ..runs.repeats import Repeat
+from ..seismic import chain_files
+from ..statistics.headline import Scatter
+from ..tables import (answered, combinations, elastic, fine_run, intensity, judged, quantities, road_runs,
+                      step_check, usable, withheld_words)
+
+Row = Dict[str, Any]
+
+LIKE = 1.5              # times as many balls over the thickness: values found with fewer, or more, are of another model
+
+
+class Questions(NamedTuple):
+    """What is asked of the runs of a study together."""
+    settings: Mapping[str, Sequence[str]]           # of --set: choices
+    repeated: Mapping[str, Sequence[str]]           # of --repeat: chance
+    thresholds: Sequence[float]                     # m, of the maps of exceedance
+    order: Optional[ensemble.Order] = None          # that the runs were made for, None of lists
+    intensity: Optional[str] = None                 # variable that is one; None: the one that is called so
+    more_than: Sequence[float] = ()                 # m3, volumes exceeded at each intensity
+    notes: Sequence[Any] = ()                       # warnings of what was before the study, which go into its results
+    site: Optional[Path] = None                     # folder of the site whose study it is
+    fine: Optional[Repeat] = None                   # the run with smaller balls; None: none was asked for
+    step: Optional[step_check.Step] = None          # the run with half the time step
+    most_elastic: Optional[elastic.Made] = None     # the runs with the largest restitution
+    method: str = ""                                # of a site's study, in words
+    chain: Optional[chain_files.Chain] = None       # of an ensemble: how likely its bodies fail in an earthquake
+    known: Mapping[str, Any] = {}                   # of site.yaml: with which known events the runs are compared
+
+    @property
+    def among(self) -> Mapping[str, Any]:
+        """With which known events the runs are compared: the ensemble's, or those of site.yaml (known.of_about)."""
+        condition = self.order and self.order.condition
+        return condition.asked.about() if condition else self.known
+
+
+class Read(NamedTuple):
+    """What was read of the runs of a study.
+
+    rows: one for each run, finished or failed; road: whether there is one; events: what known events did of the mass;
+    mobility: of the mass, for the weights of an ensemble; observed: the mapped deposit, as study.yaml has it; fine: the
+    run with smaller balls; elastic: those with the largest restitution; problem: why there are no maps over all runs;
+    case: for the command that mends a reason, None where no run finished; balls_thick: over the thickness of the body;
+    defaults: of the deck's variables.
+    """
+    rows: List[Row]
+    road: bool
+    events: Optional[usable.Events]
+    mobility: Optional[Mobility]
+    observed: Optional[Dict[str, Any]]
+    fine: Optional[fine_run.Fine]
+    elastic: Optional[elastic.Runs]
+    problem: Optional[str]
+    case: Optional[withheld_words.Case]
+    balls_thick: Optional[float]
+    defaults: Mapping[str, str]
+
+    @property
+    def finished(self) -> List[Row]:
+        return [row for row in self.rows if row["status"] == "finished"]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """about: what study.yaml says of it, but for what was asked and for the maps."""
+    questions: Questions
+    read: Read
+    groups: Sequence[combinations.Group]
+    names: Sequence[str]                            # columns that a combination has a mean of
+    scatters: Mapping[str, Optional[Scatter]]
+    warnings: Sequence[Finding]
+    ensemble: Optional[ensemble.Evaluated]
+    chain: Optional[chain_files.Evaluated]
+    about: Mapping[str, Any]
+
+
+def evaluate(questions: Questions, read: Read) -> Outcome:
+    """The Outcome of a study; of an ensemble one run at least has finished."""
+    rows, finished, order = read.rows, read.finished, questions.order
+    groups = combinations.grouped(rows)
+    names, scatters = combinations.averaged(groups), combinations.scatters(groups)
+    keys = ["front_m", "thickness_m", "max_thickness_m", "max_speed_m_s"]
+    keys += [key for key in (travel_shares.DISTANCE, "length_m") if key in names]
+    warnings = warnings_of(questions, read)
+    about: Dict[str, Any] = {
+        "largest": {key: largest(finished, key) for key in keys if finished},
+        "farthest": travel_shares.farthest(finished)["run"] if finished else None,
+        "conservative": None, "size": None, "ensemble": None, "step": None,
+        elastic.ENTRY: elastic.evaluate(read.elastic) if read.elastic else None,
+        "scatter": {name: known and {"deviation": known.deviation, "degrees_of_freedom": known.degrees_of_freedom}
+                    for name, known in scatters.items()},
+        "combinations": combinations.entries(groups, names), "envelope": None, "exceedance": None,
+        "observed": read.observed, "warnings": entries(warnings), "runs": rows}
+    if read.fine and finished:
+        about["size"] = fine_run.evaluate(read.fine)
+    several = None
+    if order:
+        several = ensemble.evaluate(order, rows, read.mobility)
+        about["ensemble"] = {**several.about, "withheld": reasons(read)} if several else None
+    elif read.road and finished:
+        about["conservative"], about["step"] = conservative(questions, read, groups, about["size"])
+    shown = {**about, "study": {"balls_thick": read.balls_thick}}
+    about["headline"] = (said := answered.of_study(shown, read.events and read.events.road(finished))) and said.about()
+    if read.road and finished:
+        about["stretches"] = stretches(finished, ((about["ensemble"] or {}).get("known_events") or {}).get("weights"))
+    chain = chain_files.evaluate(questions.chain, rows, about["ensemble"]["withheld"], about["size"]) \
+        if questions.chain and several and finished else None
+    about["chain"] = chain and chain.about
+    about["intensity"] = intensity.evaluate(questions.intensity, questions.more_than, questions.settings, read.road,
+                                            groups) if finished and not order else None     # drawn values have one run
+    if about["intensity"]:
+        about["conservative"]["doubts"] += entries(intensity.doubts(about["intensity"]))
+    return Outcome(questions, read, groups, names, scatters, warnings, several, chain, about)
+
+
+def warnings_of(questions: Questions, read: Read) -> List[Finding]:
+    """Those of before the study, then those on its runs of other kinds."""
+    found = [finding(one) for one in questions.notes]
+    warned = {one.kind for one in found if not one.part}
+    found += [one for one in judged.of_runs(read.rows) if one.kind not in warned]
+    if read.problem:
+        found.append(finding(read.problem))
+    other = other_thickness(questions.order.sample.balls_thick, read.balls_thick) if questions.order else None
+    return [*found, other] if other else found
+
+
+def other_thickness(found: Optional[float], here: Optional[float]) -> Optional[Finding]:
+    """That calibrated values were found with so many balls over the thickness of the body, and are used with others."""
+    if found is None or here is None or max(found, here) <= LIKE * min(found, here):
+        return None
+    return Finding("other thickness", {"found": found, "here": here})
+
+
+def reasons(read: Read) -> List[Dict[str, Any]]:
+    """Why the numbers of an ensemble are withheld."""
+    assert read.case
+    return usable.reasons_of_ensemble(read.rows, read.events, read.case._replace(sampled=True)) if read.road else []
+
+
+def conservative(questions: Questions, read: Read, groups: Sequence[combinations.Group], size):
+    """The entries of the conservative volume and of the run with half the time step; size: of the fine run."""
+    best = combinations.conservative(questions.settings, read.rows, groups,
+                                     fine_run.read_effect(size, quantities.REMOVE))
+    best["doubts"] += entries(unseen(questions.repeated, read.defaults))
+    step = None
+    if questions.step:
+        step = step_check.compare(questions.step, groups)
+        best["doubts"] += step.pop("doubts")
+    assert read.case
+    usable.judge(best, read.rows, read.events, read.case)
+    return best, step
+
+
+def unseen(repeated, defaults) -> List[Finding]:
+    """The caveat that the scatter is incomplete: only seeds were repeated, though the deck can place its balls anew."""
+    offsets = repeats.only_seeds(repeated, defaults)
+    return [Finding("not repeated", {"repeated": ", ".join(repeated), "offsets": ", ".join(offsets)})] \
+        if offsets else []
+
+
+def stretches(rows: Sequence[Row], known: Optional[Mapping[str, float]]) -> Dict[str, Any]:
+    """Of the road that finished runs block; known: weights by known events, or None."""
+    weights = known or {row["run"]: 1.0 for row in rows if not row.get("batch")}
+    return {**road_runs.evaluate([road_runs.Run(weights[row["run"]], row["stretches"], row["clearing"])
+                                  for row in rows if row["run"] in weights]), "of_known_events": bool(known)}
+
+
+def largest(rows: Sequence[Row], key: str) -> Dict[str, Any]:
+    """The largest value of a column and the first run that has it."""
+    best = max(rows, key=lambda row: row[key])
+    return {"value": best[key], "run": best["run"]}
