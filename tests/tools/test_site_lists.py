@@ -225,9 +225,9 @@ def test_a_folder_without_a_film_takes_that_of_its_deck(mine, inside):  # noqa: 
     about["found"]["deck_sha256"] = site_trial.disk.sha256(path)
     about["found"]["choices_sha256"] = ""
     (mine / "site.yaml").write_text(yaml.safe_dump(about))
-    about["found"]["choices_sha256"] = site_choices.fingerprint(site_choices.read(mine), mine)
+    about["found"]["choices_sha256"] = site_choices.load(mine).fingerprint()
     (mine / "site.yaml").write_text(yaml.safe_dump(about))
-    site_study.check(mine, site_choices.read(mine))
+    site_study.check(site_choices.load(mine))
     inside("mine")
     assert decks.index_variables(path)["film"] == "0.35"
 

@@ -101,6 +101,6 @@ def seconds(site: Site, planned: site_study.Planned, parts: List[Tuple[float, in
     setup, spacing = planned.setup, site.choices["model"]["spacing"]
     closest = min([spacing, *(zone.get("spacing", spacing) for zone in found.get("zones") or ())])
     wanted = site_budget.plan(planned.choices)._replace(parts=parts, half_step=half, points=points)
-    return site_budget.study_seconds(d, found["body"]["volume"], Trial(**trial),
-                                     Soil(density, thick, speed, closest), wanted,
+    soil = Soil(density, thick, speed, closest)
+    return site_budget.study_seconds(d, found["body"]["volume"], Trial(**trial), soil, wanted,
                                      setup.jobs or max(1, jobs.cores() // setup.ranks))[0]
