@@ -105,7 +105,7 @@ CHANGES = [
     ("study", {"largest_restitution": 0.6}, None, ALL - 3, 3),
     ("road", {"cut_angle": 45.0}, "--cut-angle 45", ALL, 0),
     ("road", {"lane": 3.5, "clearing": 60.0, "loosening": 1.2}, "--lane 3.5 --clearing 60 --loosening 1.2", ALL, 0),
-    ("road", {"loosening": 1.3}, "--loosening 1.3", ALL, 0),
+    ("road", {"loosening": 1.3}, None, ALL, 0),
     ("known", {"set": "rock_avalanches"}, "--known rock_avalanches", ALL, 0),
     ("known", {"confined": "yes"}, "--confined", ALL, 0)]
 
@@ -144,7 +144,7 @@ def test_files_by_any_path_from_any_folder(mine, inside, trials, monkeypatch, tm
     monkeypatch.chdir(tmp_path / "elsewhere")
     for words in (f"{mine} --road {place}/road.geojson --cut-angle 45", f"../mine --terrain {place}/dem.tif",
                   "../mine --terrain ../dem.tif --release ../release.geojson", "../mine --observed ../mapped.geojson",
-                  str(mine)):
+                  "../mine --road ../mapped.geojson", str(mine)):
         inside(words)
         assert counts(mine) == (ALL, 0) and trials == [], words
     sources = [yaml.safe_load(path.read_text())["sources"] for path in (

@@ -25,8 +25,9 @@ class Tried(NamedTuple):
 
 def about(folder: Path, deck: str, lmp: Path, rolling: List[float]) -> Dict[str, Any]:
     """Of a trial run whose files are in a folder."""
+    named, _ = decks.named_files(folder / deck)     # a road or a mapped deposit is no matter
     parts = [repr(decks.without_comments(folder / deck)), disk.sha256(lmp), provenance.machine()["processor"]]
-    parts += [path.name + disk.sha256(path) for path in sorted(folder.iterdir()) if path.name != deck]
+    parts += [path.name + disk.sha256(path) for path in sorted(folder.iterdir()) if path.name in named - {deck}]
     return {"sha256": hashlib.sha256("\n".join(parts).encode("utf-8", "surrogateescape")).hexdigest(),
             "rolling": rolling}
 
