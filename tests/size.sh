@@ -22,10 +22,12 @@ for sizes in "$@"; do
     for seed in $(seq "${sizes#*:}"); do
       grep -q "^$name,$finer,$seed," "$table" && continue
       prefix=$name.$finer.$seed
+      rolling=$("${family[@]}" rolling "$name")
       d=$(awk -v finer="$finer" '$2 == "d" { print $4 / finer; exit }' "$out/$name/site/in.site")
       ( cd "$out/$name/site"
         rm -f "$prefix".*
         { time "$LMP" -in in.site -screen none -log "$prefix.log" -var out "$prefix" -var d "$d" -var packing "$seed" \
+          -var rolling "$rolling" \
           -var film 1; } 2> "$prefix.cpu" )
       line=$("${family[@]}" row "$name" "$out/$name" "$out/$name/site/$prefix" "$finer" "$seed" "$d" \
         "$(tail -1 "$out/$name/site/$prefix.cpu")")

@@ -3,7 +3,7 @@
 
 tests/size_family.py site CASE FOLDER: terrain, body and road of a case, and its site by `slope site`, in a new folder
 tests/size_family.py row CASE FOLDER PREFIX FINER SEED DIAMETER [SECONDS]: the line of a run there
-tests/size_family.py list: all cases; tests/size_family.py head: of the lines
+tests/size_family.py list: all cases; rolling CASE: its rolling resistance; head: of the lines
 tests/size_family.py table SIZE.csv: size_family.csv; tests/size_family.py judge SIZE.csv: what page 1 would have said
 """
 import csv
@@ -223,6 +223,8 @@ def main(words):
         print(*CASES)
     elif words == ["head"]:
         print(HEAD)
+    elif words[:1] == ["rolling"] and len(words) == 2:
+        print(f"{ALL[words[1]].rolling:g}")
     elif words[:1] == ["table"] and len(words) == 2:
         print("\n".join(table(Path(words[1]))))
     elif words[:1] == ["judge"] and len(words) == 2:

@@ -65,7 +65,8 @@ def test_two_slides_of_the_family_in_small(tmp_path, monkeypatch, name, road):
                    if line.split()[1:2] == ["d"]))
     for finer in (1, 2):
         subprocess.run([LMP, "-in", "in.site", "-screen", "none", "-var", "out", f"run{finer}", "-var", "d",
-                        f"{d / finer}", "-var", "film", "1"], cwd=site, check=True, stdin=subprocess.DEVNULL)
+                        f"{d / finer}", "-var", "film", "1", "-var", "rolling", f"{one.rolling:g}"],
+                       cwd=site, check=True, stdin=subprocess.DEVNULL)
         values = family.row(name, folder, site / f"run{finer}", str(finer), "1", d / finer)
         found[finer] = dict(zip(family.HEAD.split(","), values))
     coarse, fine = found[1], found[2]
