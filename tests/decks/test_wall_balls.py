@@ -465,8 +465,10 @@ boundary f f f
 comm_modify vel yes
 region ground block -10 10 -10 10 -5 0
 region slip sphere 0 0 2 4
+region scree block -10 0 -10 10 -20 20
+region forest block 0 10 0 10 -20 20
 region box block -12 12 -12 12 -12 12
-create_box 3 box
+create_box 5 box
 region soil block -3 3 -3 3 -1 5
 lattice sc 1.25
 create_atoms 1 region soil
