@@ -174,7 +174,7 @@ BAD = [    # what test_wrong_input.py does not have
      "w spacing must be <= 0.475 with pattern scattered, got 0.48"),
     ("surface ball upper spacing 0.38 pattern scattered smallest 0.25",
      "w spacing must be <= 0.35625 with pattern scattered, got 0.38"),
-    ("file balls.txt pattern scattered", "w keyword must be inside, outside or write, got pattern"),
+    ("file balls.txt pattern scattered", "w keyword must be inside, outside, zone or write, got pattern"),
     ("surface ball upper spacing 1 outside plane", "w region plane must have a bounding box, style plane"),
     ("surface open upper spacing 1", "w region open must have no open faces, got some"),
     ("surface bottomless lower spacing 1", "w region bottomless must have a lower boundary, got INF"),

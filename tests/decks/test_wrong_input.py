@@ -168,10 +168,10 @@ TABLE = {
         2 1.0 surface ground upper spacing 1 smallest -> smallest must be followed by D, got 0 of 1 values
         2 1.0 surface ground upper spacing 1 smallest 0 -> smallest must be > 0, got 0
         2 1.0 surface ground upper spacing 1 smallest x -> smallest must be a finite number, got x
-        2 1.0 file balls.txt sink 0.5 -> keyword must be inside, outside or write, got sink
+        2 1.0 file balls.txt sink 0.5 -> keyword must be inside, outside, zone or write, got sink
         2 1.0 surface ground upper spacing 1 inside -> inside must be followed by REGION, got 0 of 1 values
         2 1.0 surface ground upper spacing 1 inside nowhere -> region nowhere does not exist
-        2 1.0 surface ground upper spacing 1 inside road outside road -> can have one filter (inside or outside), got
+        2 1.0 surface ground upper spacing 1 inside road outside road -> : the surface of region ground holds no balls
         2 1.0 surface ground upper spacing 1 color red -> keyword must be spacing, origin, pattern, angle, sink, sunk,
         2 1.0 surface ground upper spacing 1 write -> write must be followed by FILE, got 0 of 1 values
         2 1.0 surface ground upper spacing 1 write none/a.txt -> : cannot write none/a.txt: No such file or directory
@@ -184,7 +184,7 @@ TABLE = {
         2 1.0 file order.txt -> : order.txt, line 1: columns must be x y z in m, got y x z
         2 1.0 file far.txt -> : far.txt, line 1: x must be within +-1e+12, got 1e+13
         2 1.0 file none.txt -> : file none.txt holds no balls
-        2 1.0 file balls.txt spacing 1.0 -> keyword must be inside, outside or write, got spacing
+        2 1.0 file balls.txt spacing 1.0 -> keyword must be inside, outside, zone or write, got spacing
         2 1.0 file balls.txt inside nowhere -> region nowhere does not exist
         """,
     ("terrain", "region ground terrain", "Region terrain"): """

@@ -30,7 +30,7 @@ from slope_tools.sites.site import numbers as site_numbers
 from slope_tools.errors import SlopeError
 from slope_tools.plots import site_map
 from slope_tools.statistics.size_effect import Effect
-from slope_tools.tables import answered
+from slope_tools.tables import answered, elastic
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 DATA = Path(os.environ.get("SLOPE_DATA", TOP.parent.parent / "shared" / "data"))
@@ -164,7 +164,7 @@ def test_two_commands_lead_from_gis_files_to_a_report(done):
         *(study["size"]["effects"]["remove_m3"][name] for name in Effect._fields)).added(
             best["mean_m3"] + best["chance_m3"]))
     assert study["step"]["volume_m3"] > 0 and study["step"]["text"] in second
-    assert study["step"]["step"] == 0.5
+    assert study["step"]["step"] == 0.75        # half of the deck's own
     # of the mass that a lattice of so few balls makes of the body
     assert all(row["stiffness_number"] == pytest.approx(site_budget.STIFFNESS_NUMBER, rel=0.15)
                for row in study["runs"])
@@ -239,7 +239,7 @@ def test_the_report_of_a_sites_folder(done, tmp_path):
 def test_the_longest_runs_begin_first(done):
     """The fine run, then half the step; those of the study's own keep their names."""
     begun = [line.split()[1].rstrip(":") for line in done[2].splitlines() if line.endswith(": started")]
-    assert len(begun) == 18 and begun[0].startswith("rolling_0.05_d_") and begun[1].startswith("rolling_0.05_step_0.5")
+    assert len(begun) == 18 and begun[0].startswith("rolling_0.05_d_") and begun[1].startswith("rolling_0.05_step_0.75")
     assert not any("_d_" in name for name in begun[2:])
 
 
@@ -258,7 +258,9 @@ def test_the_largest_restitution_is_none_of_the_volume(done):
         reach = found["quantities"][key]
         assert reach["low"] <= reach["mean"] <= reach["high"] and reach["mean"] != reach["usual"]["mean"]
     page = (mine / "report.html").read_text()
-    assert "With the most elastic rock, a restitution of 0.9, more than 1 % of it leaves the terrain." in page
+    far = elastic.far(found)
+    assert ("With the most elastic rock, a restitution of 0.9, " + (
+        "more than 1 % of it leaves the terrain." if far is None else f"within {far:.3g} m.")) in page
     assert found["text"][1:] in page
     assert "Reach and area with the most elastic rock" in page
     assert len((mine / "study" / "largest_restitution.csv").read_text().splitlines()) == 1 + 3 + 13
@@ -587,7 +589,7 @@ def test_the_time_step_is_the_decks(done):
     folder = done[0] / "mine"
     variables = decks.index_variables(folder / "in.site")
     summary = yaml.safe_load((folder / "runs" / "rolling_0_spacing_0.9" / "site.summary.yaml").read_text())
-    d, *soil = (float(variables[name]) for name in ("d", "density", "thick", "speed"))
+    d, *soil = (float(variables[name]) for name in ("d", "density", "thick", "speed", "spacing"))
     wanted = site_budget.time_step(d, site_budget.Soil(*soil))
     assert summary["dt"] == pytest.approx(wanted, rel=1e-6)
     assert summary["motion"]["rest_share"] == site_deck.REST == float(variables["rest"])

@@ -100,21 +100,22 @@ def run(args: Request) -> None:
     """Do the command; raises SlopeError on bad input, and after all other runs when one failed."""
     if args.deck.is_dir() and (args.output is None or (args.deck / site_choices.NAME).exists()):
         with study.alone(args.deck, args.dry_run or not (args.deck / site_choices.NAME).is_file()):
-            return run_folder(args, site_choices.load(args.deck))
+            return run_folder(args)
     if args.paper:
         raise SlopeError("--paper", "must be given with the folder of a site", args.deck)
     return run_deck(replace(args, around=site_choices.around(args.deck)))
 
 
-def run_folder(args: Request, site: Site) -> None:
+def run_folder(args: Request) -> None:
     """The study of a site's folder: by the paper's method, and weighted by known events."""
     if args.sample is not None or args.fit is not None:
         if args.paper:
             raise SlopeError("--paper", "must not be given with --sample or --from, which make an ensemble")
-        return run_site_ensemble(args, site)
+        return run_site_ensemble(args, site_choices.load(args.deck))
     if args.fragility is not None:
         raise SlopeError("--sample", "must be given with --fragility: how many runs")
     refuse(args, NOT_OF_A_SITE)
+    site = site_choices.load(args.deck)
     site_study.check(site)
     points = site.choices["study"]["points"]
     why = "" if args.paper else known_study.why_not(args.deck) if points else known_study.NONE
