@@ -20,6 +20,7 @@ from run_helpers import called, write_tif
 from tiny_collapse import TOP, loaded, write_case
 
 from slope_tools.deposits import travel_shares
+from slope_tools.digits import three
 from slope_tools.errors import SlopeError
 from slope_tools.fitting import calibration, fit, fit_words, observations
 from slope_tools.runs import repeats
@@ -166,8 +167,8 @@ def test_a_gap_is_named_where_there_is_one_and_the_region_holds_the_truth():
     assert one.near and one.holds and 1600 < low <= 1750 and 2300 <= high < 2450
     assert plain.holds and not plain.gaps
     line, = fit_words.jumps(one.found, one.targets)
-    assert line.startswith(f"run-out: no run gives a value between {low:,.0f} and {high:,.0f} m, where the response "
-                           "jumps")
+    assert line.startswith(f"run-out: no run gives a value between {three(low)} and {three(high)} m, where the "
+                           "response jumps")
     inside = [one.targets[0]._replace(value=2000.0), one.targets[1]]
     line, = fit_words.jumps(one.found, inside)
     assert line.endswith("; the observed 2,000 lies there, and no values reproduce it")
@@ -194,7 +195,7 @@ def test_a_best_run_that_misses_is_said_first():
     value = one.targets[0].value
     assert fit_words.misses(one.found, one.targets, np.array([target.value for target in one.targets])) == []
     line, = fit_words.misses(one.found, one.targets, np.array([value + 500, one.targets[1].value]))
-    assert line.endswith(f"explain: run-out {value + 500:,.0f} instead of {value:,.0f} m")
+    assert line.endswith(f"explain: run-out {three(value + 500)} instead of {three(value)} m")
     assert "says nothing" in fit_words.misses(one.found, one.targets, None)[0]
 
 

@@ -478,6 +478,7 @@ def test_a_report_says_what_the_emulator_is_worth():
 
 def test_points_of_the_design_are_found_in_the_rows():
     plan = sample.Sample(3, "sobol", 1, (variable("0:10"),))
-    rows = [{"set": {"steps": "9", "x": value}} for value in ("5", "5", "2.5", "5")]
+    rows = [{"set": {"steps": "9", "x": value}, "front_m": front}
+            for value, front in (("5", 1.0), ("5", 2.0), ("2.5", 3.0), ("5", 4.0))]
     assert ensemble.points_of(plan, rows) == [0, 0, 1, 0]
     assert plan.places(rows).tolist() == [[0.5], [0.5], [0.25], [0.5]]

@@ -1,7 +1,7 @@
 """The ground of scattered balls has no direction, a plan grid has one
 
 inputs/13_ground_direction: a body slides down a plane of 35 degrees onto a flat, all of it turned about the vertical.
-Two layers of balls, 8 m wide, at three azimuths with two seeds each; in full in tests/ground_direction.py.
+Two layers of balls, 8 m wide, at three azimuths with four seeds each; in full in tests/ground_direction.py.
 """
 import numpy as np
 
@@ -9,7 +9,7 @@ from .claims import AtMost, Claim, Control, Run
 
 CASE = "13_ground_direction"
 AZIMUTHS = 0, 22.5, 45              # degrees
-SEEDS = 1, 2
+SEEDS = 1, 2, 3, 4
 SMALL = Run("13_ground_direction/in.ground_direction")(layers=2, wide=8)
 
 
