@@ -56,7 +56,7 @@ PARSERS = ("ground/placement_arguments", "meshes/surface_options", "deposit/depo
            "motion/fix_ground_motion", "deposit/fix_control_line")
 OUTPUTS = {"output", "write", "series", "point", "motion", "window", "deposit", "rest"}
 LIKE = {"inside": "outside", "upper": "surface", "lower": "surface", "sunk": "sink", "smallest": "file",
-        "grid": "pattern"}
+        "grid": "pattern", "zone": "outside"}       # zone: test_ground_zones
 
 
 @pytest.fixture(scope="module")

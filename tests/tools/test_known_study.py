@@ -157,6 +157,7 @@ def test_the_method_is_in_the_results(mine, monkeypatch, capsys):  # noqa: F811
     monkeypatch.setattr(site_study.results, "collect", lambda setup, questions, *_: seen.append(questions.method))
     monkeypatch.setattr(site_study.study, "perform", lambda setup, settings, todo, collect, first: collect(todo, None))
     monkeypatch.setattr(site_study, "step_of", lambda *_: None)
+    monkeypatch.setattr(site_study, "elastic_of", lambda *_: None)
     for words, method in (("mine --paper", known_study.ASKED), ("mine", known_study.BESIDE)):
         study(capsys, monkeypatch, words)
         assert seen.pop() == method
