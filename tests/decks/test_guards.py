@@ -88,8 +88,8 @@ def test_work_of_other_fixes_is_their_own(tmp_path):
 
 
 def test_time_step_and_overlap(tmp_path):
-    warnings, summary = run(tmp_path, k=5e4, dt=0.06, z=1.0, steps=200)
-    step, deep = (next(w for w in warnings if text in w) for text in ("time step 0.06 s is", "deeper than 10 %"))
+    warnings, summary = run(tmp_path, k=5e4, dt=0.09, z=1.0, steps=200)
+    step, deep = (next(w for w in warnings if text in w) for text in ("time step 0.09 s is", "deeper than 10 %"))
     assert {step, deep} <= set(summary["warnings"])
     most = float(re.search(r"the deepest (\S+) %", deep)[1])
     assert summary["guards"]["largest_overlap"] == pytest.approx(most / 100, rel=0.01)

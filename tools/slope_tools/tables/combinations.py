@@ -34,7 +34,8 @@ class Group:
 def same_as(rows: Sequence[Row]) -> List[int]:
     """Of each finished run the place of the first one that has the same numbers, its own where there is none."""
     first: Dict[tuple, int] = {}
-    return [first.setdefault(tuple(row.get(name) for name in SAME), k) for k, row in enumerate(rows)]
+    numbers = (tuple(row.get(name) for name in SAME) for row in rows)
+    return [first.setdefault(mine, k) if any(one is not None for one in mine) else k for k, mine in enumerate(numbers)]
 
 
 def grouped(rows: Sequence[Row]) -> List[Group]:
