@@ -10,7 +10,7 @@ from shapely.geometry import box
 from run_helpers import TOP
 from test_mobility_path import RADIUS, STEEP, disc, hillside, terrain
 
-from slope_tools.digits import rounded
+from slope_tools.digits import three
 from slope_tools.errors import SlopeError
 from slope_tools.mobility import body, exceedance, fall_path, known, landslides, results, road
 from slope_tools.releases import release
@@ -106,8 +106,8 @@ def test_at_most_where_the_curve_begins_below_a_share():
     assert told["lengths_m"]["0.95"] is None and told["at_most_m"]["0.95"] == toe
     assert told["lengths_m"]["0.1"] == one.length_at(0.1, "landslides_wide") and told["at_most_m"]["0.1"] is None
     text = results.lengths(one, "landslides_wide")
-    assert text.startswith(f"95 % beyond at most {rounded(toe, 4)} m, 90 % beyond at most {rounded(toe, 4)} m, ")
-    assert f"10 % beyond {rounded(one.length_at(0.1, 'landslides_wide'), 4)} m" in text
+    assert text.startswith(f"95 % beyond at most {three(toe)} m, 90 % beyond at most {three(toe)} m, ")
+    assert f"10 % beyond {three(one.length_at(0.1, 'landslides_wide'))} m" in text
 
 
 def test_both_scatters_at_an_edge():

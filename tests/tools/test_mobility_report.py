@@ -71,11 +71,11 @@ def test_a_terrain_that_ends_before_half_of_the_events(columns, length):
                      ground.slip_depth[:, :columns])
     text = mobility_part.content(data, part, numbers)[0][1]
     if length is None:
-        assert "leaves the terrain" not in text
+        assert "terrain shows the first" not in text
         return
     found = exceedance.of_body(disc(hillside(), (300, 300)), SET)
     shares = [percent(found.exceedance(length, kind)) for kind in ("unconfined", "confined")]
-    assert f"leaves the terrain after 1,340 m, where {shares[0]} ({shares[1]}) of them go on" in text
+    assert f"terrain shows the first 1,340 m of the way, where {shares[0]} ({shares[1]}) of them go on" in text
 
 
 @pytest.mark.parametrize("change, words", [

@@ -68,8 +68,8 @@ def test_where_the_energy_went(tmp_path):
     spent = energy.read(path)
     assert (spent["sliding"], spent["residual"], spent["left"]) == (7e8, 1e3, 5e5)
     assert spent["text"] == (
-        "of 2.00 GJ that weight and ground motion put in, 1.00 GJ was taken: 70.0 % by sliding, 19.0 % by rolling "
-        "resistance, 10.0 % by impacts (normal dashpots), 1.00 % by the finite step at the start and end of contacts; "
+        "of 2.00 GJ that weight and ground motion put in, 1.00 GJ was taken: 70 % by sliding, 19 % by rolling "
+        "resistance, 10 % by impacts (normal dashpots), 1 % by the finite step at the start and end of contacts; "
         "500 kJ left with balls; not accounted for: less than 0.01 %")
 
 
