@@ -84,7 +84,7 @@ void ScatteredLattice::make(Block &made, int64_t bi, int64_t bj) const
   int on = 0, off = 0;
   for (int b = 0; b < wide; b += glance)
     for (int a = 0; a < wide; a += glance) {
-      Place &p = places[b * wide + a] = place(bi * BLOCK + a, bj * BLOCK + b);
+      const Place &p = places[b * wide + a] = place(bi * BLOCK + a, bj * BLOCK + b);
       if (p.on) (kept(p.x, p.y) ? on : off)++;
     }
   std::fill_n(made.first, BLOCK * BLOCK + 1, 0);
@@ -131,9 +131,9 @@ void ScatteredLattice::add_chord(Block &made, const Place &a, const Place &b, ui
   const double steps = std::fabs(b.z - a.z) / cell;
   if (!(steps < OF_EDGE - 2.0))
     throw std::length_error("the surface steps by more than a thousand spacings");
-  const int n = static_cast<int>(steps);
-  for (int k = 1; k <= n; k++) {
-    const double w = k / (n + 1.0);
+  const int between = static_cast<int>(steps);
+  for (int k = 1; k <= between; k++) {
+    const double w = k / (between + 1.0);
     made.candidates.push_back({a.x + w * (b.x - a.x), a.y + w * (b.y - a.y), a.z + w * (b.z - a.z),
                                mix(hash + k), number + k, UNKNOWN});
   }

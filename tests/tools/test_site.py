@@ -19,7 +19,7 @@ from shapely.geometry import LineString, Polygon, mapping
 from run_helpers import called, write_tif
 from tiny_collapse import LMP, TOP
 
-from slope_tools import cli, programs
+from slope_tools import cli, digits, programs
 from slope_tools.case import decks
 from slope_tools.commands import study as study_command
 from slope_tools.deposits import volume_files
@@ -261,7 +261,7 @@ def test_the_largest_restitution_is_none_of_the_volume(done):
     far = elastic.far(found)
     assert ("With the most elastic rock, a restitution of 0.9, " + (
         "more than 1 % of it leaves the terrain." if far is None else f"within {far:.3g} m.")) in page
-    assert found["text"][1:] in page
+    assert digits.typeset(found["text"])[1:] in page
     assert "Reach and area with the most elastic rock" in page
     assert len((mine / "study" / "largest_restitution.csv").read_text().splitlines()) == 1 + 3 + 13
 

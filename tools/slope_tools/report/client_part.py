@@ -260,11 +260,11 @@ def is_weighted(data) -> bool:
 def distance(data, numbers, has_road_number: bool) -> str:
     values = reaches(data)
     if not values:
-        return "How far the mass goes is unknown: more than 1 % of it left the terrain."
+        return f"How far the mass goes is unknown: more than 1 % of it left the terrain.{most_elastic(data, numbers)}"
     if not has_road_number:
         front = [row["front_m"] for row in data.finished] or [farthest_of(data.result.summary)[0]]
         return (f"Distances are in plan from the highest point of the body; single blocks go farther, up to "
-                f"{numbers.quantity('front_m', max(front))} m in the model.")
+                f"{numbers.quantity('front_m', max(front))} m in the model.{most_elastic(data, numbers)}")
     far = span(numbers, DISTANCE, values)
     known = weighted(data, numbers, DISTANCE)
     if known:
