@@ -99,17 +99,24 @@ def test_without_a_fine_run_the_number_is_not_conservative(balls, kind):
     assert answer.of(None, answered.ensemble_of(about), None).kind is kind
 
 
-def test_the_growth_of_the_family_stands_beside_a_floor():
-    """Where it tells: not from more balls of thickness than any slide of it has."""
+@pytest.mark.parametrize("slides", [size_family.FEWEST - 1, size_family.FEWEST])
+def test_the_growth_of_the_family_stands_beside_a_floor(monkeypatch, slides):
+    """Where it tells: not from more balls of thickness than any slide of it has, nor of a few slides."""
+    lines = [f"{k},{balls},{100 + k * balls},1,1" for k in range(slides) for balls in (1, 4, 15)]
+    known = size_family.read(["case,balls,remove,beyond,length", *lines])
+    monkeypatch.setattr(size_family, "family", lambda: known)
     size = {"run": "d_1", "open": True, "balls_thick": 2.0, "effects": {}}
     about = {"conservative": {"volume_m3": 1200.0}, "size": size}
     [reason] = answer.of(answered.paper_of(about), None, None).reasons
     growth = size_family.growth(2.0)
+    if slides < size_family.FEWEST:
+        assert reason.numbers["growth"] is None and "times as much" not in answer_words.text(reason)
+        return
     assert reason.numbers["growth"] == growth._asdict() and growth.low <= growth.median <= growth.high
     for text in (answer_words.text(reason), answer_words.client(reason)):
         assert f"{growth.median:.2f}" in text and text.endswith("times as much")
     [reason] = answer.of(answered.paper_of({**about, "size": {**size, "balls_thick": 15.99}}), None, None).reasons
-    assert reason.numbers["growth"] == (found and found._asdict() if (found := size_family.growth(15.99)) else None)
+    assert reason.numbers["growth"] is None
 
 
 def test_a_floor_where_known_events_lie_beyond_the_runs():

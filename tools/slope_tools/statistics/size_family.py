@@ -11,6 +11,7 @@ from typing import Any, List, Mapping, NamedTuple, Optional, Sequence
 import numpy as np
 
 FILE = Path(__file__).with_name("size_family.csv")
+FEWEST = 5      # slides; fewer are no family, and their factors no bound
 QUANTITIES = {"remove_m3": "remove", "beyond_road_m3": "beyond", "length_m": "length"}     # columns of a study
 
 
@@ -62,3 +63,9 @@ def growth(balls: float, quantity: str = "remove_m3", slides: Optional[Slides] =
     if not factors:
         return None
     return Growth(statistics.median(factors), min(factors), max(factors), len(factors), max(finest))
+
+
+def told(balls: float) -> Optional[Growth]:
+    """The growth of the volume to remove; None where fewer than FEWEST slides tell it, which no floor may lean on."""
+    found = growth(balls)
+    return found if found and found.slides >= FEWEST else None

@@ -62,7 +62,7 @@ def size_of(about: Mapping[str, Any]) -> Optional[Reason]:
         balls = size["balls_thick"]
     elif not size and balls is not None and balls >= RESOLVED:
         return None
-    grown = None if balls is None else size_family.growth(balls)
+    grown = None if balls is None else size_family.told(balls)
     return Reason(Code.SIZE, {"run": "finished" if done else "failed" if size else "", "balls_thick": balls,
                               "enough": RESOLVED, "growth": grown and grown._asdict()})
 
