@@ -143,7 +143,7 @@ bigint CreateBalls::fill(double diameter, int narg, char **arg, std::vector<doub
   const Slope::BallPacking packing(diameter, seed);
   double lo[3], hi[3], share[3];
   bounds(region, lo, hi);
-  const double mine_has = packing.expected((hi[0] - lo[0]) * (hi[1] - lo[1]) * (hi[2] - lo[2]));
+  double mine_has = packing.expected((hi[0] - lo[0]) * (hi[1] - lo[1]) * (hi[2] - lo[2]));
   double places;
   MPI_Allreduce(&mine_has, &places, 1, MPI_DOUBLE, MPI_SUM, world);
   if (!(places <= MOST_PLACES))
