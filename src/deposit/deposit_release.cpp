@@ -317,11 +317,11 @@ double DepositRelease::stiffness_number(const Released &released) const
 
 double DepositRelease::gravity(int mine) const
 {
-  int groups;
-  MPI_Allreduce(&mine, &groups, 1, MPI_INT, MPI_BOR, world);
   double sum[3] = {0.0, 0.0, 0.0};
   for (Fix *fix : compat::fixes_of_style(lmp, "gravity")) {
-    if (!(groups & fix->groupbit)) continue;
+    int pulls_mine = (mine & fix->groupbit) != 0, pulls;
+    MPI_Allreduce(&pulls_mine, &pulls, 1, MPI_INT, MPI_MAX, world);
+    if (!pulls) continue;
     int dim;
     const double *g = static_cast<double *>(fix->extract("gvec", dim));
     for (int d = 0; d < 3; d++) sum[d] += g[d];
