@@ -30,7 +30,7 @@ from slope_tools.sites.site import numbers as site_numbers
 from slope_tools.errors import SlopeError
 from slope_tools.plots import site_map
 from slope_tools.statistics.size_effect import Effect
-from slope_tools.tables import answered, elastic
+from slope_tools.tables import answer_words, answered, elastic
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 DATA = Path(os.environ.get("SLOPE_DATA", TOP.parent.parent / "shared" / "data"))
@@ -220,6 +220,10 @@ def test_both_studies_give_one_number(done, tmp_path, monkeypatch, capsys, fitte
     assert found["kind"] == "floor" or found["volume_m3"] == max(volumes)
     assert answered.governing(mine / "study", mine / "ensemble").name == ("study" if found["source"] == "paper" else
                                                                           "ensemble")
+    step, = (line.removeprefix("next step: ") for line in out.splitlines() if line.startswith("next step: "))
+    assert paper["next_step"] == both["next_step"] and step.startswith(both["next_step"]["text"]) and step.endswith(
+        both["next_step"]["command"])
+    assert [line for line in out.splitlines() if line in answer_words.lines(found)] == answer_words.lines(found)
     governs, other = ("study", "ensemble") if found["source"] == "paper" else ("ensemble", "study")
     assert pages == [(other, {"study": "paper.html", "ensemble": "ensemble.html"}[other], False),
                      (governs, "report.html", True)]
