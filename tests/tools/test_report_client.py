@@ -515,7 +515,8 @@ def test_what_the_runs_differ_in_is_said_without_names_of_variables():
         data.study["study"]["method"] = method
         assert numbers.basis(data).endswith("at the start.")
     data.repeats, data.settings = {}, {"friction": ["5", "30"], "packing": ["1", "2"]}      # an ensemble
-    assert numbers.basis(data).endswith("which differ in the friction and, by chance, in how the balls lie at the start.")
+    assert numbers.basis(data).endswith("which differ in the friction and, by chance, in how the balls lie at the "
+                                        "start.")
 
 
 BEST = {"set": {"rolling": "0.1", "spacing": "0.5"}, "chance_m3": 3.0, "size_m3": 2.0, "repeats": 3, "run": "b"}

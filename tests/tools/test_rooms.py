@@ -16,7 +16,7 @@ LONGEST = 400       # lines
 # from below
 ROOMS = ("", "drawing", "survey", "case", "quakes", "releases", "slips", "sites", "deposits", "mobility", "statistics",
          "runs", "tables", "ensembles", "seismic", "studies", "fitting", "plots", "animation", "report",
-         "route", "validation", "commands")
+         "scenarios", "route", "validation", "commands")
 MOST = 25           # modules of a room; its __init__.py is one
 
 

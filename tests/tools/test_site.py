@@ -240,6 +240,31 @@ def test_the_report_of_a_sites_folder(done, tmp_path):
     assert "slope study bare" in found.stderr and [path.name for path in bare.iterdir()] == ["site.yaml"]
 
 
+def test_the_page_of_a_site_and_its_scenarios(done, tmp_path):
+    """Beside its report: what each releases and says, and the outlines; a file of the user's of that name stays."""
+    mine = tmp_path / "mine"
+    shutil.copytree(done[0] / "mine", mine)
+    for name in ("dem.tif", "release.geojson", "road.geojson"):
+        shutil.copy(done[0] / name, tmp_path)
+    assert not (mine / "scenarios.html").exists()
+    made = inside(tmp_path, "site", "mine", "--scenario", "small", "--volume", "800")
+    assert made.returncode == 0, made.stderr
+    made = inside(tmp_path, "report", "mine", "--no-film")
+    assert made.returncode == 0 and "mine/scenarios.html: the site and its 1 scenarios" in made.stdout, made.stderr
+    page = (mine / "scenarios.html").read_text(encoding="utf-8")
+    volume = digits.rounded(site_choices.found(mine)["body"]["volume"], 4)
+    for words in ("no study yet", "volume 800", ">small<", f">{volume}<", "<li>small: ", "data:image/png",
+                  "Outlines of the deposits"):
+        assert words in page, words
+    shutil.copytree(mine / "study", mine / "scenarios" / "small" / "study")     # as if its runs said the same
+    shutil.copytree(mine / "runs", mine / "scenarios" / "small" / "runs")
+    assert inside(tmp_path, "report", "mine", "--no-film").returncode == 0
+    assert "no study yet" not in (mine / "scenarios.html").read_text(encoding="utf-8")
+    (mine / "scenarios.html").write_text("of the user\n")
+    found = inside(tmp_path, "report", "mine", "--no-film")
+    assert found.returncode == 2 and "scenarios.html must be" in found.stderr.splitlines()[-1]
+
+
 def test_the_longest_runs_begin_first(done):
     """The fine run, then half the step; those of the study's own keep their names."""
     begun = [line.split()[1].rstrip(":") for line in done[2].splitlines() if line.endswith(": started")]
