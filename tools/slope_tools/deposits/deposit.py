@@ -118,7 +118,8 @@ def find_terrain(prefix, terrain, raster, warn):
         there = rasters.read_place(own)
         if (there.crs, there.offset) not in ((None, (0, 0)), (place.crs, place.offset)):
             raise SlopeError(found, f"must lie where the run's terrain.asc does, {there.crs}, origin "
-                             f"{numbers(there.offset)}; --terrain names another", f"{place.crs}, {numbers(place.offset)}")
+                             f"{numbers(there.offset)}; --terrain names another",
+                             f"{place.crs}, {numbers(place.offset)}")
     if place.crs is None:
         warn(Finding("no CRS", {"file": str(found), "coordinates": "metres as in that file" if place.offset != (0, 0)
                                 else "the local metres of the run"}))
