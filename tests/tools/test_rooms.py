@@ -15,7 +15,7 @@ MODULES = sorted(PACKAGE.rglob("*.py"))
 LONGEST = 400       # lines
 # from below
 ROOMS = ("", "drawing", "survey", "case", "quakes", "releases", "slips", "sites", "deposits", "mobility", "statistics",
-         "runs", "tables", "ensembles", "seismic", "studies", "fitting", "plots", "animation", "report",
+         "runs", "tables", "ensembles", "seismic", "studies", "fitting", "plots", "animation", "report", "blocks",
          "route", "validation", "commands")
 MOST = 25           # modules of a room; its __init__.py is one
 
