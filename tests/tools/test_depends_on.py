@@ -26,7 +26,7 @@ from slope_tools.sites import site_choices
 CHOSEN = {"set", "fine", "vary", "levels", "sample", "fit", "paper", "design", "seed", "repeat", "converge", "runs",
           "fragility"}
 FOLLOWED = {"deck", "lmp"}              # dependencies.py
-PLACE = {"output", "overwrite", "help", "dry_run", "all_columns"}       # where to, what is shown, or no run
+PLACE = {"output", "overwrite", "help", "dry_run", "all_columns", "scenario"}       # where to, what is shown, or no run
 ONE_RESULT = {"np", "jobs", "launcher", "engine", "slurm"}      # how it is run: the same but for rounding
 # computed from the runs, each time that the command is given
 ANEW = {"road", "road_width", "road_from", "blocked", "lane", "clearing", "loosening", "cut_angle", "mesh", "local",
@@ -63,6 +63,7 @@ LATER = {("project", "name"), ("project", "client"), ("project", "author"), ("ro
          ("study", "rolling"), ("study", "spacing"), ("study", "points"), ("known", "set"), ("known", "confined"),
          ("study", "packing"), ("study", "fine"), ("study", "largest_restitution")}
 KEYS = [(section, key) for section, about in site_choices.sections() for key in about["properties"]]
+OF_BLOCKS = [(section, key) for section, about in site_choices.sections("blocks") for key in about["properties"]]
 NOT_FILES = {("terrain", "crs"), ("terrain", "assign_crs"), ("terrain", "z_unit"), ("release", "shape"),
              ("release", "scar_is"), ("project", "name"), ("project", "client"), ("project", "author"),
              ("known", "set"), ("known", "confined"), ("study", "fine")}
@@ -71,7 +72,7 @@ NOT_FILES = {("terrain", "crs"), ("terrain", "assign_crs"), ("terrain", "z_unit"
 def test_every_option_of_a_site_is_a_choice():
     known = site_command.OPTIONS.keys() - {"assigned", "bodies"}
     assert options("site") - SET_CHOICES - TRIAL - PLACE - {"folder"} == known
-    assert set(site_command.OPTIONS.values()) <= set(KEYS)
+    assert set(site_command.OPTIONS.values()) <= {*KEYS, *OF_BLOCKS}
 
 
 def test_every_file_of_a_site_is_known():
@@ -83,9 +84,10 @@ def test_every_file_of_a_site_is_known():
     assert texts - NOT_FILES == set(site_choices.FILES)
 
 
-@pytest.mark.parametrize("section, key", KEYS)
-def test_a_choice_of_a_site_counts(tmp_path, section, key):
-    choices = site_choices.complete({"terrain": {"files": [str(tmp_path / "dem.asc")]}})
+@pytest.mark.parametrize("kind, section, key", [*(("", *one) for one in KEYS),
+                                                *(("blocks", *one) for one in OF_BLOCKS)])
+def test_a_choice_of_a_site_counts(tmp_path, kind, section, key):
+    choices = site_choices.complete({"kind": kind, "terrain": {"files": [str(tmp_path / "dem.asc")]}})
     before = site_choices.Site.of(choices, tmp_path).fingerprint()
     several = isinstance(choices[section].get(key), list)
     choices[section][key] = [str(tmp_path / "other")] if several else str(tmp_path / "other")

@@ -53,6 +53,7 @@ RENAMED = {
     "calibrate": {"--volume": "--road-volume"}, "sensitivity": {"--vary": "--levels"},
     "report": {"--project": "--name"}, "bench": {"--repeat": "--runs"},
 }
+BY_KIND = {"study", "export", "report"}     # see blocks/kinds.py
 WITHOUT_PLACES = {"quake", "verify", *IN_TESTS}      # no file of theirs has a CRS
 TESTS = Path(__file__).resolve().parents[2] / "tests"
 
@@ -97,8 +98,16 @@ def add_command(commands, name, module, **kwargs):
                                  description=module.DESCRIPTION, **kwargs)
     parser.add_argument("--describe", action=options.Describe)
     options.declare(parser, module.Request)
-    parser.set_defaults(run=lambda found: module.run(options.request(module.Request, found)))
+    parser.set_defaults(run=lambda found: run(name, module, options.request(module.Request, found)))
     return parser
+
+
+def run(name, module, request):
+    """Do a subcommand, by the kind of the site that it may be given."""
+    if name in BY_KIND:
+        importlib.import_module(f"{__package__}.blocks.kinds").run(name, module, request, print)
+    else:
+        module.run(request)
 
 
 def with_new_names(command, argv):

@@ -308,6 +308,15 @@ WORDS: Dict[str, Union[str, Words]] = {
     "chain size": Words("smaller balls may bring more: the road is blocked at least so often", NOTE),
     # on a calibration
     "failed fits": Words("{failed} of {runs} runs failed and are left out: {which}", NOTE),
+    # of sites of single blocks
+    "blocks on level ground": "the release area falls by {slope:.2g} degrees, less than {limit:g}: blocks hardly move",
+    "blocks below cell": Words("the blocks, {size:g} m, are smaller than the cells of the terrain, {cell:g} m: steps "
+                               "and ledges that throw them are not in it", NOTE),
+    "blocks left": "{left:,} of {blocks:,} blocks left the terrain: how far they go is not known, and what is said of "
+                   "reach is the least; use a larger elevation model",
+    "blocks moving": "{moving:,} of {blocks:,} blocks still moved at the end of their run: what is said of reach is "
+                     "the least; a longer model.duration in site.yaml",
+    "blocks too fast": "contacts overlap by up to {percent:.0f} % of the radius: a larger model.speed in site.yaml",
     "lost fits": Words("{lost} of {runs} runs lost up to {volume:,.0f} m3 over the edge of the terrain or the box: how "
                        "far they went is unknown, and they are left out; use a larger one", NOTE),
     "underdetermined": Words("{known} cannot determine {asked} variables", NOTE),

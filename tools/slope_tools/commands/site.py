@@ -6,18 +6,19 @@ from pathlib import Path
 from shlex import quote
 from typing import Any, Dict, List, Optional
 
+from ..blocks import kinds
 from ..case import decks
 from ..ensembles import known_study
 from ..errors import SlopeError
 from ..findings import printer
-from ..options import Program, option, positional, whole
+from ..options import Program, number, option, positional, whole
 from ..plots import site_map
 from ..programs import find_lmp
 from ..releases import packing
 from ..releases.release import SHAPES
 from ..releases.release_scar import KINDS
 from ..runs import jobs
-from ..sites import site, site_choices, site_deck, site_scenarios
+from ..sites import site, site_choices, site_deck, site_older, site_scenarios
 from ..slips import bodies
 from ..studies import ahead, outlook, site_ground
 from ..studies.setup import RUNS, Setup
@@ -47,7 +48,8 @@ OPTIONS = {"terrain": ("terrain", "files"), "crs": ("terrain", "crs"),
            "observed": ("observed", "file"), "known": ("known", "set"),
            "confined": ("known", "confined"), "diameter": ("balls", "diameter"), "balls": ("balls", "number"),
            "minutes": ("balls", "minutes"), "memory": ("balls", "memory"), "name": ("project", "name"),
-           "client": ("project", "client"), "author": ("project", "author")}
+           "client": ("project", "client"), "author": ("project", "author"), "blocks": ("blocks", "number"),
+           "size": ("blocks", "size"), "speed": ("blocks", "speed")}
 # options that change neither the body nor its runs: what was determined for these is kept
 BESIDE = {"road", *road_arguments.OPTIONS, "cut_angle", "mesh", "line", "observed", "known", "confined", "rolling",
           "largest_restitution", "name", "client", "author"}
@@ -79,6 +81,9 @@ half of it, with the balls and cells of the site, in mine/scenarios/half; slope 
 
 a light and smooth ground:
   tools/slope site mine --friction 25 --rolling 0 0.05 --spacing 0.8 --density 1600
+
+10,000 single blocks of 0.8 to 1.2 m, and which share of them reaches the road:
+  tools/slope site --terrain dem.tif --release cliff.geojson --blocks 10000 --size 0.8:1.2 --road road.geojson -o cliff
 
 FOLDER/site.yaml holds every choice, and what each means; change it and give FOLDER alone to rebuild the folder. Changes
 of road, known and study take effect in the next `slope study FOLDER`, which makes only the runs that are not there.
@@ -192,6 +197,22 @@ class Size:
     diameter: Optional[float] = option("of the balls, m", metavar="D", one_of="size")
 
 
+def sizes(text: str) -> List[float]:
+    """argparse type: D or D:D2."""
+    return [number(part) for part in text.split(":")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Blocks:
+    """Instead of a mass."""
+    GROUP = "single blocks instead of a mass, which begin in the release area"
+    blocks: Optional[int] = option("number of blocks, of all runs together", metavar="N")
+    size: Optional[List[float]] = option("their diameter, m; D:D2: from D to D2, all as frequent (default 1)",
+                                         type=sizes, metavar="D[:D2]")
+    speed: Optional[float] = option("at the start, m/s, down the fall line of the release area (default 0)",
+                                    metavar="V")
+
+
 @dataclass(frozen=True, kw_only=True)
 class About:
     """Of the report."""
@@ -202,7 +223,7 @@ class About:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Request(Ground, Layers, known_arguments.Confined, Model, Size, About, Program):
+class Request(Ground, Layers, known_arguments.Confined, Model, Size, Blocks, About, Program):
     folder: Optional[Path] = positional(
         "a site's folder that is rebuilt from its site.yaml; options change its choices", metavar="FOLDER", nargs="?")
     scenario: Optional[str] = option(
@@ -215,19 +236,19 @@ class Request(Ground, Layers, known_arguments.Confined, Model, Size, About, Prog
 def run(args: Request) -> None:
     """Do the command; raises SlopeError on bad input. Prints what was read, found and written."""
     folder, choices, known = chosen(args)
-    if any(getattr(args, option) is not None for option in OF_SOIL):
+    build = kinds.build(choices)
+    if build is site.build and any(getattr(args, option) is not None for option in OF_SOIL):
         print(soil(choices))
     cores = args.jobs or jobs.cores()
     with jobs.signals_interrupt(), site_scenarios.room(folder) if args.scenario is not None else nullcontext():
         made = site.make(choices, folder, site.Machine(program(args.lmp), cores),
                          lambda line: print(line, flush=True), printer("site"), site_map.draw,
-                         again=args.folder is not None and args.scenario is None, known=known)
-    for line in site_ground.lines(site_choices.load(folder)):
-        print(line)
-    for line in outlook.lines(folder):
-        print(line)
-    if (folder / RUNS).is_dir():
-        print(runs_ahead(args, folder, choices))
+                         again=args.folder is not None and args.scenario is None, known=known, how=build)
+    if build is site.build:
+        for line in (*site_ground.lines(site_choices.load(folder)), *outlook.lines(folder)):
+            print(line)
+        if (folder / RUNS).is_dir():
+            print(runs_ahead(args, folder, choices))
     print(f"written to {folder}: {' '.join(made.files)}")
     print(f"look at {folder / site.MAP}, then: tools/slope study {quote(str(folder))}")
 
@@ -250,8 +271,6 @@ def chosen(args: Request):
     given = {name: value for name in OPTIONS if (value := getattr(args, name, None)) is not None}
     given.update(assigned_crs(given.pop("assign_crs", ())))
     given.update(of_slips(args))
-    if "density" in given:
-        given["density"] = density_of_ball(given["density"])
     if args.folder is not None:
         if args.output is not None:
             raise SlopeError("-o", f"must not be given with the folder of a site, {args.folder}, which is rebuilt",
@@ -262,7 +281,10 @@ def chosen(args: Request):
             raise SlopeError("--scenario", "must be given with the folder of a site", args.scenario)
         if args.terrain is None or args.output is None:
             raise SlopeError("--terrain" if args.terrain is None else "-o", "must be given, or the folder of a site")
-        folder, choices, known = args.output, site_choices.complete({}), {}
+        folder, choices, known = args.output, kinds.begun(args.blocks), {}
+    kinds.check(choices, {name: OPTIONS[name] for name in given})
+    if "density" in given and kinds.build(choices) is site.build:
+        given["density"] = density_of_ball(given["density"])
     replace(choices, given)
     site_choices.check({"slope_site": site_choices.VERSION, **choices}, str(folder / site_choices.NAME),
                        {OPTIONS[option]: "--assign-crs" if option == "assigned" else f"--{option.replace('_', '-')}"
@@ -272,10 +294,10 @@ def chosen(args: Request):
 
 def rebuilt(folder: Path, given: Dict[str, Any]):
     """The folder of a site, its choices, and of them what counts of what was found before."""
-    choices = site_choices.read(folder)
+    choices = site_choices.read(folder, site_choices.kind_in(folder))
     known = site_choices.found(folder).get("derived") or {}
     older = site_choices.has_lattice(choices)
-    choices = of_new_packing(of_new_ground(choices, folder, given), folder)
+    choices = site_older.renewed(choices, folder, "spacing" in given, print)
     if older or given.keys() - BESIDE:
         site_choices.forget(choices, known)
         known = {}
@@ -294,29 +316,7 @@ def of_scenario(args: Request, given: Dict[str, Any]):
             raise SlopeError(f"--{name}", "must not be given with --scenario, whose balls are those of its site",
                              f"{given[name]:g}")
     choices = site_scenarios.choices(of, args.scenario)
-    return folder, of_new_packing(of_new_ground(choices, args.folder, given), args.folder), {}
-
-
-def of_new_packing(choices, folder):
-    """The choices of a folder, an older one with the packing of this version, which is said."""
-    if site_choices.has_lattice(choices):
-        print(f"{folder / site_choices.NAME}: {', '.join(site_choices.OFFSETS)} of an older version no longer count: "
-              "the balls begin in a disordered packing, not on a cubic lattice")
-    return site_choices.without_lattice(choices)
-
-
-def of_new_ground(choices, folder, given):
-    """The choices of a folder, an older one with the ground of this version, which is said."""
-    if not site_choices.has_old_ground(choices):
-        return choices
-    spacing, most = choices["model"]["spacing"], site_choices.widest()
-    if spacing > most and "spacing" not in given:
-        raise SlopeError(f"{folder / site_choices.NAME}: model.spacing", f"must be <= {most:g}: the ground of an older "
-                         "version was a plan grid, now it is scattered balls; give --spacing 0.9, the default, or keep "
-                         "the folder as it is: its study still runs", f"{spacing:g}")
-    print(f"{folder / site_choices.NAME}: {' and '.join(site_choices.RETIRED)} of an older version no longer count: "
-          "the ground is scattered balls as large as those of the soil")
-    return site_choices.without_old_ground(choices)
+    return folder, site_older.renewed(choices, args.folder, "spacing" in given, print), {}
 
 
 def of_slips(args: Ground) -> Dict[str, Any]:
@@ -369,7 +369,7 @@ def replace(choices, given):
             for name in group:
                 section, key = OPTIONS[name]
                 choices[section][key] = None
-    if "scar" in given or "release" in given:
+    if "bodies" in choices["release"] and ("scar" in given or "release" in given):
         choices["release"]["bodies"] = []
     if "scar" in given:
         choices["release"].update(shape=None, depth=None, volume=None, curvature=None, dip=None, direction=None)

@@ -35,7 +35,8 @@ def draw(path: Path, layers: Shown, title: str) -> None:
         image = figure_maps.draw_values(axes, base, layers.depth, bounds, palettes.DEPTH, layers.depth > 0)
         entries = draw_outlines(axes, layers)
         sheets.draw_axes(axes, frame, size)
-        sheets.colour_bar(sheet, image, bounds, "depth of the body (m)", beside, below)
+        if layers.depth.any():
+            sheets.colour_bar(sheet, image, bounds, "depth of the body (m)", beside, below)
         scale = size[0] / (shown[2] - shown[0])
         sheets.scale_and_legend(sheet, sheets.margins(frame)[0], scale, min(shown[2] - shown[0], 2.5 / scale),
                                 [*figure_maps.entries(base), *entries], raster.crs is not None)
@@ -47,7 +48,7 @@ def boxes(layers: Shown) -> List:
     """The boxes of all that must be seen; parts beyond the terrain are cut off."""
     raster = layers.raster
     row, column = np.nonzero(layers.depth > 0)
-    found = [cells_box(raster, row, column)]
+    found = [cells_box(raster, row, column)] if len(row) else []
     found += [one.bounds for one in (layers.release, layers.road, layers.observed) if one is not None]
     found += [(*one.low[:2], *one.high[:2]) for one in layers.structures]
     found += [(*one.points.min(axis=0), *one.points.max(axis=0)) for one in layers.lines]

@@ -39,7 +39,6 @@ class Made(NamedTuple):
     """What was made."""
     folder: Path
     files: List[str]
-    size: Size
 
 
 def check_target(folder: Path, again: bool) -> None:
@@ -62,15 +61,17 @@ def check_target(folder: Path, again: bool) -> None:
 
 
 Draw = Callable[[Path, Shown, str], None]       # of the map: file, what it shows, title
+Build = Callable[..., Made]     # arguments of build()
 
 
 def make(choices: Choices, folder: Path, machine: Machine, tell: Callable[[str], Any],
          warn: Callable[[str], Any], draw: Draw, again: bool = False,
-         known: Optional[Derived] = None) -> Made:
+         known: Optional[Derived] = None, how: Optional[Build] = None) -> Made:
     """Make a site's folder, or rebuild it, from complete choices whose paths are relative to the working folder.
 
     tell and warn are called with lines for the user, draw draws the map; again: the folder is a site, which is
-    rebuilt; known: the choices that were determined when it was made before. Raises SlopeError on bad input; the folder
+    rebuilt; known: the choices that were determined when it was made before; how: what makes the files, if not build(),
+    that of a mass. Raises SlopeError on bad input; the folder
     is then as it was, and a new one has site.yaml alone, to be changed.
     """
     place = folder.absolute()
@@ -83,7 +84,7 @@ def make(choices: Choices, folder: Path, machine: Machine, tell: Callable[[str],
         with disk.alone_in(folder) if again else contextlib.nullcontext():
             new.mkdir()
             try:
-                made = built(choices, known or {}, new, folder, machine, tell, warn, draw)
+                made = built(how or build, choices, known or {}, new, folder, machine, tell, warn, draw)
                 site_folder.exchange(new, place, old)
             except SlopeError as error:
                 if not again and site_folder.is_free(folder):       # no other one has made it meanwhile
@@ -98,11 +99,11 @@ def make(choices: Choices, folder: Path, machine: Machine, tell: Callable[[str],
     return made
 
 
-def built(choices: Choices, known: Derived, new: Path, folder: Path, machine: Machine, tell, warn,
+def built(how: Build, choices: Choices, known: Derived, new: Path, folder: Path, machine: Machine, tell, warn,
           draw: Draw) -> Made:
-    """build(), whose messages do not name the temporary folder."""
+    """How it is built; messages do not name the temporary folder."""
     try:
-        return build(choices, known, new, folder, machine, tell, warn, draw)
+        return how(choices, known, new, folder, machine, tell, warn, draw)
     except SlopeError as error:
         error.args = (str(error).replace(f"{new}/", ""),)
         raise
@@ -154,21 +155,24 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
     deck = site_deck.text(choices, parts, numbers(choices, soil_of(choices, parts), trial, size))
     disk.write(new / site_deck.NAME, deck)
     draw(new / MAP, shown(found, layers, first and first.reached), f"{title}: {found.measures.volume:,.0f} m\u00b3")
-    files = sorted([path.name for path in new.iterdir()] + [site_choices.NAME])
-    about = {"slope_version": provenance.version(), "made": provenance.now(), "files": files,
-             "derived": derived,
-             "deck_sha256": disk.sha256(new / site_deck.NAME),
-             "choices_sha256": site_choices.Site.of(choices, folder).fingerprint(),
-             "sources_sha256": site_choices.Site.of(choices, folder).sources(),
-             "crs": crs_name(raster.crs),
-             "origin": {"east": float(raster.offset[0]), "north": float(raster.offset[1])},
-             "zones": [zone.about(raster) for zone in layers.zones],
+    about = {**about_made(choices, new, folder, raster, layers), "derived": derived,
              "body": found.measures._asdict(), "bodies": site_bodies.about(several), "balls": size.balls,
              "trial": trial and trial._asdict(), "trial_of": first and first.about,
              "study": {"runs": size.runs, "seconds": size.seconds, "gigabytes": size.gigabytes,
                        "at_a_time": machine.jobs}}
     disk.write(new / site_choices.NAME, site_choices.text(choices, about, folder.absolute()))
-    return Made(folder, files, size)
+    return Made(folder, about["files"])
+
+
+def about_made(choices: Choices, new: Path, folder: Path, raster: Raster, layers: Layers) -> Dict[str, Any]:
+    """What site.yaml says of what was made, of whatever kind: files, digests, place, zones."""
+    site = site_choices.Site.of(choices, folder)
+    return {"slope_version": provenance.version(), "made": provenance.now(),
+            "files": sorted([path.name for path in new.iterdir()] + [site_choices.NAME]),
+            "deck_sha256": disk.sha256(new / site_deck.NAME), "choices_sha256": site.fingerprint(),
+            "sources_sha256": site.sources(), "crs": crs_name(raster.crs),
+            "origin": {"east": float(raster.offset[0]), "north": float(raster.offset[1])},
+            "zones": [zone.about(raster) for zone in layers.zones]}
 
 
 def of_road(choices: Choices, found: release.Body, layers: Layers, size: Size) -> List[Finding]:

@@ -28,7 +28,7 @@ def slip_name(name: str, rank: object) -> str:
 
 def planned(choices: Choices, name: str) -> Set[str]:
     """Names of the files that write() makes."""
-    slips = {slip_name(name, rank_of(Path(path))) for path in choices["release"]["bodies"]}
+    slips = {slip_name(name, rank_of(Path(path))) for path in site_choices.listed(choices, "release", "bodies")}
     return slips | {str(Path(one).with_suffix(".yaml")) for one in slips}
 
 

@@ -1,6 +1,8 @@
 """site.yaml: every choice of a site, read, checked against its schema, and written with a comment on each.
 
-site_schema.json beside this module has the keys, their ranges, defaults and meaning; nothing else has them.
+site_schema.json beside this module has the keys, their ranges, defaults and meaning; nothing else has them. That is of
+a mass; a site of another kind says so (`kind`), and the room of that name has a site_schema.json with its own sections
+and the names of those that it shares.
 """
 import copy
 import functools
@@ -24,6 +26,7 @@ VERSION = 1             # of site.yaml, also in its schema
 LONGEST_TEXT = 200      # letters of a name in the heading of a report
 PACKING = "packing"     # variable of the deck, and of the study: its repeats
 SCHEMA = Path(__file__).with_name("site_schema.json")
+MASS, KINDS = "", ("blocks",)       # of sites
 WHAT = "a site.yaml of `slope site`"
 FOUND = schemas.mapping({}, found=schemas.mapping({}, null=True))       # of any version
 # keys that hold one file, and lists of files
@@ -62,32 +65,45 @@ Derived = Dict[str, Any]        # {"section.key": value} of DERIVED
 
 
 @functools.lru_cache
-def schema() -> Dict[str, Any]:
-    """The JSON schema of site.yaml."""
-    return json.loads(SCHEMA.read_text(encoding="utf-8"))
+def schema(kind: str = MASS) -> Dict[str, Any]:
+    """The JSON schema of site.yaml; of another kind, sections that its file does not describe are those of a mass."""
+    about = json.loads(SCHEMA.read_text(encoding="utf-8"))
+    if kind == MASS:
+        return about
+    own = json.loads((SCHEMA.parents[1] / kind / SCHEMA.name).read_text(encoding="utf-8"))
+    shared = about["properties"]
+    return {**about, **own, "properties": {name: one or shared[name] for name, one in own["properties"].items()}}
 
 
-def sections() -> Iterator[Tuple[str, Dict[str, Any]]]:
+def sections(kind: str = MASS) -> Iterator[Tuple[str, Dict[str, Any]]]:
     """(name, schema) of the sections that hold choices."""
-    for name, about in schema()["properties"].items():
+    for name, about in schema(kind)["properties"].items():
         if "properties" in about:
             yield name, about
 
 
-def defaults() -> Choices:
+def kind_of(given: Any) -> str:
+    """Of the site that choices, or what a file holds, are of."""
+    kind = given.get("kind", MASS) if isinstance(given, dict) else MASS
+    return kind if kind in KINDS else MASS
+
+
+def defaults(kind: str = MASS) -> Choices:
     """The choices of a site of which nothing is given; files of the terrain are missing."""
     return {name: {key: copy.deepcopy(entry["default"]) for key, entry in about["properties"].items()
-                   if "default" in entry} for name, about in sections()}
+                   if "default" in entry} for name, about in sections(kind)}
 
 
 def complete(given: Choices) -> Choices:
     """Choices with the defaults of all that is not given; with those of an older site's ground, if it has some."""
     old = {"model": dict.fromkeys(RETIRED)} if has_old_ground(given) else {}
-    found_ = {name: {**entries, **old.get(name, {}), **(given.get(name) or {})} for name, entries in defaults().items()}
-    known = found_["known"]
-    if isinstance(known["confined"], bool):        # yes and no without quotes
+    kind = kind_of(given)
+    found_ = {name: {**entries, **old.get(name, {}), **(given.get(name) or {})}
+              for name, entries in defaults(kind).items()}
+    known = found_.get("known", {})
+    if isinstance(known.get("confined"), bool):        # yes and no without quotes
         known["confined"] = "yes" if known["confined"] else "no"
-    return found_
+    return {**({"kind": kind} if kind else {}), **found_}
 
 
 def has_old_ground(given: Choices) -> bool:
@@ -166,7 +182,7 @@ def check(given: Any, where: str, options: Optional[Mapping[Tuple[str, str], str
     if given["slope_site"] != VERSION:
         raise SlopeError(f"{where}: slope_site", f"must be {VERSION}, the version that this program reads: make a new "
                          "site from its files, or use the program that made it", given["slope_site"])
-    if wrong := schemas.first_error(given, schema()):
+    if wrong := schemas.first_error(given, schema(kind_of(given))):
         place, rule = wrong
         key = ".".join(str(part) for part in place if isinstance(part, str))
         at = "".join(f": {schemas.nth(part)}" for part in place if isinstance(part, int))
@@ -201,10 +217,10 @@ class Site(NamedTuple):
         Files count by the paths that site.yaml has: the folder may have moved.
         """
         made = with_files(self.written, os.path.normpath)
-        for name in READ_LATER:
+        for name in (name for name in READ_LATER if name in made):
             made[name] = {key: value for key, value in made[name].items() if (name, key) in FILES}
         for name, key in LATER:
-            if made[name][key] in (None, []):
+            if made.get(name, {}).get(key, True) in (None, []):
                 del made[name][key]
         made = {name: section for name, section in made.items() if section or name in READ_LATER}
         return hashlib.sha256(json.dumps(disk.plain(made), sort_keys=True).encode("utf-8")).hexdigest()
@@ -223,12 +239,14 @@ class Site(NamedTuple):
         return digests
 
 
-def load(folder: Path) -> Site:
-    """The Site of a folder; SlopeError unless its site.yaml is one of this version."""
+def load(folder: Path, kind: str = MASS) -> Site:
+    """The Site of a folder; SlopeError unless its site.yaml is one of this version, and of a kind."""
     path = folder / NAME
     if not path.is_file():
         raise SlopeError(folder, f"must be a folder with {NAME}, which slope site makes")
     content = disk.parse_yaml(path, WHAT)
+    if kind_of(content) != kind:
+        raise SlopeError(folder, f"must be a site of {kind or 'a mass'} here", f"one of {kind_of(content) or 'a mass'}")
     given = without_dropped(content)
     check(without_lattice(without_old_ground(given)) if isinstance(given, dict) else given, str(path))
     schemas.check(content, FOUND, path, WHAT)
@@ -242,9 +260,15 @@ def around(deck: Path) -> Optional[Site]:
     return load(deck.parent) if (deck.parent / NAME).is_file() else None
 
 
-def read(folder: Path) -> Choices:
+def read(folder: Path, kind: str = MASS) -> Choices:
     """The complete choices of a site's folder; paths of files relative to the working folder."""
-    return load(folder).choices
+    return load(folder, kind).choices
+
+
+def kind_in(folder: Path) -> str:
+    """The kind of the site in a folder; of what is none, that of a mass."""
+    path = Path(folder) / NAME
+    return kind_of(disk.parse_yaml(path, WHAT)) if path.is_file() else MASS
 
 
 def found(folder: Path) -> Dict[str, Any]:
@@ -265,7 +289,8 @@ def in_folder(name: str, folder: Path) -> str:
 
 def derived(before: Choices, after: Choices, known: Derived) -> Derived:
     """The choices that the user left open and the command determined: now, or earlier (known) and unchanged since."""
-    names = {f"{section}.{key}": (before[section][key], after[section][key]) for section, key in DERIVED}
+    names = {f"{section}.{key}": (before[section][key], after[section][key]) for section, key in DERIVED
+             if key in before.get(section, {})}
     return {name: now for name, (was, now) in names.items()
             if now is not None and (was is None or (name in known and known[name] == now))}
 
@@ -274,14 +299,17 @@ def forget(choices: Choices, known: Derived) -> None:
     """Set to null what the command determined and the user did not change, so that it is determined again."""
     for section, key in DERIVED:
         name = f"{section}.{key}"
-        if name in known and known[name] == choices[section][key]:
+        if name in known and known[name] == choices.get(section, {}).get(key):
             choices[section][key] = None
 
 
 def with_files(choices: Choices, change) -> Choices:
     """The choices with all names of files changed by a function."""
     new = copy.deepcopy(choices)
+    about = schema(kind_of(choices))["properties"]
     for section, key in FILES:
+        if key not in about.get(section, {"properties": ()})["properties"]:
+            continue
         value = new[section].get(key)
         new[section][key] = [change(one) for one in value] if isinstance(value, list) else value and change(value)
     return new
@@ -294,7 +322,7 @@ def source_files(choices: Choices) -> List[str]:
 
 def listed(choices: Choices, section: str, key: str) -> List[str]:
     """The files of a key, also of one that holds one file or none."""
-    value = choices[section].get(key)
+    value = choices.get(section, {}).get(key)
     return value if isinstance(value, list) else [value] if value else []
 
 
@@ -319,10 +347,11 @@ def check_assigned(choices: Choices) -> None:
 def text(choices: Choices, found_: Dict[str, Any], folder: Path) -> str:
     """site.yaml for a folder: the choices, each with its meaning, and what was found; checked before it is given."""
     seen = with_files(choices, lambda name: in_folder(name, folder))
-    about = schema()
+    kind = kind_of(choices)
+    about = schema(kind)
     lines = [f"# {about['description']}.", "# `slope site FOLDER` rebuilds the folder from it, `slope study FOLDER` "
-             "runs it.", "", f"slope_site: {VERSION}    # version of this file"]
-    for name, section in sections():
+             "runs it.", "", f"slope_site: {VERSION}    # version of this file", *([f"kind: {kind}"] if kind else [])]
+    for name, section in sections(kind):
         lines += ["", f"{name}:    # {section['description']}"]
         for key, entry in section["properties"].items():
             comment = f"    # {entry['description']}" if "description" in entry else ""

@@ -55,10 +55,15 @@ class Numbers(NamedTuple):
 
 def text(choices: Choices, parts: Parts, numbers: Numbers) -> str:
     """The deck."""
-    loader = jinja2.FileSystemLoader(Path(__file__).parent)
+    return filled(Path(__file__).with_name(TEMPLATE), values(choices, parts, numbers))
+
+
+def filled(template: Path, parameters: Mapping[str, Any]) -> str:
+    """A deck from a template, which may import those beside this module."""
+    loader = jinja2.FileSystemLoader([template.parent, Path(__file__).parent])
     environment = jinja2.Environment(loader=loader, trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True,
                                      undefined=jinja2.StrictUndefined)
-    return aligned(environment.get_template(TEMPLATE).render(values(choices, parts, numbers)))
+    return aligned(environment.get_template(template.name).render(parameters))
 
 
 def values(choices: Choices, parts: Parts, numbers: Numbers) -> Dict[str, Any]:
@@ -70,7 +75,7 @@ def values(choices: Choices, parts: Parts, numbers: Numbers) -> Dict[str, Any]:
         "balls": f"about {balls:,.0f}", "rest_s": "some" if numbers.rest is None else f"{numbers.rest:.0f}",
         "run_time": run_time(numbers.run_seconds), "lower": math.ceil(body.lower),
         "box": " ".join(plain(value) for value in body.box), "types": types_before(parts) + len(parts.zones),
-        "zones": zone_values(parts, model),
+        "zones": zone_values(parts.zones, types_before(parts), model),
         "bins": bins(parts.room, body.volume),
         "slip_file": body.slip, "body": choices["release"]["bodies"] and body_number(choices),
         "structures": [{"name": one.name, "file": one.file, "point": words(one.point),
@@ -95,14 +100,14 @@ def types_before(parts: Parts) -> int:
     return 4 if parts.structures else 3
 
 
-def zone_values(parts: Parts, model: Mapping[str, Any]) -> List[Dict[str, Any]]:
-    """What the template needs of the zones of the ground.
+def zone_values(zones: Sequence[Zone], before: int, model: Mapping[str, Any]) -> List[Dict[str, Any]]:
+    """What a template needs of the zones of the ground; before: types of balls beside theirs.
 
     What a zone has changes by the factor by which the site's own value, the variable without the zone's name, is
     changed; not so the rolling resistance, which may be 0 there. What it does not have is the site's.
     """
     found = []
-    for number, zone in enumerate(parts.zones, types_before(parts) + 1):
+    for number, zone in enumerate(zones, before + 1):
         own, now = [], []
         used = {"spacing": "", "friction": "${friction}", "rolling": "${rolling}", "field_e": "${field_e}"}
         for name, value in zone.values.items():

@@ -22,19 +22,19 @@ def planned(choices: Choices) -> Set[str]:
              site_warnings.NAME, site_trial.REACHED,
              *(path.name for path in release_files.paths(Path(BODY)))} - {BODY_DECK}
     names |= site_bodies.planned(choices, BODY)
-    observed = choices["observed"]["file"]
-    if observed:
+    for observed in site_choices.listed(choices, "observed", "file"):
         names.add(OBSERVED + (".tif" if Path(observed).suffix.lower() in RASTERS else ".csv"))
     if choices["road"]["file"]:
         names.add(ROAD)
-    if choices["motion"]["file"]:
+    if site_choices.listed(choices, "motion", "file"):
         names.add(site_inputs.MOTION)
     if choices["ground"]["file"]:
         names.add(site_zones.ALL)
     taken = set(site_inputs.TAKEN)
     for section, key, suffix in (("structures", "files", ".stl"), ("structures", "walls", ".stl"),
                                  ("lines", "files", ".csv")):
-        names |= {site_inputs.unused(site_inputs.stem(file), taken) + suffix for file in choices[section][key]}
+        names |= {site_inputs.unused(site_inputs.stem(file), taken) + suffix
+                  for file in site_choices.listed(choices, section, key)}
     return names
 
 

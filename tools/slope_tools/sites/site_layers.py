@@ -49,19 +49,21 @@ class Shown(NamedTuple):
 
 
 def read_layers(choices: Choices, raster: Raster, folder: Path, tell, warn) -> Layers:
-    """Read all layers of the choices, and write what the deck and the study need into a folder.
+    """Read all layers of the choices, and write what the deck and the study need into a folder; a kind of site may do
+    without structures, motion and a mapped deposit.
 
     Raises SlopeError, which names the file, if one does not fit the terrain.
     """
     road = road_layer(choices, raster, folder / ROAD, tell, warn)
-    observed = observed_layer(choices, raster, folder, tell, warn)
+    observed = observed_layer(choices, raster, folder, tell, warn) if "observed" in choices else None
     taken: Set[str] = set(site_inputs.TAKEN)
-    structures = site_inputs.structures(choices["structures"]["files"], raster, folder, taken)
-    along = choices["structures"]
-    structures += site_inputs.walls(drawn(choices, along["walls"]), raster, along["height"], along["width"], folder,
-                                    taken, warn)
+    along = choices.get("structures", {})
+    structures = site_inputs.structures(along.get("files", ()), raster, folder, taken)
+    structures += site_inputs.walls(drawn(choices, along.get("walls", ())), raster, along.get("height"),
+                                    along.get("width"), folder, taken, warn)
     lines = site_inputs.control_lines(drawn(choices, choices["lines"]["files"]), raster, folder, taken, warn)
-    motion = site_inputs.motion(choices["motion"]["file"], folder) if choices["motion"]["file"] else None
+    motions = [site_inputs.motion(path, folder) for path in site_choices.listed(choices, "motion", "file")]
+    motion = motions[0] if motions else None
     path = choices["ground"]["file"]
     zones = site_zones.of_choices(choices, site_zones.Source(path, choices["ground"]["table"], assigned(choices, path),
                                                              advice(choices, path)),

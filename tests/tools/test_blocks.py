@@ -1,0 +1,330 @@
+"""Sites of single blocks: from a GeoTIFF and a polygon to the share that reaches a road; what is refused."""
+import csv
+import shutil
+import subprocess
+from types import SimpleNamespace
+
+import fiona
+import numpy as np
+import pytest
+import rasterio
+import yaml
+from shapely.geometry import LineString, Polygon
+
+from run_helpers import EAST, NORTH, called, write_tif
+from test_site import write_layer
+from tiny_collapse import LMP
+
+from slope_tools import digits
+from slope_tools.blocks import files, kinds, outcome, page, runs, site as of_blocks
+from slope_tools.case import decks
+from slope_tools.deposits import road_sides
+from slope_tools.plots import site_map
+from slope_tools.sites import site_choices, site_deck
+from slope_tools.statistics import withheld
+from slope_tools.survey.rasters import read_asc_local
+
+CELL, COLUMNS, ROWS = 1.0, 90, 50
+TOE, ANGLE = 40.0, 40.0         # m, where the slope begins; degrees
+RELEASE = [(75, 20), (80, 20), (80, 30), (75, 30)]
+ROAD = [(28, 0), (33, 0), (33, 50), (28, 50)]
+WORDS = ["--terrain", "dem.tif", "--release", "cliff.geojson", "--blocks", "60", "--size", "0.8:1.2"]
+
+
+@pytest.fixture(scope="module")
+def gis(tmp_path_factory):
+    """A level ground and a slope of 40 degrees; release, road and line."""
+    folder = tmp_path_factory.mktemp("gis")
+    z = 50 + np.tan(np.radians(ANGLE)) * np.maximum(0, (np.arange(COLUMNS) + 0.5) * CELL - TOE)
+    write_tif(folder / "dem.tif", np.broadcast_to(z, (ROWS, COLUMNS)), CELL)
+    write_layer(folder / "cliff.geojson", RELEASE)
+    write_layer(folder / "flat.geojson", [(10, 20), (20, 20), (20, 30), (10, 30)])
+    write_layer(folder / "beyond.geojson", [(85, 20), (99, 20), (99, 30), (85, 30)])
+    write_layer(folder / "road.geojson", ROAD)
+    write_layer(folder / "fence.geojson", [(42, 50), (42, 0)], kind=LineString)
+    return folder
+
+
+@pytest.fixture
+def told(gis, monkeypatch, capsys):
+    """`slope WORDS` there, in this process; gives status, stdout, stderr."""
+    monkeypatch.chdir(gis)
+    monkeypatch.setenv("LMP", LMP)
+    monkeypatch.setattr(site_map, "draw", lambda path, *_: path.write_bytes(b""))
+    return lambda *words: called(capsys, [str(word) for word in words])
+
+
+@pytest.fixture(scope="module")
+def made(gis):
+    """A site with its study of 2 x 3 runs of ten blocks: {folder, choices, known}."""
+    patch = pytest.MonkeyPatch()
+    patch.chdir(gis)
+    patch.setenv("LMP", LMP)
+    from slope_tools import cli
+    assert cli.main(["site", *WORDS, "--rolling", "0.1", "0.4", "--road", "road.geojson", "--line", "fence.geojson",
+                     "-o", "tmp"]) == 0
+    about = yaml.safe_load((gis / "tmp" / "site.yaml").read_text())
+    about["blocks"]["grounds"] = 3
+    (gis / "tmp" / "site.yaml").write_text(yaml.safe_dump(about))
+    assert cli.main(["site", "tmp"]) == 0
+    assert cli.main(["study", "tmp", "--jobs", "2"]) == 0
+    patch.undo()
+    from slope_tools.blocks import study
+    found = site_choices.load(gis / "tmp", kinds.BLOCKS)
+    return SimpleNamespace(folder=gis / "tmp", site=found, known=study.read(found, study.planned(found)))
+
+
+# --- the folder ---
+
+def test_blocks_start_in_the_polygon_above_the_ground(made):
+    raster = read_asc_local(made.folder / "terrain.asc")
+    for ground in (1, 2, 3):
+        rows = np.loadtxt((made.folder / f"blocks.{ground}.data").read_text().split("sphere\n")[1].splitlines())
+        assert len(rows) == 10 and ((rows[:, 2] >= 0.8) & (rows[:, 2] <= 1.2)).all()
+        assert ((rows[:, 4:6] >= RELEASE[0]) & (rows[:, 4:6] <= RELEASE[2])).all()
+        above = rows[:, 6] - np.interp(rows[:, 4], (np.arange(COLUMNS) + 0.5) * CELL, raster.z[0])
+        touching = (rows[:, 2] + 0.8) / 2 / np.cos(np.radians(ANGLE))
+        assert (above > touching).all() and (above < 1.05 * touching).all()
+    assert not (made.folder / "blocks.4.data").exists()
+
+
+def test_the_deck_has_no_list_of_blocks_with_each_other(made):
+    log = (made.known.runs[0].folder / "log.lammps").read_text()
+    assert "neigh_modify exclude type 1 1" in log and "Ave neighs/atom = 0" in log
+    variables = decks.index_variables(made.folder / site_deck.NAME)
+    assert variables["field_d"] == "${d}" and variables["d"] == "0.8" and variables["largest"] == "1.2"
+
+
+def test_a_speed_is_down_the_fall_line(told, gis):
+    assert told("site", *WORDS, "--speed", "5", "-o", "fast")[0] == 0
+    found = site_choices.found(gis / "fast")["blocks"]
+    assert found["down"] == pytest.approx([-np.cos(np.radians(ANGLE)), 0, -np.sin(np.radians(ANGLE))], abs=1e-3)
+    assert decks.index_variables(gis / "fast" / site_deck.NAME)["start"] == "5"
+    deck = (gis / "fast" / site_deck.NAME).read_text()
+    (gis / "fast" / "short").write_text(deck.split("variable    steps")[0] + "run 0\n")
+    subprocess.run([LMP, "-in", "short", "-log", "none", "-screen", "none"], cwd=gis / "fast", check=True)
+    [(heads, rows)] = runs.dumps.frames(gis / "fast" / "site.00000000.dump")
+    speeds = rows[:, heads.index("vx"):heads.index("vx") + 3]
+    assert speeds == pytest.approx(np.broadcast_to(5 * np.array(found["down"]), speeds.shape), abs=1e-4)
+
+
+def test_a_mass_knows_nothing_of_it(told, gis):
+    """Its site.yaml has no kind, and its commands refuse a site of blocks."""
+    assert "kind" not in site_choices.complete({}) and "blocks" not in site_choices.complete({})
+    with pytest.raises(kinds.SlopeError, match="must be a site of a mass here, got one of blocks"):
+        assert told("site", *WORDS, "-o", "other")[0] == 0
+        site_choices.load(gis / "other")
+
+
+@pytest.mark.parametrize("words, message", [
+    (["--blocks", "1"], "--blocks: must be at least 30, one for each run"),
+    (["--blocks", "1000000"], "--blocks: must be <= 100000, got 1000000"),
+    (["--depth", "3"], "--depth: must not be given with a site of single blocks"),
+    (["--shape", "plane"], "--shape: must not be given with a site of single blocks"),
+    (["--known", "rockfalls"], "--known: must not be given with a site of single blocks"),
+    (["--minutes", "5"], "--minutes: must not be given with a site of single blocks"),
+    (["--wall", "fence.geojson", "--height", "3"], "--wall: must not be given with a site of single blocks"),
+    (["--release", "beyond.geojson"], "beyond.geojson: must have terrain in it, and 1.2 m beside it"),
+    (["--release", "flat.geojson", "--speed", "2"], "--speed: needs a fall line"),
+    (["--road", "cliff.geojson"], "--release: must be at least half a block, 0.6 m, away from the road"),
+    (["--size", "2:1"], "--size: must be D or D:D2"), (["--size", "0.1:2"], "--size: must be D or D:D2"),
+    (["--size", "0"], "--size: first value: must be > 0, got 0"), (["--size", "x"], "--size: must be a finite number"),
+    (["--speed", "-1"], "--speed: must be >= 0, got -1")])
+def test_what_is_refused(told, gis, words, message):
+    given = [*WORDS]
+    for name, value in zip(words[::2], words[1::2]):
+        if name in given:
+            given[given.index(name) + 1] = value
+        else:
+            given += [name, value]
+    status, _, err = told("site", *given, "-o", "wrong")
+    lines = [line for line in err.splitlines() if "note: " not in line]
+    assert status == 2 and len(lines) == 1 and message in lines[0]
+    assert not (gis / "wrong" / site_deck.NAME).exists()
+    for path in (gis / "wrong").glob("*") if (gis / "wrong").exists() else ():
+        path.unlink()
+
+
+@pytest.mark.parametrize("words", [["study", "tmp", "--paper"], ["study", "tmp", "--known", "rockfalls"],
+                                   ["study", "tmp", "--set", "rolling=0"], ["export", "tmp", "--zones", "0.5"],
+                                   ["report", "tmp", "--pdf"], ["site", "tmp", "--depth", "3"]])
+def test_options_of_a_mass_are_refused(made, told, words):
+    status, _, err = told(*words)
+    assert status == 2 and err.count("\n") == 1 and f"{words[2]}: must not be given with a site of single blocks" in err
+
+
+def test_options_of_blocks_are_refused_for_a_mass(told):
+    status, _, err = told("site", "--terrain", "dem.tif", "--release", "cliff.geojson", "--depth", "2", "--speed", "3",
+                          "-o", "mass")
+    assert status == 2 and "--speed: must be given with --blocks" in err
+
+
+# --- results, against what the runs wrote ---
+
+def rows_of(path):
+    with open(path, encoding="ascii") as lines:
+        return list(csv.DictReader(lines))
+
+
+def test_blocks_are_counted_not_crossings(made):
+    """Of each run by its files: ends, those that came onto the road and beyond it, the largest of each block."""
+    for run in made.known.runs:
+        [(_, end)] = runs.dumps.frames(run.folder / "end.dump")
+        there = end[:, 0].astype(int) - 1
+        assert np.array_equal(np.flatnonzero(~run.left), there) and run.end[there] == pytest.approx(end[:, 1:3])
+        touched = of_blocks.touched(Polygon(ROAD), 1.2, made.known.terrain.raster)
+        west, _, east, _ = touched.bounds
+        inward = [row for row in rows_of(run.folder / "site.road_edge_1.line.csv") if row["direction"] == "1"]
+        assert {int(row["ball"]) - 1 for row in inward} == set(np.flatnonzero(run.reached))
+        assert (run.reached >= (run.end[:, 0] < east)).all() and (run.passed >= (run.end[:, 0] < west)).all()
+        assert not (run.passed & ~run.reached).any()
+        for line in ("fence", "road_edge_1"):
+            place = runs.AT_ROAD if line == "road_edge_1" else line
+            of = rows_of(run.folder / f"site.{line}.line.csv")
+            for k in range(len(run.left)):
+                mine = [row for row in of if int(row["ball"]) == k + 1
+                        and (line == "fence" or row["direction"] == "1")]
+                if not mine:
+                    assert np.isnan(run.at[place]["energy"][k])
+                    continue
+                assert run.at[place]["energy"][k] == max(float(row["energy"]) for row in mine)
+                assert run.at[place]["height"][k] == pytest.approx(max(float(row["height"]) for row in mine)
+                                                                   - float(mine[0]["diameter"]) / 2)
+
+
+EVERY = "id x y z vx vy vz fx fy fz omegax omegay omegaz tqx tqy tqz radius mass"
+
+
+def test_energies_at_a_line_are_those_of_dumps_of_every_step(made, tmp_path):
+    """At the half step: the velocities of the step before, moved on by half a step of its forces and torques."""
+    for path in made.known.runs[0].folder.glob("*.*"):
+        if path.suffix in (".asc", ".csv", ".data", ".site"):
+            shutil.copy(path, tmp_path)
+    deck = (made.folder / site_deck.NAME).read_text().split("variable    steps")
+    every = f"dump every all custom 1 every.dump {EVERY}\ndump_modify every sort id format float %20.16g\n"
+    (tmp_path / "in.every").write_text(f"{deck[0]}{every}variable    steps{deck[1]}")
+    subprocess.run([LMP, "-in", "in.every", "-log", "none", "-screen", "none", "-var", "rolling", "0.1", "-var",
+                    "duration", "6", "-var", "start", "4"], cwd=tmp_path, check=True)
+    found = runs.read("every", tmp_path, {"rolling": "0.1", "ground": "1"}, made.known.terrain)
+    dt = yaml.safe_load((tmp_path / "site.summary.yaml").read_text())["dt"]
+    most = np.full(len(found.diameter), np.nan)
+    before = {}
+    for part in (tmp_path / "every.dump").read_text().split("ITEM: ATOMS ")[1:]:
+        now = {}
+        for line in part.split("ITEM:")[0].splitlines()[1:]:
+            ball, *numbers = map(float, line.split())
+            at, v, f, spin, torque, (radius, mass) = np.split(np.array(numbers), [3, 6, 9, 12, 15])
+            now[ball] = at[0]
+            if ball in before and (before[ball][0] - 42) * (at[0] - 42) < 0:
+                most[int(ball) - 1] = np.fmax(most[int(ball) - 1], before[ball][1])
+            half, turn = v + dt / 2 * f / mass, spin + dt / 2 * torque / (0.4 * mass * radius ** 2)
+            now[ball] = at[0], 0.5 * mass * (half @ half + 0.4 * radius ** 2 * turn @ turn)
+        before = now
+    assert np.isfinite(most).sum() >= 5
+    assert found.at["fence"]["energy"] == pytest.approx(most, rel=1e-6, nan_ok=True)
+
+
+def test_travel_is_along_and_across_the_fall_line(made):
+    run = made.known.runs[0]
+    way = run.end - run.start[:, :2]
+    assert run.travel["along"] == pytest.approx(-way[:, 0], abs=1e-2)       # down is to the west
+    assert run.travel["across"] == pytest.approx(-way[:, 1], abs=1e-2)
+    assert run.travel["distance"] == pytest.approx(np.hypot(*way.T))
+
+
+def test_the_smaller_resistance_governs(made):
+    of = made.known.outcome
+    assert [one.rolling for one in of.results] == ["0.1", "0.4"] and of.best.rolling == "0.1"
+    assert of.results[0].reach.seen > of.results[1].reach.seen
+    assert of.another == withheld.exceeded_at_most(3)
+    assert of.hardest(runs.AT_ROAD, "energy").rolling == "0.1"
+
+
+def test_files(made):
+    about = yaml.safe_load((made.folder / "study" / files.RESULTS).read_text())
+    assert about["best"] == "0.1" and about["results"][0]["reach"]["blocks"] == 30
+    rows = rows_of(made.folder / "study" / files.BLOCKS)
+    assert len(rows) == 60
+    reached = sum(int(row["reached_road"]) for row in rows if row["rolling"] == "0.1")
+    assert reached == about["results"][0]["reach"]["seen"]
+    with fiona.open(made.folder / "study" / files.GIS, layer="paths") as paths:
+        assert len(paths) == 30 and paths.crs["init"] == "epsg:6677"
+        first = next(iter(paths))
+        start = made.known.runs[0].start[0]
+        assert first["geometry"]["coordinates"][0] == pytest.approx(start + (EAST, NORTH, 0), abs=1e-3)
+    for name in files.LARGEST:
+        with rasterio.open(made.folder / "study" / f"{name}.tif") as found:
+            most = max(np.nanmax(runs.rasters.read(one.folder / f"site.{name}.asc", heights=False).z)
+                       for one in made.known.runs)
+            assert found.read(1).max() == pytest.approx(most)
+
+
+def test_the_page_begins_with_the_share_that_reaches_the_road(made):
+    text = (made.folder / page.NAME).read_text(encoding="utf-8")
+    first = text[text.index("<strong>"):text.index("</strong>")]
+    assert made.known.outcome.best.reach.text in first and "reach the road" in first
+    assert text.index("<strong>") < text.index("at its near edge".capitalize()) < text.index("<table")
+    assert 'id="scene"' in text and "Blocks in three dimensions" in text
+
+
+def test_export_and_report_again(made, told):
+    status, out, err = told("export", "tmp")
+    assert status == 0 and "blocks.gpkg" in out, err
+    assert {path.name for path in (made.folder / "export").iterdir()} == {*files.NAMES, "export.yaml"}
+    status, out, err = told("report", "tmp", "-o", "again.html")
+    assert status == 0 and "again.html" in out, err
+
+
+# --- shares and their bounds ---
+
+def a_run(ground, reached, left=None, rolling="0.1"):
+    """Blocks of which those in `reached` come to the road."""
+    n = len(reached)
+    zeros = np.zeros(n)
+    reached, left = np.array(reached, bool), np.zeros(n, bool) if left is None else np.array(left, bool)
+    at = {runs.AT_ROAD: {name: np.where(reached, 1.0, np.nan) for name in runs.QUANTITIES}}
+    travel = {name: np.arange(n) + ground for name in ("distance", "along", "across")}
+    return runs.Run("a", None, rolling, ground, zeros, np.zeros((n, 3)), np.zeros((n, 2)), left, zeros.astype(bool),
+                    reached, reached, at, travel, 0.1)
+
+
+def test_none_that_reaches_is_never_certain():
+    of = outcome.evaluate([a_run(ground, [0] * 100) for ground in range(10)])
+    reach = of.best.reach
+    assert reach.seen == 0 and reach.high == pytest.approx(withheld.exceeded_at_most(10))
+    assert reach.text == f"at most {digits.percent(reach.high)}" == "at most 26 %"
+    text = next(page.sentences(SimpleNamespace(outcome=of)))
+    assert text.startswith("none of 1,000 blocks") and "chance leaves at most 26 % possible" in text
+
+
+def test_all_that_reach_are_never_certain():
+    of = outcome.evaluate([a_run(ground, [1] * 100) for ground in range(10)])
+    assert of.best.reach.text == "at least 74 %"
+
+
+def test_blocks_of_a_ground_count_together():
+    """Half of the grounds let all pass: that is not 500 of 1,000 independent blocks."""
+    together = outcome.evaluate([a_run(ground, [ground % 2] * 100) for ground in range(10)]).best.reach
+    apart = outcome.evaluate([a_run(ground, [0, 1] * 50) for ground in range(10)]).best.reach
+    assert together.share == apart.share == 0.5
+    assert together.high - together.low > 0.4 and apart.high - apart.low < 0.06
+
+
+def test_blocks_that_left_make_it_at_least():
+    of = outcome.evaluate([a_run(ground, [1, 0, 0, 0], [0, 1, 0, 0]) for ground in range(10)])
+    reach = of.best.reach
+    assert reach.share == 0.25 and reach.open == 10 and reach.high > 0.5 > reach.low
+    assert reach.text.startswith("at least 25 %") and of.best.at_least == "at least "
+    assert [one.kind for one in of.doubts()] == ["blocks left"]
+    none = outcome.evaluate([a_run(ground, [0, 0, 0, 0], [1, 0, 0, 0]) for ground in range(10)]).best.reach
+    assert none.text.startswith("up to ") and none.high > 0.25
+
+
+def test_beyond_the_road():
+    """By where a block ends, or where it left the road at any time."""
+    before, road, past = (Polygon([(a, 0), (b, 0), (b, 9), (a, 9)]) for a, b in ((6, 9), (3, 6), (0, 3)))
+    sides = road_sides.Sides(before, road, past, past, past, ())
+    crossed = {"x": np.array([6.0, 3.0, 6.0]), "y": np.array([5.0, 5.0, 5.0]), "ball": np.array([1.0, 2.0, 3.0]),
+               "direction": np.array([1.0, -1.0, -1.0])}
+    ends = np.array([[2.0, 5.0], [4.0, 5.0], [7.0, 5.0]])
+    assert runs.beyond_road(crossed, ends, sides).tolist() == [True, True, False]

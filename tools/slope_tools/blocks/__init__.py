@@ -1,0 +1,1 @@
+"""Single blocks, as commands use them: see README.md."""

@@ -1,0 +1,84 @@
+"""The one place that picks what a command does by the kind of a site: a mass, or blocks (`kind` of site.yaml)."""
+import dataclasses
+from pathlib import Path
+from typing import Any, Dict, Tuple
+
+from .. import disk
+from ..errors import SlopeError
+from ..sites import site, site_choices
+
+BLOCKS = "blocks"
+WRONG = "must not be given with a site of single blocks"
+# of a command: what it calls a site's folder, and the options that have a meaning for blocks
+TAKEN = {"study": ("deck", "np", "jobs", "lmp", "dry_run", "anew", "launcher", "engine", "slurm"),
+         "export": ("prefix", "output", "overwrite"), "report": ("folder", "output", "overwrite")}
+
+
+def run(command: str, module: Any, request: Any, tell: Any) -> None:
+    """Do a command of TAKEN: what its module does, or on a site of blocks what is done with these."""
+    folder, *taken = TAKEN[command]
+    named = getattr(request, folder)
+    if named is None or site_choices.kind_in(Path(named)) != BLOCKS:
+        return module.run(request)
+    for field in dataclasses.fields(request):
+        default = field.default_factory() if callable(field.default_factory) else field.default
+        if field.metadata and field.name not in (folder, *taken) and getattr(request, field.name) != default:
+            name = next(iter(field.metadata["names"]), "") or f"--{field.name.replace('_', '-')}"
+            raise SlopeError(name, WRONG)
+    found = site_choices.load(Path(named), BLOCKS)
+    if command == "study":
+        return study(found, module.setup_of(request))
+    return (export if command == "export" else report)(found, request.output, request.overwrite, tell)
+
+
+def study(found: site_choices.Site, setup) -> None:
+    from ..studies.study import alone
+    from . import study as of_blocks
+    with alone(found.folder, setup.dry_run):
+        of_blocks.run(found, setup)
+
+
+def export(found: site_choices.Site, output, overwrite: bool, tell) -> None:
+    """The files for a GIS."""
+    from . import files, study as of_blocks
+    folder = output or found.folder / "export"
+    disk.check_folder(folder, [*files.NAMES, "export.yaml"], [found.folder], overwrite)
+    known = of_blocks.read(found, of_blocks.planned(found))
+    with disk.complete(folder, "export.yaml") as new:
+        files.write_gis(new, known)
+        disk.write_yaml(new / "export.yaml", {"of": found.folder, "files": files.NAMES}, "slope export: m/s, J")
+    tell(f"written to {folder}: {' '.join(files.NAMES)} export.yaml")
+
+
+def report(found: site_choices.Site, output, overwrite: bool, tell) -> None:
+    """The page once more."""
+    from ..report import document
+    from . import page, study as of_blocks
+    path = output or found.folder / page.NAME
+    disk.check_file(path, ".html")
+    document.check_standing(path, found.folder, overwrite, path.resolve().parent == found.folder.resolve())
+    tell(page.write(of_blocks.read(found, of_blocks.planned(found)), path))
+
+
+# --- slope site ---
+
+def begun(number: Any) -> site_choices.Choices:
+    """The choices of a new site; number: of blocks, None of a mass."""
+    return site_choices.complete({} if number is None else {"kind": BLOCKS})
+
+
+def check(choices: site_choices.Choices, given: Dict[str, Tuple[str, str]]) -> None:
+    """Raise SlopeError unless options, of these sections and keys, have a meaning for the kind of a site."""
+    kind = site_choices.kind_of(choices)
+    known = {name: about["properties"] for name, about in site_choices.sections(kind)}
+    for name, (section, key) in given.items():
+        if key not in known.get(section, {}):
+            raise SlopeError(f"--{name.replace('_', '-')}", WRONG if kind else "must be given with --blocks")
+
+
+def build(choices: site_choices.Choices) -> site.Build:
+    """What makes the files of a site."""
+    if site_choices.kind_of(choices) != BLOCKS:
+        return site.build
+    from .site import build as of_blocks
+    return of_blocks

@@ -1,0 +1,143 @@
+"""The runs of a site of blocks evaluated, by block: shares and quantiles with bounds, for each rolling resistance.
+
+Blocks of one run share its ground: bounds (90 %) count how many of them are worth one independent block, by the
+differences between the grounds. What a block that left the terrain, or still moves, would have done is not known: in a
+lower bound it does not do it, in an upper one it does.
+"""
+from dataclasses import asdict, dataclass, replace
+from typing import Any, Dict, List, Optional, Sequence
+
+import numpy as np
+
+from .. import digits
+from ..findings import Finding
+from ..statistics import hazard, withheld
+from .runs import AT_ROAD, QUANTITIES, Run
+
+SHARES = 0.5, 0.95      # of the quantiles
+DEEP = 0.2              # radii: contacts that overlap by more were too soft for the speed
+
+
+@dataclass(frozen=True)
+class Share:
+    """Of blocks that were seen to do something; open: how many of the others left the terrain or still moved."""
+    share: float
+    low: float
+    high: float
+    seen: int
+    blocks: int
+    open: int
+
+    @property
+    def text(self) -> str:
+        if self.open and not self.seen:
+            return f"up to {digits.percent(self.high)}"
+        least = "at least " * (self.open > 0 and self.seen < self.blocks)
+        return least + digits.chance(self.share, self.low, self.high)
+
+
+@dataclass(frozen=True)
+class Value:
+    """A quantile; None: so many blocks do not bound it."""
+    share: float
+    value: float
+    low: Optional[float]
+    high: Optional[float]
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """Of the blocks that have it."""
+    blocks: int
+    quantiles: Sequence[Value]
+    largest: float
+
+    @property
+    def most(self) -> float:
+        return self.quantiles[-1].value
+
+
+@dataclass(frozen=True)
+class Result:
+    """The runs with one rolling resistance; reach, past: of the road, None without one; crossed: lines."""
+    rolling: str
+    blocks: int
+    grounds: int
+    left: int
+    moving: int
+    reach: Optional[Share]
+    past: Optional[Share]
+    crossed: Dict[str, Share]
+    travel: Dict[str, Quantity]
+    at: Dict[str, Dict[str, Optional[Quantity]]]        # of the lines and the road
+
+    @property
+    def at_least(self) -> str:
+        """What stands before every statement on reach."""
+        return "at least " * (self.left + self.moving > 0)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """All results; best governs: most of its blocks reach the road, or it goes farthest."""
+    results: List[Result]
+    best: Result
+    another: float          # probability, at most, that one more ground brings something larger than all of these
+    overlap: float          # the deepest contact, in radii
+
+    def hardest(self, place: str, quantity: str) -> Result:
+        """The result with the largest 95 % of a quantity at a place, to which blocks come."""
+        def most(one: Result) -> float:
+            found = one.at[place][quantity]
+            return found.most if found else -np.inf
+        return max(self.results, key=most)
+
+    def doubts(self) -> List[Finding]:
+        """What is to be known of the runs."""
+        blocks, left, moving = (sum(getattr(one, of) for one in self.results) for of in ("blocks", "left", "moving"))
+        found = [(left, Finding("blocks left", {"left": left, "blocks": blocks})),
+                 (moving, Finding("blocks moving", {"moving": moving, "blocks": blocks})),
+                 (self.overlap > DEEP, Finding("blocks too fast", {"percent": 100 * self.overlap}))]
+        return [one for holds, one in found if holds]
+
+    def about(self) -> Dict[str, Any]:
+        """For a file."""
+        return {**asdict(self), "best": self.best.rolling}
+
+
+def evaluate(runs: Sequence[Run]) -> Outcome:
+    """Of finished runs."""
+    results = [result_of([one for one in runs if one.rolling == rolling])
+               for rolling in dict.fromkeys(one.rolling for one in runs)]
+    best = max(results, key=lambda one: (one.reach.share if one.reach else 0.0, one.left, one.travel["distance"].most))
+    return Outcome(results, best, withheld.exceeded_at_most(min(one.grounds for one in results)),
+                   max(one.overlap for one in runs))
+
+
+def result_of(runs: Sequence[Run]) -> Result:
+    def joined(get) -> np.ndarray:
+        return np.concatenate([get(one) for one in runs])
+    ground = np.repeat([one.ground for one in runs], [len(one.left) for one in runs])
+    left, moving = joined(lambda one: one.left), joined(lambda one: one.moving)
+
+    def share(seen: np.ndarray) -> Share:
+        unknown, number = int(((left | moving) & ~seen).sum()), int(seen.sum())
+        low, high = hazard.share_bounds(number, len(seen) - unknown, unknown, hazard.effect_of(seen, ground))
+        return Share(number / len(seen), float(low), float(high), number, len(seen), unknown)
+
+    def quantity(values: np.ndarray) -> Optional[Quantity]:
+        there = np.isfinite(values)
+        several = hazard.quantiles(values[there], ground[there], shares=SHARES) if there.any() else ()
+        return Quantity(int(there.sum()), [Value(*one) for one in several], float(values[there].max())) \
+            if several else None
+
+    at = {place: {name: joined(lambda one: one.at[place][name]) for name in QUANTITIES} for place in runs[0].at}
+    crossed = {place: share(np.isfinite(values["energy"])) for place, values in at.items()}
+    reach, past = crossed.pop(AT_ROAD, None), share(joined(lambda one: one.passed))
+    if reach:       # what passes has reached it
+        reach, past = replace(reach, low=max(reach.low, past.low)), replace(past, high=min(reach.high, past.high))
+    travel = {name: quantity(joined(lambda one: one.travel[name])) for name in runs[0].travel}
+    return Result(runs[0].rolling, len(ground), len(runs), int(left.sum()), int(moving.sum()), reach,
+                  past if reach else None, crossed,
+                  {name: one for name, one in travel.items() if one},
+                  {place: {name: quantity(values) for name, values in of.items()} for place, of in at.items()})

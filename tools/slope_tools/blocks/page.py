@@ -1,0 +1,161 @@
+"""The page on a study of blocks, and the sentences with which it and the console begin."""
+from pathlib import Path
+from typing import Dict, Iterator, List, Optional
+
+import numpy as np
+
+from .. import digits, disk, provenance
+from ..animation import frames, view
+from ..drawing import figures, palettes
+from ..plots import figure_charts, figure_maps
+from ..plots.ground import Ground
+from ..plots.section import Section as Profile
+from ..report import document, heading
+from ..report.data import Data
+from ..report.sections import Figures, Picture, Section, Table, Text
+from ..survey.rasters import crs_name
+from . import files
+from .outcome import Quantity, Result
+from .runs import AT_ROAD, QUANTITIES
+from .site import sizes_of
+
+NAME = "report.html"
+POINTS = 60             # of a curve
+# what is travelled, and the quantities at a line
+TITLES = {"distance": "Travelled distance in plan, from start to end",
+          "along": "Along the fall line of the release area", "across": "Across it, to the left",
+          "energy": "Energy, translation and rotation", "speed": "Speed",
+          "height": "Height of the block's lower edge above the terrain"}
+
+
+def number(value: Optional[float], unit: str) -> str:
+    if value is None:
+        return "?"
+    return digits.si(value, unit) if unit == "J" else f"{digits.three(value) if value else '0'} {unit}"
+
+
+def sentences(known) -> Iterator[str]:
+    """The answer: which share reaches the road, with which energy; how far blocks go."""
+    of, best = known.outcome, known.outcome.best
+    whose = f"of {best.blocks:,} blocks, with a rolling resistance of {best.rolling} on {best.grounds} grounds"
+    if best.reach and best.reach.seen:
+        yield f"Of the blocks {best.reach.text} reach the road and {best.past.text} pass it ({whose})"
+        hardest = {name: of.hardest(AT_ROAD, name) for name in QUANTITIES}
+        energy, speed, height = (one.at[AT_ROAD][name] for name, one in hardest.items())
+        yield (f"at its near edge 95 % of those that reach it have at most {number(energy.most, 'J')}, the hardest "
+               f"{number(energy.largest, 'J')} (rolling resistance {hardest['energy'].rolling}); up to "
+               f"{number(speed.largest, 'm/s')}, the lower edge up to {number(height.largest, 'm')} above the terrain")
+    elif best.reach:
+        yield (f"none {whose} {'was seen to reach' if best.reach.open else 'reaches'} the road; as blocks share their "
+               f"grounds, chance leaves {best.reach.text} possible, and more grounds (blocks.grounds of site.yaml) less")
+    distance = best.travel["distance"]
+    half, most, largest = (number(value, "m") for value in (
+        distance.quantiles[0].value, distance.most, distance.largest))
+    yield (f"in plan half of {'all' if best.reach else 'the'} blocks travel {best.at_least}{half}, 5 % more than "
+           f"{best.at_least}{most}, the farthest {best.at_least}{largest} (rolling resistance {best.rolling})")
+    yield (f"one more ground brings something larger than the largest of all these with a probability of at most "
+           f"{digits.percent(of.another)}")
+
+
+def cells(one: Optional[Quantity], unit: str, prefix: str = "") -> List[str]:
+    """Quantiles with their bounds, the largest, and of how many blocks."""
+    if one is None:
+        return ["-", "-", "-", "0"]
+    return [*(f"{prefix}{number(at.value, unit)} ({number(at.low, unit)} to {number(at.high, unit)})"
+              for at in one.quantiles), prefix + number(one.largest, unit), f"{one.blocks:,}"]
+
+
+def tables(known) -> Iterator[Section]:
+    results: List[Result] = known.outcome.results
+    marks = ["best" if one is known.outcome.best else "" for one in results]
+    heads = ["rolling resistance", "50 %", "95 %", "largest", "blocks"]
+    lines = list(results[0].crossed)
+    yield Section("reach", "What reaches the road", [Table(
+        "By block; bounds of 90 % from the differences between the grounds, as blocks of one run share theirs; marked: "
+        "the rolling resistance that governs.",
+        ["rolling resistance", "blocks", "grounds", *["reach the road", "pass it"] * bool(results[0].reach),
+         *(f"cross {line}" for line in lines), "left the terrain", "still moved"],
+        [[one.rolling, f"{one.blocks:,}", one.grounds, *(share.text for share in (one.reach, one.past) if share),
+          *(one.crossed[line].text for line in lines), f"{one.left:,}", f"{one.moving:,}"] for one in results], (),
+        marks)])
+    yield Section("travel", "How far they go", [Figures([curve(known)]), *(Table(
+        TITLES[name], heads, [[one.rolling, *cells(one.travel[name], "m", one.at_least * (name != "across"))]
+                              for one in results], (), marks) for name in results[0].travel)])
+    for place in results[0].at:
+        yield Section(f"at_{place}", "At the road's near edge" if place == AT_ROAD else f"At the line {place}", [
+            Text("Of the blocks that come there, each with its largest value. The ground's balls stand half a diameter "
+                 "above the terrain: the lower edge of a block at rest is 0.1 to 0.5 of it above the terrain.", "soft"),
+            *(Table(TITLES[name], heads, [[one.rolling, *cells(one.at[place][name], unit)] for one in results], (),
+                    marks) for name, unit in QUANTITIES.items())])
+
+
+def curve(known) -> Picture:
+    """Which share goes farther."""
+    series = []
+    for one in known.outcome.results:
+        distance = np.concatenate([run.travel["distance"] for run in known.runs if run.rolling == one.rolling])
+        x = np.linspace(0, distance.max(), POINTS)
+        series.append(figure_charts.Series(f"rolling resistance {one.rolling}", x.tolist(),
+                                           [100 * float(np.mean(distance > at)) for at in x]))
+    return Picture(figure_charts.chart(series, "travelled distance in plan (m)", "blocks that go farther (%)",
+                                       "Travelled distance"), "Share of the blocks that go farther than a distance",
+                   "Share of the blocks that go farther; one that left the terrain ends where it left it.")
+
+
+def maps(known, data: Data, ground: Ground) -> Dict[str, Picture]:
+    """The largest energy and speed over all runs."""
+    raster, crs, found = ground.raster, ground.raster.crs, {}
+    several = {name: files.largest(known.runs, name, raster).z for name in files.LARGEST}
+    rows, columns = np.nonzero(several["max_speed"] > 0)
+    (west, east), (south, north) = raster.transform * np.array([[columns.min(), columns.max() + 1],
+                                                                [rows.max() + 1, rows.min()]])
+    shown = ground.window((west, south, east, north), *([data.road.bounds] if data.road else []))
+    layers = figure_maps.Layers(raster, ground.before, shown, ground.release, data.road, None,
+                                figures.contour_interval(ground.before), {}, {
+                                    name: points for name, points in ground.obstacles.lines.items()
+                                    if name in known.terrain.lines})
+    for name, unit in files.LARGEST.items():
+        factor, prefix = digits.prefix(several[name].max())
+        values, what = several[name] / factor, name.replace("max_", "")
+        found[what] = Picture(figure_maps.value_map(
+            layers, values, f"Largest {what} of a block", f"{what} ({prefix}{unit})",
+            figures.even_to_most(values[values > 0]), palettes.PATH if unit == "J" else palettes.SPEED, figures.FULL,
+            crs_name(crs) if crs is not None else "", values > 0), f"Map of the largest {what}",
+            f"Largest {what} of a block over all {len(known.runs)} runs, as sampled, not smoothed.")
+    return found
+
+
+def write(known, output: Path) -> str:
+    """The page; a line for the user."""
+    site, shown = known.site, max((one for one in known.runs if one.rolling == known.outcome.best.rolling),
+                                  key=lambda one: one.travel["distance"].max())
+    data = Data(shown.folder)
+    data.road = known.terrain.road and known.terrain.road.polygon
+    ground = Ground(data)
+    shots, why = frames.read(data.result)
+    about = view.content(data, ground, Profile(data, ground, None, False), shots, why, "")
+    caption = f"Run with the farthest block, {shown.name}: {about['caption'].partition(' The ground is')[0]}"
+    head = heading.heading(site.folder, {}, site.content)
+    html = document.render({
+        "title": f"Single blocks: {head['project']}", "name": head["project"], "heading": head,
+        "made": provenance.now(), "mark": document.mark(site.folder), "place": ground.raster.crs is not None,
+        "sentences": [f"{text[0].upper()}{text[1:]}." for text in sentences(known)], "how": how(site),
+        "warnings": [(one.level, one.shown({})) for one in known.doubts], "maps": maps(known, data, ground),
+        "sections": list(tables(known)), "view": {**about, "caption": caption, "title": "Blocks in three dimensions"},
+        "footer": f"{document.MADE_BY}, SLOPE {provenance.version()}; all numbers: study/{files.RESULTS}, "
+                  f"study/{files.BLOCKS}; for a GIS: study/{', study/'.join(files.NAMES)}"},
+        Path(__file__).with_name("blocks.html.j2"))
+    disk.write(output, html)
+    return f"{output}: {len(html) / 1e6:.1f} MB"
+
+
+def how(site) -> str:
+    """What was run."""
+    of, model, (low, high) = site.choices["blocks"], site.choices["model"], sizes_of(site.choices)
+    size = f"of {low:g} m" if low == high else f"of {low:g} to {high:g} m, all sizes as frequent,"
+    start = f"at {of['speed']:g} m/s down the fall line of the release area" if of["speed"] else "at rest"
+    smooth = "; larger blocks find them smoother, the smallest one must not fall between them" if low < high else ""
+    return (f"Blocks {size} and {model['density']:,g} kg/m3 begin {start}, evenly over the release area, just above "
+            f"the ground; they do not see each other. The ground is scattered balls of {low:g} m, {model['spacing']:g} "
+            f"diameters apart{smooth}: friction {model['friction']:g} degrees, restitution "
+            f"{model['field_restitution']:g}. Each run has other balls of the ground and other places of blocks.")

@@ -1,0 +1,124 @@
+"""What became of each block of a run: where it began and ended, what it had at each line and at the road."""
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Dict, List, NamedTuple, Optional
+
+import numpy as np
+from shapely.geometry import Point
+
+from ..case import run_folders
+from ..deposits import dumps, road_sides
+from ..errors import SlopeError
+from ..sites.site_choices import Site
+from ..sites.site_folder import TERRAIN
+from ..sites.site_layers import ROAD
+from ..survey import rasters, roads
+from ..survey.rasters import Raster
+from .site import EDGE, sizes_of, touched
+
+PREFIX = "site"         # of a run's files: out of the deck
+AT_ROAD = "road"        # the name of its near edge among the lines
+QUANTITIES = {"energy": "J", "speed": "m/s", "height": "m"}     # at a line
+SLOW = 0.05             # m/s: slow of the deck
+Columns = Dict[str, np.ndarray]
+
+
+class Terrain(NamedTuple):
+    """Of all runs of a site."""
+    raster: Raster
+    down: np.ndarray                    # x y, unit vector of the fall line
+    road: Optional[roads.Road]
+    sides: Optional[road_sides.Sides]   # of what touches it
+    lines: List[str]                    # names of the control lines
+
+
+@dataclass(frozen=True)
+class Run:
+    """A run, arrays by block."""
+    name: str
+    folder: Path
+    rolling: str
+    ground: int
+    diameter: np.ndarray    # m
+    start: np.ndarray       # x y z
+    end: np.ndarray         # x y; of one that left the terrain, where it did
+    left: np.ndarray        # bool, also the next three
+    moving: np.ndarray      # at the end of the run
+    reached: np.ndarray     # the road
+    passed: np.ndarray
+    at: Dict[str, Columns]  # {line: {quantity: the largest of a block, NaN of one that does not come there}}
+    travel: Columns         # m, from start to end in plan: distance; along and across the fall line
+    overlap: float          # the deepest of a contact, in radii
+
+
+def terrain_of(site: Site) -> Terrain:
+    """What all runs of a site share."""
+    raster, road, sides = rasters.read_asc_local(site.folder / TERRAIN), None, None
+    names = [Path(name) for name in site.found["files"] if name.endswith(".csv")]
+    lines = [one.stem for one in names if (site.folder / one).read_text(encoding="utf-8").startswith("# control line")]
+    if site.choices["road"]["file"]:
+        road = roads.read_local(site.folder / ROAD, raster, roads.Asked.of(site.choices["road"]), True)
+        text = (site.folder / "blocks.1.data").read_text(encoding="ascii").split("sphere\n")[1]
+        columns, rows = ~raster.transform * np.loadtxt(text.splitlines(), ndmin=2)[:, 4:6].T
+        starts = np.zeros(raster.z.shape, bool)
+        starts[rows.astype(int), columns.astype(int)] = True
+        sides = road_sides.divide(touched(road.polygon, sizes_of(site.choices)[1], raster), road.line, raster, starts)
+    down = np.array(site.found["blocks"]["down"][:2])
+    return Terrain(raster, down / np.hypot(*down), road, sides, lines)
+
+
+def table(path: Path) -> Columns:
+    """A CSV of numbers that a run wrote; an empty cell is NaN."""
+    try:
+        head, *lines = path.read_text(encoding="ascii").splitlines()
+        rows = [[float(word or "nan") for word in line.split(",")] for line in lines]
+        return dict(zip(head.split(","), np.reshape(rows, (-1, head.count(",") + 1)).T))
+    except (OSError, ValueError) as error:
+        raise SlopeError(path, f"must be a table that the run wrote: {getattr(error, 'strerror', error)}") from None
+
+
+def read(name: str, folder: Path, chosen: Dict[str, str], terrain: Terrain) -> Run:
+    """A finished run."""
+    prefix = folder / PREFIX
+    summary = run_folders.load_summary(f"{prefix}.summary.yaml")
+    (_, first), (heads, last) = (dumps.frames(folder / f"{when}.dump")[0] for when in ("start", "end"))
+    diameter, end, left = first[:, 1], first[:, 2:4].copy(), np.ones(len(first), bool)
+    moving, reached, passed = np.zeros((3, len(first)), bool)
+    gone, there = table(Path(f"{prefix}.left.csv")), last[:, 0].astype(int) - 1
+    left[there] = False
+    end[there] = last[:, 1:3]
+    end[gone["ball"].astype(int) - 1] = np.column_stack([gone["x"], gone["y"]])
+    left[gone["ball"].astype(int) - 1] = True
+    if "halt" not in str(summary["stop"]["reason"]):
+        moving[there] = np.linalg.norm(last[:, heads.index("vx"):heads.index("vx") + 3], axis=1) > SLOW
+    at = {line: largest(table(Path(f"{prefix}.{line}.line.csv")), diameter) for line in terrain.lines}
+    if terrain.sides:
+        parts = [table(path) for path in sorted(folder.glob(f"{PREFIX}.{EDGE}_*.line.csv"))]
+        crossed = {key: np.concatenate([part[key] for part in parts]) for key in parts[0]}
+        at[AT_ROAD] = largest({key: value[crossed["direction"] > 0] for key, value in crossed.items()}, diameter)
+        reached = np.isfinite(at[AT_ROAD]["energy"])
+        passed = reached & beyond_road(crossed, end, terrain.sides)
+    way = end - first[:, 2:4]
+    travel = {"distance": np.hypot(*way.T), "along": way @ terrain.down,
+              "across": way @ np.array([-terrain.down[1], terrain.down[0]])}
+    return Run(name, folder, chosen["rolling"], int(chosen["ground"]), diameter, first[:, 2:5], end, left, moving,
+               reached, passed, at, travel, float(summary["guards"]["largest_overlap"]))
+
+
+def largest(crossings: Columns, diameter: np.ndarray) -> Columns:
+    """By block, of all its crossings; the height is that of its lower edge above the terrain."""
+    block = crossings["ball"].astype(int) - 1
+    values = {**crossings, "height": crossings["height"] - diameter[block] / 2}
+    found = {name: np.full(len(diameter), np.nan) for name in QUANTITIES}
+    for name, most in found.items():
+        np.fmax.at(most, block, values[name])
+    return found
+
+
+def beyond_road(crossed: Columns, end: np.ndarray, sides: road_sides.Sides) -> np.ndarray:
+    """Whether a block ended beyond the road, or left it there at any time."""
+    found = sides.of_places(end) == road_sides.PAST
+    for x, y, block in zip(*(crossed[key][crossed["direction"] < 0] for key in ("x", "y", "ball"))):
+        place = Point(x, y)
+        found[int(block) - 1] |= sides.past.distance(place) < sides.before.distance(place)
+    return found
