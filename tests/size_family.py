@@ -32,7 +32,8 @@ HEAD = "case,finer,seed,d,balls,balls_thick,remove,on_road,beyond,length,travel,
 
 class Slide(NamedTuple):
     """Lengths in m, in plan; angles in degrees. The face rises along x, from the break in slope on."""
-    shape: str              # slab: of one depth with flanks of 45 degrees; else as `slope site --shape` has them
+    shape: str              # slab: of one depth with flanks of 45 degrees; prism: these at its sides alone; else as
+                            # `slope site --shape` has them
     length: float
     width: float
     depth: float
@@ -62,8 +63,8 @@ CASES = {
     "steady": Slide("slab", 30, 24, 6, 25, 25, 35, 0.15, 4, 30, room=130),
 }
 
-# not of the family: 8 m thick at right angles to the face, balls of 1.45 m
-OTHERS = {"slide": Slide("slab", 33.5, 32, 9.54, 33, 0, 30, 0.05, 0, 30, 20, room=80, wide=10, balls=2500)}
+# not of the family: 7,680 m3, 8 m thick at right angles to the face
+OTHERS = {"slide": Slide("prism", 33.5, 32, 9.54, 33, 0, 30, 0.05, 0, 30, 20, room=80, wide=10, balls=2500)}
 ALL = {**CASES, **OTHERS}
 
 
@@ -88,10 +89,12 @@ def heights(one: Slide):
 
 
 def thicknesses(one: Slide):
-    """Of a slab on the ground, at right angles to it."""
+    """Of a slab or a prism on the ground, vertical."""
     x, y = centres(one)
-    within = np.minimum(one.length / 2 - abs(x - one.gap - one.length / 2), one.width / 2 - abs(y))
-    return np.clip(within, 0, one.depth)
+    along, across = one.length / 2 - abs(x - one.gap - one.length / 2), one.width / 2 - abs(y)
+    if one.shape == "prism":
+        return np.where(along > 0, np.clip(across / math.cos(math.radians(one.face)), 0, one.depth), 0)
+    return np.clip(np.minimum(along, across), 0, one.depth)
 
 
 def write_asc(path: Path, z) -> None:
@@ -111,7 +114,7 @@ def write_case(one: Slide, folder: Path) -> list:
     near = one.room - one.road
     far = near - one.wide
     write_polygon(folder / "road.csv", [(far, 0), (near, 0), (near, 2 * middle), (far, 2 * middle)])
-    if one.shape == "slab":
+    if one.shape in ("slab", "prism"):
         write_asc(folder / "height.asc", thicknesses(one))
         return ["--scar", "height.asc", "--scar-is", "height"]
     turn = 2 * math.pi * np.arange(CORNERS) / CORNERS

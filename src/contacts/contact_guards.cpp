@@ -12,6 +12,7 @@
 #include "domain.h"
 #include "error.h"
 #include "fix.h"
+#include "group.h"
 #include "lammps_compat.h"
 #include "large_messages.h"
 #include "modify.h"
@@ -60,7 +61,7 @@ void ContactGuards::start(int freeze_group_bit)
   print_table();
   told.clear();
   check_balls();
-  check_neighbor_lists();
+  check_neighbor_lists(freeze_group_bit);
   overlaps = {0.0, 0, 0, 0};
   energy.start();
   motion.start(freeze_group_bit);
@@ -151,8 +152,19 @@ void ContactGuards::check_dashpots(int i, int j)
    warn when contacts can begin before the neighbor list has them
 ------------------------------------------------------------------------- */
 
-void ContactGuards::check_neighbor_lists()
+void ContactGuards::check_neighbor_lists(int freeze_group_bit)
 {
+  if (neighbor->includegroup) {
+    const int listed = group->bitmask[neighbor->includegroup] | freeze_group_bit;
+    bigint mine = 0, outside;
+    for (int i = 0; i < atom->nlocal; i++) mine += !(atom->mask[i] & listed);
+    MPI_Allreduce(&mine, &outside, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+    if (outside)
+      warn("neigh_modify include must name a group of all balls that move, got {}, without {} of "
+           "them: they touch no other, and lists are not made again for them, so that they pass "
+           "through walls",
+           group->names[neighbor->includegroup], outside);
+  }
   if (neighbor->build_once)
     warn("neigh_modify once should be no, got yes: balls that come near each other or a wall later "
          "are "

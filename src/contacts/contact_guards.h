@@ -91,7 +91,7 @@ class ContactGuards : protected Pointers {
   void print_table();
   void check_timestep();
   void check_dashpots(int itype, int jtype);
-  void check_neighbor_lists();
+  void check_neighbor_lists(int freeze_group_bit);
 };
 
 // The guard against balls that are placed inside each other. A linear spring of this

@@ -371,7 +371,7 @@ bool SunkSurface::height(double x, double y, double &lowest) const
       const double *height = z.run(i, j, ihi + 1, next);
       if (!height) continue;
       for (int k = i; k < next; k++)
-        if (height[k - i] - sink < lowest) touch(column_x(k), column_y(j), height[k - i]);
+        if (height[k - i] - half < lowest) touch(column_x(k), column_y(j), height[k - i]);
     }
   }
   const int bx = static_cast<int>((x - xlo) / sink), by = static_cast<int>((y - ylo) / sink);

@@ -179,6 +179,16 @@ def test_lists_that_are_made_once(tmp_path, once):
     assert len(told(log, "neigh_modify once should be no, got yes")) == (once == "yes")
 
 
+@pytest.mark.parametrize("group, without", [("soil", 0), ("few", 1), ("none", 1)])
+def test_lists_without_some_balls(tmp_path, group, without):
+    """Of balls that neigh_modify include leaves out lists are never made again."""
+    run = (f"group few id 2\ngroup none empty\natom_modify first {group}\nneigh_modify include {group}\nrun 0")
+    log = balls(run, tmp_path, create="create_atoms 1 single 0 0 3" + SIZE)
+    lines = told(log, "neigh_modify include must name a group of all balls that move")
+    assert len(lines) == (without > 0)
+    assert all(f"got {group}, without {without} of them" in line for line in lines)
+
+
 def test_two_sub_styles(tmp_path):
     hybrid = ("pair_style hybrid gran/restitution scheme exact gran/restitution scheme plain\n"
               "pair_coeff * * gran/restitution 1 stiffness 1e8 1e8 restitution 0.1 friction 30\n"

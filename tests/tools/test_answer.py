@@ -93,7 +93,8 @@ def test_without_a_fine_run_the_number_is_not_conservative(balls, kind):
             [True] * (kind is Kind.FLOOR)
     quantile = {"share": 0.95, "value": 100.0, "low": None, "high": None}
     made = next_step.Made({"runs": [], "study": {}, "ensemble": None}, Path("out"))
-    assert kind is Kind.NUMBER or next_step.of_reasons(made, found.about()).command == "the same command with --fine 2"
+    step = next_step.of_studies([made], found.about())
+    assert step is None if kind is Kind.NUMBER else step.command == "the same command with --fine 2" == step.before
     about = {"ensemble": {"known_events": {"to_remove": [quantile], "far": 0.0, "longest_m": 9.0}},
              "study": {"balls_thick": balls}, "size": None}
     assert answer.of(None, answered.ensemble_of(about), None).kind is kind

@@ -319,6 +319,22 @@ def test_a_report_shows_no_number_where_events_go_beyond_the_runs():
     assert answer["parts"][0]["note"].startswith("At least 0 m with 90 %")
 
 
+@pytest.mark.parametrize("number, shown", [
+    ({"source": "ensemble", "share": 0.95, "volume_m3": 930.0}, "c"),       # raised by the effect of size
+    ({"source": "ensemble", "share": 0.7, "volume_m3": 410.0}, "b"),        # a floor
+    ({"source": "ensemble", "share": 0.95, "volume_m3": 0.0}, "d"), ({"source": "paper", "volume_m3": 5e3}, "a"),
+    (None, "a")])
+def test_the_run_shown_is_that_of_the_headline(number, shown):
+    """Of an ensemble whose quantile it is; where nothing is to be removed the longest; else as without a headline."""
+    runs = [{"run": name, "remove_m3": volume, "on": on, "length_m": length} for name, volume, on, length in (
+        ("a", 100.0, 9.0, 10.0), ("b", 400.0, 3.0, 40.0), ("c", 900.0, 1.0, 20.0), ("d", 9e3, 0.0, 90.0),
+        ("e", None, None, None))]
+    known = {"to_remove": [{"share": 0.95, "value": 900.0}, {"share": 0.7, "value": 400.0}],
+             "quantities": {"on": {"quantiles": [{"share": 0.9, "value": 9.0}]}}}
+    about = {"conservative": None, "runs": runs, "headline": number, "ensemble": {"of": "on", "known_events": known}}
+    assert run_folders.governing(about) == shown
+
+
 @pytest.mark.parametrize("value, shown", [(2100.0, "b"), (None, "c"), ("absent", "c")])
 def test_the_run_shown_has_the_quantity(value, shown):
     """Nearest to what 90 % of known events stay within, or the largest; a run that lost it over the edge has none."""

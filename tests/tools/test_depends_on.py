@@ -26,7 +26,7 @@ from slope_tools.sites import site_choices
 CHOSEN = {"set", "fine", "vary", "levels", "sample", "fit", "paper", "design", "seed", "repeat", "converge", "runs",
           "fragility"}
 FOLLOWED = {"deck", "lmp"}              # dependencies.py
-PLACE = {"output", "overwrite", "help", "dry_run", "all_columns"}       # where to, what is shown, or no run
+PLACE = {"output", "overwrite", "help", "dry_run", "all_columns", "scenario"}       # where to, what is shown, or no run
 ONE_RESULT = {"np", "jobs", "launcher", "engine", "slurm"}      # how it is run: the same but for rounding
 # computed from the runs, each time that the command is given
 ANEW = {"road", "road_width", "road_from", "blocked", "lane", "clearing", "loosening", "cut_angle", "mesh", "local",

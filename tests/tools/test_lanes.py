@@ -552,8 +552,18 @@ def test_a_study_of_a_line_is_that_of_the_polygon_and_is_reported(here, capsys, 
     low, high = (headline.text(value, headline.place_of_digits(value)) for value in hours)
     assert f"{low} ({low} to {high})" in page       # of the table
     data, numbers = SimpleNamespace(study=line), Numbers()
+    whole, lane = ([headline.text(one, headline.place_of_digits(one)) for one in found["totals"][key][::2]]
+                   for key in ("hours", "remove_lane"))
     assert road_part.on_first_page(data, numbers, False) == [
-        f"A lane of 1.5 m is open after {low} to {high} hours of one loader of 20 m3/h."]
+        f"A lane of 1.5 m is open after {low} to {high} hours, the whole road after {' to '.join(whole)} hours of one "
+        "loader of 20 m3/h."]
+    for asked, wanted in (({"lane": None},
+                           f"The road is clear after {' to '.join(whole)} hours of one loader of 20 m3/h."),
+                          ({"clearing": None}, f"A lane of 1.5 m is open when {' to '.join(lane)} m3 are removed.")):
+        keys = {"lane": ("remove_lane", "hours_lane"), "clearing": ("hours", "hours_lane")}[[*asked][0]]
+        less = {**line, "study": {**line["study"], "road": {**line["study"]["road"], **asked}}, "stretches": {
+            **found, "totals": {key: value for key, value in found["totals"].items() if key not in keys}}}
+        assert road_part.on_first_page(SimpleNamespace(study=less), numbers, False) == [wanted]
     assert road_part.on_first_page(data, numbers, True) == [] and "A lane of 1.5 m" not in page     # not at rest
     reproduced = run_command("report", "line --reproduce", capsys)[1]
     assert "--road-width 4" in reproduced and "--lane 1.5 --clearing 20 --loosening 1.25" in reproduced

@@ -1,5 +1,6 @@
 """What a report says of known events: where its runs lie, or that no set covers them."""
 from types import SimpleNamespace
+from typing import Any, Dict, NamedTuple
 
 import numpy as np
 import pytest
@@ -9,6 +10,8 @@ from test_mobility_path import SET, disc, hillside
 
 from slope_tools.digits import three
 from slope_tools.mobility import exceedance, known as known_events
+from slope_tools.mobility.fall_path import TERRAIN
+from slope_tools.mobility.known import Found, Known
 from slope_tools.mobility.results import percent
 from slope_tools.plots import known_reach
 from slope_tools.report import mobility_part
@@ -110,6 +113,56 @@ def test_a_height_that_no_event_has():
     assert "of landslides of this volume" in mobility_part.content(data, lower, numbers)[0][1]
 
 
+# --- the first page ---
+
+class Lengths(NamedTuple):
+    """What known events say: (length_at, at_most) of each share."""
+    at: Dict[float, Any]
+    path: Any = SimpleNamespace(length=[0.0, 100.0, 300.0], end=TERRAIN)
+
+    def length_at(self, share):
+        return self.at[share][0]
+
+    def at_most(self, share):
+        return self.at[share][1]
+
+
+@pytest.mark.parametrize("runs, near, half, far, farther", [
+    ((60, 70, 120), 80, 110, 200, None),                # the middle of each lies in the band of the other, or one does
+    ((60, 70, 100), 80, 110, 200, "known events"),
+    ((60, 90, 100), 80, 110, 200, None),
+    ((60, 70, 100), 80, None, None, "known events"),    # beyond the terrain
+    ((60, 70, 299), None, None, None, "known events"), ((60, 70, 310), None, None, None, None),
+    ((150, 220, 250), 80, 110, 200, "the runs"), ((150, 190, 250), 80, 110, 200, None),
+    ((150, 220, 250), 80, 110, None, None),
+    ((150, 220, 250), -80, -110, 200, "the runs"),      # at most
+    ((60, 70, 100), -80, -110, 200, None)])
+def test_both_answers_differ_by_more_than_their_bands(runs, near, half, far, farther):
+    known_ = Lengths({share: (None, None) if length is None else (length, None) if length > 0 else (1.0, -length)
+                      for share, length in ((0.9, near), (0.5, half), (0.1, far))})
+    assert mobility_part.differ(runs, known_) == farther
+
+
+def test_the_first_page_has_both_answers(known):
+    """By the runs, and by known events: what half, nine tenths and a tenth go beyond, or why there is but one."""
+    ground = SimpleNamespace(known=Known(Found(known, known), ""))
+    half, near, far = (three(known.length_at(share)) for share in (0.5, 0.9, 0.1))
+    for lengths, differs in (((0.9 * known.length_at(0.5), known.length_at(0.5)), False),
+                             ((0.5 * known.length_at(0.9), 0.9 * known.length_at(0.9)), True)):
+        data = SimpleNamespace(study={}, finished=[{"length_m": length} for length in (*lengths, None)])
+        data.study = {"ensemble": None}
+        text = mobility_part.on_first_page(data, ground, Numbers())
+        runs = f"{three(lengths[0])} to {three(lengths[1])} m"
+        assert text.startswith(f"How far along the fall path: by the runs {runs}; by known events of this volume and "
+                               f"height half go beyond {half} m, nine tenths beyond {near} m, a tenth beyond {far} m "
+                               "(confined or not, as often as known events).")
+        assert ("The two differ by more than their bands: known events go farther" in text) == differs
+    outside = known._replace(outside=["the set of known events does not cover this volume"])
+    assert mobility_part.on_first_page(data, SimpleNamespace(known=Known(Found(outside, outside), "")), Numbers()) == (
+        "The set of known events does not cover this volume.")
+    assert mobility_part.on_first_page(data, SimpleNamespace(known=Known(None, "No path")), Numbers()) == "No path."
+
+
 # --- on maps and section ---
 
 def test_marks_lie_across_the_path_where_shares_of_the_events_go_farther(known):
@@ -126,7 +179,7 @@ def test_marks_lie_across_the_path_where_shares_of_the_events_go_farther(known):
         assert abs(across @ (after - before)) < 0.1 * np.hypot(*across) * np.hypot(*(after - before))
     assert LineString(reach.path).length == pytest.approx(max(wanted.values()), rel=1e-3)
     text = known_reach.words(reach)
-    assert f"half of known events of this volume and height go farther than {three(wanted[0.5])} m" in text
+    assert f"beyond them go half{' and a tenth' * (0.1 in wanted)} of known events" in text
     assert exceedance.WORDS["mixture"] in text and ("would lie beyond the terrain" in text) == (len(reach.marks) < 2)
     fewer = known_reach.words(reach._replace(marks=reach.marks[:1]))
     assert "a tenth" not in fewer and fewer.endswith("; other marks would lie beyond the terrain.")

@@ -17,21 +17,23 @@ from slope_tools.ensembles import known_study
 from slope_tools.finding_words import WORDS, words_of
 from slope_tools.findings import LIMIT, NOTE, WARNING, Finding, finding, gathered
 from slope_tools.plots.obstacles import Obstacles
-from slope_tools.report import body, client_part, structures_part, warnings
+from slope_tools.report import body, client_part, numbers, structures_part, warnings
 from slope_tools.report.numbers import Numbers
 from slope_tools.statistics.withheld import Kind as Rule
-from slope_tools.tables import judged, next_step
+from slope_tools.tables import answer_words, judged, next_step
 
 made, here, slope = test_report.made, test_report.here, test_report.slope       # its fixtures
 # of options, files, runs and variables
-TOOLS_WORDS = re.compile(r"--\w|\.yaml|\.csv|\.asc|slope |rolling_|_steps|xoffset|seed|\bm3\b|<code>")
+TOOLS_WORDS = re.compile(r"--\w|\.yaml|\.csv|\.asc|tools/|slope (?:site|study|report)|rolling_|_steps|xoffset|seed|"
+                         r"\bm3\b|<code>")
 
 
 def client(path):
     """The text of the first page, without its picture and style."""
     page = path.read_text(encoding="utf-8")
     part = page[page.index('<section id="client">'):page.index('id="appendix"')]
-    part = re.sub(r'(<div class="step">.*?)<code>[^<]*</code>', r"\1", part)       # the command of the next step
+    part = re.sub(r'<span class="before">[^<]*</span>', "", part)       # of the next step: what is to be changed
+    part = re.sub(r'(<div class="step">.*?)<code>[^<]*</code>', r"\1", part)       # and its command
     return html.unescape(re.sub(r"<[^>]*>", " ", part))
 
 
@@ -114,13 +116,15 @@ SAID = {"number": ("35,800 m³", "Between 21,000 m³ and 48,200 m³, with 90 % c
 def test_what_stands_first(slope, here, case):
     """A number, a floor, one that is withheld, nothing: never only that it is unknown, each number with its unit."""
     path = here / "repeated" / "study.yaml"
-    path.write_text(yaml.safe_dump({**yaml.safe_load(path.read_text()), "headline": HEADLINES[case]}))
+    about = yaml.safe_load(path.read_text())
+    del about["next_step"]      # of an older file
+    path.write_text(yaml.safe_dump({**about, "headline": HEADLINES[case]}))
     assert slope("repeated")[0] == 0
     text = " ".join(client(here / "repeated" / "report.html").split())
     for words in SAID[case]:
         assert words in text
     page = (here / "repeated" / "report.html").read_text(encoding="utf-8")
-    main = page[page.index('<div class="main'):page.index('<div class="note">')]
+    main = page[page.index('<div class="main'):page.index("How far along the fall path")]
     assert not TOOLS_WORDS.search(text) and "unknown" not in main and "?" not in main
     assert ("Next step" in text) == (case in ("floor", "not reached", "withheld"))
     kind = HEADLINES[case]["kind"]
@@ -200,7 +204,8 @@ def test_the_next_step_and_its_time(tmp_path):
         "design": design, "known_events": {"set": "rock_avalanches.csv"}}}, Path("site/ensemble"))
 
     def step(*codes, of=made_):
-        return next_step.of_reasons(of, {"reasons": [{"code": code, "numbers": numbers} for code, numbers in codes]})
+        return next_step.of_studies([of], headline_of("floor", source="ensemble", reasons=[
+            {"code": code, "numbers": numbers} for code, numbers in codes]))
 
     beyond = ("known beyond runs", BEYOND["numbers"])
     found = step(beyond, ("no more runs", {"points": 32}))
@@ -216,6 +221,59 @@ def test_the_next_step_and_its_time(tmp_path):
         f"{tmp_path}/site.yaml, then: tools/slope site {tmp_path} && tools/slope study {tmp_path} --anew")
     rows[0]["wall_s"] = None
     assert step(("too few runs", {})).time == ""
+
+
+def test_the_next_step_is_of_the_study_whose_reason_comes_first(tmp_path):
+    """Of both of a site, which one command makes: its remedy, and the time of both."""
+    (tmp_path / "site.yaml").touch()
+    rows = [{"status": "finished", "wall_s": 30.0, "released_m3": 100.0, "ball_m3": 1.0}] * 4
+    mends = f"more time (model.duration) in {tmp_path}/site.yaml, then: tools/slope site {tmp_path} && ..."
+    paper = {"study": {"jobs": 1}, "conservative": {"withheld": []}, "ensemble": None, "runs": rows}
+    ensemble = {"study": {"jobs": 2}, "conservative": None, "runs": rows, "ensemble": {"withheld": [
+        {"kind": "runs not at rest or failed", "remedy": mends, "numbers": {"number": 6, "bound": 20}}]}}
+    both = [next_step.Made(paper, tmp_path / "study"), next_step.Made(ensemble, tmp_path / "ensemble")]
+    size = {"code": "size of balls", "numbers": {"run": "finished", "balls_thick": 5.0, "enough": 16.0, "growth": None}}
+    rule = {"code": "rule", "numbers": {"source": "ensemble", "rule": "runs not at rest or failed", "number": 6}}
+    about = headline_of("floor", volume_m3=9.0, source="paper", reasons=[rule, size])
+    step = next_step.of_studies(both, about)
+    assert (step.command, step.seconds) == (mends, 2 * (120 + 60)) and step.line.startswith("tools/slope site")
+    assert step.before.endswith("/site.yaml, then:")
+    step = next_step.of_studies(both, {**about, "reasons": [size, rule]})
+    assert step.command.startswith(f"tools/slope site {tmp_path} --balls 800 && ") and step.before == ""
+    assert next_step.of_studies(both, {**about, "kind": "number"}) is None
+
+
+def test_each_reason_is_told_once():
+    """Of both studies; the console and the first page, in the same order."""
+    other = {**MOVING, "numbers": {**MOVING["numbers"], "source": "ensemble"}}
+    size = {"code": "size of balls", "numbers": {"run": "", "balls_thick": None, "enough": 16.0, "growth": None}}
+    about = headline_of("withheld", reasons=[other, size, MOVING, size])
+    said = client_part.reasons(about)
+    assert len(said) == 2 and said[0].startswith("More than a tenth of the runs failed")
+    assert len(answer_words.lines(about)) == 3 and "rule" in answer_words.lines(about)[1]
+
+
+def test_the_first_page_in_order(slope, here):
+    """The number, on which runs it rests, why, the next step; then how far, dry; the map of the run."""
+    stands("repeated")
+    path = here / "repeated" / "study.yaml"
+    about = yaml.safe_load(path.read_text())
+    step = {"text": "a larger elevation model", "command": "more in mine/site.yaml, then: tools/slope site mine",
+            "seconds": 60.0}
+    size = {"code": "size of balls", "numbers": {"run": "", "balls_thick": 2.0, "enough": 16.0, "growth": None}}
+    path.write_text(yaml.safe_dump({**about, "next_step": step, "headline": headline_of(
+        "floor", volume_m3=12.0, source="paper", ensemble=None, reasons=[size])}))
+    assert slope("repeated")[0] == 0
+    text = " ".join(client(here / "repeated" / "report.html").split())
+    wanted = ["at least", "6 runs of a computer model", "The number is the mean of 3 of them", "smaller balls in the "
+              "model", "Next step: a larger elevation model, about 60 s", "The model is dry", "The appendix has",
+              "Final thickness", "The run on which the number rests"]
+    places = [text.find(words) for words in wanted]
+    assert -1 not in places and places == sorted(places), (places, text)
+    assert text.index("Next step") < text.index("known events") < text.index("is dry")
+    assert "What smaller balls in the model would change is unknown" not in text        # the reason says it
+    page = (here / "repeated" / "report.html").read_text()
+    assert '<span class="before">more in mine/site.yaml, then:</span><br><code>tools/slope site mine</code>' in page
 
 
 def test_only_a_report_on_the_same_folder_is_replaced(slope, here):
@@ -273,7 +331,8 @@ def test_what_was_lost_is_counted_in_one_line_with_its_side():
     found, = judged.lost(rows)
     assert (found.kind, found.level, found.runs[0], len(found.runs)) == ("lost much", WARNING, "run 6", 9)
     assert found.numbers["volume"] == 6000 and found.numbers["percent"] == 12 and found.numbers["of"] == 15
-    assert warnings.first_page([found]) == ["9 of 15 runs lost up to 6,000 m³ over the edge: enlarge the terrain."]
+    assert warnings.first_page([found]) == [
+        "9 of 15 runs lost mass over the edge, up to 6,000 m³: enlarge the terrain."]
     rows[6]["left"] = LEFT
     found, = judged.lost(rows)
     assert found.text == (
@@ -282,8 +341,8 @@ def test_what_was_lost_is_counted_in_one_line_with_its_side():
         "20 m3 elsewhere), and how far they went is unknown: enlarge the terrain and the box by about 1,230 m in the "
         "west, about 170 m in the south, heights in the hole (slope terrain --fill)")
     assert warnings.first_page([found]) == [
-        "9 of 15 runs lost up to 6,000 m³ over the edge: enlarge the terrain by about 1,230 m in the west, about "
-        "170 m in the south, heights in the hole (slope terrain --fill)."]
+        "9 of 15 runs lost mass over the edge, up to 6,000 m³: enlarge the terrain by about 1,230 m in the west, "
+        "about 170 m in the south, heights in the hole (slope terrain --fill)."]
     found, = judged.lost(rows_of((1.0, 50000.0)))
     assert (found.kind, found.level) == ("lost", NOTE) and judged.lost(rows_of((0.01, 50000.0))) == []
 
@@ -310,7 +369,7 @@ def test_the_weightiest_come_first_and_three_are_shown():
     assert told[0].startswith("2 of 6 runs failed") and told[1].startswith("1 of 4 runs ended")
     assert len(told) == 9
     assert "1 million" in told[2] and told[3].startswith("2 of 4 runs") and "1.8 of the model" in told[6]
-    assert "All 4 runs lost up to 6,000 m" in told[7] and told[8].startswith("The slip surface")
+    assert "All 4 runs lost mass over the edge, up to 6,000 m" in told[7] and told[8].startswith("The slip surface")
     levels = [level for level, _ in warnings.listed(found, data.names())]
     assert levels == sorted(levels, reverse=True) and levels.count(NOTE) == 3      # large, moving, lost
     assert warnings.rest_of(7) == "The appendix has all 7 warnings, the settings, the runs and the checks."
@@ -445,16 +504,42 @@ def test_volumes_and_units_as_they_are_read():
 def test_what_the_runs_differ_in_is_said_without_names_of_variables():
     data = SimpleNamespace(study={"study": {}}, repeats={"xoffset": ["0.5"]}, finished=[{}] * 8,
                            settings={"rolling": ["0", "1"], "d": ["1", "2"], "zeta": ["1", "2"], "x": ["1"]})
-    assert client_part.basis(data) == (
+    assert numbers.basis(data) == (
         "8 runs of a computer model of equal balls, which differ in the rolling resistance, the size of the model's "
         "balls and 1 other setting and, by chance, in how the balls lie at the start.")
     data.study["study"]["method"] = "by the paper's method; the set of known events does not cover this volume, 900 m3"
-    assert client_part.basis(data).endswith(
+    assert numbers.basis(data).endswith(
         "at the start. Known events of this size do not count in them: the set of known events does not cover this "
         "volume, 900 m3.")
     for method in (known_study.WEIGHTED, known_study.BESIDE):
         data.study["study"]["method"] = method
-        assert client_part.basis(data).endswith("at the start.")
+        assert numbers.basis(data).endswith("at the start.")
+    data.repeats, data.settings = {}, {"friction": ["5", "30"], "packing": ["1", "2"]}      # an ensemble
+    assert numbers.basis(data).endswith("which differ in the friction and, by chance, in how the balls lie at the "
+                                        "start.")
+
+
+BEST = {"set": {"rolling": "0.1", "spacing": "0.5"}, "chance_m3": 3.0, "size_m3": 2.0, "repeats": 3, "run": "b"}
+
+
+@pytest.mark.parametrize("best, headline, own, said, shown", [
+    (BEST, {"source": "paper"}, "b",
+     " The number is the mean of 3 of them (rolling resistance 0.1), with what chance and smaller balls may add.",
+     " The run on which the number rests, 2 of the appendix: rolling resistance 0.1."),
+    ({**BEST, "chance_m3": None, "size_m3": None, "repeats": 1}, {"source": "paper"}, "a",
+     " The number is that of one of them (rolling resistance 0.1).",
+     " Run 1 of the appendix: rolling resistance 0.05."),
+    (BEST, {"source": "ensemble"}, "b", " The number is of the other study of this site.",
+     " Run 2 of the appendix: rolling resistance 0.1."),
+    (BEST, {"source": "paper", "volume_m3": None}, "b", "", " Run 2 of the appendix: rolling resistance 0.1.")])
+def test_on_which_runs_the_number_rests(best, headline, own, said, shown):
+    """Which of them, and whether the map is of one of them; nothing of this where there is no number."""
+    rows = [{"run": "a", "set": {"rolling": "0.05"}}, {"run": "b", "set": {"rolling": "0.1"}}]
+    study = {"study": {}, "conservative": best, "headline": {"volume_m3": 5.0, **headline}, "ensemble": None}
+    data = SimpleNamespace(study=study, finished=rows, repeats={}, number=lambda name: 1 + "ab".index(name),
+                           settings={"rolling": ["0.05", "0.1"], "spacing": ["0.5"]},
+                           result=SimpleNamespace(name=own, row=rows["ab".index(own)]))
+    assert numbers.rests_on(data) == said and numbers.shown_run(data) == shown
 
 
 def test_the_body_in_a_sentence():

@@ -15,8 +15,8 @@ MODULES = sorted(PACKAGE.rglob("*.py"))
 LONGEST = 400       # lines
 # from below
 ROOMS = ("", "drawing", "survey", "case", "quakes", "releases", "slips", "sites", "deposits", "mobility", "statistics",
-         "runs", "tables", "ensembles", "seismic", "studies", "fitting", "plots", "animation", "report", "blocks",
-         "route", "validation", "commands")
+         "runs", "tables", "ensembles", "seismic", "studies", "fitting", "plots", "animation", "report", "scenarios",
+         "blocks", "route", "validation", "commands")
 MOST = 25           # modules of a room; its __init__.py is one
 
 

@@ -30,7 +30,7 @@ from slope_tools.sites.site import numbers as site_numbers
 from slope_tools.errors import SlopeError
 from slope_tools.plots import site_map
 from slope_tools.statistics.size_effect import Effect
-from slope_tools.tables import answered, elastic
+from slope_tools.tables import answer_words, answered, elastic
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 DATA = Path(os.environ.get("SLOPE_DATA", TOP.parent.parent / "shared" / "data"))
@@ -220,6 +220,10 @@ def test_both_studies_give_one_number(done, tmp_path, monkeypatch, capsys, fitte
     assert found["kind"] == "floor" or found["volume_m3"] == max(volumes)
     assert answered.governing(mine / "study", mine / "ensemble").name == ("study" if found["source"] == "paper" else
                                                                           "ensemble")
+    step, = (line.removeprefix("next step: ") for line in out.splitlines() if line.startswith("next step: "))
+    assert paper["next_step"] == both["next_step"] and step.startswith(both["next_step"]["text"]) and step.endswith(
+        both["next_step"]["command"])
+    assert [line for line in out.splitlines() if line in answer_words.lines(found)] == answer_words.lines(found)
     governs, other = ("study", "ensemble") if found["source"] == "paper" else ("ensemble", "study")
     assert pages == [(other, {"study": "paper.html", "ensemble": "ensemble.html"}[other], False),
                      (governs, "report.html", True)]
@@ -234,6 +238,31 @@ def test_the_report_of_a_sites_folder(done, tmp_path):
     found = inside(tmp_path, "report", "bare")
     assert found.returncode == 2 and found.stderr.startswith("slope report: bare: must hold the study of this site")
     assert "slope study bare" in found.stderr and [path.name for path in bare.iterdir()] == ["site.yaml"]
+
+
+def test_the_page_of_a_site_and_its_scenarios(done, tmp_path):
+    """Beside its report: what each releases and says, and the outlines; a file of the user's of that name stays."""
+    mine = tmp_path / "mine"
+    shutil.copytree(done[0] / "mine", mine)
+    for name in ("dem.tif", "release.geojson", "road.geojson"):
+        shutil.copy(done[0] / name, tmp_path)
+    assert not (mine / "scenarios.html").exists()
+    made = inside(tmp_path, "site", "mine", "--scenario", "small", "--volume", "800")
+    assert made.returncode == 0, made.stderr
+    made = inside(tmp_path, "report", "mine", "--no-film")
+    assert made.returncode == 0 and "mine/scenarios.html: the site and its 1 scenarios" in made.stdout, made.stderr
+    page = (mine / "scenarios.html").read_text(encoding="utf-8")
+    volume = digits.rounded(site_choices.found(mine)["body"]["volume"], 4)
+    for words in ("no study yet", "volume 800", ">small<", f">{volume}<", "<li>small: ", "data:image/png",
+                  "Outlines of the deposits"):
+        assert words in page, words
+    shutil.copytree(mine / "study", mine / "scenarios" / "small" / "study")     # as if its runs said the same
+    shutil.copytree(mine / "runs", mine / "scenarios" / "small" / "runs")
+    assert inside(tmp_path, "report", "mine", "--no-film").returncode == 0
+    assert "no study yet" not in (mine / "scenarios.html").read_text(encoding="utf-8")
+    (mine / "scenarios.html").write_text("of the user\n")
+    found = inside(tmp_path, "report", "mine", "--no-film")
+    assert found.returncode == 2 and "scenarios.html must be" in found.stderr.splitlines()[-1]
 
 
 def test_the_longest_runs_begin_first(done):
@@ -400,8 +429,10 @@ def test_structures_lines_and_a_mapped_deposit(gis):
     assert 0 < score["area"]["jaccard"] < 1
     # the same on the page, and of all runs
     about = yaml.safe_load((mine / "study" / "study.yaml").read_text())
-    assert about["observed"]["file"] == "../observed.csv" and about["observed"]["best"] == "rolling_0.05"
-    assert about["runs"][0]["overlap"] == pytest.approx(score["area"]["jaccard"])
+    assert about["observed"]["file"] == "../observed.csv"
+    overlaps = {one["run"]: one["overlap"] for one in about["runs"]}
+    assert overlaps["rolling_0.05"] == pytest.approx(score["area"]["jaccard"])
+    assert about["observed"]["best"] == max(overlaps, key=overlaps.get) and len(overlaps) > 1
     assert about["observed"]["area_m2"] == pytest.approx(35 * 30)
     assert "mapped deposit: overlap (Jaccard) " in study.stdout
     assert 'id="mapped"' in (mine / "report.html").read_text(encoding="utf-8")

@@ -522,6 +522,7 @@ def test_a_cut_angle_that_looks_like_a_tangent_is_asked_about(slope, angle, aske
     ("run --road nocrs.shp --mesh 10", "nocrs.shp: must have a CRS"),
     ("run --road road.geojson --mesh 10 --terrain none.asc", "none.asc: must be an existing file"),
     ("run --road road.geojson --mesh 10 --terrain other.asc", "other.asc: must be the terrain of the run, whose grid"),
+    ("run --road road.geojson --mesh 10 --terrain moved.asc", "moved.asc: must lie where the run's terrain.asc does"),
     ("run --road road.geojson --mesh 10 --axis run.summary.yaml", "run.summary.yaml: must be lines that GDAL can read"),
     ("run --road road.geojson --mesh 10 --axis road.geojson", "road.geojson: must hold a line: draw one"),
     ("run --road road.geojson --mesh 10 --axis away.csv", "away.csv: axis of the road must lie in the grid"),
@@ -533,6 +534,10 @@ def test_a_cut_angle_that_looks_like_a_tangent_is_asked_about(slope, angle, aske
 def test_bad_input_is_one_line(slope, no_map, here, arguments, message):
     write_sidecar(80, 100, 2.5)
     write_sidecar(10, 10, 2.5, "other.asc")
+    write_sidecar(80, 100, 2.5, "moved.asc")
+    about = Path("moved.yaml").read_text()
+    Path("moved.yaml").write_text(about.replace(f"{EAST}", f"{EAST + 500}"))
+    assert Path("moved.yaml").read_text() != about
     write_run(strip(), 0.0, 2.5)
     write_geojson("road.geojson", translate(box(90, 0, 110, 200), EAST, NORTH), crs=CRS_M)
     write_geojson("outside.geojson", translate(box(990, 0, 1010, 200), EAST, NORTH), crs=CRS_M)

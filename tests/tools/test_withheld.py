@@ -15,7 +15,9 @@ from slope_tools.tables.withheld_words import Case
 
 GOOD = Facts(volume=5000.0, on_road=3000.0, ball=10.0, runs=20, failed=0, moving=0, left=0.0, length=900.0,
              median=800.0)
-SITE = Case(Path("site/in.site"), Path("my site"), {"friction": "30", "rolling": "0.1", "d": "2"}, 1000)
+SITE = Case(Path("site/in.site"), Path("my site"), {"friction": "30", "rolling": "0.1", "d": "2"}, 1000,
+            command="tools/slope study 'my site'")
+PAPER, SAMPLED = SITE._replace(command=f"{SITE.command} --paper"), SITE._replace(sampled=True, command="")
 DECK = Case(Path("in.slope"), None, {"d": "2", "duration": "60"}, 1000)
 
 
@@ -51,10 +53,13 @@ ANEW = "tools/slope site 'my site'{} && tools/slope study 'my site' --anew"
      "--sample 64 --known rock_avalanches --vary friction=10:30 --road ROAD -o DIR"),
     ({"left": 0.3}, SITE, "30 % of the released volume left the terrain before or beside the road, more than 1 %",
      "a larger elevation model (terrain.files, terrain.bounds) in 'my site'/site.yaml, then: " + ANEW.format("")),
-    ({"on_road": 10.0}, SITE._replace(asked=" --paper"), "the volume of 1 ball, fewer than 10",
+    ({"on_road": 10.0}, PAPER, "the volume of 1 ball, fewer than 10",
      ANEW.format(" --balls 11000").replace("--anew", "--paper --anew")),
-    ({"left": 0.3}, SITE._replace(sampled=True), "30 %", "a larger elevation model (terrain.files, terrain.bounds) in "
+    ({"left": 0.3}, SAMPLED, "30 %", "a larger elevation model (terrain.files, terrain.bounds) in "
      "'my site'/site.yaml, then: tools/slope site 'my site'; the same command with --anew"),
+    # of the ensemble that `slope study SITE` makes
+    ({"moving": 5}, SITE._replace(sampled=True), "5 of 20 runs failed or are not at rest",
+     "more time (model.duration) in 'my site'/site.yaml, then: " + ANEW.format("")),
     ({"moving": 5}, DECK, "5 of 20 runs failed or are not at rest at the end, more than 10 %",
      "the same command with more time, --set duration=120"),
     ({"failed": 5}, DECK, "5 of 20 runs", "the same command again, once the cause of the failures is removed")])
@@ -63,7 +68,7 @@ def test_the_reason_and_the_command_that_mends_it(changed, case, text, remedy):
     assert text in entry["text"] and entry["remedy"] == remedy
 
 
-@pytest.mark.parametrize("case", [SITE, SITE._replace(asked=" --paper"), SITE._replace(sampled=True), DECK,
+@pytest.mark.parametrize("case", [SITE, PAPER, SAMPLED, DECK,
                                   DECK._replace(variables={"friction": "30", "rolling": "0"})])
 @pytest.mark.parametrize("changed", [{"on_road": 50.0}, {"length": 700.0}, {"left": 0.3}, {"moving": 5}])
 def test_the_commands_are_ones_that_the_tools_take(case, changed):

@@ -17,7 +17,7 @@ class Words(NamedTuple):
 
 
 NOT_BODY = "{who} released a mass that may not be the body: {released:cubic}{of_body}."
-LOST = "{who} lost {up_to}{volume:cubic} over the edge: enlarge the terrain{add}."
+LOST = "{who} lost mass over the edge, {up_to}{volume:cubic}: enlarge the terrain{add}."
 LEFT = ("{up_to}{volume} m3 ({percent:.2g} % of the released volume) left the grid or the box and are not on the maps"
         "{where}")
 AT_REST = "not at rest at the end{among}: {end}, at {time:.1f} s"
@@ -72,6 +72,17 @@ WORDS: Dict[str, Union[str, Words]] = {
     "slip assumed": Words("the slip surface is given, not computed", LIMIT,
                           "The slip surface is an assumption: whether, and how likely, the slope fails is not said "
                           "here."),
+    # of the first page alone
+    "dry": Words("dry: no water, no pore pressure, no liquefaction", LIMIT, client=(
+        "The model is dry: water in the mass or on its way, with which it goes farther, is not in these numbers.")),
+    "two answers": Words("by the runs {runs} along the fall path; by known events ({curve}) half go beyond {half}, "
+                         "nine tenths beyond {near}, a tenth beyond {far}", LIMIT, client=(
+                             "How far along the fall path: by the runs {runs}; by known events of this volume and "
+                             "height half go beyond {half}, nine tenths beyond {near}, a tenth beyond {far} "
+                             "({curve}).")),
+    "answers differ": Words("the two differ by more than their bands: {farther} go farther", NOTE, client=(
+        "The two differ by more than their bands: {farther} go farther, and the farther of the two is to be reckoned "
+        "with.")),
     # of runs
     "balance": Words("the volume in the thickness raster differs from released - off the grid - lost by {share:.1e} of "
                      "the released volume", NOTE),

@@ -27,12 +27,13 @@ DIGESTS = {"type": ["object", "null"], "additionalProperties": TEXT}   # {what: 
 BEGUN = mapping({}, set=named(TEXT), variables=named(TEXT), program=DIGESTS, environment=DIGESTS, inputs=DIGESTS,
                 continued=listed(OBJECT))
 ENDED = mapping({"summary": TEXT}, wall_seconds=NUMBER, environment=DIGESTS, inputs=DIGESTS)
-QUANTITIES = {"type": "object", "additionalProperties": mapping({}, quantiles=listed(mapping(
-    {"share": NUMBER, "value": MAYBE})))}
+QUANTILES = listed(mapping({"share": NUMBER, "value": MAYBE}), null=True)
+QUANTITIES = {"type": "object", "additionalProperties": mapping({}, quantiles=QUANTILES)}
 GOVERNING = mapping({"conservative": mapping({"run": TEXT}, null=True)}, farthest={"type": ["string", "null"]},
                     largest=mapping({}, front_m=mapping({"run": TEXT})),
                     ensemble=mapping({}, null=True, of={"type": ["string", "null"]}, quantities=QUANTITIES,
-                                     known_events=mapping({}, null=True, quantities=QUANTITIES)),
+                                     known_events=mapping({}, null=True, quantities=QUANTITIES, to_remove=QUANTILES)),
+                    headline=mapping({}, null=True, source={"type": ["string", "null"]}, share=MAYBE, volume_m3=MAYBE),
                     runs=listed(mapping({"run": TEXT}, summary=TEXT)))
 Farthest = Callable[[Mapping[str, Any]], Optional[str]]
 WHAT = "a summary that fix deposit/grid wrote"
@@ -71,9 +72,12 @@ def governing(about: Mapping[str, Any], farthest: Farthest = lambda about: None)
 
     farthest: tells the latter by the rows; where it says None, what the file says counts.
 
-    Of an ensemble the one at the 90 % quantile of what counts, or the longest where known events go beyond all runs.
+    Of an ensemble whose quantile is the headline the one at this quantile; else the one at the 90 % quantile of what
+    counts, or the largest where known events go beyond all runs.
     """
     ensemble = about.get("ensemble")
+    if ensemble and (number := of_headline(about)):
+        return number
     if ensemble and ensemble.get("of"):
         # a quantile is the value of a run
         of = ensemble["of"]
@@ -85,6 +89,22 @@ def governing(about: Mapping[str, Any], farthest: Farthest = lambda about: None)
         return min(having, key=lambda row: abs(row[of] - at))["run"]
     best = about["conservative"] or about.get("largest", {}).get("front_m", {})      # the latter in older ones
     return about["conservative"] and best["run"] or farthest(about) or about.get("farthest") or best.get("run")
+
+
+def of_headline(about: Mapping[str, Any]) -> Optional[str]:
+    """The run of an ensemble at whose volume the headline is; the longest where the headline is 0, as no run says more.
+
+    None where the headline is of another study, or of none.
+    """
+    number, known = about.get("headline") or {}, (about.get("ensemble") or {}).get("known_events") or {}
+    if number.get("source") != "ensemble":
+        return None
+    if not number.get("volume_m3"):
+        long = [row for row in about["runs"] if row.get("length_m") is not None]
+        return max(long, key=lambda row: row["length_m"])["run"] if long else None
+    at = next((one["value"] for one in known.get("to_remove") or () if one["share"] == number.get("share")), None)
+    having = [row for row in about["runs"] if row.get("remove_m3") is not None]
+    return None if at is None or not having else min(having, key=lambda row: abs(row["remove_m3"] - at))["run"]
 
 
 def governing_run(study: Path, farthest: Farthest = lambda about: None) -> Tuple[str, Path]:

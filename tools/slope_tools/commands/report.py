@@ -17,6 +17,7 @@ from ..plots.section import FALL
 from ..report import document, paper
 from ..report.heading import Asked
 from ..report.heading import SITE
+from ..sites import site_scenarios
 from ..tables import named_run
 
 STUDY = "study.yaml"
@@ -32,6 +33,7 @@ example: the study that `slope study ... -o out` made, with a section along a li
 
 Writes report.html, with all pictures in it, and a 3-D view of a run that wrote dumps; report.section.csv, the heights
 along the section; report.numbers.csv, the numbers on the page with all their digits; and report.mp4, a film of the run.
+Of a site with scenarios (slope site --scenario) also scenarios.html, which sets them side by side.
 """
 
 
@@ -109,6 +111,9 @@ def run(args: Request) -> None:
                   args.client, args.author, None if args.no_film else output.with_suffix(".mp4"))
     first, *notes = document.write(asked, output)
     print(first)
+    if (given / SITE).is_file() and site_scenarios.of_site(given):
+        from ..scenarios import page
+        print(page.write(given, output.with_name(page.PAGE), args.overwrite))
     if args.pictures:
         document.write_pictures(output)
     if args.pdf:

@@ -1,5 +1,6 @@
 """slope site: make a folder with terrain, body, deck and map from GIS files, ready for `slope study`."""
 import os
+from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from shlex import quote
@@ -17,7 +18,7 @@ from ..releases import packing
 from ..releases.release import SHAPES
 from ..releases.release_scar import KINDS
 from ..runs import jobs
-from ..sites import site, site_choices, site_deck
+from ..sites import site, site_choices, site_deck, site_older, site_scenarios
 from ..slips import bodies
 from ..studies import ahead, outlook, site_ground
 from ..studies.setup import RUNS, Setup
@@ -53,7 +54,8 @@ OPTIONS = {"terrain": ("terrain", "files"), "crs": ("terrain", "crs"),
 BESIDE = {"road", *road_arguments.OPTIONS, "cut_angle", "mesh", "line", "observed", "known", "confined", "rolling",
           "largest_restitution", "name", "client", "author"}
 # of each group, an option that is given replaces the others
-ONE_OF = (("depth", "volume", "curvature"), ("diameter", "balls", "minutes", "memory"))
+SIZES = ("diameter", "balls", "minutes", "memory")
+ONE_OF = (("depth", "volume", "curvature"), SIZES)
 OF_SOIL = ("friction", "rolling", "spacing", "field_restitution", "density", "slip_friction")
 LIGHT = 100                 # kg/m3; less is not a ground's density, but one in t/m3 or relative to water's
 
@@ -73,6 +75,9 @@ a scar from two surveys; a wall, an earthquake and a line behind the wall; finer
   tools/slope site --terrain dem.tif --release release.shp --volume 50000 --structure wall.stl --line behind.geojson \\
       --motion motion.txt -o quake
   tools/slope site mine --minutes 60
+
+half of it, with the balls and cells of the site, in mine/scenarios/half; slope report mine sets them side by side:
+  tools/slope site mine --scenario half --volume 25000
 
 a light and smooth ground:
   tools/slope site mine --friction 25 --rolling 0 0.05 --spacing 0.8 --density 1600
@@ -221,6 +226,9 @@ class About:
 class Request(Ground, Layers, known_arguments.Confined, Model, Size, Blocks, About, Program):
     folder: Optional[Path] = positional(
         "a site's folder that is rebuilt from its site.yaml; options change its choices", metavar="FOLDER", nargs="?")
+    scenario: Optional[str] = option(
+        "make another site, FOLDER/scenarios/NAME, that differs by the other options alone: with the balls, cells, "
+        "time limit and packings of FOLDER, and at least as stiff", metavar="NAME")
     output: Optional[Path] = option("the new folder", "-o", metavar="FOLDER")
     jobs: Optional[int] = option("runs at a time, for the estimate (default: as many as the cores)", metavar="J")
 
@@ -232,10 +240,10 @@ def run(args: Request) -> None:
     if build is site.build and any(getattr(args, option) is not None for option in OF_SOIL):
         print(soil(choices))
     cores = args.jobs or jobs.cores()
-    with jobs.signals_interrupt():
+    with jobs.signals_interrupt(), site_scenarios.room(folder) if args.scenario is not None else nullcontext():
         made = site.make(choices, folder, site.Machine(program(args.lmp), cores),
                          lambda line: print(line, flush=True), printer("site"), site_map.draw,
-                         again=args.folder is not None, known=known, how=build)
+                         again=args.folder is not None and args.scenario is None, known=known, how=build)
     if build is site.build:
         for line in (*site_ground.lines(site_choices.load(folder)), *outlook.lines(folder)):
             print(line)
@@ -267,17 +275,10 @@ def chosen(args: Request):
         if args.output is not None:
             raise SlopeError("-o", f"must not be given with the folder of a site, {args.folder}, which is rebuilt",
                              args.output)
-        folder, choices = args.folder, site_choices.read(args.folder, site_choices.kind_in(args.folder))
-        known = site_choices.found(folder).get("derived") or {}
-        older = site_choices.has_lattice(choices)
-        choices = of_new_packing(of_new_ground(choices, folder, given), folder)
-        if older or given.keys() - BESIDE:
-            site_choices.forget(choices, known)
-            known = {}
-        elif choices["model"]["film"] is None and (folder / site_deck.NAME).is_file():      # an older folder has none
-            film = decks.index_variables(folder / site_deck.NAME).get("film", "")
-            choices["model"]["film"] = float(film) if film else None
+        folder, choices, known = rebuilt(args.folder, given) if args.scenario is None else of_scenario(args, given)
     else:
+        if args.scenario is not None:
+            raise SlopeError("--scenario", "must be given with the folder of a site", args.scenario)
         if args.terrain is None or args.output is None:
             raise SlopeError("--terrain" if args.terrain is None else "-o", "must be given, or the folder of a site")
         folder, choices, known = args.output, kinds.begun(args.blocks), {}
@@ -291,26 +292,31 @@ def chosen(args: Request):
     return folder, choices, known
 
 
-def of_new_packing(choices, folder):
-    """The choices of a folder, an older one with the packing of this version, which is said."""
-    if site_choices.has_lattice(choices):
-        print(f"{folder / site_choices.NAME}: {', '.join(site_choices.OFFSETS)} of an older version no longer count: "
-              "the balls begin in a disordered packing, not on a cubic lattice")
-    return site_choices.without_lattice(choices)
+def rebuilt(folder: Path, given: Dict[str, Any]):
+    """The folder of a site, its choices, and of them what counts of what was found before."""
+    choices = site_choices.read(folder, site_choices.kind_in(folder))
+    known = site_choices.found(folder).get("derived") or {}
+    older = site_choices.has_lattice(choices)
+    choices = site_older.renewed(choices, folder, "spacing" in given, print)
+    if older or given.keys() - BESIDE:
+        site_choices.forget(choices, known)
+        known = {}
+    elif choices["model"]["film"] is None and (folder / site_deck.NAME).is_file():      # an older folder has none
+        film = decks.index_variables(folder / site_deck.NAME).get("film", "")
+        choices["model"]["film"] = float(film) if film else None
+    return folder, choices, known
 
 
-def of_new_ground(choices, folder, given):
-    """The choices of a folder, an older one with the ground of this version, which is said."""
-    if not site_choices.has_old_ground(choices):
-        return choices
-    spacing, most = choices["model"]["spacing"], site_choices.widest()
-    if spacing > most and "spacing" not in given:
-        raise SlopeError(f"{folder / site_choices.NAME}: model.spacing", f"must be <= {most:g}: the ground of an older "
-                         "version was a plan grid, now it is scattered balls; give --spacing 0.9, the default, or keep "
-                         "the folder as it is: its study still runs", f"{spacing:g}")
-    print(f"{folder / site_choices.NAME}: {' and '.join(site_choices.RETIRED)} of an older version no longer count: "
-          "the ground is scattered balls as large as those of the soil")
-    return site_choices.without_old_ground(choices)
+def of_scenario(args: Request, given: Dict[str, Any]):
+    """The same of a new scenario, of which nothing was found before."""
+    assert args.folder is not None and args.scenario is not None
+    folder, of = site_scenarios.place(args.folder, args.scenario), site_choices.load(args.folder)
+    for name in SIZES:
+        if name in given:
+            raise SlopeError(f"--{name}", "must not be given with --scenario, whose balls are those of its site",
+                             f"{given[name]:g}")
+    choices = site_scenarios.choices(of, args.scenario)
+    return folder, site_older.renewed(choices, args.folder, "spacing" in given, print), {}
 
 
 def of_slips(args: Ground) -> Dict[str, Any]:

@@ -19,10 +19,10 @@ from ..sites.site_choices import Site
 from ..sites.site_bodies import VARIABLE
 from ..sites.site_layers import ROAD
 from ..statistics.answer import Source
-from ..studies import ahead, files, fine_runs, results, site_ground, site_study, study
+from ..studies import ahead, console, files, fine_runs, results, site_ground, site_study, study
 from ..studies.study import OfAKind, RunsFailed, check_more_than, check_thresholds, perform
 from ..survey import roads
-from ..tables import answer_words, answered, elastic, intensity
+from ..tables import answered, elastic, intensity, next_step
 from . import known_arguments, road_arguments
 from .run_arguments import DECK, Intensity, Repeats, Runs, Sample, setup_of
 
@@ -148,15 +148,17 @@ def run_both(args: Request, asked: Site, points: int) -> None:
     found, governs = answered.of_both(*made.values()) if len(made) == 2 else None, list(made)[-1]
     if found:
         governs = site_study.STUDY if found.source is Source.PAPER else site_study.ENSEMBLE
+    number = found.about() if found else made[governs].get("headline")
+    step = next_step.of_studies([next_step.Made(about, site / name) for name, about in made.items()], number)
     for name, about in made.items():
-        made[name] = {**about, "study": {**about["study"], "governs": governs}, **(
-            {"headline": found.about()} if found else {}), elastic.ENTRY: (paper.about or {}).get(elastic.ENTRY)}
+        made[name] = {**about, "study": {**about["study"], "governs": governs}, "headline": number,
+                      next_step.ENTRY: step and step._asdict(), elastic.ENTRY: (paper.about or {}).get(elastic.ENTRY)}
         files.write_about(site / name, made[name])
     for name, about in made.items():
         if name != governs:
             write_report(site / name, site / PAGES[name], about, asked, film=False)
-    if found:
-        print("\n".join(answer_words.lines(found)))
+    if number:
+        print("\n".join(console.tell_headline(made[governs])))
     write_report(site / governs, site / "report.html", made[governs], asked)
     if failed:
         raise failed

@@ -3,6 +3,7 @@
 Plan geometry on its grid is done in index coordinates: x in columns from the west edge, y in rows from the north edge.
 There a cell is the unit square between whole numbers, and areas are in cells.
 """
+import os
 from pathlib import Path
 from typing import NamedTuple, Optional
 
@@ -112,6 +113,13 @@ def find_terrain(prefix, terrain, raster, warn):
     if outside.any():
         raise SlopeError(found, f"must be the terrain of the run, whose grid is {numbers(grid)}; --terrain names "
                          "another", numbers(place.extent))
+    own = Path(prefix).with_name("terrain.asc")
+    if own.is_file() and not os.path.samefile(own, found):
+        there = rasters.read_place(own)
+        if (there.crs, there.offset) not in ((None, (0, 0)), (place.crs, place.offset)):
+            raise SlopeError(found, f"must lie where the run's terrain.asc does, {there.crs}, origin "
+                             f"{numbers(there.offset)}; --terrain names another",
+                             f"{place.crs}, {numbers(place.offset)}")
     if place.crs is None:
         warn(Finding("no CRS", {"file": str(found), "coordinates": "metres as in that file" if place.offset != (0, 0)
                                 else "the local metres of the run"}))

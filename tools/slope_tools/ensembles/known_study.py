@@ -13,6 +13,7 @@ ASKED = f"{PAPER}, as asked for"
 BESIDE = f"{PAPER}, beside runs that are weighted by known events"
 NONE = "site.yaml asks for no runs that are weighted by known events (study.points)"
 WEIGHTED = "weighted by known events of this volume and height, beside the paper's method"
+OF_BOTH = (BESIDE, WEIGHTED)        # methods of the two studies that give one number together
 # --vary, unless it is given: from values back-calculated for rock avalanches (doc/src/events.rst) to the defaults
 # and site_choices.chance()
 VARY = ("friction=5:30", "rolling=0:0.15", "spacing=0.3:0.95", "field_e=0.05:0.5")

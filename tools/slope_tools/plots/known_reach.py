@@ -8,7 +8,6 @@ from typing import Iterator, List, NamedTuple, Tuple
 import numpy as np
 from shapely.geometry import LineString, Point
 
-from .. import digits
 from ..mobility.exceedance import WORDS, Mobility
 
 SHARES = {0.5: "half", 0.1: "a tenth"}      # that go farther
@@ -69,7 +68,6 @@ def words(reach: KnownReach) -> str:
     """What the marks are, for a caption; "" without marks."""
     if not reach.marks:
         return ""
-    parts = [f"{SHARES[one.share]} of known events of this volume and height go farther than "
-             f"{digits.three(one.length)} m" for one in reach.marks]
+    parts = " and ".join(SHARES[one.share] for one in reach.marks)
     more = "" if len(reach.marks) == len(SHARES) else "; other marks would lie beyond the terrain"
-    return f" Marks across the fall path ({reach.kind}): {', '.join(parts)}{more}."
+    return f" Marks across the fall path: beyond them go {parts} of known events ({reach.kind}){more}."

@@ -7,20 +7,13 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence
 from .. import digits
 from ..deposits import travel_shares
 from ..digits import percent
-from ..ensembles import known_study
+from ..findings import Finding
 from ..statistics import headline, size_family
-from ..statistics.answer import SHARE, Code, Kind, Reason, Source
+from ..statistics.answer import SHARE, Code, Kind, Source
 from ..tables import answer_words, combinations, elastic, next_step
 from ..tables.quantities import ALL, DISTANCE
 from . import body, mobility_part, road_part, structures_part, warnings
-from .numbers import farthest_of
-
-WORDS = {"rolling": "the rolling resistance", "friction": "the friction", "d": "the size of the model's balls",
-         "field_d": "the roughness of the ground", "spacing": "the roughness of the ground",
-         "angle": "the direction of the ground's grid",
-         "restitution": "the restitution", "field_e": "the restitution", "peak": "the strength of the earthquake",
-         "pga": "the strength of the earthquake", "depth": "the depth of the body", "slip": "the friction of the slip "
-         "surface", "step": "the time step"}
+from .numbers import basis, farthest_of
 
 
 def content(data, ground, numbers, answers: Sequence[Optional[Dict[str, Any]]], found,
@@ -33,10 +26,19 @@ def content(data, ground, numbers, answers: Sequence[Optional[Dict[str, Any]]], 
     return {"body": body.sentence(body.of_data(data, ground)),
             "answer": spoken or (floored(data, of_answer(data, main, numbers), numbers) if main else
                                  of_reach(data, numbers)),
-            "sentences": sentences(data, ground, numbers, bool(main))
-            + road_part.on_first_page(data, numbers, bool(main and main["withheld"])),
-            "caveats": warnings.first_page(found)[:warnings.MOST], "rest": warnings.rest_of(listed),
-            "basis": basis(data)}
+            "basis": basis(data),
+            "sentences": [mobility_part.on_first_page(data, ground, numbers),
+                          *sentences(data, ground, numbers, bool(main)),
+                          *road_part.on_first_page(data, numbers, bool(main and main["withheld"])),
+                          Finding("dry").client()],
+            "caveats": warnings.first_page(unsaid(data, found))[:warnings.MOST], "rest": warnings.rest_of(listed)}
+
+
+def unsaid(data, found: Sequence[Finding]) -> List[Finding]:
+    """The findings without what the reasons of the number say already."""
+    about = (data.study or {}).get("headline") or {"reasons": []}
+    said = {"no sizes"} if any(one.code is Code.SIZE for one in answer_words.told(about)) else set()
+    return [one for one in found if one.kind not in said]
 
 
 # --- the number, from the headline of study.yaml: of both studies of a site ---
@@ -57,10 +59,16 @@ def of_headline(data, numbers) -> Optional[Dict[str, Any]]:
         return None
     found = {Kind.NUMBER: of_number, Kind.FLOOR: of_floor, Kind.WITHHELD: of_withheld, Kind.NOTHING: of_nothing}[kind](
         about, numbers)
-    open_ = kind in (Kind.FLOOR, Kind.WITHHELD)
-    step = next_step.of_reasons(next_step.Made(data.study, data.folder), about) if open_ else None
     found["band"] += in_gap(data, about, numbers)
-    return {"kind": kind.value, "reasons": reasons(about), "step": step, **found}
+    return {"kind": kind.value, "reasons": reasons(about), "step": step_of(data), **found}
+
+
+def step_of(data) -> Optional[next_step.Step]:
+    """The next step of the headline; of older files, which have none, as their own study tells it."""
+    if next_step.ENTRY not in data.study:
+        return next_step.of_studies([next_step.Made(data.study, data.folder)], data.study["headline"])
+    said = data.study[next_step.ENTRY]
+    return said and next_step.Step(**said)
 
 
 def in_gap(data, about: Mapping[str, Any], numbers) -> str:
@@ -159,11 +167,7 @@ def of_nothing(about: Mapping[str, Any], numbers) -> Dict[str, Any]:
 
 def reasons(about: Mapping[str, Any]) -> List[str]:
     """A sentence each, without its full stop; the one that decides comes first."""
-    return [reason(Code(one["code"]), one["numbers"]) for one in about["reasons"]]
-
-
-def reason(code: Code, numbers: Mapping[str, Any]) -> str:
-    return answer_words.client(Reason(code, numbers))
+    return list(dict.fromkeys(map(answer_words.client, answer_words.told(about))))
 
 
 # --- the number of one study ---
@@ -200,7 +204,7 @@ def floored(data, answer: Dict[str, Any], numbers) -> Dict[str, Any]:
         return answer
     return {**answer, "kind": Kind.FLOOR.value, "title": REMOVE, "number": f"at least {answer['number']}",
             "reasons": reasons(about), "band": answer["band"] + by_family(about, numbers),
-            "step": next_step.of_reasons(next_step.Made(data.study, data.folder), about)}
+            "step": step_of(data)}
 
 
 def of_reach(data, numbers) -> Dict[str, Any]:
@@ -328,29 +332,3 @@ def thickness(data, numbers) -> str:
         value, speed = (data.result.summary["largest"][key] for key in ("thickness", "max_speed"))
     return (f"The deposit is up to {numbers.quantity('thickness_m', value)} m thick; the "
             f"fastest part of the mass reaches {numbers.quantity('max_speed_m_s', speed)} m/s.")
-
-
-def basis(data) -> str:
-    """What the numbers come from."""
-    if not data.study:
-        return "One run of a computer model of equal balls."
-    varied = [name for name, values in data.settings.items() if len(values) > 1]
-    known = list(dict.fromkeys(WORDS[name] for name in varied if name in WORDS))
-    unknown = sum(name not in WORDS for name in varied)
-    if unknown:
-        known.append(f"{unknown} other setting{'s' * (unknown > 1)}")
-    runs = len(data.finished)
-    text = f"{runs} run{'s' * (runs != 1)} of a computer model of equal balls"
-    if known:
-        text += f", which differ in {listed(known)}"
-    if data.repeats:
-        text += f"{' and' if known else ', which differ'}, by chance, in how the balls lie at the start"
-    method = data.study["study"].get("method") or ""        # of a site's study
-    if method.startswith(known_study.PAPER) and method != known_study.BESIDE:
-        why = method.removeprefix(known_study.PAPER).removeprefix("; ")
-        text += ". Known events of this size do not count in them" + ("" if method == known_study.ASKED else f": {why}")
-    return f"{text}."
-
-
-def listed(words: Sequence[str]) -> str:
-    return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)

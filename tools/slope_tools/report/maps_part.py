@@ -9,6 +9,7 @@ from ..plots import figure_maps, known_reach
 from ..plots.ground import box_of
 from ..survey.rasters import crs_name
 from . import mobility_part
+from .numbers import shown_run
 from .run_part import titled
 from .sections import Figures, Picture, Section, Text
 
@@ -54,8 +55,7 @@ class Maps:
         found["deposit"] = self.thickness(
             one.thickness, "Thickness of the deposit at the end", "Map of the deposit's thickness at the end",
             f"Final thickness, {digits.three(one.deposit.cell)} m cells."
-            + ("" if not data.study else f" Run {data.number(one.name)} of the appendix.")
-            + known_reach.words(ground.reach), figures.FULL)
+            + shown_run(data) + known_reach.words(ground.reach), figures.FULL)
         found["terrain"] = Picture(
             figure_maps.terrain_map(layers._replace(shown=whole), layers.shown, self.crs), "Map of the terrain before",
             "Terrain before the collapse, light from the north-west"

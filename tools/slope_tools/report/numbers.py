@@ -1,15 +1,21 @@
-"""The numbers of a report: rounded to what is known, and as they are in a table; the answer on top of the page."""
+"""The numbers of a report: rounded to what is known, and as they are in a table; the answer on top of the page, and on
+which runs it rests."""
 import csv
 import io
+from typing import Any, Dict, List, Mapping, Sequence
 
 from .. import disk
+from ..case import run_folders
 from ..deposits import rest, travel_shares
-from ..digits import measured
+from ..digits import measured, rounded
+from ..ensembles import known_study
 from ..mobility.run_length import ON_PATH
 from ..statistics import headline
-from ..tables import withheld_words
+from ..statistics.answer import Source
+from ..tables import named_run, withheld_words
 from ..tables.quantities import ALL, KNOWN, LENGTH, REACH, written
 from ..tables.released import over_runs
+from .data import is_number
 
 UNKNOWN = "unknown"
 
@@ -221,3 +227,85 @@ def rest_card(data):
                 "status": status}
     return {"what": "At the end of the run", "number": f"{ends[0]['stop_time_s']:.1f}", "unit": "s", "status": status,
             "note": ends[0]["end"] + (", ended by its rest criterion" if worst is None else "")}
+
+
+# --- on which runs the number rests, and which of them the map shows ---
+
+CHANCE = "how the balls lie at the start"
+WORDS = {"rolling": "the rolling resistance", "friction": "the friction", "d": "the size of the model's balls",
+         "field_d": "the roughness of the ground", "spacing": "the roughness of the ground",
+         "angle": "the direction of the ground's grid",
+         "restitution": "the restitution", "field_e": "the restitution", "peak": "the strength of the earthquake",
+         "pga": "the strength of the earthquake", "depth": "the depth of the body", "body": "the body",
+         "slip": "the friction of the slip surface", "step": "the time step", "packing": CHANCE, "seed": CHANCE,
+         "xoffset": CHANCE, "yoffset": CHANCE, "zoffset": CHANCE}
+
+
+def basis(data) -> str:
+    """What the numbers come from, of a data.Data, and which of it the number is of."""
+    if not data.study:
+        return "One run of a computer model of equal balls."
+    varied = [name for name, values in data.settings.items() if len(values) > 1]
+    known = list(dict.fromkeys(WORDS[name] for name in varied if name in WORDS and WORDS[name] != CHANCE))
+    unknown = sum(name not in WORDS for name in varied)
+    if unknown:
+        known.append(f"{unknown} other setting{'s' * (unknown > 1)}")
+    runs = len(data.finished)
+    text = f"{runs} run{'s' * (runs != 1)} of a computer model of equal balls"
+    if known:
+        text += f", which differ in {listed(known)}"
+    if data.repeats or any(WORDS.get(name) == CHANCE for name in varied):
+        text += f"{' and' if known else ', which differ'}, by chance, in {CHANCE}"
+    method = data.study["study"].get("method") or ""        # of a site's study
+    if method.startswith(known_study.PAPER) and method != known_study.BESIDE:
+        why = method.removeprefix(known_study.PAPER).removeprefix("; ")
+        text += ". Known events of this size do not count in them" + ("" if method == known_study.ASKED else f": {why}")
+    return f"{text}.{rests_on(data)}"
+
+
+def rests_on(data) -> str:
+    """A sentence on the runs that the number is of; "" without a number."""
+    number, best = data.study.get("headline") or {}, data.study.get("conservative")
+    if not number.get("volume_m3"):
+        return ""
+    if not is_own(data):
+        return " The number is of the other study of this site."
+    if number["source"] == Source.ENSEMBLE.value:
+        return " Each counts as often as known events of this volume and height end where it does."
+    of = values_of(data, best["set"])
+    what = f"the mean of {best['repeats']}" if best["repeats"] > 1 else "that of one"
+    added = [what for what, key in (("chance", "chance_m3"), ("smaller balls", "size_m3")) if best[key] is not None]
+    return f" The number is {what} of them{of and f' ({of})'}{f', with what {listed(added)} may add' if added else ''}."
+
+
+def is_own(data) -> bool:
+    """Whether the headline is of this study, and not of the other one of a site."""
+    own = Source.ENSEMBLE if data.study.get("ensemble") else Source.PAPER
+    return data.study["headline"]["source"] == own.value
+
+
+def shown_run(data) -> str:
+    """Which run the map shows, for its caption."""
+    if not data.study:
+        return ""
+    one, row = data.result, data.result.row
+    number, of = data.number(one.name), values_of(data, row["set"])
+    rests = (data.study.get("headline") or {}).get("volume_m3") and is_own(data) and \
+        one.name == run_folders.governing(data.study, named_run.farthest)
+    text = f"The run on which the number rests, {number} of the appendix" if rests else f"Run {number} of the appendix"
+    return f" {text}{of and f': {of}'}."
+
+
+def values_of(data, of: Mapping[str, Any]) -> str:
+    """The values in which a run, or a combination, differs from others; "" if they have no words."""
+    found: Dict[str, str] = {}
+    for name, value in of.items():
+        if len(data.settings.get(name) or ()) > 1 and WORDS.get(name, CHANCE) != CHANCE:
+            text = rounded(float(value), 3) if is_number(value) else str(value)
+            found.setdefault(WORDS[name].removeprefix("the "), text)
+    return listed([f"{name} {text}" for name, text in found.items()])
+
+
+def listed(words: Sequence[str]) -> str:
+    several: List[str] = list(words)
+    return " and ".join([", ".join(several[:-1]), several[-1]] if len(several) > 1 else several)

@@ -76,11 +76,24 @@ def shares(data, asked: Asked, about, runs: str, maps):
 
 
 def on_first_page(data, numbers, withheld: bool) -> List[str]:
-    """The sentence on the hours until a lane is open, in a list; none where no hours are asked for."""
+    """What lane and hours were asked for: a sentence in a list; none where neither was, or the numbers are withheld."""
     about = (data.study or {}).get("stretches")
-    if not about or withheld or "hours_lane" not in about["totals"]:
+    if not about or withheld:
         return []
-    asked = Asked.of(data.study["study"]["road"])
-    low, _, high = (numbers("until a lane is open", "h", value) for value in about["totals"]["hours_lane"])
-    after = high if low == high else f"{low} to {high}"
-    return [f"A lane of {asked.lane:g} m is open after {after} hours of {rate(asked)}."]
+    asked, totals = Asked.of(data.study["study"]["road"]), about["totals"]
+
+    def span(what: str, unit: str, key: str) -> str:
+        low, _, high = (numbers(what, unit, value) for value in totals[key])
+        return high if low == high else f"{low} to {high}"
+
+    found = []
+    if "hours_lane" in totals:
+        found.append(f"A lane of {asked.lane:g} m is open after "
+                     f"{span('until a lane is open', 'h', 'hours_lane')} hours")
+    elif "remove_lane" in totals:
+        found.append(f"A lane of {asked.lane:g} m is open when "
+                     f"{span('for a lane', 'm3', 'remove_lane')} m3 are removed")
+    if "hours" in totals:
+        found.append(f"{'the whole road' if found else 'The road is clear'} after "
+                     f"{span('until clear', 'h', 'hours')} hours")
+    return [f"{', '.join(found)}{f' of {rate(asked)}' if asked.hours else ''}."] if found else []

@@ -130,6 +130,7 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
         keep(line)
     several = site_bodies.write(choices, new, BODY, wanted, keep)
     body = site_bodies.around(write_body(new, wanted, found), BODY, several)
+    body = body._replace(thick=max(body.thick, choices["model"]["least_thick"] or 0.0))
     layers = read_layers(choices, raster, new, tell, keep)
     title = choices["project"]["name"] or folder.absolute().name
     parts = site_deck.Parts(title, ", ".join(Path(name).name for name in choices["terrain"]["files"]), body,
@@ -338,7 +339,7 @@ def settle(choices: Choices, parts: site_deck.Parts, found: release.Body, trial:
            raster: Raster) -> Size:
     """Fill in what the choices leave open, and with it the size of the balls."""
     model, balls = choices["model"], choices["balls"]
-    model["speed"] = model["speed"] or site_budget.stiff_to(trial)
+    model["speed"] = model["speed"] or max(site_budget.stiff_to(trial), model["least_speed"] or 0.0)
     model["duration"] = model["duration"] or site_budget.duration(trial)
     model["film"] = model["film"] or site_deck.frame(trial.typical if trial else model["duration"] / 3)
     size = site_budget.size(choices, parts.body.volume, soil_of(choices, parts), trial, machine.jobs, raster.z.size)

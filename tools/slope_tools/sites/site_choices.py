@@ -45,7 +45,10 @@ DERIVED = (("balls", "diameter"), ("balls", "number"), ("model", "speed"), ("mod
 
 # keys that came later: those who made a folder before did not count them
 LATER = (("ground", "file"), ("ground", "table"), ("model", "film"), ("structures", "walls"), ("structures", "height"),
-         ("structures", "width"))
+         ("structures", "width"), ("model", "least_speed"), ("model", "least_thick"))
+
+# keys of section model, and of others, that make the model's balls, cells and stiffness; not what is asked for
+OF_MODEL = (*DERIVED, ("model", "least_speed"), ("model", "least_thick"))
 
 # keys of model in older sites, whose ground was a plan grid of one diameter; their decks keep it
 RETIRED = ("field_diameter", "field_ratio")

@@ -1,10 +1,10 @@
 """What a study tells on the console: its tables and numbers, in words, and where they are."""
 from pathlib import Path
-from typing import Any, Callable, Mapping
+from typing import Any, Callable, List, Mapping
 
-from ..ensembles import ensemble
+from ..ensembles import ensemble, known_study
 from ..seismic import chain_files
-from ..tables import combinations, elastic, intensity, road_runs, structures, study_table
+from ..tables import answer_words, combinations, elastic, intensity, next_step, road_runs, structures, study_table
 from . import mapped
 from .outcome import Outcome
 
@@ -40,8 +40,16 @@ def tell(outcome: Outcome, about: Mapping[str, Any], output: Path, say: Callable
         say("\n".join(mapped.describe(about["observed"], rows)))
     if about["chain"]:
         say("\n".join(chain_files.describe(about["chain"], output)))
+    if about["headline"] and asked.method not in known_study.OF_BOTH:
+        say("\n".join(tell_headline(about)))
     for entry in [*(about["envelope"] or {}).values(), *(about["exceedance"] or ())]:
         say(f"{output / entry['file']}: {entry['what']}")
+
+
+def tell_headline(about: Mapping[str, Any]) -> List[str]:
+    """The number, why it is no more than that, and the next step, as the first page has them; a line each."""
+    step = about[next_step.ENTRY]
+    return [*answer_words.lines(about["headline"]), *([str(next_step.Step(**step))] if step else [])]
 
 
 def tell_numbers(about: Mapping[str, Any], output: Path, say: Callable[[Any], Any]) -> None:

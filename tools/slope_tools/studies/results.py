@@ -1,6 +1,8 @@
 """The runs of a study: read, evaluated (outcome), and shown in files and on the console, side by side."""
 import os
+from dataclasses import replace
 from pathlib import Path
+from shlex import quote
 from typing import Any, Dict, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
@@ -14,7 +16,7 @@ from ..releases import release_toe
 from ..runs.repeats import Repeat
 from ..statistics import headline
 from ..survey import rasters, roads
-from ..tables import combinations, elastic, fine_run, judged, quantities, structures, usable, withheld_words
+from ..tables import combinations, elastic, fine_run, judged, next_step, quantities, structures, usable, withheld_words
 from ..tables.study_maps import Maps
 from . import body_depth, console, files, mapped, site_ground
 from .outcome import Questions, Read, evaluate
@@ -39,6 +41,9 @@ def collect(setup: Setup, questions: Questions, todo, work) -> Optional[Dict[str
               "machine": provenance.machine()}
     if setup.road and first:
         header["road"] = write_road(setup.output, setup.road, first, thickness)
+    step = next_step.of_studies([next_step.Made({"study": header, **outcome.about}, setup.output)],
+                                outcome.about["headline"])
+    outcome = replace(outcome, about={**outcome.about, next_step.ENTRY: step and step._asdict()})
     about = files.write(outcome, header, maps, setup.output, terrain_place(first) if first else None)
     console.tell(outcome, about, setup.output, setup.tell, setup.warn)
     return about
@@ -96,9 +101,10 @@ def events_of(setup: Setup, run, row, among: Mapping[str, Any]) -> Optional[usab
 
 
 def case_of(setup: Setup, questions: Questions, row) -> withheld_words.Case:
-    asked = " --paper" if questions.method == known_study.ASKED else ""
+    paper = " --paper" if questions.method == known_study.ASKED else ""
+    command = f"tools/slope study {quote(str(questions.site))}{paper}" if questions.site and questions.method else ""
     return withheld_words.Case(setup.deck, questions.site, row["variables"], round(row["released_m3"] / row["ball_m3"]),
-                               asked=asked)
+                               command=command)
 
 
 def rows_of(setup: Setup, todo, maps):

@@ -1,36 +1,36 @@
 """The headline of study.yaml in words, for the console."""
-from typing import Any, Iterable, List, Mapping, Optional
+from typing import Any, Dict, Iterable, List, Mapping, Optional, Tuple
 
 from ..digits import metres, percent
 from ..findings import Finding
-from ..statistics.answer import Answer, Code, Kind, Reason, Source
+from ..statistics.answer import Code, Kind, Reason, Source
 from . import quantities
 
 OF = {Source.PAPER: "the conservative volume of the paper's study", Source.ENSEMBLE: "by known events"}
 STUDY = {Source.PAPER.value: "the paper's study", Source.ENSEMBLE.value: "the runs weighted by known events"}
 
 
-def lines(found: Answer) -> List[str]:
+def lines(about: Mapping[str, Any]) -> List[str]:
     """The number, what it is of, and the reasons; a line each."""
-    return [f"headline: {number(found)}", *(f"  {text(one)}" for one in found.reasons)]
+    return [f"headline: {number(about)}", *(f"  {text(one)}" for one in told(about))]
 
 
-def number(found: Answer) -> str:
+def number(about: Mapping[str, Any]) -> str:
     """A sentence without its full stop."""
-    if found.kind is Kind.WITHHELD:
-        return "withheld, neither study gives a number"
-    assert found.source
-    volume = f"{quantities.number(found.volume or 0.0)} m3 to remove"
-    share = f", {percent(found.share)} of them stay within" if found.share else ""
-    least = "at least " * (found.kind is Kind.FLOOR)
-    return f"{least}{volume}, {OF[found.source]}{share}{beside(found)}"
+    if Kind(about["kind"]) is Kind.WITHHELD:
+        return "withheld, neither study gives a number" if about["paper"] and about["ensemble"] else "withheld"
+    source = Source(about["source"])
+    volume = f"{quantities.number(about['volume_m3'] or 0.0)} m3 to remove"
+    share = f", {percent(about['share'])} of them stay within" if about["share"] else ""
+    least = "at least " * (Kind(about["kind"]) is Kind.FLOOR)
+    return f"{least}{volume}, {OF[source]}{share}{beside(about, source)}"
 
 
-def beside(found: Answer) -> str:
+def beside(about: Mapping[str, Any], source: Source) -> str:
     """What the other study gives."""
-    if found.source is Source.ENSEMBLE:
-        return of_other("the paper's study", found.paper and found.paper.volume)
-    return of_other("95 % of known events", found.ensemble and found.ensemble.quantiles[0.95][0])
+    if source is Source.ENSEMBLE:
+        return of_other("the paper's study", (about["paper"] or {}).get("volume_m3"))
+    return of_other("95 % of known events", (about["ensemble"] or {}).get("volume_m3"))
 
 
 def of_other(what: str, volume: Optional[float]) -> str:
@@ -38,6 +38,14 @@ def of_other(what: str, volume: Optional[float]) -> str:
 
 
 # --- why ---
+
+def told(about: Mapping[str, Any]) -> List[Reason]:
+    """The reasons as they are told, each once: of a rule that both studies break, of the one that decides."""
+    found: Dict[Tuple[Code, Any], Reason] = {}
+    for one in map(Reason.read, about["reasons"]):
+        found.setdefault((one.code, one.numbers.get("rule")), one)
+    return list(found.values())
+
 
 def text(reason: Reason) -> str:
     """A reason as a sentence without its full stop."""

@@ -1,19 +1,23 @@
 """What makes a number of a floor, or of one that is withheld: the next step, its command, and how long it takes."""
 from pathlib import Path
 from shlex import quote
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Tuple
+from typing import Any, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from ..mobility import events
 from ..sites import site_choices
 from ..sites.site_budget import duration_text
-from ..statistics.answer import Code
+from ..statistics.answer import Code, Kind, Reason, Source
 from ..statistics.withheld import Kind as Rule
+from . import answer_words
 
 MORE = 2            # times the runs, where more are needed
+PROGRAM = "tools/slope "
+ENTRY = "next_step"  # of study.yaml
 
 
 class Step(NamedTuple):
-    """What to do next; seconds: of computing; None: not known."""
+    """What to do next; command: words to do before, if there are some, and a command; seconds: of computing; None: not
+    known."""
     text: str
     command: str
     seconds: Optional[float]
@@ -22,11 +26,35 @@ class Step(NamedTuple):
     def time(self) -> str:
         return "" if self.seconds is None else f", about {duration_text(self.seconds)} of computing on this machine"
 
+    @property
+    def before(self) -> str:
+        """What is to be done before the command, in words."""
+        return self.command.partition(PROGRAM)[0].strip()
+
+    @property
+    def line(self) -> str:
+        """What is to be typed, "" where that is not known."""
+        return "".join(self.command.partition(PROGRAM)[1:])
+
+    def __str__(self):
+        return f"next step: {self.text}{self.time}: {self.command}"
+
 
 class Made(NamedTuple):
-    """A study: study.yaml and its folder."""
-    study: Dict[str, Any]
+    """A study: study.yaml and its folder; beside: study.yaml of the other study of a site, which one command makes."""
+    study: Mapping[str, Any]
     folder: Path
+    beside: Optional[Mapping[str, Any]] = None
+
+    @property
+    def source(self) -> Source:
+        return Source.ENSEMBLE if self.study["ensemble"] else Source.PAPER
+
+    @property
+    def whole(self) -> Optional[float]:
+        """Seconds of both studies."""
+        other = 0.0 if self.beside is None else Made(self.beside, self.folder).seconds
+        return None if self.seconds is None or other is None else self.seconds + other
 
     @property
     def seconds(self) -> Optional[float]:
@@ -47,15 +75,31 @@ class Made(NamedTuple):
                 *((self.study["ensemble"] or {}).get("withheld") or ())]
 
 
-def of_reasons(made: Made, about: Mapping[str, Any]) -> Optional[Step]:
-    """What makes a number of it: by the first reason that something can be done about."""
-    found = [step for one in about["reasons"] if (step := step_of(made, Code(one["code"]), one["numbers"]))]
-    return found[0] if found else more_runs(made)
+def of_studies(studies: Sequence[Made], about: Optional[Mapping[str, Any]]) -> Optional[Step]:
+    """What makes a number of a headline, by the first of its reasons that something can be done about; None where it
+    is a number, or there is none.
+
+    studies: one, or both of a site: each reason is of one of them.
+    """
+    if not about or Kind(about["kind"]) not in (Kind.FLOOR, Kind.WITHHELD):
+        return None
+    if len(studies) == 2:
+        one, other = studies
+        studies = [one._replace(beside=other.study), other._replace(beside=one.study)]
+    by_source = {one.source: one for one in studies}
+    ensemble, governs = by_source.get(Source.ENSEMBLE), about["source"]
+
+    def of(reason: Reason) -> Made:
+        source = {Code.RULE: reason.numbers.get("source"), Code.SIZE: governs}.get(reason.code)
+        return by_source.get(Source(source or Source.ENSEMBLE)) or studies[0]
+
+    found = (step_of(of(one), one.code, one.numbers) for one in answer_words.told(about))
+    return next((step for step in found if step), None) or (more_runs(ensemble) if ensemble else None)
 
 
 def step_of(made: Made, code: Code, of: Mapping[str, Any]) -> Optional[Step]:
     if code is Code.TERRAIN:
-        return Step(*larger_terrain(made), made.seconds)
+        return Step(*larger_terrain(made), made.whole)
     if code in (Code.RUNS, Code.FEW):
         return more_runs(made)
     if code is Code.RANGE:
@@ -68,7 +112,7 @@ def step_of(made: Made, code: Code, of: Mapping[str, Any]) -> Optional[Step]:
     rule = Rule(of["rule"])
     mine = next((one for one in made.withheld if one["kind"] == rule.value), None)
     if rule is Rule.LEFT:
-        return Step(*larger_terrain(made, str(((mine or {}).get("numbers") or {}).get("add") or "")), made.seconds)
+        return Step(*larger_terrain(made, str(((mine or {}).get("numbers") or {}).get("add") or "")), made.whole)
     words = {Rule.BALLS: "smaller balls in the model", Rule.RUNS: "more time for the mass to come to rest",
              Rule.MOBILITY: "runs with less resistance"}
     return Step(words[rule], mine["remedy"], times(made, rule, of)) if mine else None
@@ -83,7 +127,7 @@ def first_remedy(made: Made) -> Optional[Step]:
 
 def times(made: Made, rule: Rule, of: Mapping[str, Any]) -> Optional[float]:
     """Seconds of the study once more: steps are in proportion to the balls' diameter."""
-    whole = made.seconds
+    whole = made.whole
     factor = 2.0 if rule is Rule.RUNS else 1.0
     if rule is Rule.BALLS:
         factor = (of["bound"] / max(of["number"] or 0.0, 1.0)) ** (4 / 3) if of["bound"] else 1.0
@@ -99,7 +143,7 @@ def more_runs(made: Made) -> Optional[Step]:
 
 def finer_balls(made: Made) -> Optional[Step]:
     """The study once more with balls of half the diameter; None where it is none of a site."""
-    site, whole = made.site, made.seconds
+    site, whole = made.site, made.whole
     row = next((one for one in made.study["runs"] if one["status"] == "finished"), None)
     if site is None or row is None:
         return None

@@ -19,7 +19,7 @@ class Case(NamedTuple):
     variables: Mapping[str, Any]    # of a run: name and value
     balls: int                      # in the body
     sampled: bool = False           # an ensemble
-    asked: str = ""                 # option that chose the study of the site
+    command: str = ""               # that makes the study of the site once more; "": it has more options
 
 
 def remedy(reason: Finding, case: Case) -> str:
@@ -72,9 +72,8 @@ def changed(case: Case, in_site: str, in_deck: str) -> str:
 
 def anew(case: Case, options: str = "") -> str:
     """A site and its study, or ensemble, once more; runs of the deck before are not mixed with new ones."""
-    site = quote(str(case.site))
-    again = "the same command with" if case.sampled else f"tools/slope study {site}{case.asked}"
-    return f"tools/slope site {site}{options}{'; ' if case.sampled else ' && '}{again} --anew"
+    again = f" && {case.command}" if case.command else "; the same command with"
+    return f"tools/slope site {quote(str(case.site))}{options}{again} --anew"
 
 
 def twice(case: Case) -> str:

@@ -1,0 +1,210 @@
+"""slope site FOLDER --scenario: a whole site beside another, with its balls and at least as stiff; the page of all."""
+import re
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+from affine import Affine
+from shapely.geometry import LineString
+
+from test_site import BODY, gis, told, work_in, write_dem, write_files, write_layer  # noqa: F401
+from test_site_anew import edit, inside  # noqa: F401
+from test_site_lists import measure
+from tiny_collapse import LMP
+
+from slope_tools import cli
+from slope_tools.case import decks
+from slope_tools.scenarios import compare, page
+from slope_tools.sites import site_budget, site_choices, site_scenarios
+from slope_tools.survey.rasters import Raster
+
+KEPT = ("d", "cell", "duration", "film", "density", "spacing", "friction")
+FILES = ("release.depth.asc", "release.slip.asc", "release.csv", "terrain.asc", "road.csv")
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """The standard files, and the site mine."""
+    folder = tmp_path_factory.mktemp("whole")
+    write_files(folder)
+    with pytest.MonkeyPatch.context() as patch:
+        work_in(folder, patch)
+        patch.setattr(site_budget, "measure", measure)
+        patch.setenv("LMP", LMP)
+        assert cli.main(["site", "--terrain", "dem.tif", "--release", "release.geojson", *BODY, "--road",
+                         "road.geojson", "-o", "mine"]) == 0
+        edit(folder / "mine", "study", packing=[2, 5], rolling=[0.02, 0.08])
+    return folder
+
+
+@pytest.fixture
+def here(whole, tmp_path, monkeypatch):
+    """A copy of it; trial runs are as fast as the list speeds says, which is given."""
+    folder = tmp_path / "here"
+    shutil.copytree(whole, folder)
+    work_in(folder, monkeypatch)
+    monkeypatch.setenv("LMP", LMP)
+    speeds = [14.0]
+    monkeypatch.setattr(site_budget, "measure", lambda *words: measure(*words)._replace(speed=speeds[0]))
+    return speeds
+
+
+def deck_of(folder):
+    """The variables of the deck, and its text without the title."""
+    text = (Path(folder) / "in.site").read_text()
+    return decks.index_variables(Path(folder) / "in.site"), text.split("\n", 1)[1]
+
+
+@pytest.mark.parametrize("faster", [1, 2])
+def test_a_scenario_is_a_whole_site_with_the_balls_of_its_own(here, capsys, faster):
+    """Diameter, cells, time limit and packings; the larger of both speeds and thicknesses, which make the stiffness."""
+    here[0] *= faster
+    before = (Path("mine") / "site.yaml").read_bytes(), sorted(path.name for path in Path("mine").iterdir())
+    assert cli.main(["site", "mine", "--scenario", "half", "--volume", "800"]) == 0
+    assert "written to mine/scenarios/half" in capsys.readouterr().out
+    mine, half = deck_of("mine")[0], deck_of("mine/scenarios/half")[0]
+    assert {name: half[name] for name in KEPT} == {name: mine[name] for name in KEPT}
+    assert float(half["speed"]) == pytest.approx(faster * float(mine["speed"]), rel=0.05)
+    assert float(half["thick"]) == float(mine["thick"]) > 0
+    choices = site_choices.read(Path("mine/scenarios/half"))
+    assert choices["study"]["packing"] == [2, 5] and choices["study"]["rolling"] == [0.02, 0.08]
+    assert site_choices.found(Path("mine/scenarios/half"))["body"]["volume"] == pytest.approx(800, rel=0.02)
+    assert choices["project"]["name"] == "mine, half"
+    assert before == ((Path("mine") / "site.yaml").read_bytes(), sorted(
+        path.name for path in Path("mine").iterdir() if path.name != "scenarios"))
+    # a thicker one
+    assert cli.main(["site", "mine", "--scenario", "deep", "--depth", "9"]) == 0
+    thick = float(deck_of("mine/scenarios/deep")[0]["thick"])
+    assert thick == pytest.approx(9, rel=0.02) and thick > float(mine["thick"])
+
+
+@pytest.mark.parametrize("words", [
+    ["--volume", "800"], ["--depth", "9"], ["--friction", "25"],
+    ["--terrain", "after.tif", "--release", "east.geojson"],
+    ["--wall", "line.geojson", "--height", "4"], ["--road", "east.geojson", "--cut-angle", "45"]])
+def test_it_equals_a_site_made_by_hand_with_the_same_values(here, capsys, words):
+    """To the digit: the deck but for its title, and all that it reads."""
+    write_dem(Path("after.tif"), z=None)
+    write_layer(Path("east.geojson"), [(56, 20), (86, 20), (90, 40), (86, 60), (56, 60), (52, 40)])
+    write_layer(Path("line.geojson"), [(44, 30), (44, 50)], kind=LineString)
+    assert cli.main(["site", "mine", "--scenario", "other", *words]) == 0
+    other = Path("mine/scenarios/other")
+    given = {"--terrain": "dem.tif", "--release": "release.geojson", "--road": "road.geojson"}
+    given.update({name: value for name, value in zip(words[::2], words[1::2]) if name in given})
+    more = [word for name, value in zip(words[::2], words[1::2]) if name not in given for word in (name, value)]
+    mine = site_choices.read(Path("mine"))
+    size = [] if {"--volume", "--depth"} & {*words} else ["--depth", f"{mine['release']['depth']:g}"]
+    assert cli.main(["site", *[word for pair in given.items() for word in pair], "--shape", mine["release"]["shape"],
+                     *size, *more, "--diameter", repr(mine["balls"]["diameter"]), "-o", "hand"]) == 0
+    model = site_choices.read(other)["model"]
+    edit(Path("hand"), "model", **{key: model[key] for key in (
+        "cell", "duration", "film", "least_speed", "least_thick")})
+    edit(Path("hand"), "study", packing=[2, 5], rolling=[0.02, 0.08])
+    assert cli.main(["site", "hand"]) == 0
+    edit(Path("hand"), "model", speed=None)
+    assert cli.main(["site", "hand"]) == 0
+    assert deck_of("hand") == deck_of(other)
+    for name in FILES:
+        assert (Path("hand") / name).read_bytes() == (other / name).read_bytes(), name
+    one, two = (yaml.safe_load((Path(folder) / "site.yaml").read_text()) for folder in ("hand", other))
+    for about in (one, two):
+        del about["project"], about["found"]
+    for section, key in site_choices.FILES:
+        del one[section][key], two[section][key]
+    assert one == two
+
+
+def test_the_study_of_a_scenario_begins_as_that_of_any_site(here, capsys):
+    assert cli.main(["site", "mine", "--scenario", "half", "--volume", "800"]) == 0
+    capsys.readouterr()
+    assert cli.main(["study", "mine/scenarios/half", "--paper", "--dry-run"]) == 0
+    out = capsys.readouterr().out
+    assert re.search(r"\b0 of \d+ runs are there", out) and not (Path("mine") / "runs").exists()
+    # a scenario is changed as any site, and stays as stiff as its site
+    here[0] = 1.0
+    assert cli.main(["site", "mine/scenarios/half", "--volume", "700"]) == 0
+    mine, half = deck_of("mine")[0], deck_of("mine/scenarios/half")[0]
+    assert half["speed"] == mine["speed"] and half["thick"] == mine["thick"] and half["d"] == mine["d"]
+
+
+@pytest.mark.parametrize("words, line", [
+    ("mine --scenario a/b --volume 800", "--scenario: must be a folder's name: letters, digits, _ - and ., of which "
+     "the first is a letter, a digit or _, got 'a/b'"),
+    ("mine --scenario .. --volume 800", "--scenario: must be a folder's name"),
+    ("mine --scenario= --volume 800", "--scenario: must be a folder's name"),
+    ("mine --scenario there --volume 800", "--scenario: must be a new name; `slope site mine/scenarios/there` changes "
+     "the scenario that is there, got there"),
+    ("mine/scenarios/there --scenario b --volume 800", "--scenario: must be given with the site itself, "),
+    ("mine --scenario b --balls 300",
+     "--balls: must not be given with --scenario, whose balls are those of its site, got 300"),
+    ("mine --scenario b --volume -3", "--volume: must be > 0"),
+    ("bare --scenario b", "--scenario: must be of a site that is made: `slope site bare` makes it"),
+    ("nowhere --scenario b", "nowhere: must be a folder with site.yaml"),
+    ("--scenario b --terrain dem.tif --release release.geojson -o new",
+     "--scenario: must be given with the folder of a site, got b")])
+def test_what_is_no_scenario_is_one_line(here, capsys, words, line):
+    (Path("mine/scenarios/there")).mkdir(parents=True)
+    (Path("mine/scenarios/there/site.yaml")).write_bytes(Path("mine/site.yaml").read_bytes())
+    Path("bare").mkdir()
+    shutil.copy("mine/site.yaml", "bare")
+    before = sorted(Path(".").rglob("*"))
+    assert cli.main(["site", *words.split()]) == 2
+    out, err = capsys.readouterr()
+    assert err.startswith(f"slope site: {line}") and err.count("\n") == 1, err
+    assert sorted(Path(".").rglob("*")) == before
+
+
+def test_a_scenario_that_cannot_be_made_may_be_mended(here, capsys):
+    """Its site.yaml is kept; the same command again, or slope site on its folder; nothing is left of a wrong option."""
+    assert cli.main(["site", "mine", "--scenario", "huge", "--volume", "1e9"]) == 2
+    assert [path.name for path in Path("mine/scenarios/huge").iterdir()] == ["site.yaml"]
+    assert cli.main(["site", "mine", "--scenario", "huge", "--volume", "800"]) == 0
+    assert site_scenarios.of_site(Path("mine")) == [Path("mine/scenarios/huge")]
+    assert site_scenarios.site_of(Path("mine/scenarios/huge")) == Path("mine").resolve()
+    assert site_scenarios.site_of(Path("mine")) is None
+
+
+# --- side by side ---
+
+def test_what_differs_is_said(here, capsys):
+    """Of what is asked for the keys that differ; of the model balls, stiffness and ground, and only what differs."""
+    assert cli.main(["site", "mine", "--scenario", "half", "--volume", "800"]) == 0
+    here[0] *= 2
+    assert cli.main(["site", "mine", "--scenario", "smooth", "--friction", "25", "--spacing", "0.6"]) == 0
+    write_dem(Path("after.tif"), z=np.full((40, 60), 90.0) + np.arange(60) * 0.6)
+    assert cli.main(["site", "mine", "--scenario", "cut", "--terrain", "after.tif"]) == 0
+    assert cli.main(["site", "mine", "--scenario", "huge", "--volume", "1e9"]) == 2
+    mine, cut, half, huge, smooth = compare.read(Path("mine"))
+    assert [one.name for one in (mine, cut, half, huge, smooth)] == ["mine", "cut", "half", "huge", "smooth"]
+    asked = {one.name: compare.choices_that_differ(mine.site, one.site) for one in (cut, half, smooth)}
+    assert asked == {"cut": ["files after.tif"], "half": ["volume 800"], "smooth": ["spacing 0.6", "friction 25"]}
+    found = {one.name: list(compare.differences(mine, one)) for one in (cut, half, huge, smooth)}
+    assert found["half"] == found["huge"] == [] and "another terrain" in found["cut"]
+    assert "friction of 25 degrees instead of 30" in found["smooth"] and any(
+        text.startswith("the stiffness is for a speed of") for text in found["smooth"])
+    assert any(text.startswith("stop angles") for text in found["smooth"]) and "another terrain" not in found["smooth"]
+    edit(Path("mine"), "road", file=None)
+    assert cli.main(["site", "mine", "--diameter", "2"]) == 0
+    mine, *others = compare.read(Path("mine"))
+    assert "balls of 1.24 m instead of 2" in list(compare.differences(mine, others[1]))
+    assert list(page.models([mine, *others]))[2] == "huge: not made yet."
+
+
+@pytest.mark.parametrize("headline, shown", [
+    (None, "-"), ({"kind": "withheld", "volume_m3": None}, "not usable"),
+    ({"kind": "number", "volume_m3": 20120.0}, "20,100"),
+    ({"kind": "floor", "volume_m3": 20120.0}, "at least 20,100"), ({"kind": "floor", "volume_m3": 0.0}, "more than 0"),
+    ({"kind": "nothing", "volume_m3": 0.0}, "0")])
+def test_the_number_of_a_scenario(headline, shown):
+    assert page.to_remove(headline) == shown
+
+
+def test_an_outline_lies_where_it_is_on_the_ground():
+    """Of a scenario whose local metres begin elsewhere; closed at the edge of its raster."""
+    raster = Raster(np.array([[0.0, 0.5], [0.0, 0.05]]), Affine(2, 0, 10, 0, -2, 8), None)
+    found = page.outline(raster, np.array([10.0, -10.0]))
+    assert found.box == (10 + 3 + 10, 7 - 10, 10 + 3 + 10, 7 - 10)      # centre of the one cell that is so thick
+    assert found.thickness.shape == (4, 4) and found.thickness[0].max() == 0
+    assert page.outline(raster._replace(z=0.1 * raster.z), np.zeros(2)) is None

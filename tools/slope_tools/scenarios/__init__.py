@@ -1,0 +1,1 @@
+"""The scenarios of a site side by side."""

@@ -1,0 +1,124 @@
+"""A site and its scenarios: what each releases, what its study says, and in what its choices and its model differ."""
+import os
+from pathlib import Path
+from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Optional
+
+from .. import disk
+from ..case import decks, run_folders
+from ..errors import SlopeError
+from ..sites import site_choices, site_deck, site_folder, site_scenarios
+from ..sites.site_choices import FILES, Site
+from ..studies import site_ground
+from ..tables import named_run
+from ..tables.study_file import read_study
+
+# of the model: what stiffness depends on, and what the ground is
+STIFFNESS = {"speed": ("the stiffness is for a speed of", "m/s"), "thick": ("the stiffness is for a thickness of", "m"),
+             "density": ("a ball has", "kg/m3")}
+GROUND = {"friction": ("friction of", "degrees"), "slip": ("friction on the slip surface of", "degrees"),
+          "spacing": ("spacing of the ground's balls", "diameters"), "field_e": ("restitution on the ground", "")}
+BALLS = {"d": ("balls of", "m"), "cell": ("cells of", "m"), "duration": ("runs of at most", "s")}
+
+
+class One(NamedTuple):
+    """A site of those that are compared.
+
+    variables: of its deck, none where the site could not be made; about: what its study.yaml says, None without a
+    study; run: prefix of the output of its governing run.
+    """
+    name: str
+    site: Site
+    variables: Mapping[str, str]
+    about: Optional[Mapping[str, Any]]
+    run: Optional[Path]
+
+
+def read(folder: Path) -> List[One]:
+    """The site of a folder, then its scenarios."""
+    name = site_choices.load(folder).choices["project"]["name"] or folder.absolute().name
+    return [one(folder, name), *(one(place, place.name) for place in site_scenarios.of_site(folder))]
+
+
+def one(folder: Path, name: str) -> One:
+    site = site_choices.load(folder)
+    deck, study = folder / site_deck.NAME, named_run.study_in(folder)
+    variables = decks.index_variables(deck) if deck.is_file() else {}
+    if study is None:
+        return One(name, site, variables, None, None)
+    about = read_study(study / named_run.STUDY)
+    inside = run_folders.summaries(run_folders.governing_run(study / named_run.STUDY, named_run.farthest)[1])
+    if len(inside) != 1:
+        raise SlopeError(study, "must hold the governing run of the study, with its summary")
+    return One(name, site, variables, about, run_folders.prefix_of(inside[0]))
+
+
+def choices_that_differ(mine: Site, other: Site) -> List[str]:
+    """Those of a scenario, in words: keys of site.yaml and their values."""
+    found = []
+    for name, about in site_choices.sections():
+        if name in ("project", "balls"):
+            continue
+        for key in about["properties"]:
+            if (name, key) in site_choices.OF_MODEL:
+                continue
+            was, now = (plain(site, name, key) for site in (mine, other))
+            if was == now:
+                continue
+            if now not in (None, [], {}):
+                found.append(f"{key.replace('_', ' ')} {text(now)}")
+            elif (name, key) in FILES:
+                found.append(f"without {name} {key}")
+    return found
+
+
+def plain(site: Site, section: str, key: str) -> Any:
+    """A choice, with files by their places."""
+    value = site.choices[section].get(key)
+    if (section, key) not in FILES:
+        return value
+    return [os.path.abspath(one) for one in value] if isinstance(value, list) else value and os.path.abspath(value)
+
+
+def text(value: Any) -> str:
+    if isinstance(value, (list, tuple)):
+        return ", ".join(map(text, value))
+    if isinstance(value, float):
+        return f"{value:.10g}"
+    return Path(value).name if isinstance(value, str) and os.sep in value else str(value)
+
+
+def differences(mine: One, other: One) -> Iterator[str]:
+    """In what the models differ, beside what is asked for: balls, stiffness, ground; a part of a sentence each."""
+    if not other.variables:
+        return
+    for which in (BALLS, STIFFNESS, GROUND):
+        for name, (what, unit) in which.items():
+            was, now = (each.variables.get(name) for each in (mine, other))
+            if was is not None and now is not None and not same(was, now):
+                yield f"{what} {now}{unit and f' {unit}'} instead of {was}"
+    if (digests := [terrain(each.site.folder) for each in (mine, other)])[0] != digests[1]:
+        yield "another terrain"
+    zones: List[Dict[str, Any]] = [{zone["name"]: zone["variables"] for zone in each.site.found.get("zones") or ()}
+                                   for each in (mine, other)]
+    if zones[0] != zones[1]:
+        yield "other zones of the ground"
+    angles = [site_ground.stop_angles(each.site) for each in (mine, other)]
+    if angles[0] != angles[1]:
+        yield f"stop angles {degrees(angles[1])} instead of {degrees(angles[0])} degrees"
+
+
+def same(one_: str, other: str) -> bool:
+    try:
+        return float(one_) == float(other)
+    except ValueError:
+        return one_ == other
+
+
+def terrain(folder: Path) -> Optional[str]:
+    path = folder / site_folder.TERRAIN
+    return disk.sha256(path) if path.is_file() else None
+
+
+def degrees(angles: Mapping[str, Mapping[str, float]]) -> str:
+    found = [f"{value:.1f}" for by_rolling in angles.values() for value in by_rolling.values()]
+    return ", ".join(found) or "unknown"

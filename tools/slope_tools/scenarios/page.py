@@ -1,0 +1,165 @@
+"""The page of a site's scenarios: a table, the outlines of the deposits on one map, and in what the models differ."""
+from pathlib import Path
+from shlex import quote
+from typing import Any, Iterator, List, NamedTuple, Optional, Sequence, Tuple
+
+import numpy as np
+
+from .. import digits, disk, provenance
+from ..case import run_folders
+from ..deposits import travel_shares
+from ..drawing import figures, maps, pictures
+from ..plots import figure_maps, sheets
+from ..report import document
+from ..report.sections import Cell, Figures, Listing, Picture, Section, Table
+from ..sites.site_folder import BODY as NAME_OF_BODY, TERRAIN
+from ..sites.site_layers import ROAD
+from ..statistics.answer import Kind
+from ..survey import rasters, roads
+from ..survey.rasters import Raster, crs_name
+from .compare import One, choices_that_differ, differences, read
+
+PAGE = "scenarios.html"
+BODY = f"{NAME_OF_BODY}.depth.asc"
+COLOURS = figures.COLOURS[1:]       # the first one is nearly that of roads
+THICK = 0.1         # m: the deposit ends where it is thinner
+
+
+class Outline(NamedTuple):
+    """Of a deposit, or of a body: thickness (m) at places x, y of the local metres of the site, and the box of what is
+    THICK."""
+    x: np.ndarray
+    y: np.ndarray
+    thickness: np.ndarray
+    box: Tuple[float, float, float, float]
+
+
+class Shown(NamedTuple):
+    """Of a site on the map; None: nothing of it is THICK."""
+    name: str
+    deposit: Optional[Outline]
+    body: Optional[Outline]
+
+
+def write(folder: Path, output: Path, overwrite: bool) -> str:
+    """Write the page of a site's folder beside its report; a line for the user."""
+    disk.check_standing(output, [output], [document.MADE_BY], overwrite, f"slope report {quote(str(folder))}")
+    several = read(folder)
+    content = {
+        "title": several[0].name, "client": several[0].site.choices["project"]["client"],
+        "author": several[0].site.choices["project"]["author"], "made": provenance.now(),
+        "mark": document.mark(folder),
+        "sections": [Section("scenarios", "Side by side", [table(several), Figures([drawn(several)], "two-thirds")]),
+                     Section("models", "In what the models differ", [Listing(list(models(several)))])],
+        "footer": f"{document.MADE_BY}, SLOPE {provenance.version()}; each scenario has a report of its own."}
+    disk.write(output, document.render(content, Path(__file__).with_name("scenarios.html.j2")))
+    return f"{output}: the site and its {len(several) - 1} scenarios"
+
+
+def models(several: Sequence[One]) -> Iterator[str]:
+    """A sentence on each scenario."""
+    for one in several[1:]:
+        found = list(differences(several[0], one))
+        yield f"{one.name}: " + ("not made yet" if not one.variables else "; ".join(found) if found else
+                                 "balls, stiffness and ground are those of the site") + "."
+
+
+# --- the table ---
+
+def table(several: Sequence[One]) -> Table:
+    rows = [[one.name, "" if one is several[0] else "; ".join(choices_that_differ(several[0].site, one.site))
+             or "nothing else", *numbers(one)] for one in several]
+    return Table("Released: of the body. 99 %: the distance within which so much of the volume stays, the largest of "
+                 "all runs, in plan from the highest point of the body. Length: along the fall path, of the longest "
+                 "run. To remove: the number of the first page of each report.",
+                 ["", "with", Cell("released", "m3"), Cell("99 % within", "m"), Cell("length", "m"),
+                  Cell("to remove", "m3"), "runs"], rows, (0, 1))
+
+
+def numbers(one: One) -> List[str]:
+    """Of a row: what is released, how far it goes, what is to be removed, how many runs finished."""
+    body = one.site.found.get("body") or {}
+    released = digits.rounded(body["volume"], 4) if body else "-"
+    if one.about is None:
+        return [released, "-", "-", "-", "no study yet"]
+    finished = [row for row in one.about["runs"] if row["status"] == "finished"]
+    far = (one.about["largest"].get(travel_shares.DISTANCE) or {}).get("value")
+    lengths = [row["length_m"] for row in finished if row.get("length_m") is not None]
+    return [released, "unknown" if far is None else digits.three(far), digits.three(max(lengths)) if lengths else "-",
+            to_remove(one.about.get("headline")), f"{len(finished)} of {len(one.about['runs'])}"]
+
+
+def to_remove(headline: Any) -> str:
+    """The number of a headline, as page 1 has it."""
+    if not headline:
+        return "-"
+    kind = Kind(headline["kind"])
+    if kind is Kind.WITHHELD:
+        return "not usable"
+    volume = headline["volume_m3"]
+    if kind is not Kind.FLOOR:
+        return digits.three(volume)
+    return f"at least {digits.three(volume)}" if volume else "more than 0"
+
+
+# --- the map ---
+
+def drawn(several: Sequence[One]) -> Optional[Picture]:
+    """The outlines of the deposits of the governing runs; None where there are none."""
+    mine, shown = several[0].site, []
+    for one in several:
+        if one.run:
+            by = origin(one) - origin(several[0])
+            shown.append(Shown(one.name, outline(run_folders.load_raster(one.run, "thickness"), by),
+                               outline(rasters.read_asc_local(one.site.folder / BODY, heights=False), by)))
+    boxes = [each.box for one in shown for each in (one.deposit, one.body) if each]
+    if not boxes:
+        return None
+    raster = rasters.read_asc_local(mine.folder / TERRAIN)
+    whole = maps.window(raster, *boxes)
+    road = mine.choices["road"]
+    polygon = roads.read_local(mine.folder / ROAD, raster, roads.Asked.of(road), local=True).polygon \
+        if road["file"] else None
+    layers = figure_maps.Layers(raster, raster.z, whole, None, polygon, None, figures.contour_interval(raster.z))
+    title = "Outlines of the deposits"
+    return Picture(map_of(layers, shown, title), title, f"{title}, where they are thicker than {THICK:g} m at the "
+                   "end of the run that represents the number of each; dashed: what is released; the ground is that of "
+                   "the site.")
+
+
+def origin(one: One) -> np.ndarray:
+    """Coordinates of the local 0 0 of a site."""
+    about = one.site.found.get("origin") or {"east": 0.0, "north": 0.0}
+    return np.array([about["east"], about["north"]])
+
+
+def outline(raster: Raster, by: np.ndarray) -> Optional[Outline]:
+    """Of thicknesses that lie so many metres east and north of their local metres; None where nothing is so thick."""
+    thickness = np.pad(np.nan_to_num(raster.z), 1)      # an outline is closed at the edge, too
+    rows, columns = thickness.shape
+    x = raster.transform.c + raster.transform.a * (np.arange(columns) - 0.5) + by[0]
+    y = raster.transform.f + raster.transform.e * (np.arange(rows) - 0.5) + by[1]
+    row, column = np.nonzero(thickness > THICK)
+    if not len(row):
+        return None
+    return Outline(x, y, thickness, (x[column].min(), y[row].min(), x[column].max(), y[row].max()))
+
+
+def map_of(layers: figure_maps.Layers, shown: Sequence[Shown], title: str) -> str:
+    raster, entries = layers.raster, []
+    with pictures.settings(figures.STYLE):
+        frame = figure_maps.frame_of(layers, True, crs_name(raster.crs) if raster.crs is not None else "")
+        sheet, axes, size, *_ = sheets.single(figures.FULL, frame, title, figure_maps.TALL[figures.FULL])
+        figure_maps.base_map(axes, layers)
+        for k, one in enumerate(shown):
+            colour = COLOURS[k % len(COLOURS)]
+            for each, style, wide in ((one.deposit, "-", 1.4), (one.body, "--", 0.8)):
+                if each:
+                    axes.contour(each.x, each.y, each.thickness, [THICK], colors=colour, linewidths=wide,
+                                 linestyles=style, zorder=6)
+            entries.append(sheets.Entry(one.name, {"color": colour, "lw": 1.4}))
+        sheets.draw_axes(axes, frame, size)
+        scale = size[0] / frame.width
+        sheets.scale_and_legend(sheet, sheets.margins(frame)[0], scale, min(frame.width, 2.5 / scale),
+                                [*entries, *figure_maps.entries(layers)], raster.crs is not None)
+        return figures.data_uri(sheet.finish())
