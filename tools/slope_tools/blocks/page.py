@@ -47,7 +47,7 @@ def sentences(known) -> Iterator[str]:
                f"{number(speed.largest, 'm/s')}, the lower edge up to {number(height.largest, 'm')} above the terrain")
     elif best.reach:
         yield (f"none {whose} {'was seen to reach' if best.reach.open else 'reaches'} the road; as blocks share their "
-               f"grounds, chance leaves {best.reach.text} possible, and more grounds (blocks.grounds of site.yaml) less")
+               f"grounds, chance leaves {best.reach.text} possible, more grounds (blocks.grounds of site.yaml) less")
     distance = best.travel["distance"]
     half, most, largest = (number(value, "m") for value in (
         distance.quantiles[0].value, distance.most, distance.largest))
