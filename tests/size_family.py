@@ -32,8 +32,7 @@ HEAD = "case,finer,seed,d,balls,balls_thick,remove,on_road,beyond,length,travel,
 
 class Slide(NamedTuple):
     """Lengths in m, in plan; angles in degrees. The face rises along x, from the break in slope on."""
-    shape: str              # slab: of one depth with flanks of 45 degrees; prism: these at its sides alone; else as
-                            # `slope site --shape` has them
+    shape: str              # slab: of one depth with flanks of 45 degrees; prism: at its sides alone; or of --shape
     length: float
     width: float
     depth: float
