@@ -46,7 +46,7 @@ def sentences(known) -> Iterator[str]:
                f"{number(energy.largest, 'J')} (rolling resistance {hardest['energy'].rolling}); up to "
                f"{number(speed.largest, 'm/s')}, the lower edge up to {number(height.largest, 'm')} above the terrain")
     elif best.reach:
-        yield (f"none {whose} {'was seen to reach' if best.reach.open else 'reaches'} the road; as blocks share their "
+        yield (f"none {whose}, {'was seen to reach' if best.reach.open else 'reaches'} the road; as blocks share their "
                f"grounds, chance leaves {best.reach.text} possible, more grounds (blocks.grounds of site.yaml) less")
     distance = best.travel["distance"]
     half, most, largest = (number(value, "m") for value in (
