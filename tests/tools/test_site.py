@@ -553,7 +553,8 @@ def test_a_second_trial_tells_how_long_most_runs_take():
     coarse, fine = trial(3.6, 45.0, 21.0), trial(2.4, 26.0)
     both = site_budget.joined(coarse, fine)
     assert (coarse.typical, both.typical, both.rest, both.speed) == (45.0, 26.0, 45.0, 21.0)
-    assert site_budget.duration(both) == site_budget.duration(coarse) == 140.0
+    assert site_budget.duration(both) == site_budget.duration(coarse) == 360.0
+    assert site_budget.duration(fine._replace(rest=5.0)) == 120.0
 
     choices = site_choices.complete({"terrain": {"files": ["dem.tif"]}, "balls": {"minutes": 1.0}})
     wanted = site_budget.plan(choices)
