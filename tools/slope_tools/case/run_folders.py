@@ -94,12 +94,12 @@ def governing(about: Mapping[str, Any], farthest: Farthest = lambda about: None)
 def of_headline(about: Mapping[str, Any]) -> Optional[str]:
     """The run of an ensemble at whose volume the headline is; the longest where the headline is 0, as no run says more.
 
-    None where the headline is of another study, or of none.
+    None where the headline is of another study, of none, or withheld.
     """
     number, known = about.get("headline") or {}, (about.get("ensemble") or {}).get("known_events") or {}
-    if number.get("source") != "ensemble":
+    if number.get("source") != "ensemble" or number.get("volume_m3") is None:
         return None
-    if not number.get("volume_m3"):
+    if number["volume_m3"] == 0:
         long = [row for row in about["runs"] if row.get("length_m") is not None]
         return max(long, key=lambda row: row["length_m"])["run"] if long else None
     at = next((one["value"] for one in known.get("to_remove") or () if one["share"] == number.get("share")), None)
