@@ -44,6 +44,8 @@ struct Deck {
     one("group new id " + std::to_string(lmp->atom->natoms));
     one("set group new diameter " + std::to_string(diameter) + " density " + std::to_string(density));
     one("group new delete");
+    for (int i = 0; i < lmp->atom->nlocal; i++)    // before a run they are what is in the memory
+      for (int d = 0; d < 3; d++) lmp->atom->f[i][d] = lmp->atom->torque[i][d] = 0.0;
   }
 
   static double mass(double diameter, double density) { return density * std::acos(-1.0) / 6.0 * std::pow(diameter, 3); }
