@@ -1,5 +1,6 @@
 """Sites of single blocks: from a GeoTIFF and a polygon to the share that reaches a road; what is refused."""
 import csv
+import re
 import shutil
 import subprocess
 from types import SimpleNamespace
@@ -275,6 +276,19 @@ def test_export_and_report_again(made, told):
     assert status == 0 and "again.html" in out, err
 
 
+@pytest.mark.parametrize("words", [["report", "tmp", "-o", "again.html"], ["export", "tmp"], ["study", "tmp"]])
+def test_runs_of_other_choices_are_no_answer(made, told, words):
+    """Of a site whose site.yaml was changed since, until it is rebuilt."""
+    path = made.folder / "site.yaml"
+    text = path.read_text(encoding="utf-8")
+    path.write_text(re.sub(r"density: .*", "density: 2000", text, count=1), encoding="utf-8")
+    try:
+        status, _, err = told(*words)
+    finally:
+        path.write_text(text, encoding="utf-8")
+    assert status == 2 and "site.yaml: must not have been changed since" in err, err
+
+
 # --- shares and their bounds ---
 
 def a_run(ground, reached, left=None, rolling="0.1"):
@@ -295,6 +309,14 @@ def test_none_that_reaches_is_never_certain():
     assert reach.text == f"at most {digits.percent(reach.high)}" == "at most 26 %"
     text = next(page.sentences(SimpleNamespace(outcome=of)))
     assert text.startswith("none of 1,000 blocks") and "chance leaves at most 26 % possible" in text
+
+
+@pytest.mark.parametrize("number", [1, 2, 5])
+def test_a_few_that_reach_bound_no_less_than_none(number):
+    """A few blocks of one of ten grounds: another ground may bring as many as after none."""
+    few = [a_run(ground, [1] * number * (ground == 1) + [0] * (100 - number * (ground == 1))) for ground in range(10)]
+    reach = outcome.evaluate(few).best.reach
+    assert reach.seen == number and reach.high >= withheld.exceeded_at_most(10) > 0.2
 
 
 def test_all_that_reach_are_never_certain():

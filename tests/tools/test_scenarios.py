@@ -9,7 +9,7 @@ import yaml
 from affine import Affine
 from shapely.geometry import LineString
 
-from test_site import BODY, gis, told, work_in, write_dem, write_files, write_layer  # noqa: F401
+from test_site import gis, make_mine, told, work_in, write_dem, write_files, write_layer  # noqa: F401
 from test_site_anew import edit, inside  # noqa: F401
 from test_site_lists import measure
 from tiny_collapse import LMP
@@ -33,8 +33,7 @@ def whole(tmp_path_factory):
         work_in(folder, patch)
         patch.setattr(site_budget, "measure", measure)
         patch.setenv("LMP", LMP)
-        assert cli.main(["site", "--terrain", "dem.tif", "--release", "release.geojson", *BODY, "--road",
-                         "road.geojson", "-o", "mine"]) == 0
+        make_mine()
         edit(folder / "mine", "study", packing=[2, 5], rolling=[0.02, 0.08])
     return folder
 

@@ -115,6 +115,12 @@ def make(folder, *words, run=slope, **environment):
                **environment)
 
 
+def make_mine():
+    """The site mine with a body and a road, from the standard files in the working folder, in this process."""
+    assert cli.main(["site", "--terrain", "dem.tif", "--release", "release.geojson", *BODY, "--road", "road.geojson",
+                     "-o", "mine"]) == 0
+
+
 def write_files(folder):
     """dem.tif, release.geojson (in degrees), road.geojson."""
     write_dem(folder / "dem.tif")

@@ -17,7 +17,7 @@ import yaml
 from shapely.geometry import LineString
 
 from run_helpers import write_tif
-from test_site import (BODY, EAST, NORTH, ROAD, TOOLS, gis, inside as in_process, make,  # noqa: F401
+from test_site import (BODY, EAST, NORTH, ROAD, TOOLS, gis, inside as in_process, make, make_mine,  # noqa: F401
                        refused, slope, told, work_in, write_files, write_layer)
 from tiny_collapse import LMP, processes_in
 
@@ -50,8 +50,7 @@ def once(tmp_path_factory):
     write_files(folder)
     with pytest.MonkeyPatch.context() as patch:
         work_in(folder, patch)
-        assert cli.main(["site", "--terrain", "dem.tif", "--release", "release.geojson", *BODY, "--road",
-                         "road.geojson", "-o", "mine"]) == 0
+        make_mine()
     return folder
 
 

@@ -8,7 +8,7 @@ import pytest
 import yaml
 
 from run_helpers import write_asc
-from test_site import BODY, CELL, COLUMNS, ROWS, gis, told, work_in, write_files, write_layer  # noqa: F401
+from test_site import CELL, COLUMNS, ROWS, gis, make_mine, told, work_in, write_files, write_layer  # noqa: F401
 from test_site_anew import MAPPED, edit, inside  # noqa: F401
 from tiny_collapse import LMP
 
@@ -52,8 +52,7 @@ def whole(tmp_path_factory):
         work_in(folder, patch)
         patch.setattr(site_budget, "measure", measure)
         patch.setenv("LMP", LMP)
-        assert cli.main(["site", "--terrain", "dem.tif", "--release", "release.geojson", *BODY, "--road",
-                         "road.geojson", "-o", "mine"]) == 0
+        make_mine()
         edit(folder / "mine", "study", points=POINTS)
         finish(folder / "mine")
     return folder

@@ -6,6 +6,7 @@ from typing import Any, Dict, Tuple
 from .. import disk
 from ..errors import SlopeError
 from ..sites import site, site_choices
+from ..studies import site_study
 
 BLOCKS = "blocks"
 WRONG = "must not be given with a site of single blocks"
@@ -26,6 +27,7 @@ def run(command: str, module: Any, request: Any, tell: Any) -> None:
             name = next(iter(field.metadata["names"]), "") or f"--{field.name.replace('_', '-')}"
             raise SlopeError(name, WRONG)
     found = site_choices.load(Path(named), BLOCKS)
+    site_study.check(found)
     if command == "study":
         return study(found, module.setup_of(request))
     return (export if command == "export" else report)(found, request.output, request.overwrite, tell)

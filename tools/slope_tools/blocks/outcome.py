@@ -123,7 +123,10 @@ def result_of(runs: Sequence[Run]) -> Result:
     def share(seen: np.ndarray) -> Share:
         unknown, number = int(((left | moving) & ~seen).sum()), int(seen.sum())
         low, high = hazard.share_bounds(number, len(seen) - unknown, unknown, hazard.effect_of(seen, ground))
-        return Share(number / len(seen), float(low), float(high), number, len(seen), unknown)
+        # a few say little of how alike blocks of a ground are: chance leaves no less than if none had been seen
+        none = np.zeros(len(seen), bool)
+        least = hazard.share_bounds(0, len(seen), 0, hazard.effect_of(none, ground))[1]
+        return Share(number / len(seen), float(low), float(max(high, least)), number, len(seen), unknown)
 
     def quantity(values: np.ndarray) -> Optional[Quantity]:
         there = np.isfinite(values)

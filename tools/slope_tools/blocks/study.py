@@ -33,7 +33,6 @@ def planned(site: Site) -> List[repeats.Repeat]:
 
 def run(site: Site, engine: Setup) -> None:
     """Make or continue all runs and show the outcome; raises SlopeError on bad input, and last if a run failed."""
-    site_study.check(site)
     setup = engine._replace(deck=site.folder / site_deck.NAME, output=site.folder / site_study.STUDY, site=site.folder,
                             road=None)
 
