@@ -126,7 +126,7 @@ def result_of(runs: Sequence[Run]) -> Result:
         # a few say little of how alike blocks of a ground are: chance leaves no less than if none had been seen
         none = np.zeros(len(seen), bool)
         least = hazard.share_bounds(0, len(seen), 0, hazard.effect_of(none, ground))[1]
-        return Share(number / len(seen), float(low), float(max(high, least)), number, len(seen), unknown)
+        return Share(number / len(seen), float(low), max(float(high), float(least)), number, len(seen), unknown)
 
     def quantity(values: np.ndarray) -> Optional[Quantity]:
         there = np.isfinite(values)
