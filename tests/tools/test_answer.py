@@ -108,7 +108,10 @@ def test_the_growth_of_the_family_stands_beside_a_floor(monkeypatch, slides):
     monkeypatch.setattr(size_family, "family", lambda: known)
     size = {"run": "d_1", "open": True, "balls_thick": 2.0, "effects": {}}
     about = {"conservative": {"volume_m3": 1200.0}, "size": size}
-    [reason] = answer.of(answered.paper_of(about), None, None).reasons
+    floor = answer.of(answered.paper_of(about), None, None)
+    said = answer_words.number(floor.about())       # what finer balls bring is open: nothing conservative
+    assert said.startswith("at least 1,200 m3 to remove, by the paper's study") and "conservative" not in said
+    [reason] = floor.reasons
     growth = size_family.growth(2.0)
     if slides < size_family.FEWEST:
         assert reason.numbers["growth"] is None and "times as much" not in answer_words.text(reason)

@@ -259,13 +259,13 @@ def test_the_page_of_a_site_and_its_scenarios(done, tmp_path):
     assert made.returncode == 0 and "mine/scenarios.html: the site and its 1 scenarios" in made.stdout, made.stderr
     page = (mine / "scenarios.html").read_text(encoding="utf-8")
     volume = digits.rounded(site_choices.found(mine)["body"]["volume"], 4)
-    for words in ("no study yet", "volume 800", ">small<", f">{volume}<", "<li>small: ", "data:image/png",
+    for words in ("not studied as it is", "volume 800", ">small<", f">{volume}<", "<li>small: ", "data:image/png",
                   "Outlines of the deposits"):
         assert words in page, words
     shutil.copytree(mine / "study", mine / "scenarios" / "small" / "study")     # as if its runs said the same
     shutil.copytree(mine / "runs", mine / "scenarios" / "small" / "runs")
     assert inside(tmp_path, "report", "mine", "--no-film").returncode == 0
-    assert "no study yet" not in (mine / "scenarios.html").read_text(encoding="utf-8")
+    assert "not studied as it is" not in (mine / "scenarios.html").read_text(encoding="utf-8")
     (mine / "scenarios.html").write_text("of the user\n")
     found = inside(tmp_path, "report", "mine", "--no-film")
     assert found.returncode == 2 and "scenarios.html must be" in found.stderr.splitlines()[-1]

@@ -19,7 +19,7 @@ from slope_tools.commands import study as study_command
 from slope_tools.errors import SlopeError
 from slope_tools.runs import store
 from slope_tools.sites import site_budget, site_choices, site_deck, site_trial
-from slope_tools.studies import ahead, site_study, study
+from slope_tools.studies import ahead, outdated, site_study, study
 from slope_tools.studies.setup import Setup
 
 POINTS = 8
@@ -236,3 +236,23 @@ def test_keys_without_an_option_are_named(capsys):
         cli.main(["site", "--help"])
     out = " ".join(capsys.readouterr().out.split())
     assert "study.spacing" in out and "study.packing" in out and "study.points" in out and "study.fine" in out
+
+
+@pytest.mark.parametrize("words, changed", [
+    (None, None), ("--rolling 0.05 0.1 0.15", None), ("--cut-angle 45", None),       # lists and the road: the runs stay
+    ("--friction 25", "in.site"), ("--depth 4", "in.site"), ("--spacing 0.8", "in.site")])
+def test_a_study_of_other_choices_is_no_answer(mine, inside, words, changed):  # noqa: F811
+    """A page, files and scenarios of a site that was rebuilt since do not show its old numbers as its own."""
+    (mine / "study").mkdir(exist_ok=True)
+    name = next(path.name for path in (mine / "runs").iterdir() if "restitution" not in path.name)
+    (mine / "study" / "study.yaml").write_text(
+        f"conservative: {{run: {name}}}\nlargest: {{}}\n"
+        f"runs: [{{run: {name}, summary: ../runs/{name}/site.summary.yaml}}]\n")
+    if words:
+        inside(f"mine {words}")
+    assert outdated.changed(mine, mine / "study") == changed
+    if changed is None:
+        return outdated.check(mine, mine / "study")
+    with pytest.raises(SlopeError, match="must be as it was studied: .* `slope study .* the study of now"):
+        outdated.check(mine, mine / "study")
+    return outdated.check(mine / "study", mine / "study")       # the folder of the study itself shows it

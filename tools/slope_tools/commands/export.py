@@ -8,6 +8,7 @@ from ..deposits import deposit
 from ..deposits.export import file_of, layers, write
 from ..errors import SlopeError
 from ..options import Overwrite, option, positional
+from ..studies import outdated
 from ..survey import rasters
 from ..survey.rasters import crs_name
 from ..tables import named_run
@@ -95,6 +96,7 @@ def run_rasters(args: Request) -> None:
     """The rasters of a run."""
     warn, warnings = findings.warner("export")
     named = named_run.read(args.prefix)
+    outdated.check(Path(args.prefix), named.study)
     run_ = deposit.read(named.prefix, args.terrain, warn)
     folder = args.output or (named.folder / "export" if named.folder else Path(f"{named.prefix}.export"))
     which = named.study and f"{named.run}, the governing run of {named.study}"

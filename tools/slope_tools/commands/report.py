@@ -18,6 +18,7 @@ from ..report import document, paper
 from ..report.heading import Asked
 from ..report.heading import SITE
 from ..sites import site_scenarios
+from ..studies import outdated
 from ..tables import named_run
 
 STUDY = "study.yaml"
@@ -94,6 +95,7 @@ def run(args: Request) -> None:
         *section, last = section
         given = Path(last)
     folder = study_of(given)
+    outdated.check(given, folder)
     output = args.output or given / "report.html"
     if output.suffix not in (".html", ".htm") or output.is_dir():
         raise SlopeError("-o", "must be a file that ends in .html", output)

@@ -8,7 +8,7 @@ from ..case import decks, run_folders
 from ..errors import SlopeError
 from ..sites import site_choices, site_deck, site_folder, site_scenarios
 from ..sites.site_choices import FILES, Site
-from ..studies import site_ground
+from ..studies import outdated, site_ground
 from ..tables import named_run
 from ..tables.study_file import read_study
 
@@ -24,7 +24,7 @@ class One(NamedTuple):
     """A site of those that are compared.
 
     variables: of its deck, none where the site could not be made; about: what its study.yaml says, None without a
-    study; run: prefix of the output of its governing run.
+    study of the site as it is now; run: prefix of the output of its governing run.
     """
     name: str
     site: Site
@@ -43,7 +43,7 @@ def one(folder: Path, name: str) -> One:
     site = site_choices.load(folder)
     deck, study = folder / site_deck.NAME, named_run.study_in(folder)
     variables = decks.index_variables(deck) if deck.is_file() else {}
-    if study is None:
+    if study is None or outdated.changed(folder, study):
         return One(name, site, variables, None, None)
     about = read_study(study / named_run.STUDY)
     inside = run_folders.summaries(run_folders.governing_run(study / named_run.STUDY, named_run.farthest)[1])

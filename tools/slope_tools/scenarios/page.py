@@ -81,7 +81,7 @@ def numbers(one: One) -> List[str]:
     body = one.site.found.get("body") or {}
     released = digits.rounded(body["volume"], 4) if body else "-"
     if one.about is None:
-        return [released, "-", "-", "-", "no study yet"]
+        return [released, "-", "-", "-", "not studied as it is"]
     finished = [row for row in one.about["runs"] if row["status"] == "finished"]
     far = (one.about["largest"].get(travel_shares.DISTANCE) or {}).get("value")
     lengths = [row["length_m"] for row in finished if row.get("length_m") is not None]

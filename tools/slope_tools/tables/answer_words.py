@@ -6,7 +6,8 @@ from ..findings import Finding
 from ..statistics.answer import Code, Kind, Reason, Source
 from . import quantities
 
-OF = {Source.PAPER: "the conservative volume of the paper's study", Source.ENSEMBLE: "by known events"}
+OF = {Source.PAPER: "by the paper's study", Source.ENSEMBLE: "by known events"}
+CONSERVATIVE = "the conservative volume of the paper's study"       # what a floor may not be
 STUDY = {Source.PAPER.value: "the paper's study", Source.ENSEMBLE.value: "the runs weighted by known events"}
 
 
@@ -22,8 +23,9 @@ def number(about: Mapping[str, Any]) -> str:
     source = Source(about["source"])
     volume = f"{quantities.number(about['volume_m3'] or 0.0)} m3 to remove"
     share = f", {percent(about['share'])} of them stay within" if about["share"] else ""
-    least = "at least " * (Kind(about["kind"]) is Kind.FLOOR)
-    return f"{least}{volume}, {OF[source]}{share}{beside(about, source)}"
+    floor = Kind(about["kind"]) is Kind.FLOOR
+    of = OF[source] if floor or source is Source.ENSEMBLE else CONSERVATIVE
+    return f"{'at least ' * floor}{volume}, {of}{share}{beside(about, source)}"
 
 
 def beside(about: Mapping[str, Any], source: Source) -> str:
