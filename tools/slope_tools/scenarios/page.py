@@ -13,7 +13,7 @@ from ..plots import figure_maps, sheets
 from ..report import document
 from ..report.sections import Cell, Figures, Listing, Picture, Section, Table
 from ..sites.site_folder import BODY as NAME_OF_BODY, TERRAIN
-from ..sites.site_layers import ROAD
+from ..sites.site_roads import ROAD
 from ..statistics.answer import Kind
 from ..survey import rasters, roads
 from ..survey.rasters import Raster, crs_name
