@@ -59,9 +59,7 @@ def write(folder: Path, output: Path, overwrite: bool) -> str:
 
 
 def refresh(folder: Path) -> Optional[str]:
-    """The page anew after a study of a site or of one of its scenarios; why not, where it is no page of ours; None without
-    scenarios.
-    """
+    """The page anew after a study of a site or scenario; why not, where it is none of ours; None without scenarios."""
     site = site_scenarios.site_of(folder) or folder
     if not site_scenarios.of_site(site):
         return None
