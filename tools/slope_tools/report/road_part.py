@@ -63,8 +63,8 @@ def others(data) -> List[str]:
     several = road_numbers.read(data.study or {})
     if not several:
         return []
-    found = ", ".join(f"from {one.road} {one.text}" for one in several[1:])
-    return [f"This is the road {several[0].road}, from which most is to be removed; {found}."]
+    found = "; ".join(f"\u201c{one.road}\u201d: {one.text}" for one in several[1:])
+    return [f"Of {len(several)} roads most is to be removed from this one, \u201c{several[0].road}\u201d; {found}."]
 
 
 def gaps(data, about) -> str:
