@@ -205,7 +205,8 @@ def values_without_effect(groups: Sequence[Group]) -> List[Finding]:
     the ground's spacing where the mass comes to rest on the slip surface's own balls.
     """
     found: Dict[str, Dict[str, None]] = {}
-    for one, other in itertools.combinations([group for group in groups if group.rows], 2):
+    for one, other in itertools.combinations(
+            [group for group in groups if group.rows and group.rows[0].get("centroid_m") is not None], 2):
         names = [name for name in one.set if one.set[name] != other.set.get(name)]
         if len(names) == 1 and same_as([one.rows[0], other.rows[0]])[1] == 0:
             found.setdefault(names[0], {}).update(dict.fromkeys((one.rows[0]["run"], other.rows[0]["run"])))
