@@ -186,7 +186,7 @@ def test_a_difference_larger_than_chance_at_the_end_of_a_range_is_a_doubt():
     assert best["doubts"] == [Finding("end of range", {"variable": "rolling", "low": 0.0, "high": 1.0}).entry()]
     # a value of 0, which cannot be less, is no end; neither is one in the middle, or a name
     assert conservative({"rolling": ["0", "1"]}, rows((("0",), (90.0, 92)), (("1",), (10.0, 12))))["doubts"] == []
-    middle = rows((("1",), (10.0, 12)), (("2",), (90.0, 92)), (("3",), (10.0, 12)))
+    middle = rows((("1",), (10.0, 12)), (("2",), (90.0, 92)), (("3",), (10.1, 12)))
     assert conservative({"rolling": ["1", "2", "3"]}, middle)["doubts"] == []
     assert conservative({"rolling": ["a", "b"]}, rows((("a",), (10.0, 12)), (("b",), (90.0, 92))))["doubts"] == []
 
