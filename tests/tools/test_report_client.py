@@ -19,6 +19,7 @@ from slope_tools.findings import LIMIT, NOTE, WARNING, Finding, finding, gathere
 from slope_tools.plots.obstacles import Obstacles
 from slope_tools.report import body, client_part, ensemble_part, numbers, structures_part, warnings
 from slope_tools.report.numbers import Numbers
+from slope_tools.statistics import size_family
 from slope_tools.statistics.withheld import Kind as Rule
 from slope_tools.tables import answer_words, judged, next_step
 
@@ -168,6 +169,19 @@ def weighted(quantities=None, reached=0.9, gap=None):
         key: {"quantiles": [{"share": 0.95, "value": value}]} for key, value in (quantities or {}).items()},
         "to_remove": [{"share": 0.95, "value": 9e3, "low": 0.0, "high": None, "gap": gap}]}
     return SimpleNamespace(finished=rows, road=True, study={"ensemble": {"known_events": known}})
+
+
+@pytest.mark.parametrize("balls, said", [(None, False), (2.7, True), (16.0, False)])
+def test_beyond_the_road_smaller_balls_bring_more(balls, said):
+    """By as much as in the family of slides, where enough of them tell; nothing where nothing lies there."""
+    data = weighted()
+    data.study["study"] = {"balls_thick": balls}
+    assert "smaller balls" not in client_part.road(data, Numbers())
+    data.finished[1]["beyond_road_m3"] = 730.0
+    text = client_part.road(data, Numbers())
+    grown = size_family.told(2.7, quantity="beyond_road_m3")
+    assert (f"up to 730 m\u00b3, which smaller balls in the model made up to {grown.high:.2g} times as much in "
+            f"{grown.slides} other slides" in text) is said and grown.high > 2 and "730" in text
 
 
 MAP = {"raster": "thickness", "threshold": 0.1}
