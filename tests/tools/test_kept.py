@@ -41,6 +41,7 @@ def test_a_value_is_made_once(tmp_path, monkeypatch):
     for text in ("", "{", "[]", json.dumps({"made_of": "x"})):
         (tmp_path / "value.json").write_text(text)
         assert value(2)["n"] == len(made)
+    assert kept.value(tmp_path / "nowhere" / "value.json", 1, lambda: 5) == 5      # which cannot be written
     before = len(made)
     monkeypatch.setattr(kept, "tools", lambda: "other tools")
     assert value(2)["n"] == before + 1

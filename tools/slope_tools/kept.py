@@ -1,4 +1,5 @@
 """Values that take long to compute, kept in a file beside what they were made of, and made again when that changes."""
+import contextlib
 import functools
 import hashlib
 import json
@@ -36,5 +37,6 @@ def value(path: Path, made_of: Any, make: Callable[[], Any], written: Sequence[P
     except (OSError, ValueError, KeyError, TypeError):
         pass        # none, or of something else
     found = json.loads(json.dumps(disk.plain(make())))      # the same as when it is read
-    disk.write(path, json.dumps({"made_of": mine, "written": list(map(disk.sha256, written)), "value": found}))
+    with contextlib.suppress(OSError):      # the folder is somebody else's: it is made again next time
+        disk.write(path, json.dumps({"made_of": mine, "written": list(map(disk.sha256, written)), "value": found}))
     return found
