@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, Callable, Sequence
 
 from . import disk
+from .errors import SlopeError
 
 TOOLS = Path(__file__).resolve().parent
 
@@ -37,6 +38,6 @@ def value(path: Path, made_of: Any, make: Callable[[], Any], written: Sequence[P
     except (OSError, ValueError, KeyError, TypeError):
         pass        # none, or of something else
     found = json.loads(json.dumps(disk.plain(make())))      # the same as when it is read
-    with contextlib.suppress(OSError):      # the folder is somebody else's: it is made again next time
+    with contextlib.suppress(OSError, SlopeError):      # the folder is somebody else's: it is made again next time
         disk.write(path, json.dumps({"made_of": mine, "written": list(map(disk.sha256, written)), "value": found}))
     return found
