@@ -20,6 +20,7 @@ from slope_tools.plots.obstacles import Obstacles
 from slope_tools.report import body, client_part, ensemble_part, numbers, structures_part, warnings
 from slope_tools.report.numbers import Numbers
 from slope_tools.statistics import size_family
+from slope_tools.statistics.size_effect import Effect
 from slope_tools.statistics.withheld import Kind as Rule
 from slope_tools.tables import answer_words, judged, next_step
 
@@ -182,6 +183,19 @@ def test_beyond_the_road_smaller_balls_bring_more(balls, said):
     grown = size_family.told(2.7, quantity="beyond_road_m3")
     assert (f"up to 730 m\u00b3, which smaller balls in the model made up to {grown.high:.2g} times as much in "
             f"{grown.slides} other slides" in text) is said and grown.high > 2 and "730" in text
+
+
+@pytest.mark.parametrize("effect, said", [
+    ((1000.0, 3, 1250.0, 100.0, True), "smaller balls brought 1.25 times as much, which is not in them"),
+    ((0.0, 3, 40.0, 10.0, False), "smaller balls brought 40.0 m3 more, which"), ((1000.0, 3, 1250.0, 300.0, True), ""),
+    ((1000.0, 3, 900.0, None, True), ""), ((1000.0, 3, 1010.0, None, True), "1.01 times as much"), (None, "")])
+def test_numbers_of_runs_say_what_smaller_balls_bring(effect, said):
+    """Stretches, hazard curves and intensities are of the runs, and not raised as the headline is."""
+    entry = effect and dict(zip(Effect._fields, effect))
+    for study in ({"size": effect and {"effects": {"remove_on_road_m3": entry}}}, None):
+        text = numbers.as_run(SimpleNamespace(study=study), "remove_on_road_m3")
+        assert (said in text and bool(text) is bool(said)) if study else text == ""
+        assert numbers.as_run(SimpleNamespace(study=study), "length_m") == ""
 
 
 MAP = {"raster": "thickness", "threshold": 0.1}
