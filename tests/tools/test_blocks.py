@@ -119,7 +119,8 @@ def test_a_mass_knows_nothing_of_it(told, gis):
 
 @pytest.mark.parametrize("words, message", [
     (["--blocks", "1"], "--blocks: must be at least 30, one for each run"),
-    (["--blocks", "1000000"], "--blocks: must be <= 100000, got 1000000"),
+    (["--blocks", "1000000"], "--blocks: must be at most 100,000: more grounds (blocks.grounds of site.yaml) say more "
+     "than more blocks, got 1,000,000"),
     (["--depth", "3"], "--depth: must not be given with a site of single blocks"),
     (["--shape", "plane"], "--shape: must not be given with a site of single blocks"),
     (["--known", "rockfalls"], "--known: must not be given with a site of single blocks"),

@@ -2,6 +2,7 @@
 import json
 import re
 import subprocess
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,12 +18,13 @@ from tiny_collapse import LMP
 
 from slope_tools.case import decks
 from slope_tools.errors import SlopeError
+from slope_tools.report import maps_part
 from slope_tools.route import runs
 from slope_tools.route.choices import Choices
 from slope_tools.sites import site_choices, site_zones
 from slope_tools.studies import site_ground
 from slope_tools.survey import polygons
-from slope_tools.survey.rasters import Raster, write_asc_local
+from slope_tools.survey.rasters import Raster, read_asc_local, write_asc_local
 
 TERRAIN = Raster(np.full((40, 60), 100.0), Affine(2, 0, 0, 0, -2, 80), CRS.from_epsg(6677), (EAST, NORTH))
 SCREE, FOREST, STRIP = ([(0, 0), (40, 0), (40, 40), (0, 40)], [(30, 30), (70, 30), (70, 70), (30, 70)],
@@ -229,6 +231,19 @@ def test_a_site_with_zones(gis, mine):
     assert own == ["35", "0.15", "0.5"]
     angles = site_ground.of_zone(found["zones"][0], site.choices["model"], variables)
     assert angles == pytest.approx(site_ground.of_variables({**variables, "friction": 35, "spacing": 0.6}))
+
+
+def test_the_maps_of_a_report_have_the_zones(gis, mine):
+    """Of a study in the site's folder; none where the files of the zones are gone."""
+    data = SimpleNamespace(site=site_choices.load(gis / "mine").content, folder=gis / "mine" / "study")
+    raster = read_asc_local(gis / "mine" / "terrain.asc")
+    found = maps_part.zones_of(data, raster)
+    assert list(found) == ["scree", "森", "zone 3"]
+    assert found["scree"].area == 1500 and found["森"].equals(Polygon(FOREST))
+    data.folder = tmp = gis / "moved"
+    tmp.mkdir()
+    (tmp / "site.yaml").write_bytes((gis / "mine" / "site.yaml").read_bytes())
+    assert maps_part.zones_of(data, raster) == {}
 
 
 @pytest.mark.parametrize("changed", [{}, {"friction": "15", "spacing": "0.5", "field_e": "0.6"},

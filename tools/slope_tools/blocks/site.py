@@ -8,6 +8,7 @@ from typing import Any, Dict, List, NamedTuple, Optional, Tuple
 import numpy as np
 from shapely.geometry import Point
 from shapely.geometry.base import BaseGeometry
+from shapely.geometry.polygon import orient
 from shapely.prepared import prep
 
 from .. import disk
@@ -27,11 +28,13 @@ from ..survey.resampling import sample
 TEMPLATE = Path(__file__).with_name("in.blocks.j2")
 FIELD = 3               # type of the ground's balls; those of zones follow
 EDGE = "road_edge"      # lines around the road
+MOST = 100_000          # blocks
 SHOWN = 200             # blocks whose paths are kept, of each run and of all together
 TRIAL = 100             # blocks of the trial run
 BINS = 2e5              # of the neighbor list, at most: the box is large and nearly empty
-RINGS, WAYS = 5, 12     # of places below a block at which it must be above the ground
-CLEAR = 1.01            # times the distance at which blocks and the ground's balls touch
+PLACES = 3000           # below a block at which it must be above the ground
+BETWEEN = 0.025         # of the circle's radius between two of them: an edge of a cliff may lie there
+CLEAR = 1.02            # times the distance at which blocks and the ground's balls touch
 WIDEST = 10.0           # times as large as the smallest block, which sets the step, may be the largest
 
 
@@ -110,6 +113,9 @@ def check(choices: Choices, runs: int) -> None:
     if number < runs:
         raise SlopeError("--blocks", f"must be at least {runs}, one for each run: chance is measured on several "
                          "grounds (blocks.grounds of site.yaml)", number)
+    if number > MOST:
+        raise SlopeError("--blocks", f"must be at most {MOST:,}: more grounds (blocks.grounds of site.yaml) say more "
+                         "than more blocks", f"{number:,}")
     if not low <= high <= WIDEST * low:
         raise SlopeError("--size", f"must be D or D:D2, m, with D <= D2 <= {WIDEST:g} D", f"{low:g}:{high:g}")
 
@@ -158,12 +164,12 @@ def inside(polygon: BaseGeometry, number: int, chance: np.random.Generator) -> n
 
 def lifted(raster: Raster, points: np.ndarray, reach: np.ndarray) -> np.ndarray:
     """Height at which the ground is nowhere nearer than that (m) to a point above each of points; NaN beside it."""
-    heights = [sample(raster, *points.T) + reach]
-    for part in np.arange(1, RINGS + 1) / RINGS:
-        for angle in np.arange(WAYS) * 2 * math.pi / WAYS:
-            x, y = points.T + part * reach * np.array([[math.cos(angle)], [math.sin(angle)]])
-            heights.append(sample(raster, x, y) + reach * math.sqrt(1 - part ** 2))
-    return np.max(heights, axis=0)
+    most = sample(raster, *points.T) + reach
+    for place in np.arange(PLACES) + 0.5:       # a spiral that fills the circle evenly
+        away, angle = math.sqrt(place / PLACES), place * math.pi * (3 - math.sqrt(5))
+        x, y = points.T + away * reach * np.array([[math.cos(angle)], [math.sin(angle)]])
+        most = np.maximum(most, sample(raster, x, y) + reach * math.sqrt(1 - max(0.0, away - BETWEEN) ** 2))
+    return most
 
 
 def doubts(start: Start) -> List[Finding]:
@@ -181,7 +187,7 @@ def touched(road: BaseGeometry, largest: float, raster: Raster) -> BaseGeometry:
 
 
 def edges(choices: Choices, layers: site_layers.Layers, start: Start, new: Path) -> List[Line]:
-    """Closed control lines around the road, clockwise: forward is onto it."""
+    """Closed control lines around the road, and around what it encloses: forward is onto it."""
     if layers.road is None:
         return []
     if line := site_layers.swapped(choices, start.raster):
@@ -191,8 +197,9 @@ def edges(choices: Choices, layers: site_layers.Layers, start: Start, new: Path)
     if road.intersects(start.polygon):
         raise SlopeError("--release", f"must be at least half a block, {start.sizes[1] / 2:g} m, away from the road",
                          f"{start.polygon.distance(layers.road):.3g} m")
-    for k, part in enumerate(polygons_of(road), 1):
-        points = np.round(np.asarray(part.exterior.coords)[:, :2], 4)[::-1 if part.exterior.is_ccw else 1] + 0.0
+    parts = [orient(part, -1.0) for part in polygons_of(road)]
+    for k, ring in enumerate((ring for part in parts for ring in (part.exterior, *part.interiors)), 1):
+        points = np.round(np.asarray(ring.coords)[:, :2], 4) + 0.0
         found.append(Line(f"{EDGE}_{k}", f"{EDGE}_{k}.csv", points))
         disk.write(new / found[-1].file, "# around the road, local x,y in m; forward is onto it\n"
                    + "".join(f"{x!r},{y!r}\n" for x, y in points.tolist()))

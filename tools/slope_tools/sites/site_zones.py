@@ -7,7 +7,7 @@ import csv
 import difflib
 import re
 from pathlib import Path
-from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Set, Tuple
+from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Set, Tuple
 
 import numpy as np
 from rasterio import features
@@ -239,6 +239,18 @@ def write(zones: List[Zone], raster: Raster, folder: Path) -> None:
     rows = [(MultiPolygon(polygons_of(zone.geometry)), {**dict.fromkeys(kinds), **zone.about(raster)})
             for zone in zones]
     geopackage.write(folder / ALL, {"ground": geopackage.Layer("MultiPolygon", kinds, rows)}, raster)
+
+
+def outlines(folder: Path, zones: Sequence[Mapping[str, Any]], raster: Raster) -> Dict[str, BaseGeometry]:
+    """{name: polygon}, as write() left them in a site's folder; zones: those of Zone.about()."""
+    files = {zone["name"]: folder / FILE.format(zone["variables"]) for zone in zones}
+    return {name: polygons.read_local(path, raster, True) for name, path in files.items() if path.is_file()}
+
+
+def with_rest(zones: Sequence[Mapping[str, Any]]) -> List[Mapping[str, Any]]:
+    """Those of Zone.about(), and the ground outside of them."""
+    rest = {"name": "outside of all zones", "variables": "", "share": 1 - sum(zone["share"] for zone in zones)}
+    return [*zones, rest]
 
 
 # --- what the values are in a run ---
