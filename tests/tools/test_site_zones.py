@@ -10,7 +10,7 @@ import yaml
 from affine import Affine
 from rasterio.crs import CRS
 from rasterio.warp import transform as warp
-from shapely.geometry import Point, Polygon, mapping
+from shapely.geometry import Point, Polygon, box, mapping
 
 from run_helpers import write_tif
 from test_site import CELL, EAST, NORTH, RELEASE, ROAD, slope, write_dem, write_layer
@@ -269,6 +269,27 @@ def test_the_deck_has_the_values_of_a_run(gis, mine, changed):
         if "spacing" in zone:
             [apart] = re.findall(rf"zone zone_{zone['variables']} {number} (\S+)", log)[-1:]
             assert float(apart) == pytest.approx(now["spacing"] * d)
+
+
+def test_the_deck_has_at_a_thousand_places_the_coefficients_of_the_polygon_there(gis, mine):
+    """By the files that its regions read, the order of its zones, and the coefficients of their types."""
+    folder = gis / "mine"
+    log = lmp(folder, "-var", "duration", "0.001", "-var", "rolling", "0.05")
+    d = float(re.search(r"^variable +d +index +(\S+)", log, re.M)[1])
+    field = re.findall(r"^fix +field .*", log, re.M)[-1]
+    zones = [(box(-1e3, -1e3, 1e3, 1e3), "3", re.search(r" spacing (\S+)", field)[1])]
+    for name, kind, apart in re.findall(r"zone (\S+) (\d+)(?: +(\d\S*))?", field):
+        [path] = re.findall(rf"^region +{name} polygon (\S+)$", log, re.M)
+        zones.append((polygons.read_local(folder / path, TERRAIN, True), kind, apart or zones[0][2]))
+    pairs = {kind: re.findall(rf"^pair_coeff  1 {kind} .*restitution (\S+) friction (\S+) rolling (\S+)$", log,
+                              re.M)[-1] for _, kind, _ in zones}
+    asked = [(points, {name.lower(): value for name, value in about.items()}) for points, about in THREE]
+    for x, y in np.random.default_rng(4).uniform((0, 0), (120, 80), (1000, 2)):
+        kind, apart = [one[1:] for one in zones if one[0].contains(Point(x, y))][-1]
+        about = {**RUN, "restitution": RUN["field_e"], "rolling": 0.05}
+        about.update(([own for points, own in asked if Polygon(points).contains(Point(x, y))] or [{}])[-1])
+        assert [*map(float, pairs[kind]), float(apart) / d] == pytest.approx(
+            [float(about[name]) for name in ("restitution", "friction", "rolling", "spacing")])
 
 
 def test_one_zone_of_all_with_the_sites_values_is_the_site(gis):
