@@ -42,7 +42,7 @@ def made(tmp_path_factory):
 def mine(made, here, monkeypatch):
     """The same in the test's folder; no report of the study."""
     shutil.copytree(made, here, dirs_exist_ok=True)
-    monkeypatch.setattr(study, "write_report", lambda *_: None)
+    monkeypatch.setattr(study, "write_report", lambda *_, **__: None)
     return here
 
 

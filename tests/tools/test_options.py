@@ -100,7 +100,7 @@ def test_the_two_commands_of_the_readme_are_of_files_that_are_here():
     commands = parser.add_subparsers()
     cli.add_command(commands, "site", cli.module_of("site", parser))
     args = parser.parse_args(site)
-    for path in [*args.terrain, args.release, args.road]:
+    for path in [*args.terrain, args.release, *args.road]:
         assert (top / str(path)).is_file()
 
 

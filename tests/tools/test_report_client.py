@@ -17,7 +17,7 @@ from slope_tools.ensembles import known_study
 from slope_tools.finding_words import WORDS, words_of
 from slope_tools.findings import LIMIT, NOTE, WARNING, Finding, finding, gathered
 from slope_tools.plots.obstacles import Obstacles
-from slope_tools.report import body, client_part, numbers, structures_part, warnings
+from slope_tools.report import body, client_part, ensemble_part, numbers, structures_part, warnings
 from slope_tools.report.numbers import Numbers
 from slope_tools.statistics.withheld import Kind as Rule
 from slope_tools.tables import answer_words, judged, next_step
@@ -168,6 +168,25 @@ def weighted(quantities=None, reached=0.9, gap=None):
         key: {"quantiles": [{"share": 0.95, "value": value}]} for key, value in (quantities or {}).items()},
         "to_remove": [{"share": 0.95, "value": 9e3, "low": 0.0, "high": None, "gap": gap}]}
     return SimpleNamespace(finished=rows, road=True, study={"ensemble": {"known_events": known}})
+
+
+MAP = {"raster": "thickness", "threshold": 0.1}
+
+
+@pytest.mark.parametrize("study, runs, whom, file", [
+    ({"maps": [{**MAP, "file": "own"}], "known_events": {"reached": 0.9, "maps": [
+        {**MAP, "file": "5", "threshold": 0.5}, {**MAP, "file": "a"}, {"raster": "thickness", "quantile": 0.9},
+        {"raster": "max_speed", "threshold": 0.01, "file": "speed"}, {**MAP, "threshold": 0.0, "file": "any"}]}}, 64,
+     "known events", "a"),
+    ({"maps": [{**MAP, "file": "own"}], "known_events": {"reached": None, "maps": []}}, 64, "runs", "own"),
+    ({"maps": [{**MAP, "file": "own"}]}, 20, "runs", "own"), ({"maps": [{**MAP, "file": "own"}]}, 19, None, None),
+    ({"maps": []}, 64, None, None), (None, 64, None, None)])
+def test_the_map_has_the_outlines_of_an_ensemble(study, runs, whom, file):
+    """Of known events where these weigh it; none where 5 % of the runs are no run."""
+    data = SimpleNamespace(finished=[{}] * runs, study={"ensemble": study}, read_map=lambda name: name)
+    found = ensemble_part.exceeded(data)
+    assert (found and found.whom, found and found.share) == (whom, file)
+    assert found is None or found.thick == 0.1
 
 
 def test_ranges_beside_a_weighted_number():

@@ -166,6 +166,22 @@ def test_the_outline_of_a_mapped_raster_is_that_of_its_cells(drawn):
     assert [*points.min(axis=0), *points.max(axis=0)] == pytest.approx([75, 100, 125, 125])
 
 
+@pytest.mark.parametrize("name", SITES)
+@pytest.mark.parametrize("most, lines", [(1.0, 3), (0.7, 2), (0.3, 1), (0.04, 0)])
+def test_outlines_of_an_ensemble(drawn, name, most, lines):
+    """A line and an entry of the legend for each share that the ensemble reaches."""
+    layers, thickness = site(name)
+    exceeded = figure_maps.Exceeded(most * thickness / thickness.max(), "known events", 0.1)
+    for each in (layers, layers._replace(exceeded=exceeded)):
+        figure_maps.value_map(each, thickness, LONG, "thickness (m)", figures.classes_of(thickness), "YlOrBr",
+                              figures.FULL, CRS_OF[name] or "")
+        check_layout(drawn[-1])
+    before, after = (len(one.axes[0].collections) for one in drawn)
+    texts = [text for text, _ in texts_of(drawn[-1]) if "of known events" in text]
+    assert after - before == lines or after > before and lines      # one for each level, or for each of its parts
+    assert texts == [f"thicker than 0.1 m in {one} % of known events" for one in (95, 50, 5)][3 - lines:]
+
+
 def test_an_overlap_would_be_found(drawn):
     layers, thickness = site("usual")
     figure_maps.value_map(layers, thickness, LONG, "m", [0.1, 1, 40], "YlOrBr", figures.FULL)

@@ -16,8 +16,10 @@ from tiny_collapse import LMP
 
 from slope_tools import cli
 from slope_tools.case import decks
+from slope_tools.commands import study as study_command
 from slope_tools.scenarios import compare, page
 from slope_tools.sites import site_budget, site_choices, site_scenarios
+from slope_tools.studies.road_numbers import Made
 from slope_tools.survey.rasters import Raster
 
 KEPT = ("d", "cell", "duration", "film", "density", "spacing", "friction")
@@ -207,3 +209,18 @@ def test_an_outline_lies_where_it_is_on_the_ground():
     assert found.box == (10 + 3 + 10, 7 - 10, 10 + 3 + 10, 7 - 10)      # centre of the one cell that is so thick
     assert found.thickness.shape == (4, 4) and found.thickness[0].max() == 0
     assert page.outline(raster._replace(z=0.1 * raster.z), np.zeros(2)) is None
+
+
+def test_a_study_draws_the_page_anew(here, monkeypatch, capsys):
+    """Of the site or of a scenario; a file of the user's stays, and the study with it."""
+    path = Path("mine/scenarios.html")
+    monkeypatch.setattr(study_command, "run_site_of", lambda *_: Made([{}], None))
+    assert cli.main(["study", "mine"]) == 0 and not path.exists()       # no scenario
+    assert cli.main(["site", "mine", "--scenario", "half", "--volume", "600"]) == 0
+    for folder in ("mine", "mine/scenarios/half"):
+        assert cli.main(["study", folder]) == 0
+        assert "mine/scenarios.html: the site and its 1 scenarios" in capsys.readouterr().out
+        path.unlink()
+    path.write_text("of the user\n")
+    assert cli.main(["study", "mine"]) == 0 and path.read_text() == "of the user\n"
+    assert "scenarios.html is not made: -o: mine/scenarios.html must be the result of" in capsys.readouterr().out

@@ -197,7 +197,7 @@ def test_both_studies_give_one_number(done, tmp_path, monkeypatch, capsys, fitte
     pages = []
     (mine / "site.yaml").write_text((mine / "site.yaml").read_text().replace("points: 64", "points: 8"))
     monkeypatch.setattr(farther, "MOST", 0.0)       # runs that are added are tested elsewhere
-    monkeypatch.setattr(study_command, "write_report", lambda study, page, *_, film=True: pages.append(
+    monkeypatch.setattr(study_command, "write_report", lambda study, page, *_, film=True, quiet=False: pages.append(
         (study.name, page.name, film)))
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("LMP", LMP)
@@ -302,7 +302,7 @@ def test_the_largest_restitution_is_none_of_the_volume(done):
 
 
 def test_the_study_is_resumed(done, monkeypatch):
-    monkeypatch.setattr(study_command, "write_report", lambda *_: None)
+    monkeypatch.setattr(study_command, "write_report", lambda *_, **__: None)
     monkeypatch.setattr(volume_files, "draw", lambda path, *_: path.touch())
     folder, _, _ = done
     before = {path: path.stat().st_mtime_ns for path in (folder / "mine").rglob("finished.yaml")}
@@ -324,7 +324,7 @@ def test_no_run_is_made_twice(done):
 
 def test_runs_of_an_older_version_are_taken_over(done, tmp_path, monkeypatch):
     """They were in the folders of the parts, and are left there."""
-    monkeypatch.setattr(study_command, "write_report", lambda *_: None)
+    monkeypatch.setattr(study_command, "write_report", lambda *_, **__: None)
     monkeypatch.setattr(volume_files, "draw", lambda path, *_: path.touch())
     mine = tmp_path / "mine"
     shutil.copytree(done[0] / "mine", mine)

@@ -19,6 +19,7 @@ from slope_tools.commands import study as study_command
 from slope_tools.errors import SlopeError
 from slope_tools.runs import store
 from slope_tools.sites import site_budget, site_choices, site_deck, site_trial
+from slope_tools.studies.road_numbers import Made
 from slope_tools.studies import ahead, outdated, site_study, study
 from slope_tools.studies.setup import Setup
 
@@ -173,7 +174,7 @@ def test_an_ensemble_that_does_not_vary_a_list_takes_its_first_value(mine, monke
     edit(mine, "study", rolling=[0.1, 0.05])
     seen = []
     monkeypatch.setattr(study_command, "run_deck", lambda args: seen.append((args.set, args.vary)))
-    monkeypatch.setattr(study_command, "write_report", lambda *_: None)
+    monkeypatch.setattr(study_command, "write_report", lambda *_, **__: None)
     request = study_command.Request(deck=mine, sample=8)
     for words in (["friction=5:30"], ["friction=5:30", "rolling=0:0.1"], []):
         study_command.run_site_ensemble(study_command.replace(request, vary=words), site_choices.load(mine))
@@ -183,7 +184,7 @@ def test_an_ensemble_that_does_not_vary_a_list_takes_its_first_value(mine, monke
 def test_what_is_ahead_is_said_before_anything_runs(mine, monkeypatch, capsys):
     edit(mine, "study", rolling=[0.05, 0.1, 0.15])
     said = []
-    monkeypatch.setattr(study_command, "run_both", lambda *_: said.append(capsys.readouterr().out))
+    monkeypatch.setattr(study_command, "run_both", lambda *_: said.append(capsys.readouterr().out) or Made((), None))
     study_command.run(study_command.Request(deck=mine))
     assert re.search(rf"^{7 + POINTS} of {19 + POINTS} runs are there, 12 to make, (\d+ s|\d+ minutes); up to {POINTS} "
                      "more where known events go farther$", said[0], re.MULTILINE), said

@@ -5,7 +5,7 @@ from typing import Any, Dict, Tuple
 
 from .. import disk
 from ..errors import SlopeError
-from ..sites import site, site_choices
+from ..sites import site, site_choices, site_roads
 from ..studies import site_study
 
 BLOCKS = "blocks"
@@ -73,6 +73,8 @@ def check(choices: site_choices.Choices, given: Dict[str, Tuple[str, str]]) -> N
     """Raise SlopeError unless options, of these sections and keys, have a meaning for the kind of a site."""
     kind = site_choices.kind_of(choices)
     known = {name: about["properties"] for name, about in site_choices.sections(kind)}
+    if kind and "roads" in given:
+        raise SlopeError("--road", site_roads.ONE)
     for name, (section, key) in given.items():
         if key not in known.get(section, {}):
             raise SlopeError(f"--{name.replace('_', '-')}", WRONG if kind else "must be given with --blocks")

@@ -11,7 +11,7 @@ from ..deposits import dumps, road_sides
 from ..errors import SlopeError
 from ..sites.site_choices import Site
 from ..sites.site_folder import TERRAIN
-from ..sites.site_layers import ROAD
+from ..sites.site_roads import ROAD
 from ..survey import rasters, roads
 from ..survey.rasters import Raster
 from .site import EDGE, sizes_of, touched

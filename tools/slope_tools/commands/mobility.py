@@ -10,7 +10,7 @@ from ..mobility import body, fall_path, known, results, road
 from ..options import Overwrite, option, positional
 from ..releases import release
 from ..sites import site_choices
-from ..sites.site_layers import ROAD
+from ..sites.site_roads import ROAD
 from ..survey import lines, roads
 from ..survey.crs import as_crs
 from . import known_arguments, road_arguments

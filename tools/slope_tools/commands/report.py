@@ -74,12 +74,14 @@ class Request(Overwrite):
 
 
 def study_of(folder: Path) -> Path:
-    """The study inside the folder of a site; any other folder itself, as a site that holds a run made by hand only."""
-    if not (folder / SITE).is_file() or (folder / STUDY).is_file():
-        return folder
+    """The study inside the folder of a site, or of one of its roads; any other folder itself, as a site that holds a
+    run made by hand only.
+    """
     inside = named_run.study_in(folder)
     if inside:
         return inside
+    if not (folder / SITE).is_file():
+        return folder
     if not run_folders.summaries(folder):
         raise SlopeError(folder, f"must hold the study of this site: `slope study {quote(str(folder))}` makes it and "
                          "the report", f"no {folder / named_run.INSIDE[0] / STUDY}")

@@ -55,6 +55,8 @@ class Runs(road_arguments.Clearing, Engine):
     GROUP = "runs"
     deck: Path
     site: Optional[Path] = None     # whose deck it is
+    road_name: str = ""             # of one of its several roads
+    quiet: bool = False             # nothing is told but the progress of the runs
     output: Optional[Path] = option("the study's folder", "-o", metavar="DIR")
     road: Optional[Path] = option("also compute the volume to remove from " + road_arguments.ROAD,
                                   metavar="POLYGON|LINE")
@@ -126,9 +128,10 @@ def teller(all_columns: bool) -> Callable[[Union[str, Table]], None]:
 def setup_of(args: Runs) -> Setup:
     """What these arguments say."""
     given = {name: value for name in ("cut_angle", "mesh") if (value := getattr(args, name)) is not None}
-    road = Road(args.road, **given, local=args.local, asked=road_arguments.asked(args)) if args.road else None
-    return engine_of(args)._replace(deck=args.deck, output=args.output or args.deck, road=road, site=args.site,
-                                    tell=teller(args.all_columns), warn=printer(args.command))
+    road = Road(args.road, **given, local=args.local, asked=road_arguments.asked(args),
+                name=args.road_name) if args.road else None
+    found = engine_of(args)._replace(deck=args.deck, output=args.output or args.deck, road=road, site=args.site)
+    return found if args.quiet else found._replace(tell=teller(args.all_columns), warn=printer(args.command))
 
 
 def engine_of(args: Engine) -> Setup:

@@ -4,7 +4,7 @@ from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from shlex import quote
-from typing import Any, Dict, List, Optional
+from typing import Any, Dict, List, Optional, Sequence
 
 from ..blocks import kinds
 from ..case import decks
@@ -35,7 +35,8 @@ OPTIONS = {"terrain": ("terrain", "files"), "crs": ("terrain", "crs"),
            "curvature": ("release", "curvature"), "dip": ("release", "dip"), "direction": ("release", "direction"),
            "scar": ("release", "scar"), "scar_is": ("release", "scar_is"), "least": ("release", "least"),
            "bodies": ("release", "bodies"),
-           "road": ("road", "file"), "cut_angle": ("road", "cut_angle"), "mesh": ("road", "mesh"),
+           "road": ("road", "file"), "roads": ("road", "others"), "cut_angle": ("road", "cut_angle"),
+           "mesh": ("road", "mesh"),
            **{option: ("road", roads.KEYS[field]) for option, field in road_arguments.OPTIONS.items()},
            "ground": ("ground", "file"), "ground_table": ("ground", "table"),
            "structure": ("structures", "files"), "wall": ("structures", "walls"), "height": ("structures", "height"),
@@ -51,8 +52,9 @@ OPTIONS = {"terrain": ("terrain", "files"), "crs": ("terrain", "crs"),
            "client": ("project", "client"), "author": ("project", "author"), "blocks": ("blocks", "number"),
            "size": ("blocks", "size"), "speed": ("blocks", "speed")}
 # options that change neither the body nor its runs: what was determined for these is kept
-BESIDE = {"road", *road_arguments.OPTIONS, "cut_angle", "mesh", "line", "observed", "known", "confined", "rolling",
-          "largest_restitution", "name", "client", "author"}
+BESIDE = {"road", "roads", *road_arguments.OPTIONS, "cut_angle", "mesh", "line", "observed", "known", "confined",
+          "rolling", "largest_restitution", "name", "client", "author"}
+OTHERWISE = {"assigned": "--assign-crs", "roads": "--road"}     # options that are not called so
 # of each group, an option that is given replaces the others
 SIZES = ("diameter", "balls", "minutes", "memory")
 ONE_OF = (("depth", "volume", "curvature"), SIZES)
@@ -134,7 +136,9 @@ class Ground:
 class Layers(road_arguments.Clearing):
     """What lies on it."""
     GROUP = "what lies on it"
-    road: Optional[str] = option("for the volume to remove, " + road_arguments.ROAD, metavar="P")
+    road: Optional[List[str]] = option("for the volume to remove, " + road_arguments.ROAD + "; may be given several "
+                                       "times, and lines that do not meet are each a road", metavar="P",
+                                       action="append")
     ground: Optional[str] = option(
         "zones of the ground: polygons with the attributes name, friction (degrees), rolling, restitution, spacing "
         "(diameters); what a zone does not give, and the ground outside of all, has the values below. Or a raster of "
@@ -270,6 +274,7 @@ def chosen(args: Request):
     """
     given = {name: value for name in OPTIONS if (value := getattr(args, name, None)) is not None}
     given.update(assigned_crs(given.pop("assign_crs", ())))
+    given.update(of_roads(given.pop("road", ())))
     given.update(of_slips(args))
     if args.folder is not None:
         if args.output is not None:
@@ -287,8 +292,7 @@ def chosen(args: Request):
         given["density"] = density_of_ball(given["density"])
     replace(choices, given)
     site_choices.check({"slope_site": site_choices.VERSION, **choices}, str(folder / site_choices.NAME),
-                       {OPTIONS[option]: "--assign-crs" if option == "assigned" else f"--{option.replace('_', '-')}"
-                        for option in given})
+                       {OPTIONS[option]: OTHERWISE.get(option, f"--{option.replace('_', '-')}") for option in given})
     return folder, choices, known
 
 
@@ -332,6 +336,11 @@ def of_slips(args: Ground) -> Dict[str, Any]:
     return {"scar": str(found[0]), "scar_is": "surface", "bodies": [str(one) for one in found]}
 
 
+def of_roads(files: Sequence[str]) -> Dict[str, Any]:
+    """Options from the values of --road: the first one, and the others."""
+    return {"road": files[0], **({"roads": list(files[1:])} if files[1:] else {})} if files else {}
+
+
 def density_of_ball(bulk):
     """Of the balls (kg/m3) that together have a bulk density."""
     if bulk < LIGHT:
@@ -371,6 +380,8 @@ def replace(choices, given):
                 choices[section][key] = None
     if "bodies" in choices["release"] and ("scar" in given or "release" in given):
         choices["release"]["bodies"] = []
+    if "road" in given and "others" in choices["road"]:
+        choices["road"]["others"] = []
     if "scar" in given:
         choices["release"].update(shape=None, depth=None, volume=None, curvature=None, dip=None, direction=None)
     for name, value in given.items():

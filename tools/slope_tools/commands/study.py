@@ -5,7 +5,7 @@ finished (jobs.py), collect (results.py), combine (combinations.py, headline.py)
 """
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, List, Mapping, Optional
+from typing import Any, List, Mapping, Optional, Sequence
 
 from .. import disk
 from ..case import decks
@@ -14,12 +14,13 @@ from ..ensembles import known_events, known_study, sample
 from ..errors import SlopeError
 from ..options import flag, option, positional, several
 from ..runs import repeats
-from ..sites import site_choices, site_deck
+from ..scenarios import page as of_scenarios
+from ..sites import site_choices, site_deck, site_roads
 from ..sites.site_choices import Site
 from ..sites.site_bodies import VARIABLE
-from ..sites.site_layers import ROAD
 from ..statistics.answer import Source
-from ..studies import ahead, console, files, fine_runs, results, site_ground, site_study, study
+from ..studies import ahead, console, files, fine_runs, results, road_numbers, site_ground, site_study, study
+from ..studies.road_numbers import Made
 from ..studies.study import OfAKind, RunsFailed, check_more_than, check_thresholds, perform
 from ..survey import roads
 from ..tables import answered, elastic, intensity, next_step
@@ -71,6 +72,7 @@ class Request(Sample, known_arguments.Known, Repeats, Intensity, Runs):
     weigh: bool = False     # by the known events of a site, also without --known
     around: Optional[Site] = None       # in whose folder the deck is
     wide: Mapping[str, Any] = field(default_factory=dict)       # {variable: its range outside of the given one}
+    roads: Sequence[Mapping[str, Any]] = ()     # of a site with several, whose worst is asked
     deck: Path = positional(f"{DECK}; or a folder made by `slope site`: its standard study is run", metavar="DECK|SITE")
     set: List[str] = several(
         "values of an index variable of the deck; A:B:STEP stands for A, A + STEP, ... up to B",
@@ -107,15 +109,25 @@ def run(args: Request) -> None:
 
 
 def run_folder(args: Request) -> None:
-    """The study of a site's folder: by the paper's method, and weighted by known events."""
+    """The studies of a site's folder: of its road, or of each of several, and of the worst as if it were alone."""
+    site = site_choices.load(args.deck)
+    made = road_numbers.of_all(site, not args.dry_run, setup_of(args).tell, lambda one, several, quiet: run_site_of(
+        replace(args, roads=several, quiet=quiet), one))
+    if made.abouts and (said := of_scenarios.refresh(args.deck)):
+        print(said)
+    if made.failed:
+        raise made.failed
+
+
+def run_site_of(args: Request, site: Site) -> Made:
+    """The study of a site, of the road that is asked: by the paper's method, and weighted by known events."""
     if args.sample is not None or args.fit is not None:
         if args.paper:
             raise SlopeError("--paper", "must not be given with --sample or --from, which make an ensemble")
-        return run_site_ensemble(args, site_choices.load(args.deck))
+        return run_site_ensemble(args, site)
     if args.fragility is not None:
         raise SlopeError("--sample", "must be given with --fragility: how many runs")
     refuse(args, NOT_OF_A_SITE)
-    site = site_choices.load(args.deck)
     site_study.check(site)
     points = site.choices["study"]["points"]
     why = "" if args.paper else known_study.why_not(args.deck) if points else known_study.NONE
@@ -128,21 +140,21 @@ def run_folder(args: Request) -> None:
     return run_both(args, site, points)
 
 
-def run_both(args: Request, asked: Site, points: int) -> None:
+def run_both(args: Request, asked: Site, points: int) -> Made:
     """The paper's study and the ensemble of a site, the number that both give, and a report of each."""
-    site, before = asked.folder, site_study.digests(asked)
-    paper = site_study.run(asked, setup_of(args), known_study.BESIDE, args.fine)
+    site, before = site_roads.results(asked), site_study.digests(asked)
+    paper = site_study.run(asked, setup_of(args), known_study.BESIDE, args.fine, args.roads)
     failed, weighted = paper.failed, None
     if site_study.digests(asked) != before:
-        raise SlopeError(site, f"must not change while its study is made: {site_deck.NAME} and its data are not those "
-                         "of the runs so far; the same command again, with --anew")
+        raise SlopeError(asked.folder, f"must not change while its study is made: {site_deck.NAME} and its data are "
+                         "not those of the runs so far; the same command again, with --anew")
     try:
         weighted = run_deck(of_ensemble(replace(args, sample=points, known=None, weigh=True), asked,
                                         known_study.WEIGHTED))
     except RunsFailed as error:     # the others count
         failed, weighted = failed or error, error.found
     if args.dry_run:
-        return
+        return Made((), None)
     made = {name: about for name, about in ((site_study.STUDY, paper.about), (site_study.ENSEMBLE, weighted))
             if about}
     found, governs = answered.of_both(*made.values()) if len(made) == 2 else None, list(made)[-1]
@@ -156,16 +168,17 @@ def run_both(args: Request, asked: Site, points: int) -> None:
         files.write_about(site / name, made[name])
     for name, about in made.items():
         if name != governs:
-            write_report(site / name, site / PAGES[name], about, asked, film=False)
-    if number:
+            write_report(site / name, site / PAGES[name], about, asked, film=False, quiet=args.quiet)
+    if number and not args.quiet:
         print("\n".join(console.tell_headline(made[governs])))
-    write_report(site / governs, site / "report.html", made[governs], asked)
-    if failed:
-        raise failed
+    write_report(site / governs, site / road_numbers.PAGE, made[governs], asked, quiet=args.quiet)
+    return Made([made[governs], *(about for name, about in made.items() if name != governs)], failed)
 
 
 def say(args: Request, site: Site, method: str, points: int) -> None:
     """How the study of a site is made, what its grounds hold, which runs are there; points: of the ensemble."""
+    if args.roads or site.road not in ("", *site_roads.names(site)[:1]):
+        return      # said for the first road
     print("\n".join([method, *site_ground.lines(site, others=True),
                      ahead.of_site(site, setup_of(args), points, args.fine).text]), flush=True)
 
@@ -247,13 +260,12 @@ def chain_of(args: Request):
     return replace(args, set=[*args.set, *fixed], vary=[*args.vary, *drawn], more_than=None), found
 
 
-def run_site(args: Request, site: Site, method: str) -> None:
+def run_site(args: Request, site: Site, method: str) -> Made:
     """The standard study of a site's folder, and the report."""
-    done = site_study.run(site, setup_of(args), method, args.fine)
+    done = site_study.run(site, setup_of(args), method, args.fine, args.roads)
     if done.study and done.about:
-        write_report(done.study, args.deck / "report.html", done.about, site)
-    if done.failed:
-        raise done.failed
+        write_report(done.study, site_roads.results(site) / road_numbers.PAGE, done.about, site, quiet=args.quiet)
+    return Made([done.about] if done.about else (), done.failed)
 
 
 def refuse(args: Request, names) -> None:
@@ -267,15 +279,18 @@ def refuse(args: Request, names) -> None:
                              None if first is True else f"{first:g}" if isinstance(first, float) else first)
 
 
-def write_report(folder: Path, page: Path, about: Mapping[str, Any], site: Site, film=True) -> None:
-    """The page on a study, of which study.yaml says this, unless it is there."""
+def write_report(folder: Path, page: Path, about: Mapping[str, Any], site: Site, film=True, quiet=False) -> None:
+    """The page on a study, of which study.yaml says this, unless it is there; one of several roads has no film."""
     from ..report import document
     from ..report.heading import Asked
-    asked = Asked(folder, film=page.with_suffix(".mp4") if film else None, study=disk.plain(about), site=site.content)
-    print("\n".join(document.update(asked, page)))
+    asked = Asked(folder, film=page.with_suffix(".mp4") if film and not site.road else None, study=disk.plain(about),
+                  site=site.content)
+    said = document.update(asked, page)
+    if not quiet:
+        print("\n".join(said))
 
 
-def run_site_ensemble(args: Request, site: Site) -> None:
+def run_site_ensemble(args: Request, site: Site) -> Made:
     """An ensemble of a site's deck with its road, in a folder of the site's, and the report."""
     refuse(args, OF_A_ROAD)
     site_study.check(site)
@@ -283,22 +298,27 @@ def run_site_ensemble(args: Request, site: Site) -> None:
     about = run_deck(wanted)
     if about:
         assert wanted.output is not None
-        write_report(wanted.output, args.deck / PAGES[site_study.ENSEMBLE], about, site)
+        write_report(wanted.output, site_roads.results(site) / PAGES[site_study.ENSEMBLE], about, site,
+                     quiet=args.quiet)
+    return Made([about] if about else (), None)
 
 
 def of_ensemble(args: Request, asked: Site, method="") -> Request:
     """The request with a site's deck, its road, and a folder of the site's."""
+    if args.output and asked.road:
+        raise SlopeError("-o", "must not be given with a site of several roads, each of which has its folder",
+                         args.output)
     site, choices = asked.folder, asked.choices
     about = choices["road"]
     chance = site_choices.chance(decks.index_variables(site / site_deck.NAME))
     road = {name: about[roads.KEYS[field]] for name, field in road_arguments.OPTIONS.items()}
-    road.update(road=site / ROAD, cut_angle=about["cut_angle"], mesh=about["mesh"])
+    road.update(road=site_roads.file_of(asked), road_name=asked.road, cut_angle=about["cut_angle"], mesh=about["mesh"])
     vary = args.vary or ([] if args.fit else [*of_fragility(choices), chance] if args.fragility
                          else [*known_study.VARY, chance])
     return replace(args, deck=site / site_deck.NAME, site=site, around=asked, method=method,
                    set=[*args.set, *not_varied(args, choices, vary)],
                    fine=args.fine or str(choices["study"]["fine"] or "no"),
-                   output=args.output or site / site_study.ENSEMBLE,
+                   output=args.output or site_roads.results(asked) / site_study.ENSEMBLE,
                    wide={} if args.vary or args.fit or args.fragility else known_study.WIDE,
                    vary=vary, **(road if about["file"] else {}))
 
@@ -342,7 +362,7 @@ def run_ensemble(args: Request, settings, repeated, thresholds, defaults, condit
     several = sample.settings_of(todo)
     order = ensemble.Order(plan, of, levels, condition, condition and farther.Added(setup.output, plan))
     questions = results.Questions(several, repeated, thresholds, order, site=args.site, method=args.method,
-                                  chain=chain, known=known_of(args))
+                                  chain=chain, known=known_of(args), roads=args.roads)
 
     def collect(todo, work):
         fine = fine_runs.of_median_length(setup, fine_runs.factor_of(args.fine), todo, defaults)

@@ -1,6 +1,6 @@
 """The maps of a report on a shaded relief, as data URIs."""
 import math
-from typing import Any, Mapping, NamedTuple, Optional, Tuple
+from typing import Any, List, Mapping, NamedTuple, Optional, Tuple
 
 import numpy as np
 from matplotlib.cm import ScalarMappable
@@ -24,9 +24,26 @@ LINE = {"color": "#8a5aa8", "lw": 1.2}
 ZONE = {"color": "#7a4d1f", "lw": 0.9, "ls": "-."}
 MAPPED = {"color": "#1f2fbf", "lw": 1.3}
 PATH = {"color": "#00695c", "lw": 0.7, "ls": (0, (1, 1.5))}
+OUTLINES = {0.95: {"color": "#111111", "lw": 1.4}, 0.5: {"color": "#111111", "lw": 1.1, "ls": (0, (4, 1.5))},
+            0.05: {"color": "#111111", "lw": 1.0, "ls": (0, (1, 1.2))}}
 MARKS = {0.5: {"color": "#00695c", "lw": 1.6}, 0.1: {"color": "#00695c", "lw": 1.6, "ls": (0, (1.5, 0.8))}}
 TINTS = LinearSegmentedColormap.from_list(
     "tints", ["#5f8f5a", "#9dbb7c", "#d9d39a", "#c8a36c", "#a87a55", "#e9e4de"])
+
+
+class Exceeded(NamedTuple):
+    """The share of whom a deposit is thicker than `thick` (m) at each cell; its OUTLINES are drawn."""
+    share: np.ndarray
+    whom: str
+    thick: float
+
+    @property
+    def drawn(self) -> List[float]:
+        return [one for one in OUTLINES if self.share.max() > one]
+
+    def entries(self) -> List[Entry]:
+        return [Entry(f"thicker than {self.thick:g} m in {100 * one:g} % of {self.whom}", OUTLINES[one])
+                for one in self.drawn]
 
 
 class Layers(NamedTuple):
@@ -43,6 +60,7 @@ class Layers(NamedTuple):
     reach: KnownReach = NOTHING              # of known events
     mapped: Any = None                       # the deposit of an event: a polygon, or a mask of cells
     zones: Mapping[str, Any] = {}            # of the ground: polygons
+    exceeded: Optional[Exceeded] = None      # by an ensemble
 
 
 # --- what is drawn into the axes of a map ---
@@ -73,6 +91,12 @@ def base_map(axes, layers, labels=True):
         axes.annotate(name, (place.x, place.y), fontsize=6, color=ZONE["color"], annotation_clip=True, zorder=8)
     draw_obstacles(axes, layers)
     draw_mapped(axes, layers)
+    if layers.exceeded:
+        share, where = part(raster, layers.exceeded.share, shown)
+        for one in layers.exceeded.drawn:
+            style = OUTLINES[one]
+            axes.contour(share, [one], extent=where, origin="upper", colors=style["color"], linewidths=style["lw"],
+                         linestyles=[style.get("ls", "-")], zorder=6)
     if layers.reach.marks:
         axes.plot(*layers.reach.path.T, zorder=6, **PATH)
     for mark in layers.reach.marks:
@@ -144,6 +168,8 @@ def entries(layers):
         found.append(Entry("mapped deposit", MAPPED))
     if layers.zones:
         found.append(Entry("zone of the ground", ZONE))
+    if layers.exceeded:
+        found += layers.exceeded.entries()
     found += entries_of_marks({mark.share for mark in layers.reach.marks})
     if layers.section is not None:
         found.append(Entry("section A-A'", SECTION_LINE))

@@ -27,7 +27,7 @@ def content(data, ground, numbers, answers: Sequence[Optional[Dict[str, Any]]], 
             "answer": spoken or (floored(data, of_answer(data, main, numbers), numbers) if main else
                                  of_reach(data, numbers)),
             "basis": basis(data),
-            "sentences": [mobility_part.on_first_page(data, ground, numbers),
+            "sentences": [*road_part.others(data), mobility_part.on_first_page(data, ground, numbers),
                           *sentences(data, ground, numbers, bool(main)),
                           *road_part.on_first_page(data, numbers, bool(main and main["withheld"])),
                           Finding("dry").client()],

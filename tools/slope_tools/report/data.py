@@ -124,7 +124,7 @@ class Data:
                 self.over_all[entry["file"]] = self.read_map(entry["file"])
         if road:
             self.removed = self._removed()
-            volume = self.result.folder / "volume" / "volume.yaml"
+            volume = self.result.folder / self._volume() / "volume.yaml"
             self.volumes = (schemas.load(volume, "what `slope volume` wrote", mapping({"volume": OBJECT}))["volume"]
                             if volume.is_file() else {})
 
@@ -142,16 +142,20 @@ class Data:
         path = run_folders.summary_of(self.folder, row)
         return Result(path.parent, path, row)
 
+    def _volume(self) -> str:
+        """Where runs have the volume to remove from the road of the study."""
+        return quantities.volume_folder(self.study["study"]["road"].get("name") or "")
+
     def _removed(self):
         found = []
         raster = self.result.deposit.raster
         for name in ("volume.tif", "volume_mesh.tif"):
-            one = rasters.read(self.result.folder / "volume" / name, heights=False)
+            one = rasters.read(self.result.folder / self._volume() / name, heights=False)
             east, north = raster.offset     # the files are in the CRS
             found.append(one._replace(transform=Affine.translation(-east, -north) * one.transform,
                                       z=np.nan_to_num(one.z)))
         if found[0].z.shape != raster.z.shape:
-            raise SlopeError(self.result.folder / "volume" / "volume.tif",
+            raise SlopeError(self.result.folder / self._volume() / "volume.tif",
                              f"must have the grid of {self.result.prefix}.thickness.asc")
         return found[0].z, found[1]
 

@@ -289,6 +289,21 @@ def shown(entry) -> bool:
     return entry["quantile"] == 0.9 and entry["raster"] != "thickness"
 
 
+def exceeded(data) -> Optional[figure_maps.Exceeded]:
+    """In which share of an ensemble the deposit is thicker than its least threshold; of known events, where these weigh
+    it. None of other studies, and of runs too few for the smallest share."""
+    about = (data.study or {}).get("ensemble") or {}
+    known = about.get("known_events") or {}
+    weighted = known.get("reached") is not None
+    entries = [one for one in (known if weighted else about).get("maps") or ()
+               if one["raster"] == "thickness" and one.get("threshold")]
+    if not entries or len(data.finished) < 1 / min(figure_maps.OUTLINES):
+        return None
+    least = min(entries, key=lambda one: one["threshold"])
+    whom = "known events" if weighted else "runs"
+    return figure_maps.Exceeded(data.read_map(least["file"]), whom, least["threshold"])
+
+
 def draw(data, entries, maps) -> List[Picture]:
     """How likely the mass is there, and what 90 % of the runs stay within, where that is anything."""
     pictures = []

@@ -4,6 +4,7 @@ from typing import Any, Dict, NamedTuple, Optional, Sequence
 
 from .. import schemas
 from ..schemas import TEXT, listed, mapping
+from ..sites import site_roads
 from ..sites.site_choices import check_text
 
 SITE = "site.yaml"          # of `slope site`; its study is a folder in the site's
@@ -42,7 +43,8 @@ def heading(folder: Path, given: Dict[str, Optional[str]],
 
 def site_file(folder: Path) -> Optional[Path]:
     """The file of the site of a folder, in it or above it; None without one."""
-    return next((place / SITE for place in (folder, folder.absolute().parent) if (place / SITE).is_file()), None)
+    place = folder if (folder / SITE).is_file() else site_roads.home(folder.absolute())
+    return place / SITE if place else None
 
 
 def site_of(folder: Path) -> Dict[str, Any]:

@@ -10,7 +10,7 @@ from ..plots import figure_maps, known_reach
 from ..plots.ground import box_of
 from ..sites import site_zones
 from ..survey.rasters import crs_name
-from . import heading, mobility_part
+from . import ensemble_part, heading, mobility_part
 from .numbers import shown_run
 from .run_part import titled
 from .sections import Figures, Picture, Section, Text
@@ -63,7 +63,7 @@ class Maps:
         found["deposit"] = self.thickness(
             one.thickness, "Thickness of the deposit at the end", "Map of the deposit's thickness at the end",
             f"Final thickness, {digits.three(one.deposit.cell)} m cells."
-            + shown_run(data) + known_reach.words(ground.reach), figures.FULL)
+            + shown_run(data) + known_reach.words(ground.reach) + self.outlines(), figures.FULL, self.with_outlines())
         found["terrain"] = Picture(
             figure_maps.terrain_map(layers._replace(shown=whole), layers.shown, self.crs), "Map of the terrain before",
             "Terrain before the collapse, light from the north-west"
@@ -92,6 +92,23 @@ class Maps:
                                       mask=np.isfinite(ground.arrival) & ~ground.release),
                 "Map of the first arrival", "Time at which the first ball arrived.")
         return found
+
+    def with_outlines(self):
+        """The layers with what an ensemble exceeds, and a window that shows it."""
+        exceeded = ensemble_part.exceeded(self.data)
+        if exceeded is None:
+            return self.layers
+        xlo, ylo, xhi, yhi = self.layers.shown
+        far = box_of(self.layers.raster, exceeded.share > min(exceeded.drawn, default=1.0))
+        boxes = [(xlo, ylo, xhi, yhi), *([far] if exceeded.drawn else [])]
+        return self.layers._replace(exceeded=exceeded, shown=(
+            *np.min(boxes, axis=0)[:2], *np.max(boxes, axis=0)[2:]))
+
+    def outlines(self) -> str:
+        """What these lines are."""
+        exceeded = ensemble_part.exceeded(self.data)
+        return f" Black lines: where the deposit is thicker than {exceeded.thick:g} m in so many {exceeded.whom}." \
+            if exceeded and exceeded.drawn else ""
 
     def section(self, of_run):
         """The section of the maps of the shown run."""

@@ -55,6 +55,7 @@ class Page:
             *ensemble_part.sections(data, numbers, maps),
             study_part.section(data, numbers, self.reference, maps),
             mobility_part.mapped(data, numbers),
+            road_part.of_all(data),
             road_part.section(data, numbers, maps),
             limits_part.zones_of_ground(data, numbers),
             chain_part.section(data, numbers),

@@ -5,6 +5,8 @@ from ..deposits.axis import Span
 from ..deposits.road_axis import axes_of, axis_of
 from ..geometry import box_of
 from ..plots import figure_maps, known_reach
+from ..sites.site_roads import FOLDER
+from ..studies import road_numbers
 from ..survey.roads import Asked
 from .ensemble_part import ODDS
 from .sections import Cell, Figures, Picture, Section, Table
@@ -40,6 +42,29 @@ def section(data, numbers, maps) -> Optional[Section]:
     return Section("road", "Blocked stretches of the road", [
         Figures([shares(data, asked, about, runs, maps)], "tall"),
         Table(caption(asked, about, runs) + gaps(data, about), heads, lines, ())])
+
+
+def of_all(data) -> Optional[Section]:
+    """The roads of a site with several, the worst first; None of a single one."""
+    several = road_numbers.read(data.study or {})
+    if not several:
+        return None
+    rows = [[one.road, one.text, f"{one.reaching} of {one.runs}", f"{FOLDER}/{one.road}/{road_numbers.PAGE}"]
+            for one in several]
+    return Section("roads", "The roads", [Table(
+        "To remove: the number of the first page on each road, which is in the site's folder. The runs are the same; "
+        f"this page is of the road from which most is to be removed, {several[0].road}. A number counts as its volume, "
+        "also where at least so much is to be removed; a road without one as the largest of its runs.",
+        ["road", "to remove", "runs that reach it", "its page"], rows, (0, 1, 2, 3))])
+
+
+def others(data) -> List[str]:
+    """What is to be removed from the other roads of a site: a sentence in a list; none of a single road."""
+    several = road_numbers.read(data.study or {})
+    if not several:
+        return []
+    found = ", ".join(f"from {one.road} {one.text}" for one in several[1:])
+    return [f"This is the road {several[0].road}, from which most is to be removed; {found}."]
 
 
 def gaps(data, about) -> str:

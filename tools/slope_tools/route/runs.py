@@ -15,7 +15,7 @@ from ..ensembles import ensemble, ensemble_maps, sample
 from ..errors import SlopeError
 from ..runs import jobs
 from ..sites import site, site_budget, site_choices, site_deck, site_zones
-from ..sites.site_layers import ROAD
+from ..sites.site_roads import ROAD
 from ..slips import bodies
 from ..statistics import designs
 from ..studies import results, site_study, study

@@ -9,11 +9,13 @@ from .. import digits, disk, provenance
 from ..case import run_folders
 from ..deposits import travel_shares
 from ..drawing import figures, maps, pictures
+from ..errors import SlopeError
 from ..plots import figure_maps, sheets
 from ..report import document
 from ..report.sections import Cell, Figures, Listing, Picture, Section, Table
+from ..sites import site_scenarios
 from ..sites.site_folder import BODY as NAME_OF_BODY, TERRAIN
-from ..sites.site_layers import ROAD
+from ..sites.site_roads import ROAD
 from ..statistics.answer import Kind
 from ..survey import rasters, roads
 from ..survey.rasters import Raster, crs_name
@@ -54,6 +56,17 @@ def write(folder: Path, output: Path, overwrite: bool) -> str:
         "footer": f"{document.MADE_BY}, SLOPE {provenance.version()}; each scenario has a report of its own."}
     disk.write(output, document.render(content, Path(__file__).with_name("scenarios.html.j2")))
     return f"{output}: the site and its {len(several) - 1} scenarios"
+
+
+def refresh(folder: Path) -> Optional[str]:
+    """The page anew after a study of a site or scenario; why not, where it is none of ours; None without scenarios."""
+    site = site_scenarios.site_of(folder) or folder
+    if not site_scenarios.of_site(site):
+        return None
+    try:
+        return write(site, site / PAGE, False)
+    except SlopeError as error:
+        return f"{PAGE} is not made: {error}"
 
 
 def models(several: Sequence[One]) -> Iterator[str]:

@@ -148,8 +148,8 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
                 *site_warnings.site_warnings(found.measures, size, trial),
                 *site_warnings.of_cells(found.area.z - found.slip, found.area.cell, max(
                     map(rasters.surveyed_cell, choices["terrain"]["files"]))),
-                *site_warnings.of_road(layers.road, choices["road"]["width"], size.diameter, max(
-                    found.area.cell, choices["model"]["cell"]))):
+                *(one for road in layers.roads.values() for one in site_warnings.of_road(
+                    road, choices["road"]["width"], size.diameter, max(found.area.cell, choices["model"]["cell"])))):
         keep(one)
     site_warnings.write(new, warnings)
     deck = site_deck.text(choices, parts, numbers(choices, soil_of(choices, parts), trial, size))
@@ -172,19 +172,21 @@ def about_made(choices: Choices, new: Path, folder: Path, raster: Raster, layers
             "deck_sha256": disk.sha256(new / site_deck.NAME), "choices_sha256": site.fingerprint(),
             "sources_sha256": site.sources(), "crs": crs_name(raster.crs),
             "origin": {"east": float(raster.offset[0]), "north": float(raster.offset[1])},
-            "zones": [zone.about(raster) for zone in layers.zones]}
+            "zones": [zone.about(raster) for zone in layers.zones],
+            "roads": list(layers.roads) if len(layers.roads) > 1 else []}
 
 
 def of_road(choices: Choices, found: release.Body, layers: Layers, size: Size) -> List[Finding]:
-    """That the road, or a part of it, lies on the body, or that the slip surface comes out under it."""
-    file, road = choices["road"]["file"], layers.road
-    if road is None:
-        return []
-    raster = found.raster
-    on = release_toe.on_body(depth_of(found) > 0, raster, road, release_toe.rim(size.diameter ** 3, raster.transform.a))
-    under = None if on and on.wholly else release_toe.under(found.area, found.slip, road)
-    return [*([on.finding(file)] if on else []),
-            *([Finding("under road", {"file": file, **under._asdict()})] if under else [])]
+    """That a road, or a part of it, lies on the body, or that the slip surface comes out under it."""
+    raster, said = found.raster, []
+    for name, road in layers.roads.items():
+        file = choices["road"]["file"] if len(layers.roads) == 1 else name
+        on = release_toe.on_body(depth_of(found) > 0, raster, road,
+                                 release_toe.rim(size.diameter ** 3, raster.transform.a))
+        under = None if on and on.wholly else release_toe.under(found.area, found.slip, road)
+        said += [on.finding(file)] if on else []
+        said += [Finding("under road", {"file": file, **under._asdict()})] if under else []
+    return said
 
 
 # --- ground ---

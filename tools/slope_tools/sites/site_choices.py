@@ -32,8 +32,8 @@ WHAT = "a site.yaml of `slope site`"
 FOUND = schemas.mapping({}, found=schemas.mapping({}, null=True))       # of any version
 # keys that hold one file, and lists of files
 FILES = (("terrain", "files"), ("release", "polygon"), ("release", "scar"), ("release", "bodies"), ("road", "file"),
-         ("ground", "file"), ("ground", "table"), ("structures", "files"), ("structures", "walls"), ("lines", "files"),
-         ("motion", "file"), ("observed", "file"))
+         ("road", "others"), ("ground", "file"), ("ground", "table"), ("structures", "files"), ("structures", "walls"),
+         ("lines", "files"), ("motion", "file"), ("observed", "file"))
 
 WITHOUT_CRS = (("ground", "table"), ("structures", "files"), ("motion", "file"))
 
@@ -46,7 +46,7 @@ DERIVED = (("balls", "diameter"), ("balls", "number"), ("model", "speed"), ("mod
 
 # keys that came later: those who made a folder before did not count them
 LATER = (("ground", "file"), ("ground", "table"), ("model", "film"), ("structures", "walls"), ("structures", "height"),
-         ("structures", "width"), ("model", "least_speed"), ("model", "least_thick"))
+         ("structures", "width"), ("model", "least_speed"), ("model", "least_thick"), ("road", "others"))
 
 # keys of section model, and of others, that make the model's balls, cells and stiffness; not what is asked for
 OF_MODEL = (*DERIVED, ("model", "least_speed"), ("model", "least_thick"))
@@ -206,6 +206,7 @@ class Site(NamedTuple):
     written: Choices        # the same with the paths that the file has, which are those from the folder
     found: Dict[str, Any]   # what slope site found when it made the folder
     content: Dict[str, Any]     # of the file
+    road: str = ""          # which of several is asked now (site_roads); none of a single one, or of the worst
 
     @classmethod
     def of(cls, choices: Choices, folder: Path) -> "Site":

@@ -8,7 +8,8 @@ from ..releases import release_files
 from ..survey import vectors
 from . import site_bodies, site_choices, site_deck, site_inputs, site_trial, site_warnings, site_zones
 from .site_choices import Choices
-from .site_layers import OBSERVED, RASTERS, ROAD
+from .site_layers import OBSERVED, RASTERS
+from .site_roads import ROAD, file_name, listed
 
 MAP = "map.png"
 TERRAIN = "terrain.asc"
@@ -24,8 +25,10 @@ def planned(choices: Choices) -> Set[str]:
     names |= site_bodies.planned(choices, BODY)
     for observed in site_choices.listed(choices, "observed", "file"):
         names.add(OBSERVED + (".tif" if Path(observed).suffix.lower() in RASTERS else ".csv"))
-    if choices["road"]["file"]:
-        names.add(ROAD)
+    if several := listed(choices):
+        taken_: Set[str] = set()
+        names |= {ROAD, *(file_name(site_inputs.unused(site_inputs.stem(file), taken_)) for file in several
+                          if len(several) > 1)}
     if site_choices.listed(choices, "motion", "file"):
         names.add(site_inputs.MOTION)
     if choices["ground"]["file"]:

@@ -1,12 +1,13 @@
 """What lies on a site's terrain: road, structures, control lines, a mapped deposit, and the motion of the ground."""
 import shlex
 from pathlib import Path
-from typing import List, NamedTuple, Optional, Sequence, Set
+from typing import Dict, List, NamedTuple, Optional, Sequence, Set
 
 import numpy as np
 from rasterio.crs import CRS
 from shapely.geometry import box
 from shapely.geometry.base import BaseGeometry
+from shapely.ops import unary_union
 
 from ..errors import SlopeError
 from ..findings import Finding
@@ -15,24 +16,28 @@ from ..releases import release_area
 from ..survey import beside, polygons, rasters, roads, vectors
 from ..survey.crs import as_crs, same_crs
 from ..survey.rasters import Raster, crs_name
-from . import site_choices, site_inputs, site_zones
+from . import site_choices, site_inputs, site_roads, site_zones
 from .site_choices import Choices
 from .site_inputs import Line, Motion, Structure
 from .site_zones import Zone
 
-ROAD = "road.csv"
 OBSERVED = "observed"       # .csv of an outline, .tif of a raster
 RASTERS = {".tif", ".tiff", ".asc", ".vrt", ".img", ".bil"}
 
 
 class Layers(NamedTuple):
     """What was read and written into the folder; geometries in local metres."""
-    road: Optional[BaseGeometry]
+    roads: Dict[str, BaseGeometry]          # by their names
     observed: Optional[BaseGeometry]        # None of a raster, too
     structures: List[Structure]
     lines: List[Line]
     motion: Optional[Motion]
     zones: List[Zone]
+
+    @property
+    def road(self) -> Optional[BaseGeometry]:
+        """All of them; None without one."""
+        return unary_union(list(self.roads.values())) if self.roads else None
 
 
 class Shown(NamedTuple):
@@ -54,7 +59,7 @@ def read_layers(choices: Choices, raster: Raster, folder: Path, tell, warn) -> L
 
     Raises SlopeError, which names the file, if one does not fit the terrain.
     """
-    road = road_layer(choices, raster, folder / ROAD, tell, warn)
+    road = road_layers(choices, raster, folder, tell, warn)
     observed = observed_layer(choices, raster, folder, tell, warn) if "observed" in choices else None
     taken: Set[str] = set(site_inputs.TAKEN)
     along = choices.get("structures", {})
@@ -148,19 +153,22 @@ def polygon_layer(choices: Choices, path: Optional[str], raster: Raster, target:
     return geometry
 
 
-def road_layer(choices: Choices, raster: Raster, target: Path, tell, warn) -> Optional[BaseGeometry]:
-    """The road in local metres, written for the study; None if there is none."""
-    asked, path = roads.Asked.of(choices["road"]), choices["road"]["file"]
-    roads.check(asked)
-    if not path:
-        return None
-    road = roads.read_local(path, raster, asked, False, assigned(choices, path), advice(choices, path), warn)
-    if road.line is None:
-        warn_outside(path, road.polygon, raster, warn)
-    geometry = roads.write(target, road, raster)
-    what = "polygon" if road.line is None else f"line of {road.line.length:,.0f} m, {asked.width:g} m wide"
-    tell(f"{target.name}: {len(polygons.polygons_of(geometry))} {what}, {geometry.area:,.0f} m2")
-    return geometry
+def road_layers(choices: Choices, raster: Raster, folder: Path, tell, warn) -> Dict[str, BaseGeometry]:
+    """The roads in local metres, written for the study; of several the first one also as that of the site."""
+    found = site_roads.read(choices, raster, lambda path: assigned(choices, path),
+                            lambda path: advice(choices, path), warn)
+    written = {}
+    for name, (path, road) in found.items():
+        if road.line is None:
+            warn_outside(path, road.polygon, raster, warn)
+        target = folder / site_roads.file_name(name if len(found) > 1 else "")
+        written[name] = geometry = roads.write(target, road, raster)
+        if len(written) == 1 and len(found) > 1:
+            roads.write(folder / site_roads.ROAD, road, raster)
+        what = "polygon" if road.line is None else \
+            f"line of {road.line.length:,.0f} m, {choices['road']['width']:g} m wide"
+        tell(f"{target.name}: {len(polygons.polygons_of(geometry))} {what}, {geometry.area:,.0f} m2")
+    return written
 
 
 def warn_outside(path: str, geometry: BaseGeometry, raster: Raster, warn) -> None:

@@ -76,7 +76,7 @@ def points_of(planned: site_study.Planned, points: int):
     fixed = site_choices.not_varied(planned.choices, {words.partition("=")[0] for words in vary})
     plan = sample.check(points, designs.SOBOL, SEED, vary, planned.setup.deck, fixed, {}).widened(known_study.WIDE)
     todo = sample.plan(planned.setup.runs, plan, fixed, {}, planned.variables)
-    added = farther.Added(planned.setup.home / site_study.ENSEMBLE, plan)
+    added = farther.Added(planned.setup.output.parent / site_study.ENSEMBLE, plan)
     for batch in added.batches:
         todo += repeats.with_repeats(planned.setup.runs, [{**fixed, **one} for one in batch.points], (), plan.names)
     return todo, int(farther.MOST * points) - added.number

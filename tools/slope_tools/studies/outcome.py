@@ -38,6 +38,7 @@ class Questions(NamedTuple):
     method: str = ""                                # of a site's study, in words
     chain: Optional[chain_files.Chain] = None       # of an ensemble: how likely its bodies fail in an earthquake
     known: Mapping[str, Any] = {}                   # of site.yaml: with which known events the runs are compared
+    roads: Sequence[Mapping[str, Any]] = ()         # of a site with several, whose worst is asked: road_numbers.entries
 
     @property
     def among(self) -> Mapping[str, Any]:
@@ -102,7 +103,7 @@ def evaluate(questions: Questions, read: Read) -> Outcome:
         "scatter": {name: known and {"deviation": known.deviation, "degrees_of_freedom": known.degrees_of_freedom}
                     for name, known in scatters.items()},
         "combinations": combinations.entries(groups, names), "envelope": None, "exceedance": None,
-        "observed": read.observed, "warnings": entries(warnings), "runs": rows}
+        "observed": read.observed, "roads": list(questions.roads), "warnings": entries(warnings), "runs": rows}
     if read.fine and finished:
         about["size"] = fine_run.evaluate(read.fine)
     several = None

@@ -8,7 +8,7 @@ from ..case import run_folders
 from ..case.data_files import data_files
 from ..errors import SlopeError
 from ..runs import dependencies, jobs
-from ..sites import site_choices, site_deck
+from ..sites import site_deck, site_roads
 from ..tables import named_run
 
 
@@ -28,9 +28,10 @@ def changed(site: Path, study: Path) -> Optional[str]:
 
 
 def check(folder: Path, study: Optional[Path]) -> None:
-    """Raise SlopeError if a folder is a site and the study in it is of other data or of another deck."""
-    if study is None or study == folder or not (folder / site_choices.NAME).is_file():
+    """Raise SlopeError if a folder is that of a site or a road, and its study is of other data or of another deck."""
+    site = None if study is None or study == folder else site_roads.home(study)
+    if site is None or study is None:
         return
-    if what := changed(folder, study):
+    if what := changed(site, study):
         raise SlopeError(folder, f"must be as it was studied: its governing run had another {what}; `slope study "
-                         f"{quote(str(folder))}` makes the study of now, {study} is the folder of the one before")
+                         f"{quote(str(site))}` makes the study of now, {study} is the folder of the one before")

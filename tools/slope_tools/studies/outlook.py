@@ -12,8 +12,7 @@ from ..geometry import extent
 from ..mobility import body, known, results, road
 from ..mobility.exceedance import Mobility
 from ..mobility.fall_path import TERRAIN, FallPath
-from ..sites import site_choices, site_disk
-from ..sites.site_layers import ROAD
+from ..sites import site_choices, site_disk, site_roads
 from ..statistics.size_effect import RESOLVED
 from ..survey import roads
 from ..survey.rasters import Raster
@@ -38,9 +37,10 @@ def lines(folder: Path) -> List[str]:
         length, fall = (rounded(float(values[-1]), 4) for values in (counts.path.length, counts.path.fall))
         said += [f"fall path of {length} m, down to {fall} m below the crown, {counts.path.end}",
                  events_text(counts, asked)]
-        if choices["road"]["file"]:
-            lane = roads.read_local(folder / ROAD, mass.raster, roads.Asked.of(choices["road"]), local=True).polygon
-            said.append(road_text(counts, road.at_road(counts.path, lane)))
+        for name in site_roads.names(site) or [""] * bool(choices["road"]["file"]):
+            lane = roads.read_local(folder / site_roads.file_name(name), mass.raster, roads.Asked.of(choices["road"]),
+                                    local=True).polygon
+            said.append(road_text(counts, road.at_road(counts.path, lane), name))
         floors += [why] if (why := terrain_ends(counts, mass.raster)) else []
     floors += [why] if (why := coarse(choices, found)) else []
     said.append(f"the study takes about {site_disk.text(site_disk.study(folder, choices, found))} of disk")
@@ -55,10 +55,10 @@ def events_text(counts: Mobility, asked: known.Choice) -> str:
     return f"{name}: " + (results.lengths(counts, counts.chosen) if counts.in_range else "; ".join(counts.outside))
 
 
-def road_text(counts: Mobility, met: road.AtRoad) -> str:
-    """Which share of known events reaches and passes the road."""
+def road_text(counts: Mobility, met: road.AtRoad, name: str) -> str:
+    """Which share of known events reaches and passes the road; name: of one of several."""
     where = "first met" if met.met else f"which the fall path passes {rounded(met.beside, 4)} m beside,"
-    return f"the road, {where} after {rounded(met.length, 4)} m: {results.of_road(counts, met)}"
+    return f"the road{name and f' {name}'}, {where} after {rounded(met.length, 4)} m: {results.of_road(counts, met)}"
 
 
 def terrain_ends(counts: Mobility, raster: Raster) -> Optional[str]:

@@ -164,7 +164,7 @@ def on_road(run, setup: Setup, row, thickness) -> Dict[str, Any]:
     terrain = terrain_of(run)
     wanted = volume.Wanted(road.file, road.mesh, road.cut_angle, road.local, asked=road.asked)
     found = volume.of_run(str(prefix), wanted, terrain)
-    volume.write(found, run.folder / "volume", picture=False)
+    volume.write(found, run.folder / quantities.volume_folder(road.name), picture=False)
     about = disk.plain(found.about)       # numpy has no place in study.yaml
     released = run_folders.load_raster(prefix, "arrival").z == 0
     polygon, total = road.read(placed(thickness, run)).polygon, about["clearing"]

@@ -17,10 +17,12 @@ class Road(NamedTuple):
     mesh: float = 10.0          # m
     local: bool = False         # in local metres
     asked: Asked = NOTHING      # width of a line, lane, hours
+    name: str = ""              # of one of several
 
     def about(self) -> Dict[str, Any]:
         """What a study keeps of it."""
-        return {"file": self.file.name, "cut_angle": self.cut_angle, "mesh": self.mesh, **self.asked.about()}
+        return {"file": self.file.name, "name": self.name, "cut_angle": self.cut_angle, "mesh": self.mesh,
+                **self.asked.about()}
 
     def read(self, raster, warn=ignore):
         """The roads.Road, in the local metres of a raster or place."""

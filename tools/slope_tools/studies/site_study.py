@@ -6,7 +6,7 @@ Order of the work: plan all runs, make them (study), what the fine run and half 
 import shutil
 from pathlib import Path
 from shlex import quote
-from typing import Any, Dict, Iterable, List, Mapping, NamedTuple, Optional
+from typing import Any, Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence
 
 from .. import disk, schemas
 from ..case import decks, run_folders
@@ -15,9 +15,9 @@ from ..errors import SlopeError
 from ..findings import Finding, finding
 from ..runs import repeats
 from ..schemas import FINDINGS
-from ..sites import ground, site_choices, site_deck, site_warnings
+from ..sites import ground, site_choices, site_deck, site_roads, site_warnings
 from ..sites.site_choices import Choices, OFFSETS, PACKING, Site, other_grounds
-from ..sites.site_layers import OBSERVED, ROAD
+from ..sites.site_layers import OBSERVED
 from ..survey.roads import Asked
 from ..tables import elastic, energy, named_run
 from ..tables.step_check import QUANTITY, Step, half_of
@@ -64,9 +64,10 @@ def plan(site: Site, engine: Setup, asked: Optional[str] = None) -> Planned:
     """All runs of a site by the paper's method; asked: of --fine."""
     folder, choices = site.folder, site.choices
     deck, road, several = folder / site_deck.NAME, choices["road"], choices["study"]
-    setup = engine._replace(deck=deck, output=folder / STUDY, site=folder, road=None)
+    setup = engine._replace(deck=deck, output=site_roads.results(site) / STUDY, site=folder, road=None)
     if road["file"]:
-        setup = setup._replace(road=Road(folder / ROAD, road["cut_angle"], road["mesh"], asked=Asked.of(road)))
+        setup = setup._replace(road=Road(site_roads.file_of(site), road["cut_angle"], road["mesh"],
+                                         asked=Asked.of(road), name=site.road))
     settings, variables = {"rolling": words(several["rolling"])}, decks.index_variables(deck)
     repeated = {name: words(several[name]) for name in (PACKING, *OFFSETS) if name in variables and several.get(name)}
     middle = middle_of(settings["rolling"])
@@ -82,11 +83,12 @@ def plan(site: Site, engine: Setup, asked: Optional[str] = None) -> Planned:
     return Planned(choices, setup, variables, settings, repeated, middle, todo, fine, half, elastics)
 
 
-def run(site: Site, engine: Setup, method: str, asked: Optional[str] = None) -> Done:
+def run(site: Site, engine: Setup, method: str, asked: Optional[str] = None,
+        roads: Sequence[Mapping[str, Any]] = ()) -> Done:
     """Make or continue all runs of a site, and their results.
 
     engine: how the runs are made; its deck, output and road do not count; method: of the study, in words; asked: of
-    --fine. Raises SlopeError on bad input, and if no run of the study finished.
+    --fine; roads: of Questions. Raises SlopeError on bad input, and if no run of the study finished.
     """
     folder, planned = site.folder, plan(site, engine, asked)
     setup, todo, fine, half, variables = planned.setup, planned.todo, planned.fine, planned.half, planned.variables
@@ -96,7 +98,7 @@ def run(site: Site, engine: Setup, method: str, asked: Optional[str] = None) -> 
             planned.settings, planned.repeated, THRESHOLDS, notes=warnings_of(folder), site=folder,
             fine=fine[0] if fine else None, most_elastic=elastic_of(setup, planned.elastics),
             step=step_of(setup, half[0], planned.middle, variables) if half else None, method=method,
-            known=planned.choices["known"])
+            known=planned.choices["known"], roads=roads)
         return results.collect(setup, questions, todo, work)
 
     failed: Optional[Exception] = None
@@ -111,7 +113,7 @@ def run(site: Site, engine: Setup, method: str, asked: Optional[str] = None) -> 
             raise failed from None
     if setup.dry_run:
         return Done(None, None, failed)
-    if planned.choices["observed"]["file"]:
+    if planned.choices["observed"]["file"] and not site.road:
         shutil.rmtree(folder / SCORE, ignore_errors=True)       # of other runs
         try:
             scored(folder, setup, about)

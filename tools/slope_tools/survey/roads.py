@@ -5,7 +5,7 @@ points of a line.
 """
 import re
 from pathlib import Path
-from typing import Any, Dict, Mapping, NamedTuple, Optional
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional
 
 import numpy as np
 from shapely.errors import ShapelyError
@@ -99,11 +99,52 @@ def read_local(path, raster, asked: Asked = NOTHING, local=False, crs=None, advi
             if not is_line(path):
                 raise
         raise SlopeError(path, "is a line, whose width must be given: --road-width")
+    found = lines_in(path, raster, local, crs, advice, warn)
+    if len(found) != 1:
+        raise SlopeError(path, "must hold one line, for --road-width", f"{len(found)} that do not meet")
+    return along(path, found[0], raster, asked)
+
+
+def read_each(path, raster, asked: Asked = NOTHING, crs=None, advice=None, warn=vectors.ignore) -> Dict[str, Road]:
+    """The roads of a file by their names: polygons together are one, and lines that do not meet are each one.
+
+    A road has the name of its file, or layer; one of several the attribute `name` of its line, or a number. Arguments
+    and errors as of read_local().
+    """
+    where = vectors.source(path)
+    own = where.layer or Path(where.path).stem
+    found = lines_in(path, raster, False, crs, advice, warn) if asked.width is not None else []
+    if len(found) < 2:
+        return {own: read_local(path, raster, asked, False, crs, advice, warn)}
+    names = names_of(path, len(found)) or [f"{own}_{number}" for number in range(1, len(found) + 1)]
+    return {name: along(path, line, raster, asked) for name, line in zip(names, found)}
+
+
+def names_of(path, number: int) -> List[str]:
+    """What the attribute `name` of a file says of so many lines that do not meet; none unless it tells all apart."""
+    if polygons.read_text(path) is not None:
+        return []
+    found = vectors.read(path, "Line")
+    whole, _ = lines.once([line for _, one in found.features for line in lines.parts_of(one)])
+    names = []
+    for line in whole.geoms:
+        middle = line.interpolate(0.5, normalized=True)
+        of_it = min(range(len(found.features)), key=lambda k: found.features[k][1].distance(middle))
+        text = {key.lower(): value for key, value in found.attributes[of_it].items()}.get("name")
+        names.append(str(text or ""))
+    return names if len(names) == number and all(names) and len(set(names)) == number else []
+
+
+def lines_in(path, raster, local, crs, advice, warn) -> List[LineString]:
+    """The lines of a file that do not meet, in local metres."""
     found = lines.read_local(path, raster, local, "road", advice, crs, warn,
                              "leave out --road-width, which is that of a line")
-    if len(found.geoms) != 1:
-        raise SlopeError(path, "must hold one line, for --road-width", f"{len(found.geoms)} that do not meet")
-    line = found.geoms[0]
+    return list(found.geoms)
+
+
+def along(path, line: LineString, raster, asked: Asked) -> Road:
+    """The road of a line, on the terrain."""
+    assert asked.width is not None
     check_line(path, line, getattr(raster, "extent", None) or extent(raster), asked.start)
     return Road(line.buffer(asked.width / 2, cap_style=2, resolution=ARCS), line)
 

@@ -4,7 +4,7 @@ from shlex import quote
 from typing import Any, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from ..mobility import events
-from ..sites import site_choices
+from ..sites import site_choices, site_roads
 from ..sites.site_budget import duration_text
 from ..statistics.answer import Code, Kind, Reason, Source
 from ..statistics.withheld import Kind as Rule
@@ -65,8 +65,7 @@ class Made(NamedTuple):
     @property
     def site(self) -> Optional[Path]:
         """The site's folder, if the study is one of a site."""
-        folder = self.folder.parent
-        return folder if (folder / site_choices.NAME).is_file() else None
+        return site_roads.home(self.folder)
 
     @property
     def withheld(self) -> List[Mapping[str, Any]]:

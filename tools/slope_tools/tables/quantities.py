@@ -129,6 +129,11 @@ def keys(where: On) -> List[str]:
     return [one.key for one in ALL.values() if where in one.on]
 
 
+def volume_folder(road: str) -> str:
+    """In that of a run: where the volume to remove from a road is; road: its name, if it is one of several."""
+    return f"volume_{road}" if road else "volume"
+
+
 def shown_on(what: str) -> List[Quantity]:
     """Those of the table of the screen or of a page, as study.csv has them."""
     return [one for one in (*OF_RUN, *OF_ROAD, *IF_KNOWN) if getattr(one, what)]

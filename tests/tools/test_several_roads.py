@@ -1,0 +1,191 @@
+"""Several roads of a site: each is studied as if it were alone, over the same runs; the worst stands for the site."""
+import csv
+import json
+import shutil
+
+import pytest
+import yaml
+
+from test_site import BALLS, EAST, NORTH, ROAD, gis, inside, make, told, write_files, write_layer  # noqa: F401
+from tiny_collapse import LMP
+
+from slope_tools.commands import study as study_command
+from slope_tools.deposits import volume_files
+from slope_tools.errors import SlopeError
+from slope_tools.sites import site_choices, site_roads
+from slope_tools.statistics.answer import Kind
+from slope_tools.studies import road_numbers
+from slope_tools.studies.road_numbers import Number
+from slope_tools.survey import rasters, roads
+from slope_tools.tables import named_run
+
+NEAR, FAR = [(38, 0), (46, 0), (46, 80), (38, 80)], [(4, 0), (12, 0), (12, 80), (4, 80)]
+OF_ONE = ("collected", "machine", "jobs", "road")       # of study.study, which are of the time, or of the name
+
+
+def write_lines(path, *features):
+    """Lines with the attribute name, in local metres."""
+    path.write_text(json.dumps({"type": "FeatureCollection", "crs": {"type": "name", "properties": {
+        "name": "urn:ogc:def:crs:EPSG::6677"}}, "features": [
+            {"type": "Feature", "properties": {"Name": name} if name else {}, "geometry": {
+                "type": "LineString", "coordinates": [[x + EAST, y + NORTH] for x, y in points]}}
+            for name, points in features]}))
+
+
+def plain(about):
+    """What study.yaml says, without what another road or time makes different."""
+    return {**{key: value for key, value in about.items() if key not in ("roads", "next_step")},
+            "runs": [{key: value for key, value in row.items() if key != "summary"} for row in about["runs"]],
+            "study": {key: value for key, value in about["study"].items() if key not in OF_ONE}}
+
+
+@pytest.fixture(scope="module")
+def done(tmp_path_factory):
+    """A site with three roads and its study by the paper's method; the folder and what the study printed."""
+    folder = tmp_path_factory.mktemp("roads")
+    write_files(folder)
+    for name, points in (("near", NEAR), ("far", FAR)):
+        write_layer(folder / f"{name}.geojson", points)
+    made = make(folder, "--shape", "ellipsoid", "--depth", "5", "--balls", BALLS, "--road", "far.geojson", "--road",
+                "road.geojson", "--road", "near.geojson", run=inside_with_lmp)
+    assert made.returncode == 0, made.stderr
+    site = folder / "mine" / "site.yaml"
+    site.write_text(site.read_text().replace("rolling: [0.0, 0.05, 0.1]", "rolling: [0.05, 0.1]").replace(
+        "spacing: [0.5, 0.7]", "spacing: []"))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(volume_files, "draw", lambda path, *_: path.touch())
+        study = inside_with_lmp(folder, "study", "mine", "--paper")
+    assert study.returncode == 0, study.stderr
+    return folder, made.stdout, study.stdout
+
+
+def inside_with_lmp(folder, *words, **_):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("LMP", LMP)
+        return inside(folder, *words)
+
+
+def about_in(folder):
+    return yaml.safe_load((folder / "study.yaml").read_text())
+
+
+def test_each_road_has_the_numbers_of_a_site_with_it_alone(done, tmp_path, monkeypatch):
+    folder, said, _ = done
+    mine = folder / "mine"
+    assert site_choices.found(mine)["roads"] == ["far", "road", "near"]
+    assert "far.road.csv: 1 polygon" in said and "near.road.csv" in said
+    monkeypatch.setattr(study_command, "write_report", lambda *_, **__: None)
+    with open(mine / "roads.csv", encoding="utf-8", newline="") as file:
+        table = list(csv.DictReader(file))
+    volumes = {}
+    for name in ("far", "road", "near"):
+        alone = tmp_path / name
+        shutil.copytree(folder, alone)
+        made = inside_with_lmp(alone, "site", "mine", "--road", f"{name}.geojson")
+        assert made.returncode == 0, made.stderr
+        made = inside_with_lmp(alone, "study", "mine", "--paper")
+        assert made.returncode == 0 and "are finished already" in made.stdout, made.stderr
+        own, beside = about_in(alone / "mine" / "study"), about_in(mine / "roads" / name / "study")
+        assert plain(own) == plain(beside)
+        assert own["roads"] == beside["roads"] == [] and beside["study"]["road"]["name"] == name
+        rows = [row for row in table if row["road"] == name]
+        assert [float(row["remove_m3"]) for row in rows] == [row["remove_m3"] for row in own["runs"]]
+        assert not (alone / "mine" / "roads" / name).exists() and not (alone / "mine" / "roads.csv").exists()
+        volumes[name] = own["conservative"]["volume_m3"] or max(row["remove_m3"] for row in own["runs"])
+    assert len(table) == 3 * len(own["runs"]) and len(set(volumes.values())) == 3
+
+
+def test_the_worst_stands_for_the_site(done):
+    """In the folder of the site, on its first page, and for whatever takes its folder."""
+    folder, _, said = done
+    mine = folder / "mine"
+    whole = about_in(mine / "study")
+    first, *others = road_numbers.read(whole)
+    assert first.counts_m3 == max(one.counts_m3 for one in (first, *others)) and len(others) == 2
+    assert plain(whole) == plain(about_in(mine / "roads" / first.road / "study"))
+    assert (mine / "road.csv").read_text() == (mine / f"{first.road}.road.csv").read_text()
+    assert named_run.read(str(mine)).study == mine / "study"
+    page = (mine / "report.html").read_text(encoding="utf-8")
+    assert f"This is the road {first.road}, from which most is to be removed" in page
+    for one in (first, *others):
+        assert f"roads/{one.road}/report.html" in page and (mine / "roads" / one.road / "report.html").is_file()
+        assert one.text.removesuffix(" m3") in page and one.text in said
+    assert f"report.html is of the worst, {first.road}" in said
+    assert said.count("conservative volume to remove") == 1       # of the worst alone
+    again = inside_with_lmp(folder, "report", f"mine/roads/{others[0].road}", "--no-film")
+    assert again.returncode == 0, again.stderr
+
+
+def test_a_run_on_a_road_is_drawn_with_its_own_volume(done):
+    """Each road has its own folder in that of a run; the site's page would show another road's volume otherwise."""
+    mine = done[0] / "mine"
+    run = next(one for one in (mine / "runs").iterdir() if (one / "volume" / "volume.yaml").is_file())
+    found = {name: yaml.safe_load((run / name / "volume.yaml").read_text())["volume"]["remove"]
+             for name in ("volume", "volume_far", "volume_road", "volume_near")}
+    worst = road_numbers.read(about_in(mine / "study"))[0].road
+    assert found["volume"] == found[f"volume_{worst}"] and len(set(found.values())) == 3
+
+
+NUMBER, FLOOR, WITHHELD, NOTHING = (kind.value for kind in (Kind.NUMBER, Kind.FLOOR, Kind.WITHHELD, Kind.NOTHING))
+
+
+@pytest.mark.parametrize("several, order, words", [
+    ([("a", NUMBER, 500.0, 450.0), ("b", FLOOR, 700.0, 650.0)], "ba", ["at least 700 m3", "500 m3"]),
+    ([("a", NUMBER, 500.0, 450.0), ("b", WITHHELD, None, 800.0)], "ba", ["not usable", "500 m3"]),
+    ([("a", NUMBER, 500.0, 450.0), ("b", WITHHELD, 900.0, 300.0)], "ab", ["500 m3", "not usable"]),
+    ([("a", NOTHING, 0.0, 0.0), ("b", FLOOR, 0.0, 0.0), ("c", NUMBER, 12.34, 12.0)], "cab",
+     ["12.3 m3", "0 m3", "more than 0 m3"]),
+    ([("a", None, None, 12.0), ("b", NUMBER, 11.0, 10.0)], "ab", ["no number, up to 12 m3 in a run", "11 m3"])])
+def test_the_worst_is_the_largest(several, order, words):
+    found = road_numbers.in_order([Number(*one, 1, 2) for one in several])
+    assert "".join(one.road for one in found) == order
+    assert [one.text.replace("12.0", "12").replace("11.0", "11").replace("0.00", "0") for one in found] == words
+
+
+@pytest.mark.parametrize("names, found", [
+    (("Old road", "Route 4"), ["Old road", "Route 4"]), (("A", "A"), ["two_1", "two_2"]),
+    ((None, None), ["two_1", "two_2"]), (("A", None), ["two_1", "two_2"])])
+def test_lines_that_do_not_meet_are_each_a_road(tmp_path, gis, names, found):  # noqa: F811
+    points = [(10, 5), (10, 70)], [(30, 5), (30, 40), (34, 70)]
+    write_lines(tmp_path / "two.geojson", *zip(names, points))
+    raster = rasters.read(gis / "dem.tif")
+    raster = raster._replace(transform=type(raster.transform).translation(-EAST, -NORTH) * raster.transform,
+                             offset=(EAST, NORTH))
+    each = roads.read_each(tmp_path / "two.geojson", raster, roads.Asked(width=6.0))
+    assert list(each) == found
+    assert [one.line.coords[0][0] for one in each.values()] == pytest.approx([10, 30])
+    one = tmp_path / "one.geojson"
+    write_lines(one, ("A", points[0]), ("B", [(10, 70), (12, 76)]))
+    assert list(roads.read_each(one, raster, roads.Asked(width=6.0))) == ["one"]       # they meet
+    with pytest.raises(SlopeError, match="must hold one line, for --road-width"):
+        roads.read_local(tmp_path / "two.geojson", raster, roads.Asked(width=6.0))
+
+
+def test_roads_of_one_name_and_of_a_layer(told, gis):  # noqa: F811
+    write_lines(gis / "two.geojson", ("Old road", [(10, 5), (10, 70)]), ("Route 4", [(30, 5), (30, 70)]))
+    (gis / "b").mkdir()
+    write_lines(gis / "b" / "two.geojson", ("Route 4", [(20, 5), (20, 70)]), ("x", [(24, 5), (24, 70)]))
+    status, out, err = told("--terrain", "dem.tif", "--release", "release.geojson", "--shape", "ellipsoid", "--depth",
+                            5, "--road", "two.geojson", "--road", "b/two.geojson", "--road-width", 2, "-o", "mine")
+    assert status == 0, err
+    site = site_choices.load(gis / "mine")
+    assert site_roads.names(site) == ["Old_road", "Route_4", "Route_4_2", "x"]
+    assert site.choices["road"]["file"].endswith("two.geojson")
+    assert len(site.choices["road"]["others"]) == 1 and "Route_4_2.road.csv: 1 line of 65 m, 2 m wide" in out
+    status, out, err = told("mine", "--road", "road.geojson")
+    assert status == 2 and "--road-width" in err        # it is a polygon
+    edited = yaml.safe_load((gis / "mine" / "site.yaml").read_text())
+    assert edited["road"]["others"]                      # nothing has changed
+    assert sorted(path.name for path in (gis / "mine").glob("*road.csv")) == [
+        "Old_road.road.csv", "Route_4.road.csv", "Route_4_2.road.csv", "road.csv", "x.road.csv"]
+
+
+def test_blocks_have_one_road(told, gis):  # noqa: F811
+    write_layer(gis / "far.geojson", FAR)
+    status, _, err = told("--terrain", "dem.tif", "--release", "release.geojson", "--blocks", 40, "--size", 1, "--road",
+                          "road.geojson", "--road", "far.geojson", "-o", "cliff")
+    assert status == 2 and "--road: must be one with single blocks; --line takes others" in err
+    write_lines(gis / "two.geojson", ("a", [(10, 5), (10, 70)]), ("b", [(30, 5), (30, 70)]))
+    status, _, err = told("--terrain", "dem.tif", "--release", "release.geojson", "--blocks", 40, "--size", 1, "--road",
+                          "two.geojson", "--road-width", 4, "-o", "cliff")
+    assert status == 2 and "--road: must be one with single blocks; --line takes others, got a, b" in err

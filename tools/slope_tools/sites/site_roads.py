@@ -1,0 +1,77 @@
+"""The roads of a site: one, or several that share all runs, and each of which has studies of its own.
+
+The studies of one of several lie in roads/NAME; those of the worst, from which most is to be removed, in the site's
+folder too, as if it were alone: whatever takes the folder of a site takes them.
+"""
+import shutil
+from pathlib import Path
+from typing import Dict, List, Optional, Set, Tuple
+
+from ..errors import SlopeError
+from ..survey import roads
+from ..survey.rasters import Raster
+from . import site_choices
+from .site_choices import Choices, Site
+from .site_inputs import unused
+
+ROAD, FOLDER = "road.csv", "roads"      # in a site's folder: the road, or the worst; what is known of each of several
+ONE = "must be one with single blocks; --line takes others"
+TABLE = "roads.csv"     # of each run, for each road
+
+
+def names(site: Site) -> List[str]:
+    """Of several roads; none of a single one."""
+    return site.found.get("roads") or []
+
+
+def results(site: Site) -> Path:
+    """The folder of the studies of the road that is asked."""
+    return site.folder / FOLDER / site.road if site.road else site.folder
+
+
+def file_of(site: Site) -> Path:
+    """The road that is asked, in local metres."""
+    return site.folder / file_name(site.road)
+
+
+def file_name(name: str) -> str:
+    return f"{name}.{ROAD}" if name else ROAD
+
+
+def worst(site: Site, name: str) -> Site:
+    """The site as if this road were alone."""
+    shutil.copyfile(site.folder / file_name(name), site.folder / ROAD)
+    return site._replace(road="")
+
+
+def forget_others(site: Site) -> None:
+    """Remove what is known of roads that are none of the site any more: their runs are there, and tell it anew."""
+    for folder in (site.folder / FOLDER).glob("*/"):
+        if folder.name not in names(site):
+            shutil.rmtree(folder)
+    if not names(site):
+        (site.folder / TABLE).unlink(missing_ok=True)
+
+
+def home(study: Path) -> Optional[Path]:
+    """The folder of the site whose study is in a folder; None of any other study."""
+    places = [study.parent] + [study.parent.parent.parent] * (study.absolute().parent.parent.name == FOLDER)
+    return next((place for place in places if (place / site_choices.NAME).is_file()), None)
+
+
+def listed(choices: Choices) -> List[str]:
+    """The files of roads."""
+    return [*site_choices.listed(choices, "road", "file"), *(choices["road"].get("others") or ())]
+
+
+def read(choices: Choices, raster: Raster, crs, advice, warn) -> Dict[str, Tuple[str, roads.Road]]:
+    """{name: (file, road in local metres)}; crs, advice: functions of a file, see site_layers."""
+    taken: Set[str] = set()
+    asked, found = roads.Asked.of(choices["road"]), {}
+    roads.check(asked)
+    for path in listed(choices):
+        for name, road in roads.read_each(path, raster, asked, crs(path), advice(path), warn).items():
+            found[unused(name, taken)] = path, road
+    if len(found) > 1 and choices.get("kind"):
+        raise SlopeError("--road", ONE, ", ".join(found))
+    return found

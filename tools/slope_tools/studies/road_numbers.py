@@ -1,0 +1,119 @@
+"""What the studies of the several roads of a site say: a number of each, the worst, and the table of all runs.
+
+The worst is the one with the largest volume; a floor counts as its volume, and a road without a usable number as the
+largest of its runs.
+"""
+from pathlib import Path
+from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence
+
+from rich.table import Table
+
+from .. import digits, disk
+from ..sites import site_roads
+from ..sites.site_choices import Site
+from ..statistics.answer import Kind
+from ..tables.quantities import OF_ROAD, REMOVE
+
+PAGE = "report.html"    # in that of a road
+ENTRY = "roads"         # of study.yaml
+
+
+class Made(NamedTuple):
+    """Studies of one road: what their study.yaml say, the one that governs first, none of a dry run; what failed beside
+    them."""
+    abouts: Sequence[Mapping[str, Any]]
+    failed: Optional[Exception]
+
+
+class Number(NamedTuple):
+    """Of a road; kind: of its headline (statistics.answer), None without one; volume_m3: of it; most_m3: of a run.
+
+    reaching, runs: how many runs bring something onto it, and how many finished.
+    """
+    road: str
+    kind: Any
+    volume_m3: Any
+    most_m3: float
+    reaching: int
+    runs: int
+
+    @property
+    def counts_m3(self) -> float:
+        return self.most_m3 if self.volume_m3 is None or self.kind == Kind.WITHHELD.value else self.volume_m3
+
+    @property
+    def text(self) -> str:
+        """The number with its unit, as the first page of the road has it."""
+        if self.kind == Kind.WITHHELD.value:
+            return "not usable"
+        if self.volume_m3 is None:
+            return f"no number, up to {digits.three(self.most_m3)} m3 in a run"
+        if self.kind != Kind.FLOOR.value:
+            return f"{digits.three(self.volume_m3)} m3"
+        return f"at least {digits.three(self.volume_m3)} m3" if self.volume_m3 else "more than 0 m3"
+
+
+def of_all(site: Site, several: bool, tell: Callable[[Any], Any],
+           make: Callable[[Site, Sequence[Mapping[str, Any]], bool], Made]) -> Made:
+    """The studies of a site by make(site with the road that is asked, entries of all roads, whether it is quiet).
+
+    several: whether each of several roads is asked, then the worst as if it were alone; else the first one.
+    """
+    names = site_roads.names(site)
+    if several:
+        site_roads.forget_others(site)
+    if not names or not several:
+        return make(site._replace(road=names[0]) if names else site, (), False)
+    made = {name: make(site._replace(road=name), (), True) for name in names}
+    if not all(one.abouts for one in made.values()):
+        return next(one for one in made.values() if not one.abouts)
+    found = in_order([number(name, one.abouts[0]) for name, one in made.items()])
+    write(site.folder, {name: one.abouts for name, one in made.items()})
+    worst = make(site_roads.worst(site, found[0].road), entries(found), False)
+    tell(shown(found))
+    tell(f"{site.folder / site_roads.TABLE}: each run, for each road; {site.folder / PAGE} is of the worst, "
+         f"{found[0].road}")
+    return worst
+
+
+def number(road: str, about: Mapping[str, Any]) -> Number:
+    """about: what the study.yaml of the road says that governs."""
+    said, rows = about["headline"] or {}, [row for row in about["runs"] if row["status"] == "finished"]
+    on_road = [row["remove_on_road_m3"] for row in rows]
+    return Number(road, said.get("kind"), said.get("volume_m3"), max((row[REMOVE] for row in rows), default=0.0),
+                  sum(one > 0 for one in on_road), len(rows))
+
+
+def in_order(numbers: Sequence[Number]) -> List[Number]:
+    """The worst first."""
+    return sorted(numbers, key=lambda one: -one.counts_m3)
+
+
+def entries(numbers: Sequence[Number]) -> List[Dict[str, Any]]:
+    """For study.yaml."""
+    return [one._asdict() for one in numbers]
+
+
+def read(about: Mapping[str, Any]) -> List[Number]:
+    """Those of a study.yaml; none of a site with one road."""
+    return [Number(**one) for one in about.get(ENTRY) or ()]
+
+
+def shown(numbers: Sequence[Number]) -> Table:
+    """A table for the console."""
+    found = Table(title="to remove from each road")
+    for head in ("road", "to remove", "runs that reach it", "page"):
+        found.add_column(head)
+    for one in numbers:
+        found.add_row(one.road, one.text, f"{one.reaching} of {one.runs}", f"{site_roads.FOLDER}/{one.road}/{PAGE}")
+    return found
+
+
+def write(folder: Path, studies: Mapping[str, Sequence[Mapping[str, Any]]]) -> None:
+    """roads.csv: a line for each road and finished run; studies: {road: what its study.yaml say}."""
+    keys = [one.key for one in OF_ROAD]
+    lines = []
+    for road, several in studies.items():
+        rows = {row["run"]: row for about in several for row in about["runs"] if row["status"] == "finished"}
+        lines += [[run, road, *(row.get(key) for key in keys)] for run, row in rows.items()]
+    disk.write(folder / site_roads.TABLE, disk.csv_text(["run", "road", *keys], lines))
