@@ -61,7 +61,7 @@ ROADS = {"one": box(28, 0, 33, 50), "two": MultiPolygon([box(34, 0, 37, 50), box
 @pytest.mark.parametrize("name", ROADS)
 def test_forward_is_onto_the_road_at_all_its_edges(tmp_path, name):
     """From whichever side a block comes: fix control/line has forward from the left of a line to its right."""
-    layers = SimpleNamespace(road=ROADS[name])
+    layers = SimpleNamespace(road=ROADS[name], lines=[])
     choices = {"release": {"polygon": None}, "road": {"file": None}}
     lines = of_blocks.edges(choices, layers, START, tmp_path)
     touched = of_blocks.touched(ROADS[name], 1.2, TERRAIN)

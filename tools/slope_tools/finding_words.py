@@ -309,7 +309,7 @@ WORDS: Dict[str, Union[str, Words]] = {
     # on a calibration
     "failed fits": Words("{failed} of {runs} runs failed and are left out: {which}", NOTE),
     # of sites of single blocks
-    "blocks on level ground": "the release area falls by {slope:.2g} degrees, less than {limit:g}: blocks hardly move",
+    "blocks on level ground": "the release area falls by {slope:.1f} degrees, less than {limit:g}: blocks hardly move",
     "blocks below cell": Words("the blocks, {size:g} m, are smaller than the cells of the terrain, {cell:g} m: steps "
                                "and ledges that throw them are not in it", NOTE),
     "blocks left": "{left:,} of {blocks:,} blocks left the terrain: how far they go is not known, and what is said of "

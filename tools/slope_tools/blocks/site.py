@@ -91,7 +91,7 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: site
          f"{', '.join(f'{one:g}' for one in several)} on {grounds} grounds" + (
              f"; about {site_budget.duration_text(runs * seconds / machine.jobs)}, {machine.jobs} at a time, if "
              "nothing else runs" if seconds else ""))
-    for one in (*site_warnings.of_trial(trial), *site_warnings.of_angles({"--friction": choices["model"]["friction"]}),
+    for one in (*site_warnings.of_trial(trial), *site_warnings.of_resistance(choices),
                 *site_warnings.of_zones(layers.zones), *doubts(start)):
         keep(one)
     site_warnings.write(new, warnings)
@@ -145,7 +145,7 @@ def start_of(choices: Choices, raster: Raster, new: Path, tell, warn) -> Start:
     slope = math.degrees(math.atan(steep))
     if speed and slope < FLAT:
         raise SlopeError("--speed", f"needs a fall line: the release area must fall by at least {FLAT:g} degree",
-                         f"{slope:.2g}")
+                         f"{slope:.1f}")
     tell(f"{BODY}.csv: {polygon.area:,.0f} m2 in which blocks start, a slope of {slope:.0f} degrees")
     down = np.array([*(-gradient / max(steep, 1e-9)), -steep]) / math.hypot(1, steep) if steep > 1e-9 else np.eye(3)[0]
     top = float(np.nanmax(raster.z)) + 12 * sizes[1] + speed ** 2 / (2 * GRAVITY)
@@ -197,6 +197,8 @@ def edges(choices: Choices, layers: site_layers.Layers, start: Start, new: Path)
     if road.intersects(start.polygon):
         raise SlopeError("--release", f"must be at least half a block, {start.sizes[1] / 2:g} m, away from the road",
                          f"{start.polygon.distance(layers.road):.3g} m")
+    if name := next((one.name for one in layers.lines if one.name.startswith(EDGE)), None):
+        raise SlopeError("--line", f"must not be called {EDGE}, as lines around the road are: rename the file", name)
     parts = [orient(part, -1.0) for part in polygons_of(road)]
     for k, ring in enumerate((ring for part in parts for ring in (part.exterior, *part.interiors)), 1):
         points = np.round(np.asarray(ring.coords)[:, :2], 4) + 0.0

@@ -58,9 +58,9 @@ def of_volume(volume: float) -> List[Finding]:
 
 def of_resistance(choices: Choices) -> List[Finding]:
     """Angles that look like coefficients, and coefficients that look like angles or percents."""
-    angles = {"--friction": choices["model"]["friction"], "--slip-friction": choices["model"]["slip_friction"]}
+    angles = {"--friction": choices["model"]["friction"], "--slip-friction": choices["model"].get("slip_friction", 0.0)}
     if choices["road"]["file"]:
-        angles["--cut-angle"] = choices["road"]["cut_angle"]
+        angles["--cut-angle"] = choices["road"].get("cut_angle", 0.0)
     return [*of_angles(angles), *(Finding("large rolling", {"rolling": value, "limit": ROLLS_NOT})
                                   for value in choices["study"]["rolling"] if value > ROLLS_NOT)]
 
