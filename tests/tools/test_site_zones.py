@@ -21,7 +21,7 @@ from slope_tools.errors import SlopeError
 from slope_tools.report import maps_part
 from slope_tools.route import runs
 from slope_tools.route.choices import Choices
-from slope_tools.sites import site_choices, site_zones
+from slope_tools.sites import site_choices, site_warnings, site_zones
 from slope_tools.studies import site_ground
 from slope_tools.survey import polygons
 from slope_tools.survey.rasters import Raster, read_asc_local, write_asc_local
@@ -158,6 +158,12 @@ def test_a_covered_zone_is_told(tmp_path):
                                                       (over, {"name": "b", "friction": 30})]), warn=said.append)
     assert [zone.name for zone in zones] == ["b"]
     assert [one.kind for one in said] == ["zones overlap", "zone covered"]
+
+
+def test_a_resistance_that_looks_like_an_angle_is_warned_of_by_its_zone(tmp_path):
+    zones = read(write_zones(tmp_path / "z.geojson", [(SCREE, {"name": "a", "friction": 0.6, "rolling": 12})]))
+    assert [str(one).partition(":")[0] for one in site_warnings.of_zones(zones)] == [
+        "friction of zone a 0.6", "rolling of zone a 12"]
 
 
 # --- what changes with the site's values ---

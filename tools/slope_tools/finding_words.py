@@ -150,7 +150,7 @@ WORDS: Dict[str, Union[str, Words]] = {
     "first look": "the body is {balls:.1f} balls thick at most, below {limit:g}: a first look; to repeat it, use more "
                   "balls (--balls, --minutes)",
     "small angle": "{option} {degrees:g}: is it in degrees? A coefficient of {degrees:g} is {meant:.3g} degrees",
-    "large rolling": "--rolling {rolling:g}: is it a coefficient? More than {limit:g} stands for bodies that do not "
+    "large rolling": "{option} {rolling:g}: is it a coefficient? More than {limit:g} stands for bodies that do not "
                      "roll",
     # of a run and its road, in the metres of its terrain
     "moves": "{file}: the mass was still moving at {seconds:g} s: these are not final numbers",
