@@ -165,10 +165,11 @@ def inside(polygon: BaseGeometry, number: int, chance: np.random.Generator) -> n
 def lifted(raster: Raster, points: np.ndarray, reach: np.ndarray) -> np.ndarray:
     """Height at which the ground is nowhere nearer than that (m) to a point above each of points; NaN beside it."""
     most = sample(raster, *points.T) + reach
-    for place in np.arange(PLACES) + 0.5:       # a spiral that fills the circle evenly
-        away, angle = math.sqrt(place / PLACES), place * math.pi * (3 - math.sqrt(5))
-        x, y = points.T + away * reach * np.array([[math.cos(angle)], [math.sin(angle)]])
-        most = np.maximum(most, sample(raster, x, y) + reach * math.sqrt(1 - max(0.0, away - BETWEEN) ** 2))
+    for place in np.split(np.arange(PLACES) + 0.5, PLACES // 50):       # a spiral that fills the circle evenly
+        away, angle = np.sqrt(place / PLACES), place * math.pi * (3 - math.sqrt(5))
+        x, y = (points[:, [k]] + np.outer(reach, away * part) for k, part in enumerate((np.cos(angle), np.sin(angle))))
+        above = np.outer(reach, np.sqrt(1 - np.maximum(0.0, away - BETWEEN) ** 2))
+        most = np.maximum(most, (sample(raster, x, y) + above).max(axis=1))
     return most
 
 
