@@ -56,20 +56,25 @@ START = SimpleNamespace(raster=TERRAIN, sizes=(0.8, 1.2), polygon=Polygon(RELEAS
 ROADS = {"one": box(28, 0, 33, 50), "two": MultiPolygon([box(34, 0, 37, 50), box(24, 0, 27, 50)]),
          "touching": MultiPolygon([box(33, 0, 37, 25), box(33, 25, 37, 50)]),
          "ring": box(20, 2, 88, 48).difference(box(30, 8, 86, 42)), "beyond": box(33, -10, 37, 60),
+         "close points": Polygon([(28, 0), (33, 0), (33, 20), (33.00002, 20.00001), (33, 20.00002), (33, 50),
+                                  (28, 50)]),
          "island": box(20, 10, 60, 40).difference(box(30, 20, 50, 30))}
 
 
+@pytest.mark.parametrize("size", [1.2, 0.002])
 @pytest.mark.parametrize("name", ROADS)
-def test_forward_is_onto_the_road_at_all_its_edges(tmp_path, name):
+def test_forward_is_onto_the_road_at_all_its_edges(tmp_path, name, size):
     """From whichever side a block comes: fix control/line has forward from the left of a line to its right."""
     layers = SimpleNamespace(road=ROADS[name], lines=[])
     choices = {"release": {"polygon": None}, "road": {"file": None}}
-    lines = of_blocks.edges(choices, layers, START, tmp_path)
-    touched = of_blocks.touched(ROADS[name], 1.2, TERRAIN)
+    lines = of_blocks.edges(choices, layers, SimpleNamespace(**{**vars(START), "sizes": (size, size)}), tmp_path)
+    touched = of_blocks.touched(ROADS[name], size, TERRAIN)
     assert sum(LineString(line.points).length for line in lines) == pytest.approx(touched.boundary.length, abs=1e-3)
     for line in lines:
         assert np.array_equal(line.points, np.loadtxt(tmp_path / line.file, delimiter=","))
+        assert np.array_equal(line.points[0], line.points[-1])
         for one, other in zip(line.points[:-1], line.points[1:]):
+            assert not np.array_equal(one, other)
             way = (other - one) / np.hypot(*(other - one))
             right, middle = np.array([way[1], -way[0]]), (one + other) / 2
             assert touched.contains(Point(middle + 1e-3 * right))

@@ -203,6 +203,7 @@ def edges(choices: Choices, layers: site_layers.Layers, start: Start, new: Path)
     parts = [orient(part, -1.0) for part in polygons_of(road)]
     for k, ring in enumerate((ring for part in parts for ring in (part.exterior, *part.interiors)), 1):
         points = np.round(np.asarray(ring.coords)[:, :2], 4) + 0.0
+        points = points[np.append(True, (points[1:] != points[:-1]).any(axis=1))]
         found.append(Line(f"{EDGE}_{k}", f"{EDGE}_{k}.csv", points))
         disk.write(new / found[-1].file, "# around the road, local x,y in m; forward is onto it\n"
                    + "".join(f"{x!r},{y!r}\n" for x, y in points.tolist()))
