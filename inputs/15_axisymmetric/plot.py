@@ -28,7 +28,7 @@ def main(names):
     for name in names:
         start, end = (claims.read_frames(Path(f"{name}.{when}.dump")) for when in ("start", "end"))
         radius, height = case.size(start)
-        runout, left_high = case.runout_of(start, end), case.height_of(end) / radius
+        runout, left_high = case.runout_of(start, end), height_of(end) / radius
         print(f"{name}: a {height / radius:.2f}, r0 {radius:g} d, {len(end['x'][0])} balls: run-out {runout:.3f}, "
               f"height {left_high:.2f}; Lube {case.lube(height / radius):.2f}")
         kind = "glass" * ("glass" in name) or "sand", ", smooth floor" * ("plane" in name), round(height / radius, 2)
@@ -52,6 +52,12 @@ def main(names):
     right.set(xlabel="r / radius of the column", ylabel="height / radius", xlim=(0, None), ylim=(0, None))
     left.legend(frameon=False)
     figure.savefig("axisymmetric.png", dpi=140)
+
+
+def height_of(balls, within=2.0):
+    """Of the deposit at its axis, in diameters."""
+    away, height = case.tops(balls)
+    return height[away < within].mean()
 
 
 if __name__ == "__main__":

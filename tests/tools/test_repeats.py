@@ -86,6 +86,14 @@ def test_what_a_repeat_does_not_change_counts_once(succeed):
     assert same["runs"][0] == "rolling_0_unused_2"
 
 
+def test_a_value_that_changes_nothing_is_said(succeed):
+    """As another ground under a mass that does not touch it; a rolling resistance that does is not named."""
+    succeed(f"--set rolling=0,0.3 --set unused=1,2 {ROAD} -o out")
+    found, = (one for one in loaded()[0]["conservative"]["doubts"] if one["kind"] == "no effect")
+    assert found["text"].startswith("unused has no effect in 4 runs, to the last digit: they do not test it")
+    assert set(found["runs"]) == {f"rolling_{one}_unused_{other}" for one in ("0", "0.3") for other in (1, 2)}
+
+
 def test_a_failed_repeat_leaves_the_others(slope):
     deck = Path("case/in.tiny")
     deck.write_text(deck.read_text().replace("group       soil", 'if "${seed} == 2" then "nonsense"\ngroup       soil'))
@@ -178,7 +186,7 @@ def test_a_difference_larger_than_chance_at_the_end_of_a_range_is_a_doubt():
     assert best["doubts"] == [Finding("end of range", {"variable": "rolling", "low": 0.0, "high": 1.0}).entry()]
     # a value of 0, which cannot be less, is no end; neither is one in the middle, or a name
     assert conservative({"rolling": ["0", "1"]}, rows((("0",), (90.0, 92)), (("1",), (10.0, 12))))["doubts"] == []
-    middle = rows((("1",), (10.0, 12)), (("2",), (90.0, 92)), (("3",), (10.0, 12)))
+    middle = rows((("1",), (10.0, 12)), (("2",), (90.0, 92)), (("3",), (10.1, 12)))
     assert conservative({"rolling": ["1", "2", "3"]}, middle)["doubts"] == []
     assert conservative({"rolling": ["a", "b"]}, rows((("a",), (10.0, 12)), (("b",), (90.0, 92))))["doubts"] == []
 

@@ -19,6 +19,8 @@ from slope_tools.findings import LIMIT, NOTE, WARNING, Finding, finding, gathere
 from slope_tools.plots.obstacles import Obstacles
 from slope_tools.report import body, client_part, ensemble_part, numbers, structures_part, warnings
 from slope_tools.report.numbers import Numbers
+from slope_tools.statistics import size_family
+from slope_tools.statistics.size_effect import Effect
 from slope_tools.statistics.withheld import Kind as Rule
 from slope_tools.tables import answer_words, judged, next_step
 
@@ -168,6 +170,32 @@ def weighted(quantities=None, reached=0.9, gap=None):
         key: {"quantiles": [{"share": 0.95, "value": value}]} for key, value in (quantities or {}).items()},
         "to_remove": [{"share": 0.95, "value": 9e3, "low": 0.0, "high": None, "gap": gap}]}
     return SimpleNamespace(finished=rows, road=True, study={"ensemble": {"known_events": known}})
+
+
+@pytest.mark.parametrize("balls, said", [(None, False), (2.7, True), (16.0, False)])
+def test_beyond_the_road_smaller_balls_bring_more(balls, said):
+    """By as much as in the family of slides, where enough of them tell; nothing where nothing lies there."""
+    data = weighted()
+    data.study["study"] = {"balls_thick": balls}
+    assert "smaller balls" not in client_part.road(data, Numbers())
+    data.finished[1]["beyond_road_m3"] = 730.0
+    text = client_part.road(data, Numbers())
+    grown = size_family.told(2.7, quantity="beyond_road_m3")
+    assert (f"up to 730 m\u00b3, which smaller balls in the model made up to {grown.high:.2g} times as much in "
+            f"{grown.slides} other slides" in text) is said and grown.high > 2 and "730" in text
+
+
+@pytest.mark.parametrize("effect, said", [
+    ((1000.0, 3, 1250.0, 100.0, True), "smaller balls brought 1.25 times as much, which is not in them"),
+    ((0.0, 3, 40.0, 10.0, False), "smaller balls brought 40.0 m3 more, which"), ((1000.0, 3, 1250.0, 300.0, True), ""),
+    ((1000.0, 3, 900.0, None, True), ""), ((1000.0, 3, 1010.0, None, True), "1.01 times as much"), (None, "")])
+def test_numbers_of_runs_say_what_smaller_balls_bring(effect, said):
+    """Stretches, hazard curves and intensities are of the runs, and not raised as the headline is."""
+    entry = effect and dict(zip(Effect._fields, effect))
+    for study in ({"size": effect and {"effects": {"remove_on_road_m3": entry}}}, None):
+        text = numbers.as_run(SimpleNamespace(study=study), "remove_on_road_m3")
+        assert (said in text and bool(text) is bool(said)) if study else text == ""
+        assert numbers.as_run(SimpleNamespace(study=study), "length_m") == ""
 
 
 MAP = {"raster": "thickness", "threshold": 0.1}

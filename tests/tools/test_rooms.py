@@ -1,12 +1,14 @@
 """The rooms of the Python package: see doc/src/architecture.rst."""
 import ast
+import contextlib
+import importlib
 import os
 import subprocess
 import sys
 
 import pytest
 
-from run_helpers import TOOLS
+from run_helpers import TOOLS, TOP
 
 from slope_tools import cli
 
@@ -160,3 +162,34 @@ def test_no_circle_of_imports():
         == ["studies.results", "studies.study", "studies.results"]
     assert circle(imports_of_modules({one: "", other: "from .results import f\n"})) == []
     assert circle(imports_of_modules({path: path.read_text(encoding="utf-8") for path in MODULES})) == []
+
+
+def taken_of_the_package(path):
+    """(module, name) of what a script takes of modules of slope_tools, by their names or as attributes."""
+    tree, modules = ast.parse(path.read_text(encoding="utf-8")), {}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "slope_tools":
+            for one in node.names:
+                yield node.module, one.name
+                modules[one.asname or one.name] = f"{node.module}.{one.name}"
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id in modules:
+            yield modules[node.value.id], node.attr
+
+
+SCRIPTS = [path for path in (*(TOP / "inputs").glob("*/*.py"), *(TOP / "tests").glob("*.py"),
+                             *(TOP / "tests" / "other_codes").glob("*.py"))
+           if "slope_tools" in path.read_text(encoding="utf-8")]
+
+
+@pytest.mark.parametrize("path", SCRIPTS, ids=lambda path: "/".join(path.parts[-2:]))
+def test_what_scripts_take_of_the_package_is_there(path):
+    """No type checker sees them, and those of inputs run by hand only."""
+    for where, name in taken_of_the_package(path):
+        try:
+            module = importlib.import_module(where)
+        except ModuleNotFoundError:     # a class or a function of a module
+            continue
+        with contextlib.suppress(ModuleNotFoundError):
+            importlib.import_module(f"{where}.{name}")
+        assert hasattr(module, name), f"{where}.{name}"

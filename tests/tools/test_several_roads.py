@@ -106,7 +106,7 @@ def test_the_worst_stands_for_the_site(done):
     assert (mine / "road.csv").read_text() == (mine / f"{first.road}.road.csv").read_text()
     assert named_run.read(str(mine)).study == mine / "study"
     page = (mine / "report.html").read_text(encoding="utf-8")
-    assert f"This is the road {first.road}, from which most is to be removed" in page
+    assert f"Of 3 roads most is to be removed from this one, \u201c{first.road}\u201d; \u201c" in page
     for one in (first, *others):
         assert f"roads/{one.road}/report.html" in page and (mine / "roads" / one.road / "report.html").is_file()
         assert one.text.removesuffix(" m3") in page and one.text in said

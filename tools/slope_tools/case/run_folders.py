@@ -3,7 +3,7 @@ import os
 from pathlib import Path
 from typing import Any, Callable, Dict, Mapping, Optional, Tuple
 
-from .. import schemas
+from .. import disk, schemas
 from ..errors import SlopeError
 from ..schemas import ABOVE_0, ANY, FLAG, MAYBE, NUMBER, OBJECT, TEXT, listed, mapping, named, numbers
 from ..survey import rasters
@@ -138,6 +138,14 @@ def ended(folder: Path) -> Dict[str, Any]:
 def load_summary(path, schema=SUMMARY):
     """The summary of fix deposit/grid as a dict, with all that the tools need of it."""
     return schemas.load(path, WHAT, schema)
+
+
+def state(folder: Path) -> Dict[str, Any]:
+    """What tells whether a run is the same: what was written at its end, and the sizes and times of its files."""
+    marker = folder / MARKER
+    return {"marker": disk.sha256(marker) if marker.is_file() else None,
+            "files": sorted((one.name, one.stat().st_size, one.stat().st_mtime_ns) for one in os.scandir(folder)
+                            if one.is_file() and not one.name.startswith("."))}
 
 
 def load_raster(prefix, name, heights=True):

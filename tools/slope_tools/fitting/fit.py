@@ -70,7 +70,7 @@ class Fit:
         """The rows of runs, which are made where they are not finished."""
         self.work.store.admit(todo)
         self.work.do(todo)
-        return list(results.rows_of(self.setup, todo, results.Maps(()))[0])
+        return list(results.rows_of(self.setup, todo))
 
     def was_cut(self, one: repeats.Repeat, row: Mapping[str, Any]) -> bool:
         """Whether a run was stopped at its duration before it was at rest, and the duration may be another one."""

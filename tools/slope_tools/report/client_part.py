@@ -307,8 +307,18 @@ def road(data, numbers) -> str:
         text += f", over a length of up to {numbers.quantity('blocked_m', max(blocked))} m"
     beyond = [row["beyond_road_m3"] for row in data.finished if row.get("beyond_road_m3") is not None]
     if beyond and max(beyond) > 0:
-        text += f"; beyond it come to lie up to {numbers.quantity('beyond_road_m3', max(beyond))} m³"
+        text += f"; beyond it come to lie up to {numbers.quantity('beyond_road_m3', max(beyond))} m³" + finer(data)
     return f"{text}."
+
+
+def finer(data) -> str:
+    """By how much what lies beyond the road grew with smaller balls in a family of slides; "" where nobody can tell."""
+    balls = ((data.study or {}).get("study") or {}).get("balls_thick")
+    grown = None if balls is None else size_family.told(balls, quantity="beyond_road_m3")
+    if grown is None:
+        return ""
+    return (f", which smaller balls in the model made up to {digits.rounded(grown.high, 2)} times as much in "
+            f"{grown.slides} other slides (median {digits.rounded(grown.median, 2)})")
 
 
 def structures(data, ground) -> str:

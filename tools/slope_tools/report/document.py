@@ -2,16 +2,14 @@
 import base64
 import functools
 import hashlib
-import json
-import os
 import re
 import shutil
 from contextlib import contextmanager
 from pathlib import Path
 from shlex import quote
-from typing import Any, Dict, List, Mapping, Optional
+from typing import Any, List, Mapping, Optional
 
-from .. import digits, disk
+from .. import digits, disk, kept
 from ..case import run_folders
 from ..errors import SlopeError
 from ..findings import WARNING
@@ -19,7 +17,6 @@ from .heading import Asked, site_file
 
 
 MADE_BY = "Made by tools/slope report"      # in each page
-TOOLS = Path(__file__).resolve().parents[1]
 HEAD = 4096             # bytes of a page that hold its digest
 MADE_OF = re.compile(rb'<meta name="slope-made-of" content="(\w+) ?([^"]*)">')
 BESIDE = ("collected", "machine", "jobs")       # of a study: when and where its runs were evaluated
@@ -85,24 +82,10 @@ def digest_of(asked: Asked, study: Mapping[str, Any]) -> str:
     site = site_file(asked.folder)
     found = {"asked": disk.plain({**asked._asdict(), "study": None, "site": None}), "about": disk.plain(about),
              "site": asked.site if asked.site is not None else site and disk.sha256(site),
-             "runs": {row["run"]: files_of(run_folders.summary_of(asked.folder, row).parent)
+             "runs": {row["run"]: run_folders.state(run_folders.summary_of(asked.folder, row).parent)
                       for row in study["runs"] if "summary" in row},
-             "tools": tools(), "film": str(shutil.which("ffmpeg")) if asked.film else ""}
-    return hashlib.sha256(json.dumps(found, sort_keys=True, default=str).encode("utf-8")).hexdigest()
-
-
-def files_of(folder: Path) -> Dict[str, Any]:
-    """What tells whether a run is the same: what was written at its end, and the sizes and times of its files."""
-    marker = folder / run_folders.MARKER
-    return {"marker": disk.sha256(marker) if marker.is_file() else None,
-            "files": sorted((one.name, one.stat().st_size, one.stat().st_mtime_ns) for one in os.scandir(folder)
-                            if one.is_file())}
-
-
-def tools() -> str:
-    """Digest of the package's own files."""
-    found = sorted(path for path in TOOLS.rglob("*") if path.is_file() and "__pycache__" not in path.parts)
-    return hashlib.sha256("".join(disk.sha256(path) for path in found).encode("ascii")).hexdigest()
+             "film": str(shutil.which("ffmpeg")) if asked.film else ""}
+    return kept.digest(found)
 
 
 def is_made_of(page: Path, made_of: str) -> bool:

@@ -14,6 +14,7 @@ from ..statistics import emulator
 from ..tables import quantities, withheld_words
 from .charts import AXIS
 from .data import is_number
+from .numbers import as_run
 from .sections import Cell, Figures, Picture, Section, Table, Text
 
 MOST_SCATTER = 4        # variables with a chart of the runs against them
@@ -101,7 +102,8 @@ class Ensemble:
             ensemble_charts.hazard_curve(points[0], points[1], points[2], points[3], quantiles,
                                          f"{self.entry['name']} ({self.entry['unit']})", title),
             title, f"The hazard curve: share of the runs in which the quantity is larger, with its "
-            f"{100 * self.about['confidence']:g} % bounds; dots: what 50, 90, 95 and 99 % of the runs stay within.")
+            f"{100 * self.about['confidence']:g} % bounds; dots: what 50, 90, 95 and 99 % of the runs stay within."
+            + as_run(self.data, self.of))
 
     def indices(self) -> List[Picture]:
         """A chart for each quantity whose emulator says something, the one that counts first, three at most."""
@@ -222,7 +224,7 @@ class KnownEvents:
         return Picture(uri, title, "The weighted hazard curve: share of known events in which the quantity is "
                        f"larger, with its {100 * self.confidence:g} % bounds. What the runs do not reach is not "
                        "shared out: known events beyond the longest run exceed every value. A line: no run ends where "
-                       "these known events do.")
+                       "these known events do." + as_run(self.data, self.of))
 
     def tables(self) -> List[Table]:
         """Quantiles of all quantities; which parameters the weighted runs have, and how the first depends on them."""

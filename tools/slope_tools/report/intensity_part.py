@@ -3,6 +3,7 @@ from ..digits import chance, measured, percent
 from ..drawing.figures import HALF
 from ..plots import figure_charts
 from ..plots.figure_charts import Series
+from .numbers import as_run
 from .sections import Figures, Picture, Section, Table
 
 AXIS = {"peak": "peak acceleration (gal)", "pga": "peak acceleration (gal)"}
@@ -22,7 +23,8 @@ def section(data, numbers):
              *(f"P(V > {volume:,.6g})" for volume in about["more_than_m3"])]
     return Section("intensity", "Volume on the road against the intensity", [
         Table("Volumes on the road, m3 of ground, and the probability that a volume is exceeded: the share of the "
-              f"equivalent runs, with its {percent(about['confidence'])} confidence interval.", heads,
+              f"equivalent runs, with its {percent(about['confidence'])} confidence interval."
+              + as_run(data, about["quantity"]), heads,
               rows(about, numbers), ()), Figures(pictures, "columns")])
 
 

@@ -7,12 +7,12 @@ from typing import Any, Dict, List, Mapping, Sequence
 from .. import disk
 from ..case import run_folders
 from ..deposits import rest, travel_shares
-from ..digits import measured, rounded
+from ..digits import measured, rounded, three
 from ..ensembles import known_study
 from ..mobility.run_length import ON_PATH
 from ..statistics import headline
 from ..statistics.answer import Source
-from ..tables import named_run, withheld_words
+from ..tables import fine_run, named_run, withheld_words
 from ..tables.quantities import ALL, KNOWN, LENGTH, REACH, written
 from ..tables.released import over_runs
 from .data import is_number
@@ -282,6 +282,18 @@ def is_own(data) -> bool:
     """Whether the headline is of this study, and not of the other one of a site."""
     own = Source.ENSEMBLE if data.study.get("ensemble") else Source.PAPER
     return data.study["headline"]["source"] == own.value
+
+
+def as_run(data, key: str) -> str:
+    """For a caption of numbers of runs, which the effect of size does not raise as it does the headline: what smaller
+    balls bring of this column; "" where they bring no more, or nobody knows.
+    """
+    effect = fine_run.read_effect((data.study or {}).get("size"), key)
+    if effect is None or not effect.added(1.0) > 0:
+        return ""
+    more = f"{rounded(effect.fine / effect.coarse, 3)} times as much" if effect.ratio else \
+        f"{three(effect.difference)} {ALL[key].unit} more"
+    return f" These are the runs' own numbers: smaller balls brought {more}, which is not in them."
 
 
 def shown_run(data) -> str:

@@ -8,7 +8,9 @@ from ..plots import figure_maps, known_reach
 from ..sites.site_roads import FOLDER
 from ..studies import road_numbers
 from ..survey.roads import Asked
+from ..tables.quantities import REMOVE
 from .ensemble_part import ODDS
+from .numbers import as_run
 from .sections import Cell, Figures, Picture, Section, Table
 
 # head, unit, number of tables.road_runs
@@ -41,7 +43,7 @@ def section(data, numbers, maps) -> Optional[Section]:
                         *(Cell(head, unit) for head, unit, _ in columns)]
     return Section("road", "Blocked stretches of the road", [
         Figures([shares(data, asked, about, runs, maps)], "tall"),
-        Table(caption(asked, about, runs) + gaps(data, about), heads, lines, ())])
+        Table(caption(asked, about, runs) + as_run(data, REMOVE) + gaps(data, about), heads, lines, ())])
 
 
 def of_all(data) -> Optional[Section]:
@@ -63,8 +65,8 @@ def others(data) -> List[str]:
     several = road_numbers.read(data.study or {})
     if not several:
         return []
-    found = ", ".join(f"from {one.road} {one.text}" for one in several[1:])
-    return [f"This is the road {several[0].road}, from which most is to be removed; {found}."]
+    found = "; ".join(f"\u201c{one.road}\u201d: {one.text}" for one in several[1:])
+    return [f"Of {len(several)} roads most is to be removed from this one, \u201c{several[0].road}\u201d; {found}."]
 
 
 def gaps(data, about) -> str:

@@ -65,7 +65,7 @@ def growth(balls: float, quantity: str = "remove_m3", slides: Optional[Slides] =
     return Growth(statistics.median(factors), min(factors), max(factors), len(factors), max(finest))
 
 
-def told(balls: float, slides: Optional[Slides] = None) -> Optional[Growth]:
-    """The growth of the volume to remove; None where fewer than FEWEST slides tell it, which no floor may lean on."""
-    found = growth(balls, slides=slides)
+def told(balls: float, slides: Optional[Slides] = None, quantity: str = "remove_m3") -> Optional[Growth]:
+    """The growth of a quantity; None where fewer than FEWEST slides tell it, which no floor may lean on."""
+    found = growth(balls, quantity, slides)
     return found if found and found.slides >= FEWEST else None

@@ -54,4 +54,4 @@ def batch(setup: Setup, order: Order, fixed: Mapping[str, str], chances: Sequenc
 
 def rows_of(setup: Setup, todo: Sequence[repeats.Repeat]) -> List[Dict[str, Any]]:
     """The runs' rows of study.csv, without the road."""
-    return results.rows_of(setup._replace(road=None), todo, results.Maps(()))[0]
+    return results.rows_of(setup._replace(road=None), todo)

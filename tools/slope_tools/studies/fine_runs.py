@@ -10,7 +10,6 @@ from ..errors import SlopeError
 from ..runs import repeats
 from ..runs.repeats import Repeat
 from ..tables.fine_run import VARIABLE
-from ..tables.study_maps import Maps
 from . import results
 from .setup import Setup
 
@@ -44,7 +43,7 @@ def of_median_length(setup: Setup, factor: Any, todo: Sequence[Repeat], defaults
     if factor in NONE:
         return []
     first = [one for one in todo if not one.batch and not one.repeat and not one.error]
-    rows, _ = results.rows_of(setup._replace(road=None), first, Maps(()))
+    rows = results.rows_of(setup._replace(road=None), first)
     lengths = {row["run"]: row["length_m"] for row in rows if row.get("length_m") is not None}
     if not lengths:
         return []

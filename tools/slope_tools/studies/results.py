@@ -3,11 +3,11 @@ import os
 from dataclasses import replace
 from pathlib import Path
 from shlex import quote
-from typing import Any, Dict, Mapping, Optional, Sequence, Tuple
+from typing import Any, Dict, List, Mapping, Optional, Sequence
 
 import numpy as np
 
-from .. import disk, provenance
+from .. import disk, kept, provenance
 from ..case import run_folders
 from ..deposits import gone
 from ..ensembles import known_events, known_study
@@ -32,7 +32,7 @@ def collect(setup: Setup, questions: Questions, todo, work) -> Optional[Dict[str
         return None     # study.perform says so
     maps = Maps(questions.thresholds)
     first = next((run for run in todo if not run.error), None)
-    found, thickness = read(setup, questions, todo, maps, work.defaults)
+    found = read(setup, questions, todo, maps, work.defaults)
     outcome = evaluate(questions, found)
     header = {"deck": setup.deck.name, "known": questions.among, "set": questions.settings,
               "repeat": questions.repeated, "runs": len(found.rows), "finished": len(found.finished),
@@ -40,7 +40,7 @@ def collect(setup: Setup, questions: Questions, todo, work) -> Optional[Dict[str
               "governs": setup.output.name, "balls_thick": found.balls_thick, "collected": provenance.now(),
               "machine": provenance.machine()}
     if setup.road and first:
-        header["road"] = write_road(setup.output, setup.road, first, thickness)
+        header["road"] = write_road(setup.output, setup.road, first)
     step = next_step.of_studies([next_step.Made({"study": header, **outcome.about}, setup.output)],
                                 outcome.about["headline"])
     outcome = replace(outcome, about={**outcome.about, next_step.ENTRY: step and step._asdict()})
@@ -49,9 +49,9 @@ def collect(setup: Setup, questions: Questions, todo, work) -> Optional[Dict[str
     return about
 
 
-def read(setup: Setup, questions: Questions, todo, maps: Maps, defaults: Mapping[str, str]) -> Tuple[Read, Any]:
-    """What an Outcome is evaluated from, and the thickness of the last run that finished; rasters go to the maps."""
-    rows, thickness = rows_of(setup, todo, maps)
+def read(setup: Setup, questions: Questions, todo, maps: Maps, defaults: Mapping[str, str]) -> Read:
+    """What an Outcome is evaluated from; rasters go to the maps."""
+    rows = rows_of(setup, todo, maps)
     observed = mapped.compare(mapped.of_site(questions.site), setup.output, rows, [terrain_of(run) for run in todo])
     first = next((run for run in todo if not run.error), None)
     row = next((row for row in rows if row["status"] == "finished"), None)
@@ -66,7 +66,7 @@ def read(setup: Setup, questions: Questions, todo, maps: Maps, defaults: Mapping
     most = elastic.read(questions.most_elastic, rows, setup.output) if row and questions.most_elastic else None
     return Read(rows, setup.road is not None, events, mobility, observed, fine, most, maps.problem,
                 case_of(setup, questions, row) if row else None,
-                body_depth.in_balls(setup, [one for one in rows if one["status"] == "finished"]), defaults), thickness
+                body_depth.in_balls(setup, [one for one in rows if one["status"] == "finished"]), defaults)
 
 
 def compared(setup: Setup, fine: Repeat, rows: Sequence[Mapping[str, Any]],
@@ -74,7 +74,7 @@ def compared(setup: Setup, fine: Repeat, rows: Sequence[Mapping[str, Any]],
     """The fine run beside the rows with the same values; groups: of a study with repeats, None of an ensemble."""
     if fine.error:
         return fine_run.Fine(None, (), 0.0, lambda key: None, f"{fine.name}: {fine.error}")
-    [row], _ = rows_of(setup, [fine], Maps(()))
+    [row] = rows_of(setup, [fine])
     coarse = [one for one in rows if one["status"] == "finished"
               and all(row["variables"][name] == one["variables"][name]
                       for name in one["set"] if name != fine_run.VARIABLE)]
@@ -107,61 +107,77 @@ def case_of(setup: Setup, questions: Questions, row) -> withheld_words.Case:
                                command=command)
 
 
-def rows_of(setup: Setup, todo, maps):
-    """A row for each run, finished or failed, and the final thickness of the last one that finished."""
-    rows, thickness = [], None
+def rows_of(setup: Setup, todo, maps: Optional[Maps] = None) -> List[Dict[str, Any]]:
+    """A row for each run, finished or failed; what finished is added to the maps."""
+    rows = []
     for run in rasters.progress(todo, "collecting the runs"):
         row = {"run": run.name, "status": "failed" if run.error else "finished", "set": run.combination,
                "repeat": run.repeat, "batch": run.batch}
         if run.error:
             rows.append({**row, "error": run.error, "log_warnings": run.log.warnings})
             continue
-        row, thickness = result(run, row, maps, setup.output)
+        row.update(result(run, setup.output))
+        if maps:
+            prefix = prefix_of(run)
+            thickness, most = (run_folders.load_raster(prefix, name) for name in ("thickness", "max_thickness"))
+            maps.add(run.name, thickness, most, not row.get("batch"))
         if setup.road:
-            row.update(on_road(run, setup, row, thickness))
+            row.update(on_road(run, setup, row))
         rows.append(row)
-    return rows, thickness
+    return rows
 
 
-def result(run, row, maps, output):
-    """The row of a finished run for a table in a folder, and its final thickness; adds its rasters to the maps."""
+def prefix_of(run) -> Path:
+    return run_folders.prefix_of(run.folder / str(run_folders.ended(run.folder).get("summary")))
+
+
+def result(run, output) -> Dict[str, Any]:
+    """What a row has of a finished run, for a table in a folder; kept with the run."""
+    run.log.update()
+    found = kept.value(run.folder / ".row.json", run_folders.state(run.folder), lambda: measured(run))
+    return {**found, "summary": os.path.relpath(run.folder / found["summary"], output)}
+
+
+def measured(run) -> Dict[str, Any]:
+    """The same; the summary as named in the run's folder."""
     from ..deposits import deposit
     from ..mobility import run_length
-    marker = run_folders.ended(run.folder)
-    path = run.folder / str(marker.get("summary"))
-    about = run_folders.begun(run.folder)
-    summary = run_folders.load_summary(path)
-    prefix = run_folders.prefix_of(path)
+    marker, about, prefix = run_folders.ended(run.folder), run_folders.begun(run.folder), prefix_of(run)
+    summary = run_folders.load_summary(run.folder / str(marker.get("summary")))
     thickness = run_folders.load_raster(prefix, "thickness")
-    maps.add(run.name, thickness, run_folders.load_raster(prefix, "max_thickness"), not row.get("batch"))
-    run.log.update()
     volume = summary["volume"]
     stays = volume["released"] - volume["off_grid"] - volume["lost"]
     on_grid = float(np.nansum(thickness.z)) * thickness.transform.a ** 2
     base = run_folders.load_raster(prefix, "surface").z - thickness.z
     left = deposit.Deposit(str(prefix), thickness, base, summary, None)
     length = run_length.of_run(left, terrain_of(run))
-    row = {**row, "variables": about.get("variables"),
-           quantities.STOP: site_ground.of_variables(about.get("variables")), "ranks": about.get("ranks"),
-           "package": about.get("package"),
-           **quantities.of_length(length), "left": gone.entries(left),
-           "ball_m3": volume["released"] / summary["balls"]["released"],
-           "mass_error": (on_grid - stays) / volume["released"],
-           **judged.columns(summary, run.log), "change_rate": summary.get("change_rate"),
-           "wall_s": marker.get("wall_seconds"), "summary": os.path.relpath(path, output),
-           "slope_version": summary["slope_version"], "lammps_version": summary["lammps_version"],
-           "lmp_sha256": about.get("lmp_sha256"), **structures.of_run(run.folder, run.log.settings)}
-    return row, thickness
+    return {"variables": about.get("variables"), quantities.STOP: site_ground.of_variables(about.get("variables")),
+            "ranks": about.get("ranks"), "package": about.get("package"),
+            **quantities.of_length(length), "left": gone.entries(left),
+            "ball_m3": volume["released"] / summary["balls"]["released"],
+            "mass_error": (on_grid - stays) / volume["released"],
+            **judged.columns(summary, run.log), "change_rate": summary.get("change_rate"),
+            "wall_s": marker.get("wall_seconds"), "summary": marker.get("summary"),
+            "slope_version": summary["slope_version"], "lammps_version": summary["lammps_version"],
+            "lmp_sha256": about.get("lmp_sha256"), **structures.of_run(run.folder, run.log.settings)}
 
 
-def on_road(run, setup: Setup, row, thickness) -> Dict[str, Any]:
-    """What `slope volume` says of a run, which goes to the folder volume of the run, without the picture; and what lies
-    beyond."""
+def on_road(run, setup: Setup, row) -> Dict[str, Any]:
+    """What `slope volume` says of a run, which goes to the folder volume of the run, without the picture, and is kept
+    there; and what lies beyond."""
+    road: Road = setup.road     # type: ignore[assignment]
+    made_of = {"run": run_folders.state(run.folder), "road": road._replace(file=Path(road.file.name))._asdict(),
+               "file": disk.sha256(road.file)}
+    folder = run.folder / quantities.volume_folder(road.name)
+    return kept.value(folder / "row.json", made_of, lambda: measured_on(road, run, row),
+                      [folder / name for name in ("volume.yaml", "volume.tif", "volume_mesh.tif")])
+
+
+def measured_on(road: Road, run, row) -> Dict[str, Any]:
+    """The same, measured."""
     from ..deposits import volume
-    road, summary = setup.road, run_folders.summary_of(setup.output, row)
-    assert road
-    prefix = run_folders.prefix_of(summary)
-    terrain = terrain_of(run)
+    prefix = prefix_of(run)
+    terrain, thickness = terrain_of(run), run_folders.load_raster(prefix, "thickness")
     wanted = volume.Wanted(road.file, road.mesh, road.cut_angle, road.local, asked=road.asked)
     found = volume.of_run(str(prefix), wanted, terrain)
     volume.write(found, run.folder / quantities.volume_folder(road.name), picture=False)
@@ -196,9 +212,9 @@ def placed(raster, run):
     return raster._replace(crs=place.crs, offset=place.offset) if place else raster
 
 
-def write_road(output, road: Road, run, thickness) -> Dict[str, Any]:
+def write_road(output, road: Road, run) -> Dict[str, Any]:
     """Keep the road, in local metres, with the study; what study.yaml says of it."""
-    raster = placed(thickness, run)
+    raster = placed(run_folders.load_raster(prefix_of(run), "thickness"), run)
     roads.write(output / "road.csv", road.read(raster), raster)
     return {**road.about(), "local": "road.csv"}
 

@@ -63,7 +63,6 @@ def plan(setup: Setup, base: Mapping[str, str], kinds) -> List[Trial]:
 def collect(setup: Setup, base, of, todo, work):
     """Table, chart and sensitivity.yaml over all runs that finished."""
     defaults = {**work.defaults, **base}
-    maps = results.Maps(())
     rows, warnings = [], []
     for one in todo:
         row = {"run": one.name, "kind": one.kind, "variable": one.variable,
@@ -71,9 +70,9 @@ def collect(setup: Setup, base, of, todo, work):
         if one.error:
             warnings.append(Finding("failed", {"error": one.error}, (one.name,)))
             continue
-        found, thickness = results.result(one, row, maps, setup.output)
+        found = {**row, **results.result(one, setup.output)}
         if setup.road:
-            found.update(results.on_road(one, setup, found, thickness))
+            found.update(results.on_road(one, setup, found))
         rows.append(found)
     if not rows or rows[0]["kind"] != "base":
         return      # nothing to hold the others against; which run failed is said at the end

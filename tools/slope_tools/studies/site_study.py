@@ -168,7 +168,7 @@ def half_steps(setup: Setup, rolling: str, variables: Dict[str, str]) -> List[re
 
 def step_of(setup: Setup, run_: repeats.Repeat, rolling: str, variables: Dict[str, str]) -> Step:
     """What that run tells."""
-    [row], _ = results.rows_of(setup, [run_], results.Maps(()))
+    [row] = results.rows_of(setup, [run_])
     if run_.error:
         return Step(rolling, None, f"{run_.name}: {run_.error}", step=float(run_.chosen["step"]))
     prefix = run_folders.prefix_of(run_folders.summary_of(setup.output, row))
@@ -192,7 +192,7 @@ def elastic_of(setup: Setup, runs: List[repeats.Repeat]) -> Optional[elastic.Mad
     """What these runs tell, whatever the road; None: there are none."""
     if not runs:
         return None
-    rows, _ = results.rows_of(setup._replace(road=None), runs, results.Maps(()))
+    rows = results.rows_of(setup._replace(road=None), runs)
     return elastic.Made(float(runs[0].chosen[elastic.VARIABLES[0]]), runs[0].chosen["rolling"], rows)
 
 

@@ -59,7 +59,7 @@ def collect(planned: Plan, of, work) -> None:
     """Compare and write what the finished runs tell."""
     setup, settings, repeated, variable, todo = planned
     names = {name: (ALL[name].name, ALL[name].unit) for name in of}
-    rows, _ = results.rows_of(setup, todo, results.Maps(()))
+    rows = results.rows_of(setup, todo)
     finished = [row for row in rows if row["status"] == "finished"]
     groups = combinations.grouped(rows)
     if len(groups) < 2:     # nothing to compare; perform() names the run that failed

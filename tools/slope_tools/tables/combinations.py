@@ -1,4 +1,5 @@
 """The runs of a study by combinations of choices: mean and scatter of each, and the conservative volume over all."""
+import itertools
 from dataclasses import dataclass, field
 from typing import Any, Dict, List, Mapping, Optional, Sequence
 
@@ -195,7 +196,22 @@ def doubts(settings, rows, groups: Sequence[Group], best: headline.Headline, dif
 def no_effect(groups: Sequence[Group]) -> List[Finding]:
     """The caveat that runs are left out, as others have the same numbers."""
     same = [row["run"] for group in groups for row in group.same]
-    return [Finding("no effect", {"which": "a repeated variable", "on": "", "then": "left out"}, same)] if same else []
+    found = [Finding("no effect", {"which": "a repeated variable", "on": "", "then": "left out"}, same)] if same else []
+    return [*found, *values_without_effect(groups)]
+
+
+def values_without_effect(groups: Sequence[Group]) -> List[Finding]:
+    """The caveat that two values of a variable, all else being equal, have the same numbers, and do not test it: as
+    the ground's spacing where the mass comes to rest on the slip surface's own balls.
+    """
+    found: Dict[str, Dict[str, None]] = {}
+    for one, other in itertools.combinations(
+            [group for group in groups if group.rows and group.rows[0].get("centroid_m") is not None], 2):
+        names = [name for name in one.set if one.set[name] != other.set.get(name)]
+        if len(names) == 1 and same_as([one.rows[0], other.rows[0]])[1] == 0:
+            found.setdefault(names[0], {}).update(dict.fromkeys((one.rows[0]["run"], other.rows[0]["run"])))
+    return [Finding("no effect", {"which": name, "on": f" in {len(runs)} runs", "then": "they do not test it"},
+                    tuple(runs)) for name, runs in found.items()]
 
 
 def outcome(group: Group, few: Sequence[Row]) -> Finding:
