@@ -42,7 +42,8 @@ def gis(tmp_path_factory):
     write_layer(folder / "flat.geojson", [(10, 20), (20, 20), (20, 30), (10, 30)])
     write_layer(folder / "beyond.geojson", [(85, 20), (99, 20), (99, 30), (85, 30)])
     write_layer(folder / "road.geojson", ROAD)
-    write_layer(folder / "fence.geojson", [(42, 50), (42, 0)], kind=LineString)
+    for name in ("fence", "calm", "road_edge_1"):
+        write_layer(folder / f"{name}.geojson", [(42, 50), (42, 0)], kind=LineString)
     return folder
 
 
@@ -97,7 +98,8 @@ def test_the_deck_has_no_list_of_blocks_with_each_other(made):
 
 
 def test_a_speed_is_down_the_fall_line(told, gis):
-    assert told("site", *WORDS, "--speed", "5", "-o", "fast")[0] == 0
+    assert told("site", *WORDS, "--speed", "5", "--line", "calm.geojson", "--rolling", "5", "-o", "fast")[0] == 0
+    assert "large rolling" in (gis / "fast" / "warnings.yaml").read_text()
     found = site_choices.found(gis / "fast")["blocks"]
     assert found["down"] == pytest.approx([-np.cos(np.radians(ANGLE)), 0, -np.sin(np.radians(ANGLE))], abs=1e-3)
     assert decks.index_variables(gis / "fast" / site_deck.NAME)["start"] == "5"
@@ -119,7 +121,8 @@ def test_a_mass_knows_nothing_of_it(told, gis):
 
 @pytest.mark.parametrize("words, message", [
     (["--blocks", "1"], "--blocks: must be at least 30, one for each run"),
-    (["--blocks", "1000000"], "--blocks: must be <= 100000, got 1000000"),
+    (["--blocks", "1000000"], "--blocks: must be at most 100,000: more grounds (blocks.grounds of site.yaml) say more "
+     "than more blocks, got 1,000,000"),
     (["--depth", "3"], "--depth: must not be given with a site of single blocks"),
     (["--shape", "plane"], "--shape: must not be given with a site of single blocks"),
     (["--known", "rockfalls"], "--known: must not be given with a site of single blocks"),
@@ -128,6 +131,9 @@ def test_a_mass_knows_nothing_of_it(told, gis):
     (["--release", "beyond.geojson"], "beyond.geojson: must have terrain in it, and 1.2 m beside it"),
     (["--release", "flat.geojson", "--speed", "2"], "--speed: needs a fall line"),
     (["--road", "cliff.geojson"], "--release: must be at least half a block, 0.6 m, away from the road"),
+    (["--road", "road.geojson", "--line", "road_edge_1.geojson"], "--line: must not be called road_edge, as lines "
+     "around the road are: rename the file, got road_edge_1"),
+    (["--release", "flat.geojson", "--speed", "1e-3"], "at least 1 degree, got 0.0"),
     (["--size", "2:1"], "--size: must be D or D:D2"), (["--size", "0.1:2"], "--size: must be D or D:D2"),
     (["--size", "0"], "--size: first value: must be > 0, got 0"), (["--size", "x"], "--size: must be a finite number"),
     (["--speed", "-1"], "--speed: must be >= 0, got -1")])

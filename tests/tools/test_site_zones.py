@@ -2,6 +2,7 @@
 import json
 import re
 import subprocess
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ import yaml
 from affine import Affine
 from rasterio.crs import CRS
 from rasterio.warp import transform as warp
-from shapely.geometry import Point, Polygon, mapping
+from shapely.geometry import Point, Polygon, box, mapping
 
 from run_helpers import write_tif
 from test_site import CELL, EAST, NORTH, RELEASE, ROAD, slope, write_dem, write_layer
@@ -17,12 +18,13 @@ from tiny_collapse import LMP
 
 from slope_tools.case import decks
 from slope_tools.errors import SlopeError
+from slope_tools.report import maps_part
 from slope_tools.route import runs
 from slope_tools.route.choices import Choices
-from slope_tools.sites import site_choices, site_zones
+from slope_tools.sites import site_choices, site_warnings, site_zones
 from slope_tools.studies import site_ground
 from slope_tools.survey import polygons
-from slope_tools.survey.rasters import Raster, write_asc_local
+from slope_tools.survey.rasters import Raster, read_asc_local, write_asc_local
 
 TERRAIN = Raster(np.full((40, 60), 100.0), Affine(2, 0, 0, 0, -2, 80), CRS.from_epsg(6677), (EAST, NORTH))
 SCREE, FOREST, STRIP = ([(0, 0), (40, 0), (40, 40), (0, 40)], [(30, 30), (70, 30), (70, 70), (30, 70)],
@@ -158,6 +160,12 @@ def test_a_covered_zone_is_told(tmp_path):
     assert [one.kind for one in said] == ["zones overlap", "zone covered"]
 
 
+def test_a_resistance_that_looks_like_an_angle_is_warned_of_by_its_zone(tmp_path):
+    zones = read(write_zones(tmp_path / "z.geojson", [(SCREE, {"name": "a", "friction": 0.6, "rolling": 12})]))
+    assert [str(one).partition(":")[0] for one in site_warnings.of_zones(zones)] == [
+        "friction of zone a 0.6", "rolling of zone a 12"]
+
+
 # --- what changes with the site's values ---
 
 MODEL = {"friction": 30, "field_restitution": 0.1, "spacing": 0.9}
@@ -231,6 +239,19 @@ def test_a_site_with_zones(gis, mine):
     assert angles == pytest.approx(site_ground.of_variables({**variables, "friction": 35, "spacing": 0.6}))
 
 
+def test_the_maps_of_a_report_have_the_zones(gis, mine):
+    """Of a study in the site's folder; none where the files of the zones are gone."""
+    data = SimpleNamespace(site=site_choices.load(gis / "mine").content, folder=gis / "mine" / "study")
+    raster = read_asc_local(gis / "mine" / "terrain.asc")
+    found = maps_part.zones_of(data, raster)
+    assert list(found) == ["scree", "森", "zone 3"]
+    assert found["scree"].area == 1500 and found["森"].equals(Polygon(FOREST))
+    data.folder = tmp = gis / "moved"
+    tmp.mkdir()
+    (tmp / "site.yaml").write_bytes((gis / "mine" / "site.yaml").read_bytes())
+    assert maps_part.zones_of(data, raster) == {}
+
+
 @pytest.mark.parametrize("changed", [{}, {"friction": "15", "spacing": "0.5", "field_e": "0.6"},
                                      {"friction_scree": "20", "friction": "88", "spacing": "0.2"}])
 def test_the_deck_has_the_values_of_a_run(gis, mine, changed):
@@ -254,6 +275,27 @@ def test_the_deck_has_the_values_of_a_run(gis, mine, changed):
         if "spacing" in zone:
             [apart] = re.findall(rf"zone zone_{zone['variables']} {number} (\S+)", log)[-1:]
             assert float(apart) == pytest.approx(now["spacing"] * d)
+
+
+def test_the_deck_has_at_a_thousand_places_the_coefficients_of_the_polygon_there(gis, mine):
+    """By the files that its regions read, the order of its zones, and the coefficients of their types."""
+    folder = gis / "mine"
+    log = lmp(folder, "-var", "duration", "0.001", "-var", "rolling", "0.05")
+    d = float(re.search(r"^variable +d +index +(\S+)", log, re.M)[1])
+    field = re.findall(r"^fix +field .*", log, re.M)[-1]
+    zones = [(box(-1e3, -1e3, 1e3, 1e3), "3", re.search(r" spacing (\S+)", field)[1])]
+    for name, kind, apart in re.findall(r"zone (\S+) (\d+)(?: +(\d\S*))?", field):
+        [path] = re.findall(rf"^region +{name} polygon (\S+)$", log, re.M)
+        zones.append((polygons.read_local(folder / path, TERRAIN, True), kind, apart or zones[0][2]))
+    pairs = {kind: re.findall(rf"^pair_coeff  1 {kind} .*restitution (\S+) friction (\S+) rolling (\S+)$", log,
+                              re.M)[-1] for _, kind, _ in zones}
+    asked = [(points, {name.lower(): value for name, value in about.items()}) for points, about in THREE]
+    for x, y in np.random.default_rng(4).uniform((0, 0), (120, 80), (1000, 2)):
+        kind, apart = [one[1:] for one in zones if one[0].contains(Point(x, y))][-1]
+        about = {**RUN, "restitution": RUN["field_e"], "rolling": 0.05}
+        about.update(([own for points, own in asked if Polygon(points).contains(Point(x, y))] or [{}])[-1])
+        assert [*map(float, pairs[kind]), float(apart) / d] == pytest.approx(
+            [float(about[name]) for name in ("restitution", "friction", "rolling", "spacing")])
 
 
 def test_one_zone_of_all_with_the_sites_values_is_the_site(gis):

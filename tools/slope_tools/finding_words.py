@@ -150,7 +150,7 @@ WORDS: Dict[str, Union[str, Words]] = {
     "first look": "the body is {balls:.1f} balls thick at most, below {limit:g}: a first look; to repeat it, use more "
                   "balls (--balls, --minutes)",
     "small angle": "{option} {degrees:g}: is it in degrees? A coefficient of {degrees:g} is {meant:.3g} degrees",
-    "large rolling": "--rolling {rolling:g}: is it a coefficient? More than {limit:g} stands for bodies that do not "
+    "large rolling": "{option} {rolling:g}: is it a coefficient? More than {limit:g} stands for bodies that do not "
                      "roll",
     # of a run and its road, in the metres of its terrain
     "moves": "{file}: the mass was still moving at {seconds:g} s: these are not final numbers",
@@ -309,7 +309,7 @@ WORDS: Dict[str, Union[str, Words]] = {
     # on a calibration
     "failed fits": Words("{failed} of {runs} runs failed and are left out: {which}", NOTE),
     # of sites of single blocks
-    "blocks on level ground": "the release area falls by {slope:.2g} degrees, less than {limit:g}: blocks hardly move",
+    "blocks on level ground": "the release area falls by {slope:.1f} degrees, less than {limit:g}: blocks hardly move",
     "blocks below cell": Words("the blocks, {size:g} m, are smaller than the cells of the terrain, {cell:g} m: steps "
                                "and ledges that throw them are not in it", NOTE),
     "blocks left": "{left:,} of {blocks:,} blocks left the terrain: how far they go is not known, and what is said of "

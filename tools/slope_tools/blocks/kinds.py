@@ -29,15 +29,9 @@ def run(command: str, module: Any, request: Any, tell: Any) -> None:
     found = site_choices.load(Path(named), BLOCKS)
     site_study.check(found)
     if command == "study":
-        return study(found, module.setup_of(request))
+        from . import study
+        return study.run(found, module.setup_of(request))
     return (export if command == "export" else report)(found, request.output, request.overwrite, tell)
-
-
-def study(found: site_choices.Site, setup) -> None:
-    from ..studies.study import alone
-    from . import study as of_blocks
-    with alone(found.folder, setup.dry_run):
-        of_blocks.run(found, setup)
 
 
 def export(found: site_choices.Site, output, overwrite: bool, tell) -> None:

@@ -6,13 +6,18 @@ import numpy as np
 
 from .. import digits, disk, provenance
 from ..animation import frames, view
+from ..case import decks
 from ..drawing import figures, palettes
 from ..plots import figure_charts, figure_maps
 from ..plots.ground import Ground
 from ..plots.section import Section as Profile
-from ..report import document, heading
+from ..report import document, heading, limits_part
 from ..report.data import Data
 from ..report.sections import Figures, Picture, Section, Table, Text
+from ..releases import release_area
+from ..sites import site_deck, site_zones
+from ..sites.site_folder import BODY
+from ..survey import polygons
 from ..survey.rasters import crs_name
 from . import files
 from .outcome import Quantity, Result
@@ -78,6 +83,15 @@ def tables(known) -> Iterator[Section]:
         [[one.rolling, f"{one.blocks:,}", one.grounds, *(share.text for share in (one.reach, one.past) if share),
           *(one.crossed[line].text for line in lines), f"{one.left:,}", f"{one.moving:,}"] for one in results], (),
         marks)])
+    if zones := known.site.found["zones"]:
+        model, variables = known.site.choices["model"], decks.index_variables(known.site.folder / site_deck.NAME)
+        variables["rolling"] = known.outcome.best.rolling
+        yield Section("ground", "The ground", [Table(
+            "What the ground is, where: zones as on the maps, and the ground outside of them; the rolling resistance "
+            "is that of the runs that govern, or the zone's own.", limits_part.ZONE_HEADS, [
+                [zone["name"], f"{100 * zone['share']:.3g}",
+                 *(f"{value:.3g}" for value in site_zones.now(zone, model, variables).values())]
+                for zone in site_zones.with_rest(zones)])])
     yield Section("travel", "How far they go", [Figures([curve(known)]), *(Table(
         TITLES[name], heads, [[one.rolling, *cells(one.travel[name], "m", one.at_least * (name != "across"))]
                               for one in results], (), marks) for name in results[0].travel)])
@@ -110,10 +124,12 @@ def maps(known, data: Data, ground: Ground) -> Dict[str, Picture]:
     (west, east), (south, north) = raster.transform * np.array([[columns.min(), columns.max() + 1],
                                                                 [rows.max() + 1, rows.min()]])
     shown = ground.window((west, south, east, north), *([data.road.bounds] if data.road else []))
-    layers = figure_maps.Layers(raster, ground.before, shown, ground.release, data.road, None,
+    release = release_area.nodes_inside(raster, polygons.read_local(known.site.folder / f"{BODY}.csv", raster, True))
+    layers = figure_maps.Layers(raster, ground.before, shown, release, data.road, None,
                                 figures.contour_interval(ground.before), {}, {
                                     name: points for name, points in ground.obstacles.lines.items()
-                                    if name in known.terrain.lines})
+                                    if name in known.terrain.lines},
+                                zones=site_zones.outlines(known.site.folder, known.site.found["zones"], raster))
     for name, unit in files.LARGEST.items():
         factor, prefix = digits.prefix(several[name].max())
         values, what = several[name] / factor, name.replace("max_", "")
@@ -155,7 +171,9 @@ def how(site) -> str:
     size = f"of {low:g} m" if low == high else f"of {low:g} to {high:g} m, all sizes as frequent,"
     start = f"at {of['speed']:g} m/s down the fall line of the release area" if of["speed"] else "at rest"
     smooth = "; larger blocks find them smoother, the smallest one must not fall between them" if low < high else ""
+    outside = " outside of the zones" if site.found["zones"] else ""
     return (f"Blocks {size} and {model['density']:,g} kg/m3 begin {start}, evenly over the release area, just above "
             f"the ground; they do not see each other. The ground is scattered balls of {low:g} m, {model['spacing']:g} "
             f"diameters apart{smooth}: friction {model['friction']:g} degrees, restitution "
-            f"{model['field_restitution']:g}. Each run has other balls of the ground and other places of blocks.")
+            f"{model['field_restitution']:g}{outside}. Each run has other balls of the ground and other places of "
+            "blocks.")

@@ -8,17 +8,18 @@ from shapely.geometry import Point
 
 from ..case import run_folders
 from ..deposits import dumps, road_sides
-from ..errors import SlopeError
 from ..sites.site_choices import Site
 from ..sites.site_folder import TERRAIN
 from ..sites.site_roads import ROAD
 from ..survey import rasters, roads
 from ..survey.rasters import Raster
+from ..tables.structures import table_of
 from .site import EDGE, sizes_of, touched
 
 PREFIX = "site"         # of a run's files: out of the deck
 AT_ROAD = "road"        # the name of its near edge among the lines
 QUANTITIES = {"energy": "J", "speed": "m/s", "height": "m"}     # at a line
+CROSSING = "ball", "direction", "x", "y", *QUANTITIES      # columns of a line's file
 SLOW = 0.05             # m/s: slow of the deck
 Columns = Dict[str, np.ndarray]
 
@@ -67,16 +68,6 @@ def terrain_of(site: Site) -> Terrain:
     return Terrain(raster, down / np.hypot(*down), road, sides, lines)
 
 
-def table(path: Path) -> Columns:
-    """A CSV of numbers that a run wrote; an empty cell is NaN."""
-    try:
-        head, *lines = path.read_text(encoding="ascii").splitlines()
-        rows = [[float(word or "nan") for word in line.split(",")] for line in lines]
-        return dict(zip(head.split(","), np.reshape(rows, (-1, head.count(",") + 1)).T))
-    except (OSError, ValueError) as error:
-        raise SlopeError(path, f"must be a table that the run wrote: {getattr(error, 'strerror', error)}") from None
-
-
 def read(name: str, folder: Path, chosen: Dict[str, str], terrain: Terrain) -> Run:
     """A finished run."""
     prefix = folder / PREFIX
@@ -84,16 +75,16 @@ def read(name: str, folder: Path, chosen: Dict[str, str], terrain: Terrain) -> R
     (_, first), (heads, last) = (dumps.frames(folder / f"{when}.dump")[0] for when in ("start", "end"))
     diameter, end, left = first[:, 1], first[:, 2:4].copy(), np.ones(len(first), bool)
     moving, reached, passed = np.zeros((3, len(first)), bool)
-    gone, there = table(Path(f"{prefix}.left.csv")), last[:, 0].astype(int) - 1
+    gone, there = table_of(Path(f"{prefix}.left.csv"), ("ball", "x", "y")), last[:, 0].astype(int) - 1
     left[there] = False
     end[there] = last[:, 1:3]
     end[gone["ball"].astype(int) - 1] = np.column_stack([gone["x"], gone["y"]])
     left[gone["ball"].astype(int) - 1] = True
     if "halt" not in str(summary["stop"]["reason"]):
         moving[there] = np.linalg.norm(last[:, heads.index("vx"):heads.index("vx") + 3], axis=1) > SLOW
-    at = {line: largest(table(Path(f"{prefix}.{line}.line.csv")), diameter) for line in terrain.lines}
+    at = {line: largest(table_of(Path(f"{prefix}.{line}.line.csv"), CROSSING), diameter) for line in terrain.lines}
     if terrain.sides:
-        parts = [table(path) for path in sorted(folder.glob(f"{PREFIX}.{EDGE}_*.line.csv"))]
+        parts = [table_of(path, CROSSING) for path in sorted(folder.glob(f"{PREFIX}.{EDGE}_*.line.csv"))]
         crossed = {key: np.concatenate([part[key] for part in parts]) for key in parts[0]}
         at[AT_ROAD] = largest({key: value[crossed["direction"] > 0] for key, value in crossed.items()}, diameter)
         reached = np.isfinite(at[AT_ROAD]["energy"])

@@ -8,6 +8,7 @@ from typing import Any, Dict, List, NamedTuple, Optional, Tuple
 import numpy as np
 from shapely.geometry import Point
 from shapely.geometry.base import BaseGeometry
+from shapely.geometry.polygon import orient
 from shapely.prepared import prep
 
 from .. import disk
@@ -27,11 +28,13 @@ from ..survey.resampling import sample
 TEMPLATE = Path(__file__).with_name("in.blocks.j2")
 FIELD = 3               # type of the ground's balls; those of zones follow
 EDGE = "road_edge"      # lines around the road
+MOST = 100_000          # blocks
 SHOWN = 200             # blocks whose paths are kept, of each run and of all together
 TRIAL = 100             # blocks of the trial run
 BINS = 2e5              # of the neighbor list, at most: the box is large and nearly empty
-RINGS, WAYS = 5, 12     # of places below a block at which it must be above the ground
-CLEAR = 1.01            # times the distance at which blocks and the ground's balls touch
+PLACES = 3000           # below a block at which it must be above the ground
+BETWEEN = 0.025         # of the circle's radius between two of them: an edge of a cliff may lie there
+CLEAR = 1.02            # times the distance at which blocks and the ground's balls touch
 WIDEST = 10.0           # times as large as the smallest block, which sets the step, may be the largest
 
 
@@ -88,7 +91,7 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: site
          f"{', '.join(f'{one:g}' for one in several)} on {grounds} grounds" + (
              f"; about {site_budget.duration_text(runs * seconds / machine.jobs)}, {machine.jobs} at a time, if "
              "nothing else runs" if seconds else ""))
-    for one in (*site_warnings.of_trial(trial), *site_warnings.of_angles({"--friction": choices["model"]["friction"]}),
+    for one in (*site_warnings.of_trial(trial), *site_warnings.of_resistance(choices),
                 *site_warnings.of_zones(layers.zones), *doubts(start)):
         keep(one)
     site_warnings.write(new, warnings)
@@ -110,6 +113,9 @@ def check(choices: Choices, runs: int) -> None:
     if number < runs:
         raise SlopeError("--blocks", f"must be at least {runs}, one for each run: chance is measured on several "
                          "grounds (blocks.grounds of site.yaml)", number)
+    if number > MOST:
+        raise SlopeError("--blocks", f"must be at most {MOST:,}: more grounds (blocks.grounds of site.yaml) say more "
+                         "than more blocks", f"{number:,}")
     if not low <= high <= WIDEST * low:
         raise SlopeError("--size", f"must be D or D:D2, m, with D <= D2 <= {WIDEST:g} D", f"{low:g}:{high:g}")
 
@@ -139,7 +145,7 @@ def start_of(choices: Choices, raster: Raster, new: Path, tell, warn) -> Start:
     slope = math.degrees(math.atan(steep))
     if speed and slope < FLAT:
         raise SlopeError("--speed", f"needs a fall line: the release area must fall by at least {FLAT:g} degree",
-                         f"{slope:.2g}")
+                         f"{slope:.1f}")
     tell(f"{BODY}.csv: {polygon.area:,.0f} m2 in which blocks start, a slope of {slope:.0f} degrees")
     down = np.array([*(-gradient / max(steep, 1e-9)), -steep]) / math.hypot(1, steep) if steep > 1e-9 else np.eye(3)[0]
     top = float(np.nanmax(raster.z)) + 12 * sizes[1] + speed ** 2 / (2 * GRAVITY)
@@ -158,12 +164,13 @@ def inside(polygon: BaseGeometry, number: int, chance: np.random.Generator) -> n
 
 def lifted(raster: Raster, points: np.ndarray, reach: np.ndarray) -> np.ndarray:
     """Height at which the ground is nowhere nearer than that (m) to a point above each of points; NaN beside it."""
-    heights = [sample(raster, *points.T) + reach]
-    for part in np.arange(1, RINGS + 1) / RINGS:
-        for angle in np.arange(WAYS) * 2 * math.pi / WAYS:
-            x, y = points.T + part * reach * np.array([[math.cos(angle)], [math.sin(angle)]])
-            heights.append(sample(raster, x, y) + reach * math.sqrt(1 - part ** 2))
-    return np.max(heights, axis=0)
+    most = sample(raster, *points.T) + reach
+    for place in np.split(np.arange(PLACES) + 0.5, PLACES // 50):       # a spiral that fills the circle evenly
+        away, angle = np.sqrt(place / PLACES), place * math.pi * (3 - math.sqrt(5))
+        x, y = (points[:, [k]] + np.outer(reach, away * part) for k, part in enumerate((np.cos(angle), np.sin(angle))))
+        above = np.outer(reach, np.sqrt(1 - np.maximum(0.0, away - BETWEEN) ** 2))
+        most = np.maximum(most, (sample(raster, x, y) + above).max(axis=1))
+    return most
 
 
 def doubts(start: Start) -> List[Finding]:
@@ -181,7 +188,7 @@ def touched(road: BaseGeometry, largest: float, raster: Raster) -> BaseGeometry:
 
 
 def edges(choices: Choices, layers: site_layers.Layers, start: Start, new: Path) -> List[Line]:
-    """Closed control lines around the road, clockwise: forward is onto it."""
+    """Closed control lines around the road, and around what it encloses: forward is onto it."""
     if layers.road is None:
         return []
     if line := site_layers.swapped(choices, start.raster):
@@ -191,8 +198,12 @@ def edges(choices: Choices, layers: site_layers.Layers, start: Start, new: Path)
     if road.intersects(start.polygon):
         raise SlopeError("--release", f"must be at least half a block, {start.sizes[1] / 2:g} m, away from the road",
                          f"{start.polygon.distance(layers.road):.3g} m")
-    for k, part in enumerate(polygons_of(road), 1):
-        points = np.round(np.asarray(part.exterior.coords)[:, :2], 4)[::-1 if part.exterior.is_ccw else 1] + 0.0
+    if name := next((one.name for one in layers.lines if one.name.startswith(EDGE)), None):
+        raise SlopeError("--line", f"must not be called {EDGE}, as lines around the road are: rename the file", name)
+    parts = [orient(part, -1.0) for part in polygons_of(road)]
+    for k, ring in enumerate((ring for part in parts for ring in (part.exterior, *part.interiors)), 1):
+        points = np.round(np.asarray(ring.coords)[:, :2], 4) + 0.0
+        points = points[np.append(True, (points[1:] != points[:-1]).any(axis=1))]
         found.append(Line(f"{EDGE}_{k}", f"{EDGE}_{k}.csv", points))
         disk.write(new / found[-1].file, "# around the road, local x,y in m; forward is onto it\n"
                    + "".join(f"{x!r},{y!r}\n" for x, y in points.tolist()))

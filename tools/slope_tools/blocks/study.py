@@ -46,7 +46,8 @@ def run(site: Site, engine: Setup) -> None:
         for one in known.outcome.doubts():
             setup.warn(one)
         setup.tell(page.write(known, site.folder / page.NAME))
-    study.perform(setup, settings_of(site), planned(site), collect)
+    with study.alone(site.folder, setup.dry_run):
+        study.perform(setup, settings_of(site), planned(site), collect)
 
 
 def read(site: Site, todo: Sequence[Any]) -> Known:

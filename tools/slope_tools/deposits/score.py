@@ -9,13 +9,12 @@ from ..errors import SlopeError
 from ..geometry import coverage, extent
 from ..survey import beside, polygons
 from ..survey.crs import same_crs
-from ..survey.rasters import Raster, crs_name
+from ..survey.rasters import ENDINGS, Raster, crs_name
 from . import reach
 from .connected import connected, top
 from .volume_files import text
 
 THRESHOLD = 0.1   # m
-RASTERS = {".tif", ".tiff", ".asc", ".vrt", ".img", ".bil"}
 FULL = 1e-9       # a smaller share of a cell, or of the largest thickness, is rounding
 
 
@@ -33,7 +32,7 @@ class Observed(NamedTuple):
 
 def read_observed(path, raster, threshold, local, warn=None):
     """The Observed of a file, on the grid of a run's thickness raster; warn: called with what was taken for granted."""
-    if path.suffix.lower() not in RASTERS:
+    if path.suffix.lower() not in ENDINGS:
         polygon = polygons.read_local(path, raster, local)
         return from_polygon(polygon, raster)
     mapped = beside.read(path, raster, local=beside.Local(local), warn=warn,

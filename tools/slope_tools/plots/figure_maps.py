@@ -21,6 +21,7 @@ SECTION_LINE = {"color": SECTION, "lw": 0.9, "ls": (0, (6, 2, 1, 2))}
 RELEASE_LINE = {"color": RELEASE, "lw": 0.9, "ls": "--"}
 WALL = {"color": "#111111", "lw": 1.2}
 LINE = {"color": "#8a5aa8", "lw": 1.2}
+ZONE = {"color": "#7a4d1f", "lw": 0.9, "ls": "-."}
 MAPPED = {"color": "#1f2fbf", "lw": 1.3}
 PATH = {"color": "#00695c", "lw": 0.7, "ls": (0, (1, 1.5))}
 OUTLINES = {0.95: {"color": "#111111", "lw": 1.4}, 0.5: {"color": "#111111", "lw": 1.1, "ls": (0, (4, 1.5))},
@@ -58,13 +59,14 @@ class Layers(NamedTuple):
     lines: Mapping[str, np.ndarray] = {}     # points of control lines, rows of x y
     reach: KnownReach = NOTHING              # of known events
     mapped: Any = None                       # the deposit of an event: a polygon, or a mask of cells
+    zones: Mapping[str, Any] = {}            # of the ground: polygons
     exceeded: Optional[Exceeded] = None      # by an ensemble
 
 
 # --- what is drawn into the axes of a map ---
 
 def base_map(axes, layers, labels=True):
-    """Shaded relief, contours, release, road, structures, control lines, reach of known events."""
+    """Shaded relief, contours, zones of the ground, release, road, structures, control lines, reach of known events."""
     raster, shown = layers.raster, layers.shown
     z, where = part(raster, layers.ground, shown)
     step = (where[1] - where[0]) / z.shape[1]
@@ -83,6 +85,10 @@ def base_map(axes, layers, labels=True):
         outline(axes, layers.road, color=ROAD, linewidth=1.1, zorder=6)
         for polygon in polygons_of(layers.road):
             axes.fill(*np.asarray(polygon.exterior.coords)[:, :2].T, color=ROAD, alpha=0.13, lw=0, zorder=1.5)
+    for name, zone in layers.zones.items():
+        outline(axes, zone, color=ZONE["color"], linewidth=ZONE["lw"], linestyle=ZONE["ls"], zorder=4)
+        place = zone.representative_point()
+        axes.annotate(name, (place.x, place.y), fontsize=6, color=ZONE["color"], annotation_clip=True, zorder=8)
     draw_obstacles(axes, layers)
     draw_mapped(axes, layers)
     if layers.exceeded:
@@ -160,6 +166,8 @@ def entries(layers):
         found.append(Entry("control line", LINE))
     if layers.mapped is not None:
         found.append(Entry("mapped deposit", MAPPED))
+    if layers.zones:
+        found.append(Entry("zone of the ground", ZONE))
     if layers.exceeded:
         found += layers.exceeded.entries()
     found += entries_of_marks({mark.share for mark in layers.reach.marks})

@@ -16,7 +16,6 @@ from .sheets import Entry
 
 RELEASE = {"color": figures.RELEASE, "lw": 1.0, "ls": "--"}
 OBSERVED = {"color": "#d1603d", "lw": 1.1}
-ZONE = {"color": "#7a4d1f", "lw": 0.9, "ls": "-."}
 TRIAL = {"color": "#1f7a4d", "lw": 1.0, "ls": ":"}
 REACHED = 0.1       # m of thickness
 
@@ -25,7 +24,8 @@ def draw(path: Path, layers: Shown, title: str) -> None:
     """Write the map as a PNG."""
     raster, crs = layers.raster, crs_name(layers.raster.crs) if layers.raster.crs is not None else ""
     shown = window(raster, *boxes(layers))
-    base = figure_maps.Layers(raster, raster.z, shown, None, layers.road, None, figures.contour_interval(raster.z))
+    base = figure_maps.Layers(raster, raster.z, shown, None, layers.road, None, figures.contour_interval(raster.z),
+                              zones={zone.name: zone.geometry for zone in layers.zones})
     bounds = figures.even(float(layers.depth.max()))
     with pictures.settings(figures.STYLE):
         frame = figure_maps.frame_of(base, True, crs)
@@ -74,12 +74,6 @@ def draw_outlines(axes, layers: Shown) -> List[Entry]:
             outline(axes, geometry, color=style["color"], linewidth=style["lw"], linestyle=style.get("ls", "-"),
                     zorder=6)
             entries.append(Entry(name, style))
-    for zone in layers.zones:
-        outline(axes, zone.geometry, color=ZONE["color"], linewidth=ZONE["lw"], linestyle=ZONE["ls"], zorder=4)
-        place = zone.geometry.representative_point()
-        axes.annotate(zone.name, (place.x, place.y), fontsize=6, color=ZONE["color"], annotation_clip=True, zorder=8)
-    if layers.zones:
-        entries.append(Entry("zone of the ground", ZONE))
     for one in layers.structures:
         (xlo, ylo), (xhi, yhi) = one.low[:2], one.high[:2]
         axes.plot([xlo, xhi, xhi, xlo, xlo], [ylo, ylo, yhi, yhi, ylo], color=WALL["color"], lw=WALL["lw"],

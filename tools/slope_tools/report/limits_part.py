@@ -16,7 +16,9 @@ from .sections import Cell, Pairs, Section, Table
 
 CONTENT = List[Tuple[str, str]]
 RESISTANCE = "Resistance of the ground"
-ZONES = ("What the ground is, where: zones as on the map of the site, and the ground outside of them. Values are "
+ZONE_HEADS = ["zone", Cell("share of the terrain", "%"), Cell("friction", "degrees"), "rolling resistance",
+              "restitution", Cell("spacing", "diameters")]
+ZONES = ("What the ground is, where: zones as on the maps, and the ground outside of them. Values are "
          "those of the shown run; the stop angle is that of a sheet of three balls whose soil has them, too.")
 
 
@@ -59,18 +61,15 @@ def zones_of_ground(data, numbers) -> Optional[Section]:
     zones, variables = (site.get("found") or {}).get("zones") or [], data.result.row.get("variables") or {}
     if not zones or not set(site_zones.VALUES.values()) <= set(variables):
         return None
-    rest = {"name": "outside of all zones", "variables": "", "share": 1 - sum(zone["share"] for zone in zones)}
     rows = []
-    for zone in (*zones, rest):
+    for zone in site_zones.with_rest(zones):
         now = site_zones.now(zone, site["model"], variables)
         degrees = site_ground.of_zone(zone, site["model"], variables)
         numbers.rows.append((f"ground: {zone['name']}: share of the terrain", "%", "", f"{100 * zone['share']:.3g}",
                              100 * zone["share"]))
         rows.append((zone["name"], f"{100 * zone['share']:.3g}", *(f"{value:.3g}" for value in now.values()),
                      "" if degrees is None else f"{degrees:.1f}"))
-    heads = ["zone", Cell("share of the terrain", "%"), Cell("friction", "degrees"), "rolling resistance",
-             "restitution", Cell("spacing", "diameters"), Cell("stop angle", "degrees")]
-    return Section("ground", "The ground", [Table(ZONES, heads, rows)])
+    return Section("ground", "The ground", [Table(ZONES, [*ZONE_HEADS, Cell("stop angle", "degrees")], rows)])
 
 
 # --- uncertainty ---

@@ -1,4 +1,5 @@
 """The maps of a report: of the shown run, and over all runs of a study."""
+from pathlib import Path
 from typing import Any, Dict
 
 import numpy as np
@@ -7,13 +8,20 @@ from .. import digits, geometry
 from ..drawing import figures, palettes
 from ..plots import figure_maps, known_reach
 from ..plots.ground import box_of
+from ..sites import site_zones
 from ..survey.rasters import crs_name
-from . import ensemble_part, mobility_part
+from . import ensemble_part, heading, mobility_part
 from .numbers import shown_run
 from .run_part import titled
 from .sections import Figures, Picture, Section, Text
 
 OPEN = " The last class is open: it holds the few thicker cells, most of them in the release."
+
+
+def zones_of(data, raster) -> Dict[str, Any]:
+    """Polygons of the zones of a site's ground, by name."""
+    zones, path = (data.site.get("found") or {}).get("zones"), heading.site_file(Path(data.folder))
+    return site_zones.outlines(path.parent, zones, raster) if zones and path else {}
 
 
 def square(area: float) -> str:
@@ -32,7 +40,7 @@ class Maps:
             ground.raster, ground.before,
             ground.window(*ground.boxes(), (*line.min(axis=0), *line.max(axis=0))),
             ground.release, data.road, line, figures.contour_interval(ground.before), ground.obstacles.footprints,
-            ground.obstacles.lines, ground.reach, mobility_part.drawn(data))
+            ground.obstacles.lines, ground.reach, mobility_part.drawn(data), zones_of(data, ground.raster))
 
     def thickness(self, values, title, alt, caption, width=figures.HALF, layers=None):
         """A map of a thickness, in classes that the release does not set."""

@@ -20,7 +20,8 @@ from . import site_walls
 
 # names of the deck's own fixes and groups, and of files that a run writes beside them
 TAKEN = {"all", "soil", "slip", "beyond", "field", "spread", "move", "weight", "deposit", "rest", "shake", "drag",
-         "stands", "fails", "balls", "road", "release", "observed", "terrain", "body", "ground", "base", "summary"}
+         "stands", "fails", "balls", "road", "release", "observed", "terrain", "body", "ground", "base", "summary",
+         "calm"}
 MOTION = "motion.txt"
 
 

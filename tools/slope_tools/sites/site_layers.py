@@ -22,7 +22,6 @@ from .site_inputs import Line, Motion, Structure
 from .site_zones import Zone
 
 OBSERVED = "observed"       # .csv of an outline, .tif of a raster
-RASTERS = {".tif", ".tiff", ".asc", ".vrt", ".img", ".bil"}
 
 
 class Layers(NamedTuple):
@@ -183,7 +182,7 @@ def observed_layer(choices: Choices, raster: Raster, folder: Path, tell, warn):
     path = choices["observed"]["file"]
     if not path:
         return None
-    if Path(path).suffix.lower() not in RASTERS:
+    if Path(path).suffix.lower() not in rasters.ENDINGS:
         return polygon_layer(choices, path, raster, folder / f"{OBSERVED}.csv", tell, warn)
     mapped = beside.read(path, raster, False, assigned(choices, path), warn=warn)
     if not same_crs(mapped.crs, raster.crs):

@@ -58,19 +58,23 @@ def of_volume(volume: float) -> List[Finding]:
 
 def of_resistance(choices: Choices) -> List[Finding]:
     """Angles that look like coefficients, and coefficients that look like angles or percents."""
-    angles = {"--friction": choices["model"]["friction"], "--slip-friction": choices["model"]["slip_friction"]}
+    angles = {"--friction": choices["model"]["friction"], "--slip-friction": choices["model"].get("slip_friction", 0.0)}
     if choices["road"]["file"]:
-        angles["--cut-angle"] = choices["road"]["cut_angle"]
-    return [*of_angles(angles), *(Finding("large rolling", {"rolling": value, "limit": ROLLS_NOT})
-                                  for value in choices["study"]["rolling"] if value > ROLLS_NOT)]
+        angles["--cut-angle"] = choices["road"].get("cut_angle", 0.0)
+    return [*of_angles(angles), *of_rolling("--rolling", *choices["study"]["rolling"])]
 
 
 def of_zones(zones: Sequence[Zone]) -> List[Finding]:
     """The same of the zones of the ground."""
-    return [one for zone in zones for one in
-            (*of_angles({f"friction of zone {zone.name}": zone.values.get("friction", 0.0)}),
-             *(Finding("large rolling", {"rolling": value, "limit": ROLLS_NOT})
-               for value in [zone.values.get("rolling", 0.0)] if value > ROLLS_NOT))]
+    return [one for zone in zones for one in (
+        *of_angles({f"friction of zone {zone.name}": zone.values.get("friction", 0.0)}),
+        *of_rolling(f"rolling of zone {zone.name}", zone.values.get("rolling", 0.0)))]
+
+
+def of_rolling(option: str, *values: float) -> List[Finding]:
+    """Coefficients of rolling resistance that look like angles or percents."""
+    return [Finding("large rolling", {"option": option, "rolling": value, "limit": ROLLS_NOT})
+            for value in values if value > ROLLS_NOT]
 
 
 def of_angles(angles: Mapping[str, float]) -> List[Finding]:

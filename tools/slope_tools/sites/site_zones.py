@@ -7,7 +7,7 @@ import csv
 import difflib
 import re
 from pathlib import Path
-from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Set, Tuple
+from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Set, Tuple
 
 import numpy as np
 from rasterio import features
@@ -22,7 +22,7 @@ from ..errors import SlopeError
 from ..findings import Finding
 from ..geometry import box_of, extent, polygons_of
 from ..survey import beside, geopackage, polygons, vectors
-from ..survey.rasters import Raster
+from ..survey.rasters import ENDINGS, Raster
 from . import site_choices, site_inputs
 from .site_choices import Choices
 
@@ -33,7 +33,6 @@ LIMITS = {"friction": (0.0, 89.0), "restitution": (0.001, 0.9), "spacing": (0.2,
 SHORT = {"restitutio": "restitution"}       # a shapefile's names have ten letters
 NAME, CLASS = "name", "class"
 LIKE = 0.75             # of a name that is meant to be one of these
-RASTERS = {".tif", ".tiff", ".asc", ".vrt", ".img", ".bil"}
 FILE = "ground.{}.csv"  # of a zone, in the site's folder
 ALL = "ground.gpkg"     # all of them, for a GIS
 MOST = 200              # zones: each has a type of balls
@@ -71,7 +70,7 @@ def read(source: Source, raster: Raster, warn) -> List[Zone]:
 
     Raises SlopeError, which names file and feature, where attributes are missing, unknown or out of range.
     """
-    is_raster = Path(vectors.source(source.path).path).suffix.lower() in RASTERS
+    is_raster = Path(vectors.source(source.path).path).suffix.lower() in ENDINGS
     if is_raster != bool(source.table):
         raise SlopeError("--ground-table", "must be given with a raster of classes, and with nothing else",
                          source.table or "none")
@@ -239,6 +238,18 @@ def write(zones: List[Zone], raster: Raster, folder: Path) -> None:
     rows = [(MultiPolygon(polygons_of(zone.geometry)), {**dict.fromkeys(kinds), **zone.about(raster)})
             for zone in zones]
     geopackage.write(folder / ALL, {"ground": geopackage.Layer("MultiPolygon", kinds, rows)}, raster)
+
+
+def outlines(folder: Path, zones: Sequence[Mapping[str, Any]], raster: Raster) -> Dict[str, BaseGeometry]:
+    """{name: polygon}, as write() left them in a site's folder; zones: those of Zone.about()."""
+    files = {zone["name"]: folder / FILE.format(zone["variables"]) for zone in zones}
+    return {name: polygons.read_local(path, raster, True) for name, path in files.items() if path.is_file()}
+
+
+def with_rest(zones: Sequence[Mapping[str, Any]]) -> List[Mapping[str, Any]]:
+    """Those of Zone.about(), and the ground outside of them."""
+    rest = {"name": "outside of all zones", "variables": "", "share": 1 - sum(zone["share"] for zone in zones)}
+    return [*zones, rest]
 
 
 # --- what the values are in a run ---

@@ -30,6 +30,7 @@ WHAT_SIDECAR = "a sidecar that `slope terrain` wrote"
 ORIGIN, EXTENT = ("east", "north"), ("xlo", "ylo", "xhi", "yhi")
 SIDECAR = mapping({"crs": mapping({"wkt": TEXT}, null=True), "origin": mapping(numbers(*ORIGIN)),
                    "size": mapping({"rows": COUNT, "columns": COUNT}), "extent": mapping(numbers(*EXTENT))})
+ENDINGS = {".tif", ".tiff", ".asc", ".vrt", ".img", ".bil"}       # of files that are rasters and not layers of shapes
 NODATA = -9999             # in written files
 HIGHEST = 9000.0           # m; beyond +-HIGHEST a value is a NODATA mark that the file does not declare (-9999, -32768)
 BYTES_PER_CELL = 40        # peak memory of `slope terrain` per cell, measured 22 to 33 for 16 million cells
