@@ -14,7 +14,6 @@ from ..ensembles import known_events, known_study, sample
 from ..errors import SlopeError
 from ..options import flag, option, positional, several
 from ..runs import repeats
-from ..scenarios import page as of_scenarios
 from ..sites import site_choices, site_deck, site_roads
 from ..sites.site_choices import Site
 from ..sites.site_bodies import VARIABLE
@@ -113,8 +112,10 @@ def run_folder(args: Request) -> None:
     site = site_choices.load(args.deck)
     made = road_numbers.of_all(site, not args.dry_run, setup_of(args).tell, lambda one, several, quiet: run_site_of(
         replace(args, roads=several, quiet=quiet), one))
-    if made.abouts and (said := of_scenarios.refresh(args.deck)):
-        print(said)
+    if made.abouts:
+        from ..scenarios import page
+        if said := page.refresh(args.deck):
+            print(said)
     if made.failed:
         raise made.failed
 
