@@ -455,7 +455,7 @@ def fit_of(tmp_path, monkeypatch, rest_after, duration="10", fixed=(), fails=())
     """A Fit whose runs are at rest from a duration (s) on, and what it tells; fails: durations of runs that fail."""
     told = []
 
-    def rows_of(setup, todo, maps):
+    def rows_of(setup, todo):
         rows = []
         for one in todo:
             seconds = float(one.chosen.get("duration", duration))
@@ -464,7 +464,7 @@ def fit_of(tmp_path, monkeypatch, rest_after, duration="10", fixed=(), fails=())
                         {"status": "finished", "run": one.name, "at_rest": seconds >= rest_after,
                          "stop_reason": "halted" if seconds >= rest_after else "run completed", "released_m3": 1000.0,
                          "lost_m3": 0.0, "seconds": seconds})
-        return rows, None
+        return rows
 
     monkeypatch.setattr(fit.results, "rows_of", rows_of)
     monkeypatch.setattr(fit.Fit, "summary", lambda self, row: None)

@@ -20,7 +20,7 @@ from slope_tools.survey import rasters, roads
 from slope_tools.tables import named_run
 
 NEAR, FAR = [(38, 0), (46, 0), (46, 80), (38, 80)], [(4, 0), (12, 0), (12, 80), (4, 80)]
-OF_ONE = ("collected", "machine", "jobs", "road")       # of study.study, which are of the time, or of the name
+OF_ONE = ("collected", "machine", "jobs", "package", "road")     # of study.study, which are of the time, or of the name
 
 
 def write_lines(path, *features):

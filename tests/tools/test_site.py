@@ -262,10 +262,15 @@ def test_the_page_of_a_site_and_its_scenarios(done, tmp_path):
     for words in ("not studied as it is", "volume 800", ">small<", f">{volume}<", "<li>small: ", "data:image/png",
                   "Outlines of the deposits"):
         assert words in page, words
-    shutil.copytree(mine / "study", mine / "scenarios" / "small" / "study")     # as if its runs said the same
-    shutil.copytree(mine / "runs", mine / "scenarios" / "small" / "runs")
+    made = inside(tmp_path, "site", "mine", "--scenario", "steep", "--cut-angle", "45")
+    assert made.returncode == 0, made.stderr
+    for name in ("small", "steep"):         # the runs are those of the site: as they are for a scenario of the same body
+        for part in ("study", "runs"):
+            shutil.copytree(mine / part, mine / "scenarios" / name / part)
     assert inside(tmp_path, "report", "mine", "--no-film").returncode == 0
-    assert "not studied as it is" not in (mine / "scenarios.html").read_text(encoding="utf-8")
+    page = (mine / "scenarios.html").read_text(encoding="utf-8")
+    assert page.count("not studied as it is") == 1
+    assert re.search(r">small<(?:(?!</tr>).)*not studied as it is", page, re.DOTALL)
     (mine / "scenarios.html").write_text("of the user\n")
     found = inside(tmp_path, "report", "mine", "--no-film")
     assert found.returncode == 2 and "scenarios.html must be" in found.stderr.splitlines()[-1]

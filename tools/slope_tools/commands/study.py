@@ -109,6 +109,7 @@ def run(args: Request) -> None:
 
 def run_folder(args: Request) -> None:
     """The studies of a site's folder: of its road, or of each of several, and of the worst as if it were alone."""
+    check_kind(args)
     site = site_choices.load(args.deck)
     made = road_numbers.of_all(site, not args.dry_run, setup_of(args).tell, lambda one, several, quiet: run_site_of(
         replace(args, roads=several, quiet=quiet), one))
@@ -120,15 +121,21 @@ def run_folder(args: Request) -> None:
         raise made.failed
 
 
-def run_site_of(args: Request, site: Site) -> Made:
-    """The study of a site, of the road that is asked: by the paper's method, and weighted by known events."""
+def check_kind(args: Request) -> None:
+    """Raise SlopeError if options are given that the study of a site, or its ensemble, does not have."""
     if args.sample is not None or args.fit is not None:
         if args.paper:
             raise SlopeError("--paper", "must not be given with --sample or --from, which make an ensemble")
-        return run_site_ensemble(args, site)
+        return refuse(args, OF_A_ROAD)
     if args.fragility is not None:
         raise SlopeError("--sample", "must be given with --fragility: how many runs")
-    refuse(args, NOT_OF_A_SITE)
+    return refuse(args, NOT_OF_A_SITE)
+
+
+def run_site_of(args: Request, site: Site) -> Made:
+    """The study of a site, of the road that is asked: by the paper's method, and weighted by known events."""
+    if args.sample is not None or args.fit is not None:
+        return run_site_ensemble(args, site)
     site_study.check(site)
     points = site.choices["study"]["points"]
     why = "" if args.paper else known_study.why_not(args.deck) if points else known_study.NONE
@@ -293,7 +300,6 @@ def write_report(folder: Path, page: Path, about: Mapping[str, Any], site: Site,
 
 def run_site_ensemble(args: Request, site: Site) -> Made:
     """An ensemble of a site's deck with its road, in a folder of the site's, and the report."""
-    refuse(args, OF_A_ROAD)
     site_study.check(site)
     wanted = of_ensemble(args, site)
     about = run_deck(wanted)
