@@ -70,7 +70,7 @@ NOT_FILES = {("terrain", "crs"), ("terrain", "assign_crs"), ("terrain", "z_unit"
 
 
 def test_every_option_of_a_site_is_a_choice():
-    known = site_command.OPTIONS.keys() - {"assigned", "bodies"}
+    known = site_command.OPTIONS.keys() - {"assigned", "bodies", "roads"}
     assert options("site") - SET_CHOICES - TRIAL - PLACE - {"folder"} == known
     assert set(site_command.OPTIONS.values()) <= {*KEYS, *OF_BLOCKS}
 

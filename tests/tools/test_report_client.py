@@ -181,7 +181,7 @@ def test_beyond_the_road_smaller_balls_bring_more(balls, said):
     data.finished[1]["beyond_road_m3"] = 730.0
     text = client_part.road(data, Numbers())
     grown = size_family.told(2.7, quantity="beyond_road_m3")
-    assert (f"up to 730 m\u00b3, which smaller balls in the model made up to {grown.high:.2g} times as much in "
+    assert (f"up to 730 m\u00b3; smaller balls in the model brought up to {grown.high:.2g} times as much there in "
             f"{grown.slides} other slides" in text) is said and grown.high > 2 and "730" in text
 
 

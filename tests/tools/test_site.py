@@ -264,7 +264,7 @@ def test_the_page_of_a_site_and_its_scenarios(done, tmp_path):
         assert words in page, words
     made = inside(tmp_path, "site", "mine", "--scenario", "steep", "--cut-angle", "45")
     assert made.returncode == 0, made.stderr
-    for name in ("small", "steep"):         # the runs are those of the site: as they are for a scenario of the same body
+    for name in ("small", "steep"):         # runs of the site are as those of a scenario of the same body
         for part in ("study", "runs"):
             shutil.copytree(mine / part, mine / "scenarios" / name / part)
     assert inside(tmp_path, "report", "mine", "--no-film").returncode == 0

@@ -317,7 +317,7 @@ def finer(data) -> str:
     grown = None if balls is None else size_family.told(balls, quantity="beyond_road_m3")
     if grown is None:
         return ""
-    return (f", which smaller balls in the model made up to {digits.rounded(grown.high, 2)} times as much in "
+    return (f"; smaller balls in the model brought up to {digits.rounded(grown.high, 2)} times as much there in "
             f"{grown.slides} other slides (median {digits.rounded(grown.median, 2)})")
 
 
