@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import yaml
 from shapely.affinity import rotate
-from shapely.geometry import MultiPolygon, box
+from shapely.geometry import LineString, MultiPolygon, box
 
 from run_helpers import called, write_run, write_sidecar
 from test_site import BODY, gis, told, write_layer  # noqa: F401
@@ -173,6 +173,18 @@ def test_all_of_a_road_on_the_body_is_the_road():
         assert found.wholly == wholly and found.part == ("the road" if wholly else "a part of the road")
     assert release_toe.on_body(body, raster, box(0, 0, 6, 30), 2) is None
     assert release_toe.on_body(body, raster, box(10, 10, 40, 14), 2).wholly is False      # beyond the terrain
+
+
+def test_a_road_far_from_the_body_is_not_on_it():
+    """Whatever the corners of its polygon, whose coverage of the cells elsewhere is rounded."""
+    raster = rasters.Raster(np.zeros((64, 256)), rasters.Affine(2.5, 0, -400, 0, -2.5, 160), None)
+    body = np.zeros(raster.z.shape, bool)
+    body[10:50, 190:230] = True
+    random = np.random.default_rng(1)
+    for _ in range(50):
+        x, slant = random.uniform(-380, -100), random.uniform(-20, 20)
+        road = LineString([(x, 3.0), (x + slant, 157.0)]).buffer(5.0, cap_style=2)
+        assert release_toe.on_body(body, raster, road, 2) is None
 
 
 PARTS = {"two": [box(60, 0, 80, 70), box(60, 90, 80, 160)], "small gap": [box(60, 0, 80, 79), box(60, 80, 80, 160)],

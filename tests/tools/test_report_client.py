@@ -202,7 +202,7 @@ MAP = {"raster": "thickness", "threshold": 0.1}
 
 
 @pytest.mark.parametrize("study, runs, whom, file", [
-    ({"maps": [{**MAP, "file": "own"}], "known_events": {"reached": 0.9, "maps": [
+    ({"maps": [{**MAP, "file": "own"}], "known_events": {"reached": 0.9, "far": 0.07, "maps": [
         {**MAP, "file": "5", "threshold": 0.5}, {**MAP, "file": "a"}, {"raster": "thickness", "quantile": 0.9},
         {"raster": "max_speed", "threshold": 0.01, "file": "speed"}, {**MAP, "threshold": 0.0, "file": "any"}]}}, 64,
      "known events", "a"),
@@ -214,6 +214,7 @@ def test_the_map_has_the_outlines_of_an_ensemble(study, runs, whom, file):
     data = SimpleNamespace(finished=[{}] * runs, study={"ensemble": study}, read_map=lambda name: name)
     found = ensemble_part.exceeded(data)
     assert (found and found.whom, found and found.share) == (whom, file)
+    assert found is None or found.far == (0.07 if whom == "known events" else 0.0)
     assert found is None or found.thick == 0.1
 
 

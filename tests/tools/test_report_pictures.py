@@ -167,19 +167,20 @@ def test_the_outline_of_a_mapped_raster_is_that_of_its_cells(drawn):
 
 
 @pytest.mark.parametrize("name", SITES)
-@pytest.mark.parametrize("most, lines", [(1.0, 3), (0.7, 2), (0.3, 1), (0.04, 0)])
-def test_outlines_of_an_ensemble(drawn, name, most, lines):
-    """A line and an entry of the legend for each share that the ensemble reaches."""
+@pytest.mark.parametrize("most, far, shares", [(1.0, 0, [95, 50, 5]), (0.7, 0, [50, 5]), (0.3, 0, [5]), (0.04, 0, []),
+                                               (1.0, 0.05, [95, 50]), (1.0, 0.6, [95])])
+def test_outlines_of_an_ensemble(drawn, name, most, far, shares):
+    """A line and an entry of the legend for each share that the ensemble reaches and that is not beyond all runs."""
     layers, thickness = site(name)
-    exceeded = figure_maps.Exceeded(most * thickness / thickness.max(), "known events", 0.1)
+    exceeded = figure_maps.Exceeded(most * thickness / thickness.max(), "known events", 0.1, far)
     for each in (layers, layers._replace(exceeded=exceeded)):
         figure_maps.value_map(each, thickness, LONG, "thickness (m)", figures.classes_of(thickness), "YlOrBr",
                               figures.FULL, CRS_OF[name] or "")
         check_layout(drawn[-1])
     before, after = (len(one.axes[0].collections) for one in drawn)
     texts = [text for text, _ in texts_of(drawn[-1]) if "of known events" in text]
-    assert after - before == lines or after > before and lines      # one for each level, or for each of its parts
-    assert texts == [f"thicker than 0.1 m in {one} % of known events" for one in (95, 50, 5)][3 - lines:]
+    assert after - before == len(shares) or after > before and shares       # one for each, or for each of its parts
+    assert texts == [f"thicker than 0.1 m in {one} % of known events" for one in shares]
 
 
 def test_an_overlap_would_be_found(drawn):

@@ -106,7 +106,7 @@ def test_the_worst_stands_for_the_site(done):
     assert (mine / "road.csv").read_text() == (mine / f"{first.road}.road.csv").read_text()
     assert named_run.read(str(mine)).study == mine / "study"
     page = (mine / "report.html").read_text(encoding="utf-8")
-    assert f"Of 3 roads most is to be removed from this one, \u201c{first.road}\u201d; \u201c" in page
+    assert f"Of 3 roads this is the worst, \u201c{first.road}\u201d; \u201c" in page
     for one in (first, *others):
         assert f"roads/{one.road}/report.html" in page and (mine / "roads" / one.road / "report.html").is_file()
         assert one.text.removesuffix(" m3") in page and one.text in said
@@ -114,6 +114,39 @@ def test_the_worst_stands_for_the_site(done):
     assert said.count("conservative volume to remove") == 1       # of the worst alone
     again = inside_with_lmp(folder, "report", f"mine/roads/{others[0].road}", "--no-film")
     assert again.returncode == 0, again.stderr
+
+
+def test_a_study_of_other_roads_is_no_answer(done, tmp_path):
+    """Of a site or of one of its roads, by whatever path, for page, rasters and zones; `study` makes it anew."""
+    folder = tmp_path / "other"
+    shutil.copytree(done[0], folder)
+    for words in ("report mine --no-film", "export mine", "export mine --zones 0.9", "report mine/roads/far --no-film",
+                  "export mine/roads/far --zones 0.9 -o far"):
+        made = inside_with_lmp(folder, *words.split())
+        assert made.returncode == 0, made.stderr
+    assert "10 runs cannot tell" not in made.stdout and " 1 runs cannot tell" not in made.stdout
+    assert inside_with_lmp(folder, "site", "mine", "--road", "far.geojson", "--road", "near.geojson").returncode == 0
+    for words in ("report mine --no-film", "export mine", "export mine --zones 0.9", "report mine/roads/road --no-film",
+                  "export mine/roads/road"):
+        made = inside_with_lmp(folder, *words.split())
+        assert made.returncode == 2 and "as it was studied: its study had another choice of roads" in made.stderr
+    for words in ("report road --no-film", "export road"):
+        made = inside_with_lmp(folder / "mine" / "roads", *words.split())
+        assert made.returncode == 2 and "must be as it was studied" in made.stderr
+    assert inside_with_lmp(folder, "report", "mine/roads/far", "--no-film").returncode == 0
+    assert inside_with_lmp(folder, "site", "mine", "--road", "far.geojson", "--road", "near.geojson", "--cut-angle",
+                           "45").returncode == 0
+    made = inside_with_lmp(folder, "report", "mine/roads/far", "--no-film")
+    assert made.returncode == 2 and "its study had another cut_angle of the road" in made.stderr
+
+
+def test_a_road_elsewhere_is_not_on_the_body(done):
+    """Nor are warnings of another road on its page."""
+    mine = done[0] / "mine"
+    for name in ("far", "road"):
+        about = about_in(mine / "roads" / name / "study")
+        assert all(row["road_on_body_m2"] == 0 for row in about["runs"])
+        assert all(one["numbers"].get("file") in (None, name, f"{name}.road.csv") for one in about["warnings"]), name
 
 
 def test_a_run_on_a_road_is_drawn_with_its_own_volume(done):
@@ -133,11 +166,13 @@ NUMBER, FLOOR, WITHHELD, NOTHING = (kind.value for kind in (Kind.NUMBER, Kind.FL
     ([("a", NUMBER, 500.0, 450.0), ("b", FLOOR, 700.0, 650.0)], "ba", ["at least 700 m3", "500 m3"]),
     ([("a", NUMBER, 500.0, 450.0), ("b", WITHHELD, None, 800.0)], "ba", ["not usable", "500 m3"]),
     ([("a", NUMBER, 500.0, 450.0), ("b", WITHHELD, 900.0, 300.0)], "ab", ["500 m3", "not usable"]),
-    ([("a", NOTHING, 0.0, 0.0), ("b", FLOOR, 0.0, 0.0), ("c", NUMBER, 12.34, 12.0)], "cab",
-     ["12.3 m3", "0 m3", "more than 0 m3"]),
+    ([("a", NOTHING, 0.0, 0.0), ("b", FLOOR, 0.0, 0.0), ("c", NUMBER, 12.34, 12.0)], "cba",
+     ["12.3 m3", "more than 0 m3", "0 m3"]),
+    ([("a", NOTHING, 0.0, 0.0), ("b", WITHHELD, None, 0.0)], "ba", ["not usable", "0 m3"]),
+    ([("a", NOTHING, 0.0, 0.0, 1, 2, 0.04), ("b", NOTHING, 0.0, 0.0, 1, 2, 0.17)], "ba", ["0 m3", "0 m3"]),
     ([("a", None, None, 12.0), ("b", NUMBER, 11.0, 10.0)], "ab", ["no number, up to 12 m3 in a run", "11 m3"])])
 def test_the_worst_is_the_largest(several, order, words):
-    found = road_numbers.in_order([Number(*one, 1, 2) for one in several])
+    found = road_numbers.in_order([Number(*one, *(1, 2)[:6 - len(one)]) for one in several])
     assert "".join(one.road for one in found) == order
     assert [one.text.replace("12.0", "12").replace("11.0", "11").replace("0.00", "0") for one in found] == words
 
@@ -164,12 +199,12 @@ def test_lines_that_do_not_meet_are_each_a_road(tmp_path, gis, names, found):  #
 def test_roads_of_one_name_and_of_a_layer(told, gis):  # noqa: F811
     write_lines(gis / "two.geojson", ("Old road", [(10, 5), (10, 70)]), ("Route 4", [(30, 5), (30, 70)]))
     (gis / "b").mkdir()
-    write_lines(gis / "b" / "two.geojson", ("Route 4", [(20, 5), (20, 70)]), ("x", [(24, 5), (24, 70)]))
+    write_lines(gis / "b" / "two.geojson", ("Route 4", [(20, 5), (20, 70)]), ("国道4号", [(24, 5), (24, 70)]))
     status, out, err = told("--terrain", "dem.tif", "--release", "release.geojson", "--shape", "ellipsoid", "--depth",
                             5, "--road", "two.geojson", "--road", "b/two.geojson", "--road-width", 2, "-o", "mine")
     assert status == 0, err
     site = site_choices.load(gis / "mine")
-    assert site_roads.names(site) == ["Old_road", "Route_4", "Route_4_2", "x"]
+    assert site_roads.names(site) == ["Old_road", "Route_4", "Route_4_2", "国道4号"]
     assert site.choices["road"]["file"].endswith("two.geojson")
     assert len(site.choices["road"]["others"]) == 1 and "Route_4_2.road.csv: 1 line of 65 m, 2 m wide" in out
     status, out, err = told("mine", "--road", "road.geojson")
@@ -177,7 +212,7 @@ def test_roads_of_one_name_and_of_a_layer(told, gis):  # noqa: F811
     edited = yaml.safe_load((gis / "mine" / "site.yaml").read_text())
     assert edited["road"]["others"]                      # nothing has changed
     assert sorted(path.name for path in (gis / "mine").glob("*road.csv")) == [
-        "Old_road.road.csv", "Route_4.road.csv", "Route_4_2.road.csv", "road.csv", "x.road.csv"]
+        "Old_road.road.csv", "Route_4.road.csv", "Route_4_2.road.csv", "road.csv", "国道4号.road.csv"]
 
 
 def test_blocks_have_one_road(told, gis):  # noqa: F811

@@ -72,6 +72,8 @@ def run_zones(args: Request, zones_: str) -> None:
     own = Path(args.prefix, "zones") if Path(args.prefix).is_dir() else Path(f"{args.prefix}.zones")
     folder = args.output or own
     disk.check_folder(folder)
+    if (study := named_run.study_in(Path(args.prefix))):
+        outdated.check(Path(args.prefix), study)
     ground = zones.ground_of(args.prefix, findings.printer("export"))
     zones.check(ground, wanted, args.prefix, zones_)
     asked = zones.asked(ground, zones_, limits)

@@ -9,8 +9,9 @@ from ..findings import printer
 from ..mobility import body, fall_path, known, results, road
 from ..options import Overwrite, option, positional
 from ..releases import release
-from ..sites import site_choices
+from ..sites import site_choices, site_roads
 from ..sites.site_roads import ROAD
+from ..studies import outlook
 from ..survey import lines, roads
 from ..survey.crs import as_crs
 from . import known_arguments, road_arguments
@@ -59,6 +60,11 @@ def run(args: Request) -> None:
     source = results.Source(args.terrain, mass, asked, lane)
     results.write(args.output, found, source, met)
     print("\n".join(results.words(found, source, met)))
+    if site and not args.road:
+        for name in site_roads.names(site):
+            other = roads.read_local(site.folder / site_roads.file_name(name), mass.raster,
+                                     roads.Asked.of(site.choices["road"]), local=True).polygon
+            print(outlook.road_text(found.decides, road.at_road(found.decides.path, other), name))
     for line in results.doubts(found):
         tell(line)
     print(f"wrote {', '.join(str(args.output / name) for name in results.FILES)}")

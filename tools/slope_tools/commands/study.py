@@ -307,7 +307,7 @@ def run_site_ensemble(args: Request, site: Site) -> Made:
         assert wanted.output is not None
         write_report(wanted.output, site_roads.results(site) / PAGES[site_study.ENSEMBLE], about, site,
                      quiet=args.quiet)
-    return Made([about] if about else (), None)
+    return Made([about] if about else (), None, PAGES[site_study.ENSEMBLE])
 
 
 def of_ensemble(args: Request, asked: Site, method="") -> Request:

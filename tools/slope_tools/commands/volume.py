@@ -10,6 +10,7 @@ from .. import disk, findings
 from ..deposits import left_words, volume
 from ..deposits.volume import CUT_ANGLE, MUCH_BELOW, SAMPLES
 from ..options import Overwrite, flag, option, positional, whole
+from ..studies import outdated
 from ..tables import named_run
 from . import road_arguments
 
@@ -62,6 +63,7 @@ def run(args: Request) -> None:
                            road_arguments.asked(args), args.samples)
     volume.check(wanted)
     named = named_run.read(args.prefix)
+    outdated.check(Path(args.prefix), named.study)
     folder = args.output or (named.folder / "volume" if named.folder else Path(f"{named.prefix}.volume"))
     disk.check_folder(folder, volume.FILES, [named.prefix, args.road], args.overwrite)
     found = volume.of_run(named.prefix, wanted, args.terrain, findings.printer("volume"))

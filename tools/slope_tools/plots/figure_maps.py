@@ -32,14 +32,18 @@ TINTS = LinearSegmentedColormap.from_list(
 
 
 class Exceeded(NamedTuple):
-    """The share of whom a deposit is thicker than `thick` (m) at each cell; its OUTLINES are drawn."""
+    """The share of whom a deposit is thicker than `thick` (m) at each cell; its OUTLINES are drawn.
+
+    far: the share that goes beyond all runs, nobody knows how far: a line of no more than that has no place.
+    """
     share: np.ndarray
     whom: str
     thick: float
+    far: float = 0.0
 
     @property
     def drawn(self) -> List[float]:
-        return [one for one in OUTLINES if self.share.max() > one]
+        return [one for one in OUTLINES if self.share.max() > one > self.far]
 
     def entries(self) -> List[Entry]:
         return [Entry(f"thicker than {self.thick:g} m in {100 * one:g} % of {self.whom}", OUTLINES[one])

@@ -16,6 +16,7 @@ FOOT = 0.2      # of the body's fall: its lowest part
 LEVEL = 0.25    # of the mean slope of its ground: flatter ground is level
 SOME = 0.02     # of its area; less level ground at its foot is none, nor less ground below the slip surface
 CLEAR = 0.05    # of the largest depth: a slip surface that lies less above the ground does not count
+ROUNDING = 1e-9         # of a cell, that geometry.coverage leaves of a polygon elsewhere
 WHOLLY = 0.99   # of a road's area on the body: all of it
 
 
@@ -68,7 +69,7 @@ def on_body(body: np.ndarray, raster: Raster, road, rim: int) -> Optional[OnBody
     inside = road.intersection(grid)
     share = sum(geometry.coverage(part, *lines)[0]
                 for part in geometry.polygons_of(geometry.to_index(inside, raster)))
-    if not (share * binary_erosion(body, iterations=rim)).any():
+    if not (share * binary_erosion(body, iterations=rim) > ROUNDING).any():
         return None
     area = float((share * body).sum() * raster.transform.a ** 2)
     return OnBody(area, area >= WHOLLY * road.area)

@@ -107,8 +107,12 @@ class Maps:
     def outlines(self) -> str:
         """What these lines are."""
         exceeded = ensemble_part.exceeded(self.data)
-        return f" Black lines: where the deposit is thicker than {exceeded.thick:g} m in so many {exceeded.whom}." \
-            if exceeded and exceeded.drawn else ""
+        if not (exceeded and exceeded.drawn):
+            return ""
+        shares = " and ".join(f"{100 * one:g} %" for one in exceeded.drawn)
+        beyond = f"; {digits.percent(exceeded.far)} go beyond all runs" if exceeded.far else ""
+        return (f" Black lines: where the deposit is thicker than {exceeded.thick:g} m in {shares} of {exceeded.whom}"
+                f"{beyond}.")
 
     def section(self, of_run):
         """The section of the maps of the shown run."""

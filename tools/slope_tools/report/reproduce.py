@@ -8,6 +8,7 @@ from typing import Any, Dict, Iterable, List, Tuple
 
 from .. import disk, provenance
 from ..case import run_folders
+from ..sites import site_roads
 from ..survey.roads import NOTHING, OPTIONS, Asked
 from .data import Data
 from .heading import site_file, site_of
@@ -118,4 +119,5 @@ def sources(folder: Path) -> List[str]:
 
 def relative(path: Path, folder: Path) -> Path:
     """The path from a folder, also of what is in a folder beside it; that of a file elsewhere as it is."""
-    return Path(os.path.relpath(path, folder)) if {folder, folder.parent} & set(path.parents) else path
+    beside = {folder, folder.parent, site_roads.home(folder)}
+    return Path(os.path.relpath(path, folder)) if beside & set(path.parents) else path

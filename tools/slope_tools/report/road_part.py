@@ -51,12 +51,12 @@ def of_all(data) -> Optional[Section]:
     several = road_numbers.read(data.study or {})
     if not several:
         return None
-    rows = [[one.road, one.text, f"{one.reaching} of {one.runs}", f"{FOLDER}/{one.road}/{road_numbers.PAGE}"]
+    rows = [[one.road, one.text, f"{one.reaching} of {one.runs}", f"{FOLDER}/{one.road}/{one.page}"]
             for one in several]
     return Section("roads", "The roads", [Table(
-        "To remove: the number of the first page on each road, which is in the site's folder. The runs are the same; "
-        f"this page is of the road from which most is to be removed, {several[0].road}. A number counts as its volume, "
-        "also where at least so much is to be removed; a road without one as the largest of its runs.",
+        "To remove: the number of the first page on each road, which is in the site's folder; runs: of the study of "
+        f"this number. This page is of the worst, {several[0].road}: a number counts as its volume, also where at "
+        "least so much is to be removed; a road without one as the largest of its runs.",
         ["road", "to remove", "runs that reach it", "its page"], rows, (0, 1, 2, 3))])
 
 
@@ -66,7 +66,7 @@ def others(data) -> List[str]:
     if not several:
         return []
     found = "; ".join(f"\u201c{one.road}\u201d: {one.text}" for one in several[1:])
-    return [f"Of {len(several)} roads most is to be removed from this one, \u201c{several[0].road}\u201d; {found}."]
+    return [f"Of {len(several)} roads this is the worst, \u201c{several[0].road}\u201d; {found}."]
 
 
 def gaps(data, about) -> str:

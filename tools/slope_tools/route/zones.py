@@ -85,7 +85,7 @@ def ground_of(name: str, warn) -> Ground:
         return Ground(corridor.read(asked, folder).raster,
                       [results.read_body(folder, about).source for about in table["bodies"]],
                       results.yearly_of(asked, folder, table["bodies"]))
-    if not any((folder / place).is_file() for place in ("study.yaml", "site.yaml")):
+    if not (named_run.study_in(folder) or (folder / "site.yaml").is_file()):
         run = deposit.read(named_run.read(name).prefix, None, warn)
         return Ground(run.raster, [Source(1, [Path(run.prefix)], np.ones(1), 0, run.raster.offset)], None)
     study = Study.read(folder)

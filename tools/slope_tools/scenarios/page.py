@@ -17,6 +17,7 @@ from ..sites import site_scenarios
 from ..sites.site_folder import BODY as NAME_OF_BODY, TERRAIN
 from ..sites.site_roads import ROAD
 from ..statistics.answer import Kind
+from ..studies import road_numbers
 from ..survey import rasters, roads
 from ..survey.rasters import Raster, crs_name
 from .compare import One, choices_that_differ, differences, read
@@ -97,9 +98,10 @@ def numbers(one: One) -> List[str]:
         return [released, "-", "-", "-", "not studied as it is"]
     finished = [row for row in one.about["runs"] if row["status"] == "finished"]
     far = (one.about["largest"].get(travel_shares.DISTANCE) or {}).get("value")
+    worst = "".join(f", {one.road}" for one in road_numbers.read(one.about)[:1])
     lengths = [row["length_m"] for row in finished if row.get("length_m") is not None]
     return [released, "unknown" if far is None else digits.three(far), digits.three(max(lengths)) if lengths else "-",
-            to_remove(one.about.get("headline")), f"{len(finished)} of {len(one.about['runs'])}"]
+            to_remove(one.about.get("headline")) + worst, f"{len(finished)} of {len(one.about['runs'])}"]
 
 
 def to_remove(headline: Any) -> str:

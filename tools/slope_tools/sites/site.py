@@ -148,8 +148,9 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
                 *site_warnings.site_warnings(found.measures, size, trial),
                 *site_warnings.of_cells(found.area.z - found.slip, found.area.cell, max(
                     map(rasters.surveyed_cell, choices["terrain"]["files"]))),
-                *(one for road in layers.roads.values() for one in site_warnings.of_road(
-                    road, choices["road"]["width"], size.diameter, max(found.area.cell, choices["model"]["cell"])))):
+                *(one for name, road in layers.roads.items() for one in site_warnings.of_road(
+                    road, choices["road"]["width"], size.diameter, max(found.area.cell, choices["model"]["cell"]),
+                    name))):
         keep(one)
     site_warnings.write(new, warnings)
     deck = site_deck.text(choices, parts, numbers(choices, soil_of(choices, parts), trial, size))

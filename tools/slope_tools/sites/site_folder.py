@@ -10,7 +10,7 @@ from ..survey.rasters import ENDINGS
 from . import site_bodies, site_choices, site_deck, site_inputs, site_trial, site_warnings, site_zones
 from .site_choices import Choices
 from .site_layers import OBSERVED
-from .site_roads import ROAD, file_name, listed
+from .site_roads import ROAD, file_name, listed, named
 
 MAP = "map.png"
 TERRAIN = "terrain.asc"
@@ -28,7 +28,7 @@ def planned(choices: Choices) -> Set[str]:
         names.add(OBSERVED + (".tif" if Path(observed).suffix.lower() in ENDINGS else ".csv"))
     if several := listed(choices):
         taken_: Set[str] = set()
-        names |= {ROAD, *(file_name(site_inputs.unused(site_inputs.stem(file), taken_)) for file in several
+        names |= {ROAD, *(file_name(named(site_inputs.stem(file), taken_)) for file in several
                           if len(several) > 1)}
     if site_choices.listed(choices, "motion", "file"):
         names.add(site_inputs.MOTION)

@@ -3,6 +3,9 @@
 The studies of one of several lie in roads/NAME; those of the worst, from which most is to be removed, in the site's
 folder too, as if it were alone: whatever takes the folder of a site takes them.
 """
+import contextlib
+import os
+import re
 import shutil
 from pathlib import Path
 from typing import Dict, List, Optional, Set, Tuple
@@ -12,16 +15,18 @@ from ..survey import roads
 from ..survey.rasters import Raster
 from . import site_choices
 from .site_choices import Choices, Site
-from .site_inputs import unused
 
 ROAD, FOLDER = "road.csv", "roads"      # in a site's folder: the road, or the worst; what is known of each of several
 ONE = "must be one with single blocks; --line takes others"
+STUDIES = "study", "ensemble", "score"  # folders of studies in that of a site
+LONGEST = 60            # letters of a name
 TABLE = "roads.csv"     # of each run, for each road
 
 
 def names(site: Site) -> List[str]:
     """Of several roads; none of a single one."""
-    return site.found.get("roads") or []
+    several = site.found.get("roads")
+    return several if isinstance(several, list) and all(isinstance(one, str) for one in several) else []
 
 
 def results(site: Site) -> Path:
@@ -39,8 +44,12 @@ def file_name(name: str) -> str:
 
 
 def worst(site: Site, name: str) -> Site:
-    """The site as if this road were alone."""
-    shutil.copyfile(site.folder / file_name(name), site.folder / ROAD)
+    """The site as if this road were alone: without studies of another one in its folder, which are in that one's."""
+    road, mine = site.folder / file_name(name), site.folder / ROAD
+    if not (mine.is_file() and mine.read_bytes() == road.read_bytes()):
+        for folder in STUDIES:
+            shutil.rmtree(site.folder / folder, ignore_errors=True)
+        shutil.copyfile(road, mine)
     return site._replace(road="")
 
 
@@ -51,12 +60,25 @@ def forget_others(site: Site) -> None:
             shutil.rmtree(folder)
     if not names(site):
         (site.folder / TABLE).unlink(missing_ok=True)
+        with contextlib.suppress(OSError):
+            (site.folder / FOLDER).rmdir()
+
+
+def named(name: str, taken: Set[str]) -> str:
+    """The name of a road that no other has, for its files and pages; case does not count."""
+    name = re.sub(r"[^\w.-]+", "_", name).strip("._-")[:LONGEST] or "road"
+    each = (name, *(f"{name}_{k}" for k in range(2, 10 ** 6)))
+    found = next(one for one in each if one.casefold() not in taken)
+    taken.add(found.casefold())
+    return found
 
 
 def home(study: Path) -> Optional[Path]:
     """The folder of the site whose study is in a folder; None of any other study."""
-    places = [study.parent] + [study.parent.parent.parent] * (study.absolute().parent.parent.name == FOLDER)
-    return next((place for place in places if (place / site_choices.NAME).is_file()), None)
+    above = Path(os.path.abspath(study)).parents
+    places = [above[0], *([above[2]] if above[1].name == FOLDER else [])]
+    found = next((place for place in places if (place / site_choices.NAME).is_file()), None)
+    return found if found is None or study.is_absolute() else Path(os.path.relpath(found))
 
 
 def listed(choices: Choices) -> List[str]:
@@ -71,7 +93,7 @@ def read(choices: Choices, raster: Raster, crs, advice, warn) -> Dict[str, Tuple
     roads.check(asked)
     for path in listed(choices):
         for name, road in roads.read_each(path, raster, asked, crs(path), advice(path), warn).items():
-            found[unused(name, taken)] = path, road
+            found[named(name, taken)] = path, road
     if len(found) > 1 and choices.get("kind"):
         raise SlopeError("--road", ONE, ", ".join(found))
     return found

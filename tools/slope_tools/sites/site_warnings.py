@@ -92,8 +92,8 @@ def of_thickness(mean: float, largest: float) -> List[Finding]:
     return []
 
 
-def of_road(road: Optional[BaseGeometry], width: Optional[float], d: float, cell: float) -> List[Finding]:
-    """Whether balls (d, m) and cells (m) are small enough for a road; width: of a line, m."""
+def of_road(road: Optional[BaseGeometry], width: Optional[float], d: float, cell: float, name="") -> List[Finding]:
+    """Whether balls (d, m) and cells (m) are small enough for a road; width: of a line, m; name: of the road."""
     if road is None:
         return []
     wide = width or 2 * road.area / road.length         # of a strip, whose ends hardly count
@@ -101,8 +101,8 @@ def of_road(road: Optional[BaseGeometry], width: Optional[float], d: float, cell
         return []
     remedy = [f"more balls (--diameter {at_most(wide, 2)})"] * (wide < d)
     remedy += ["a finer elevation model, or a smaller model.cell"] * (wide < LEAST_CELLS * cell)
-    return [Finding("narrow road", {"width": wide, "d": d, "balls": wide / d, "cell": cell, "cells": wide / cell,
-                                    "remedy": " and ".join(remedy)})]
+    return [Finding("narrow road", {"file": name, "width": wide, "d": d, "balls": wide / d, "cell": cell,
+                                    "cells": wide / cell, "remedy": " and ".join(remedy)})]
 
 
 def of_cells(depth: np.ndarray, cell: float, surveyed: float) -> List[Finding]:

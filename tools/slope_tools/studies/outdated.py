@@ -1,4 +1,5 @@
 """Whether a study is of its site as it is now: a page or a file of the site shows no numbers of another body."""
+import os
 from pathlib import Path
 from shlex import quote
 from typing import Optional
@@ -8,8 +9,11 @@ from ..case import run_folders
 from ..case.data_files import data_files
 from ..errors import SlopeError
 from ..runs import dependencies, jobs
-from ..sites import site_deck, site_roads
+from ..sites import site_choices, site_deck, site_roads
+from ..survey.roads import Asked
 from ..tables import named_run
+from ..tables.study_file import read_study
+from . import road_numbers
 
 
 def changed(site: Path, study: Path) -> Optional[str]:
@@ -27,11 +31,30 @@ def changed(site: Path, study: Path) -> Optional[str]:
     return dependencies.Dependencies(deck, {name: disk.sha256(path) for name, path in files.items()}).changed(run)
 
 
+def road_changed(folder: Path, study: Path) -> Optional[str]:
+    """That the road of a study, or how it is cleared, is another one than the site's; else None."""
+    site, about = site_choices.load(folder), read_study(study / named_run.STUDY)
+    asked, had, above = site.choices["road"], about["study"].get("road"), Path(os.path.abspath(study)).parent
+    told = [one.road for one in road_numbers.read(about)] if above.parent.name != site_roads.FOLDER else [above.name]
+    several = site_roads.names(site)
+    if not set(told) <= set(several) or above.parent.name != site_roads.FOLDER and set(told) != set(several):
+        return "choice of roads"
+    if bool(asked["file"]) != bool(had):
+        return "road"
+    if not had:
+        return None
+    mine = folder / site_roads.file_name(had.get("name") or "")
+    if not (mine.is_file() and mine.read_bytes() == (study / str(had["local"])).read_bytes()):
+        return "road"
+    now = {"cut_angle": asked["cut_angle"], "mesh": asked["mesh"], **Asked.of(asked).about()}
+    return next((f"{key} of the road" for key, value in now.items() if had.get(key, value) != value), None)
+
+
 def check(folder: Path, study: Optional[Path]) -> None:
     """Raise SlopeError if a folder is that of a site or a road, and its study is of other data or of another deck."""
     site = None if study is None or study == folder else site_roads.home(study)
     if site is None or study is None:
         return
-    if what := changed(site, study):
-        raise SlopeError(folder, f"must be as it was studied: its governing run had another {what}; `slope study "
+    if what := changed(site, study) or road_changed(site, study):
+        raise SlopeError(folder, f"must be as it was studied: its study had another {what}; `slope study "
                          f"{quote(str(site))}` makes the study of now, {study} is the folder of the one before")

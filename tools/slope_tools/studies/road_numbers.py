@@ -1,10 +1,10 @@
 """What the studies of the several roads of a site say: a number of each, the worst, and the table of all runs.
 
 The worst is the one with the largest volume; a floor counts as its volume, and a road without a usable number as the
-largest of its runs.
+largest of its runs. Of equal ones that is worse whose number may be larger, then the one that more known events reach.
 """
 from pathlib import Path
-from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence
+from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from rich.table import Table
 
@@ -20,15 +20,17 @@ ENTRY = "roads"         # of study.yaml
 
 class Made(NamedTuple):
     """Studies of one road: what their study.yaml say, the one that governs first, none of a dry run; what failed beside
-    them."""
+    them; their page."""
     abouts: Sequence[Mapping[str, Any]]
     failed: Optional[Exception]
+    page: str = PAGE
 
 
 class Number(NamedTuple):
     """Of a road; kind: of its headline (statistics.answer), None without one; volume_m3: of it; most_m3: of a run.
 
-    reaching, runs: how many runs bring something onto it, and how many finished.
+    reaching, runs: how many runs bring something onto it, and how many finished; reached: the share of known events
+    that does, the larger probability, 0 where nobody knows; page: in its folder.
     """
     road: str
     kind: Any
@@ -36,10 +38,18 @@ class Number(NamedTuple):
     most_m3: float
     reaching: int
     runs: int
+    reached: float = 0.0
+    page: str = PAGE
 
     @property
     def counts_m3(self) -> float:
         return self.most_m3 if self.volume_m3 is None or self.kind == Kind.WITHHELD.value else self.volume_m3
+
+    @property
+    def order(self) -> Tuple[float, int, float]:
+        """The worst has the largest."""
+        may_be_more = {Kind.NOTHING.value: 0, Kind.NUMBER.value: 1}.get(self.kind, 2)
+        return self.counts_m3, may_be_more, self.reached
 
     @property
     def text(self) -> str:
@@ -67,26 +77,28 @@ def of_all(site: Site, several: bool, tell: Callable[[Any], Any],
     made = {name: make(site._replace(road=name), (), True) for name in names}
     if not all(one.abouts for one in made.values()):
         return next(one for one in made.values() if not one.abouts)
-    found = in_order([number(name, one.abouts[0]) for name, one in made.items()])
+    found = in_order([number(name, one) for name, one in made.items()])
     write(site.folder, {name: one.abouts for name, one in made.items()})
     worst = make(site_roads.worst(site, found[0].road), entries(found), False)
     tell(shown(found))
-    tell(f"{site.folder / site_roads.TABLE}: each run, for each road; {site.folder / PAGE} is of the worst, "
+    tell(f"{site.folder / site_roads.TABLE}: each run, for each road; {site.folder / worst.page} is of the worst, "
          f"{found[0].road}")
-    return worst
+    return worst._replace(failed=next((one.failed for one in (*made.values(), worst) if one.failed), None))
 
 
-def number(road: str, about: Mapping[str, Any]) -> Number:
-    """about: what the study.yaml of the road says that governs."""
+def number(road: str, made: Made) -> Number:
+    """Of a road, whose study that governs tells it; the largest of the runs of all its studies."""
+    about, *_ = made.abouts
     said, rows = about["headline"] or {}, [row for row in about["runs"] if row["status"] == "finished"]
     on_road = [row["remove_on_road_m3"] for row in rows]
-    return Number(road, said.get("kind"), said.get("volume_m3"), max((row[REMOVE] for row in rows), default=0.0),
-                  sum(one > 0 for one in on_road), len(rows))
+    most = max((row.get(REMOVE) or 0.0 for each in made.abouts for row in each["runs"]), default=0.0)
+    return Number(road, said.get("kind"), said.get("volume_m3"), most, sum(one > 0 for one in on_road), len(rows),
+                  max((said.get("road") or {}).get("reached") or [0.0]), made.page)
 
 
 def in_order(numbers: Sequence[Number]) -> List[Number]:
     """The worst first."""
-    return sorted(numbers, key=lambda one: -one.counts_m3)
+    return sorted(numbers, key=lambda one: one.order, reverse=True)
 
 
 def entries(numbers: Sequence[Number]) -> List[Dict[str, Any]]:
@@ -105,7 +117,7 @@ def shown(numbers: Sequence[Number]) -> Table:
     for head in ("road", "to remove", "runs that reach it", "page"):
         found.add_column(head)
     for one in numbers:
-        found.add_row(one.road, one.text, f"{one.reaching} of {one.runs}", f"{site_roads.FOLDER}/{one.road}/{PAGE}")
+        found.add_row(one.road, one.text, f"{one.reaching} of {one.runs}", f"{site_roads.FOLDER}/{one.road}/{one.page}")
     return found
 
 

@@ -95,7 +95,7 @@ def run(site: Site, engine: Setup, method: str, asked: Optional[str] = None,
 
     def collect(_, work):
         questions = results.Questions(
-            planned.settings, planned.repeated, THRESHOLDS, notes=warnings_of(folder), site=folder,
+            planned.settings, planned.repeated, THRESHOLDS, notes=notes_of(site, roads), site=folder,
             fine=fine[0] if fine else None, most_elastic=elastic_of(setup, planned.elastics),
             step=step_of(setup, half[0], planned.middle, variables) if half else None, method=method,
             known=planned.choices["known"], roads=roads)
@@ -151,6 +151,13 @@ def warnings_of(folder: Path) -> List[Finding]:
     path = folder / site_warnings.NAME
     said = schemas.load(path, "what `slope site` wrote", FINDINGS) if path.is_file() else None
     return [finding(one) for one in said or ()]
+
+
+def notes_of(site: Site, roads: Sequence[Mapping[str, Any]]) -> List[Finding]:
+    """The same without those of other roads; roads: of Questions."""
+    mine = roads[0]["road"] if roads else site.road
+    others = set(site_roads.names(site)) - {mine}
+    return [one for one in warnings_of(site.folder) if one.numbers.get("file") not in others]
 
 
 def grounds(choices: Choices, variables: Dict[str, str]) -> List[Dict[str, str]]:

@@ -6,7 +6,7 @@ from .. import schemas
 from ..case import run_folders
 from ..errors import SlopeError
 from ..schemas import ANY, FLAG, MAYBE as PERHAPS, NUMBER, OBJECT, TEXT, listed, mapping, numbers
-from . import answered
+from . import named_run
 from .quantities import MAYBE
 from .study_table import COLUMNS, ROAD_COLUMNS
 
@@ -61,8 +61,7 @@ class Study(NamedTuple):
     def read(cls, folder: Union[str, Path]) -> "Study":
         """That of its folder, or the one that governs of the folder of a site; SlopeError if there is none."""
         place = Path(folder)
-        own = (place / "study.yaml").is_file() or not (place / "site.yaml").is_file()
-        found = place if own else answered.governing(place / "study", place / "ensemble")
+        found = named_run.study_in(place) or place
         return cls(found, read_study(found / "study.yaml"))
 
     @property
