@@ -4,16 +4,18 @@ from pathlib import Path
 from shlex import quote
 from typing import Optional
 
-from .. import disk
+from .. import disk, schemas
 from ..case import run_folders
 from ..case.data_files import data_files
 from ..errors import SlopeError
 from ..runs import dependencies, jobs
+from ..schemas import OBJECT, listed, mapping
 from ..sites import site_choices, site_deck, site_roads
 from ..survey.roads import Asked
 from ..tables import named_run
-from ..tables.study_file import read_study
 from . import road_numbers
+
+SCHEMA = mapping({}, study=mapping({}, road=mapping({}, null=True)), roads=listed(OBJECT))
 
 
 def changed(site: Path, study: Path) -> Optional[str]:
@@ -32,8 +34,11 @@ def changed(site: Path, study: Path) -> Optional[str]:
 
 
 def road_changed(folder: Path, study: Path) -> Optional[str]:
-    """That the road of a study, or how it is cleared, is another one than the site's; else None."""
-    site, about = site_choices.load(folder), read_study(study / named_run.STUDY)
+    """That the road of a study, or how it is cleared, is another one than the site's; else None, as where an older one
+    does not say it."""
+    site, about = site_choices.load(folder), schemas.load(study / named_run.STUDY, "what `slope study` wrote", SCHEMA)
+    if "study" not in about:
+        return None
     asked, had, above = site.choices["road"], about["study"].get("road"), Path(os.path.abspath(study)).parent
     told = [one.road for one in road_numbers.read(about)] if above.parent.name != site_roads.FOLDER else [above.name]
     several = site_roads.names(site)
