@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import pytest
 
 import slope_tools
+from slope_tools import kept
 from slope_tools.ensembles import ensemble, known_events
 from slope_tools.report import document
 from slope_tools.report.heading import Asked
@@ -90,7 +91,7 @@ def test_a_page_is_drawn_when_something_of_it_has_changed(page, monkeypatch, wha
     elif what == "site":
         change = {"site": {"project": {"name": "another"}}}
     elif what == "tools":
-        monkeypatch.setattr(document, "tools", lambda: "others")
+        monkeypatch.setattr(kept, "tools", lambda: "others")
     else:
         page.page.with_suffix({"page": ".html", "table": ".numbers.csv", "film": ".mp4"}[what]).unlink()
     assert page(**change) == 1 and page(**change) == 0
