@@ -90,9 +90,29 @@ def test_each_road_has_the_numbers_of_a_site_with_it_alone(done, tmp_path, monke
         assert own["roads"] == beside["roads"] == [] and beside["study"]["road"]["name"] == name
         rows = [row for row in table if row["road"] == name]
         assert [float(row["remove_m3"]) for row in rows] == [row["remove_m3"] for row in own["runs"]]
-        assert not (alone / "mine" / "roads" / name).exists() and not (alone / "mine" / "roads.csv").exists()
+        assert not (alone / "mine" / "roads.csv").exists()      # what is known of the other roads stays, and is refused
+        made = inside_with_lmp(alone, "report", "mine/roads/far", "--no-film")
+        assert made.returncode == 2 and "its study had another choice of roads" in made.stderr
         volumes[name] = own["conservative"]["volume_m3"] or max(row["remove_m3"] for row in own["runs"])
     assert len(table) == 3 * len(own["runs"]) and len(set(volumes.values())) == 3
+
+
+def test_files_of_the_user_stay(done, tmp_path, monkeypatch):
+    """In a folder called roads, or a roads.csv of his own, which a study of several roads refuses before its runs."""
+    monkeypatch.setattr(study_command, "run_site_of", lambda *_: road_numbers.Made((), None))
+    for words, status in (("--road far.geojson", 0), ("--road far.geojson --road near.geojson", 2)):
+        folder = tmp_path / str(status)
+        shutil.copytree(done[0], folder)
+        assert inside_with_lmp(folder, "site", "mine", *words.split()).returncode == 0
+        mine = folder / "mine"
+        for path in (mine / "roads" / "mine" / "axis.gpkg", mine / "roads" / "far" / "notes.txt", mine / "roads.csv"):
+            path.parent.mkdir(exist_ok=True)
+            path.write_text("of the user\n")
+        made = inside_with_lmp(folder, "study", "mine")
+        assert made.returncode == status and ("roads.csv: must not exist" in made.stderr) is bool(status)
+        for path in (mine / "roads" / "mine" / "axis.gpkg", mine / "roads" / "far" / "notes.txt", mine / "roads.csv"):
+            assert path.read_text() == "of the user\n"
+        assert (mine / "study" / "study.yaml").is_file()
 
 
 def test_the_worst_stands_for_the_site(done):

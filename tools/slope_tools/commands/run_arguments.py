@@ -56,7 +56,7 @@ class Runs(road_arguments.Clearing, Engine):
     deck: Path
     site: Optional[Path] = None     # whose deck it is
     road_name: str = ""             # of one of its several roads
-    quiet: bool = False             # nothing is told but the progress of the runs
+    quiet: bool = False             # says nothing but the progress of the runs
     output: Optional[Path] = option("the study's folder", "-o", metavar="DIR")
     road: Optional[Path] = option("also compute the volume to remove from " + road_arguments.ROAD,
                                   metavar="POLYGON|LINE")

@@ -304,7 +304,7 @@ def exceeded(data) -> Optional[figure_maps.Exceeded]:
     least = min(entries, key=lambda one: one["threshold"])
     whom = "known events" if weighted else "runs"
     return figure_maps.Exceeded(data.read_map(least["file"]), whom, least["threshold"],
-                                known["far"] if weighted else 0.0)
+                                known.get("far", 0.0) if weighted else 0.0)
 
 
 def draw(data, entries, maps) -> List[Picture]:

@@ -3,7 +3,6 @@
 The studies of one of several lie in roads/NAME; those of the worst, from which most is to be removed, in the site's
 folder too, as if it were alone: whatever takes the folder of a site takes them.
 """
-import contextlib
 import os
 import re
 import shutil
@@ -18,7 +17,6 @@ from .site_choices import Choices, Site
 
 ROAD, FOLDER = "road.csv", "roads"      # in a site's folder: the road, or the worst; what is known of each of several
 ONE = "must be one with single blocks; --line takes others"
-STUDIES = "study", "ensemble", "score"  # folders of studies in that of a site
 LONGEST = 60            # letters of a name
 TABLE = "roads.csv"     # of each run, for each road
 
@@ -44,24 +42,9 @@ def file_name(name: str) -> str:
 
 
 def worst(site: Site, name: str) -> Site:
-    """The site as if this road were alone: without studies of another one in its folder, which are in that one's."""
-    road, mine = site.folder / file_name(name), site.folder / ROAD
-    if not (mine.is_file() and mine.read_bytes() == road.read_bytes()):
-        for folder in STUDIES:
-            shutil.rmtree(site.folder / folder, ignore_errors=True)
-        shutil.copyfile(road, mine)
+    """The site as if this road were alone; studies of another one in its folder are none of it any more (outdated)."""
+    shutil.copyfile(site.folder / file_name(name), site.folder / ROAD)
     return site._replace(road="")
-
-
-def forget_others(site: Site) -> None:
-    """Remove what is known of roads that are none of the site any more: their runs are there, and tell it anew."""
-    for folder in (site.folder / FOLDER).glob("*/"):
-        if folder.name not in names(site):
-            shutil.rmtree(folder)
-    if not names(site):
-        (site.folder / TABLE).unlink(missing_ok=True)
-        with contextlib.suppress(OSError):
-            (site.folder / FOLDER).rmdir()
 
 
 def named(name: str, taken: Set[str]) -> str:

@@ -40,9 +40,9 @@ def road_changed(folder: Path, study: Path) -> Optional[str]:
     if "study" not in about:
         return None
     asked, had, above = site.choices["road"], about["study"].get("road"), Path(os.path.abspath(study)).parent
-    told = [one.road for one in road_numbers.read(about)] if above.parent.name != site_roads.FOLDER else [above.name]
+    known = [one.road for one in road_numbers.read(about)] if above.parent.name != site_roads.FOLDER else [above.name]
     several = site_roads.names(site)
-    if not set(told) <= set(several) or above.parent.name != site_roads.FOLDER and set(told) != set(several):
+    if not set(known) <= set(several) or above.parent.name != site_roads.FOLDER and set(known) != set(several):
         return "choice of roads"
     if bool(asked["file"]) != bool(had):
         return "road"

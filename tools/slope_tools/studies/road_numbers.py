@@ -9,6 +9,7 @@ from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Seq
 from rich.table import Table
 
 from .. import digits, disk
+from ..errors import SlopeError
 from ..sites import site_roads
 from ..sites.site_choices import Site
 from ..statistics.answer import Kind
@@ -16,6 +17,8 @@ from ..tables.quantities import OF_ROAD, REMOVE
 
 PAGE = "report.html"    # in that of a road
 ENTRY = "roads"         # of study.yaml
+KEYS = [one.key for one in OF_ROAD]
+HEAD = ",".join(["run", "road", *KEYS])     # of roads.csv
 
 
 class Made(NamedTuple):
@@ -71,7 +74,7 @@ def of_all(site: Site, several: bool, tell: Callable[[Any], Any],
     """
     names = site_roads.names(site)
     if several:
-        site_roads.forget_others(site)
+        check_table(site.folder, bool(names))
     if not names or not several:
         return make(site._replace(road=names[0]) if names else site, (), False)
     made = {name: make(site._replace(road=name), (), True) for name in names}
@@ -121,11 +124,22 @@ def shown(numbers: Sequence[Number]) -> Table:
     return found
 
 
+def check_table(folder: Path, needed: bool) -> None:
+    """Raise SlopeError if roads.csv is needed and a file of the user's has its name; one of ours that is not needed
+    any more goes.
+    """
+    path = folder / site_roads.TABLE
+    ours = path.is_file() and path.read_text(encoding="utf-8", errors="replace").startswith(HEAD)
+    if needed and path.exists() and not ours:
+        raise SlopeError(path, "must not exist, slope study makes a file of that name: rename or move it")
+    if ours and not needed:
+        path.unlink()
+
+
 def write(folder: Path, studies: Mapping[str, Sequence[Mapping[str, Any]]]) -> None:
     """roads.csv: a line for each road and finished run; studies: {road: what its study.yaml say}."""
-    keys = [one.key for one in OF_ROAD]
     lines = []
     for road, several in studies.items():
         rows = {row["run"]: row for about in several for row in about["runs"] if row["status"] == "finished"}
-        lines += [[run, road, *(row.get(key) for key in keys)] for run, row in rows.items()]
-    disk.write(folder / site_roads.TABLE, disk.csv_text(["run", "road", *keys], lines))
+        lines += [[run, road, *(row.get(key) for key in KEYS)] for run, row in rows.items()]
+    disk.write(folder / site_roads.TABLE, disk.csv_text(HEAD.split(","), lines))
