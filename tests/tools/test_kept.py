@@ -65,10 +65,16 @@ def test_a_second_study_measures_nothing(succeed, monkeypatch):
     Path("case/road.csv").write_text("13,0\n17,0\n17,24\n13,24\n")
     succeed(words)
     assert calls == ["measured_on"] * 4
+    Path("case/road.prj").write_text("another place")       # beside it
+    succeed(words)
+    assert calls == ["measured_on"] * 6
+    Path("case/road.prj").unlink()
+    succeed(words)
+    del calls[6:]
     thickness, = Path("out/rolling_0").glob("*.thickness.asc")
     thickness.write_text(thickness.read_text() + "\n")
     succeed(words)
-    assert calls[4:] == ["measured", "measured_on"]
+    assert calls[6:] == ["measured", "measured_on"]
     Path("out/rolling_0.3/volume/volume.tif").write_bytes(b"")
     succeed(words)
-    assert calls[6:] == ["measured_on"] and Path("out/rolling_0.3/volume/volume.tif").stat().st_size
+    assert calls[8:] == ["measured_on"] and Path("out/rolling_0.3/volume/volume.tif").stat().st_size

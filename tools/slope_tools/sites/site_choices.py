@@ -199,6 +199,13 @@ def check_text(where: str, text: Any) -> None:
         raise SlopeError(where, f"must be one line of at most {LONGEST_TEXT} letters", repr(text))
 
 
+def content(path: str) -> str:
+    """Digest of a file, with the files beside it that say what it means."""
+    beside = [str(Path(path).with_suffix(suffix)) for suffix in BESIDE] + [f"{path}.aux.xml"]
+    parts = [os.path.basename(one) + disk.sha256(one) for one in (path, *beside) if os.path.isfile(one)]
+    return hashlib.sha256("\n".join(parts).encode("utf-8")).hexdigest()
+
+
 class Site(NamedTuple):
     """A site's folder, and its site.yaml: a command reads it once, and passes it on."""
     folder: Path
@@ -234,10 +241,7 @@ class Site(NamedTuple):
         for place, name in zip(source_files(self.choices), source_files(self.written)):
             path = vectors.source(place).path
             if os.path.isfile(path):
-                beside = [str(Path(path).with_suffix(suffix)) for suffix in BESIDE] + [f"{path}.aux.xml"]
-                parts = [os.path.basename(one) + disk.sha256(one) for one in (path, *beside) if os.path.isfile(one)]
-                digests[os.path.normpath(vectors.source(name).path)] = hashlib.sha256(
-                    "\n".join(parts).encode("utf-8")).hexdigest()
+                digests[os.path.normpath(vectors.source(name).path)] = content(path)
         return digests
 
 

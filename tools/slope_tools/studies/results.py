@@ -1,4 +1,5 @@
 """The runs of a study: read, evaluated (outcome), and shown in files and on the console, side by side."""
+import functools
 import os
 from dataclasses import replace
 from pathlib import Path
@@ -14,6 +15,7 @@ from ..ensembles import known_events, known_study
 from ..findings import Finding, entries
 from ..releases import release_toe
 from ..runs.repeats import Repeat
+from ..sites import site_choices
 from ..statistics import headline
 from ..survey import rasters, roads
 from ..tables import combinations, elastic, fine_run, judged, next_step, quantities, structures, usable, withheld_words
@@ -165,11 +167,12 @@ def measured(run) -> Dict[str, Any]:
 def on_road(run, setup: Setup, row) -> Dict[str, Any]:
     """What `slope volume` says of a run, which goes to the folder volume of the run, without the picture, and is kept
     there; and what lies beyond."""
-    road: Road = setup.road     # type: ignore[assignment]
+    road = setup.road
+    assert road
     made_of = {"run": run_folders.state(run.folder), "road": road._replace(file=Path(road.file.name))._asdict(),
-               "file": disk.sha256(road.file)}
+               "file": site_choices.content(str(road.file))}
     folder = run.folder / quantities.volume_folder(road.name)
-    return kept.value(folder / "row.json", made_of, lambda: measured_on(road, run, row),
+    return kept.value(folder / "row.json", made_of, functools.partial(measured_on, road, run, row),
                       [folder / name for name in ("volume.yaml", "volume.tif", "volume_mesh.tif")])
 
 
