@@ -1,7 +1,7 @@
 """The files of a run: its summary and the rasters that fix deposit/grid wrote."""
 import os
 from pathlib import Path
-from typing import Any, Callable, Dict, Mapping, Optional, Tuple
+from typing import Any, Dict
 
 from .. import disk, schemas
 from ..errors import SlopeError
@@ -27,15 +27,6 @@ DIGESTS = {"type": ["object", "null"], "additionalProperties": TEXT}   # {what: 
 BEGUN = mapping({}, set=named(TEXT), variables=named(TEXT), program=DIGESTS, environment=DIGESTS, inputs=DIGESTS,
                 continued=listed(OBJECT))
 ENDED = mapping({"summary": TEXT}, wall_seconds=NUMBER, environment=DIGESTS, inputs=DIGESTS)
-QUANTILES = listed(mapping({"share": NUMBER, "value": MAYBE}), null=True)
-QUANTITIES = {"type": "object", "additionalProperties": mapping({}, quantiles=QUANTILES)}
-GOVERNING = mapping({"conservative": mapping({"run": TEXT}, null=True)}, farthest={"type": ["string", "null"]},
-                    largest=mapping({}, front_m=mapping({"run": TEXT})),
-                    ensemble=mapping({}, null=True, of={"type": ["string", "null"]}, quantities=QUANTITIES,
-                                     known_events=mapping({}, null=True, quantities=QUANTITIES, to_remove=QUANTILES)),
-                    headline=mapping({}, null=True, source={"type": ["string", "null"]}, share=MAYBE, volume_m3=MAYBE),
-                    runs=listed(mapping({"run": TEXT}, summary=TEXT)))
-Farthest = Callable[[Mapping[str, Any]], Optional[str]]
 WHAT = "a summary that fix deposit/grid wrote"
 # what `slope volume`, `score` and `export` need of one, and what the others do
 OF_DEPOSIT = mapping({"volume": mapping(numbers("on_grid", "off_grid", "lost")), "time": NUMBER, "moving": FLAG,
@@ -67,61 +58,9 @@ def prefix_of(summary):
     return Path(str(summary).removesuffix(".summary.yaml"))
 
 
-def governing(about: Mapping[str, Any], farthest: Farthest = lambda about: None) -> Optional[str]:
-    """The run that represents the headline of a study.yaml; else the one that went farthest. None: none finished.
-
-    farthest: tells the latter by the rows; where it says None, what the file says counts.
-
-    Of an ensemble whose quantile is the headline the one at this quantile; else the one at the 90 % quantile of what
-    counts, or the largest where known events go beyond all runs.
-    """
-    ensemble = about.get("ensemble")
-    if ensemble and (number := of_headline(about)):
-        return number
-    if ensemble and ensemble.get("of"):
-        # a quantile is the value of a run
-        of = ensemble["of"]
-        entries = (ensemble.get("known_events") or {}).get("quantities") or ensemble["quantities"]
-        at = {one["share"]: one["value"] for one in entries[of]["quantiles"]}[0.9] if of in entries else None
-        having = [row for row in about["runs"] if row.get(of) is not None]      # others failed, or lost it
-        if at is None:      # events beyond the runs decide
-            return max(having, key=lambda row: row[of])["run"]
-        return min(having, key=lambda row: abs(row[of] - at))["run"]
-    best = about["conservative"] or about.get("largest", {}).get("front_m", {})      # the latter in older ones
-    return about["conservative"] and best["run"] or farthest(about) or about.get("farthest") or best.get("run")
-
-
-def of_headline(about: Mapping[str, Any]) -> Optional[str]:
-    """The run of an ensemble at whose volume the headline is; the longest where the headline is 0, as no run says more.
-
-    None where the headline is of another study, of none, or withheld.
-    """
-    number, known = about.get("headline") or {}, (about.get("ensemble") or {}).get("known_events") or {}
-    if number.get("source") != "ensemble" or number.get("volume_m3") is None:
-        return None
-    if number["volume_m3"] == 0:
-        long = [row for row in about["runs"] if row.get("length_m") is not None]
-        return max(long, key=lambda row: row["length_m"])["run"] if long else None
-    at = next((one["value"] for one in known.get("to_remove") or () if one["share"] == number.get("share")), None)
-    having = [row for row in about["runs"] if row.get("remove_m3") is not None]
-    return None if at is None or not having else min(having, key=lambda row: abs(row["remove_m3"] - at))["run"]
-
-
-def governing_run(study: Path, farthest: Farthest = lambda about: None) -> Tuple[str, Path]:
-    """Name and folder of the governing run of a study.yaml; farthest: see governing()."""
-    about = schemas.load(study, OF_STUDY, GOVERNING)
-    name = governing(about, farthest)
-    if not name:
-        raise SlopeError(study, f"must be {OF_STUDY}, with a finished run")
-    for row in about.get("runs") or ():
-        if row["run"] == name and "summary" in row:
-            return name, summary_of(study.parent, row).parent
-    return name, study.parent / name
-
-
-def summary_of(output: Path, row: Mapping[str, Any]) -> Path:
-    """The summary of the run of a row of study.yaml in a folder; the runs may be in another one, that of a site."""
-    return Path(os.path.normpath(output / row["summary"]))
+def summary_of(output: Path, summary: str) -> Path:
+    """The summary that the row of a run names, in a study's folder; the runs may be in another one, that of a site."""
+    return Path(os.path.normpath(output / summary))
 
 
 def begun(folder: Path) -> Dict[str, Any]:

@@ -19,9 +19,8 @@ from ..report.heading import Asked
 from ..report.heading import SITE
 from ..sites import site_scenarios
 from ..studies import outdated
-from ..tables import named_run
+from ..tables import answered
 
-STUDY = "study.yaml"
 OF_SITE = f" (default: what {SITE} says, in DIR or above it)"
 
 DESCRIPTION = "One self-contained HTML page on a study or a run."
@@ -77,14 +76,14 @@ def study_of(folder: Path) -> Path:
     """The study inside the folder of a site, or of one of its roads; any other folder itself, as a site that holds a
     run made by hand only.
     """
-    inside = named_run.study_in(folder)
+    inside = answered.study_in(folder)
     if inside:
         return inside
     if not (folder / SITE).is_file():
         return folder
     if not run_folders.summaries(folder):
         raise SlopeError(folder, f"must hold the study of this site: `slope study {quote(str(folder))}` makes it and "
-                         "the report", f"no {folder / named_run.INSIDE[0] / STUDY}")
+                         "the report", f"no {folder / answered.INSIDE[0] / answered.STUDY}")
     return folder
 
 

@@ -1,5 +1,5 @@
 """How far the volume travels, by the shares that stay within a distance: what a summary's travel: quantiles say."""
-from typing import Any, Dict, Mapping, Optional, Sequence
+from typing import Any, Dict, Mapping, Optional, Protocol, Sequence, TypeVar
 
 SHARES = (50, 90, 95, 99)       # percent of the volume
 HEADLINE = SHARES[-1]           # the distance that counts: one stray ball does not move it
@@ -22,19 +22,34 @@ def columns(summary: Mapping[str, Any]) -> Dict[str, Optional[float]]:
     return found
 
 
-def lost(row: Mapping[str, Any]) -> bool:
-    """Whether so much of a run (a row of study.yaml) left the box that nobody knows how far it went."""
-    return row["lost_m3"] > BEYOND * row["released_m3"]
+class Traveled(Protocol):
+    """What a run (a rows.Finished) says of it: volumes in m3, distances in m."""
+    @property
+    def lost_m3(self) -> float: ...
+    @property
+    def released_m3(self) -> float: ...
+    @property
+    def front_m(self) -> float: ...
+    @property
+    def distance_99_m(self) -> Optional[float]: ...
 
 
-def farthest(rows: Sequence[Mapping[str, Any]]) -> Mapping[str, Any]:
-    """The run that went farthest: a row of study.yaml.
+One = TypeVar("One", bound=Traveled)
+
+
+def lost(row: Traveled) -> bool:
+    """Whether so much of a run left the box that nobody knows how far it went."""
+    return row.lost_m3 > BEYOND * row.released_m3
+
+
+def farthest(rows: Sequence[One]) -> One:
+    """The run that went farthest.
 
     Of those that left the box, which went beyond all others, it is the one that lost most. Where a run of an older
     version has no shares, the farthest balls are compared.
     """
     gone = [row for row in rows if lost(row)]
     if gone:
-        return max(gone, key=lambda row: row["lost_m3"] / row["released_m3"])
-    key = DISTANCE if all(row.get(DISTANCE) is not None for row in rows) else "front_m"
-    return max(rows, key=lambda row: row[key])
+        return max(gone, key=lambda row: row.lost_m3 / row.released_m3)
+    known = all(row.distance_99_m is not None for row in rows)
+    return max(rows, key=lambda row: row.distance_99_m or 0.0 if known else row.front_m)

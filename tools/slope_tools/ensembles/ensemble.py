@@ -18,6 +18,7 @@ from ..mobility.exceedance import Mobility
 from ..statistics import emulator, hazard
 from ..tables import combinations, quantities, withheld_words
 from ..tables.quantities import On
+from ..tables.rows import Finished, Row, finished_of
 from . import ensemble_maps, farther, known_events
 from .sample import Sample
 
@@ -58,16 +59,16 @@ class Evaluated(NamedTuple):
     about: Dict[str, Any]
     curves: Mapping[str, hazard.Curve]
     analyses: Mapping[str, emulator.Analysis]
-    finished: Sequence[Mapping[str, Any]]
+    finished: Sequence[Finished]
     points: int
     failed: int
     known: Optional[known_events.Evaluated]
 
 
-def evaluate(order: Order, rows: Sequence[Mapping[str, Any]], mobility: Optional[Mobility]) -> Optional[Evaluated]:
+def evaluate(order: Order, rows: Sequence[Row], mobility: Optional[Mobility]) -> Optional[Evaluated]:
     """What an ensemble says, None where all runs failed; rows: of study.csv; mobility: of an order with a condition."""
-    planned = [row for row in rows if not row.get("batch")]
-    finished = [row for row in planned if row["status"] == "finished"]
+    planned = [row for row in rows if not row.batch]
+    finished = finished_of(planned)
     if not finished:
         return None
     failed = len(planned) - len(finished)
@@ -102,7 +103,7 @@ def write(found: Evaluated, levels: ensemble_maps.Thresholds, output: Path, plac
     place: CRS and offset of the maps; grids: why there can be none.
     """
     maps: Dict[str, Any] = {"maps": [] if grids else ensemble_maps.write(
-        output / MAPS, [run_folders.prefix_of(run_folders.summary_of(output, row)) for row in found.finished],
+        output / MAPS, [run_folders.prefix_of(run_folders.summary_of(output, row.summary)) for row in found.finished],
         found.points, found.failed, levels, place)}
     if found.known:
         maps["known_events"] = {**found.known.about, **known_events.write(found.known, levels, output, place, grids)}
@@ -111,15 +112,15 @@ def write(found: Evaluated, levels: ensemble_maps.Thresholds, output: Path, plac
     return maps
 
 
-def points_of(sample: Sample, finished: Sequence[Mapping[str, Any]]) -> List[int]:
+def points_of(sample: Sample, finished: Sequence[Finished]) -> List[int]:
     """Which point of the design each run is of; points whose runs are the same, to the last digit, are one."""
     known: Dict[tuple, int] = {}
     first = combinations.same_as(finished)
-    return [known.setdefault(tuple(finished[k]["set"][name] for name in sample.names), len(known)) for k in first]
+    return [known.setdefault(tuple(finished[k].set[name] for name in sample.names), len(known)) for k in first]
 
 
-def column(finished: Sequence[Mapping[str, Any]], name: str) -> np.ndarray:
-    return np.array([float(row[name]) for row in finished])
+def column(finished: Sequence[Finished], name: str) -> np.ndarray:
+    return np.array([float(row.value(name)) for row in finished])
 
 
 # --- numbers ---
@@ -138,7 +139,7 @@ def several(point: Sequence[int]) -> bool:
     return len(point) == 1 or len(set(point)) > 1
 
 
-def no_effect(finished: Sequence[Mapping[str, Any]]) -> List[Finding]:
+def no_effect(finished: Sequence[Finished]) -> List[Finding]:
     """The caveat that runs are the same as others, though their values differ."""
     first = combinations.same_as(finished)
     same = [k for k in range(len(finished)) if first.count(first[k]) > 1]
@@ -147,7 +148,7 @@ def no_effect(finished: Sequence[Mapping[str, Any]]) -> List[Finding]:
     number = len({first[k] for k in same})
     then = "they are one run, which has no bounds" if len(set(first)) == 1 else f"the bounds count them as {number}"
     return [Finding("no effect", {"which": "what was varied", "on": f" on {len(same)} of {len(finished)} runs",
-                                  "then": then}, [finished[k]["run"] for k in same])]
+                                  "then": then}, [finished[k].run for k in same])]
 
 
 def doubts(about: Mapping[str, Any]) -> List[Finding]:

@@ -19,6 +19,7 @@ from ..findings import Finding, entries, texts
 from ..mobility import body, exceedance, known, run_length, weights
 from ..statistics import answer, emulator, hazard
 from ..tables import answer_words, combinations, quantities
+from ..tables.rows import Row, finished_of
 from . import conditioned, farther, known_influence, known_maps
 from .sample import Sample
 
@@ -74,27 +75,27 @@ def found_of(condition: Condition, folder: Path, summary: Path) -> known.Found:
 class Runs:
     """Those runs of an ensemble that have a length: rows; point: of the design; failed: number of others."""
 
-    def __init__(self, sample: Sample, added: Sequence[farther.Batch], rows: Sequence[Mapping[str, Any]],
+    def __init__(self, sample: Sample, added: Sequence[farther.Batch], rows: Sequence[Row],
                  found: exceedance.Mobility):
         self.sample, self.added = sample, added
-        self.rows = [row for row in rows if row["status"] == "finished" and row.get("length_m") is not None]
+        self.rows = [row for row in finished_of(rows) if row.length_m is not None]
         self.failed = len(rows) - len(self.rows)
         first = combinations.same_as(self.rows)         # the same run, to the last digit, is one point
-        self.point = [tuple(self.rows[k]["set"][name] for name in sample.names) for k in first]
+        self.point = [tuple(self.rows[k].set[name] for name in sample.names) for k in first]
         self.lengths = self.column("length_m") if self.rows else np.empty(0)
         self.exceedance = found.exceedance
         self.beyond = np.asarray(found.exceedance(self.lengths), float)
         if len(self.rows) >= 2:
-            ratio = farther.ratio(self.places, [row["batch"] for row in self.rows], added) if added else None
+            ratio = farther.ratio(self.places, [row.batch for row in self.rows], added) if added else None
             self.weights = weights.of_lengths(self.lengths, self.beyond, ratio)
             self.mass = conditioned.masses(self.weights)
 
     def column(self, name: str) -> np.ndarray:
-        return np.array([float(row[name]) for row in self.rows])
+        return np.array([float(row.value(name)) for row in self.rows])
 
     def have(self, name: str) -> bool:
         """A value of all; the distance of the last per cents has none where they left the terrain."""
-        return all(row.get(name) is not None for row in self.rows)
+        return all(row.value(name) is not None for row in self.rows)
 
     @property
     def places(self) -> np.ndarray:
@@ -124,7 +125,7 @@ class Evaluated(NamedTuple):
     curves: Mapping[str, hazard.Curve]
 
 
-def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: Sequence[Mapping[str, Any]],
+def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: Sequence[Row],
              found: exceedance.Mobility, names: Mapping[str, Tuple[str, str]], main: Sequence[str]) -> Evaluated:
     """What the weighted runs say.
 
@@ -171,7 +172,8 @@ def write(one: Evaluated, levels, output: Path, place, grids: Optional[str]) -> 
     disk.write(output / HAZARD, hazard.table(one.curves))
     disk.write(output / WEIGHTS, weights_table(runs))
     return {"maps": [] if grids else known_maps.write(
-        output / FOLDER, [run_folders.prefix_of(run_folders.summary_of(output, row)) for row in runs.rows], runs.mass,
+        output / FOLDER, [run_folders.prefix_of(run_folders.summary_of(output, row.summary)) for row in runs.rows],
+        runs.mass,
         runs.several, runs.failed_share, levels, place)}
 
 
@@ -188,7 +190,8 @@ def reach(runs: Runs, found: exceedance.Mobility) -> Dict[str, Any]:
     one = runs.weights
     return {"reached": one.reached, "short": one.short, "far": one.far, "runs": len(runs.rows), "failed": runs.failed,
             "effective": one.effective, "distance": one.distance,
-            "far_by_lobe": [float(found.exceedance(max(row["length_by_lobe_m"][k] for row in runs.rows)))
+            "far_by_lobe": [float(found.exceedance(max(row.length_by_lobe_m[k] for row in runs.rows
+                                                       if row.length_by_lobe_m)))
                             for k in range(len(run_length.OTHERS))],
             "gaps": [{"low_m": gap.low, "high_m": gap.high, "share": gap.share} for gap in one.gaps],
             "shortest_m": float(runs.lengths.min()), "longest_m": float(runs.lengths.max()),
@@ -233,7 +236,7 @@ def doubts(about: Mapping[str, Any], runs: Runs) -> List[Finding]:
         found.append(Finding("few effective", {"effective": about["effective"]}))
     if runs.failed:
         found.append(Finding("no length", {"failed": runs.failed, "runs": len(runs.rows) + runs.failed}))
-    left = sum(row["off_grid_m3"] + row["lost_m3"] > LEFT * row["released_m3"] for row in runs.rows)
+    left = sum(row.off_grid_m3 + row.lost_m3 > LEFT * row.released_m3 for row in runs.rows)
     if left:
         found.append(Finding("lengths lost", {"lost": left, "runs": len(runs.rows), "percent": 100 * LEFT}))
     return found
@@ -243,7 +246,7 @@ def whole_weights(runs: Runs) -> Dict[str, float]:
     """The share of known events that each run stands for; the longest stands for those beyond it, too, as in maps."""
     share = runs.mass.share.copy()
     share[runs.mass.order[-1]] += runs.mass.far
-    return {row["run"]: float(one) for row, one in zip(runs.rows, share)}
+    return {row.run: float(one) for row, one in zip(runs.rows, share)}
 
 
 # --- tables ---
@@ -252,7 +255,7 @@ def weights_table(runs: Runs) -> str:
     """The CSV of the runs' weights; they add up to what is reached."""
     numbers = np.column_stack([runs.beyond, runs.weights.ratio, runs.weights.weights])
     return disk.csv_text(["run", "length_m", "beyond", "ratio", "weight"], (
-        [row["run"], f"{length:.3f}", *(f"{one:.6g}" for one in several)]
+        [row.run, f"{length:.3f}", *(f"{one:.6g}" for one in several)]
         for row, length, several in zip(runs.rows, runs.lengths, numbers)))
 
 

@@ -12,6 +12,7 @@ from ..errors import SlopeError
 from ..runs import repeats
 from ..schemas import OBJECT
 from ..statistics import designs, distributions
+from ..tables.rows import Run
 
 FILE = "design.yaml"
 WHAT = "what `slope study --sample` wrote"
@@ -52,9 +53,9 @@ class Sample:
         points = designs.points(self.kind, len(self.variables), self.number, self.seed)
         return [{one.name: one.value(u) for one, u in zip(self.variables, point)} for point in points]
 
-    def places(self, rows: Sequence[Mapping[str, Any]]) -> np.ndarray:
+    def places(self, rows: Sequence[Run]) -> np.ndarray:
         """The points of rows of the study's table in the unit cube."""
-        return np.array([[one.unit(row["set"][one.name]) for one in self.variables] for row in rows])
+        return np.array([[one.unit(row.set[one.name]) for one in self.variables] for row in rows])
 
     def snap(self, u: np.ndarray) -> np.ndarray:
         return designs.snapped(self.variables, u)

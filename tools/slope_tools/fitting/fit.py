@@ -12,9 +12,10 @@ from ..deposits.rest import CUT
 from ..findings import Finding, entries
 from ..runs import jobs, repeats
 from ..statistics import backanalysis
-from ..studies import body_depth, mapped, results
+from ..studies import body_depth, mapped, run_rows
 from ..studies.setup import Setup
 from ..tables import judged, quantities
+from ..tables.rows import Finished, Row, finished_of
 from . import calibration, fit_words, observations
 
 SETS = 64               # sets of values that stand for the region
@@ -34,7 +35,7 @@ class Fit:
     def __init__(self, setup: Setup, wanted: observations.Wanted, plan: calibration.Calibration, work: jobs.Work):
         self.setup, self.wanted, self.plan, self.work = setup, wanted, plan, work
         self.observed = observations.Observations(wanted)
-        self.rows: Dict[str, Mapping[str, Any]] = {}
+        self.rows: Dict[str, Row] = {}
 
     @property
     def variables(self):
@@ -56,26 +57,26 @@ class Fit:
             self.setup.tell(f"{len(longer)} run{'s' * (len(longer) > 1)} not at rest at the end of the duration: again "
                             f"with twice as much, {times} s")
             for (i, one), row in zip(longer.items(), self.made(list(longer.values()))):
-                if row["status"] == "finished":         # else the shorter one stays
+                if isinstance(row, Finished):         # else the shorter one stays
                     self.plan.replace(todo[i], one)
                     todo[i], rows[i] = one, row
         found: List[Optional[np.ndarray]] = []
         for one, row in zip(todo, rows):
             self.rows[one.name] = row
-            told = not one.error and self.observed.told_by(row)
-            found.append(self.observed.measure(self.summary(row), self.terrain(one), row) if told else None)
+            found.append(self.observed.measure(self.summary(row), self.terrain(one), row)
+                         if isinstance(row, Finished) and self.observed.told_by(row) else None)
         return found
 
-    def made(self, todo: Sequence[repeats.Repeat]) -> List[Mapping[str, Any]]:
+    def made(self, todo: Sequence[repeats.Repeat]) -> List[Row]:
         """The rows of runs, which are made where they are not finished."""
         self.work.store.admit(todo)
         self.work.do(todo)
-        return list(results.rows_of(self.setup, todo))
+        return run_rows.rows_of(self.setup, todo)
 
-    def was_cut(self, one: repeats.Repeat, row: Mapping[str, Any]) -> bool:
+    def was_cut(self, one: repeats.Repeat, row: Row) -> bool:
         """Whether a run was stopped at its duration before it was at rest, and the duration may be another one."""
         named = {variable.name for variable in self.variables} | self.plan.fixed.keys()
-        return (row["status"] == "finished" and not row["at_rest"] and row["stop_reason"] == CUT
+        return (isinstance(row, Finished) and not row.at_rest and row.stop_reason == CUT
                 and DURATION in self.work.defaults and DURATION not in named
                 and isinstance(as_number(one.chosen.get(DURATION, self.work.defaults[DURATION])), float))
 
@@ -84,8 +85,12 @@ class Fit:
         seconds = float(one.chosen.get(DURATION, self.work.defaults[DURATION]))
         return repeats.Repeat(self.setup.output, {**one.combination, DURATION: f"{2 * seconds:.10g}"}, one.repeat)
 
-    def summary(self, row: Mapping[str, Any]) -> Path:
-        return run_folders.summary_of(self.setup.output, row)
+    @property
+    def finished(self) -> List[Finished]:
+        return finished_of(self.rows.values())
+
+    def summary(self, row: Finished) -> Path:
+        return run_folders.summary_of(self.setup.output, row.summary)
 
     @staticmethod
     def terrain(one: repeats.Repeat) -> Optional[Path]:
@@ -103,7 +108,7 @@ class Fit:
                  *backanalysis.judgement(found, self.variables)]
         doubts = self.doubts(found)
         failed = [one.name for one in plan.runs if one.error]
-        thick = body_depth.in_balls(self.setup, [row for row in self.rows.values() if row["status"] == "finished"])
+        thick = body_depth.in_balls(self.setup, self.finished)
         about: Dict[str, Any] = {
             "calibration": {**plan.ledger.about, "runs": plan.number, "failed": len(failed), "balls_thick": thick,
                             "package": self.work.package, "collected": provenance.now(),
@@ -146,7 +151,7 @@ class Fit:
                                                    "which": ", ".join(failed[:3])}))
         if gone:
             several.append(Finding("lost fits", {"lost": len(gone), "runs": runs,
-                                                 "volume": max(row["lost_m3"] for row in gone)}))
+                                                 "volume": max(row.lost_m3 for row in gone)}))
         if len(targets) < len(self.variables):
             known, asked = len(targets), len(self.variables)
             several.append(Finding("underdetermined", {
@@ -161,17 +166,17 @@ class Fit:
         lacks = self.mass()
         if lacks:
             several.append(lacks)
-        return several + judged.not_at_rest([row for row in self.rows.values() if row["status"] == "finished"])
+        return several + judged.not_at_rest(self.finished)
 
     def mass(self) -> Optional[Finding]:
         """That the mapped thickness cannot be of the mass that is released; None where it can, or nothing is known."""
-        released = [row["released_m3"] for row in self.rows.values() if row["status"] == "finished"]
+        released = [row.released_m3 for row in self.finished]
         volume = self.observed.volume
         return mapped.mass(volume, sum(released) / len(released)) if released else None
 
-    def gone(self) -> List[Mapping[str, Any]]:
+    def gone(self) -> List[Finished]:
         """The runs that lost so much that they are left out."""
-        return [row for row in self.rows.values() if row["status"] == "finished" and not self.observed.told_by(row)]
+        return [row for row in self.finished if not self.observed.told_by(row)]
 
     def known(self, found: backanalysis.Posterior, i: int) -> Dict[str, Any]:
         """What is known of a variable."""
@@ -211,7 +216,8 @@ class Fit:
 
     def draw_map(self, path: Path, best: repeats.Repeat) -> None:
         """Predicted against mapped."""
-        prefix = run_folders.prefix_of(self.summary(self.rows[best.name]))
+        [row] = [one for one in self.finished if one.run == best.name]
+        prefix = run_folders.prefix_of(self.summary(row))
         run_ = deposit.read(prefix, self.terrain(best), lambda text: None)
         mapped, simulated = self.observed.mapped, run_.raster.z > self.wanted.threshold
         about = {"prefix": best.name, "threshold": self.wanted.threshold,

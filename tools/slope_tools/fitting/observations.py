@@ -17,6 +17,7 @@ from ..deposits import connected, deposit, reach, score, travel_shares
 from ..errors import SlopeError
 from ..statistics.backanalysis import Target
 from ..survey import rasters
+from ..tables.rows import Finished
 
 ZONES = 6
 SHARES = {True: (0.5, 0.9, 0.99), False: (0.99,)}      # of an outline, of a raster
@@ -99,7 +100,7 @@ class Observations:
             return None
         return float(self.mapped.thickness.sum()) * float(self.transform.a) ** 2 + self.mapped.volume_outside
 
-    def told_by(self, row: Mapping[str, Any]) -> bool:
+    def told_by(self, row: Finished) -> bool:
         """Whether a run (a row of the table of `slope study`) says how far the mass goes, if that was asked.
 
         A length or an area that the edge of the terrain cuts off is none.
@@ -107,7 +108,7 @@ class Observations:
         asked = self.wanted.front is not None or self.wanted.area is not None
         return not (asked and travel_shares.lost(row))
 
-    def measure(self, summary: Path, terrain: Optional[Path], row: Mapping[str, Any]) -> np.ndarray:
+    def measure(self, summary: Path, terrain: Optional[Path], row: Finished) -> np.ndarray:
         """The outputs of a run, in the order of the targets; row: of the table of `slope study`."""
         run_ = deposit.read(run_folders.prefix_of(summary), terrain, lambda text: None)
         if not self.targets:
@@ -121,7 +122,7 @@ class Observations:
             covered = run_folders.load_raster(run_.prefix, "max_thickness").z > self.wanted.threshold
             outputs.append(float(covered.sum()) * run_.cell ** 2)
         if self.wanted.volume is not None:
-            outputs.append(row[ROAD])
+            outputs.append(row.at_road.remove_on_road_m3)
         return np.array(outputs, float)
 
     def _set_targets(self, run_: deposit.Deposit) -> None:
@@ -177,9 +178,9 @@ class Observations:
         return np.bincount(band.ravel(), thickness.ravel(), ZONES) * cell ** 2
 
 
-def front(summary: Path, row: Mapping[str, Any], column: str) -> float:
+def front(summary: Path, row: Finished, column: str) -> float:
     """The front (m) of a run of which it is known; 0 where nothing is left of the deposit."""
-    found = row.get(column)
+    found = row.value(column)
     if found is None and column == FRONTS["length"][1]:
         return 0.0
     if found is None:

@@ -41,14 +41,14 @@ class Charts:
 
     def has_removal(self) -> bool:
         """Whether something is to be removed: else its chart would be empty."""
-        return any(row.get(REMOVE) for row in self.data.finished)
+        return any(row.value(REMOVE) for row in self.data.finished)
 
     def all(self):
         """Pictures; the first one is that of the volume to remove, if there is any."""
         data = self.data
         if not data.study or len(data.finished) < 2 or data.study.get("ensemble"):
             return []
-        far = [travel_shares.DISTANCE] if all(row.get(travel_shares.DISTANCE) is not None for row in data.finished) \
+        far = [travel_shares.DISTANCE] if all(row.value(travel_shares.DISTANCE) is not None for row in data.finished) \
             else [] if any(map(travel_shares.lost, data.finished)) else ["front_m"]
         wanted = [*([REMOVE] if self.has_removal() else []), *far, "thickness_m"]
         wanted += [name for name in (self.reference.quantities if self.reference else ()) if name not in wanted]
@@ -64,7 +64,7 @@ class Charts:
 
     def bars(self, key):
         rows, title = self.data.finished, self.title(key)
-        return Picture(figure_charts.bars([self.data.label_of(row) for row in rows], [row[key] for row in rows],
+        return Picture(figure_charts.bars([self.data.label_of(row) for row in rows], [row.value(key) for row in rows],
                                           self.label(key), title, WIDE if key == REMOVE else HALF),
                        title, f"{title} of every run.")
 
@@ -74,16 +74,16 @@ class Charts:
         scatter = self.scatter_of(key)
         lines: Dict[Any, Any] = {}
         for row in data.finished:
-            rest = ", ".join(f"{other} {row['set'][other]}" for other, several in data.settings.items()
+            rest = ", ".join(f"{other} {row.set[other]}" for other, several in data.settings.items()
                              if other != name and len(several) > 1)
             lines.setdefault(rest, []).append(row)
         own = self.reference and self.reference.quantities.get(key)
         series, clear = [], []
         for rest, rows in lines.items():
-            rows = sorted(rows, key=lambda row: float(row["set"][name]))
+            rows = sorted(rows, key=lambda row: float(row.set[name]))
             clear.append(self.is_clear(key, rows, scatter))
-            series.append(Series(rest or ("this study" if own else ""), [float(row["set"][name]) for row in rows],
-                                 [row[key] for row in rows], scatter and scatter.deviation, bool(clear[-1])))
+            series.append(Series(rest or ("this study" if own else ""), [float(row.set[name]) for row in rows],
+                                 [row.value(key) for row in rows], scatter and scatter.deviation, bool(clear[-1])))
         others, levels, mark = [], [], None
         several = any(len(rows) > 1 for rows in data.combinations().values())
         caption = (f"{title} against {name}; {'dots: runs, ' * several}{'larger dots: means' * several}"
@@ -135,7 +135,7 @@ def combinations(rows, key):
     """{values of what was chosen: headline.Combination of a column}."""
     found: Dict[Any, Any] = {}
     for row in rows:
-        found.setdefault(tuple(row["set"].items()), {})[key_of(row.get("repeat") or {})] = row[key]
+        found.setdefault(tuple(row.set.items()), {})[key_of(row.repeat)] = row.value(key)
     return {chosen: headline.Combination(str(chosen), volumes) for chosen, volumes in found.items()}
 
 

@@ -222,8 +222,8 @@ def of_reach(data, numbers) -> Dict[str, Any]:
 def reaches(data) -> List[float]:
     """The 99 % distances of all runs; empty where one of them is unknown."""
     key = DISTANCE
-    rows = data.finished or [travel_shares.columns(data.result.summary)]
-    return [] if any(row.get(key) is None for row in rows) else [row[key] for row in rows]
+    found = [row.value(key) for row in data.compared]
+    return [] if None in found else found
 
 
 # --- what else is found ---
@@ -266,7 +266,7 @@ def distance(data, numbers, has_road_number: bool) -> str:
     if not values:
         return f"How far the mass goes is unknown: more than 1 % of it left the terrain.{most_elastic(data, numbers)}"
     if not has_road_number:
-        front = [row["front_m"] for row in data.finished] or [farthest_of(data.result.summary)[0]]
+        front = [row.front_m for row in data.finished] or [farthest_of(data.result.summary)[0]]
         return (f"Distances are in plan from the highest point of the body; single blocks go farther, up to "
                 f"{numbers.quantity('front_m', max(front))} m in the model.{most_elastic(data, numbers)}")
     far = span(numbers, DISTANCE, values)
@@ -292,7 +292,7 @@ def most_elastic(data, numbers) -> str:
 def road(data, numbers) -> str:
     if data.road is None:
         return ""
-    on = [row[ON_ROAD] for row in data.finished]
+    on = [row.value(ON_ROAD) for row in data.finished]
     if not max(on) > 0:
         return f"{runs_of(data)} nothing comes to lie on the road."
     known, far = weighted(data, numbers, ON_ROAD), span(numbers, ON_ROAD, on)
@@ -302,10 +302,10 @@ def road(data, numbers) -> str:
         text = f"On the road itself single runs, {ALIKE}, leave {far}"
     else:
         text = f"On the road itself lie {far}"
-    blocked = [row["blocked_m"] for row in data.finished if row.get("blocked_m") is not None]
+    blocked = [row.at_road.blocked_m for row in data.finished if row.road]
     if blocked and max(blocked) > 0:
         text += f", over a length of up to {numbers.quantity('blocked_m', max(blocked))} m"
-    beyond = [row["beyond_road_m3"] for row in data.finished if row.get("beyond_road_m3") is not None]
+    beyond = [row.at_road.beyond_road_m3 for row in data.finished if row.road and row.road.beyond_road_m3 is not None]
     if beyond and max(beyond) > 0:
         text += f"; beyond it come to lie up to {numbers.quantity('beyond_road_m3', max(beyond))} m³" + finer(data)
     return f"{text}."
@@ -324,7 +324,7 @@ def finer(data) -> str:
 def structures(data, ground) -> str:
     """The largest lasting force on a structure."""
     found = [(numbers["mean_force_n"], name) for row in data.finished
-             for name, numbers in (row.get("structures") or {}).items()]
+             for name, numbers in row.structures.items()]
     if not found:
         return ""
     force, name = max(found)

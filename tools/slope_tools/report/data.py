@@ -1,7 +1,7 @@
 """What a report is made of: the finished runs of a study, or one run, read back."""
 import math
 from pathlib import Path
-from typing import Any, Dict, List
+from typing import Dict, List, Optional
 
 import numpy as np
 from affine import Affine
@@ -12,8 +12,9 @@ from ..deposits import deposit, score
 from ..errors import SlopeError
 from ..schemas import OBJECT, mapping
 from ..survey import rasters
-from ..tables import judged, named_run, quantities
-from ..tables.released import Release
+from ..studies import run_rows
+from ..tables import named_run, quantities
+from ..tables.rows import Finished, finished_of
 from ..tables.study_file import read_study
 from . import heading
 
@@ -23,15 +24,16 @@ MOST_SHOWN = 9          # runs that get a map and a line in the section
 class Result:
     """A finished run, read back."""
 
-    def __init__(self, folder, summary, row=None):
+    def __init__(self, folder: Path, summary: Path, row: Optional[Finished] = None):
+        """row: of the table of its study; None of a run alone."""
         self.folder, self.path = Path(folder), Path(summary)
         self.prefix = run_folders.prefix_of(summary)
         self.summary = run_folders.load_summary(summary)
         of_study = (self.folder / run_folders.VARIABLES).is_file()
         self.about, self.marker = run_folders.begun(folder) if of_study else {}, run_folders.ended(folder)
         self.log = logs.Log(find_log(self.folder)).update()
-        self.row = row or {}
-        self.name = self.row.get("run", self.prefix.name)
+        self.row = row or run_rows.alone(self.folder, self.path, self.log)
+        self.name = self.row.run or self.prefix.name
         terrain = self.log.terrain and self.folder / self.log.terrain
         self.terrain_path = terrain if terrain and terrain.is_file() else None
         self.deposit = deposit.read(self.prefix, self.terrain_path, lambda text: None)
@@ -98,11 +100,11 @@ class Data:
         path = self.folder / "study.yaml"
         self.study = self.study or read_study(path)
         self.rows = self.study["runs"]
-        self.finished = [row for row in self.rows if row["status"] == "finished"]
+        self.finished = finished_of(self.rows)
         about = self.study["study"]
         self.settings, self.repeats = about["set"], dict(about.get("repeat") or {})
-        names = [row["run"] for row in self.finished]
-        shown = shown or run_folders.governing(self.study, named_run.farthest)
+        names = [row.run for row in self.finished]
+        shown = shown or named_run.governing(self.study)
         if shown not in names:
             raise SlopeError("--run", f"must be a finished run of {path}, such as {names[0]}", shown)
         self.result = self._load(self.finished[names.index(shown)])
@@ -139,7 +141,7 @@ class Data:
         self.drawn = [self.result]
 
     def _load(self, row):
-        path = run_folders.summary_of(self.folder, row)
+        path = run_folders.summary_of(self.folder, row.summary)
         return Result(path.parent, path, row)
 
     def _volume(self) -> str:
@@ -169,7 +171,7 @@ class Data:
 
     def largest_release(self):
         """The released volume (m3), the largest of all runs."""
-        return max((row["released_m3"] for row in self.finished), default=self.result.summary["volume"]["released"])
+        return max((row.released_m3 for row in self.finished), default=self.result.summary["volume"]["released"])
 
     def below_ground(self):
         """Volume (m3) to remove in the shown run where the cut lies below the ground, and its share of all; or None."""
@@ -181,26 +183,24 @@ class Data:
     @property
     def judged(self):
         """The rows that findings are of: those of the study, or that of a run alone, without a name."""
-        one = self.result
-        return self.rows if self.study else [{"run": "", "status": "finished",
-                                              **judged.columns(one.summary, one.log)}]
+        return self.rows or [self.result.row]
 
     @property
     def compared(self):
-        """Rows of the quantities of the finished runs; of a run alone that of its summary."""
-        return self.finished or [{**quantities.of_summary(self.result.summary), **quantities.of_length(self.length())}]
+        """Rows of the quantities of the finished runs; or that of a run alone."""
+        return self.finished or [self.result.row]
 
     def names(self):
         """Labels of the runs by their folders."""
-        return {row["run"]: self.label_of(row) for row in self.rows}
+        return {row.run: self.label_of(row) for row in self.rows}
 
     def ends(self):
         """The rows of finished runs: how they ended."""
-        return [row for row in self.judged if row["status"] == "finished"]
+        return finished_of(self.judged)
 
     def releases(self):
         """(row, Release) of each finished run."""
-        return [(row, Release(**row["release"])) for row in self.ends()]
+        return [(row, row.release) for row in self.ends()]
 
     def length(self):
         """The run_length.RunLength of the shown run; None where its deposit is nowhere thick enough."""
@@ -213,16 +213,16 @@ class Data:
 
     def combinations(self):
         """{values of what was chosen: the finished runs}, which differ by what is repeated; in their order."""
-        found: Dict[tuple, List[Dict[str, Any]]] = {}
+        found: Dict[tuple, List[Finished]] = {}
         for row in self.finished:
-            found.setdefault(tuple(row["set"].items()), []).append(row)
+            found.setdefault(tuple(row.set.items()), []).append(row)
         return found
 
     def _beside(self, shown):
         """Names of the runs that are drawn: one of each combination, evenly spread if there are many."""
         names = []
         for rows in self.combinations().values():
-            mine = [row["run"] for row in rows]
+            mine = [row.run for row in rows]
             names.append(shown if shown in mine else mine[0])
         if len(names) > MOST_SHOWN:
             names = [names[round(i * (len(names) - 1) / (MOST_SHOWN - 1))] for i in range(MOST_SHOWN)]
@@ -232,18 +232,18 @@ class Data:
 
     def number(self, name):
         """The number of a run of a study in the report, from 1."""
-        return next(k for k, row in enumerate(self.rows, 1) if row["run"] == name)
+        return next(k for k, row in enumerate(self.rows, 1) if row.run == name)
 
     def label(self, one):
         """A short name of a run: the values that differ in the study."""
         return self.label_of(one.row) if self.study else one.name
 
     def label_of(self, row):
-        repeat = [f"{name} {value}" for name, value in (row.get("repeat") or {}).items()]
-        return ", ".join(self.varied(row) + repeat) or ("base" if self.repeats else row["run"])
+        repeat = [f"{name} {value}" for name, value in row.repeat.items()]
+        return ", ".join(self.varied(row) + repeat) or ("base" if self.repeats else row.run)
 
     def varied(self, row):
-        return [f"{name} {value}" for name, value in row["set"].items() if len(self.settings.get(name) or ()) > 1]
+        return [f"{name} {value}" for name, value in row.set.items() if len(self.settings.get(name) or ()) > 1]
 
 
 def is_number(text):

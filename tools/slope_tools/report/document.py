@@ -13,6 +13,8 @@ from .. import digits, disk, kept
 from ..case import run_folders
 from ..errors import SlopeError
 from ..findings import WARNING
+from ..tables import study_file
+from ..tables.rows import finished_of
 from .heading import Asked, site_file
 
 
@@ -80,10 +82,11 @@ def digest_of(asked: Asked, study: Mapping[str, Any]) -> str:
     """Of the page that is asked for on a study: what its runs say, their files, the site, and these tools."""
     about = {**study, "study": {key: value for key, value in study["study"].items() if key not in BESIDE}}
     site = site_file(asked.folder)
-    found = {"asked": disk.plain({**asked._asdict(), "study": None, "site": None}), "about": disk.plain(about),
+    found = {"asked": disk.plain({**asked._asdict(), "study": None, "site": None}),
+             "about": disk.plain(study_file.plain(about)),
              "site": asked.site if asked.site is not None else site and disk.sha256(site),
-             "runs": {row["run"]: run_folders.state(run_folders.summary_of(asked.folder, row).parent)
-                      for row in study["runs"] if "summary" in row},
+             "runs": {row.run: run_folders.state(run_folders.summary_of(asked.folder, row.summary).parent)
+                      for row in finished_of(study["runs"])},
              "film": str(shutil.which("ffmpeg")) if asked.film else ""}
     return kept.digest(found)
 

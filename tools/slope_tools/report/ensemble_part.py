@@ -128,11 +128,11 @@ class Ensemble:
         found = []
         for name in names[:MOST_SCATTER]:
             rows = self.data.finished
-            if not all(is_number(row["set"][name]) for row in rows):
+            if not all(is_number(row.set[name]) for row in rows):
                 continue
             what = self.entry["name"]
             title = f"{what[0].upper()}{what[1:]} against {name}"
-            uri = ensemble_charts.against([float(row["set"][name]) for row in rows], [row[self.of] for row in rows],
+            uri = ensemble_charts.against([float(row.set[name]) for row in rows], [row.value(self.of) for row in rows],
                                           AXIS.get(name, name), f"{what} ({self.entry['unit']})", title)
             found.append(Picture(uri, title, f"{title}: a dot for each run; rank correlation "
                                              f"{variables[name]['rank']:+.2f}."))

@@ -52,9 +52,9 @@ def volumes(data, about):
     """The volume on the road against the intensity: runs and means, without a common scatter."""
     name, series = about["variable"], []
     for line in about["lines"]:
-        mine = [row for row in data.finished if all(row["set"][other] == value for other, value in line["set"].items())]
-        series.append(Series(rest_of(line, about), [float(row["set"][name]) for row in mine],
-                             [row[about["quantity"]] for row in mine]))
+        mine = [row for row in data.finished if all(row.set[other] == value for other, value in line["set"].items())]
+        series.append(Series(rest_of(line, about), [float(row.set[name]) for row in mine],
+                             [row.value(about["quantity"]) for row in mine]))
     title = "Volume on the road"
     return Picture(figure_charts.chart(series, AXIS.get(name, name), "on the road (m3)", title, width=HALF), title,
                    f"{title} against {name}; dots: runs, larger dots: their means.")

@@ -32,10 +32,10 @@ def section(data, ground, numbers) -> Section:
 
 def resistance(data, ground, numbers) -> CONTENT:
     """The stop angle of the ground, where it is known, and what share of the slope below the body is steeper."""
-    degrees, label = data.result.row.get(STOP), data.label(data.result)
+    degrees, label = data.result.row.value(STOP), data.label(data.result)
     if degrees is None:
         return []
-    others = [row[STOP] for row in data.finished if row.get(STOP) is not None]
+    others = [row.value(STOP) for row in data.finished if row.value(STOP) is not None]
     text = (f"A sheet of three balls stops on it where the slope is below {shown(numbers, degrees, label)} degrees "
             f"(stop angle, run {label}")
     if max(others) - min(others) > 0.05:
@@ -58,7 +58,7 @@ def shown(numbers, degrees: float, label: str = "") -> str:
 def zones_of_ground(data, numbers) -> Optional[Section]:
     """Which zones the ground has, with which values in the shown run; None without zones, or where it is no site's."""
     site = data.site
-    zones, variables = (site.get("found") or {}).get("zones") or [], data.result.row.get("variables") or {}
+    zones, variables = (site.get("found") or {}).get("zones") or [], data.result.row.variables
     if not zones or not set(site_zones.VALUES.values()) <= set(variables):
         return None
     rows = []

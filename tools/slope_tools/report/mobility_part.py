@@ -3,7 +3,7 @@
 The lengths of both are along the fall path, from crown to tip (mobility.run_length).
 """
 import math
-from typing import Any, Dict, List, NamedTuple, Optional, Sequence, Tuple
+from typing import Any, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -12,8 +12,9 @@ from ..findings import Finding
 from ..mobility import exceedance
 from ..mobility.fall_path import TERRAIN
 from ..mobility.landslides import NOT_OF_ROADS, Row
-from ..studies.mapped import mass
+from ..studies.mapped import mass, of_rows
 from ..tables.quantities import BEYOND_MAPPED as BEYOND, LENGTH, OVERLAP
+from ..tables.rows import Finished, Mapped
 from .sections import Cell, Section, Table, Text
 
 WHAT = "Known events"
@@ -98,7 +99,7 @@ def where_lie(data, ground) -> Lies:
 def lengths_of(data) -> List[float]:
     """Of each finished run that left a deposit."""
     if data.study:
-        return sorted(row["length_m"] for row in data.finished if row.get("length_m") is not None)
+        return sorted(row.length_m for row in data.finished if row.length_m is not None)
     one = data.length()
     return [one.distance] if one else []
 
@@ -150,9 +151,9 @@ def drawn(data) -> Any:
     return data.mapped.share >= 0.5 if data.mapped.polygon is None else data.mapped.polygon
 
 
-def mapped_runs(data) -> List[Dict[str, Any]]:
-    """The rows of the runs that are compared."""
-    return [row for row in data.finished if row.get(OVERLAP) is not None] if data.mapped is not None else []
+def mapped_runs(data) -> List[Tuple[Finished, Mapped]]:
+    """The runs that are compared, and how they compare."""
+    return of_rows(data.finished) if data.mapped is not None else []
 
 
 def mapped_sentence(data, numbers) -> str:
@@ -161,13 +162,13 @@ def mapped_sentence(data, numbers) -> str:
     if not found:
         return ""
     about = data.study["observed"]
-    best = next(row for row in found if row["run"] == about["best"])
-    share = numbers.quantity(OVERLAP, best[OVERLAP], data.label_of(best))
+    best, mine = next((row, one) for row, one in found if row.run == about["best"])
+    share = numbers.quantity(OVERLAP, mine.overlap, data.label_of(best))
     which = f"The best of {len(found)} runs" if len(found) > 1 else "The run"
     text = f"{which} shares {share} of the area that it or the mapped deposit covers (1: the same area)"
-    if best[BEYOND] is not None:
-        by = numbers.quantity(BEYOND, abs(best[BEYOND]), data.label_of(best))
-        text += f", and ends {by} m {'beyond' if best[BEYOND] > 0 else 'short of'} its tip"
+    if mine.beyond_mapped_m is not None:
+        by = numbers.quantity(BEYOND, abs(mine.beyond_mapped_m), data.label_of(best))
+        text += f", and ends {by} m {'beyond' if mine.beyond_mapped_m > 0 else 'short of'} its tip"
     lacks = mass(about["volume_m3"], about["released_m3"])
     return f"{text}." + (f" {lacks.text[0].upper()}{lacks.text[1:]}." if lacks else "")
 
@@ -179,7 +180,7 @@ def mapped(data, numbers) -> Optional[Section]:
         return None
     about = data.study["observed"]
     volume, length = about["volume_m3"], about["length_m"]
-    by_name = {row["run"]: row for row in found}
+    by_name = {row.run: row for row, _ in found}
     heads: List[Any] = ["", Cell("overlap (Jaccard)", ""), Cell("length", "m"), Cell("difference", "m")]
     columns = [(OVERLAP, "1"), ("length_m", "m"), (BEYOND, "m")]
     if volume is not None:
@@ -192,10 +193,10 @@ def mapped(data, numbers) -> Optional[Section]:
     def row(what, several, label):
         texts = [what]
         for key, unit in columns:
-            values = [one[key] for one in several if one[key] is not None]
+            values = [value for one in several if (value := one.value(key)) is not None]
             texts.append(range_of(numbers, key.replace("_", " "), unit, values, label) if values else "-")
         if volume is not None:
-            kept = [one["on_grid_m3"] for one in several]
+            kept = [one.on_grid_m3 for one in several]
             texts.append(range_of(numbers, "volume of the deposit", "m3", kept, label))
             texts.append(range_of(numbers, "volume less that of the mapped deposit", "m3",
                                   [value - volume for value in kept], label))
@@ -207,7 +208,7 @@ def mapped(data, numbers) -> Optional[Section]:
             label = data.label_of(by_name[name])
             rows.append(row(f"run {data.number(name)}, {what}", [by_name[name]], label))
     if len(found) > 1:
-        rows.append(row(f"all {len(found)} runs", found, ""))
+        rows.append(row(f"all {len(found)} runs", [one for one, _ in found], ""))
     lacks = mass(volume, about["released_m3"])
     return Section("mapped", "Against the mapped deposit", [
         Text(f"{lacks.text[0].upper()}{lacks.text[1:]}.") if lacks else None,

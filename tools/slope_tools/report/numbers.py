@@ -5,7 +5,6 @@ import io
 from typing import Any, Dict, List, Mapping, Sequence
 
 from .. import disk
-from ..case import run_folders
 from ..deposits import rest, travel_shares
 from ..digits import measured, rounded, three
 from ..ensembles import known_study
@@ -146,7 +145,7 @@ def cards(data, numbers):
 
 def released_card(data, numbers):
     releases = data.releases()
-    values = sorted({round(row["released_m3"], 3) for row in data.finished}
+    values = sorted({round(row.released_m3, 3) for row in data.finished}
                     or {data.result.summary["volume"]["released"]})
     texts = list(dict.fromkeys(numbers.whole("released", "m3", value) for value in (values[0], values[-1])))
     for row, release in releases:
@@ -166,20 +165,20 @@ def travel_card(data, numbers):
     if data.study:
         largest = data.study["largest"]
         far = largest["front_m"]
-        names = {row["run"]: row for row in data.finished}
+        names = {row.run: row for row in data.finished}
         who = data.label_of(names[far["run"]])
         farthest = f"; farthest ball {numbers.quantity('front_m', far['value'], who)} m, {who}"
         if key not in largest:
             left = any(map(travel_shares.lost, data.finished))
             return {"what": what, "number": UNKNOWN, "unit": "", "note": f"a run {LOST if left else OLD}{farthest}"}
         row = names[largest[key]["run"]]
-        value, angle, name = row[key], row[REACH], data.label_of(row)
-        length = row.get(LENGTH)
+        value, angle, name = row.value(key), row.value(REACH), data.label_of(row)
+        length = row.value(LENGTH)
     else:
         row = data.compared[0]
-        value, angle, name = row[key], row[REACH], ""
+        value, angle, name = row.value(key), row.value(REACH), ""
         farthest = f"; farthest ball {numbers.quantity('front_m', farthest_of(data.result.summary)[0])} m"
-        length = row[LENGTH]
+        length = row.value(LENGTH)
         if value is None:
             volume = data.result.summary["volume"]
             left = volume["lost"] > travel_shares.BEYOND * volume["released"]
@@ -187,7 +186,7 @@ def travel_card(data, numbers):
     note = ("in plan from the highest released ball, reach angle "
             f"{numbers.quantity(REACH, angle, name)} degrees")
     if length is not None:
-        kind = row.get("length_is") or ON_PATH      # none in older files
+        kind = row.length_is or ON_PATH      # none in older files
         note += f"; {numbers(f'length, {kind}', unit, length, name)} m {kind}"
     return {"what": what, "number": numbers.quantity(key, value, name), "unit": unit,
             "note": note + farthest + (f". Run: {name}" if name and data.study else "")}
@@ -215,18 +214,17 @@ def thickness_card(data, numbers):
 
 def rest_card(data):
     ends = data.ends()
-    resting = [end for end in ends if end["at_rest"]]
-    worst = next((end for level in (True, False) for end in ends if not end["at_rest"] and end["moving"] == level),
-                 None)
-    status = "rest" if worst is None else "moving" if worst["moving"] else "doubt"
+    resting = [end for end in ends if end.at_rest]
+    worst = next((end for level in (True, False) for end in ends if not end.at_rest and end.moving == level), None)
+    status = "rest" if worst is None else "moving" if worst.moving else "doubt"
     if data.study:
-        note = f"{data.label_of(worst)}: {worst['end']}, at {worst['stop_time_s']:.1f} s" if worst else \
+        note = f"{data.label_of(worst)}: {worst.end}, at {worst.stop_time_s:.1f} s" if worst else \
             "ended by their rest criterion, at most " \
-            f"{measured(max(end['moves_share'] for end in ends))} of the volume faster than {rest.FAST:g} m/s"
+            f"{measured(max(end.moves_share for end in ends))} of the volume faster than {rest.FAST:g} m/s"
         return {"what": "At rest at the end", "number": f"{len(resting)} of {len(ends)}", "unit": "runs", "note": note,
                 "status": status}
-    return {"what": "At the end of the run", "number": f"{ends[0]['stop_time_s']:.1f}", "unit": "s", "status": status,
-            "note": ends[0]["end"] + (", ended by its rest criterion" if worst is None else "")}
+    return {"what": "At the end of the run", "number": f"{ends[0].stop_time_s:.1f}", "unit": "s", "status": status,
+            "note": ends[0].end + (", ended by its rest criterion" if worst is None else "")}
 
 
 # --- on which runs the number rests, and which of them the map shows ---
@@ -301,9 +299,9 @@ def shown_run(data) -> str:
     if not data.study:
         return ""
     one, row = data.result, data.result.row
-    number, of = data.number(one.name), values_of(data, row["set"])
+    number, of = data.number(one.name), values_of(data, row.set)
     rests = (data.study.get("headline") or {}).get("volume_m3") and is_own(data) and \
-        one.name == run_folders.governing(data.study, named_run.farthest)
+        one.name == named_run.governing(data.study)
     text = f"The run on which the number rests, {number} of the appendix" if rests else f"Run {number} of the appendix"
     return f" {text}{of and f': {of}'}."
 

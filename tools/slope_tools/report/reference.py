@@ -70,7 +70,7 @@ def table(key, one, data, numbers):
     rows = [[name, *(f"{dict(points)[x]:,.6g}" if x in dict(points) else "-" for x in xs)]
             for name, points in one.series.items()]
     rows += [[name, Cell(f"{value:,.6g}", span=len(xs) or 1)] for name, value in one.levels.items()]
-    low, high = (numbers(what, unit, pick(row[key] for row in data.compared)) for pick in (min, max))
+    low, high = (numbers(what, unit, pick(row.value(key) for row in data.compared)) for pick in (min, max))
     return Table(f"{what} ({unit}){f' against {one.variable}' if one.variable else ''}; of "
                  f"{'these runs' if data.study else 'this run'}: {low if low == high else f'{low} to {high}'}",
                  [one.variable, *(f"{x:g}" for x in xs)] if xs else [], rows, style="keep")

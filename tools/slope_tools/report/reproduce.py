@@ -38,8 +38,8 @@ def runs_of(data) -> Iterable[Run]:
         yield data.result.name, data.result.folder, data.result.about, data.result.marker
         return
     for row in data.finished:
-        folder = run_folders.summary_of(data.folder, row).parent
-        yield (f"run {data.number(row['run'])}, {data.label_of(row)}", folder, run_folders.begun(folder),
+        folder = run_folders.summary_of(data.folder, row.summary).parent
+        yield (f"run {data.number(row.run)}, {data.label_of(row)}", folder, run_folders.begun(folder),
                run_folders.ended(folder))
 
 
@@ -102,7 +102,7 @@ def checksums(data, runs: List[Run]) -> List[str]:
         for name, digest in (marker.get("inputs") or {}).items():
             found.setdefault((Path(name).name, digest), folder / name)
     files = [data.folder / name for name in RESULTS if (data.folder / name).is_file()]
-    files += [run_folders.summary_of(data.folder, row) for row in data.finished] or [data.result.path]
+    files += [run_folders.summary_of(data.folder, row.summary) for row in data.finished] or [data.result.path]
     return [f"{digest}  {relative(path, data.folder)}" for (_, digest), path in found.items()] + [
         f"{disk.sha256(path)}  {relative(path, data.folder)}" for path in files]
 

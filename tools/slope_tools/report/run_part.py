@@ -26,7 +26,7 @@ def balance(data, numbers):
     """The section on the volume balance, the travel and the end of the shown run."""
     one, summary = data.result, data.result.summary
     volume, balls, stop = summary["volume"], summary["balls"], summary["stop"]
-    release = next((release for row, release in data.releases() if row["run"] in ("", one.name)), None)
+    release = next((release for row, release in data.releases() if row.run in ("", one.name)), None)
     error = (one.deposit.volume - volume["released"] + volume["off_grid"] + volume["lost"]) / volume["released"]
     volumes = [("released (A)", f"{volume['released']:,.1f} m3"),
                ("on the grid of the maps (B)", f"{volume['on_grid']:,.1f} m3"),
@@ -98,7 +98,7 @@ def deck_of(data):
 def what_was_run(data):
     """The section of the deck, its variables, and what the log says of the model."""
     one, (name, deck) = data.result, deck_of(data)
-    variables = data.study and one.row.get("variables") or one.about.get("variables") or deck_variables(find_deck(one))
+    variables = one.row.variables or deck_variables(find_deck(one))
     blocks: List[Any] = []
     for title, lines, style in (
             ("Contact coefficients, as the pair style printed them at the start", one.log.table, "keep"),
@@ -129,7 +129,7 @@ def origin(data, made):
     """The section of programs, machines and checksums; made: when the report was."""
     one = data.result
     summary, about, marker = one.summary, one.about, one.marker
-    packages = sorted({str(row.get("package")) for row in data.finished}) if data.study else []
+    packages = sorted({str(row.package) for row in data.finished}) if data.study else []
     several = len(packages) > 1
     started, wall = utc(about.get("started")), marker.get("wall_seconds")
     inputs = (marker.get("inputs") or {}) if find_deck(one) else {}

@@ -89,7 +89,7 @@ class Structures:
     def table(self, what, more=""):
         """Over the runs; None where no run has any."""
         rows, study = [], self.data.study
-        each = [(self.data.number(row["run"]), self.data.label_of(row), row.get(what) or {})
+        each = [(self.data.number(row.run), self.data.label_of(row), row.value(what))
                 for row in self.data.finished] or [
             ("", "", structures.of_run(self.data.result.folder, self.data.result.log.settings)[what])]
         for number, label, found in each:

@@ -1,6 +1,7 @@
 """What a report shows of a study: the table of its runs, means, differences, charts, and the maps over all runs."""
 from ..tables import elastic, quantities
 from ..tables.quantities import LENGTH, REMOVE, On
+from ..tables.rows import Failed, Finished
 from .charts import TERMS, Charts, differences
 from .sections import Cell, Figures, Listing, Section, Table, Text
 
@@ -24,8 +25,8 @@ def section(data, numbers, reference, maps):
         study.most_elastic(),
         Figures(drawn[:first], "two-thirds") if first and drawn else None,
         Figures(drawn[first:], "columns"),
-        Figures([maps.removal(numbers.quantity(REMOVE, one.row[REMOVE], data.label(one)) if REMOVE in one.row else "")],
-                "tall"),
+        Figures([maps.removal(numbers.quantity(REMOVE, one.row.value(REMOVE), data.label(one)) if one.row.road
+                              else "")], "tall"),
         Figures([over_all["runs"]]), Figures([over_all["envelope"], *over_all["exceedance"]], "columns")])
 
 
@@ -42,28 +43,28 @@ class Runs:
         names = self.varied or list(data.settings)
         rows, marks = [], []
         for row in self.in_table():
-            cells = [data.number(row["run"]), *(row["set"][key] for key in names)]
+            cells = [data.number(row.run), *(row.set[key] for key in names)]
             if data.repeats:
-                repeat = (row.get("repeat") or {}).items()
-                cells.append(", ".join(f"{name} {value}" for name, value in repeat) or "base")
-            finished = row["status"] == "finished"
-            if finished:
+                cells.append(", ".join(f"{name} {value}" for name, value in row.repeat.items()) or "base")
+            mark = ["bad"]
+            if isinstance(row, Finished):
                 name = data.label_of(row)
-                cells += [self.numbers.quantity(one.key, row.get(one.key), name, "-") for one in columns]
-                cells.append(Cell(row.get("end_short", row["end"]), style="" if row["at_rest"] else "doubt"))
+                cells += [self.numbers.quantity(one.key, row.value(one.key), name, "-") for one in columns]
+                cells.append(Cell(row.end_short, style="" if row.at_rest else "doubt"))
+                mark = ["bad"] * row.moving + ["best"] * (bool(best) and row.set == best["set"])
             else:
-                cells.append(Cell(f"failed: {row.get('error')}", style="left", span=len(columns) + 1))
+                cells.append(Cell(f"failed: {row.error}", style="left", span=len(columns) + 1))
             rows.append(cells)
-            marks.append(" ".join(["bad"] * (not finished or row["moving"])
-                                  + ["best"] * (bool(best) and finished and row["set"] == best.get("set"))))
+            marks.append(" ".join(mark))
         heads = ["run", *names, *(["repeat"] if data.repeats else []), *map(self.head, columns), "end"]
         return Table(" ".join(filter(None, [self.which_rows() + VOLUMES, self.beyond()])), heads, rows, (), marks)
 
     def columns(self):
         """Quantities of the study's table, without those that have no value."""
         data = self.data
-        same = len({round(row["released_m3"], 3) for row in data.finished}) == 1
-        return [one for one in quantities.shown_on("page") if any(row.get(one.key) is not None for row in data.finished)
+        same = len({round(row.released_m3, 3) for row in data.finished}) == 1
+        return [one for one in quantities.shown_on("page")
+                if any(row.value(one.key) is not None for row in data.finished)
                 and not (same and one.key == "released_m3")]
 
     def head(self, one):
@@ -74,7 +75,7 @@ class Runs:
         """The note on the volume beyond the road; "" without a road."""
         if self.data.road is None:
             return ""
-        if any(row.get("beyond_road_m3") is not None for row in self.data.finished):
+        if any(row.value("beyond_road_m3") is not None for row in self.data.finished):
             return ("Beyond it: all of the mass on the far side of the road, whose ends are prolonged to the edge of "
                     "the terrain, and what left the terrain there. What is cut there is counted in \"to remove\" too: "
                     "the two overlap and cannot be added.")
@@ -96,8 +97,9 @@ class Runs:
         if len(rows) <= MOST_ROWS:
             return rows
         key = self.counts().key
-        known = sorted((row for row in self.data.finished if row.get(key) is not None), key=lambda row: row[key])
-        return [*known[:ENDS], *known[-ENDS:], *[row for row in rows if row["status"] != "finished"][:ENDS]]
+        known = sorted((row for row in self.data.finished if row.value(key) is not None),
+                       key=lambda row: row.value(key))
+        return [*known[:ENDS], *known[-ENDS:], *[row for row in rows if isinstance(row, Failed)][:ENDS]]
 
     def counts(self):
         """The column by which the runs of a long table are chosen."""

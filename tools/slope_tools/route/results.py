@@ -7,7 +7,7 @@ from rasterio.features import shapes
 from shapely.geometry import LineString, shape
 from shapely.ops import unary_union
 
-from .. import disk, provenance, schemas
+from .. import disk, provenance
 from ..case import run_folders
 from ..deposits.axis import SAME, Axis, Span, merged
 from ..errors import SlopeError
@@ -16,7 +16,8 @@ from ..seismic import fragility_files
 from ..survey import geopackage, rasters
 from ..survey.geopackage import Layer
 from ..tables import road_runs
-from ..tables.study_file import WHAT, read_study
+from ..tables.rows import Finished, finished_of
+from ..tables.study_file import read_study
 from . import reached, runs, search
 from .choices import Choices
 from .corridor import Corridor
@@ -26,9 +27,6 @@ from .yearly import Yearly
 RESULTS, MAP, LAYERS = "results.yaml", "governing.tif", "route.gpkg"
 STRETCHES, BODIES, PIECES = "stretches.csv", "bodies.csv", "pieces.csv"
 FILES = (RESULTS, MAP, LAYERS, STRETCHES, BODIES, PIECES)
-BLOCKED = schemas.mapping({      # of a run beside a road
-    "stretches": schemas.listed(schemas.mapping(schemas.numbers("from", "to", "passable_width"))),
-    "clearing": schemas.mapping(schemas.numbers("road_width", "blocked_length")), "remove_on_road_m3": schemas.NUMBER})
 NUMBERS = ("length", "passable_width", *road_runs.SUMS)
 
 
@@ -37,7 +35,7 @@ class BodyRuns(NamedTuple):
     about: Mapping[str, Any]
     runs: List[road_runs.Run]
     source: Source
-    rows: List[Mapping[str, Any]]
+    rows: List[Finished]
 
     @property
     def number(self) -> int:
@@ -54,14 +52,13 @@ def read_body(folder: Path, about: Mapping[str, Any]) -> BodyRuns:
     place = runs.folder_of(folder, about["body"])
     output = place / runs.STUDY
     # runs that `slope study bodies/N` added under a condition do not count as those of the sample
-    rows = [row for row in read_study(output / "study.yaml")["runs"] if not row.get("batch")]
-    done = [row for row in rows if row["status"] == "finished"]
-    for row in done:
-        schemas.check(row, BLOCKED, f"{output / 'study.yaml'}: run {row['run']}", WHAT)
-    prefixes = [run_folders.prefix_of(run_folders.summary_of(output, row)) for row in done]
+    rows = [row for row in read_study(output / "study.yaml")["runs"] if not row.batch]
+    done = finished_of(rows)
+    prefixes = [run_folders.prefix_of(run_folders.summary_of(output, row.summary)) for row in done]
     source = Source(about["body"], prefixes, np.full(len(done), 1 / len(done)), len(rows) - len(done),
                     rasters.read_place(place / "terrain.asc").offset)
-    return BodyRuns(about, [road_runs.Run(1.0, row["stretches"], row["clearing"]) for row in done], source, done)
+    return BodyRuns(about, [road_runs.Run(1.0, row.at_road.stretches, row.at_road.clearing) for row in done], source,
+                    done)
 
 
 def yearly_of(choices: Choices, folder: Path, bodies: Sequence[Mapping[str, Any]]) -> Optional[Yearly]:
@@ -163,7 +160,7 @@ def of_body(one: BodyRuns, yearly: Optional[Yearly]) -> Dict[str, Any]:
     """A row of the table by body."""
     share = one.share()
     low, high = one.source.bounds(share)
-    on_road = np.array([row["remove_on_road_m3"] for row in one.rows])
+    on_road = np.array([row.at_road.remove_on_road_m3 for row in one.rows])
     per_year = yearly and {"fails": yearly.of([one.number], [1.0]).counts,
                            "blocks": yearly.of([one.number], [share]).counts}
     keys = ("body", "name", "chainage_m", "x", "y", "factor", "volume_m3", "area_m2", "depth_m", "known_share",

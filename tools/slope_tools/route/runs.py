@@ -21,6 +21,7 @@ from ..statistics import designs
 from ..studies import results, site_study, study
 from ..studies.setup import Road, Setup
 from ..survey import polygons, rasters
+from ..tables.rows import finished_of
 from ..tables.study_file import read_study
 from .choices import Choices
 from .corridor import TERRAIN
@@ -139,7 +140,7 @@ def is_collected(one: Asked, new) -> bool:
     assert one.setup.road
     if any(road.get(key) != value for key, value in one.setup.road.about().items()):
         return False
-    return [row["run"] for row in about["runs"] if row["status"] == "finished"] == [run.name for run in one.todo]
+    return [row.run for row in finished_of(about["runs"])] == [run.name for run in one.todo]
 
 
 def listed(several: Sequence[Asked]):

@@ -18,8 +18,9 @@ from ..deposits import deposit
 from ..errors import SlopeError
 from ..survey.geopackage import Layer
 from ..survey.rasters import Raster, crs_name
-from ..tables import named_run
-from ..tables.study_file import Study
+from ..tables import answered, named_run
+from ..tables.rows import Failed, finished_of
+from ..tables.study_file import read_study
 from . import choices, corridor, reached, results, search
 from .reached import Source
 from .yearly import Yearly
@@ -85,20 +86,21 @@ def ground_of(name: str, warn) -> Ground:
         return Ground(corridor.read(asked, folder).raster,
                       [results.read_body(folder, about).source for about in table["bodies"]],
                       results.yearly_of(asked, folder, table["bodies"]))
-    if not (named_run.study_in(folder) or (folder / "site.yaml").is_file()):
+    study = answered.study_in(folder)
+    if study is None and not (folder / "site.yaml").is_file():
         run = deposit.read(named_run.read(name).prefix, None, warn)
         return Ground(run.raster, [Source(1, [Path(run.prefix)], np.ones(1), 0, run.raster.offset)], None)
-    study = Study.read(folder)
-    known = ((study.about.get("ensemble") or {}).get("known_events") or {}).get("weights")
-    rows = [row for row in study.about["runs"] if row["status"] == "finished" and (
-        row["run"] in known if known else not row.get("batch"))]
+    study = study or folder
+    about = read_study(study / answered.STUDY)
+    known = ((about["ensemble"] or {}).get("known_events") or {}).get("weights")
+    rows = [row for row in finished_of(about["runs"]) if (row.run in known if known else not row.batch)]
     if not rows:
-        raise SlopeError(study.folder, "must have finished runs that are counted alike, or have weights")
-    prefixes = [run_folders.prefix_of(run_folders.summary_of(study.folder, row)) for row in rows]
-    weights = np.array([known[row["run"]] if known else 1.0 for row in rows])
+        raise SlopeError(study, "must have finished runs that are counted alike, or have weights")
+    prefixes = [run_folders.prefix_of(run_folders.summary_of(study, row.summary)) for row in rows]
+    weights = np.array([known[row.run] if known else 1.0 for row in rows])
     run = deposit.read(str(prefixes[0]), None, warn)
-    failed = sum(row["status"] != "finished" and bool(known or not row.get("batch")) for row in study.about["runs"])
-    effect = 1.0 if known else len(rows) / len({str(row["set"]) for row in rows})
+    failed = sum(isinstance(row, Failed) and bool(known or not row.batch) for row in about["runs"])
+    effect = 1.0 if known else len(rows) / len({str(row.set) for row in rows})
     return Ground(run.raster, [Source(1, prefixes, weights / weights.sum(), failed, run.raster.offset, effect)], None)
 
 

@@ -46,7 +46,7 @@ def one(folder: Path, name: str) -> One:
     if study is None or outdated.changed(folder, study):
         return One(name, site, variables, None, None)
     about = read_study(study / named_run.STUDY)
-    inside = run_folders.summaries(run_folders.governing_run(study / named_run.STUDY, named_run.farthest)[1])
+    inside = run_folders.summaries(named_run.governing_run(study)[1])
     if len(inside) != 1:
         raise SlopeError(study, "must hold the governing run of the study, with its summary")
     return One(name, site, variables, about, run_folders.prefix_of(inside[0]))

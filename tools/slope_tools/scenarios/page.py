@@ -20,6 +20,7 @@ from ..statistics.answer import Kind
 from ..studies import road_numbers
 from ..survey import rasters, roads
 from ..survey.rasters import Raster, crs_name
+from ..tables.rows import finished_of
 from .compare import One, choices_that_differ, differences, read
 
 PAGE = "scenarios.html"
@@ -96,10 +97,10 @@ def numbers(one: One) -> List[str]:
     released = digits.rounded(body["volume"], 4) if body else "-"
     if one.about is None:
         return [released, "-", "-", "-", "not studied as it is"]
-    finished = [row for row in one.about["runs"] if row["status"] == "finished"]
+    finished = finished_of(one.about["runs"])
     far = (one.about["largest"].get(travel_shares.DISTANCE) or {}).get("value")
     worst = "".join(f", {one.road}" for one in road_numbers.read(one.about)[:1])
-    lengths = [row["length_m"] for row in finished if row.get("length_m") is not None]
+    lengths = [row.length_m for row in finished if row.length_m is not None]
     return [released, "unknown" if far is None else digits.three(far), digits.three(max(lengths)) if lengths else "-",
             to_remove(one.about.get("headline")) + worst, f"{len(finished)} of {len(one.about['runs'])}"]
 

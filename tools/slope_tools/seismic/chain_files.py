@@ -16,6 +16,7 @@ from ..sites.site_bodies import VARIABLE
 from ..statistics import hazard
 from ..statistics.size_effect import Effect
 from ..tables import fine_run, intensity
+from ..tables.rows import Row, finished_of
 from . import chain
 from .fragility_files import Fragility
 
@@ -67,7 +68,7 @@ def options(asked: Chain) -> Tuple[List[str], List[str]]:
 
 # --- after them ---
 
-def left(asked: Chain, rows: Sequence[Mapping[str, Any]], effect: Optional[Effect] = None) -> List[chain.Left]:
+def left(asked: Chain, rows: Sequence[Row], effect: Optional[Effect] = None) -> List[chain.Left]:
     """What each body leaves on the road; of those that never fail nothing.
 
     effect: of smaller balls on it, by which each run is raised, up to the whole body.
@@ -80,11 +81,11 @@ def left(asked: Chain, rows: Sequence[Mapping[str, Any]], effect: Optional[Effec
         if name not in asked.weights:
             found.append(chain.left([0.0], [0], 0.0))
             continue
-        mine = [row for row in rows if row["set"][VARIABLE] == name]
-        done = [row for row in mine if row["status"] == "finished"]
-        point = [tuple(row["set"].values()) for row in done]
+        mine = [row for row in rows if row.set[VARIABLE] == name]
+        done = finished_of(mine)
+        point = [tuple(row.set.values()) for row in done]
         known = {one: k for k, one in enumerate(dict.fromkeys(point))}
-        found.append(chain.left([raised(float(row[QUANTITY]), asked.volumes[name]) for row in done],
+        found.append(chain.left([raised(row.at_road.remove_on_road_m3, asked.volumes[name]) for row in done],
                                 [known[one] for one in point],
                                 asked.volumes[name], len(mine) - len(done)))
     return found
@@ -96,12 +97,12 @@ class Evaluated(NamedTuple):
     tables: Dict[str, str]
 
 
-def evaluate(asked: Chain, rows: Sequence[Mapping[str, Any]], withheld: Sequence[Mapping[str, Any]],
+def evaluate(asked: Chain, rows: Sequence[Row], withheld: Sequence[Mapping[str, Any]],
              size: Optional[Mapping[str, Any]] = None) -> Evaluated:
     """What the runs say; rows: of study.csv; withheld: why their volumes may not be used; size: of the fine run."""
     effect = fine_run.read_effect(size, QUANTITY)
     found, bodies = asked.fragility, left(asked, rows, effect)
-    seen = [float(row[QUANTITY]) for row in rows if row["status"] == "finished"]
+    seen = [row.at_road.remove_on_road_m3 for row in finished_of(rows)]
     more_than = list(asked.more_than) or intensity.round_volumes(max(seen)) or [0.0]
     largest = sum(float(one.value.volumes[1:].max(initial=0.0)) for one in bodies)
     volumes = np.unique([*np.linspace(0.0, max(largest, 1.0), LEVELS), *more_than])
@@ -135,11 +136,11 @@ def write(found: Evaluated, output: Path) -> None:
         disk.write(output / name, text)
 
 
-def of_body(asked: Chain, name: str, rows: Sequence[Mapping[str, Any]]) -> Dict[str, Any]:
+def of_body(asked: Chain, name: str, rows: Sequence[Row]) -> Dict[str, Any]:
     """What study.yaml says of a body."""
-    mine = [row["status"] for row in rows if row["set"][VARIABLE] == name]
+    mine = [row for row in rows if row.set[VARIABLE] == name]
     return {"body": name, "weight": asked.weights.get(name, 0.0), "volume_m3": asked.volumes.get(name),
-            "runs": len(mine), "finished": mine.count("finished")}
+            "runs": len(mine), "finished": len(finished_of(mine))}
 
 
 def of_year(yearly: chain.Frequency, volume: float, k: int) -> Dict[str, Any]:

@@ -1,6 +1,6 @@
 """How thick the body of a run is on average: the one measure by which balls over the thickness are counted."""
 import math
-from typing import Any, Mapping, Optional, Sequence
+from typing import Optional, Sequence
 
 import numpy as np
 
@@ -9,10 +9,11 @@ from ..case.settings import as_number
 from ..sites import site_choices, site_deck
 from ..sites.site_bodies import VARIABLE
 from ..tables import fine_run
+from ..tables.rows import Finished
 from .setup import Setup
 
 
-def mean(setup: Setup, row) -> Optional[float]:
+def mean(setup: Setup, row: Finished) -> Optional[float]:
     """Mean thickness (m) of the body of a run, its volume over its area in plan; None where no raster shows it.
 
     That of a site as `slope site` found it, of another deck what the rasters of the run show; of several runs the one
@@ -22,30 +23,31 @@ def mean(setup: Setup, row) -> Optional[float]:
     if setup.deck.name == site_deck.NAME and (site / site_choices.NAME).is_file():
         found = site_choices.found(site)
         several = {str(rank): one for rank, one in (found.get("bodies") or {}).items()}
-        mine = several.get(str(row["variables"].get(VARIABLE)), {}).get("mean_depth_m")
+        mine = several.get(str(row.variables.get(VARIABLE)), {}).get("mean_depth_m")
         known = mine if several else (found.get("body") or {}).get("mean_depth")
         if known:       # sites of older versions have none of several bodies
             return float(known)
     return by_rasters(setup, row)
 
 
-def in_balls(setup: Setup, finished: Sequence[Mapping[str, Any]]) -> Optional[float]:
+def in_balls(setup: Setup, finished: Sequence[Finished]) -> Optional[float]:
     """Balls over it, the fewest of some runs; None where no variable of the deck is their diameter."""
-    sizes = [as_number((row["variables"] or {}).get(fine_run.VARIABLE, "")) for row in finished]
+    sizes = [as_number(row.variables.get(fine_run.VARIABLE, "")) for row in finished]
     if not finished or not all(isinstance(d, float) and d > 0 for d in sizes):
         return None
     depth = mean(setup, finished[sizes.index(min(sizes))])
     return depth and depth / max(sizes)
 
 
-def by_rasters(setup: Setup, row) -> Optional[float]:
+def by_rasters(setup: Setup, row: Finished) -> Optional[float]:
     """Of the cells that balls begin in, whose middles lie half a ball within the rim."""
     from scipy.ndimage import binary_dilation
-    arrival = run_folders.load_raster(run_folders.prefix_of(run_folders.summary_of(setup.output, row)), "arrival")
-    body = body_of(arrival.z == 0, arrival, row["ball_m3"])
-    rim = round(row["ball_m3"] ** (1 / 3) / arrival.transform.a / 2)
+    arrival = run_folders.load_raster(run_folders.prefix_of(run_folders.summary_of(setup.output, row.summary)),
+                                      "arrival")
+    body = body_of(arrival.z == 0, arrival, row.ball_m3)
+    rim = round(row.ball_m3 ** (1 / 3) / arrival.transform.a / 2)
     cells = (binary_dilation(np.pad(body, rim), iterations=rim) if rim else body).sum()
-    return row["released_m3"] / (float(cells) * arrival.transform.a ** 2) if cells else None
+    return row.released_m3 / (float(cells) * arrival.transform.a ** 2) if cells else None
 
 
 def body_of(released, raster, ball_m3):

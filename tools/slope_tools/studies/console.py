@@ -21,7 +21,7 @@ def tell(outcome: Outcome, about: Mapping[str, Any], output: Path, say: Callable
             "more is")
     for table in structures.shown(finished):
         say(table)
-    files = [str(output / name) for what, name in structures.FILES.items() if any(row.get(what) for row in finished)]
+    files = [str(output / name) for what, name in structures.FILES.items() if any(row.value(what) for row in finished)]
     if files:
         say(f"{', '.join(files)}: of each run")
     for one in outcome.warnings:

@@ -1,11 +1,12 @@
 """Making the runs that an ensemble adds towards longer ones (farther), batch by batch."""
-from typing import Any, Dict, List, Mapping, Sequence
+from typing import Dict, List, Mapping, Sequence
 
 from ..case import run_folders
 from ..ensembles import farther, known_events
 from ..ensembles.ensemble import Order
 from ..runs import jobs, repeats
-from . import results
+from ..tables.rows import Row, finished_of
+from . import run_rows
 from .setup import Setup
 
 
@@ -20,10 +21,10 @@ def make(setup: Setup, order: Order, fixed: Mapping[str, str], chances: Sequence
     for k in range(len(added.batches)):
         rows += batch(setup, order, fixed, chances, todo, work, k, beside)
     while True:
-        finished = [row for row in rows if row["status"] == "finished"]
+        finished = finished_of(rows)
         if not finished:
             return
-        summary = run_folders.summary_of(setup.output, finished[0])
+        summary = run_folders.summary_of(setup.output, finished[0].summary)
         found = known_events.mobility_of(order.condition, summary.parent, summary)
         runs = known_events.Runs(order.sample, added.batches, rows, found)
         if found.outside or len(runs.rows) < 2:
@@ -39,7 +40,7 @@ def make(setup: Setup, order: Order, fixed: Mapping[str, str], chances: Sequence
 
 def batch(setup: Setup, order: Order, fixed: Mapping[str, str], chances: Sequence[Dict[str, str]],
           todo: List[repeats.Repeat], work: jobs.Work, k: int,
-          beside: Sequence[repeats.Repeat] = ()) -> List[Dict[str, Any]]:
+          beside: Sequence[repeats.Repeat] = ()) -> List[Row]:
     """Make the runs of a batch and add them to todo; their rows."""
     assert order.added
     more = repeats.with_repeats(setup.runs, [{**fixed, **one} for one in order.added.batches[k].points], chances,
@@ -52,6 +53,6 @@ def batch(setup: Setup, order: Order, fixed: Mapping[str, str], chances: Sequenc
     return rows_of(setup, more)
 
 
-def rows_of(setup: Setup, todo: Sequence[repeats.Repeat]) -> List[Dict[str, Any]]:
+def rows_of(setup: Setup, todo: Sequence[repeats.Repeat]) -> List[Row]:
     """The runs' rows of study.csv, without the road."""
-    return results.rows_of(setup._replace(road=None), todo)
+    return run_rows.rows_of(setup._replace(road=None), todo)

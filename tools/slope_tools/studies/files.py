@@ -5,7 +5,7 @@ from typing import Any, Dict, Mapping, Optional
 from .. import disk
 from ..ensembles import ensemble
 from ..seismic import chain_files
-from ..tables import answered, combinations, elastic, intensity, road_runs, structures, study_table
+from ..tables import answered, combinations, elastic, intensity, road_runs, structures, study_file, study_table
 from ..tables.study_maps import Maps
 from .outcome import Outcome
 
@@ -45,4 +45,4 @@ def write_or_remove(path: Path, text: Optional[str]) -> None:
 
 def write_about(output: Path, about: Mapping[str, Any]) -> None:
     """study.yaml."""
-    disk.write(output / "study.yaml", disk.yaml_text(answered.TITLE, about))
+    disk.write(output / answered.STUDY, disk.yaml_text(answered.TITLE, study_file.plain(about)))

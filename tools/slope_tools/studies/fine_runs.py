@@ -10,7 +10,8 @@ from ..errors import SlopeError
 from ..runs import repeats
 from ..runs.repeats import Repeat
 from ..tables.fine_run import VARIABLE
-from . import results
+from ..tables.rows import finished_of
+from .run_rows import rows_of
 from .setup import Setup
 
 OPTION = "--fine"
@@ -43,8 +44,8 @@ def of_median_length(setup: Setup, factor: Any, todo: Sequence[Repeat], defaults
     if factor in NONE:
         return []
     first = [one for one in todo if not one.batch and not one.repeat and not one.error]
-    rows = results.rows_of(setup._replace(road=None), first)
-    lengths = {row["run"]: row["length_m"] for row in rows if row.get("length_m") is not None}
+    rows = finished_of(rows_of(setup._replace(road=None), first))
+    lengths = {row.run: row.length_m for row in rows if row.length_m is not None}
     if not lengths:
         return []
     median = statistics.median(lengths.values())

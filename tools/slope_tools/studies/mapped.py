@@ -4,8 +4,9 @@ The length of the mapped deposit is that of a run, along the fall path to its fa
 farthest corner.
 """
 import os
+from dataclasses import replace
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, Optional, Sequence
+from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from ..mobility import run_length
 from ..sites.site_folder import TERRAIN
 from ..sites.site_layers import OBSERVED
 from ..survey import rasters
-from ..tables.quantities import BEYOND_MAPPED as BEYOND, OVERLAP
+from ..tables.rows import Failed, Finished, Mapped, Row, finished_of
 
 SAME_MASS = 0.1         # of the released volume: a mapped deposit that holds so much less or more is not the same mass
 
@@ -34,34 +35,42 @@ def check(site: Path) -> None:
         score.read_observed(path, rasters.read_asc_local(site / TERRAIN), score.THRESHOLD, False)
 
 
-def compare(path: Optional[Path], output: Path, rows: Sequence[Dict[str, Any]],
-            terrains: Sequence[Optional[Path]]) -> Optional[Dict[str, Any]]:
-    """What study.yaml says of a mapped deposit, None without one; each finished row gets the columns of its run.
+def compare(path: Optional[Path], output: Path, rows: Sequence[Row],
+            terrains: Sequence[Optional[Path]]) -> Tuple[List[Row], Optional[Dict[str, Any]]]:
+    """The rows with what finished runs have of a mapped deposit, and what study.yaml says of it; None without one.
 
     output: the study's folder; terrains: of the runs of the rows.
     """
     if path is None:
-        return None
+        return list(rows), None
     about: Dict[str, Any] = {}
+    found: List[Row] = []
     for row, terrain in zip(rows, terrains):
-        if row["status"] != "finished":
+        if isinstance(row, Failed):
+            found.append(row)
             continue
-        run_ = deposit.read(run_folders.prefix_of(run_folders.summary_of(output, row)), terrain, lambda text: None)
+        prefix = run_folders.prefix_of(run_folders.summary_of(output, row.summary))
+        run_ = deposit.read(prefix, terrain, lambda text: None)
         observed = score.read_observed(path, run_.raster, score.THRESHOLD, False)
         length = length_of(run_, terrain, observed)
         area = score.overlap(run_.raster.z > score.THRESHOLD, observed, run_.cell)
-        row[OVERLAP] = area["jaccard"]
-        row[BEYOND] = None if length is None or row.get("length_m") is None else row["length_m"] - length
+        beyond = None if length is None or row.length_m is None else row.length_m - length
+        found.append(row if area["jaccard"] is None else replace(row, mapped=Mapped(area["jaccard"], beyond)))
         volume = None if observed.thickness is None else \
             float(observed.thickness.sum()) * run_.cell ** 2 + observed.volume_outside
         about = about or {"file": os.path.relpath(path.resolve(), output.resolve()), "threshold_m": score.THRESHOLD,
                           "length_m": length, "area_m2": area["observed"], "volume_m3": volume,
-                          "released_m3": row["released_m3"]}
-    found = [row for row in rows if row.get(OVERLAP) is not None]
-    if not found:
-        return None
-    about["best"] = max(found, key=lambda row: row[OVERLAP])["run"]
-    return about
+                          "released_m3": row.released_m3}
+    compared = of_rows(found)
+    if not compared:
+        return found, None
+    about["best"] = max(compared, key=lambda one: one[1].overlap)[0].run
+    return found, about
+
+
+def of_rows(rows: Iterable[Row]) -> List[Tuple[Finished, Mapped]]:
+    """The runs that are compared with a mapped deposit, and how they do."""
+    return [(row, row.mapped) for row in finished_of(rows) if row.mapped]
 
 
 def length_of(run_: deposit.Deposit, terrain: Optional[Path], observed: score.Observed) -> Optional[float]:
@@ -74,15 +83,15 @@ def length_of(run_: deposit.Deposit, terrain: Optional[Path], observed: score.Ob
     return float(run_length.lengths_of(points, path, run_)[0].max()) if len(points) else None
 
 
-def describe(about: Mapping[str, Any], rows: Sequence[Mapping[str, Any]]) -> List[str]:
+def describe(about: Mapping[str, Any], rows: Sequence[Row]) -> List[str]:
     """The comparison on the console, a line each."""
-    found = [row for row in rows if row.get(OVERLAP) is not None]
-    best = next(row for row in found if row["run"] == about["best"])
-    low, high = min(row[OVERLAP] for row in found), best[OVERLAP]
+    found = of_rows(rows)
+    best, mine = next((row, one) for row, one in found if row.run == about["best"])
+    low, high = min(one.overlap for _, one in found), mine.overlap
     text = f"mapped deposit: overlap (Jaccard) {low:.2f} to {high:.2f}" if len(found) > 1 else \
         f"mapped deposit: overlap (Jaccard) {high:.2f}"
-    if best[BEYOND] is not None:
-        text += f", best of {best['run']}, {best[BEYOND]:+,.0f} m in run-out ({about['length_m']:,.0f} m mapped)"
+    if mine.beyond_mapped_m is not None:
+        text += f", best of {best.run}, {mine.beyond_mapped_m:+,.0f} m in run-out ({about['length_m']:,.0f} m mapped)"
     lacks = mass(about["volume_m3"], about["released_m3"])
     return [text, *([lacks.text] if lacks else [])]
 

@@ -14,10 +14,9 @@ from ..runs import repeats
 from ..runs.repeats import Repeat
 from ..seismic import chain_files
 from ..statistics.headline import Scatter
+from ..tables.rows import Finished, Row, finished_of
 from ..tables import (answered, combinations, elastic, fine_run, intensity, judged, quantities, road_runs,
                       step_check, usable, withheld_words)
-
-Row = Dict[str, Any]
 
 LIKE = 1.5              # times as many balls over the thickness: values found with fewer, or more, are of another model
 
@@ -69,8 +68,8 @@ class Read(NamedTuple):
     defaults: Mapping[str, str]
 
     @property
-    def finished(self) -> List[Row]:
-        return [row for row in self.rows if row["status"] == "finished"]
+    def finished(self) -> List[Finished]:
+        return finished_of(self.rows)
 
 
 @dataclass(frozen=True)
@@ -97,7 +96,7 @@ def evaluate(questions: Questions, read: Read) -> Outcome:
     warnings = warnings_of(questions, read)
     about: Dict[str, Any] = {
         "largest": {key: largest(finished, key) for key in keys if finished},
-        "farthest": travel_shares.farthest(finished)["run"] if finished else None,
+        "farthest": travel_shares.farthest(finished).run if finished else None,
         "conservative": None, "size": None, "ensemble": None, "step": None,
         elastic.ENTRY: elastic.evaluate(read.elastic) if read.elastic else None,
         "scatter": {name: known and {"deviation": known.deviation, "degrees_of_freedom": known.degrees_of_freedom}
@@ -171,14 +170,14 @@ def unseen(repeated, defaults) -> List[Finding]:
         if offsets else []
 
 
-def stretches(rows: Sequence[Row], known: Optional[Mapping[str, float]]) -> Dict[str, Any]:
+def stretches(rows: Sequence[Finished], known: Optional[Mapping[str, float]]) -> Dict[str, Any]:
     """Of the road that finished runs block; known: weights by known events, or None."""
-    weights = known or {row["run"]: 1.0 for row in rows if not row.get("batch")}
-    return {**road_runs.evaluate([road_runs.Run(weights[row["run"]], row["stretches"], row["clearing"])
-                                  for row in rows if row["run"] in weights]), "of_known_events": bool(known)}
+    weights = known or {row.run: 1.0 for row in rows if not row.batch}
+    return {**road_runs.evaluate([road_runs.Run(weights[row.run], row.at_road.stretches, row.at_road.clearing)
+                                  for row in rows if row.run in weights]), "of_known_events": bool(known)}
 
 
-def largest(rows: Sequence[Row], key: str) -> Dict[str, Any]:
+def largest(rows: Sequence[Finished], key: str) -> Dict[str, Any]:
     """The largest value of a column and the first run that has it."""
-    best = max(rows, key=lambda row: row[key])
-    return {"value": best[key], "run": best["run"]}
+    best = max(rows, key=lambda row: row.value(key))
+    return {"value": best.value(key), "run": best.run}

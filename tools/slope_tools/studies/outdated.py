@@ -23,7 +23,7 @@ def changed(site: Path, study: Path) -> Optional[str]:
 
     None, too, where nobody knows: without a deck, and of runs of an older version, which do not say what they read.
     """
-    deck, folder = site / site_deck.NAME, run_folders.governing_run(study / named_run.STUDY, named_run.farthest)[1]
+    deck, folder = site / site_deck.NAME, named_run.governing_run(study)[1]
     about = run_folders.begun(folder)
     if not deck.is_file() or not about.get("inputs"):
         return None

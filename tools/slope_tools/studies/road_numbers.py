@@ -13,7 +13,8 @@ from ..errors import SlopeError
 from ..sites import site_roads
 from ..sites.site_choices import Site
 from ..statistics.answer import Kind
-from ..tables.quantities import OF_ROAD, REMOVE
+from ..tables.quantities import OF_ROAD
+from ..tables.rows import finished_of
 
 PAGE = "report.html"    # in that of a road
 ENTRY = "roads"         # of study.yaml
@@ -92,9 +93,9 @@ def of_all(site: Site, several: bool, tell: Callable[[Any], Any],
 def number(road: str, made: Made) -> Number:
     """Of a road, whose study that governs tells it; the largest of the runs of all its studies."""
     about, *_ = made.abouts
-    said, rows = about["headline"] or {}, [row for row in about["runs"] if row["status"] == "finished"]
-    on_road = [row["remove_on_road_m3"] for row in rows]
-    most = max((row.get(REMOVE) or 0.0 for each in made.abouts for row in each["runs"]), default=0.0)
+    said, rows = about["headline"] or {}, finished_of(about["runs"])
+    on_road = [row.at_road.remove_on_road_m3 for row in rows]
+    most = max((row.at_road.remove_m3 for each in made.abouts for row in finished_of(each["runs"])), default=0.0)
     return Number(road, said.get("kind"), said.get("volume_m3"), most, sum(one > 0 for one in on_road), len(rows),
                   max((said.get("road") or {}).get("reached") or [0.0]), made.page)
 
@@ -140,6 +141,6 @@ def write(folder: Path, studies: Mapping[str, Sequence[Mapping[str, Any]]]) -> N
     """roads.csv: a line for each road and finished run; studies: {road: what its study.yaml say}."""
     lines = []
     for road, several in studies.items():
-        rows = {row["run"]: row for about in several for row in about["runs"] if row["status"] == "finished"}
-        lines += [[run, road, *(row.get(key) for key in KEYS)] for run, row in rows.items()]
+        rows = {row.run: row for about in several for row in finished_of(about["runs"])}
+        lines += [[run, road, *(row.value(key) for key in KEYS)] for run, row in rows.items()]
     disk.write(folder / site_roads.TABLE, disk.csv_text(HEAD.split(","), lines))

@@ -1,7 +1,7 @@
 """What one variable of a deck does to a quantity, beside the scatter by chance."""
 import math
 import statistics
-from typing import Any, Dict, List, Mapping, Optional
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence
 
 from rich.table import Table
 
@@ -11,18 +11,19 @@ from ..case.settings import as_number
 from ..deposits import travel_shares
 from ..errors import SlopeError
 from ..findings import Finding, entries
-from ..runs import jobs
+from ..runs import repeats
 from ..statistics.headline import Scatter
 from ..tables import judged, study_table
 from ..tables.quantities import ALL, NEED_ROAD, On, keys, number
-from . import results
+from ..tables.rows import Finished, plain
+from .run_rows import rows_of
 from .setup import Setup
 
 OF_ROAD = "remove_m3,remove_on_road_m3"
 OF_TRAVEL = f"{travel_shares.DISTANCE},centroid_m"      # without a road
 
 
-class Trial(jobs.Run):
+class Trial(repeats.Repeat):
     """A run that differs from the base run in one variable; kind: base, vary or repeat."""
 
     def __init__(self, output, chosen, kind: str, variable: Optional[str] = None):
@@ -30,6 +31,18 @@ class Trial(jobs.Run):
         self.kind, self.variable = kind, variable
         if variable:
             self.varied = f"{variable} {chosen[variable]}"
+
+
+class Tried(NamedTuple):
+    """What a Trial said; value: of its variable, None of the base run."""
+    kind: str
+    variable: Optional[str]
+    value: Optional[str]
+    row: Finished
+
+    def of(self, name: str) -> float:
+        """A quantity, which every run has."""
+        return self.row.value(name)
 
 
 def quantities(wanted: Optional[str], road: bool, converge: bool) -> List[str]:
@@ -63,40 +76,36 @@ def plan(setup: Setup, base: Mapping[str, str], kinds) -> List[Trial]:
 def collect(setup: Setup, base, of, todo, work):
     """Table, chart and sensitivity.yaml over all runs that finished."""
     defaults = {**work.defaults, **base}
-    rows, warnings = [], []
-    for one in todo:
-        row = {"run": one.name, "kind": one.kind, "variable": one.variable,
-               "value": one.chosen[one.variable] if one.variable else None}
-        if one.error:
-            warnings.append(Finding("failed", {"error": one.error}, (one.name,)))
-            continue
-        found = {**row, **results.result(one, setup.output)}
-        if setup.road:
-            found.update(results.on_road(one, setup, found))
-        rows.append(found)
-    if not rows or rows[0]["kind"] != "base":
+    tried: List[Tried] = []
+    warnings = []
+    for one, row in zip(todo, rows_of(setup, todo)):
+        if isinstance(row, Finished):
+            tried.append(Tried(one.kind, one.variable, one.chosen[one.variable] if one.variable else None, row))
+        else:
+            warnings.append(Finding("failed", {"error": row.error}, (one.name,)))
+    if not tried or tried[0].kind != "base":
         return      # nothing to hold the others against; which run failed is said at the end
     for name in of:
-        for row in rows:
-            if row[name] is None:
-                raise SlopeError("--of", f"must be known of every run; {name} is not of {row['run']}")
-    warnings += judged.not_at_rest(rows)
-    scatter = {name: spread(rows, name) for name in of}
-    about = {"study": {"deck": setup.deck.name, "base": defaults, "runs": len(todo), "finished": len(rows),
+        for one in tried:
+            if one.row.value(name) is None:
+                raise SlopeError("--of", f"must be known of every run; {name} is not of {one.row.run}")
+    warnings += judged.not_at_rest([one.row for one in tried])
+    scatter = {name: spread(tried, name) for name in of}
+    about = {"study": {"deck": setup.deck.name, "base": defaults, "runs": len(todo), "finished": len(tried),
                        "ranks": work.ranks, "package": work.package, "collected": provenance.now(),
                        "machine": provenance.machine(),
                        "road": setup.road.about() if setup.road else None},
-             "scatter": scatter, "trust": [trust(rows, name, scatter[name]) for name in of],
+             "scatter": scatter, "trust": [trust(tried, name, scatter[name]) for name in of],
              "warnings": entries(warnings)}
     for one in warnings:
         setup.warn(one)
-    disk.write(setup.output / "sensitivity.csv", table(rows, of, scatter, defaults))
+    disk.write(setup.output / "sensitivity.csv", table(tried, of, scatter, defaults))
     disk.write(setup.output / "sensitivity.yaml", disk.yaml_text(
         "slope sensitivity: volumes in m3 of ground (bulk), lengths in m, angles in degrees", about))
     from ..drawing import figures
-    figures.tornado(setup.output / "sensitivity.png", panels(rows, of, scatter), bars(rows, defaults),
-                    f"{setup.deck.name}: one variable at a time, {len(rows)} runs")
-    setup.tell(shown_of(rows, of, scatter, defaults, setup.deck.name))
+    figures.tornado(setup.output / "sensitivity.png", panels(tried, of, scatter), bars(tried, defaults),
+                    f"{setup.deck.name}: one variable at a time, {len(tried)} runs")
+    setup.tell(shown_of(tried, of, scatter, defaults, setup.deck.name))
     setup.tell(f"{setup.output / 'sensitivity.csv'}, {setup.output / 'sensitivity.yaml'}, "
                f"{setup.output / 'sensitivity.png'}: all numbers, and the chart")
     setup.tell("\n".join(about["trust"]))
@@ -104,16 +113,16 @@ def collect(setup: Setup, base, of, todo, work):
 
 # --- numbers ---
 
-def spread(rows, name):
+def spread(tried: Sequence[Tried], name):
     """Mean, standard deviation and range of the base run and its repeats; the deviation is None without repeats."""
-    values = [row[name] for row in rows if row["kind"] != "vary"]
+    values = [one.of(name) for one in tried if one.kind != "vary"]
     return {"runs": len(values), "mean": statistics.fmean(values), "smallest": min(values), "largest": max(values),
             "standard_deviation": statistics.stdev(values) if len(values) > 1 else None}
 
 
-def effect(row, name, about):
+def effect(one: Tried, name, about):
     """Difference of a run from the mean of the equivalent ones."""
-    return row[name] - about["mean"]
+    return one.of(name) - about["mean"]
 
 
 def scatter_of(about):
@@ -121,15 +130,15 @@ def scatter_of(about):
     return Scatter(about["standard_deviation"], about["runs"] - 1)
 
 
-def is_clear(row, name, about):
+def is_clear(one: Tried, name, about):
     """Whether a run differs from the mean by more than such a run does by chance; None without repeats."""
     if about["standard_deviation"] is None:
         return None
     # the mean has a scatter of its own
-    return abs(effect(row, name, about)) > scatter_of(about).chance(about["runs"])
+    return abs(effect(one, name, about)) > scatter_of(about).chance(about["runs"])
 
 
-def trust(rows, name, about):
+def trust(tried: Sequence[Tried], name, about):
     """In plain words: how much a number of one run is worth."""
     what, unit = ALL[name].name, ALL[name].unit
     mean, deviation = about["mean"], about["standard_deviation"]
@@ -142,14 +151,14 @@ def trust(rows, name, about):
                 f"{share(deviation, mean)}: one run is accurate to +- {number(one)} {unit}"
                 f"{share(one, mean)}, and two runs are different only if they differ by more "
                 f"than {number(math.sqrt(2) * one)} {unit}")
-    varied = [row for row in rows if row["kind"] == "vary"]
+    varied = [one for one in tried if one.kind == "vary"]
     if varied:
-        most = max(varied, key=lambda row: abs(effect(row, name, about)))
+        most = max(varied, key=lambda one: abs(effect(one, name, about)))
         by = effect(most, name, about)
-        text += (f". Of the choices, {most['variable']} {most['value']} changes it most, by {number(by, '+')} {unit}"
+        text += (f". Of the choices, {most.variable} {most.value} changes it most, by {number(by, '+')} {unit}"
                  f"{share(by, mean, '+')}")
         if deviation is not None:
-            clear = sum(is_clear(row, name, about) for row in varied)
+            clear = sum(is_clear(one, name, about) for one in varied)
             text += f"; {clear} of {len(varied)} changes are larger than chance"
     return text
 
@@ -160,56 +169,56 @@ def share(value, mean, sign=""):
 
 # --- output ---
 
-def table(rows, of, scatter, defaults):
+def table(tried: Sequence[Tried], of, scatter, defaults):
     """The CSV over all runs."""
-    columns = study_table.columns_of(rows)
+    columns = study_table.columns_of([one.row for one in tried])
 
-    def line(row):
-        cells = {**row, "moving": answer(row["moving"]), "at_rest": answer(row["at_rest"])}
-        mine = [cell for name in of for cell in (effect(row, name, scatter[name]),
-                                                 answer(is_clear(row, name, scatter[name])))]
-        return [row["run"], row["kind"], row["variable"], row["value"], defaults.get(row["variable"]), *mine,
+    def line(one: Tried):
+        cells = {**plain(one.row), "moving": answer(one.row.moving), "at_rest": answer(one.row.at_rest)}
+        mine = [cell for name in of for cell in (effect(one, name, scatter[name]),
+                                                 answer(is_clear(one, name, scatter[name])))]
+        return [one.row.run, one.kind, one.variable, one.value, defaults.get(one.variable), *mine,
                 *(cells.get(key) for key in columns)]
 
     return disk.csv_text(["run", "kind", "variable", "value", "base_value",
                           *(f"{what}_of_{name}" for name in of for what in ("effect", "clear")), *columns],
-                         map(line, rows))
+                         map(line, tried))
 
 
 def answer(value):
     return {True: "yes", False: "no", None: None}[value]
 
 
-def bars(rows, defaults):
+def bars(tried: Sequence[Tried], defaults):
     """{variable: (kind, base value)} in the order of the command."""
-    return {row["variable"]: (row["kind"], defaults[row["variable"]]) for row in rows if row["variable"]}
+    return {one.variable: (one.kind, defaults[one.variable]) for one in tried if one.variable}
 
 
-def panels(rows, of, scatter):
+def panels(tried: Sequence[Tried], of, scatter):
     """For the chart: (title, unit, scatter, {variable: [(value of the variable, what came out), ...]})."""
     found = []
     for name in of:
         values: Dict[str, List[Any]] = {}
-        for row in rows:
-            if row["variable"]:
-                values.setdefault(row["variable"], []).append((row["value"], row[name]))
+        for one in tried:
+            if one.variable:
+                values.setdefault(one.variable, []).append((one.value, one.of(name)))
         found.append((ALL[name].name, ALL[name].unit, scatter[name], values))
     return found
 
 
-def shown_of(rows, of, scatter, defaults, deck) -> Table:
+def shown_of(tried: Sequence[Tried], of, scatter, defaults, deck) -> Table:
     shown = Table(title=f"{deck}: one variable at a time; * more than chance")
     for head in ("variable", "base", "value", "released m3"):
         shown.add_column(head, justify="right")
     for name in of:
         shown.add_column(f"{ALL[name].name} {ALL[name].unit}", justify="right")
         shown.add_column("against the mean", justify="right")
-    for row in rows:
-        cells = [row["variable"] or "base", defaults.get(row["variable"], ""), row["value"] or "",
-                 number(row["released_m3"])]
+    for one in tried:
+        cells = [one.variable or "base", defaults.get(one.variable, ""), one.value or "",
+                 number(one.row.released_m3)]
         for name in of:
-            by = effect(row, name, scatter[name])
-            star = "*" if row["kind"] == "vary" and is_clear(row, name, scatter[name]) else " "
-            cells += [number(row[name]), f"{number(by, '+')}{share(by, scatter[name]['mean'], '+')}{star}"]
-        shown.add_row(*cells, style="dim" if row["kind"] == "repeat" else None)
+            by = effect(one, name, scatter[name])
+            star = "*" if one.kind == "vary" and is_clear(one, name, scatter[name]) else " "
+            cells += [number(one.of(name)), f"{number(by, '+')}{share(by, scatter[name]['mean'], '+')}{star}"]
+        shown.add_row(*cells, style="dim" if one.kind == "repeat" else None)
     return shown

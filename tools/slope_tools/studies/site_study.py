@@ -20,8 +20,10 @@ from ..sites.site_choices import Choices, OFFSETS, PACKING, Site, other_grounds
 from ..sites.site_layers import OBSERVED
 from ..survey.roads import Asked
 from ..tables import elastic, energy, named_run
-from ..tables.step_check import QUANTITY, Step, half_of
+from ..tables.rows import Failed, finished_of
+from ..tables.step_check import Step, half_of
 from . import fine_runs, mapped, results, study
+from .run_rows import rows_of
 from .setup import Road, Setup
 
 # folders in the site's
@@ -175,11 +177,11 @@ def half_steps(setup: Setup, rolling: str, variables: Dict[str, str]) -> List[re
 
 def step_of(setup: Setup, run_: repeats.Repeat, rolling: str, variables: Dict[str, str]) -> Step:
     """What that run tells."""
-    [row] = results.rows_of(setup, [run_])
-    if run_.error:
-        return Step(rolling, None, f"{run_.name}: {run_.error}", step=float(run_.chosen["step"]))
-    prefix = run_folders.prefix_of(run_folders.summary_of(setup.output, row))
-    return Step(rolling, row[QUANTITY], energy=energy.read(Path(f"{prefix}.{energy.SUFFIX}"))
+    [row] = rows_of(setup, [run_])
+    if isinstance(row, Failed):
+        return Step(rolling, None, f"{run_.name}: {row.error}", step=float(run_.chosen["step"]))
+    prefix = run_folders.prefix_of(run_folders.summary_of(setup.output, row.summary))
+    return Step(rolling, row.at_road.remove_m3, energy=energy.read(Path(f"{prefix}.{energy.SUFFIX}"))
                 if LEDGER in variables else None, spacing=variables.get("spacing"),
                 step=float(run_.chosen["step"]))
 
@@ -199,15 +201,16 @@ def elastic_of(setup: Setup, runs: List[repeats.Repeat]) -> Optional[elastic.Mad
     """What these runs tell, whatever the road; None: there are none."""
     if not runs:
         return None
-    rows = results.rows_of(setup._replace(road=None), runs)
+    rows = rows_of(setup._replace(road=None), runs)
     return elastic.Made(float(runs[0].chosen[elastic.VARIABLES[0]]), runs[0].chosen["rolling"], rows)
 
 
 def scored(folder: Path, setup: Setup, about: Mapping[str, Any]) -> None:
     """Compare the governing run with the mapped deposit; about: what study.yaml says."""
     from ..deposits import score_run
-    name = run_folders.governing(about, named_run.farthest)
-    summary = next(run_folders.summary_of(setup.output, row) for row in about["runs"] if row["run"] == name)
+    name = named_run.governing(about)
+    summary = next(run_folders.summary_of(setup.output, row.summary) for row in finished_of(about["runs"])
+                   if row.run == name)
     outline = folder / f"{OBSERVED}.csv"
     setup.tell(f"{name} against the mapped deposit:")
     setup.tell(score_run.make(str(run_folders.prefix_of(summary)),

@@ -16,7 +16,9 @@ from ..runs import repeats
 from ..statistics import convergence, headline
 from ..tables import combinations, fine_run, judged, study_table
 from ..tables.quantities import ALL
-from . import body_depth, results, study
+from ..tables.rows import finished_of
+from . import body_depth, study
+from .run_rows import rows_of
 from .setup import Setup
 
 OPTION = "--converge"
@@ -59,16 +61,16 @@ def collect(planned: Plan, of, work) -> None:
     """Compare and write what the finished runs tell."""
     setup, settings, repeated, variable, todo = planned
     names = {name: (ALL[name].name, ALL[name].unit) for name in of}
-    rows = results.rows_of(setup, todo)
-    finished = [row for row in rows if row["status"] == "finished"]
+    rows = rows_of(setup, todo)
+    finished = finished_of(rows)
     groups = combinations.grouped(rows)
     if len(groups) < 2:     # nothing to compare; perform() names the run that failed
         (setup.output / "converge.yaml").unlink(missing_ok=True)       # of runs before these
         return
     for name in of:
         for row in finished:
-            if row[name] is None:
-                raise SlopeError("--of", f"must be known of every run; {name} is not of {row['run']}")
+            if row.value(name) is None:
+                raise SlopeError("--of", f"must be known of every run; {name} is not of {row.run}")
     warnings = [*judged.of_runs(rows), *combinations.no_effect(groups)]
     finest = min(groups, key=lambda group: float(group.set[variable])).rows[0]
     depth = body_depth.mean(setup, finest) if variable == fine_run.VARIABLE else None
@@ -94,7 +96,7 @@ def collect(planned: Plan, of, work) -> None:
     from ..tables import convergence_chart
     convergence_chart.draw(
         setup.output / "converge.png", variable, [(*names[name], found[name], [
-            (float(group.set[variable]), row[name]) for group in groups for row in group.rows]) for name in of],
+            (float(group.set[variable]), row.value(name)) for group in groups for row in group.rows]) for name in of],
         f"{setup.deck.name}: {len(finished)} runs, {len(groups)} values of {variable}")
     setup.tell(shown_of(found, variable, names, setup.deck.name))
     setup.tell(", ".join(str(setup.output / f"converge.{kind}") for kind in ("yaml", "csv", "png"))

@@ -13,6 +13,8 @@ from ..statistics.withheld import Kind as Rule
 from . import fine_run
 from .quantities import REMOVE
 
+STUDY = "study.yaml"
+INSIDE = "study", "ensemble"        # folders of a site: the paper's study, and the one of known events
 TITLE = "slope study: volumes in m3 of ground (bulk), lengths in m, times in s"
 SCHEMA = mapping({}, conservative=mapping({}, null=True), ensemble=mapping({}, null=True),
                  headline=mapping({}, null=True, road=mapping({}, null=True)), study=OBJECT)
@@ -88,10 +90,10 @@ def governing(paper: Path, ensemble: Path) -> Path:
 
     What both files say of it where one command made them; else the study that was made last, as the files say.
     """
-    there = [one for one in (ensemble, paper) if (one / "study.yaml").is_file()]
+    there = [one for one in (ensemble, paper) if (one / STUDY).is_file()]
     if len(there) < 2:
         return there[0] if there else paper
-    said = {one: schemas.load(one / "study.yaml", "what `slope study` wrote", SCHEMA) for one in there}
+    said = {one: schemas.load(one / STUDY, "what `slope study` wrote", SCHEMA) for one in there}
     names = {(about.get("study") or {}).get("governs") for about in said.values()}
     if len(names) == 1 and (named := [one for one in there if one.name in names]):
         return named[0]
@@ -99,6 +101,14 @@ def governing(paper: Path, ensemble: Path) -> Path:
     if number and number == other:
         return paper if number["source"] == answer.Source.PAPER.value else ensemble
     return max(there, key=lambda one: made(said[one]))
+
+
+def study_in(folder: Path) -> Optional[Path]:
+    """The folder of the study that a page on a folder shows: its own, else the one of a site that governs; or None."""
+    if (folder / STUDY).is_file():
+        return folder
+    found = governing(*(folder / name for name in INSIDE))
+    return found if (found / STUDY).is_file() else None
 
 
 def made(about: Mapping[str, Any]) -> datetime.datetime:

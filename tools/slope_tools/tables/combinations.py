@@ -12,40 +12,37 @@ from ..statistics import headline
 from ..statistics.headline import Combination, Scatter
 from ..statistics.size_effect import Effect
 from . import quantities, withheld_words
+from .rows import Finished, Row, finished_of
 
 GROUND = ("pattern", "spacing", "angle")        # variables of decks that make another ground
 # runs that are the same in all of these are one run: two of chance never are
 SAME = ("released_m3", "centroid_m", "front_m", "max_speed_m_s", "remove_m3")
-
-Row = Mapping[str, Any]
 
 
 @dataclass
 class Group:
     """The finished runs of one combination; same: those left out because another one has the same numbers."""
     name: str
-    set: Dict[str, str]
-    rows: List[Row] = field(default_factory=list)
-    same: List[Row] = field(default_factory=list)
+    set: Mapping[str, str]
+    rows: List[Finished] = field(default_factory=list)
+    same: List[Finished] = field(default_factory=list)
 
     def of(self, column: str) -> Combination:
-        return Combination(self.name, {key_of(row["repeat"]): row[column] for row in self.rows})
+        return Combination(self.name, {key_of(row.repeat): row.value(column) for row in self.rows})
 
 
-def same_as(rows: Sequence[Row]) -> List[int]:
+def same_as(rows: Sequence[Finished]) -> List[int]:
     """Of each finished run the place of the first one that has the same numbers, its own where there is none."""
     first: Dict[tuple, int] = {}
-    numbers = (tuple(row.get(name) for name in SAME) for row in rows)
+    numbers = (tuple(row.value(name) for name in SAME) for row in rows)
     return [first.setdefault(mine, k) if any(one is not None for one in mine) else k for k, mine in enumerate(numbers)]
 
 
 def grouped(rows: Sequence[Row]) -> List[Group]:
     """The finished runs by their combinations, in the order of the rows."""
     found: Dict[tuple, Group] = {}
-    for row in rows:
-        if row["status"] != "finished":
-            continue
-        group = found.setdefault(tuple(row["set"].values()), Group(jobs.name_of(row["set"]), row["set"]))
+    for row in finished_of(rows):
+        group = found.setdefault(tuple(row.set.values()), Group(jobs.name_of(row.set), row.set))
         group.rows.append(row)
     for group in found.values():
         mine = group.rows
@@ -70,8 +67,8 @@ def entries(groups: Sequence[Group], names: Sequence[str]) -> List[Dict[str, Any
     found = []
     for group in groups:
         entry: Dict[str, Any] = {"combination": group.name, "set": dict(group.set),
-                                 "runs": [row["run"] for row in group.rows], "repeats": len(group.rows),
-                                 quantities.STOP: group.rows[0].get(quantities.STOP)}
+                                 "runs": [row.run for row in group.rows], "repeats": len(group.rows),
+                                 quantities.STOP: group.rows[0].stop_angle_deg}
         for name in names:
             one = group.of(name)
             entry[name] = {"mean": one.mean, "scatter": one.scatter, "smallest": min(one.volumes.values()),
@@ -110,7 +107,7 @@ def ground(settings: Mapping[str, Sequence[str]], group: Group) -> Optional[str]
     if not names:
         return None
     text = "the ground that governs: " + ", ".join(f"{name} {group.set[name]}" for name in names)
-    degrees = group.rows[0].get(quantities.STOP)
+    degrees = group.rows[0].stop_angle_deg
     if degrees is not None:
         text += f", stop angle {degrees:.1f} degrees"
     return f"{text} (tried: " + "; ".join(f"{name} {', '.join(settings[name])}" for name in names) + ")"
@@ -128,8 +125,8 @@ def conservative(settings, rows, groups: Sequence[Group], effect: Optional[Effec
     parts = [group.of("remove_m3") for group in groups]
     best = headline.headline(parts, effect and effect.added)
     governing = next(group for group in groups if group.name == best.combination)
-    largest = max(governing.rows, key=lambda row: row["remove_m3"])
-    volumes = [row["remove_m3"] for row in governing.rows]
+    largest = max(governing.rows, key=lambda row: row.at_road.remove_m3)
+    volumes = [row.at_road.remove_m3 for row in governing.rows]
     differences = []
     for name, line in straight(settings, groups, governing.set):
         if len(line) < 2:
@@ -150,7 +147,7 @@ def conservative(settings, rows, groups: Sequence[Group], effect: Optional[Effec
         # what other starts of the same combination gave
         "starts_m3": [min(volumes), max(volumes)] if len(volumes) > 1 else None,
         # the run whose maps represent it
-        "run": largest["run"], "remove_m3": largest["remove_m3"],
+        "run": largest.run, "remove_m3": largest.at_road.remove_m3,
         "differences": differences,
         "doubts": [one.entry() for one in doubts(settings, rows, groups, best, differences)],
         "withheld": [], "zero": None}       # see usable.judge
@@ -159,7 +156,7 @@ def conservative(settings, rows, groups: Sequence[Group], effect: Optional[Effec
 def doubts(settings, rows, groups: Sequence[Group], best: headline.Headline, differences) -> List[Finding]:
     """Reasons why the volume may be larger than the headline."""
     found = []
-    finished = [row for row in rows if row["status"] == "finished"]
+    finished = finished_of(rows)
     if len(rows) == 1:
         found.append(Finding("single run"))
     elif best.chance is None:
@@ -173,18 +170,18 @@ def doubts(settings, rows, groups: Sequence[Group], best: headline.Headline, dif
                 and all(isinstance(one, float) for one in numbers) and value in (min(numbers), max(numbers)):
             found.append(Finding("end of range", {"variable": name, "low": min(numbers), "high": max(numbers)}))
     found += no_effect(groups)
-    released = max(row["released_m3"] for row in finished)
+    released = max(row.released_m3 for row in finished)
     if best.volume > released:
         found.append(Finding("more than released", {"released": headline.nearest(released, best.place)}))
     for group in groups:
-        most = max(row["remove_m3"] for row in group.rows)
-        few = [row for row in group.rows if row["remove_m3"] < FEW * most]
+        most = max(row.at_road.remove_m3 for row in group.rows)
+        few = [row for row in group.rows if row.at_road.remove_m3 < FEW * most]
         if few:
             found.append(outcome(group, few))
-    above = max(finished, key=lambda row: row["remove_m3"])
-    if above["remove_m3"] > best.volume:
-        found.append(Finding("more in a run", {"run": above["run"], "volume": headline.nearest(above["remove_m3"],
-                                                                                               best.place)}))
+    above = max(finished, key=lambda row: row.at_road.remove_m3)
+    if above.at_road.remove_m3 > best.volume:
+        found.append(Finding("more in a run", {"run": above.run, "volume": headline.nearest(above.at_road.remove_m3,
+                                                                                            best.place)}))
     parts = [group.of("remove_m3") for group in groups]
     odd = headline.odd_one(parts, best.combination)
     if odd:
@@ -195,7 +192,7 @@ def doubts(settings, rows, groups: Sequence[Group], best: headline.Headline, dif
 
 def no_effect(groups: Sequence[Group]) -> List[Finding]:
     """The caveat that runs are left out, as others have the same numbers."""
-    same = [row["run"] for group in groups for row in group.same]
+    same = [row.run for group in groups for row in group.same]
     found = [Finding("no effect", {"which": "a repeated variable", "on": "", "then": "left out"}, same)] if same else []
     return [*found, *values_without_effect(groups)]
 
@@ -205,16 +202,15 @@ def values_without_effect(groups: Sequence[Group]) -> List[Finding]:
     the ground's spacing where the mass comes to rest on the slip surface's own balls.
     """
     found: Dict[str, Dict[str, None]] = {}
-    for one, other in itertools.combinations(
-            [group for group in groups if group.rows and group.rows[0].get("centroid_m") is not None], 2):
+    for one, other in itertools.combinations([group for group in groups if group.rows], 2):
         names = [name for name in one.set if one.set[name] != other.set.get(name)]
         if len(names) == 1 and same_as([one.rows[0], other.rows[0]])[1] == 0:
-            found.setdefault(names[0], {}).update(dict.fromkeys((one.rows[0]["run"], other.rows[0]["run"])))
+            found.setdefault(names[0], {}).update(dict.fromkeys((one.rows[0].run, other.rows[0].run)))
     return [Finding("no effect", {"which": name, "on": f" in {len(runs)} runs", "then": "they do not test it"},
                     tuple(runs)) for name, runs in found.items()]
 
 
-def outcome(group: Group, few: Sequence[Row]) -> Finding:
+def outcome(group: Group, few: Sequence[Finished]) -> Finding:
     """That some runs bring hardly anything, though they differ from others by chance alone: by how far the mass went,
 
     because the slope stood, or because the mass came down and hardly reached the road.
@@ -222,15 +218,13 @@ def outcome(group: Group, few: Sequence[Row]) -> Finding:
     count = stood(few, group.rows)
     return Finding("hardly reaches" if count == 0 else "two outcomes", {
         "few": len(few), "runs": len(group.rows), "combination": group.name, "percent": 100 * FEW, "stood": count,
-        "why": "did the slope fail in some runs only?" if count is None else f"the slope stood in {count} of them"})
+        "why": f"the slope stood in {count} of them"})
 
 
-def stood(few: Sequence[Row], rows: Sequence[Row]) -> Optional[int]:
-    """In how many of a few of some rows the slope stood, by the travel of the centroid; None where that is unknown."""
-    if any(row.get("centroid_m") is None for row in rows):
-        return None
-    most = max(row["centroid_m"] for row in rows)
-    return sum(row["centroid_m"] < STANDS * most for row in few)
+def stood(few: Sequence[Finished], rows: Sequence[Finished]) -> int:
+    """In how many of a few of some rows the slope stood, by the travel of the centroid."""
+    most = max(row.centroid_m for row in rows)
+    return sum(row.centroid_m < STANDS * most for row in few)
 
 
 def starts(best: Mapping[str, Any]) -> List[str]:

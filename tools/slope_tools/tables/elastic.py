@@ -3,12 +3,13 @@
 They estimate reach and area on the safe side (Nakase et al., conclusion) and are none of those that the volume is of.
 """
 from pathlib import Path
-from typing import Any, Dict, List, NamedTuple, Optional, Sequence, Tuple
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from .. import disk
 from ..case import run_folders
 from ..digits import rounded
-from .quantities import ALL, DISTANCE, LENGTH, Row
+from .quantities import ALL, DISTANCE, LENGTH
+from .rows import Failed, Finished, Row, finished_of
 
 ENTRY = "largest_restitution"           # of study.yaml
 FILE = f"{ENTRY}.csv"
@@ -24,16 +25,26 @@ class Made(NamedTuple):
     rows: Sequence[Row]
 
 
+class Spread(NamedTuple):
+    """A run that finished; area: m2, of its deposit."""
+    row: Finished
+    area: float
+
+    def value(self, key: str) -> Optional[float]:
+        """Of COMPARED."""
+        return self.area if key == AREA else self.row.value(key)
+
+
 class Runs(NamedTuple):
-    """Those that finished, with the areas of their deposits; others: of the study's own runs."""
+    """Those that finished; others: of the study's own runs."""
     made: Made
-    elastic: Sequence[Row]
-    others: Sequence[Row]
+    elastic: Sequence[Spread]
+    others: Sequence[Spread]
 
 
 def read(made: Made, rows: Sequence[Row], output: Path) -> Runs:
     """rows: of the study's own runs, in whose folder their summaries are named."""
-    return Runs(made, with_area(made.rows, output), with_area((row for row in rows if not row.get("batch")), output))
+    return Runs(made, with_area(made.rows, output), with_area([row for row in rows if not row.batch], output))
 
 
 def evaluate(runs: Runs) -> Dict[str, Any]:
@@ -41,12 +52,13 @@ def evaluate(runs: Runs) -> Dict[str, Any]:
     made, elastic, others = runs
     about: Dict[str, Any] = {
         "restitution": made.restitution, "rolling": made.rolling, "thicker_than_m": THICK,
-        "runs": [row["run"] for row in elastic],
-        "failed": [row["run"] for row in made.rows if row["status"] != "finished"],
-        "moving": [row["run"] for row in elastic if not row["at_rest"]], "quantities": {}}
+        "runs": [one.row.run for one in elastic],
+        "failed": [row.run for row in made.rows if isinstance(row, Failed)],
+        "moving": [one.row.run for one in elastic if not one.row.at_rest], "quantities": {}}
     if elastic:
-        same = [row for row in others if all(row["variables"].get(name) == elastic[0]["variables"].get(name)
-                                             for name in row["set"] if name not in VARIABLES)]
+        first = elastic[0].row.variables
+        same = [one for one in others if all(one.row.variables.get(name) == first.get(name)
+                                             for name in one.row.set if name not in VARIABLES)]
         for key in COMPARED:
             found = spread(elastic, key)
             if found is not None:
@@ -54,20 +66,20 @@ def evaluate(runs: Runs) -> Dict[str, Any]:
     return {**about, "text": words(about)}
 
 
-def with_area(rows, output: Path) -> List[Dict[str, Any]]:
+def with_area(rows: Sequence[Row], output: Path) -> List[Spread]:
     """Those that finished, with the area of the deposit."""
     found = []
-    for row in rows:
-        if row["status"] == "finished":
-            deposit = run_folders.load_raster(run_folders.prefix_of(run_folders.summary_of(output, row)), "thickness")
-            found.append({**row, AREA: float((deposit.z > THICK).sum()) * deposit.transform.a ** 2})
+    for row in finished_of(rows):
+        deposit = run_folders.load_raster(run_folders.prefix_of(run_folders.summary_of(output, row.summary)),
+                                          "thickness")
+        found.append(Spread(row, float((deposit.z > THICK).sum()) * deposit.transform.a ** 2))
     return found
 
 
-def spread(rows: Sequence[Row], key: str) -> Optional[Dict[str, float]]:
+def spread(runs: Sequence[Spread], key: str) -> Optional[Dict[str, float]]:
     """Mean and ends; None where there are no runs, or one without a number."""
-    values = [float(row[key]) for row in rows if row.get(key) is not None]
-    if not values or len(values) < len(rows):
+    values = [value for one in runs if (value := one.value(key)) is not None]
+    if not values or len(values) < len(runs):
         return None
     return {"mean": sum(values) / len(values), "low": min(values), "high": max(values)}
 
@@ -77,8 +89,8 @@ def table(runs: Runs) -> str:
     if not runs.elastic:
         return ""
     return disk.csv_text(["run", ENTRY, *COMPARED],
-                         ([row["run"], largest, *(row.get(key) for key in COMPARED)]
-                          for largest, several in (("yes", runs.elastic), ("no", runs.others)) for row in several))
+                         ([one.row.run, largest, *map(one.value, COMPARED)]
+                          for largest, several in (("yes", runs.elastic), ("no", runs.others)) for one in several))
 
 
 # --- words ---
@@ -115,14 +127,14 @@ def instead(one: Dict[str, Any], unit: str) -> str:
     return f" instead of {shown(one['usual'], unit)}; all other runs, up to {rounded(one['study']['high'], 3)} {unit}"
 
 
-def name_of(key: str, about: Row) -> Tuple[str, str]:
+def name_of(key: str, about: Mapping[str, Any]) -> Tuple[str, str]:
     """What one of COMPARED is called, and its unit."""
     if key == AREA:
         return f"area under more than {about['thicker_than_m']:g} m", "m2"
     return ALL[key].name, ALL[key].unit
 
 
-def far(about: Row) -> Optional[float]:
+def far(about: Mapping[str, Any]) -> Optional[float]:
     """The largest distance that 99 % of the volume stay within, m; None where it is not known. about: the entry."""
     one = about["quantities"].get(DISTANCE)
     return one and one["high"]

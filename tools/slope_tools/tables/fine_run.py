@@ -7,16 +7,16 @@ from ..statistics.headline import Combination, Scatter
 from ..statistics.size_effect import RESOLVED, Effect, effect
 from . import quantities
 from .quantities import On
+from .rows import Finished
 
-Row = Mapping[str, Any]
 VARIABLE = "d"                  # of a deck: the diameter of the balls, m
 VOLUMES = {"m3"}                # units of quantities of which ten balls count
 
 
 class Fine(NamedTuple):
     """A fine run and the coarse ones that are otherwise the same; row: None where it failed, why says so."""
-    row: Optional[Row]
-    coarse: Sequence[Row]
+    row: Optional[Finished]
+    coarse: Sequence[Finished]
     depth: Optional[float]      # m, mean thickness of the body; None: not known
     scatter: Callable[[str], Optional[Scatter]]     # of a coarse run in a column of the study's table; None: not known
     why: str = ""
@@ -27,17 +27,17 @@ def evaluate(fine: Fine) -> Dict[str, Any]:
     if fine.row is None or not fine.coarse:
         why = fine.why or "no run with the same values finished"
         return {"run": None, "effects": {}, "open": True, "balls_thick": None, "text": f"not known: {why}"}
-    ball = max(row["ball_m3"] for row in fine.coarse)
-    d, coarse_d = (float(row["variables"][VARIABLE]) for row in (fine.row, fine.coarse[0]))
+    ball = max(row.ball_m3 for row in fine.coarse)
+    d, coarse_d = (float(row.variables[VARIABLE]) for row in (fine.row, fine.coarse[0]))
     effects = {}
     for key in quantities.known(On.MEAN, [fine.row, *fine.coarse]):
-        volumes = Combination(key, {key_of(row["repeat"]): float(row[key]) for row in fine.coarse})
-        effects[key] = effect(volumes, float(fine.row[key]), fine.scatter(key),
+        volumes = Combination(key, {key_of(row.repeat): float(row.value(key)) for row in fine.coarse})
+        effects[key] = effect(volumes, float(fine.row.value(key)), fine.scatter(key),
                               ball if quantities.ALL[key].unit in VOLUMES else None)
     balls = fine.depth and fine.depth / d
-    found = {"run": fine.row["run"], "d": d, "balls_thick": balls, "coarse_d": coarse_d,
+    found = {"run": fine.row.run, "d": d, "balls_thick": balls, "coarse_d": coarse_d,
              "coarse_balls_thick": fine.depth and fine.depth / coarse_d,
-             "coarse_runs": [row["run"] for row in fine.coarse],
+             "coarse_runs": [row.run for row in fine.coarse],
              "effects": {key: of_effect(one) for key, one in effects.items()},
              "open": balls is None or balls < RESOLVED}
     return {**found, "text": words(found)}

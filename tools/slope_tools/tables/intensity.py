@@ -74,10 +74,11 @@ def entry(name: str, groups: Sequence[Group], volumes: Sequence[float]) -> Optio
 
     None if no run has a volume on the road.
     """
-    groups = [group for group in groups if all(row.get(QUANTITY) is not None for row in group.rows)]
+    groups = [group for group in groups if all(row.road for row in group.rows)]
     if not groups:
         return None
-    volumes = list(volumes) or round_volumes(max(row[QUANTITY] for group in groups for row in group.rows))
+    volumes = list(volumes) or round_volumes(max(row.at_road.remove_on_road_m3 for group in groups
+                                                 for row in group.rows))
     lines: Dict[tuple, Dict[str, Any]] = {}
     for group in groups:
         rest = {other: value for other, value in group.set.items() if other != name}
@@ -98,8 +99,8 @@ def point(at: float, group: Group, volumes: Sequence[float]) -> Dict[str, Any]:
         above = sum(value > volume for value in found)
         share, low, high = probability(above, len(found))
         exceed.append({"more_than_m3": volume, "runs": above, "probability": share, "low": low, "high": high})
-    released = sum(row["released_m3"] for row in group.rows) / len(group.rows)
-    few = [row for row in group.rows if row[QUANTITY] <= REACHES * released]
+    released = sum(row.released_m3 for row in group.rows) / len(group.rows)
+    few = [row for row in group.rows if row.at_road.remove_on_road_m3 <= REACHES * released]
     return {"at": at, "runs": len(found), "mean_m3": one.mean, "scatter_m3": one.scatter, "smallest_m3": min(found),
             "largest_m3": max(found), "released_m3": released, "share_of_released": one.mean / released,
             "not_on_road": len(few), "stood": stood(few, group.rows), "exceed": exceed}

@@ -7,17 +7,16 @@ from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence
 from ..case.logs import kind
 from ..deposits import left_words, rest
 from ..deposits.travel_shares import BEYOND
-from ..findings import Finding, finding, gathered
+from ..findings import Finding, gathered
 from ..sites.site_warnings import of_volume
 from . import quantities
-from .released import Release, release
+from .released import release
+from .rows import Failed, Finished, Row, finished_of
 
 BALANCE = 1e-9          # of the released volume
 LOST = 1e-6             # of the released volume
 SOFT = 1e4              # stiffness number: with softer contacts a mass goes too far
 VERSIONS = ("slope_version", "lammps_version", "lmp_sha256")
-
-Row = Mapping[str, Any]
 
 
 def columns(summary: Mapping[str, Any], log) -> Dict[str, Any]:
@@ -32,90 +31,89 @@ def columns(summary: Mapping[str, Any], log) -> Dict[str, Any]:
 
 def of_runs(rows: Sequence[Row]) -> List[Finding]:
     """On runs, finished or failed."""
-    finished = [row for row in rows if row["status"] == "finished"]
+    finished = finished_of(rows)
     return [*failed(rows), *not_at_rest(finished), *lost(finished), *released(finished), *soft(finished),
             *large(finished), *balance(finished), *programs(finished), *of_road(finished)]
 
 
 def of(row: Row) -> Sequence[str]:
     """The name of a row's run; a run alone has none."""
-    return (row["run"],) if row["run"] else ()
+    return (row.run,) if row.run else ()
 
 
 def failed(rows: Sequence[Row]) -> List[Finding]:
     """By their errors, whose numbers may differ."""
-    return gathered((Finding("failed", {"error": str(row.get("error"))}, of(row)) for row in rows
-                     if row["status"] != "finished"), len(rows), lambda one: kind(one.numbers["error"]))
+    return gathered((Finding("failed", {"error": row.error}, of(row)) for row in rows
+                     if isinstance(row, Failed)), len(rows), lambda one: kind(one.numbers["error"]))
 
 
-def not_at_rest(finished: Sequence[Row]) -> List[Finding]:
+def not_at_rest(finished: Sequence[Finished]) -> List[Finding]:
     found = []
     for name, moving in (("in motion", True), ("moving", False)):
-        mine = sorted((row for row in finished if not row["at_rest"] and row["moving"] == moving),
-                      key=lambda row: -row["moves_share"])
-        cut = sum(row["stop_reason"] == rest.CUT for row in mine)
+        mine = sorted((row for row in finished if not row.at_rest and row.moving == moving),
+                      key=lambda row: -row.moves_share)
+        cut = sum(row.stop_reason == rest.CUT for row in mine)
         among = f", {cut} of them stopped at their duration" if cut and len(mine) > 1 else ""
-        found += [Finding(name, {"end": row["end"], "time": row["stop_time_s"], "share": row["moves_share"],
+        found += [Finding(name, {"end": row.end, "time": row.stop_time_s, "share": row.moves_share,
                                  "among": among}, of(row)) for row in mine]
     return gathered(found, len(finished))
 
 
-def lost(finished: Sequence[Row]) -> List[Finding]:
+def lost(finished: Sequence[Finished]) -> List[Finding]:
     """Mass that is not on the maps."""
-    volume = {id(row): row["off_grid_m3"] + row["lost_m3"] for row in finished}
-    gone = sorted((row for row in finished if volume[id(row)] > LOST * row["released_m3"]),
+    volume = {id(row): row.off_grid_m3 + row.lost_m3 for row in finished}
+    gone = sorted((row for row in finished if volume[id(row)] > LOST * row.released_m3),
                   key=lambda row: -volume[id(row)])
     if not gone:
         return []
-    much = any(volume[id(row)] > BEYOND * row["released_m3"] for row in gone)
-    most, left = float(volume[id(gone[0])]), gone[0].get("left") or ()
+    much = any(volume[id(row)] > BEYOND * row.released_m3 for row in gone)
+    most, left = float(volume[id(gone[0])]), gone[0].left or ()
     return [Finding("lost much" if much else "lost", {
-        "volume": most, "percent": 100 * most / gone[0]["released_m3"], "up_to": "up to " * (len(gone) > 1),
+        "volume": most, "percent": 100 * most / gone[0].released_m3, "up_to": "up to " * (len(gone) > 1),
         "where": f" ({left_words.where(left)})" if left else "",
         "add": f" by {left_words.to_add(left)}" if left else "",
         "of": len(finished)}, tuple(name for row in gone for name in of(row)))]
 
 
-def released(finished: Sequence[Row]) -> List[Finding]:
-    return gathered((one._replace(runs=of(row)) for row in finished for one in Release(**row["release"]).doubts),
+def released(finished: Sequence[Finished]) -> List[Finding]:
+    return gathered((one._replace(runs=of(row)) for row in finished for one in row.release.doubts),
                     len(finished))
 
 
-def soft(finished: Sequence[Row]) -> List[Finding]:
+def soft(finished: Sequence[Finished]) -> List[Finding]:
     """Contacts that are too soft for the weight on them; none is known of runs of older versions, and others."""
-    found = sorted((row for row in finished if (row.get("stiffness_number") or SOFT) < SOFT),
-                   key=lambda row: row["stiffness_number"])
-    return gathered((Finding("soft", {"number": float(row["stiffness_number"]), "limit": SOFT}, of(row))
-                     for row in found), len(finished))
+    found = sorted(((row.stiffness_number or SOFT, row) for row in finished), key=lambda one: one[0])
+    return gathered((Finding("soft", {"number": float(number), "limit": SOFT}, of(row))
+                     for number, row in found if number < SOFT), len(finished))
 
 
-def large(finished: Sequence[Row]) -> List[Finding]:
-    return of_volume(max((row["released_m3"] for row in finished), default=0.0))
+def large(finished: Sequence[Finished]) -> List[Finding]:
+    return of_volume(max((row.released_m3 for row in finished), default=0.0))
 
 
-def balance(finished: Sequence[Row]) -> List[Finding]:
-    found = sorted((row for row in finished if not abs(row.get("mass_error", 0.0)) <= BALANCE),
-                   key=lambda row: -abs(row["mass_error"]))
-    return gathered((Finding("balance", {"share": float(row["mass_error"])}, of(row)) for row in found), len(finished))
+def balance(finished: Sequence[Finished]) -> List[Finding]:
+    found = sorted((row for row in finished if not abs(row.mass_error) <= BALANCE),
+                   key=lambda row: -abs(row.mass_error))
+    return gathered((Finding("balance", {"share": float(row.mass_error)}, of(row)) for row in found), len(finished))
 
 
-def programs(finished: Sequence[Row]) -> List[Finding]:
+def programs(finished: Sequence[Finished]) -> List[Finding]:
     """Runs of different ones."""
     return [Finding("programs", {"what": what, "which": ", ".join(sorted(several))}) for what in VERSIONS
-            if len(several := {str(row.get(what)) for row in finished}) > 1]
+            if len(several := {str(row.value(what)) for row in finished}) > 1]
 
 
-def of_road(finished: Sequence[Row]) -> List[Finding]:
+def of_road(finished: Sequence[Finished]) -> List[Finding]:
     """What `slope volume` said."""
-    found = gathered((finding(entry)._replace(runs=of(row)) for row in finished
-                      for entry in row.get("road_warnings") or ()), len(finished))
+    found = gathered((one._replace(runs=of(row)) for row in finished if row.road
+                      for one in row.road.road_warnings), len(finished))
     return [one._replace(runs=()) if len(one.runs) == len(finished) else one for one in found]
 
 
 def of_logs(rows: Sequence[Row], said: Iterable[str]) -> List[Finding]:
     """What LAMMPS and its styles warned of; said: kinds of lines that other findings cover."""
     return gathered((Finding("LAMMPS", {"line": line}, of(row)) for row in rows
-                     for line in row.get("log_warnings") or () if kind(line) not in said), len(rows),
+                     for line in row.log_warnings if kind(line) not in said), len(rows),
                     lambda one: kind(one.numbers["line"]))
 
 

@@ -1,15 +1,14 @@
 """The run that a name on the command line stands for; of a study or a site the one whose maps are on the first page."""
 import re
 from pathlib import Path
-from typing import Any, Mapping, NamedTuple, Optional
+from typing import Any, Mapping, NamedTuple, Optional, Sequence, Tuple
 
-from ..case.run_folders import OF_RUN, RASTERS, governing_run, prefix_of, summaries
+from ..case.run_folders import OF_RUN, RASTERS, prefix_of, summaries, summary_of
 from ..deposits import travel_shares
 from ..errors import SlopeError
-from . import answered
-
-STUDY = "study.yaml"
-INSIDE = "study", "ensemble"        # folders of a site: the paper's study, and the one of known events
+from .answered import STUDY, study_in
+from .rows import Finished, finished_of
+from .study_file import read_study
 
 
 class Named(NamedTuple):
@@ -20,19 +19,54 @@ class Named(NamedTuple):
     study: Optional[Path] = None
 
 
-def study_in(folder: Path) -> Optional[Path]:
-    """The folder of the study that a page on a folder shows: its own, else the one of a site that governs; or None."""
-    if (folder / STUDY).is_file():
-        return folder
-    found = answered.governing(*(folder / name for name in INSIDE))
-    return found if (found / STUDY).is_file() else None
+def governing(about: Mapping[str, Any]) -> str:
+    """The run that represents the headline of a study with a finished run (read_study); else the one that went
+    farthest.
+
+    Of an ensemble whose quantile is the headline the one at this quantile; else the one at the 90 % quantile of what
+    counts, or the largest where known events go beyond all runs.
+    """
+    rows, ensemble, best = finished_of(about["runs"]), about["ensemble"], about["conservative"]
+    if ensemble and (number := of_headline(about, rows)):
+        return number
+    if ensemble and ensemble["of"]:
+        # a quantile is the value of a run
+        of = ensemble["of"]
+        entries = (ensemble["known_events"] or {}).get("quantities") or ensemble["quantities"]
+        at = {one["share"]: one["value"] for one in entries[of]["quantiles"]}[0.9] if of in entries else None
+        having = [row for row in rows if row.value(of) is not None]      # others lost it
+        if at is None:      # events beyond the runs decide
+            return max(having, key=lambda row: row.value(of)).run
+        return nearest(having, of, at).run
+    return best["run"] if best else travel_shares.farthest(rows).run
 
 
-def farthest(about: Mapping[str, Any]) -> Optional[str]:
-    """The run of a study.yaml that went farthest; None where its rows do not say how far they went."""
-    rows = [row for row in about.get("runs") or () if row.get("status") == "finished"]
-    told = rows and all({"lost_m3", "released_m3", "front_m"} <= row.keys() for row in rows)
-    return travel_shares.farthest(rows)["run"] if told else None
+def of_headline(about: Mapping[str, Any], rows: Sequence[Finished]) -> Optional[str]:
+    """The run of an ensemble at whose volume the headline is; the longest where the headline is 0, as no run says more.
+
+    None where the headline is of another study, of none, or withheld.
+    """
+    number, known = about["headline"] or {}, about["ensemble"]["known_events"] or {}
+    if number.get("source") != "ensemble" or number.get("volume_m3") is None:
+        return None
+    if number["volume_m3"] == 0:
+        long = [row for row in rows if row.length_m is not None]
+        return max(long, key=lambda row: row.length_m or 0.0).run if long else None
+    at: Optional[float] = next((one["value"] for one in known.get("to_remove") or ()
+                                if one["share"] == number.get("share")), None)
+    return None if at is None else nearest(rows, "remove_m3", at).run
+
+
+def nearest(rows: Sequence[Finished], key: str, value: float) -> Finished:
+    """The run whose quantity is nearest to a value."""
+    return min(rows, key=lambda row: abs(row.value(key) - value))
+
+
+def governing_run(study: Path) -> Tuple[str, Path]:
+    """Name and folder of the governing run of the study in a folder."""
+    about = read_study(study / STUDY)
+    name = governing(about)
+    return name, next(summary_of(study, row.summary).parent for row in finished_of(about["runs"]) if row.run == name)
 
 
 def read(name: str) -> Named:
@@ -49,7 +83,7 @@ def read(name: str) -> Named:
         return Named(str(path.with_name(match[1] or match[2])), None)
     study = study_in(path)
     if study:
-        run, folder = governing_run(study / STUDY, farthest)
+        run, folder = governing_run(study)
         inside = summaries(folder)
         if len(inside) != 1:
             raise SlopeError(folder, "must hold the governing run of the study, with its summary")

@@ -9,6 +9,7 @@ from ..sites.site_budget import duration_text
 from ..statistics.answer import Code, Kind, Reason, Source
 from ..statistics.withheld import Kind as Rule
 from . import answer_words
+from .rows import finished_of
 
 MORE = 2            # times the runs, where more are needed
 PROGRAM = "tools/slope "
@@ -59,8 +60,10 @@ class Made(NamedTuple):
     @property
     def seconds(self) -> Optional[float]:
         """How long all runs took, as many at a time as they were; None: not known."""
-        walls = [row.get("wall_s") for row in self.study["runs"] if row["status"] == "finished"]
-        return None if None in walls or not walls else sum(walls) / max(1, self.study["study"].get("jobs") or 1)
+        walls = [row.wall_s for row in finished_of(self.study["runs"])]
+        known = [wall for wall in walls if wall is not None]
+        jobs = max(1, self.study["study"].get("jobs") or 1)
+        return None if len(known) < len(walls) or not walls else sum(known) / jobs
 
     @property
     def site(self) -> Optional[Path]:
@@ -143,10 +146,11 @@ def more_runs(made: Made) -> Optional[Step]:
 def finer_balls(made: Made) -> Optional[Step]:
     """The study once more with balls of half the diameter; None where it is none of a site."""
     site, whole = made.site, made.whole
-    row = next((one for one in made.study["runs"] if one["status"] == "finished"), None)
-    if site is None or row is None:
+    rows = finished_of(made.study["runs"])
+    if site is None or not rows:
         return None
-    number = round(8 * row["released_m3"] / row["ball_m3"], -2)
+    row = rows[0]
+    number = round(8 * row.released_m3 / row.ball_m3, -2)
     return Step("smaller balls in the model", f"tools/slope site {quote(str(site))} --balls {number:.0f} && "
                 f"tools/slope study {quote(str(site))} --anew", None if whole is None else 16 * whole)
 

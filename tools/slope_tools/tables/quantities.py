@@ -9,8 +9,8 @@ from typing import Any, Callable, Dict, Iterable, List, Mapping, NamedTuple, Opt
 from ..deposits import travel_shares
 from ..digits import measured, to_three
 from ..mobility.run_length import ON_PATH, STRAIGHT
+from .rows import Finished
 
-Row = Mapping[str, Any]
 Form = Union[str, Callable[[Any], str]]     # how a value is written; "": not shown
 
 WHOLE, TENTH, AS_IS = "{:,.0f}", "{:.1f}", "{}"
@@ -121,8 +121,6 @@ NEED_ROAD = {one.key for one in (*OF_ROAD, *IF_KNOWN) if On.ASKED in one.on}
 # those of a road first, which count
 ALL: Dict[str, Quantity] = {one.key: one for one in (*OF_ROAD, *IF_KNOWN, *OF_RUN)}
 
-MAYBE = {key for key, one in ALL.items() if one.maybe}
-
 
 def keys(where: On) -> List[str]:
     """Keys of those that are somewhere."""
@@ -139,17 +137,17 @@ def shown_on(what: str) -> List[Quantity]:
     return [one for one in (*OF_RUN, *OF_ROAD, *IF_KNOWN) if getattr(one, what)]
 
 
-def known(where: On, rows: Iterable[Row]) -> List[str]:
+def known(where: On, rows: Iterable[Finished]) -> List[str]:
     """The same of which every run has a number."""
     several = list(rows)
-    return [key for key in keys(where) if all(row.get(key) is not None for row in several)]
+    return [key for key in keys(where) if all(row.value(key) is not None for row in several)]
 
 
-def name_of(key: str, rows: Iterable[Row]) -> str:
+def name_of(key: str, rows: Iterable[Finished]) -> str:
     """What a quantity of some runs is called: a length is straight where a run has no fall path."""
     if key != LENGTH:
         return ALL[key].name
-    kinds = {row["length_is"] for row in rows if row.get("length_is")}      # none in older files
+    kinds = {row.length_is for row in rows if row.length_is}
     return f"{STRAIGHT} length" if kinds == {STRAIGHT} else \
         f"length ({STRAIGHT} in some runs)" if STRAIGHT in kinds else ALL[key].name
 
@@ -161,7 +159,7 @@ def written(form: Form, value) -> str:
     return form(value) if callable(form) else form.format(value)
 
 
-def of_summary(summary: Row) -> Dict[str, Any]:
+def of_summary(summary: Mapping[str, Any]) -> Dict[str, Any]:
     """Those that a summary has (run_folders.load_summary)."""
     def value(words):
         found: Any = summary
@@ -179,7 +177,7 @@ def of_length(length) -> Dict[str, Any]:
             "length_by_lobe_m": length and list(length.others), "length_deg": length and length.angle}
 
 
-def of_division(divided: Optional[Row], left: Optional[Row]) -> Dict[str, Any]:
+def of_division(divided: Optional[Mapping[str, Any]], left: Optional[Mapping[str, Any]]) -> Dict[str, Any]:
     """Those of the mass on both sides of a road, by `divided` and `left` of volume.yaml; None is not known."""
     def of(key):
         return divided and divided[key]

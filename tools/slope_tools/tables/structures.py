@@ -14,6 +14,7 @@ from rich.table import Table
 
 from .. import disk, schemas
 from ..errors import SlopeError
+from .rows import Finished
 
 WINDOW = 0.5            # s, of the mean force: single impacts are those of the model's balls, what lasts is the mass's
 SHARES = (0.5, 0.9, 0.95, 0.99)
@@ -160,15 +161,15 @@ def of_run(folder, settings: Sequence[str]) -> Dict[str, Dict[str, Dict[str, Any
 
 # --- a study ---
 
-def scatter_at_rest(rows: Sequence[Mapping[str, Any]]) -> Dict[str, Tuple[float, int]]:
+def scatter_at_rest(rows: Sequence[Finished]) -> Dict[str, Tuple[float, int]]:
     """{structure: (scatter of its force at the end between runs with equal values, a share of the mean; runs)}.
 
     Pooled over the values that vary; none where no run was repeated.
     """
     forces: Dict[str, Dict[tuple, List[float]]] = {}
     for row in rows:
-        for name, numbers in (row.get("structures") or {}).items():
-            forces.setdefault(name, {}).setdefault(tuple(row["set"].values()), []).append(numbers["end_force_n"])
+        for name, numbers in row.structures.items():
+            forces.setdefault(name, {}).setdefault(tuple(row.set.values()), []).append(numbers["end_force_n"])
     found = {}
     for name, groups in forces.items():
         several = [np.array(one) / np.mean(one) for one in groups.values() if len(one) > 1 and np.mean(one) > 0]
@@ -178,15 +179,15 @@ def scatter_at_rest(rows: Sequence[Mapping[str, Any]]) -> Dict[str, Tuple[float,
     return found
 
 
-def table(rows: Sequence[Mapping[str, Any]], what: str) -> str:
+def table(rows: Sequence[Finished], what: str) -> str:
     """The CSV over all runs: a row for each structure, or line, of each; '' if there is none."""
-    entries = [(row, name, numbers) for row in rows for name, numbers in (row.get(what) or {}).items()]
+    entries = [(row, name, numbers) for row in rows for name, numbers in row.value(what).items()]
     if not entries:
         return ""
     columns = [key for key in entries[0][2] if key != "pressure_at"]
     place = ["pressure_x_m", "pressure_y_m", "pressure_z_m"] if what == "structures" else []
-    return disk.csv_text(["run", *entries[0][0]["set"], what[:-1], *columns, *place], (
-        [row["run"], *row["set"].values(), name, *(numbers[key] for key in columns),
+    return disk.csv_text(["run", *entries[0][0].set, what[:-1], *columns, *place], (
+        [row.run, *row.set.values(), name, *(numbers[key] for key in columns),
          *((numbers["pressure_at"] or [None] * 3) if place else [])] for row, name, numbers in entries))
 
 
@@ -205,7 +206,7 @@ def cell(value, unit):
     return "-" if value is None else f"{value / unit:,.3g}" if abs(value) < 1000 * unit else f"{value / unit:,.0f}"
 
 
-def write(output: Path, rows: Sequence[Mapping[str, Any]]) -> List[Path]:
+def write(output: Path, rows: Sequence[Finished]) -> List[Path]:
     """structures.csv and lines.csv, where there is something; the files."""
     written = []
     for what, file in FILES.items():
@@ -218,15 +219,15 @@ def write(output: Path, rows: Sequence[Mapping[str, Any]]) -> List[Path]:
     return written
 
 
-def shown(rows: Sequence[Mapping[str, Any]]) -> Iterator[Table]:
+def shown(rows: Sequence[Finished]) -> Iterator[Table]:
     """The tables on the screen."""
     for what, heads in SHOWN.items():
-        if not any(row.get(what) for row in rows):
+        if not any(row.value(what) for row in rows):
             continue
         one = Table(title=TITLES[what])
         for head in ("run", what[:-1], *(head for head, _, _ in heads)):
             one.add_column(head, justify="right")
         for row in rows:
-            for name, numbers in (row.get(what) or {}).items():
-                one.add_row(row["run"], name, *(cell(numbers.get(key), unit) for _, key, unit in heads))
+            for name, numbers in row.value(what).items():
+                one.add_row(row.run, name, *(cell(numbers.get(key), unit) for _, key, unit in heads))
         yield one

@@ -1,18 +1,18 @@
 """study.yaml, read by those who work on with it."""
 from pathlib import Path
-from typing import Any, Dict, List, NamedTuple, Union
+from typing import Any, Dict, List, Mapping, NamedTuple, Union
 
 from .. import schemas
 from ..case import run_folders
 from ..errors import SlopeError
-from ..schemas import ANY, FLAG, MAYBE as PERHAPS, NUMBER, OBJECT, TEXT, listed, mapping, numbers
-from . import named_run
-from .quantities import MAYBE
-from .study_table import COLUMNS, ROAD_COLUMNS
+from ..schemas import ANY, MAYBE, NUMBER, OBJECT, TEXT, listed, mapping, numbers
+from . import rows as rows_
+from .answered import STUDY as STUDY_FILE, study_in
+from .rows import finished_of
 
 WHAT = "what `slope study` wrote, of this version (the same command rewrites it, and keeps the runs)"
 HEADLINE = mapping(     # the conservative volume
-    {**dict.fromkeys(("volume_m3", "chance_m3", "size_m3", "scatter_m3", "degrees_of_freedom"), PERHAPS),
+    {**dict.fromkeys(("volume_m3", "chance_m3", "size_m3", "scatter_m3", "degrees_of_freedom"), MAYBE),
      **numbers("mean_m3", "remove_m3"), "kind": ANY, "repeats": ANY, "rounded": ANY, "run": TEXT}, null=True,
     withheld=listed(mapping({"text": TEXT, "remedy": TEXT}), null=True))        # none in older ones
 STUDY = mapping(
@@ -23,33 +23,37 @@ STUDY = mapping(
      "largest": OBJECT},
     exceedance=listed(mapping(numbers("threshold_m", "area_in_any_run_m2", "area_in_every_run_m2")), null=True),
     envelope=mapping({"max_thickness": mapping({"file": ANY})}, null=True))
-OTHERS = {"moving": FLAG, "at_rest": FLAG, "stop_reason": ANY, "end": ANY, "release": OBJECT,
-          "summary": TEXT}      # columns of no number
 
 
-def row_of(columns):
-    """The schema of the row of a finished run."""
-    return mapping({**{key: PERHAPS if key in MAYBE else NUMBER for key in (*columns, "moving_share")}, **OTHERS})
-
-
-def read_study(path):
-    """study.yaml as a dict, with all that its readers take from it; SlopeError if something is missing."""
+def read_study(path: Path) -> Dict[str, Any]:
+    """study.yaml as a dict, whose runs are rows.Row; SlopeError if something that its readers take is missing."""
     study = schemas.load(path, WHAT, STUDY)
-    rows, about, best = study["runs"], study["study"], study["conservative"]
-    finished = [row for row in rows if row["status"] == "finished"]
+    rows, about, best = [row_of(path, one) for one in study["runs"]], study["study"], study["conservative"]
+    finished = finished_of(rows)
     if not finished:
         raise SlopeError(path, "must have a finished run", f"{len(rows)} that failed")
-    schema = row_of((*COLUMNS, *(ROAD_COLUMNS if best else ())))
-    for row in finished:
-        schemas.check(row, schema, f"{path}: run {row['run']}", WHAT)
     farthest = study["largest"].get("front_m")
-    if any(row["set"].keys() != about["set"].keys() for row in rows) or not (
-            isinstance(farthest, dict) and all(one["run"] in [row["run"] for row in finished]
+    if any(row.set.keys() != about["set"].keys() for row in rows) or not (
+            isinstance(farthest, dict) and all(one["run"] in [row.run for row in finished]
                                                for one in (best or farthest, farthest))):
         raise SlopeError(path, f"must be {WHAT}: runs, set, conservative and largest must be of one study")
-    if best and (not about.get("road") or best["volume_m3"] is None and not best.get("withheld")):
+    if best and (not about.get("road") or best["volume_m3"] is None and not best.get("withheld")
+                 or not all(row.road for row in finished)):
         raise SlopeError(path, f"must be {WHAT}: conservative must have a volume, or why it is withheld, and a road")
-    return study
+    return {**study, "runs": rows}
+
+
+def plain(study: Mapping[str, Any]) -> Dict[str, Any]:
+    """What study.yaml has of a study."""
+    return {**study, "runs": [rows_.plain(row) for row in study["runs"]]}
+
+
+def row_of(path: Path, one: Mapping[str, Any]) -> rows_.Row:
+    """The row of an entry of study.yaml."""
+    try:
+        return rows_.read(one)
+    except (KeyError, TypeError, ValueError) as error:
+        raise SlopeError(f"{path}: run {one['run']}", f"must be {WHAT}", error) from None
 
 
 class Study(NamedTuple):
@@ -61,8 +65,8 @@ class Study(NamedTuple):
     def read(cls, folder: Union[str, Path]) -> "Study":
         """That of its folder, or the one that governs of the folder of a site; SlopeError if there is none."""
         place = Path(folder)
-        found = named_run.study_in(place) or place
-        return cls(found, read_study(found / "study.yaml"))
+        found = study_in(place) or place
+        return cls(found, plain(read_study(found / STUDY_FILE)))
 
     @property
     def runs(self) -> List[Dict[str, Any]]:
@@ -73,7 +77,7 @@ class Study(NamedTuple):
         """Prefix of the rasters of a finished run, for deposits.deposit.read and others."""
         for row in self.runs:
             if row["run"] == run and "summary" in row:
-                return run_folders.prefix_of(run_folders.summary_of(self.folder, row))
+                return run_folders.prefix_of(run_folders.summary_of(self.folder, row["summary"]))
         raise SlopeError(self.folder, "must have a finished run of that name", run)
 
     def frame(self):

@@ -1,5 +1,5 @@
 """The tables over all runs of a study, and over its combinations: as a CSV and on the screen."""
-from typing import List
+from typing import Dict, List, Optional, Sequence
 
 from rich.table import Table
 
@@ -7,32 +7,35 @@ from .. import disk
 from ..mobility.run_length import STRAIGHT
 from ..statistics import headline
 from . import combinations, quantities
-from .quantities import KNOWN, OF_ROAD, OF_RUN, REMOVE, On, shown_on, written
+from .quantities import KNOWN, OF_ROAD, OF_RUN, On, shown_on, written
+from .rows import Failed, Finished, Row, finished_of, plain
 
 COLUMNS, ROAD_COLUMNS, IF_KNOWN = ([one.key for one in several if On.HIDDEN not in one.on]
                                    for several in (OF_RUN, OF_ROAD, quantities.IF_KNOWN))
-ANSWER = {True: "yes", False: "no"}
+ANSWER: Dict[Optional[bool], str] = {True: "yes", False: "no"}
 # heads of the columns that a narrow screen lacks first; then it lacks the last ones
 LESS = [one.on_screen for one in sorted(shown_on("screen"), key=lambda one: one.keeps)]
 
 
-def columns_of(rows) -> List[str]:
+def columns_of(finished: Sequence[Finished]) -> List[str]:
     """Those of every run, and with a road of that."""
-    return [*COLUMNS, *(ROAD_COLUMNS if any(REMOVE in row for row in rows) else ())]
+    return [*COLUMNS, *(ROAD_COLUMNS if any(row.road for row in finished) else ())]
 
 
-def table(settings, repeated, rows, defaults):
+def table(settings, repeated, rows: Sequence[Row], defaults):
     """The CSV over all runs."""
-    columns = [*columns_of(rows), *(key for key in IF_KNOWN if any(row.get(key) is not None for row in rows)),
+    finished = finished_of(rows)
+    columns = [*columns_of(finished), *(key for key in IF_KNOWN if any(row.value(key) is not None for row in finished)),
                "status", "error"]
-    if any(row.get("length_is") == STRAIGHT for row in rows):
+    if any(row.length_is == STRAIGHT for row in finished):
         columns.insert(columns.index("length_deg") + 1, "length_is")
     more = [name for name in repeated if name not in settings]
 
-    def line(row):
-        cells = {**row, **{name: ANSWER.get(row.get(name)) for name in ("moving", "at_rest")}}
-        chosen = {**defaults, **row["set"], **row["repeat"]}
-        return [row["run"], *(chosen[name] for name in (*settings, *more)), *(cells.get(key) for key in columns)]
+    def line(row: Row):
+        cells = plain(row)
+        cells.update({name: ANSWER.get(cells.get(name)) for name in ("moving", "at_rest")})
+        chosen = {**defaults, **row.set, **row.repeat}
+        return [row.run, *(chosen[name] for name in (*settings, *more)), *(cells.get(key) for key in columns)]
 
     return disk.csv_text(["run", *settings, *more, *columns], map(line, rows))
 
@@ -76,24 +79,24 @@ def fit(shown: Table, width: int) -> List[str]:
     return left_out
 
 
-def runs_shown(settings, rows, scatters, title) -> Table:
+def runs_shown(settings, rows: Sequence[Row], scatters, title) -> Table:
     """A line for each run."""
     names, caption = varied(settings)
     shown = Table(title=title, caption=caption)
-    finished = [row for row in rows if row["status"] == "finished"]
-    columns = [one for one in shown_on("screen") if any(row.get(one.key) is not None for row in finished)]
-    repeated = any(row["repeat"] for row in rows)
+    finished = finished_of(rows)
+    columns = [one for one in shown_on("screen") if any(row.value(one.key) is not None for row in finished)]
+    repeated = any(row.repeat for row in rows)
     for head in (*names, *(["repeat"] * repeated)):
         shown.add_column(head, justify="right", no_wrap=True)
     for one in columns:
         shown.add_column(one.on_screen, justify="right")
     for row in rows:
-        cells = [row["set"][name] for name in names] + [combinations.key_of(row["repeat"])] * repeated
-        if row["status"] == "failed":
+        cells = [row.set[name] for name in names] + [combinations.key_of(row.repeat)] * repeated
+        if isinstance(row, Failed):
             cells += ["failed"]
         else:
-            cells += ["-" if row[one.key] is None else volume(row[one.key], scatters.get(one.key))
-                      if one.screen == KNOWN else written(one.screen, row[one.key]) for one in columns]
+            cells += ["-" if row.value(one.key) is None else volume(row.value(one.key), scatters.get(one.key))
+                      if one.screen == KNOWN else written(one.screen, row.value(one.key)) for one in columns]
         shown.add_row(*cells)
     return shown
 

@@ -9,9 +9,8 @@ from ..mobility.road import at_road
 from ..statistics import answer, withheld
 from ..statistics.withheld import Facts
 from . import withheld_words
+from .rows import Finished, Row, finished_of
 from .withheld_words import Case
-
-Row = Mapping[str, Any]
 
 
 class Events(NamedTuple):
@@ -27,7 +26,7 @@ class Events(NamedTuple):
     reached: Tuple[float, float]
     passed: Tuple[float, float]
 
-    def road(self, rows: Sequence[Row]) -> answer.Road:
+    def road(self, rows: Sequence[Finished]) -> answer.Road:
         """With the runs of a study."""
         return answer.Road(self.near, self.far, self.reached, self.passed, longest(rows), at_the_road(rows))
 
@@ -49,27 +48,27 @@ def known_events(prefix: Path, terrain: Optional[Path], road, about: Mapping[str
     return Events(median, at.length, at.passed, one.shares(at.length), one.shares(at.passed))
 
 
-def longest(rows: Sequence[Row]) -> Optional[float]:
+def longest(rows: Sequence[Finished]) -> Optional[float]:
     """Length (m) of the longest of the runs that finished."""
-    return max((row["length_m"] for row in rows if row.get("length_m") is not None), default=None)
+    return max((row.length_m for row in rows if row.length_m is not None), default=None)
 
 
-def at_the_road(rows: Sequence[Row]) -> answer.AtRoad:
+def at_the_road(rows: Sequence[Finished]) -> answer.AtRoad:
     """How many of the runs that finished bring a ball to the road, or past it: what lies there at the end, or left the
     terrain there. A lobe counts, however small.
     """
-    ball = [row["ball_m3"] for row in rows]
-    past = [row["beyond_road_m3"] or 0.0 for row in rows]
-    brought = [(row["on_road_m3"] or 0.0) + one for row, one in zip(rows, past)]
+    ball = [row.ball_m3 for row in rows]
+    past = [row.at_road.beyond_road_m3 or 0.0 for row in rows]
+    brought = [(row.at_road.on_road_m3 or 0.0) + one for row, one in zip(rows, past)]
     balls, most = max((one / size, one) for one, size in zip(brought, ball))
     return answer.AtRoad(len(rows), sum(one >= size for one, size in zip(brought, ball)),
                          sum(one >= size for one, size in zip(past, ball)), most, balls)
 
 
-def left_before(row: Row) -> float:
+def left_before(row: Finished) -> float:
     """m3 that left the terrain with the road ahead; where it is not known which balls did, all that left."""
-    known = row["left_before_road_m3"]
-    return row["off_grid_m3"] + row["lost_m3"] if known is None else known
+    known = row.at_road.left_before_road_m3
+    return row.off_grid_m3 + row.lost_m3 if known is None else known
 
 
 def facts(rows: Sequence[Row], volume: float, on_road: float, events: Optional[Events]) -> Facts:
@@ -77,13 +76,13 @@ def facts(rows: Sequence[Row], volume: float, on_road: float, events: Optional[E
 
     volume, on_road: the number that is to be used, and its part on the road itself, m3.
     """
-    finished = [row for row in rows if row["status"] == "finished"]
-    worst = max(finished, key=lambda row: left_before(row) / row["released_m3"])
-    left = [one for one in worst["left"] or () if one.get("where") == BEFORE]
+    finished = finished_of(rows)
+    worst = max(finished, key=lambda row: left_before(row) / row.released_m3)
+    left = [one for one in worst.left or () if one.get("where") == BEFORE]
     where = f": {left_words.where(left)}" if left else ": it is not known where, as the runs are of an older version" \
-        if worst["left_before_road_m3"] is None else ""
-    return Facts(volume, on_road, min(row["ball_m3"] for row in finished), len(rows), len(rows) - len(finished),
-                 sum(not row["at_rest"] for row in finished), left_before(worst) / worst["released_m3"],
+        if worst.at_road.left_before_road_m3 is None else ""
+    return Facts(volume, on_road, min(row.ball_m3 for row in finished), len(rows), len(rows) - len(finished),
+                 sum(not row.at_rest for row in finished), left_before(worst) / worst.released_m3,
                  longest(finished), events and events.median, where, left_words.to_add(left))
 
 
@@ -92,8 +91,9 @@ def reasons_of_ensemble(rows: Sequence[Row], events: Optional[Events], case: Cas
 
     Of volumes the largest of all runs count: where even those govern nothing, no quantile does.
     """
-    finished = [row for row in rows if row["status"] == "finished"]
-    largest, on_road = (max(row[key] for row in finished) for key in ("remove_m3", "remove_on_road_m3"))
+    finished = finished_of(rows)
+    largest = max(row.at_road.remove_m3 for row in finished)
+    on_road = max(row.at_road.remove_on_road_m3 for row in finished)
     return withheld_words.with_remedies(withheld.reasons(facts(rows, largest, on_road, events)), case)
 
 
@@ -102,11 +102,10 @@ def judge(best: Dict[str, Any], rows: Sequence[Row], events: Optional[Events], c
 
     A volume that is withheld is None there, so that no reader takes it for one.
     """
-    mine = [row["remove_on_road_m3"] for row in rows if row["status"] == "finished" and row["set"] == best["set"]]
+    mine = [row.at_road.remove_on_road_m3 for row in finished_of(rows) if row.set == best["set"]]
     found = withheld.reasons(facts(rows, best["volume_m3"], sum(mine) / len(mine), events))
     best["withheld"], best["zero"] = withheld_words.with_remedies(found, case), None
     if found:
         best["volume_m3"] = best["rounded"]["volume_m3"] = None
     elif best["volume_m3"] == 0:
-        finished = sum(row["status"] == "finished" for row in rows)
-        best["zero"] = withheld_words.zero(finished, events and max(events.reached))
+        best["zero"] = withheld_words.zero(len(finished_of(rows)), events and max(events.reached))

@@ -1,0 +1,145 @@
+"""The rows of runs: what each finished run says, and what it says of a road, read from its files and kept with it."""
+import functools
+import os
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, Dict, List, Optional, Sequence
+
+import numpy as np
+
+from .. import disk, kept, records
+from ..case import logs, run_folders
+from ..findings import Finding, entries
+from ..releases import release_toe
+from ..runs.repeats import Repeat
+from ..sites import site_choices
+from ..survey import rasters
+from ..tables import judged, quantities, structures
+from ..tables.rows import Failed, Finished, OnRoad, Row
+from ..tables.study_maps import Maps
+from . import body_depth, site_ground
+from .setup import Road, Setup
+
+OF_SUMMARY = ("moves", "not counted")      # kinds of warnings
+
+
+def rows_of(setup: Setup, todo: Sequence[Repeat], maps: Optional[Maps] = None) -> List[Row]:
+    """A row for each run, finished or failed; what finished is added to the maps."""
+    found: List[Row] = []
+    for run in rasters.progress(todo, "collecting the runs"):
+        if run.error:
+            found.append(Failed(run.name, run.combination, run.repeat, run.batch, run.error, run.log.warnings))
+            continue
+        row = finished(run, setup.output)
+        if maps:
+            thickness, most = (run_folders.load_raster(prefix_of(run), name)
+                               for name in ("thickness", "max_thickness"))
+            maps.add(run.name, thickness, most, not row.batch)
+        found.append(with_road(run, setup.road, row) if setup.road else row)
+    return found
+
+
+def prefix_of(run: Repeat) -> Path:
+    return run_folders.prefix_of(run.folder / str(run_folders.ended(run.folder).get("summary")))
+
+
+def finished(run: Repeat, output: Path) -> Finished:
+    """The row of a finished run, for a table in a folder; its numbers are kept with the run."""
+    run.log.update()
+    found = kept.value(run.folder / ".row.json", run_folders.state(run.folder), lambda: measured(
+        run.folder, run_folders.ended(run.folder)["summary"], run.log))
+    return records.read(Finished, {
+        "run": run.name, "set": run.combination, "repeat": run.repeat, "batch": run.batch, **found,
+        "summary": os.path.relpath(run.folder / found["summary"], output)})
+
+
+def alone(folder: Path, summary: Path, log: logs.Log) -> Finished:
+    """The row of a run that is none of a study: it has no name."""
+    return records.read(Finished, {"run": "", "set": {}, "repeat": {}, "batch": 0,
+                                   **disk.plain(measured(folder, summary.name, log))})
+
+
+def measured(folder: Path, summary_name: str, log: logs.Log) -> Dict[str, Any]:
+    """The fields of a Finished, but for what is asked of it; the summary as named in the run's folder."""
+    from ..deposits import deposit, gone
+    from ..mobility import run_length
+    prefix, marker = run_folders.prefix_of(folder / summary_name), run_folders.ended(folder)
+    about = run_folders.begun(folder) if (folder / run_folders.VARIABLES).is_file() else {}
+    summary = run_folders.load_summary(folder / summary_name)
+    thickness = run_folders.load_raster(prefix, "thickness")
+    volume = summary["volume"]
+    stays = volume["released"] - volume["off_grid"] - volume["lost"]
+    on_grid = float(np.nansum(thickness.z)) * thickness.transform.a ** 2
+    base = run_folders.load_raster(prefix, "surface").z - thickness.z
+    left = deposit.Deposit(str(prefix), thickness, base, summary, None)
+    length = run_length.of_run(left, terrain_of(folder, log))
+    return {"variables": about.get("variables") or {},
+            quantities.STOP: site_ground.of_variables(about.get("variables")), "ranks": about.get("ranks"),
+            "package": about.get("package"),
+            **quantities.of_length(length), "left": gone.entries(left),
+            "ball_m3": volume["released"] / summary["balls"]["released"],
+            "mass_error": (on_grid - stays) / volume["released"],
+            **judged.columns(summary, log), "change_rate": summary.get("change_rate"),
+            "wall_s": marker.get("wall_seconds"), "summary": summary_name,
+            "slope_version": summary["slope_version"], "lammps_version": summary["lammps_version"],
+            "lmp_sha256": about.get("lmp_sha256"), **structures.of_run(folder, log.settings)}
+
+
+def with_road(run: Repeat, road: Road, row: Finished) -> Finished:
+    """With what `slope volume` says of it, which goes to the folder volume of the run, without the picture, and is kept
+    there; and with what lies beyond."""
+    made_of = {"run": run_folders.state(run.folder), "road": road._replace(file=Path(road.file.name))._asdict(),
+               "file": site_choices.content(str(road.file))}
+    folder = run.folder / quantities.volume_folder(road.name)
+    found = kept.value(folder / "row.json", made_of, functools.partial(measured_on, road, run, row),
+                       [folder / name for name in ("volume.yaml", "volume.tif", "volume_mesh.tif")])
+    return replace(row, road=records.read(OnRoad, found), left=found["left"])
+
+
+def measured_on(road: Road, run: Repeat, row: Finished) -> Dict[str, Any]:
+    """The fields of an OnRoad; left: what left the terrain, by the sides of the road."""
+    from ..deposits import volume
+    prefix = prefix_of(run)
+    terrain, thickness = terrain_of(run.folder, run.log), run_folders.load_raster(prefix, "thickness")
+    wanted = volume.Wanted(road.file, road.mesh, road.cut_angle, road.local, asked=road.asked)
+    found = volume.of_run(str(prefix), wanted, terrain)
+    volume.write(found, run.folder / quantities.volume_folder(road.name), picture=False)
+    about = disk.plain(found.about)       # numpy has no place in study.yaml
+    released = run_folders.load_raster(prefix, "arrival").z == 0
+    polygon, total = road.read(placed(thickness, run)).polygon, about["clearing"]
+    taken = release_toe.on_body(body_depth.body_of(released, thickness, row.ball_m3), thickness, polygon,
+                                release_toe.rim(row.ball_m3, thickness.transform.a))
+    if taken:
+        found.warnings.append(taken.finding(road.file.name))
+    return {"road_on_body_m2": taken.area if taken else 0.0, "remove_m3": about["volume"]["remove"],
+            "remove_on_road_m3": about["volume"]["remove_on_road"],
+            "remove_beside_road_m3": about["volume"]["remove_beside_road"],
+            **quantities.of_division(about["divided"], about["left"]),
+            "blocked_m": total["blocked_length"], "axis_thickness_m": about["axis"]["largest_thickness"],
+            "remove_lane_m3": total.get("remove_lane"), "lane_hours": total.get("hours_lane"),
+            "clear_hours": total.get("hours"), "stretches": about["stretches"], "clearing": total,
+            # what it says of the summary is in the table
+            "road_warnings": entries(in_folder(one, run.folder) for one in found.warnings
+                                     if one.kind not in OF_SUMMARY)}
+
+
+def in_folder(one: Finding, folder: Path) -> Finding:
+    """The same, whose files are named as from a run's folder: one warning for all runs."""
+    return one._replace(numbers={name: value.replace(f"{folder}/", "") if isinstance(value, str) else value
+                                 for name, value in one.numbers.items()})
+
+
+def placed(raster, run: Repeat):
+    """The raster with the CRS and the offset of the run's terrain."""
+    place = terrain_place(run)
+    return raster._replace(crs=place.crs, offset=place.offset) if place else raster
+
+
+def terrain_place(run: Repeat):
+    """CRS and offset of the runs' local metres, from the sidecar of their terrain; None without one."""
+    return run.log.terrain and rasters.read_sidecar(run.folder / run.log.terrain)
+
+
+def terrain_of(folder: Path, log: logs.Log) -> Optional[Path]:
+    """The terrain file of a run, None without one."""
+    return folder / log.terrain if log.terrain else None
