@@ -5,9 +5,8 @@ finished (jobs.py), collect (results.py), combine (combinations.py, headline.py)
 """
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, List, Mapping, Optional, Sequence
+from typing import Any, Dict, List, Mapping, Optional, Sequence
 
-from .. import disk
 from ..case import decks
 from ..case.settings import check_settings, one_value_each
 from ..ensembles import known_events, known_study, sample
@@ -22,7 +21,7 @@ from ..studies import ahead, console, files, fine_runs, results, road_numbers, s
 from ..studies.road_numbers import Made
 from ..studies.study import OfAKind, RunsFailed, check_more_than, check_thresholds, perform
 from ..survey import roads
-from ..tables import answered, elastic, intensity, next_step
+from ..tables import answered, intensity, next_step, study_types
 from . import known_arguments, road_arguments
 from .run_arguments import DECK, Intensity, Repeats, Runs, Sample, setup_of
 
@@ -163,17 +162,18 @@ def run_both(args: Request, asked: Site, points: int) -> Made:
         failed, weighted = failed or error, error.found
     if args.dry_run:
         return Made((), None)
-    made = {name: about for name, about in ((site_study.STUDY, paper.about), (site_study.ENSEMBLE, weighted))
-            if about}
+    made: Dict[str, study_types.Study] = {
+        name: about for name, about in ((site_study.STUDY, paper.about), (site_study.ENSEMBLE, weighted)) if about}
     found, governs = answered.of_both(*made.values()) if len(made) == 2 else None, list(made)[-1]
     if found:
         governs = site_study.STUDY if found.source is Source.PAPER else site_study.ENSEMBLE
-    number = found.about() if found else made[governs].get("headline")
+    number = found.about() if found else made[governs]["headline"]
     step = next_step.of_studies([next_step.Made(about, site / name) for name, about in made.items()], number)
     for name, about in made.items():
-        made[name] = {**about, "study": {**about["study"], "governs": governs}, "headline": number,
-                      next_step.ENTRY: step and step._asdict(), elastic.ENTRY: (paper.about or {}).get(elastic.ENTRY)}
-        files.write_about(site / name, made[name])
+        about["study"]["governs"], about["headline"] = governs, number
+        about["next_step"] = step.about() if step else None
+        about["largest_restitution"] = paper.about["largest_restitution"] if paper.about else None
+        files.write_about(site / name, about)
     for name, about in made.items():
         if name != governs:
             write_report(site / name, site / PAGES[name], about, asked, film=False, quiet=args.quiet)
@@ -287,11 +287,11 @@ def refuse(args: Request, names) -> None:
                              None if first is True else f"{first:g}" if isinstance(first, float) else first)
 
 
-def write_report(folder: Path, page: Path, about: Mapping[str, Any], site: Site, film=True, quiet=False) -> None:
+def write_report(folder: Path, page: Path, about: study_types.Study, site: Site, film=True, quiet=False) -> None:
     """The page on a study, of which study.yaml says this, unless it is there; one of several roads has no film."""
     from ..report import document
     from ..report.heading import Asked
-    asked = Asked(folder, film=page.with_suffix(".mp4") if film and not site.road else None, study=disk.plain(about),
+    asked = Asked(folder, film=page.with_suffix(".mp4") if film and not site.road else None, study=about,
                   site=site.content)
     said = document.update(asked, page)
     if not quiet:

@@ -5,7 +5,7 @@ Order of the work: the numbers of each quantity (hazard.py), which variables it 
 """
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence
+from typing import Dict, List, Mapping, NamedTuple, Optional, Sequence
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from ..errors import SlopeError
 from ..findings import Finding, entries, texts
 from ..mobility.exceedance import Mobility
 from ..statistics import emulator, hazard
-from ..tables import combinations, quantities, withheld_words
+from ..tables import combinations, quantities, study_types, withheld_words
 from ..tables.quantities import On
 from ..tables.rows import Finished, Row, finished_of
 from . import ensemble_maps, farther, known_events
@@ -56,7 +56,7 @@ def check_quantity(of: Optional[str], road: bool) -> str:
 class Evaluated(NamedTuple):
     """about: what study.yaml says of an ensemble, but for its maps; curves, analyses: of its quantities; finished: rows
     of the planned runs that did, of so many points, as failed did not; known: weighted by known events."""
-    about: Dict[str, Any]
+    about: study_types.Ensemble
     curves: Mapping[str, hazard.Curve]
     analyses: Mapping[str, emulator.Analysis]
     finished: Sequence[Finished]
@@ -76,18 +76,18 @@ def evaluate(order: Order, rows: Sequence[Row], mobility: Optional[Mobility]) ->
     of_quantity = {name: (quantities.name_of(name, finished), quantities.ALL[name].unit)
                    for name in quantities.known(On.ASKED, finished)}
     curves = {name: hazard.curve(column(finished, name), point, failed) for name in of_quantity}
-    about: Dict[str, Any] = {
-        "design": order.sample.about, "runs": len(planned), "finished": len(finished), "failed": failed,
-        "points": len(set(point)), "confidence": hazard.CONFIDENCE, "of": order.of if order.of in curves else None,
-        "quantities": {name: {"name": what, "unit": unit, **numbers(column(finished, name), point, failed)}
-                       for name, (what, unit) in of_quantity.items()}}
     places = order.sample.places(finished)
     main = [name for name in dict.fromkeys((order.of, *quantities.keys(On.INFLUENCE))) if name in of_quantity]
     analyses = {name: emulator.analyse(order.sample.names, places, column(finished, name), point, order.sample.snap)
                 for name in main}
-    about["influence"] = {name: one.about() for name, one in analyses.items()}
+    about: study_types.Ensemble = {
+        "design": order.sample.about, "runs": len(planned), "finished": len(finished), "failed": failed,
+        "points": len(set(point)), "confidence": hazard.CONFIDENCE, "of": order.of if order.of in curves else None,
+        "quantities": {name: numbers(what, unit, column(finished, name), point, failed)
+                       for name, (what, unit) in of_quantity.items()},
+        "influence": {name: one.about() for name, one in analyses.items()}, "doubts": [], "maps": [],
+        "known_events": None}
     about["doubts"] = entries([*no_effect(finished), *doubts(about)])
-    about.update(maps=[], known_events=None)
     known = None
     if order.condition:
         assert order.added and mobility
@@ -96,20 +96,18 @@ def evaluate(order: Order, rows: Sequence[Row], mobility: Optional[Mobility]) ->
     return Evaluated(about, curves, analyses, finished, len(set(point)), failed, known)
 
 
-def write(found: Evaluated, levels: ensemble_maps.Thresholds, output: Path, place,
-          grids: Optional[str]) -> Dict[str, Any]:
-    """Tables and maps; the entries of the maps, as study.yaml has them, of the ensemble and of its known events.
+def write(found: Evaluated, levels: ensemble_maps.Thresholds, output: Path, place, grids: Optional[str]) -> None:
+    """Tables and maps, whose entries go to what study.yaml says of the ensemble and of its known events.
 
     place: CRS and offset of the maps; grids: why there can be none.
     """
-    maps: Dict[str, Any] = {"maps": [] if grids else ensemble_maps.write(
+    found.about["maps"] = [] if grids else ensemble_maps.write(
         output / MAPS, [run_folders.prefix_of(run_folders.summary_of(output, row.summary)) for row in found.finished],
-        found.points, found.failed, levels, place)}
+        found.points, found.failed, levels, place)
     if found.known:
-        maps["known_events"] = {**found.known.about, **known_events.write(found.known, levels, output, place, grids)}
+        known_events.write(found.known, levels, output, place, grids)
     disk.write(output / HAZARD, hazard.table(found.curves))
     disk.write(output / INFLUENCE, influence_table(found.analyses))
-    return maps
 
 
 def points_of(sample: Sample, finished: Sequence[Finished]) -> List[int]:
@@ -125,13 +123,15 @@ def column(finished: Sequence[Finished], name: str) -> np.ndarray:
 
 # --- numbers ---
 
-def numbers(values: np.ndarray, point: Sequence[int], failed: int) -> Dict[str, Any]:
+def numbers(name: str, unit: str, values: np.ndarray, point: Sequence[int], failed: int) -> study_types.OfRuns:
     """Of a quantity: mean, deviation, range and quantiles."""
-    return {"mean": float(values.mean()),
+    quantiles = [one if several(point) else one._replace(low=None, high=None)
+                 for one in hazard.quantiles(values, point, failed)]
+    return {"name": name, "unit": unit, "mean": float(values.mean()),
             "standard_deviation": float(values.std(ddof=1)) if len(values) > 1 else None,
             "smallest": float(values.min()), "largest": float(values.max()),
-            "quantiles": [(one if several(point) else one._replace(low=None, high=None))._asdict()
-                          for one in hazard.quantiles(values, point, failed)]}
+            "quantiles": [{"share": one.share, "value": one.value, "low": one.low, "high": one.high}
+                          for one in quantiles]}
 
 
 def several(point: Sequence[int]) -> bool:
@@ -151,7 +151,7 @@ def no_effect(finished: Sequence[Finished]) -> List[Finding]:
                                   "then": then}, [finished[k].run for k in same])]
 
 
-def doubts(about: Mapping[str, Any]) -> List[Finding]:
+def doubts(about: study_types.Ensemble) -> List[Finding]:
     """The caveats on the numbers."""
     found = []
     if about["failed"]:
@@ -183,7 +183,7 @@ def influence_table(analyses: Mapping[str, emulator.Analysis]) -> str:
 
 # --- words ---
 
-def describe(about: Mapping[str, Any]) -> List[str]:
+def describe(about: study_types.Ensemble) -> List[str]:
     """The ensemble in a few lines: the quantiles of the main quantity, what it depends on, the caveats."""
     lines = [f"ensemble: {about['finished']} runs of {about['points']} points; bounds hold with "
              f"{100 * about['confidence']:g} %"]
@@ -196,22 +196,22 @@ def describe(about: Mapping[str, Any]) -> List[str]:
             lines.append(f"{entry['name']}: " + "; ".join(shares))
         lines.append(f"{entry['name']} depends on " + dependence_text(about["influence"][of]))
     lines += [f"caveat: {text}" for text in texts(about["doubts"])]
-    return lines + (known_events.describe(about["known_events"], of) if about.get("known_events") else [])
+    return lines + known_events.describe(about)
 
 
-def quantile_text(one: Mapping[str, Any], unit: str) -> str:
+def quantile_text(one: study_types.Quantile, unit: str) -> str:
     number = quantities.number
     low = "?" if one["low"] is None else number(one["low"])
     high = "?" if one["high"] is None else number(one["high"])
     return f"{100 * one['share']:g} % of the runs stay within {number(one['value'])} {unit} ({low} to {high})"
 
 
-def dependence_text(entry: Mapping[str, Any]) -> str:
+def dependence_text(entry: study_types.Analysis) -> str:
     """The variables, the one that matters most first."""
     variables = entry["variables"]
     if all(one["total"] is None for one in variables.values()):
         order = sorted(variables, key=lambda name: -abs(variables[name]["rank"]))
         return ", ".join(f"{name} (rank {variables[name]['rank']:+.2f})" for name in order) + f"; {entry['text']}"
-    order = sorted(variables, key=lambda name: -variables[name]["total"])
+    order = sorted(variables, key=lambda name: -(variables[name]["total"] or 0.0))
     return ", ".join(f"{name} ({variables[name]['first']:.2f} alone, {variables[name]['total']:.2f} with others, +- "
                      f"{variables[name]['total_error']:.2f})" for name in order) + f"; {entry['text']}"

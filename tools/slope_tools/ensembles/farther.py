@@ -11,7 +11,7 @@ that was given goes on there as it is within: all of the wide box is equally lik
 of it.
 """
 from pathlib import Path
-from typing import Any, Dict, List, NamedTuple, Optional, Sequence
+from typing import Dict, List, NamedTuple, Optional, Sequence
 
 import numpy as np
 import yaml
@@ -21,6 +21,7 @@ from ..digits import metres, percent
 from ..schemas import NUMBER, OBJECT, TEXT, listed, mapping, named
 from ..statistics import backanalysis, designs, distributions, emulator
 from ..statistics.answer import Code, Reason
+from ..tables import study_types
 from .sample import Sample
 
 FILE = "added.yaml"
@@ -148,9 +149,9 @@ class Added:
         return (f"no run goes beyond {metres(float(max(lengths)))}; {percent(float(min(beyond)))} of known "
                 f"events do; {len(batch.points)} more points towards {self.text(batch)}")
 
-    def about(self) -> Dict[str, Any]:
+    def about(self) -> study_types.Added:
         """What study.yaml says of it."""
-        return {"points": self.number, "stopped": self.stopped and self.stopped.about(),
+        return {"points": self.number, "stopped": self.stopped.about() if self.stopped else None,
                 "batches": [{"points": len(one.points), "ranges": self.text(one)} for one in self.batches]}
 
 

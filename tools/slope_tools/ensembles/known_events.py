@@ -6,7 +6,7 @@ Order of the work: where known events end on the path of this mass (mobility), t
 """
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, cast
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from ..errors import SlopeError
 from ..findings import Finding, entries, texts
 from ..mobility import body, exceedance, known, run_length, weights
 from ..statistics import answer, emulator, hazard
-from ..tables import answer_words, combinations, quantities
+from ..tables import answer_words, combinations, quantities, study_types
 from ..tables.rows import Row, finished_of
 from . import conditioned, farther, known_influence, known_maps
 from .sample import Sample
@@ -120,7 +120,7 @@ class Runs:
 
 class Evaluated(NamedTuple):
     """about: what study.yaml says of the weighted runs, but for their maps; runs: None where nothing weighs them."""
-    about: Dict[str, Any]
+    about: study_types.Known
     runs: Optional[Runs]
     curves: Mapping[str, hazard.Curve]
 
@@ -133,15 +133,15 @@ def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: S
     quantities; main: those whose dependence counts.
     """
     asked = condition.asked
-    about: Dict[str, Any] = {
+    known: study_types.Known = {
         "set": asked.name(found), "events": asked.number(found), "left_out": list(asked.left_out),
         "confined": asked.confined, "path": exceedance.WORDS[found.chosen], "volume_Mm3": found.volume,
-        "outside": found.outside}
+        "outside": found.outside, "reached": None, "doubts": []}
     runs = Runs(sample, added.batches, rows, found)
     if found.outside or len(runs.rows) < 2:
-        return Evaluated({**about, "reached": None, "doubts": entries(
-            [Finding("no event", {"text": text}) for text in found.outside] or [Finding("few lengths")])}, None, {})
-    about.update(reach(runs, found), added=added.about())
+        known["doubts"] = entries([Finding("no event", {"text": text}) for text in found.outside]
+                                  or [Finding("few lengths")])
+        return Evaluated(known, None, {})
     names = {name: one for name, one in names.items()
              if name not in NOT_FARTHER and not name.endswith("_deg") and runs.have(name)}
     main = [name for name in main if name in names]
@@ -149,6 +149,8 @@ def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: S
     factors = {name: design.effect(runs.column(name)) for name in main} if design else {}
     curves = {name: conditioned.curve(runs.column(name), runs.mass, factors.get(name), runs.several, runs.failed_share)
               for name in names}
+    about = reach(known, runs, found)
+    about["added"] = added.about()
     about["quantities"] = {
         name: {"name": names[name][0], "unit": names[name][1],
                "quantiles": quantiles(curve, runs, name, hazard.SHARES)} for name, curve in curves.items()}
@@ -162,44 +164,43 @@ def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: S
     return Evaluated(about, runs, curves)
 
 
-def write(one: Evaluated, levels, output: Path, place, grids: Optional[str]) -> Dict[str, Any]:
-    """Tables and maps; the entries of the maps, as study.yaml has them. levels, place, grids: see ensemble.write."""
+def write(one: Evaluated, levels, output: Path, place, grids: Optional[str]) -> None:
+    """Tables and maps, whose entries go to what study.yaml says. levels, place, grids: see ensemble.write."""
     runs = one.runs
     if runs is None:
         for name in (HAZARD, WEIGHTS):
             (output / name).unlink(missing_ok=True)         # of a study before this one
-        return {}
+        return
     disk.write(output / HAZARD, hazard.table(one.curves))
     disk.write(output / WEIGHTS, weights_table(runs))
-    return {"maps": [] if grids else known_maps.write(
-        output / FOLDER, [run_folders.prefix_of(run_folders.summary_of(output, row.summary)) for row in runs.rows],
-        runs.mass,
-        runs.several, runs.failed_share, levels, place)}
+    prefixes = [run_folders.prefix_of(run_folders.summary_of(output, row.summary)) for row in runs.rows]
+    cast(study_types.Weighted, one.about)["maps"] = [] if grids else known_maps.write(
+        output / FOLDER, prefixes, runs.mass, runs.several, runs.failed_share, levels, place)
 
 
-def quantiles(curve: hazard.Curve, runs: Runs, name: str, shares: Sequence[float]) -> List[Dict[str, Any]]:
+def quantiles(curve: hazard.Curve, runs: Runs, name: str, shares: Sequence[float]) -> List[study_types.Quantile]:
     """What study.yaml says of those of a quantity."""
     found = conditioned.quantiles(curve, shares, runs.column(name), runs.mass)
     if len(set(runs.point)) == 1:       # one run has no bounds
         found = [one._replace(low=None, high=None) for one in found]
-    return [one._asdict() for one in found]
+    return [{"share": one.share, "value": one.value, "low": one.low, "high": one.high, "gap": one.gap}
+            for one in found]
 
 
-def reach(runs: Runs, found: exceedance.Mobility) -> Dict[str, Any]:
-    """How much of the known events the runs reach, and how many runs that is."""
-    one = runs.weights
-    return {"reached": one.reached, "short": one.short, "far": one.far, "runs": len(runs.rows), "failed": runs.failed,
-            "effective": one.effective, "distance": one.distance,
+def reach(known: study_types.Known, runs: Runs, found: exceedance.Mobility) -> study_types.Weighted:
+    """With how much of the known events the runs reach, and how many runs that is; without numbers yet."""
+    one, longest = runs.weights, float(runs.lengths.max())
+    return {**known, "reached": one.reached, "short": one.short, "far": one.far,        # type: ignore[misc]
+            "runs": len(runs.rows), "failed": runs.failed, "effective": one.effective, "distance": one.distance,
             "far_by_lobe": [float(found.exceedance(max(row.length_by_lobe_m[k] for row in runs.rows
                                                        if row.length_by_lobe_m)))
                             for k in range(len(run_length.OTHERS))],
             "gaps": [{"low_m": gap.low, "high_m": gap.high, "share": gap.share} for gap in one.gaps],
-            "shortest_m": float(runs.lengths.min()), "longest_m": float(runs.lengths.max()),
-            "half_beyond_m": found.length_at(0.5), "path_m": found.end(float(runs.lengths.max())),
-            "beyond_path": found.beyond_path()}
+            "shortest_m": float(runs.lengths.min()), "longest_m": longest, "half_beyond_m": found.length_at(0.5),
+            "path_m": found.end(longest), "beyond_path": found.beyond_path()}
 
 
-def variable(runs: Runs, k: int, main: Sequence[str]) -> Dict[str, Any]:
+def variable(runs: Runs, k: int, main: Sequence[str]) -> study_types.KnownVariable:
     """Of a variable of the weighted runs: quantiles, and rank correlations with the main quantities."""
     places = runs.places[:, k]
     one = runs.sample.variables[k]
@@ -220,14 +221,14 @@ def rank(x: np.ndarray, y: np.ndarray, share: np.ndarray) -> Optional[float]:
     return float(w @ (both[0] * both[1])) / scale ** 0.5 if scale > 1e-18 else None
 
 
-def doubts(about: Mapping[str, Any], runs: Runs) -> List[Finding]:
+def doubts(about: study_types.Weighted, runs: Runs) -> List[Finding]:
     """The caveats, in the order of their weight."""
-    found, stopped = [], (about.get("added") or {}).get("stopped")
+    found, stopped, reached = [], about["added"]["stopped"], about["reached"] or 0.0
     if about["far"] >= 1 - farther.REACHED:
         remedy = answer_words.text(answer.Reason.read(stopped)) if stopped else "vary towards more mobile masses"
         found.append(Finding("events beyond", {"length": metres(about["longest_m"]), "share": percent(about["far"]),
                                                "remedy": remedy}))
-    if about["reached"] < farther.REACHED and about["short"] > (1 - farther.REACHED) / 2:
+    if reached < farther.REACHED and about["short"] > (1 - farther.REACHED) / 2:
         found.append(Finding("events before", {"length": metres(about["shortest_m"]),
                                                "share": percent(about["short"])}))
     found += [Finding("gap", {"low": three_at_least(gap["low_m"]), "high": metres(gap["high_m"]),
@@ -261,43 +262,44 @@ def weights_table(runs: Runs) -> str:
 
 # --- words ---
 
-def describe(about: Mapping[str, Any], of: Optional[str]) -> List[str]:
+def describe(one: study_types.Ensemble) -> List[str]:
     """The weighted ensemble in a few lines: what is reached, by how many runs, the quantiles, the caveats."""
-    lines = []
-    if about["reached"] is not None:
+    lines, about, known, of = [], study_types.weighted(one), one["known_events"], one["of"]
+    if about:
         lines = ["known events: " + summary(about)]
-        if of in about["quantities"]:
+        if of and of in about["quantities"]:
             entry = about["quantities"][of]
             lines.append(f"{entry['name']}: " + "; ".join(quantile_text(one, entry["unit"])
                                                           for one in entry["quantiles"]))
-    return lines + [f"caveat: known events: {text}" for text in texts(about["doubts"])]
+    return lines + [f"caveat: known events: {text}" for text in texts(known["doubts"] if known else ())]
 
 
-def summary(about: Mapping[str, Any]) -> str:
-    added = (about.get("added") or {}).get("points")
+def summary(about: study_types.Weighted) -> str:
+    added = about["added"]["points"]
     more = f" (those of {added} points towards longer ones among them)" if added else ""
+    reached = percent(about["reached"] or 0.0)
     return (f"the runs reach from {three_at_least(about['shortest_m'])} to {metres(about['longest_m'])}, where "
-            f"{percent(about['reached'])} of {about['events']} events of {about['set']} end ({percent(about['short'])} "
+            f"{reached} of {about['events']} events of {about['set']} end ({percent(about['short'])} "
             f"before, {percent(about['far'])} beyond{by_lobe(about)}; {about['path']}); weighted by them the "
             f"{about['runs']} runs{more} say as much as {about['effective']:.0f}")
 
 
-def by_lobe(about: Mapping[str, Any]) -> str:
+def by_lobe(about: study_types.Weighted) -> str:
     """What share lies beyond if other lobes count, where that is another one."""
-    shares = [percent(one) for one in about.get("far_by_lobe") or ()]       # none in older files
+    shares = [percent(one) for one in about["far_by_lobe"]]
     if all(one == percent(about["far"]) for one in shares):
         return ""
     least = " and ".join(percent(one) for one in run_length.OTHERS)
     return f" (with lobes of {least} {' and '.join(shares)})"
 
 
-def quantile_text(one: Mapping[str, Any], unit: str) -> str:
+def quantile_text(one: study_types.Quantile, unit: str) -> str:
     """A quantile with its bounds; without a value, what is known instead."""
     share = f"{100 * one['share']:g} % of known events"
     if one["value"] is None:
         return f"{share}: unknown, they go beyond the runs"
-    low, high = ("?" if one[side] is None else quantities.number(one[side]) for side in ("low", "high"))
-    if one.get("gap"):      # none in older files
-        first, last = map(quantities.number, one["gap"])
+    low, high = ("?" if side is None else quantities.number(side) for side in (one["low"], one["high"]))
+    if gap := one.get("gap"):
+        first, last = map(quantities.number, gap)
         return f"{share}: between {first} and {last} {unit}, as no run ends where they do ({low} to {high})"
     return f"{share} stay within {quantities.number(one['value'])} {unit} ({low} to {high})"

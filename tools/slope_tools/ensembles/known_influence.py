@@ -3,15 +3,13 @@
 The weight of a place in the unit cube is that of the runs of its length, which an emulator of log10 L gives: share of
 the known events over the density of the distributions. So the variables depend on each other (statistics.dependent).
 """
-from typing import Any, Dict
-
 import numpy as np
 
 from ..digits import percent
-from ..statistics import dependent, emulator
+from ..statistics import dependent, emulator, entries
 
 
-def evaluate(runs, quantity: str) -> Dict[str, Any]:
+def evaluate(runs, quantity: str) -> entries.Analysis:
     """What study.yaml says of it; runs: a known_events.Runs, quantity: the column that counts."""
     values = runs.column(quantity)
     _, point = np.unique(np.array(runs.point), axis=0, return_inverse=True)

@@ -12,6 +12,7 @@ from ..errors import SlopeError
 from ..runs import repeats
 from ..schemas import OBJECT
 from ..statistics import designs, distributions
+from ..tables import study_types
 from ..tables.rows import Run
 
 FILE = "design.yaml"
@@ -32,11 +33,14 @@ class Sample:
         return [one.name for one in self.variables]
 
     @property
-    def about(self) -> Dict[str, Any]:
+    def about(self) -> study_types.Design:
         """What design.yaml and study.yaml say of it."""
+        found: study_types.Design = {"kind": self.kind, "seed": self.seed, "points": self.number,
+                                     "variables": {one.name: one.text for one in self.variables}}
         wide = {one.name: list(one.wide) for one in self.variables if getattr(one, "wide", None)}
-        return {"kind": self.kind, "seed": self.seed, "points": self.number,
-                "variables": {one.name: one.text for one in self.variables}, **({"wide": wide} if wide else {})}
+        if wide:
+            found["wide"] = wide
+        return found
 
     def widened(self, bounds: Mapping[str, Tuple[float, float]]) -> "Sample":
         """The same, whose variables of these names may have added runs between wider bounds."""

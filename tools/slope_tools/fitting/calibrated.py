@@ -8,6 +8,7 @@ from ..ensembles.sample import Sample
 from ..errors import SlopeError
 from ..schemas import MAYBE, TEXT, listed, mapping, named
 from ..statistics import distributions
+from ..tables import study_types
 from .fit import ABOUT
 
 KIND = "calibrated"
@@ -24,8 +25,10 @@ class Calibrated(Sample):
     fit: str = ""           # SHA-256 of its file
 
     @property
-    def about(self) -> Dict[str, Any]:
-        return {**super().about, "fit": self.fit}
+    def about(self) -> study_types.Design:
+        found = super().about
+        found["fit"] = self.fit
+        return found
 
     def combinations(self) -> List[Dict[str, str]]:
         return [dict(one) for one in self.sets[:self.number]]

@@ -16,7 +16,7 @@ class Quantile(NamedTuple):
     value: float
     low: Optional[float]
     high: Optional[float]
-    gap: Optional[Tuple[float, float]] = None
+    gap: Optional[Sequence[float]] = None
 
 
 class Bar(NamedTuple):

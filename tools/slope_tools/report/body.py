@@ -4,6 +4,7 @@ from typing import Any, Dict, NamedTuple, Optional
 from .. import digits
 from ..statistics import headline
 from ..survey.rasters import crs_name
+from .data import Data
 
 SHAPES = {"sphere": "a spherical slip surface", "ellipsoid": "an ellipsoidal slip surface",
           "plane": "a plane slip surface", "slbl": "a slip surface by the sloping local base level"}
@@ -23,7 +24,7 @@ class Body(NamedTuple):
     polygon: Optional[str]      # file of the release area, for the appendix
 
 
-def of_data(data, ground) -> Body:
+def of_data(data: Data, ground) -> Body:
     """The body of a data.Data on its ground.Ground: by the site's file where there is one, else by the rasters."""
     site = data.site
     found = (site.get("found") or {}).get("body") or {}

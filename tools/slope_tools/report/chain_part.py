@@ -1,6 +1,6 @@
 """What a report shows of the chain: how likely which volume reaches the road at a peak acceleration, and per year."""
 import csv
-from typing import Any, List, Mapping, Optional
+from typing import Any, List, Optional
 
 import numpy as np
 
@@ -10,6 +10,9 @@ from ..errors import SlopeError
 from ..findings import texts
 from ..plots.ensemble_charts import THOUSANDS
 from ..seismic import chain_files
+from ..tables import study_types
+from .data import Data
+from .numbers import Numbers
 from .sections import Cell, Figures, Listing, Picture, Section, Table, Text, strong
 
 MOST_ROWS = 12          # of the contributions; smaller ones are joined
@@ -19,15 +22,15 @@ HOW = ("The runs release one body each. Bodies that fail together in an earthqua
        "strengths, hazard and model, nor what the masses do to each other on their way.")
 
 
-def section(data, numbers):
+def section(data: Data, numbers: Numbers):
     """Of a data.Data; None without a chain, or where the volumes of its runs are withheld."""
-    about = (data.study or {}).get("chain")
+    about = data.study["chain"] if data.study else None
     if not about or about["withheld"]:
         return None
     for one in about["per_year"] or ():
-        for name in ("value", "low", "high"):
+        for name, value in (("value", one["value"]), ("low", one["low"]), ("high", one["high"])):
             numbers.rows.append((f"more than {one['more_than_m3']:,.6g} m3 on the road: {name}", "per year", "",
-                                 f"{one[name]:.2g}", one[name]))
+                                 f"{value:.2g}", value))
     title = "How likely the road is blocked"
     caption = "P(V > v) at a peak acceleration, for volumes v on the road, with bounds of 90 %."
     if about["per_year"]:
@@ -41,14 +44,14 @@ def section(data, numbers):
         parts(about), Listing(doubts) if doubts else None])
 
 
-def bodies(about: Mapping[str, Any], numbers) -> List[List[Any]]:
+def bodies(about: study_types.Chain, numbers: Numbers) -> List[List[Any]]:
     """Rows of the table of bodies."""
     return [[one["body"], "" if one["volume_m3"] is None else
              numbers("volume", "m3", one["volume_m3"], f"body {one['body']}"),
              f"{100 * one['weight']:.2g} %", one["runs"], one["finished"]] for one in about["bodies"]]
 
 
-def parts(about: Mapping[str, Any]) -> Optional[Table]:
+def parts(about: study_types.Chain) -> Optional[Table]:
     """The table of the contributions, neighbours joined to MOST_ROWS at most; None without a hazard curve."""
     if not about["per_year"]:
         return None
@@ -64,7 +67,7 @@ def parts(about: Mapping[str, Any]) -> Optional[Table]:
                  found)
 
 
-def per_year(data, about: Mapping[str, Any]):
+def per_year(data: Data, about: study_types.Chain):
     """Volume, frequency per year and its bounds (rows), of the file; None without a hazard curve."""
     if not about["per_year"]:
         return None
@@ -78,7 +81,7 @@ def per_year(data, about: Mapping[str, Any]):
         raise SlopeError(path, f"must be what `slope study --fragility` wrote ({error})") from error
 
 
-def draw(about: Mapping[str, Any], yearly, title: str) -> str:
+def draw(about: study_types.Chain, yearly, title: str) -> str:
     """Left the curves against the peak, one for each volume; right the annual frequency against the volume."""
     with pictures.settings(figures.STYLE):
         figure, axes = pictures.subplots(1, 1 if yearly is None else 2, squeeze=False,
@@ -98,8 +101,8 @@ def draw(about: Mapping[str, Any], yearly, title: str) -> str:
             right.plot(volume, value, color=COLOURS[0], lw=1.4)
             right.set(yscale="log", ylim=(least, None), xlabel="volume on the road (m3)", ylabel="exceeded, per year")
             right.xaxis.set_major_formatter(THOUSANDS)
-        for one in axes[0]:
-            one.grid(color="#dddddd", lw=0.5)
-            one.set_axisbelow(True)
-            one.spines[["top", "right"]].set_visible(False)
+        for axis in axes[0]:
+            axis.grid(color="#dddddd", lw=0.5)
+            axis.set_axisbelow(True)
+            axis.spines[["top", "right"]].set_visible(False)
         return figures.data_uri(figure, "svg")

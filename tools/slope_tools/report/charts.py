@@ -1,5 +1,5 @@
 """The charts of a study: its values against the first variable that it varies, compared with chance."""
-from typing import Any, Dict
+from typing import Any, Dict, Mapping, Optional
 
 from ..deposits import travel_shares
 from ..drawing.figures import FULL, HALF, WIDE
@@ -8,7 +8,8 @@ from ..plots.figure_charts import Series
 from ..runs.repeats import key_of
 from ..statistics import headline
 from ..tables.quantities import ALL, REMOVE, name_of
-from .data import is_number
+from .data import Data, is_number
+from .numbers import Numbers
 from .sections import Picture
 
 AXIS = {"rolling": "rolling resistance (-)", "friction": "friction angle (degrees)", "restitution": "restitution (-)",
@@ -29,9 +30,9 @@ TERMS = {"rolling": "coefficient of rolling resistance of the balls", "friction"
 class Charts:
     """Draws the charts of a data.Data; reference: a reference.Reference or None."""
 
-    def __init__(self, data, reference):
+    def __init__(self, data: Data, reference):
         self.data, self.reference = data, reference
-        self.scatter = (data.study or {}).get("scatter") or {}
+        self.scatter: Mapping[str, Optional[Mapping[str, float]]] = data.study["scatter"] if data.study else {}
 
     def variable(self):
         """The first variable with several values, rolling if it has; None if they are no numbers."""
@@ -46,7 +47,7 @@ class Charts:
     def all(self):
         """Pictures; the first one is that of the volume to remove, if there is any."""
         data = self.data
-        if not data.study or len(data.finished) < 2 or data.study.get("ensemble"):
+        if not data.study or len(data.finished) < 2 or data.study["ensemble"]:
             return []
         far = [travel_shares.DISTANCE] if all(row.value(travel_shares.DISTANCE) is not None for row in data.finished) \
             else [] if any(map(travel_shares.lost, data.finished)) else ["front_m"]
@@ -103,10 +104,13 @@ class Charts:
 
     def mark(self, name):
         """The point of the conservative volume, and its level where it is more than the point."""
-        best = self.data.study["conservative"]
-        if best.get("withheld"):
+        best = self.data.of_study["conservative"]
+        if not best:
+            return None, []
+        volume = best["rounded"]["volume_m3"]
+        if best["withheld"] or volume is None:
             return (float(best["set"][name]), best["mean_m3"], "governing mean, not usable"), []
-        number = headline.text(best["rounded"]["volume_m3"], best["place_m3"])
+        number = headline.text(volume, best["place_m3"])
         x = float(best["set"][name])
         if best["chance_m3"] is None and best["size_m3"] is None:
             return (x, best["mean_m3"], f"{best['kind'].split(';')[0]}, {number} m3"), []
@@ -115,9 +119,9 @@ class Charts:
 
     def scatter_of(self, key):
         """The scatter of a run in a column; None without repeats."""
-        best = (self.data.study or {}).get("conservative") or {}
-        if key == REMOVE and best.get("scatter_m3") is not None:        # that of the governing combination
-            return headline.Scatter(best["scatter_m3"], best["degrees_of_freedom"])
+        best = self.data.study["conservative"] if self.data.study else None
+        if key == REMOVE and best and best["scatter_m3"] is not None:   # that of the governing combination
+            return headline.Scatter(best["scatter_m3"], best["degrees_of_freedom"] or 0.0)
         found = self.scatter.get(key)
         if found:
             return headline.Scatter(found["deviation"], found["degrees_of_freedom"])
@@ -150,11 +154,11 @@ def chance_text(clear):
     return "a line where the differences are larger than chance"
 
 
-def differences(data, numbers):
+def differences(data: Data, numbers: Numbers):
     """Sentences on what the variables do to the conservative volume, against chance."""
-    best = data.study and data.study["conservative"]
+    best = data.study["conservative"] if data.study else None
     found = []
-    for entry in (best or {}).get("differences") or ():
+    for entry in best["differences"] if best else ():
         if entry["by_m3"] == 0:
             found.append(f"{entry['variable']}: the means of all its values are the same, so that there is no trend.")
             continue

@@ -2,7 +2,7 @@
 
 No names of options, variables or files: these are in the appendix, and on the console.
 """
-from typing import Any, Dict, List, Mapping, Optional, Sequence
+from typing import Any, Dict, List, Optional, Sequence
 
 from .. import digits
 from ..deposits import travel_shares
@@ -10,13 +10,14 @@ from ..digits import percent
 from ..findings import Finding
 from ..statistics import headline, size_family
 from ..statistics.answer import SHARE, Code, Kind, Source
-from ..tables import answer_words, combinations, elastic, next_step
+from ..tables import answer_words, combinations, elastic, next_step, study_types
 from ..tables.quantities import ALL, DISTANCE
 from . import body, mobility_part, road_part, structures_part, warnings
-from .numbers import basis, farthest_of
+from .data import Data
+from .numbers import basis, farthest_of, Numbers
 
 
-def content(data, ground, numbers, answers: Sequence[Optional[Dict[str, Any]]], found,
+def content(data: Data, ground, numbers: Numbers, answers: Sequence[Optional[Dict[str, Any]]], found,
             listed: int) -> Dict[str, Any]:
     """What the template takes; answers: those of the study, the first that there is counts; found: all findings.
 
@@ -34,10 +35,10 @@ def content(data, ground, numbers, answers: Sequence[Optional[Dict[str, Any]]], 
             "caveats": warnings.first_page(unsaid(data, found))[:warnings.MOST], "rest": warnings.rest_of(listed)}
 
 
-def unsaid(data, found: Sequence[Finding]) -> List[Finding]:
+def unsaid(data: Data, found: Sequence[Finding]) -> List[Finding]:
     """The findings without what the reasons of the number say already."""
-    about = (data.study or {}).get("headline") or {"reasons": []}
-    said = {"no sizes"} if any(one.code is Code.SIZE for one in answer_words.told(about)) else set()
+    about = data.study["headline"] if data.study else None
+    said = {"no sizes"} if about and any(one.code is Code.SIZE for one in answer_words.told(about)) else set()
     return [one for one in found if one.kind not in said]
 
 
@@ -49,9 +50,9 @@ ALIKE = "each counted alike"
 ON_ROAD = "remove_on_road_m3"
 
 
-def of_headline(data, numbers) -> Optional[Dict[str, Any]]:
+def of_headline(data: Data, numbers: Numbers) -> Optional[Dict[str, Any]]:
     """What the template takes; None without a headline, and where the paper's study says all, with its parts."""
-    about = (data.study or {}).get("headline")      # none in older files
+    about = data.study["headline"] if data.study else None
     if not about or not about["ensemble"]:
         return None
     kind = Kind(about["kind"])
@@ -63,20 +64,18 @@ def of_headline(data, numbers) -> Optional[Dict[str, Any]]:
     return {"kind": kind.value, "reasons": reasons(about), "step": step_of(data), **found}
 
 
-def step_of(data) -> Optional[next_step.Step]:
-    """The next step of the headline; of older files, which have none, as their own study tells it."""
-    if next_step.ENTRY not in data.study:
-        return next_step.of_studies([next_step.Made(data.study, data.folder)], data.study["headline"])
-    said = data.study[next_step.ENTRY]
-    return said and next_step.Step(**said)
+def step_of(data: Data) -> Optional[next_step.Step]:
+    """The next step of the headline."""
+    said = data.of_study.get("next_step")
+    return next_step.Step(**said) if said else None
 
 
-def in_gap(data, about: Mapping[str, Any], numbers) -> str:
+def in_gap(data: Data, about: study_types.Headline, numbers: Numbers) -> str:
     """A sentence, where the share's known events end between two runs."""
-    if about["source"] != Source.ENSEMBLE.value or not is_weighted(data):
+    known = known_of(data)
+    if about["source"] != Source.ENSEMBLE.value or not known:
         return ""
-    several = data.study["ensemble"]["known_events"].get("to_remove") or ()
-    gap = next((one.get("gap") for one in several if one["share"] == about["share"]), None)
+    gap = next((one.get("gap") for one in known["to_remove"] or () if one["share"] == about["share"]), None)
     if not gap:
         return ""
     low, high = (numbers(f"{REMOVE.lower()}, {end} of the gap where no run ends", "m3", value)
@@ -86,17 +85,17 @@ def in_gap(data, about: Mapping[str, Any], numbers) -> str:
 
 # --- what stands in the place of the number ---
 
-def of_number(about: Mapping[str, Any], numbers) -> Dict[str, Any]:
-    share = percent(about["share"])
+def of_number(about: study_types.Headline, numbers: Numbers) -> Dict[str, Any]:
+    share = percent(about["share"] or 0.0)
     return {"title": f"{REMOVE}: {share} of known events stay within", "unit": "m3",
             "number": numbers(f"{REMOVE.lower()}, {share} of known events", "m3", about["volume_m3"]),
             "band": bounds(about, numbers) + of_paper(about, numbers)}
 
 
-def bounds(about: Mapping[str, Any], numbers) -> str:
+def bounds(about: study_types.Headline, numbers: Numbers) -> str:
     """Its bounds, each with its unit."""
-    low, high = (None if about[key] is None else numbers(f"{REMOVE.lower()}, {name} bound", "m3", about[key])
-                 for key, name in (("low_m3", "lower"), ("high_m3", "upper")))
+    low, high = (None if value is None else numbers(f"{REMOVE.lower()}, {name} bound", "m3", value)
+                 for value, name in ((about["low_m3"], "lower"), (about["high_m3"], "upper")))
     if low is None and high is None:
         return "No bounds: the runs are too few for them."
     if high is None:
@@ -104,16 +103,16 @@ def bounds(about: Mapping[str, Any], numbers) -> str:
     return f"Between {low or 0} m3 and {high} m3, with 90 % confidence."
 
 
-def of_paper(about: Mapping[str, Any], numbers) -> str:
+def of_paper(about: study_types.Headline, numbers: Numbers) -> str:
     """The conservative volume of the other study, where it has one and does not govern."""
-    volume = (about["paper"] or {}).get("volume_m3")
+    volume = about["paper"]["volume_m3"] if about["paper"] else None
     if volume is None or about["source"] != Source.ENSEMBLE.value:
         return ""
     return (" A study that takes the largest of few settings, without known events, gives "
             f"{numbers('conservative volume', 'm3', volume)} m3.")
 
 
-def of_floor(about: Mapping[str, Any], numbers) -> Dict[str, Any]:
+def of_floor(about: study_types.Headline, numbers: Numbers) -> Dict[str, Any]:
     """At least so much; where no run reaches the road, how many known events do."""
     if not about["volume_m3"]:
         return not_reached(about)
@@ -131,17 +130,17 @@ def of_floor(about: Mapping[str, Any], numbers) -> Dict[str, Any]:
             "band": band + by_family(about, numbers) + of_paper(about, numbers)}
 
 
-def by_family(about: Mapping[str, Any], numbers) -> str:
+def by_family(about: study_types.Headline, numbers: Numbers) -> str:
     """What the number becomes by the largest factor that a slide of the family grew by with smaller balls."""
     growth = [one["numbers"]["growth"] for one in about["reasons"] if one["numbers"].get("growth")]
     if not growth:
         return ""
-    most = max(size_family.Growth(**one).covered(about["volume_m3"]) for one in growth)
+    most = max(size_family.Growth(**one).covered(about["volume_m3"] or 0.0) for one in growth)
     text = numbers(f"{REMOVE.lower()}, by the largest growth with smaller balls", "m3", most)
     return f" With as much more by smaller balls as the slide that grew most, {text} m3."
 
 
-def not_reached(about: Mapping[str, Any]) -> Dict[str, Any]:
+def not_reached(about: study_types.Headline) -> Dict[str, Any]:
     road = about["road"]
     if not road:
         return {"title": REMOVE, "number": "more than 0", "unit": "m3", "band": ""}
@@ -150,12 +149,12 @@ def not_reached(about: Mapping[str, Any]) -> Dict[str, Any]:
             "band": "More than 0 m3 is to be removed then; how much, these runs do not show."}
 
 
-def of_withheld(about: Mapping[str, Any], numbers) -> Dict[str, Any]:
+def of_withheld(about: study_types.Headline, numbers: Numbers) -> Dict[str, Any]:
     del about, numbers
     return {"title": f"{REMOVE}: not usable", "number": None, "unit": "", "band": ""}
 
 
-def of_nothing(about: Mapping[str, Any], numbers) -> Dict[str, Any]:
+def of_nothing(about: study_types.Headline, numbers: Numbers) -> Dict[str, Any]:
     road = about["road"]
     band = f"{answer_words.shares(road['reached'])} of {WHO} reach the road." if road else \
         "No known events can be compared with this mass."
@@ -165,7 +164,7 @@ def of_nothing(about: Mapping[str, Any], numbers) -> Dict[str, Any]:
 
 # --- why ---
 
-def reasons(about: Mapping[str, Any]) -> List[str]:
+def reasons(about: study_types.Headline) -> List[str]:
     """A sentence each, without its full stop; the one that decides comes first."""
     return list(dict.fromkeys(map(answer_words.client, answer_words.told(about))))
 
@@ -175,21 +174,21 @@ def reasons(about: Mapping[str, Any]) -> List[str]:
 WITHHELD: Dict[str, Any] = {"kind": "withheld", "number": None, "unit": "", "band": "", "step": None}
 
 
-def of_answer(data, answer: Dict[str, Any], numbers) -> Dict[str, Any]:
+def of_answer(data: Data, answer: Dict[str, Any], numbers: Numbers) -> Dict[str, Any]:
     """Of an answer as the appendix has it: title, number, unit, reasons, band."""
     reasons = [one["text"] for one in answer["withheld"]]
     if reasons:
         return {**WITHHELD, "title": answer["title"], "reasons": reasons,
-                "step": next_step.first_remedy(next_step.Made(data.study, data.folder))}
-    best = data.study["conservative"]
+                "step": next_step.first_remedy(next_step.Made(data.of_study, data.folder))}
+    best = data.of_study["conservative"]
     if answer.get("zero"):
         band = f"{answer['zero'][0].upper()}{answer['zero'][1:]}."
     elif "band" in answer:
         band = answer["band"]
-    elif best["chance_m3"] is None:
+    elif best is None or best["chance_m3"] is None:
         band = "No band: no run was repeated, so that chance is unknown."
     else:
-        mean, chance = (best["rounded"][key] for key in ("mean_m3", "chance_m3"))
+        mean, chance = (best["rounded"][key] or 0.0 for key in ("mean_m3", "chance_m3"))
         low, high = (headline.text(value, best["place_m3"]) for value in (max(0.0, mean - chance), mean + chance))
         band = f"Another run gives {low} to {high} m3, in 95 % of cases; the mean is {answer['parts'][0]['number']} m3."
         band += "".join(f" {one[0].upper()}{one[1:]}." for one in combinations.starts(best))
@@ -197,9 +196,9 @@ def of_answer(data, answer: Dict[str, Any], numbers) -> Dict[str, Any]:
             "reasons": [], "band": band, "step": None}
 
 
-def floored(data, answer: Dict[str, Any], numbers) -> Dict[str, Any]:
+def floored(data: Data, answer: Dict[str, Any], numbers: Numbers) -> Dict[str, Any]:
     """The same as a floor, where the headline of the one study says so."""
-    about = (data.study or {}).get("headline")      # none in older files
+    about = data.study["headline"] if data.study else None
     if answer["number"] is None or not about or about["ensemble"] or Kind(about["kind"]) is not Kind.FLOOR:
         return answer
     return {**answer, "kind": Kind.FLOOR.value, "title": REMOVE, "number": f"at least {answer['number']}",
@@ -207,7 +206,7 @@ def floored(data, answer: Dict[str, Any], numbers) -> Dict[str, Any]:
             "step": step_of(data)}
 
 
-def of_reach(data, numbers) -> Dict[str, Any]:
+def of_reach(data: Data, numbers: Numbers) -> Dict[str, Any]:
     """Without a road the reach is the result."""
     title = f"{travel_shares.HEADLINE} % of the volume stays within"
     values = reaches(data)
@@ -219,7 +218,7 @@ def of_reach(data, numbers) -> Dict[str, Any]:
     return {"kind": "number", "title": title, "number": high, "unit": "m", "reasons": [], "band": band, "step": None}
 
 
-def reaches(data) -> List[float]:
+def reaches(data: Data) -> List[float]:
     """The 99 % distances of all runs; empty where one of them is unknown."""
     key = DISTANCE
     found = [row.value(key) for row in data.compared]
@@ -228,7 +227,7 @@ def reaches(data) -> List[float]:
 
 # --- what else is found ---
 
-def sentences(data, ground, numbers, has_road_number: bool) -> List[str]:
+def sentences(data: Data, ground, numbers: Numbers, has_road_number: bool) -> List[str]:
     """Three at most: how far, what lies on the road, what else."""
     found = [mobility_part.mapped_sentence(data, numbers), distance(data, numbers, has_road_number),
              road(data, numbers), structures(data, ground), thickness(data, numbers)]
@@ -242,26 +241,24 @@ def span(numbers, key, values) -> str:
     return f"{low} {unit}" if low == high else f"{low} to {high} {unit}"
 
 
-def runs_of(data) -> str:
+def runs_of(data: Data) -> str:
     return f"In all {len(data.finished)} runs" if len(data.finished) > 1 else "In the run"
 
 
-def weighted(data, numbers, key: str) -> str:
+def weighted(data: Data, numbers: Numbers, key: str) -> str:
     """What SHARE of known events stay within, where they weigh the runs and tell it; else ""."""
-    if not is_weighted(data):
-        return ""
-    entry = (data.study["ensemble"]["known_events"].get("quantities") or {}).get(key)
+    known = known_of(data)
+    entry = known["quantities"].get(key) if known else None
     at = {one["share"]: one["value"] for one in entry["quantiles"]}.get(SHARE) if entry else None
     return "" if at is None else f"{numbers.quantity(key, at)} {ALL[key].unit}"
 
 
-def is_weighted(data) -> bool:
-    """Whether known events weigh the runs of the number."""
-    ensemble = (data.study or {}).get("ensemble") or {}
-    return (ensemble.get("known_events") or {}).get("reached") is not None
+def known_of(data: Data) -> Optional[study_types.Weighted]:
+    """What known events say, where they weigh the runs of the number."""
+    return study_types.weighted(data.study["ensemble"]) if data.study else None
 
 
-def distance(data, numbers, has_road_number: bool) -> str:
+def distance(data: Data, numbers: Numbers, has_road_number: bool) -> str:
     values = reaches(data)
     if not values:
         return f"How far the mass goes is unknown: more than 1 % of it left the terrain.{most_elastic(data, numbers)}"
@@ -278,9 +275,9 @@ def distance(data, numbers, has_road_number: bool) -> str:
             f"{most_elastic(data, numbers)}")
 
 
-def most_elastic(data, numbers) -> str:
+def most_elastic(data: Data, numbers: Numbers) -> str:
     """A sentence on how far it goes with the largest restitution; "" without such runs."""
-    about = (data.study or {}).get(elastic.ENTRY)
+    about = data.study["largest_restitution"] if data.study else None
     if not about or not about["runs"]:
         return ""
     text = f" With the most elastic rock, a restitution of {about['restitution']:g},"
@@ -289,7 +286,7 @@ def most_elastic(data, numbers) -> str:
         f"{text} within {numbers.quantity(DISTANCE, far)} m."
 
 
-def road(data, numbers) -> str:
+def road(data: Data, numbers: Numbers) -> str:
     if data.road is None:
         return ""
     on = [row.value(ON_ROAD) for row in data.finished]
@@ -298,22 +295,22 @@ def road(data, numbers) -> str:
     known, far = weighted(data, numbers, ON_ROAD), span(numbers, ON_ROAD, on)
     if known:
         text = f"On the road itself {percent(SHARE)} of known events leave at most {known}; single runs, {ALIKE}, {far}"
-    elif is_weighted(data):
+    elif known_of(data):
         text = f"On the road itself single runs, {ALIKE}, leave {far}"
     else:
         text = f"On the road itself lie {far}"
     blocked = [row.at_road.blocked_m for row in data.finished if row.road]
     if blocked and max(blocked) > 0:
         text += f", over a length of up to {numbers.quantity('blocked_m', max(blocked))} m"
-    beyond = [row.at_road.beyond_road_m3 for row in data.finished if row.road and row.road.beyond_road_m3 is not None]
+    beyond = [past for row in data.finished if row.road and (past := row.road.beyond_road_m3) is not None]
     if beyond and max(beyond) > 0:
         text += f"; beyond it come to lie up to {numbers.quantity('beyond_road_m3', max(beyond))} m³" + finer(data)
     return f"{text}."
 
 
-def finer(data) -> str:
+def finer(data: Data) -> str:
     """By how much what lies beyond the road grew with smaller balls in a family of slides; "" where nobody can tell."""
-    balls = ((data.study or {}).get("study") or {}).get("balls_thick")
+    balls = data.study["study"]["balls_thick"] if data.study else None
     grown = None if balls is None else size_family.told(balls, quantity="beyond_road_m3")
     if grown is None:
         return ""
@@ -321,7 +318,7 @@ def finer(data) -> str:
             f"{grown.slides} other slides (median {digits.rounded(grown.median, 2)})")
 
 
-def structures(data, ground) -> str:
+def structures(data: Data, ground) -> str:
     """The largest lasting force on a structure."""
     found = [(numbers["mean_force_n"], name) for row in data.finished
              for name, numbers in row.structures.items()]
@@ -335,7 +332,7 @@ def structures(data, ground) -> str:
     return f"The largest force that lasts half a second on a structure is {digits.si(force, 'N')}, on {name}{each}."
 
 
-def thickness(data, numbers) -> str:
+def thickness(data: Data, numbers: Numbers) -> str:
     if data.study:
         value, speed = (data.study["largest"][key]["value"] for key in ("thickness_m", "max_speed_m_s"))
     else:

@@ -8,6 +8,7 @@ from ..plots.figure_charts import Convergence
 from ..schemas import ABOVE_0, FLAG, MAYBE, NUMBER, TEXT, listed, mapping, named
 from ..statistics import headline
 from .charts import AXIS
+from .numbers import Numbers
 from .sections import Cell, Figures, Picture, Section, Table, marked
 
 FILE = "converge.yaml"
@@ -38,7 +39,7 @@ class Sizes:
         study, self.entries = about["study"], about["quantities"]
         self.variable, self.deck, self.runs = study["variable"], study["deck"], study["finished"]
 
-    def section(self, numbers):
+    def section(self, numbers: Numbers):
         return Section("sizes", "Size of the balls", [
             Table(f"Means of runs of several values of {self.variable} ({self.deck}). Nothing is said of smaller balls "
                   "than the smallest here.",
@@ -59,7 +60,7 @@ class Sizes:
                                  f"{title}; {self.runs} runs of {self.deck}."))
         return found
 
-    def rows(self, numbers):
+    def rows(self, numbers: Numbers):
         """Of the table: quantity, the mean at each size, whether it is resolved."""
         found: List[List[Any]] = []
         for entry in self.entries.values():

@@ -1,7 +1,8 @@
 """What a report is made of: the finished runs of a study, or one run, read back."""
+import functools
 import math
 from pathlib import Path
-from typing import Dict, List, Optional
+from typing import Any, Dict, List, Optional
 
 import numpy as np
 from affine import Affine
@@ -13,8 +14,8 @@ from ..errors import SlopeError
 from ..schemas import OBJECT, mapping
 from ..survey import rasters
 from ..studies import run_rows
-from ..tables import named_run, quantities
-from ..tables.rows import Finished, finished_of
+from ..tables import named_run, quantities, study_types
+from ..tables.rows import Finished, Row, finished_of
 from ..tables.study_file import read_study
 from . import heading
 
@@ -84,13 +85,20 @@ class Data:
     site's file says.
     """
 
-    def __init__(self, folder, shown=None, study=None, site=None):
+    def __init__(self, folder: Path, shown: Optional[str] = None, study: Optional[study_types.Study] = None, site=None):
         """study, site: what study.yaml and the site's file say; None: they are read."""
         self.folder, self.study = folder, study
         self.site = heading.site_of(folder) if site is None else site
-        self.rows, self.finished, self.settings, self.repeats = [], [], {}, {}
-        self.road = self.road_line = self.removed = self.mapped = self._length = None
-        self.over_all, self.volumes = {}, {}
+        self.rows: List[Row] = []
+        self.finished: List[Finished] = []
+        self.settings: study_types.Settings = {}
+        self.repeats: study_types.Settings = {}
+        self.road: Any = None
+        self.road_line: Any = None
+        self.removed: Any = None
+        self.mapped: Optional[score.Observed] = None
+        self.over_all: Dict[str, np.ndarray] = {}
+        self.volumes: Dict[str, float] = {}
         if study is not None or (folder / "study.yaml").is_file():
             self._read_study(shown)
         else:
@@ -102,7 +110,7 @@ class Data:
         self.rows = self.study["runs"]
         self.finished = finished_of(self.rows)
         about = self.study["study"]
-        self.settings, self.repeats = about["set"], dict(about.get("repeat") or {})
+        self.settings, self.repeats = about["set"], about["repeat"]
         names = [row.run for row in self.finished]
         shown = shown or named_run.governing(self.study)
         if shown not in names:
@@ -117,12 +125,12 @@ class Data:
             given = roads.read_local(self.folder / str(road["local"]), self.result.deposit.raster, roads.Asked.of(road),
                                      True)
             self.road, self.road_line = given
-        if self.study.get("observed"):      # none in older files
+        if self.study["observed"]:
             self.mapped = score.read_observed(self.folder / str(self.study["observed"]["file"]),
                                               self.result.deposit.raster, score.THRESHOLD, False)
         # everything is read before anything is drawn: drawing takes a while
-        if len(self.finished) > 1 and self.study.get("envelope"):
-            for entry in (self.study["envelope"]["max_thickness"], *(self.study.get("exceedance") or ())):
+        if len(self.finished) > 1 and self.study["envelope"]:
+            for entry in (self.study["envelope"]["max_thickness"], *(self.study["exceedance"] or ())):
                 self.over_all[entry["file"]] = self.read_map(entry["file"])
         if road:
             self.removed = self._removed()
@@ -146,7 +154,7 @@ class Data:
 
     def _volume(self) -> str:
         """Where runs have the volume to remove from the road of the study."""
-        return quantities.volume_folder(self.study["study"]["road"].get("name") or "")
+        return quantities.volume_folder(self.of_study["study"]["road"].get("name") or "")
 
     def _removed(self):
         found = []
@@ -160,6 +168,12 @@ class Data:
             raise SlopeError(self.result.folder / self._volume() / "volume.tif",
                              f"must have the grid of {self.result.prefix}.thickness.asc")
         return found[0].z, found[1]
+
+    @property
+    def of_study(self) -> study_types.Study:
+        """Of the page on one."""
+        assert self.study is not None
+        return self.study
 
     def read_map(self, name):
         """Values of a map over all runs; 0 where it has none."""
@@ -202,12 +216,11 @@ class Data:
         """(row, Release) of each finished run."""
         return [(row, row.release) for row in self.ends()]
 
+    @functools.cached_property
     def length(self):
         """The run_length.RunLength of the shown run; None where its deposit is nowhere thick enough."""
-        if self._length is None:
-            from ..mobility import run_length
-            self._length = run_length.of_run(self.result.deposit, self.result.terrain_path), True
-        return self._length[0]
+        from ..mobility import run_length
+        return run_length.of_run(self.result.deposit, self.result.terrain_path)
 
     # --- runs and their names ---
 

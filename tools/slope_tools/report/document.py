@@ -7,13 +7,13 @@ import shutil
 from contextlib import contextmanager
 from pathlib import Path
 from shlex import quote
-from typing import Any, List, Mapping, Optional
+from typing import List, Optional
 
 from .. import digits, disk, kept
 from ..case import run_folders
 from ..errors import SlopeError
 from ..findings import WARNING
-from ..tables import study_file
+from ..tables import study_file, study_types
 from ..tables.rows import finished_of
 from .heading import Asked, site_file
 
@@ -78,12 +78,13 @@ def write(asked: Asked, output: Path, made_of: Optional[str] = None) -> List[str
 
 # --- whether a page would be drawn as it is ---
 
-def digest_of(asked: Asked, study: Mapping[str, Any]) -> str:
+def digest_of(asked: Asked, study: study_types.Study) -> str:
     """Of the page that is asked for on a study: what its runs say, their files, the site, and these tools."""
-    about = {**study, "study": {key: value for key, value in study["study"].items() if key not in BESIDE}}
+    about = study_file.plain(study)
+    about["study"] = {key: value for key, value in study["study"].items() if key not in BESIDE}
     site = site_file(asked.folder)
     found = {"asked": disk.plain({**asked._asdict(), "study": None, "site": None}),
-             "about": disk.plain(study_file.plain(about)),
+             "about": about,
              "site": asked.site if asked.site is not None else site and disk.sha256(site),
              "runs": {row.run: run_folders.state(run_folders.summary_of(asked.folder, row.summary).parent)
                       for row in finished_of(study["runs"])},

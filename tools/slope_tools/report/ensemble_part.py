@@ -1,6 +1,6 @@
 """What a report shows of an ensemble, by its distributions and as known events weigh it: curves, tables, maps."""
 import csv
-from typing import Any, Dict, List, Mapping, Optional, Sequence
+from typing import Any, Dict, List, Optional, Sequence
 
 import numpy as np
 
@@ -10,11 +10,11 @@ from ..ensembles import ensemble, known_events
 from ..errors import SlopeError
 from ..findings import texts
 from ..plots import ensemble_charts, figure_maps
-from ..statistics import emulator
-from ..tables import quantities, withheld_words
+from ..statistics import entries
+from ..tables import quantities, study_types, withheld_words
 from .charts import AXIS
-from .data import is_number
-from .numbers import as_run
+from .data import Data, is_number
+from .numbers import as_run, Numbers
 from .sections import Cell, Figures, Picture, Section, Table, Text
 
 MOST_SCATTER = 4        # variables with a chart of the runs against them
@@ -23,54 +23,56 @@ IN_GAP = "In a gap: no run ends where these known events do."
 SHARES = ("50 %", "90 %", "95 %", "99 %")
 
 
-def answer(data, numbers) -> Optional[Dict[str, Any]]:
+def answer(data: Data, numbers: Numbers) -> Optional[Dict[str, Any]]:
     """For the card on top: of the known events where these weigh the runs, else of the runs; None of other studies."""
-    if not (data.study or {}).get("ensemble"):
+    about = data.study["ensemble"] if data.study else None
+    if not about:
         return None
-    mine = Ensemble(data, numbers).answer()
-    known = KnownEvents(data, numbers).answer() if data.study["ensemble"].get("known_events") else None
+    mine = Ensemble(data, numbers, about).answer()
+    known = KnownEvents(data, numbers, about).answer() if about["known_events"] else None
     return {**known, "withheld": []} if known and not (mine or {}).get("withheld") else mine
 
 
-def sections(data, numbers, maps) -> List[Section]:
+def sections(data: Data, numbers: Numbers, maps) -> List[Section]:
     """Of an ensemble; maps: a maps_part.Maps."""
-    if not (data.study or {}).get("ensemble"):
+    about = data.study["ensemble"] if data.study else None
+    if not about:
         return []
-    known = [KnownEvents(data, numbers).section(maps)] if data.study["ensemble"].get("known_events") else []
-    return [*known, Ensemble(data, numbers).section(maps)]
+    known = [KnownEvents(data, numbers, about).section(maps)] if about["known_events"] else []
+    return [*known, Ensemble(data, numbers, about).section(maps)]
 
 
 class Ensemble:
-    """Of a data.Data whose study is an ensemble; numbers writes and keeps them."""
+    """Of a data.Data whose study is an ensemble, about; numbers writes and keeps them."""
 
-    def __init__(self, data, numbers):
-        self.data, self.numbers = data, numbers
-        self.about: Mapping[str, Any] = data.study["ensemble"]
+    def __init__(self, data: Data, numbers: Numbers, about: study_types.Ensemble):
+        self.data, self.numbers, self.about = data, numbers, about
         self.of = self.about["of"]
         self.entry = self.about["quantities"].get(self.of) if self.of else None
 
     def answer(self):
         """For the card on top: the quantiles of the quantity that counts."""
-        if not self.entry:
+        entry = self.entry
+        if not entry:
             return None
-        what, unit = self.entry["name"], self.entry["unit"]
+        what, unit = entry["name"], entry["unit"]
         if self.about.get("withheld"):
             return {"title": withheld_words.UNUSABLE.capitalize(), "withheld": self.about["withheld"], "number": None,
                     "unit": unit, "parts": [], "note": self.design()}
         parts = []
-        for one in self.entry["quantiles"]:
-            bounds = [None if one[side] is None else self.number(f"{100 * one['share']:g} % {side}", unit, one[side])
-                      for side in ("low", "high")]
+        for one in entry["quantiles"]:
+            bounds = [None if side is None else self.number(f"{100 * one['share']:g} % {name}", unit, side)
+                      for name, side in (("low", one["low"]), ("high", one["high"]))]
             note = band(bounds, unit, self.about["confidence"])
             share = f"{100 * one['share']:g} % of the runs stay within"
             parts.append({"number": self.number(share, unit, one["value"]), "what": share,
                           "note": note})
-        shown = next((part for part, one in zip(parts, self.entry["quantiles"]) if one["share"] == 0.9), parts[-1])
+        shown = next((part for part, one in zip(parts, entry["quantiles"]) if one["share"] == 0.9), parts[-1])
         return {"title": f"{what[0].upper()}{what[1:]}: 90 % of the runs stay within", "number": shown["number"],
                 "unit": unit, "parts": parts, "note": self.design(), "withheld": [], "band": shown["note"]}
 
     def number(self, what, unit, value):
-        return self.numbers(f"{self.entry['name']}: {what}", unit, value)
+        return self.numbers(f"{self.entry['name'] if self.entry else ''}: {what}", unit, value)
 
     def design(self):
         design = self.about["design"]
@@ -90,13 +92,13 @@ class Ensemble:
 
     def curve(self):
         """The hazard curve, from hazard.csv."""
-        if not self.entry:
+        if not self.entry or not self.of:
             return None
         points = read_curve(self.data.folder / ensemble.HAZARD, self.of)
         if points is None:
             return None
-        quantiles = [ensemble_charts.Quantile(*(one[key] for key in ("share", "value", "low", "high")))
-                     for one in self.entry["quantiles"]]
+        quantiles = [ensemble_charts.Quantile(one["share"], one["value"], one["low"], one["high"])
+                     for one in self.entry["quantiles"] if one["value"] is not None]
         title = f"Hazard curve: {self.entry['name']}"
         return Picture(
             ensemble_charts.hazard_curve(points[0], points[1], points[2], points[3], quantiles,
@@ -113,7 +115,8 @@ class Ensemble:
             if len(found) == 3 or any(one["total"] is None for one in variables.values()):
                 continue
             what = self.about["quantities"][name]["name"]
-            bars = [ensemble_charts.Bar(key, *(one[part] for part in emulator.SIGN)) for key, one in variables.items()]
+            bars = [ensemble_charts.Bar(key, one["first"] or 0.0, one["first_error"] or 0.0, one["total"] or 0.0,
+                                        one["total_error"] or 0.0) for key, one in variables.items()]
             title = f"What matters: {what}"
             found.append(Picture(ensemble_charts.influence(bars, title), title,
                                  f"Sobol indices for {what}, with the error of the total ones; {entry['text']}."))
@@ -121,7 +124,7 @@ class Ensemble:
 
     def scatter(self):
         """The quantity that counts against each variable, those first on which it depends most."""
-        if not self.entry:
+        if not self.entry or not self.of:
             return []
         variables = self.about["influence"][self.of]["variables"]
         names = sorted(variables, key=lambda name: -abs(variables[name]["total"] or variables[name]["rank"]))
@@ -163,58 +166,60 @@ class Ensemble:
 class KnownEvents:
     """Of a data.Data whose ensemble was made with --known; numbers writes and keeps them."""
 
-    def __init__(self, data, numbers):
+    def __init__(self, data: Data, numbers: Numbers, whole: study_types.Ensemble):
         self.data, self.numbers = data, numbers
-        whole = data.study["ensemble"]
-        self.about: Mapping[str, Any] = whole["known_events"]
+        self.known, self.about = whole["known_events"], study_types.weighted(whole)
         self.of, self.confidence = whole["of"], whole["confidence"]
-        self.entry = (self.about.get("quantities") or {}).get(self.of)
+        self.entry = self.about["quantities"].get(self.of) if self.about and self.of else None
 
     def section(self, maps) -> Section:
-        reached = self.about["reached"] is not None
-        lines = [*([known_events.summary(self.about)] if reached else []), *texts(self.about["doubts"])]
+        about = self.about
+        lines = [*([known_events.summary(about)] if about else []), *texts(self.known["doubts"] if self.known else ())]
         blocks: List[Any] = [Text(f"{text[0].upper()}{text[1:]}.") for text in lines]
-        if reached:
+        if about:
             curve = self.curve()
             blocks += [*([Figures([curve], "two-thirds")] if curve else []), *self.tables()]
         return Section("known-events", "Weighted by known events", [
-            *blocks, Figures(draw(self.data, self.about["maps"], maps) if reached else [], "columns")])
+            *blocks, Figures(draw(self.data, about["maps"], maps) if about else [], "columns")])
 
     def number(self, what: str, unit: str, value: Optional[float]) -> str:
         return "unknown" if value is None else self.numbers(f"known events: {what}", unit, value)
 
-    def quantile(self, share: str, unit: str, one: Mapping[str, Any]) -> str:
+    def quantile(self, share: str, unit: str, one: study_types.Quantile) -> str:
         """The value, or the two between which it is."""
-        if not one.get("gap"):
+        gap = one.get("gap")
+        if not gap:
             return self.number(share, unit, one["value"])
         return " to ".join(self.number(f"{share}, {end} of the gap where no run ends", unit, value)
-                           for end, value in zip(("begin", "end"), one["gap"]))
+                           for end, value in zip(("begin", "end"), gap))
 
     def answer(self):
         """For the card on top, instead of that of the runs as their distributions have them."""
-        if not self.entry or self.about["reached"] is None:
+        if not self.entry or not self.about:
             return None
         what, unit = self.entry["name"], self.entry["unit"]
         parts = []
         for one in self.entry["quantiles"]:
             share = f"{100 * one['share']:g} % of known events stay within"
-            bounds = [None if one[side] is None else self.number(f"{share}, {side}", unit, one[side])
-                      for side in ("low", "high")]
+            bounds = [None if side is None else self.number(f"{share}, {name}", unit, side)
+                      for name, side in (("low", one["low"]), ("high", one["high"]))]
             note = band(bounds, unit, self.confidence)
-            if one.get("gap"):      # none in older files
+            if one.get("gap"):
                 note = f"{IN_GAP} {note}"
             parts.append({"number": self.quantile(share, unit, one), "what": share, "note": note,
                           "unit": "" if one["value"] is None else unit})
         shown = next((part for part, one in zip(parts, self.entry["quantiles"]) if one["share"] == 0.9), parts[-1])
         return {"title": f"{what[0].upper()}{what[1:]}: 90 % of known events stay within", "number": shown["number"],
                 "unit": shown["unit"], "parts": parts, "band": shown["note"],
-                "note": f"The runs reach {percent(self.about['reached'])} of the known events of this volume and "
-                        f"height, and weighted by them say as much as {self.about['effective']:.0f} runs."}
+                "note": f"The runs reach {percent(self.about['reached'] or 0.0)} of the known events of this volume "
+                        f"and height, and weighted by them say as much as {self.about['effective']:.0f} runs."}
 
     def curve(self):
         """The weighted hazard curve."""
-        points = read_curve(self.data.folder / known_events.HAZARD, self.of) if self.entry else None
-        if points is None or not self.entry:
+        if not self.entry or not self.of:
+            return None
+        points = read_curve(self.data.folder / known_events.HAZARD, self.of)
+        if points is None:
             return None
         named = [ensemble_charts.Quantile(one["share"], one["value"], one["low"], one["high"], one.get("gap"))
                  for one in self.entry["quantiles"] if one["value"] is not None]
@@ -228,12 +233,15 @@ class KnownEvents:
 
     def tables(self) -> List[Table]:
         """Quantiles of all quantities; which parameters the weighted runs have, and how the first depends on them."""
+        if not self.about:
+            return []
         quantiles: List[Any] = [[Cell(entry["name"], entry["unit"]), *map(cell_of, entry["quantiles"])]
                                 for entry in self.about["quantities"].values()]
-        indices = (self.about.get("influence") or {}).get(self.of, {}).get("variables", {})    # none in older files
+        analysis = self.about["influence"].get(self.of) if self.of else None
+        indices = analysis["variables"] if analysis else {}
         rows: List[Any] = []
         for name, entry in self.about["variables"].items():
-            rank, one = entry["rank"].get(self.of), indices.get(name)
+            rank, one = entry["rank"].get(self.of) if self.of else None, indices.get(name)
             rows.append([name, *map(str, entry["quantiles"]), "-" if rank is None else f"{rank:+.2f}",
                          indices_text(one) if one and one["total"] is not None else "-"])
         return [] if not quantiles else [
@@ -247,7 +255,7 @@ class KnownEvents:
                   ["parameter", "5 %", "50 %", "95 %", "rank", "indices"], rows)]
 
 
-def cell_of(one: Mapping[str, Any]) -> str:
+def cell_of(one: study_types.Quantile) -> str:
     """A quantile in a table."""
     if one["value"] is None:
         return "?"
@@ -291,27 +299,25 @@ def shown(entry) -> bool:
     return entry["quantile"] == 0.9 and entry["raster"] != "thickness"
 
 
-def exceeded(data) -> Optional[figure_maps.Exceeded]:
+def exceeded(data: Data) -> Optional[figure_maps.Exceeded]:
     """In which share of an ensemble the deposit is thicker than its least threshold; of known events, where these weigh
     it. None of other studies, and of runs too few for the smallest share."""
-    about = (data.study or {}).get("ensemble") or {}
-    known = about.get("known_events") or {}
-    weighted = known.get("reached") is not None
-    entries = [one for one in (known if weighted else about).get("maps") or ()
-               if one["raster"] == "thickness" and one.get("threshold")]
-    if not entries or len(data.finished) < 1 / min(figure_maps.OUTLINES):
+    about = data.study["ensemble"] if data.study else None
+    known = study_types.weighted(about)
+    maps = known["maps"] if known else about["maps"] if about else []
+    shown_maps = [one for one in maps if one["raster"] == "thickness" and one.get("threshold")]
+    if not shown_maps or len(data.finished) < 1 / min(figure_maps.OUTLINES):
         return None
-    least = min(entries, key=lambda one: one["threshold"])
-    whom = "known events" if weighted else "runs"
-    return figure_maps.Exceeded(data.read_map(least["file"]), whom, least["threshold"],
-                                known.get("far", 0.0) if weighted else 0.0)
+    least = min(shown_maps, key=lambda one: one["threshold"])
+    whom = "known events" if known else "runs"
+    return figure_maps.Exceeded(data.read_map(least["file"]), whom, least["threshold"], known["far"] if known else 0.0)
 
 
-def draw(data, entries, maps) -> List[Picture]:
+def draw(data: Data, several: Sequence[study_types.MapEntry], maps) -> List[Picture]:
     """How likely the mass is there, and what 90 % of the runs stay within, where that is anything."""
     pictures = []
     layers = maps.layers._replace(section=None)
-    for entry in filter(shown, entries):
+    for entry in filter(shown, several):
         values = data.read_map(entry["file"])
         if not (values > 0).any():
             continue
@@ -328,6 +334,6 @@ def draw(data, entries, maps) -> List[Picture]:
     return pictures
 
 
-def indices_text(one: Mapping[str, Any]) -> str:
+def indices_text(one: entries.Influence) -> str:
     """First and total Sobol index of a variable that has them, with the error of the latter."""
     return f"{one['first']:.2f} / {one['total']:.2f} \N{PLUS-MINUS SIGN} {one['total_error']:.2f}"

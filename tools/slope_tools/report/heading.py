@@ -6,6 +6,7 @@ from .. import schemas
 from ..schemas import TEXT, listed, mapping
 from ..sites import site_roads
 from ..sites.site_choices import check_text
+from ..tables import study_types
 
 SITE = "site.yaml"          # of `slope site`; its study is a folder in the site's
 SECTIONS = mapping({}, project=mapping({}, null=True), terrain=mapping({}, null=True, files=listed(TEXT, null=True)),
@@ -25,7 +26,7 @@ class Asked(NamedTuple):
     client: Optional[str] = None
     author: Optional[str] = None
     film: Optional[Path] = None                 # file of the film, which is made, but written by the caller
-    study: Optional[Dict[str, Any]] = None      # what study.yaml says; None: it is read
+    study: Optional[study_types.Study] = None   # what study.yaml says; None: it is read
     site: Optional[Dict[str, Any]] = None       # what site.yaml says; None: it is read
 
 

@@ -3,16 +3,18 @@ from ..digits import chance, measured, percent
 from ..drawing.figures import HALF
 from ..plots import figure_charts
 from ..plots.figure_charts import Series
-from .numbers import as_run
+from ..tables import study_types
+from .data import Data
+from .numbers import as_run, Numbers
 from .sections import Figures, Picture, Section, Table
 
 AXIS = {"peak": "peak acceleration (gal)", "pga": "peak acceleration (gal)"}
 MOST_CURVES = 4         # probabilities in the chart
 
 
-def section(data, numbers):
+def section(data: Data, numbers: Numbers):
     """The table and the two charts of a data.Data; None without an intensity."""
-    about = (data.study or {}).get("intensity")
+    about = data.study["intensity"] if data.study else None
     if not about:
         return None
     name = about["variable"]
@@ -28,27 +30,28 @@ def section(data, numbers):
               rows(about, numbers), ()), Figures(pictures, "columns")])
 
 
-def rows(about, numbers):
+def rows(about: study_types.Intensity, numbers: Numbers):
     """Of each point the other variables, the intensity, the number of runs, volumes, and probabilities as text."""
     found = []
     for line in about["lines"]:
         for point in line["points"]:
             of = ", ".join([*(f"{other} {value}" for other, value in line["set"].items()),
                             f"{about['variable']} {point['at']:g}"])
-            cells = [numbers(f"on the road, {what}", "m3", point[f"{what}_m3"], of)
-                     for what in ("mean", "smallest", "largest")]
+            cells = [numbers(f"on the road, {what}", "m3", value, of)
+                     for what, value in (("mean", point["mean_m3"]), ("smallest", point["smallest_m3"]),
+                                         ("largest", point["largest_m3"]))]
             cells.append(measured(point["share_of_released"]))
             cells += [chance(one["probability"], one["low"], one["high"]) for one in point["exceed"]]
             found.append([*line["set"].values(), f"{point['at']:g}", point["runs"], *cells])
     return found
 
 
-def rest_of(line, about):
+def rest_of(line: study_types.Line, about: study_types.Intensity):
     """The other variables of a line in words; '' if there is only one line."""
     return ", ".join(f"{other} {value}" for other, value in line["set"].items() if len(about["lines"]) > 1)
 
 
-def volumes(data, about):
+def volumes(data: Data, about: study_types.Intensity):
     """The volume on the road against the intensity: runs and means, without a common scatter."""
     name, series = about["variable"], []
     for line in about["lines"]:
@@ -60,7 +63,7 @@ def volumes(data, about):
                    f"{title} against {name}; dots: runs, larger dots: their means.")
 
 
-def exceedance(about):
+def exceedance(about: study_types.Intensity):
     """P(V > v) against the intensity, a line for each volume and each combination of the other variables."""
     series = []
     for line in about["lines"]:

@@ -2,16 +2,16 @@
 import math
 from typing import List, Optional, Tuple
 
-from .. import disk
 from ..deposits import travel_shares
 from ..digits import rounded
 from ..errors import SlopeError
 from ..sites import site_zones
 from ..statistics import headline
 from ..studies import site_ground
-from ..tables.elastic import ENTRY
 from ..tables.quantities import STOP
 from . import mobility_part
+from .data import Data
+from .numbers import Numbers
 from .sections import Cell, Pairs, Section, Table
 
 CONTENT = List[Tuple[str, str]]
@@ -22,7 +22,7 @@ ZONES = ("What the ground is, where: zones as on the maps, and the ground outsid
          "those of the shown run; the stop angle is that of a sheet of three balls whose soil has them, too.")
 
 
-def section(data, ground, numbers) -> Section:
+def section(data: Data, ground, numbers: Numbers) -> Section:
     """Of the shown run and of its study."""
     return Section("limits", "", [Pairs(
         [*mobility_part.content(data, ground, numbers), *uncertainty(data, numbers), ("Varied", varied(data)),
@@ -30,7 +30,7 @@ def section(data, ground, numbers) -> Section:
         "How uncertain these numbers are, and what is not in them", "limits")])
 
 
-def resistance(data, ground, numbers) -> CONTENT:
+def resistance(data: Data, ground, numbers: Numbers) -> CONTENT:
     """The stop angle of the ground, where it is known, and what share of the slope below the body is steeper."""
     degrees, label = data.result.row.value(STOP), data.label(data.result)
     if degrees is None:
@@ -55,7 +55,7 @@ def shown(numbers, degrees: float, label: str = "") -> str:
     return f"{degrees:.1f}"
 
 
-def zones_of_ground(data, numbers) -> Optional[Section]:
+def zones_of_ground(data: Data, numbers: Numbers) -> Optional[Section]:
     """Which zones the ground has, with which values in the shown run; None without zones, or where it is no site's."""
     site = data.site
     zones, variables = (site.get("found") or {}).get("zones") or [], data.result.row.variables
@@ -74,10 +74,10 @@ def zones_of_ground(data, numbers) -> Optional[Section]:
 
 # --- uncertainty ---
 
-def uncertainty(data, numbers) -> CONTENT:
+def uncertainty(data: Data, numbers: Numbers) -> CONTENT:
     """How far a run differs by chance, and the effect of the size of the balls."""
     study = data.study
-    best = study and study["conservative"]
+    best = study["conservative"] if study else None
     found = []
     if best and best["chance_m3"] is not None and not best["mean_m3"] and not best["chance_m3"]:
         found.append(f"In none of the {len(data.finished)} runs anything is to be removed.")
@@ -86,31 +86,31 @@ def uncertainty(data, numbers) -> CONTENT:
                      (max(0.0, best["mean_m3"] - best["chance_m3"]), best["mean_m3"] + best["chance_m3"]))
         found.append(f"Another run with the same values gives {low} to {high} m3 to remove, in 95 % of cases.")
     key = travel_shares.DISTANCE
-    deviation = ((study and study.get("scatter") or {}).get(key) or {}).get("deviation")
-    if deviation is not None and disk.is_number(deviation):
+    scatter = study["scatter"].get(key) if study else None
+    if scatter:
+        deviation = scatter["deviation"]
         text = headline.text(deviation, 10 * headline.place_of_digits(deviation))       # two digits
         numbers.rows.append(("scatter of a run: 99 % within", "m", "", text, deviation))
         found.append(f"The distance that 99 % of the volume stays within differs by {text} m from run to run "
                      "(standard deviation).")
     if not found:
         found = ["Unknown: no run was repeated, and equivalent runs may differ by several percent (study --repeat)."] \
-            if not (study and study.get("ensemble")) else []
+            if not (study and study["ensemble"]) else []
     chance = [("Chance", " ".join(found))] if found else []
-    size = (study or {}).get("size")
+    size, step, most = (study["size"], study["step"], study["largest_restitution"]) if study else (None, None, None)
     chance.append(("Size of the balls", f"{size['text'][0].upper()}{size['text'][1:]}." if size else
                    "What smaller balls change is not known (study --fine 2)."))
-    step = (study or {}).get("step")
     chance.append(("Time step", f"{step['text'][0].upper()}{step['text'][1:]}." if step else
                    "What half the time step changes was not tried (the study of a site does, or --set step=0.5)."))
-    if energy := (step or {}).get("energy"):
+    if step and (energy := step["energy"]):
         chance.append(("Energy", f"In the run with half the time step, {energy['text']}."))
-    if most := (study or {}).get(ENTRY):
+    if most:
         chance.append(("Largest restitution", f"{most['text'][0].upper()}{most['text'][1:]}. Reach and area only: "
                        "these runs are none of those that the volume is of."))
     return chance
 
 
-def varied(data) -> str:
+def varied(data: Data) -> str:
     """Which variables the runs differ in; nothing else contributes to the spread of the numbers."""
     several = {name: values for name, values in data.settings.items() if len(values) > 1}
     if not several:
@@ -133,7 +133,7 @@ def shortly(values) -> str:
 
 # --- what the model leaves out ---
 
-def model(data) -> CONTENT:
+def model(data: Data) -> CONTENT:
     about = data.result.summary
     ball = about["volume"]["released"] / about["balls"]["released"]
     side = headline.text(ball ** (1 / 3), 10.0 ** (math.floor(math.log10(ball) / 3) - 2))

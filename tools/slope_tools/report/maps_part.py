@@ -11,6 +11,7 @@ from ..plots.ground import box_of
 from ..sites import site_zones
 from ..survey.rasters import crs_name
 from . import ensemble_part, heading, mobility_part
+from .data import Data
 from .numbers import shown_run
 from .run_part import titled
 from .sections import Figures, Picture, Section, Text
@@ -18,7 +19,7 @@ from .sections import Figures, Picture, Section, Text
 OPEN = " The last class is open: it holds the few thicker cells, most of them in the release."
 
 
-def zones_of(data, raster) -> Dict[str, Any]:
+def zones_of(data: Data, raster) -> Dict[str, Any]:
     """Polygons of the zones of a site's ground, by name."""
     zones, path = (data.site.get("found") or {}).get("zones"), heading.site_file(Path(data.folder))
     return site_zones.outlines(path.parent, zones, raster) if zones and path else {}
@@ -31,7 +32,7 @@ def square(area: float) -> str:
 class Maps:
     """Draws maps."""
 
-    def __init__(self, data, ground, section):
+    def __init__(self, data: Data, ground, section):
         self.data, self.ground = data, ground
         crs = ground.raster.crs
         self.crs = crs_name(crs) if crs is not None else ""
@@ -133,7 +134,7 @@ class Maps:
         removed, mesh = data.removed
         layers = self.layers._replace(shown=self.ground.window(box_of(self.layers.raster, removed > 0)),
                                       reach=known_reach.NOTHING)
-        road = data.study["study"]["road"]
+        road = data.of_study["study"]["road"]
         uri, numbered = figure_maps.mesh_map(layers, removed, mesh, "Volume to remove", self.crs)
         squares = f", and its volume in m3 in squares of {mesh.transform.a:g} m" if numbered else ""
         more = "" if numbered else (f" The volumes in squares of {mesh.transform.a:g} m are too many to be read here: "

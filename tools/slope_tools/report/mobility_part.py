@@ -15,6 +15,8 @@ from ..mobility.landslides import NOT_OF_ROADS, Row
 from ..studies.mapped import mass, of_rows
 from ..tables.quantities import BEYOND_MAPPED as BEYOND, LENGTH, OVERLAP
 from ..tables.rows import Finished, Mapped
+from .data import Data
+from .numbers import Numbers
 from .sections import Cell, Section, Table, Text
 
 WHAT = "Known events"
@@ -28,7 +30,7 @@ class Lies(NamedTuple):
     why: str
 
 
-def content(data, ground, numbers) -> List[Tuple[str, str]]:
+def content(data: Data, ground, numbers: Numbers) -> List[Tuple[str, str]]:
     """The row of the table of limits."""
     found = where_lie(data, ground)
     if found.mobility is None:
@@ -38,7 +40,7 @@ def content(data, ground, numbers) -> List[Tuple[str, str]]:
 
 # --- the first page: how far, by the runs and by known events ---
 
-def on_first_page(data, ground, numbers) -> str:
+def on_first_page(data: Data, ground, numbers: Numbers) -> str:
     """Both answers, and whether they differ by more than their bands; why there is but one."""
     lengths, known, why = where_lie(data, ground)
     if known is None:
@@ -54,7 +56,7 @@ def on_first_page(data, ground, numbers) -> str:
     return text if farther is None else f"{text} {Finding('answers differ', {'farther': farther}).client()}"
 
 
-def beyond(known: exceedance.Mobility, share: float, numbers) -> str:
+def beyond(known: exceedance.Mobility, share: float, numbers: Numbers) -> str:
     """What a share of known events goes beyond."""
     low, high = bounds(known, share)
     if math.isinf(high):
@@ -86,7 +88,7 @@ def differ(lengths: Sequence[float], known: exceedance.Mobility) -> Optional[str
 
 # --- the table of limits ---
 
-def where_lie(data, ground) -> Lies:
+def where_lie(data: Data, ground) -> Lies:
     """The runs of a data.Data on its ground.Ground among the events that decide."""
     lengths, among = lengths_of(data), ground.known
     if among.found is None:
@@ -96,15 +98,15 @@ def where_lie(data, ground) -> Lies:
     return Lies(lengths, among.found.decides, "")
 
 
-def lengths_of(data) -> List[float]:
+def lengths_of(data: Data) -> List[float]:
     """Of each finished run that left a deposit."""
     if data.study:
         return sorted(row.length_m for row in data.finished if row.length_m is not None)
-    one = data.length()
+    one = data.length
     return [one.distance] if one else []
 
 
-def sentence(found: Lies, numbers, label: str) -> str:
+def sentence(found: Lies, numbers: Numbers, label: str) -> str:
     """How far the runs reach, and how many known events end there or before."""
     assert found.mobility is not None
     ends = list(dict.fromkeys((found.lengths[0], found.lengths[-1])))
@@ -130,7 +132,7 @@ def sentence(found: Lies, numbers, label: str) -> str:
             + beyond_the_terrain(found, others[::-1], numbers, label))
 
 
-def beyond_the_terrain(found: Lies, kinds: Sequence[str], numbers, label: str) -> str:
+def beyond_the_terrain(found: Lies, kinds: Sequence[str], numbers: Numbers, label: str) -> str:
     """What the edge of the terrain hides, if half of the events of either of two kinds go beyond; else nothing."""
     mobility = found.mobility
     assert mobility is not None
@@ -144,24 +146,25 @@ def beyond_the_terrain(found: Lies, kinds: Sequence[str], numbers, label: str) -
 
 # --- a mapped deposit: how the runs agree with it, whatever the method of the study ---
 
-def drawn(data) -> Any:
+def drawn(data: Data) -> Any:
     """What the maps draw of it: its polygon, or the mask of its cells; None without one."""
     if data.mapped is None:
         return None
     return data.mapped.share >= 0.5 if data.mapped.polygon is None else data.mapped.polygon
 
 
-def mapped_runs(data) -> List[Tuple[Finished, Mapped]]:
+def mapped_runs(data: Data) -> List[Tuple[Finished, Mapped]]:
     """The runs that are compared, and how they compare."""
     return of_rows(data.finished) if data.mapped is not None else []
 
 
-def mapped_sentence(data, numbers) -> str:
+def mapped_sentence(data: Data, numbers: Numbers) -> str:
     """For the first page; "" without a mapped deposit."""
     found = mapped_runs(data)
     if not found:
         return ""
-    about = data.study["observed"]
+    about = data.of_study["observed"]
+    assert about
     best, mine = next((row, one) for row, one in found if row.run == about["best"])
     share = numbers.quantity(OVERLAP, mine.overlap, data.label_of(best))
     which = f"The best of {len(found)} runs" if len(found) > 1 else "The run"
@@ -173,12 +176,13 @@ def mapped_sentence(data, numbers) -> str:
     return f"{text}." + (f" {lacks.text[0].upper()}{lacks.text[1:]}." if lacks else "")
 
 
-def mapped(data, numbers) -> Optional[Section]:
+def mapped(data: Data, numbers: Numbers) -> Optional[Section]:
     """The section with a table of the mapped deposit, the shown run, the best one and all; None without any."""
     found = mapped_runs(data)
     if not found:
         return None
-    about = data.study["observed"]
+    about = data.of_study["observed"]
+    assert about
     volume, length = about["volume_m3"], about["length_m"]
     by_name = {row.run: row for row, _ in found}
     heads: List[Any] = ["", Cell("overlap (Jaccard)", ""), Cell("length", "m"), Cell("difference", "m")]

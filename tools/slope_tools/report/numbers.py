@@ -2,7 +2,7 @@
 which runs it rests."""
 import csv
 import io
-from typing import Any, Dict, List, Mapping, Sequence
+from typing import Any, Dict, List, Mapping, Optional, Sequence
 
 from .. import disk
 from ..deposits import rest, travel_shares
@@ -14,7 +14,7 @@ from ..statistics.answer import Source
 from ..tables import fine_run, named_run, withheld_words
 from ..tables.quantities import ALL, KNOWN, LENGTH, REACH, written
 from ..tables.released import over_runs
-from .data import is_number
+from .data import Data, is_number
 
 UNKNOWN = "unknown"
 
@@ -74,51 +74,53 @@ class Numbers:
 
 # --- the answer ---
 
-def answer(data, numbers):
+def answer(data: Data, numbers: Numbers):
     """The conservative volume: its number (or why it is withheld), what it may be called, its parts.
 
     None without a road.
     """
-    best = data.study and data.study["conservative"]
-    if not best:
+    best = data.study["conservative"] if data.study else None
+    if not best or not data.study:
         return None
     road, place = data.study["study"]["road"], best["place_m3"]
-    if best.get("withheld"):        # older ones have none
+    if best["withheld"]:
         return {"title": withheld_words.UNUSABLE.capitalize(), "withheld": best["withheld"], "road": road,
                 "number": None, "parts": [], "predicted": False, "below": "", "zero": None, "ground": ""}
-    who = best.get("label") or best.get("combination") or data.label(data.result)
+    who = best["label"] or best["combination"]
+    rounded_ = best["rounded"]
 
-    def part(key):
-        value = best["rounded"].get(key)
+    def part(key: str, exact: Optional[float]):
+        value = rounded_[key]
         if value is None:
             return None
         text = headline.text(value, place)
-        numbers.rows.append((f"conservative: {key}", "m3", who, text, best[key]))
+        numbers.rows.append((f"conservative: {key}", "m3", who, text, exact))
         return text
 
-    predicted, scatter = best["chance_m3"] is not None, best["scatter_m3"]
-    parts = [{"sign": "", "number": part("mean_m3"), "what": "mean" if predicted else "largest run",
+    predicted, scatter = best["chance_m3"] is not None, best["scatter_m3"] or 0.0
+    parts = [{"sign": "", "number": part("mean_m3", best["mean_m3"]), "what": "mean" if predicted else "largest run",
               "note": (f"of {best['repeats']} runs, {who}" if predicted else f"{who}; of {best['runs']} runs")}]
     if predicted:
         parts.append({
-            "sign": "+", "number": part("chance_m3"), "what": "chance",
+            "sign": "+", "number": part("chance_m3", best["chance_m3"]), "what": "chance",
             "note": f"97.5 % of single runs lie below: t {best['quantile']:.3g} x standard deviation of a run "
                     f"{headline.text(scatter, headline.place_of_digits(scatter))} m3 x sqrt(1 + 1/"
                     f"{best['repeats']}), {best['degrees_of_freedom']:.3g} degrees of freedom"})
     else:
         parts.append({"sign": "+", "number": UNKNOWN, "what": "chance",
                       "note": "no run was repeated (study --repeat seed=..., xoffset=...)"})
-    parts.append(size_part(data.study.get("size"), part("size_m3")))
+    parts.append(size_part(data.study["size"], part("size_m3", best["size_m3"])))
     title = f"Volume to remove from the road: {best['kind']}"
     if predicted:
         title = "Conservative volume to remove from the road" if best["size_m3"] is not None else \
             "Volume to remove from the road, not conservative: smaller balls may bring more"
-    return {"number": part("volume_m3"), "title": title, "parts": parts, "predicted": predicted, "road": road,
-            "zero": (best.get("zero") or {}).get("text"), "withheld": [],
-            "below": below_ground(data, numbers), "ground": best.get("ground") or ""}
+    return {"number": part("volume_m3", best["volume_m3"]), "title": title, "parts": parts, "predicted": predicted,
+            "road": road,
+            "zero": best["zero"]["text"] if best["zero"] else None, "withheld": [],
+            "below": below_ground(data, numbers), "ground": best["ground"] or ""}
 
 
-def below_ground(data, numbers):
+def below_ground(data: Data, numbers: Numbers):
     """A sentence on what is to be removed where the cut lies below the ground; "" where it does not."""
     found = data.below_ground()
     if found is None:
@@ -138,12 +140,12 @@ def size_part(size, number):
     return {"sign": "+", "number": number, "what": "size of the balls", "note": size["text"]}
 
 
-def cards(data, numbers):
+def cards(data: Data, numbers: Numbers):
     """What stands below the conservative volume: dicts of what, number, unit, note, and status of the last one."""
     return [released_card(data, numbers), travel_card(data, numbers), thickness_card(data, numbers), rest_card(data)]
 
 
-def released_card(data, numbers):
+def released_card(data: Data, numbers: Numbers):
     releases = data.releases()
     values = sorted({round(row.released_m3, 3) for row in data.finished}
                     or {data.result.summary["volume"]["released"]})
@@ -159,7 +161,7 @@ OLD = "of an older version"
 LOST = "from which more than 1 % of the volume left the terrain, farther than anybody knows: enlarge it"
 
 
-def travel_card(data, numbers):
+def travel_card(data: Data, numbers: Numbers):
     key, unit = travel_shares.DISTANCE, "m"
     what = f"{travel_shares.HEADLINE} % of the volume stays within"
     if data.study:
@@ -200,7 +202,7 @@ def farthest_of(summary):
     return summary["travel"]["front"], summary["travel"]["reach_angle"]
 
 
-def thickness_card(data, numbers):
+def thickness_card(data: Data, numbers: Numbers):
     if data.study:
         largest = data.study["largest"]
         value, ever, speed = (largest[key]["value"] for key in ("thickness_m", "max_thickness_m", "max_speed_m_s"))
@@ -212,7 +214,7 @@ def thickness_card(data, numbers):
             f"{'a' if data.study else 'the'} run. Fastest ball {numbers.quantity('max_speed_m_s', speed)} m/s"}
 
 
-def rest_card(data):
+def rest_card(data: Data):
     ends = data.ends()
     resting = [end for end in ends if end.at_rest]
     worst = next((end for level in (True, False) for end in ends if not end.at_rest and end.moving == level), None)
@@ -239,7 +241,7 @@ WORDS = {"rolling": "the rolling resistance", "friction": "the friction", "d": "
          "xoffset": CHANCE, "yoffset": CHANCE, "zoffset": CHANCE}
 
 
-def basis(data) -> str:
+def basis(data: Data) -> str:
     """What the numbers come from, of a data.Data, and which of it the number is of."""
     if not data.study:
         return "One run of a computer model of equal balls."
@@ -254,39 +256,43 @@ def basis(data) -> str:
         text += f", which differ in {listed(known)}"
     if data.repeats or any(WORDS.get(name) == CHANCE for name in varied):
         text += f"{' and' if known else ', which differ'}, by chance, in {CHANCE}"
-    method = data.study["study"].get("method") or ""        # of a site's study
+    method = data.study["study"]["method"]      # of a site's study
     if method.startswith(known_study.PAPER) and method != known_study.BESIDE:
         why = method.removeprefix(known_study.PAPER).removeprefix("; ")
         text += ". Known events of this size do not count in them" + ("" if method == known_study.ASKED else f": {why}")
     return f"{text}.{rests_on(data)}"
 
 
-def rests_on(data) -> str:
+def rests_on(data: Data) -> str:
     """A sentence on the runs that the number is of; "" without a number."""
-    number, best = data.study.get("headline") or {}, data.study.get("conservative")
-    if not number.get("volume_m3"):
+    number, best = (data.study["headline"], data.study["conservative"]) if data.study else (None, None)
+    if not number or not number["volume_m3"]:
         return ""
     if not is_own(data):
         return " The number is of the other study of this site."
     if number["source"] == Source.ENSEMBLE.value:
         return " Each counts as often as known events of this volume and height end where it does."
+    assert best
     of = values_of(data, best["set"])
     what = f"the mean of {best['repeats']}" if best["repeats"] > 1 else "that of one"
-    added = [what for what, key in (("chance", "chance_m3"), ("smaller balls", "size_m3")) if best[key] is not None]
+    added = [what for what, part in (("chance", best["chance_m3"]), ("smaller balls", best["size_m3"]))
+             if part is not None]
     return f" The number is {what} of them{of and f' ({of})'}{f', with what {listed(added)} may add' if added else ''}."
 
 
-def is_own(data) -> bool:
+def is_own(data: Data) -> bool:
     """Whether the headline is of this study, and not of the other one of a site."""
-    own = Source.ENSEMBLE if data.study.get("ensemble") else Source.PAPER
+    if not data.study or not data.study["headline"]:
+        return False
+    own = Source.ENSEMBLE if data.study["ensemble"] else Source.PAPER
     return data.study["headline"]["source"] == own.value
 
 
-def as_run(data, key: str) -> str:
+def as_run(data: Data, key: str) -> str:
     """For a caption of numbers of runs, which the effect of size does not raise as it does the headline: what smaller
     balls bring of this column; "" where they bring no more, or nobody knows.
     """
-    effect = fine_run.read_effect((data.study or {}).get("size"), key)
+    effect = fine_run.read_effect(data.study["size"] if data.study else None, key)
     if effect is None or not effect.added(1.0) > 0:
         return ""
     more = f"{rounded(effect.fine / effect.coarse, 3)} times as much" if effect.ratio else \
@@ -294,19 +300,19 @@ def as_run(data, key: str) -> str:
     return f" These are the runs' own numbers: smaller balls brought {more}, which is not in them."
 
 
-def shown_run(data) -> str:
+def shown_run(data: Data) -> str:
     """Which run the map shows, for its caption."""
     if not data.study:
         return ""
     one, row = data.result, data.result.row
     number, of = data.number(one.name), values_of(data, row.set)
-    rests = (data.study.get("headline") or {}).get("volume_m3") and is_own(data) and \
-        one.name == named_run.governing(data.study)
+    said = data.study["headline"]
+    rests = said and said["volume_m3"] and is_own(data) and one.name == named_run.governing(data.study)
     text = f"The run on which the number rests, {number} of the appendix" if rests else f"Run {number} of the appendix"
     return f" {text}{of and f': {of}'}."
 
 
-def values_of(data, of: Mapping[str, Any]) -> str:
+def values_of(data: Data, of: Mapping[str, Any]) -> str:
     """The values in which a run, or a combination, differs from others; "" if they have no words."""
     found: Dict[str, str] = {}
     for name, value in of.items():

@@ -5,6 +5,8 @@ from .. import schemas
 from ..errors import SlopeError
 from ..schemas import NUMBER, TEXT, mapping, named
 from ..tables import quantities
+from .data import Data
+from .numbers import Numbers
 from .sections import Cell, Section, Table, Text
 
 WHAT = "a file of reference values (see the page on `slope report`)"
@@ -54,7 +56,7 @@ def quantity(entry):
                     {str(name)[:NAME]: float(value) for name, value in entry.get("levels", {}).items()})
 
 
-def section(reference, data, numbers):
+def section(reference, data: Data, numbers: Numbers):
     """A table for each quantity, with the range of the runs' own beside it; None without a reference."""
     if reference is None:
         return None
@@ -63,7 +65,7 @@ def section(reference, data, numbers):
         *(table(key, one, data, numbers) for key, one in reference.quantities.items())])
 
 
-def table(key, one, data, numbers):
+def table(key, one, data: Data, numbers: Numbers):
     """Of a Quantity: its series and levels."""
     what, unit = quantities.ALL[key].name, quantities.ALL[key].unit
     xs = sorted({x for points in one.series.values() for x, _ in points})

@@ -8,9 +8,11 @@ from ..plots import figure_maps, known_reach
 from ..sites.site_roads import FOLDER
 from ..studies import road_numbers
 from ..survey.roads import Asked
+from ..tables import study_types
 from ..tables.quantities import REMOVE
+from .data import Data
 from .ensemble_part import ODDS
-from .numbers import as_run
+from .numbers import as_run, Numbers
 from .sections import Cell, Figures, Picture, Section, Table
 
 # head, unit, number of tables.road_runs
@@ -19,12 +21,12 @@ COLUMNS = (("length", "m", "length"), ("passable", "m", "passable_width"), ("to 
            ("until a lane is open", "h", "hours_lane"))
 
 
-def section(data, numbers, maps) -> Optional[Section]:
+def section(data: Data, numbers: Numbers, maps) -> Optional[Section]:
     """Of a data.Data; None where no run blocks the road, or of older studies."""
-    about = (data.study or {}).get("stretches")
+    about = data.study.get("stretches") if data.study else None
     if not (about and about["stretches"]):
         return None
-    asked, all_ = Asked.of(data.study["study"]["road"]), about["share_blocked"]
+    asked, all_ = Asked.of(data.of_study["study"]["road"]), about["share_blocked"]
     columns = [one for one in COLUMNS if one[2] in about["stretches"][0]]
 
     def cells(one, name):
@@ -46,9 +48,9 @@ def section(data, numbers, maps) -> Optional[Section]:
         Table(caption(asked, about, runs) + as_run(data, REMOVE) + gaps(data, about), heads, lines, ())])
 
 
-def of_all(data) -> Optional[Section]:
+def of_all(data: Data) -> Optional[Section]:
     """The roads of a site with several, the worst first; None of a single one."""
-    several = road_numbers.read(data.study or {})
+    several = road_numbers.read(data.study) if data.study else []
     if not several:
         return None
     rows = [[one.road, one.text, f"{one.reaching} of {one.runs}", f"{FOLDER}/{one.road}/{one.page}"]
@@ -60,23 +62,23 @@ def of_all(data) -> Optional[Section]:
         ["road", "to remove", "runs that reach it", "its page"], rows, (0, 1, 2, 3))])
 
 
-def others(data) -> List[str]:
+def others(data: Data) -> List[str]:
     """What is to be removed from the other roads of a site: a sentence in a list; none of a single road."""
-    several = road_numbers.read(data.study or {})
+    several = road_numbers.read(data.study) if data.study else []
     if not several:
         return []
     found = "; ".join(f"\u201c{one.road}\u201d: {one.text}" for one in several[1:])
     return [f"Of {len(several)} roads this is the worst, \u201c{several[0].road}\u201d; {found}."]
 
 
-def gaps(data, about) -> str:
+def gaps(data: Data, about: study_types.Stretches) -> str:
     """Where known events end and no run does."""
-    known = (data.study.get("ensemble") or {}).get("known_events") if about["of_known_events"] else None
-    return "".join(f" {one['text'][0].upper()}{one['text'][1:]}." for one in (known or {}).get("doubts") or ()
+    known = study_types.weighted(data.of_study["ensemble"]) if about["of_known_events"] else None
+    return "".join(f" {one['text'][0].upper()}{one['text'][1:]}." for one in (known["doubts"] if known else ())
                    if one["kind"] == "gap")
 
 
-def caption(asked: Asked, about, runs: str) -> str:
+def caption(asked: Asked, about: study_types.Stretches, runs: str) -> str:
     text = (f"A stretch is a range of chainages each of which is blocked in one of {about['runs']} runs: the deposit "
             f"is thicker than {asked.blocked:g} m somewhere across the road. Of each number the median, and in "
             f"brackets what 5 and 95 % of the {runs} stay within.")
@@ -90,7 +92,7 @@ def rate(asked: Asked) -> str:
     return f"one loader of {asked.clearing:g} m3/h"
 
 
-def shares(data, asked: Asked, about, runs: str, maps):
+def shares(data: Data, asked: Asked, about: study_types.Stretches, runs: str, maps):
     """The map of the road, coloured by the share of the runs that block it."""
     raster = data.result.deposit.raster
     axis, _, width = axis_of(data.road_line, data.road.intersection(box_of(raster)), asked)
@@ -102,12 +104,12 @@ def shares(data, asked: Asked, about, runs: str, maps):
                    f"Share of the {runs} in which the road is blocked, at each of its places.")
 
 
-def on_first_page(data, numbers, withheld: bool) -> List[str]:
+def on_first_page(data: Data, numbers: Numbers, withheld: bool) -> List[str]:
     """What lane and hours were asked for: a sentence in a list; none where neither was, or the numbers are withheld."""
-    about = (data.study or {}).get("stretches")
+    about = data.study.get("stretches") if data.study else None
     if not about or withheld:
         return []
-    asked, totals = Asked.of(data.study["study"]["road"]), about["totals"]
+    asked, totals = Asked.of(data.of_study["study"]["road"]), about["totals"]
 
     def span(what: str, unit: str, key: str) -> str:
         low, _, high = (numbers(what, unit, value) for value in totals[key])

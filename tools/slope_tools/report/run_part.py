@@ -9,20 +9,20 @@ from ..deposits import rest, travel_shares
 from ..digits import percent
 from ..mobility.run_length import LEAST, OF_99, OTHERS
 from .charts import TERMS
-from .data import find_deck
-from .numbers import UNKNOWN, farthest_of
+from .data import Data, find_deck
+from .numbers import farthest_of, Numbers, UNKNOWN
 from .sections import Cell, Columns, Heading, Pairs, Section, Table, Verbatim, marked, verbatim
 
 # a variable of a deck and the comment on it, which has its unit
 MEANING = re.compile(r"^\s*variable\s+(\w+)\s+index\s.*?#\s*(.*?)\s*$", re.MULTILINE)
 
 
-def titled(what, data):
+def titled(what, data: Data):
     """A title, with the run where there are several."""
     return f"{what} of the run {data.label(data.result)}" if data.study else what
 
 
-def balance(data, numbers):
+def balance(data: Data, numbers: Numbers):
     """The section on the volume balance, the travel and the end of the shown run."""
     one, summary = data.result, data.result.summary
     volume, balls, stop = summary["volume"], summary["balls"], summary["stop"]
@@ -58,7 +58,7 @@ def balance(data, numbers):
                style="keep"), Pairs(end)]])])
 
 
-def travel_rows(data, numbers):
+def travel_rows(data: Data, numbers: Numbers):
     """Shares of the volume, the length along the fall path and the farthest ball of the shown run: distance, angle."""
     one = data.result
     shares = travel_shares.columns(one.summary)
@@ -68,7 +68,7 @@ def travel_rows(data, numbers):
         rows.append((f"{share} % of the volume", *(numbers(f"{share} %: {what}", unit, shares[key])
                                                    for key, what, unit in zip(keys, ("distance", "reach angle"),
                                                                               ("m", "degrees")))))
-    found = data.length()
+    found = data.length
     if found is not None:
         lobe = ("length along the fall path" if found.on_path else "straight length, as there is no fall path") + \
             ", to the farthest lobe of at least"
@@ -88,14 +88,14 @@ def travel_rows(data, numbers):
 
 # --- what was run ---
 
-def deck_of(data):
+def deck_of(data: Data):
     """Name and text of the deck of the shown run; texts are empty where it is not known."""
     deck = find_deck(data.result)
     name = data.study["study"]["deck"] if data.study else deck.name if deck else data.result.prefix.name
     return name, deck.read_text(encoding="utf-8", errors="replace") if deck else ""
 
 
-def what_was_run(data):
+def what_was_run(data: Data):
     """The section of the deck, its variables, and what the log says of the model."""
     one, (name, deck) = data.result, deck_of(data)
     variables = one.row.variables or deck_variables(find_deck(one))
@@ -125,7 +125,7 @@ def deck_variables(deck):
 
 # --- where it comes from ---
 
-def origin(data, made):
+def origin(data: Data, made):
     """The section of programs, machines and checksums; made: when the report was."""
     one = data.result
     summary, about, marker = one.summary, one.about, one.marker

@@ -8,6 +8,8 @@ from .. import digits
 from ..findings import Finding
 from ..plots import figure_structures
 from ..tables import structures
+from .data import Data
+from .numbers import Numbers
 from .sections import Cell, Figures, Picture, Section, Table, Text
 
 FEW = 5             # balls: a structure that is lower is hit by one after another, not by a mass
@@ -40,7 +42,7 @@ CAPTIONS = {
 class Structures:
     """Draws what hit the structures of a data.Data, and what crossed its lines."""
 
-    def __init__(self, data, numbers, ground):
+    def __init__(self, data: Data, numbers: Numbers, ground):
         self.data, self.numbers, self.ground = data, numbers, ground
         self.lengths = lengths(ground.obstacles)
         self.runs = data.drawn
@@ -108,7 +110,7 @@ class Structures:
         """A number of the table, with its unit where that has a prefix."""
         if value is None or isinstance(value, str):
             return value or "-"
-        text = (self.numbers if unit else self.numbers.whole)(what, unit, value, of=label)
+        text = self.numbers(what, unit, value, of=label) if unit else self.numbers.whole(what, unit, value, of=label)
         return digits.si(value, unit) if unit in PREFIXED else text
 
     def forces(self, name, found):
@@ -163,7 +165,7 @@ class Structures:
                        "the direction in which more crossed.")
 
 
-def coarse_walls(data, ground) -> List[Finding]:
+def coarse_walls(data: Data, ground) -> List[Finding]:
     """On structures of the shown run that are lower than FEW balls, the lowest first.
 
     A ball: the side of the cube of ground that it stands for. Not of structures below the ground or beside it.

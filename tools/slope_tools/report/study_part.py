@@ -3,13 +3,15 @@ from ..tables import elastic, quantities
 from ..tables.quantities import LENGTH, REMOVE, On
 from ..tables.rows import Failed, Finished
 from .charts import TERMS, Charts, differences
+from .data import Data
+from .numbers import Numbers
 from .sections import Cell, Figures, Listing, Section, Table, Text
 
 MOST_ROWS, ENDS = 40, 12    # of the study's table, and of each end of a longer one
 VOLUMES = "; volumes in m3 of ground; distances in plan from the highest released ball."
 
 
-def section(data, numbers, reference, maps):
+def section(data: Data, numbers: Numbers, reference, maps):
     """Of a data.Data; None of a run alone."""
     if not data.study:
         return None
@@ -33,13 +35,13 @@ def section(data, numbers, reference, maps):
 class Runs:
     """The tables of the runs of a data.Data; numbers writes and keeps their numbers."""
 
-    def __init__(self, data, numbers):
+    def __init__(self, data: Data, numbers: Numbers):
         self.data, self.numbers = data, numbers
         self.varied = [key for key, several in data.settings.items() if len(several) > 1]
 
     def table(self):
         """For each run its variables, its numbers or why it failed, and whether it is at rest."""
-        data, best, columns = self.data, self.data.study.get("conservative") or {}, self.columns()
+        data, best, columns = self.data, self.data.of_study["conservative"], self.columns()
         names = self.varied or list(data.settings)
         rows, marks = [], []
         for row in self.in_table():
@@ -51,7 +53,7 @@ class Runs:
                 name = data.label_of(row)
                 cells += [self.numbers.quantity(one.key, row.value(one.key), name, "-") for one in columns]
                 cells.append(Cell(row.end_short, style="" if row.at_rest else "doubt"))
-                mark = ["bad"] * row.moving + ["best"] * (bool(best) and row.set == best["set"])
+                mark = ["bad"] * row.moving + ["best"] * (best is not None and row.set == best["set"])
             else:
                 cells.append(Cell(f"failed: {row.error}", style="left", span=len(columns) + 1))
             rows.append(cells)
@@ -115,8 +117,8 @@ class Runs:
 
     def means(self):
         """The table over combinations; None without repeats."""
-        study, best = self.data.study, self.data.study["conservative"]
-        if not (self.data.repeats and study.get("combinations")):
+        study, best = self.data.of_study, self.data.of_study["conservative"]
+        if not (self.data.repeats and study["combinations"]):
             return None
         averaged = [quantities.ALL[key] for key in quantities.keys(On.PAGE_MEAN)
                     if all(key in entry for entry in study["combinations"])]
@@ -131,16 +133,19 @@ class Runs:
 
     def most_elastic(self):
         """The table of reach and area with the largest restitution; None without such runs."""
-        about = self.data.study.get(elastic.ENTRY)
+        about = self.data.of_study["largest_restitution"]
         if not about or not about["quantities"]:
             return None
         rows = []
         for key, one in about["quantities"].items():
             name, unit = elastic.name_of(key, about)
+            usual, study = one["usual"], one["study"]
             rows.append([Cell(name, unit), *(self.numbers(f"{end}: {name}, restitution {about['restitution']:g}", unit,
-                                                          one[end]) for end in ("mean", "low", "high")),
-                         *(self.numbers(f"{what}: {name}", unit, (one[of] or {}).get(end))
-                           for what, of, end in (("mean", "usual", "mean"), ("largest", "study", "high")))])
+                                                          value)
+                                             for end, value in (("mean", one["mean"]), ("low", one["low"]),
+                                                                ("high", one["high"]))),
+                         self.numbers(f"mean: {name}", unit, usual["mean"] if usual else None),
+                         self.numbers(f"largest: {name}", unit, study["high"] if study else None)])
         return Table(f"Reach and area with the most elastic rock: soil, slip surface and ground with a restitution of "
                      f"{about['restitution']:g}, rolling resistance {about['rolling']}; {len(about['runs'])} runs, "
                      "which are none of those that the volume is of.",

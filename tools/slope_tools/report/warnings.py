@@ -5,8 +5,9 @@ from ..deposits.volume import MUCH_BELOW
 from ..finding_words import WORDS, words_of
 from ..findings import LIMIT, OTHER, WARNING, Finding, finding, gathered
 from ..statistics import headline
-from ..tables import judged
+from ..tables import judged, study_types
 from . import structures_part
+from .data import Data
 
 MOST = 3                # on the first page
 BESIDE_MAPS = "no CRS"  # the page says so there
@@ -14,18 +15,20 @@ LARGE = "large"
 WEIGHT = {kind: place for place, kind in enumerate(WORDS)}
 
 
-def findings(data, ground) -> List[Finding]:
+def findings(data: Data, ground) -> List[Finding]:
     """All of a data.Data on its ground.Ground."""
     of_runs = judged.of_runs(data.judged)
     found = [*of_runs, *below_ground(data), *judged.limits(data.study, bool(data.repeats)),
              *structures_part.coarse_walls(data, ground)[:1]]
     if data.study:
-        about, ensemble = data.study, data.study.get("ensemble") or {}
-        for part, entry in (("The volume to remove", about["conservative"]), ("The ensemble", ensemble),
-                            ("The known events", ensemble.get("known_events"))):
-            found += [finding(one)._replace(part=part) for one in (entry or {}).get("doubts") or ()]
+        about, ensemble, volume = data.study, data.study["ensemble"], data.study["conservative"]
+        known_events = ensemble["known_events"] if ensemble else None
+        for part, doubts in (("The volume to remove", volume["doubts"] if volume else []),
+                             ("The ensemble", ensemble["doubts"] if ensemble else []),
+                             ("The known events", known_events["doubts"] if known_events else [])):
+            found += [finding(one)._replace(part=part) for one in doubts]
         known = {(one.kind, one.text) for one in of_runs}
-        found += [one for said in about.get("warnings") or () if (one := finding(said)).part or
+        found += [one for said in about["warnings"] if (one := finding(said)).part or
                   kind_of(said) not in judged.KINDS and (one.kind, one.text) not in known]
     kinds = {one.kind for one in of_runs}
     covered = [line for line, those in (("removed", ("bulk factor", "body volume", "balls removed")),
@@ -34,10 +37,9 @@ def findings(data, ground) -> List[Finding]:
     return [one for one in (*found, *judged.of_logs(data.judged, covered)) if one.kind not in beside]
 
 
-def weighed(data) -> bool:
+def weighed(data: Data) -> bool:
     """Whether known events weigh the runs, which makes up for what is known of large masses."""
-    known = ((data.study or {}).get("ensemble") or {}).get("known_events")
-    return known is not None and known["reached"] is not None
+    return data.study is not None and study_types.weighted(data.study["ensemble"]) is not None
 
 
 def kind_of(said) -> str:
@@ -67,11 +69,11 @@ def rest_of(warnings: int) -> str:
     return f"{first} settings, the runs and the checks."
 
 
-def below_ground(data) -> List[Finding]:
+def below_ground(data: Data) -> List[Finding]:
     """A cut surface flatter than the hillside: much of the volume lies where that surface is below the ground."""
     below, share = data.below_ground() or (0, 0)
     if share <= MUCH_BELOW:
         return []
     known = headline.nearest(below, headline.place_of_digits(below))
     return [Finding("cut below ground", {"percent": 100 * share, "volume": known, "run": data.label(data.result),
-                                         "angle": data.study["study"]["road"]["cut_angle"]})]
+                                         "angle": data.of_study["study"]["road"]["cut_angle"]})]

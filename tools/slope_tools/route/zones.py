@@ -18,7 +18,7 @@ from ..deposits import deposit
 from ..errors import SlopeError
 from ..survey.geopackage import Layer
 from ..survey.rasters import Raster, crs_name
-from ..tables import answered, named_run
+from ..tables import answered, named_run, study_types
 from ..tables.rows import Failed, finished_of
 from ..tables.study_file import read_study
 from . import choices, corridor, reached, results, search
@@ -92,7 +92,8 @@ def ground_of(name: str, warn) -> Ground:
         return Ground(run.raster, [Source(1, [Path(run.prefix)], np.ones(1), 0, run.raster.offset)], None)
     study = study or folder
     about = read_study(study / answered.STUDY)
-    known = ((about["ensemble"] or {}).get("known_events") or {}).get("weights")
+    weighted = study_types.weighted(about["ensemble"])
+    known = weighted["weights"] if weighted else None
     rows = [row for row in finished_of(about["runs"]) if (row.run in known if known else not row.batch)]
     if not rows:
         raise SlopeError(study, "must have finished runs that are counted alike, or have weights")

@@ -15,7 +15,7 @@ from ..findings import Finding, entries, finding, texts
 from ..sites.site_bodies import VARIABLE
 from ..statistics import hazard
 from ..statistics.size_effect import Effect
-from ..tables import fine_run, intensity
+from ..tables import fine_run, intensity, study_types
 from ..tables.rows import Row, finished_of
 from . import chain
 from .fragility_files import Fragility
@@ -93,12 +93,12 @@ def left(asked: Chain, rows: Sequence[Row], effect: Optional[Effect] = None) -> 
 
 class Evaluated(NamedTuple):
     """about: the entry of study.yaml; tables: {name of a file: its text}."""
-    about: Dict[str, Any]
+    about: study_types.Chain
     tables: Dict[str, str]
 
 
-def evaluate(asked: Chain, rows: Sequence[Row], withheld: Sequence[Mapping[str, Any]],
-             size: Optional[Mapping[str, Any]] = None) -> Evaluated:
+def evaluate(asked: Chain, rows: Sequence[Row], withheld: Sequence[study_types.Reason],
+             size: Optional[study_types.Size] = None) -> Evaluated:
     """What the runs say; rows: of study.csv; withheld: why their volumes may not be used; size: of the fine run."""
     effect = fine_run.read_effect(size, QUANTITY)
     found, bodies = asked.fragility, left(asked, rows, effect)
@@ -112,14 +112,12 @@ def evaluate(asked: Chain, rows: Sequence[Row], withheld: Sequence[Mapping[str, 
         ("peak_gal", "volume_m3", "probability", "low", "high"),
         ((peak, volume, *(side[i, k] for side in family)) for i, peak in enumerate(found.peaks)
          for k, volume in enumerate(volumes)))}
-    about: Dict[str, Any] = {
+    about: study_types.Chain = {
         "fragility": found.folder.name, "quantity": QUANTITY, "confidence": hazard.CONFIDENCE,
         "bodies": [of_body(asked, name, rows) for name in found.bodies], "more_than_m3": more_than,
         "peaks_gal": found.peaks.tolist(),
-        "curves": [{"more_than_m3": volume, **{name: side[:, k].tolist() for name, side in
-                                               zip(("probability", "low", "high"), family)}}
-                   for volume, k in zip(more_than, at)],
-        "per_year": None, "withheld": list(withheld), "files": [CURVES]}
+        "curves": [curve(volume, *(side[:, k].tolist() for side in family)) for volume, k in zip(more_than, at)],
+        "per_year": None, "withheld": list(withheld), "files": [CURVES], "doubts": []}
     if found.rate is not None:
         yearly = chain.frequency(found.capacity, found.rate, found.peaks, bodies, volumes)
         tables[PER_YEAR] = table(("volume_m3", "per_year", "low", "high"), zip(volumes, *yearly.total))
@@ -129,6 +127,10 @@ def evaluate(asked: Chain, rows: Sequence[Row], withheld: Sequence[Mapping[str, 
     return Evaluated(about, tables)
 
 
+def curve(volume: float, probability: List[float], low: List[float], high: List[float]) -> study_types.ChainCurve:
+    return {"more_than_m3": volume, "probability": probability, "low": low, "high": high}
+
+
 def write(found: Evaluated, output: Path) -> None:
     """The tables."""
     (output / PER_YEAR).unlink(missing_ok=True)      # of a study before this one in the folder
@@ -136,14 +138,14 @@ def write(found: Evaluated, output: Path) -> None:
         disk.write(output / name, text)
 
 
-def of_body(asked: Chain, name: str, rows: Sequence[Row]) -> Dict[str, Any]:
+def of_body(asked: Chain, name: str, rows: Sequence[Row]) -> study_types.ChainBody:
     """What study.yaml says of a body."""
     mine = [row for row in rows if row.set[VARIABLE] == name]
     return {"body": name, "weight": asked.weights.get(name, 0.0), "volume_m3": asked.volumes.get(name),
             "runs": len(mine), "finished": len(finished_of(mine))}
 
 
-def of_year(yearly: chain.Frequency, volume: float, k: int) -> Dict[str, Any]:
+def of_year(yearly: chain.Frequency, volume: float, k: int) -> study_types.PerYear:
     """What study.yaml says of how often a volume is exceeded, the k-th."""
     return {"more_than_m3": volume, "value": float(yearly.total.value[k]), "low": float(yearly.total.low[k]),
             "high": float(yearly.total.high[k]), "more_at_most": float(yearly.beyond[k]),
@@ -151,7 +153,7 @@ def of_year(yearly: chain.Frequency, volume: float, k: int) -> Dict[str, Any]:
                               for a, b, part in yearly.parts]}
 
 
-def doubts(about: Mapping[str, Any], warnings: Sequence[Any]) -> List[Finding]:
+def doubts(about: study_types.Chain, warnings: Sequence[Any]) -> List[Finding]:
     """The caveats; warnings: of the fragility."""
     return [*(finding(one)._replace(part="fragility") for one in warnings),
             *(Finding("body without run", {"body": one["body"], "volume": one["volume_m3"]})
@@ -160,12 +162,12 @@ def doubts(about: Mapping[str, Any], warnings: Sequence[Any]) -> List[Finding]:
               for one in about["per_year"] or () if one["more_at_most"] > BEYOND * one["value"])]
 
 
-def of_size(size: Optional[Mapping[str, Any]], effect: Optional[Effect], largest: float) -> List[Finding]:
+def of_size(size: Optional[study_types.Size], effect: Optional[Effect], largest: float) -> List[Finding]:
     """What the size of the balls does to the volumes; largest: of the runs, m3."""
     found = []
     if effect is not None and effect.added(largest) > 0:
         found.append(Finding("chain raised", {"added": effect.added(largest), "volume": largest}))
-    if effect is None or (size or {}).get("open"):
+    if effect is None or size and size["open"]:
         found.append(Finding("chain size"))
     return found
 
@@ -176,7 +178,7 @@ def table(head: Sequence[str], rows) -> str:
 
 # --- words ---
 
-def sentences(about: Mapping[str, Any]) -> List[str]:
+def sentences(about: study_types.Chain) -> List[str]:
     """How often, or at which peaks, the road is blocked by more than each of the volumes."""
     sure = f"{100 * about['confidence']:g} %"
     if about["per_year"]:
@@ -185,13 +187,13 @@ def sentences(about: Mapping[str, Any]) -> List[str]:
     found = []
     for one in about["curves"]:
         k = int(np.argmin(np.abs(np.array(one["probability"]) - 0.5)))
-        low, value, high = (percent(one[side][k]) for side in ("low", "probability", "high"))
+        low, value, high = (percent(side[k]) for side in (one["low"], one["probability"], one["high"]))
         found.append(f"an earthquake of {about['peaks_gal'][k]:.4g} gal blocks the road by more than "
                      f"{one['more_than_m3']:,.6g} m3 with {value} ({sure}: {low} to {high})")
     return found
 
 
-def describe(about: Mapping[str, Any], output: Path) -> List[str]:
+def describe(about: study_types.Chain, output: Path) -> List[str]:
     """The lines of the console; ensemble.describe() says why volumes are withheld."""
     lines = [f"caveat: {text}" for text in texts(about["doubts"])]
     if about["withheld"]:

@@ -7,6 +7,7 @@ import math
 from enum import Enum
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
+from . import entries
 from .withheld import Kind as Rule
 
 SHARE = 0.95            # of the known events, which stay within the volume
@@ -92,9 +93,11 @@ class Road(NamedTuple):
     def numbers(self) -> Dict[str, Any]:
         return {"low": min(self.reached), "high": max(self.reached), "near_m": self.near, "longest_m": self.longest}
 
-    def about(self) -> Dict[str, Any]:
+    def about(self) -> entries.HeadlineRoad:
         return {"near_m": self.near, "far_m": self.far, "reached": sorted(self.reached),
-                "passed": sorted(self.passed), "longest_m": self.longest, "brought": self.brought._asdict()}
+                "passed": sorted(self.passed), "longest_m": self.longest, "brought": {
+                    "runs": self.brought.runs, "reach": self.brought.reach, "passing": self.brought.passing,
+                    "volume": self.brought.volume, "balls": self.brought.balls}}
 
 
 class Withheld(NamedTuple):
@@ -154,16 +157,17 @@ class Answer(NamedTuple):
     road: Optional[Road]
     reasons: List[Reason]
 
-    def about(self) -> Dict[str, Any]:
+    def about(self) -> entries.Headline:
         """What study.yaml says of it."""
         paper, ensemble = self.paper, self.ensemble
         return {
             "kind": self.kind.value, "volume_m3": self.volume, "share": self.share, "low_m3": self.low,
-            "high_m3": self.high, "source": self.source and self.source.value,
-            "paper": paper and {"volume_m3": paper.volume, "withheld": [one.rule.value for one in paper.withheld]},
-            "ensemble": ensemble and {"volume_m3": ensemble.quantiles[SHARE][0], "far": ensemble.far,
-                                      "withheld": [one.rule.value for one in ensemble.withheld]},
-            "road": self.road and self.road.about(), "reasons": [one.about() for one in self.reasons]}
+            "high_m3": self.high, "source": self.source.value if self.source else None,
+            "paper": {"volume_m3": paper.volume,
+                      "withheld": [one.rule.value for one in paper.withheld]} if paper else None,
+            "ensemble": {"volume_m3": ensemble.quantiles[SHARE][0], "far": ensemble.far,
+                         "withheld": [one.rule.value for one in ensemble.withheld]} if ensemble else None,
+            "road": self.road.about() if self.road else None, "reasons": [one.about() for one in self.reasons]}
 
 
 class Part(NamedTuple):

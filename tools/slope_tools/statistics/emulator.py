@@ -7,14 +7,14 @@ cross-validation: runs of points that the process has not seen. What a bad fit s
 import math
 import warnings
 from dataclasses import dataclass
-from typing import Any, Dict, List, NamedTuple, Optional, Sequence
+from typing import List, NamedTuple, Optional, Sequence
 
 import numpy as np
 from scipy import linalg, stats
 from scipy.stats import qmc
 
 from ..digits import measured
-from . import dependent
+from . import dependent, entries
 
 FOLDS = 8
 GOOD, ROUGH = 0.8, 0.5      # share of the variance of unseen runs that is explained: good, rough from here, bad below
@@ -139,14 +139,15 @@ class Analysis:
     influences: List[Influence]
     text: str
 
-    def about(self) -> Dict[str, Any]:
+    def about(self) -> entries.Analysis:
         """What study.yaml says of it: what the emulator is worth, and each variable's rank correlation and indices."""
         check = self.check
         return {"text": self.text,
-                "emulator": check and {"verdict": check.verdict, "explained": check.explained, "error": check.error,
-                                       "noise": check.noise, "standard_deviation": check.deviation},
-                "variables": {one.name: {"rank": one.rank, "rank_clear": one.rank_clear,
-                                         **{key: getattr(one, key) for key in SIGN}} for one in self.influences}}
+                "emulator": {"verdict": check.verdict, "explained": check.explained, "error": check.error,
+                             "noise": check.noise, "standard_deviation": check.deviation} if check else None,
+                "variables": {one.name: {"rank": one.rank, "rank_clear": one.rank_clear, "first": one.first,
+                                         "first_error": one.first_error, "total": one.total,
+                                         "total_error": one.total_error} for one in self.influences}}
 
 
 def folds(point: np.ndarray) -> List[np.ndarray]:

@@ -1,17 +1,18 @@
 """What a study tells on the console: its tables and numbers, in words, and where they are."""
 from pathlib import Path
-from typing import Any, Callable, List, Mapping
+from typing import Any, Callable, List
 
 from ..ensembles import ensemble, known_study
 from ..seismic import chain_files
-from ..tables import answer_words, combinations, elastic, intensity, next_step, road_runs, structures, study_table
+from ..tables import (answer_words, combinations, intensity, next_step, road_runs, structures, study_table,
+                      study_types)
 from . import mapped
 from .outcome import Outcome
 
 SHOWN = 20              # runs of an ensemble whose table is printed
 
 
-def tell(outcome: Outcome, about: Mapping[str, Any], output: Path, say: Callable[[Any], Any],
+def tell(outcome: Outcome, about: study_types.Study, output: Path, say: Callable[[Any], Any],
          warn: Callable[[Any], Any]) -> None:
     """about: what study.yaml says; say: what gets lines and tables; warn: what gets findings."""
     asked, rows, finished = outcome.questions, outcome.read.rows, outcome.read.finished
@@ -32,7 +33,7 @@ def tell(outcome: Outcome, about: Mapping[str, Any], output: Path, say: Callable
                                    "of ground"))
     if any(outcome.scatters.values()) and not asked.order:
         say(study_table.combinations_shown(asked.settings, outcome.groups, outcome.scatters))
-    if about.get("stretches"):
+    if "stretches" in about:
         say(f"{output / road_runs.FILE}: {len(about['stretches']['stretches'])} stretches of the road that runs block")
     say(f"{output / 'study.yaml'}, {output / 'study.csv'}, {output / 'combinations.csv'}: all numbers")
     tell_numbers(about, output, say)
@@ -46,13 +47,13 @@ def tell(outcome: Outcome, about: Mapping[str, Any], output: Path, say: Callable
         say(f"{output / entry['file']}: {entry['what']}")
 
 
-def tell_headline(about: Mapping[str, Any]) -> List[str]:
+def tell_headline(about: study_types.Study) -> List[str]:
     """The number, why it is no more than that, and the next step, as the first page has them; a line each."""
-    step = about[next_step.ENTRY]
-    return [*answer_words.lines(about["headline"]), *([str(next_step.Step(**step))] if step else [])]
+    step, number = about.get("next_step"), about["headline"]
+    return [*(answer_words.lines(number) if number else []), *([str(next_step.Step(**step))] if step else [])]
 
 
-def tell_numbers(about: Mapping[str, Any], output: Path, say: Callable[[Any], Any]) -> None:
+def tell_numbers(about: study_types.Study, output: Path, say: Callable[[Any], Any]) -> None:
     """The conservative volume, the effects of step and size, the ensemble."""
     if about["conservative"]:
         say("\n".join(combinations.describe(about["conservative"])))
@@ -60,8 +61,8 @@ def tell_numbers(about: Mapping[str, Any], output: Path, say: Callable[[Any], An
             say(about["step"]["text"])
     if about["size"]:
         say(f"size of the balls: {about['size']['text']}")
-    if about[elastic.ENTRY]:
-        say(about[elastic.ENTRY]["text"])
+    if about["largest_restitution"]:
+        say(about["largest_restitution"]["text"])
     if about["ensemble"]:
         say("\n".join(ensemble.describe(about["ensemble"])))
         say(f"{output / ensemble.HAZARD}, {output / ensemble.INFLUENCE}: all curves and indices; "

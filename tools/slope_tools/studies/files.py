@@ -1,32 +1,29 @@
 """The files of a study: study.yaml, tables and maps over all runs, which are prints of its Outcome."""
 from pathlib import Path
-from typing import Any, Dict, Mapping, Optional
+from typing import Optional
 
 from .. import disk
 from ..ensembles import ensemble
 from ..seismic import chain_files
-from ..tables import answered, combinations, elastic, intensity, road_runs, structures, study_file, study_table
+from ..tables import (answered, combinations, elastic, intensity, road_runs, structures, study_file, study_table,
+                      study_types)
 from ..tables.study_maps import Maps
 from .outcome import Outcome
 
 
-def write(outcome: Outcome, header: Mapping[str, Any], maps: Maps, output: Path, place) -> Dict[str, Any]:
-    """All of them; what study.yaml says.
-
-    header: what it says of what was asked, and of the programs; place: CRS and offset of the maps, None without.
-    """
-    asked, read = outcome.questions, outcome.read
-    about: Dict[str, Any] = {"study": dict(header), **outcome.about, **maps.write(output, place)}
+def write(outcome: Outcome, maps: Maps, output: Path, place) -> study_types.Study:
+    """All of them; what study.yaml says. place: CRS and offset of the maps, None without."""
+    asked, read, about = outcome.questions, outcome.read, outcome.about
+    about["envelope"], about["exceedance"] = maps.write(output, place)
     if outcome.ensemble:
         assert asked.order
-        about["ensemble"] = {**about["ensemble"], **ensemble.write(outcome.ensemble, asked.order.levels, output, place,
-                                                                   read.problem)}
-    if about.get("stretches"):
+        ensemble.write(outcome.ensemble, asked.order.levels, output, place, read.problem)
+    if "stretches" in about:
         head, *lines = road_runs.rows(about["stretches"])
         disk.write(output / road_runs.FILE, disk.csv_text(head, lines))
     if outcome.chain:
         chain_files.write(outcome.chain, output)
-    write_or_remove(output / intensity.FILE, about["intensity"] and intensity.table(about["intensity"]))
+    write_or_remove(output / intensity.FILE, intensity.table(about["intensity"]) if about["intensity"] else None)
     write_or_remove(output / elastic.FILE, read.elastic and elastic.table(read.elastic))
     structures.write(output, read.finished)
     disk.write(output / "study.csv", study_table.table(asked.settings, asked.repeated, read.rows, read.defaults))
@@ -43,6 +40,6 @@ def write_or_remove(path: Path, text: Optional[str]) -> None:
         path.unlink(missing_ok=True)
 
 
-def write_about(output: Path, about: Mapping[str, Any]) -> None:
+def write_about(output: Path, about: study_types.Study) -> None:
     """study.yaml."""
     disk.write(output / answered.STUDY, disk.yaml_text(answered.TITLE, study_file.plain(about)))

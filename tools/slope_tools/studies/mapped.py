@@ -6,7 +6,7 @@ farthest corner.
 import os
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
+from typing import Iterable, List, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from ..mobility import run_length
 from ..sites.site_folder import TERRAIN
 from ..sites.site_layers import OBSERVED
 from ..survey import rasters
+from ..tables import study_types
 from ..tables.rows import Failed, Finished, Mapped, Row, finished_of
 
 SAME_MASS = 0.1         # of the released volume: a mapped deposit that holds so much less or more is not the same mass
@@ -36,14 +37,14 @@ def check(site: Path) -> None:
 
 
 def compare(path: Optional[Path], output: Path, rows: Sequence[Row],
-            terrains: Sequence[Optional[Path]]) -> Tuple[List[Row], Optional[Dict[str, Any]]]:
+            terrains: Sequence[Optional[Path]]) -> Tuple[List[Row], Optional[study_types.Observed]]:
     """The rows with what finished runs have of a mapped deposit, and what study.yaml says of it; None without one.
 
     output: the study's folder; terrains: of the runs of the rows.
     """
     if path is None:
         return list(rows), None
-    about: Dict[str, Any] = {}
+    about: Optional[study_types.Observed] = None
     found: List[Row] = []
     for row, terrain in zip(rows, terrains):
         if isinstance(row, Failed):
@@ -60,9 +61,9 @@ def compare(path: Optional[Path], output: Path, rows: Sequence[Row],
             float(observed.thickness.sum()) * run_.cell ** 2 + observed.volume_outside
         about = about or {"file": os.path.relpath(path.resolve(), output.resolve()), "threshold_m": score.THRESHOLD,
                           "length_m": length, "area_m2": area["observed"], "volume_m3": volume,
-                          "released_m3": row.released_m3}
+                          "released_m3": row.released_m3, "best": ""}
     compared = of_rows(found)
-    if not compared:
+    if not compared or not about:
         return found, None
     about["best"] = max(compared, key=lambda one: one[1].overlap)[0].run
     return found, about
@@ -83,7 +84,7 @@ def length_of(run_: deposit.Deposit, terrain: Optional[Path], observed: score.Ob
     return float(run_length.lengths_of(points, path, run_)[0].max()) if len(points) else None
 
 
-def describe(about: Mapping[str, Any], rows: Sequence[Row]) -> List[str]:
+def describe(about: study_types.Observed, rows: Sequence[Row]) -> List[str]:
     """The comparison on the console, a line each."""
     found = of_rows(rows)
     best, mine = next((row, one) for row, one in found if row.run == about["best"])

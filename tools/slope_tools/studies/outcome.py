@@ -4,7 +4,7 @@ Files, console and pages are made of it side by side (files, console, report); r
 """
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence
+from typing import Any, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from ..deposits import travel_shares
 from ..ensembles import ensemble
@@ -14,9 +14,9 @@ from ..runs import repeats
 from ..runs.repeats import Repeat
 from ..seismic import chain_files
 from ..statistics.headline import Scatter
+from ..tables import (answered, combinations, elastic, fine_run, intensity, judged, quantities, road_runs, step_check,
+                      study_types, usable, withheld_words)
 from ..tables.rows import Finished, Row, finished_of
-from ..tables import (answered, combinations, elastic, fine_run, intensity, judged, quantities, road_runs,
-                      step_check, usable, withheld_words)
 
 LIKE = 1.5              # times as many balls over the thickness: values found with fewer, or more, are of another model
 
@@ -59,7 +59,7 @@ class Read(NamedTuple):
     road: bool
     events: Optional[usable.Events]
     mobility: Optional[Mobility]
-    observed: Optional[Dict[str, Any]]
+    observed: Optional[study_types.Observed]
     fine: Optional[fine_run.Fine]
     elastic: Optional[elastic.Runs]
     problem: Optional[str]
@@ -74,7 +74,7 @@ class Read(NamedTuple):
 
 @dataclass(frozen=True)
 class Outcome:
-    """about: what study.yaml says of it, but for what was asked and for the maps."""
+    """about: what study.yaml says of it, but for the maps and the next step."""
     questions: Questions
     read: Read
     groups: Sequence[combinations.Group]
@@ -83,10 +83,10 @@ class Outcome:
     warnings: Sequence[Finding]
     ensemble: Optional[ensemble.Evaluated]
     chain: Optional[chain_files.Evaluated]
-    about: Mapping[str, Any]
+    about: study_types.Study
 
 
-def evaluate(questions: Questions, read: Read) -> Outcome:
+def evaluate(questions: Questions, read: Read, header: study_types.Header) -> Outcome:
     """The Outcome of a study; of an ensemble one run at least has finished."""
     rows, finished, order = read.rows, read.finished, questions.order
     groups = combinations.grouped(rows)
@@ -94,33 +94,37 @@ def evaluate(questions: Questions, read: Read) -> Outcome:
     keys = ["front_m", "thickness_m", "max_thickness_m", "max_speed_m_s"]
     keys += [key for key in (travel_shares.DISTANCE, "length_m") if key in names]
     warnings = warnings_of(questions, read)
-    about: Dict[str, Any] = {
-        "largest": {key: largest(finished, key) for key in keys if finished},
+    about: study_types.Study = {
+        "study": header, "largest": {key: largest(finished, key) for key in keys if finished},
         "farthest": travel_shares.farthest(finished).run if finished else None,
-        "conservative": None, "size": None, "ensemble": None, "step": None,
-        elastic.ENTRY: elastic.evaluate(read.elastic) if read.elastic else None,
-        "scatter": {name: known and {"deviation": known.deviation, "degrees_of_freedom": known.degrees_of_freedom}
-                    for name, known in scatters.items()},
+        "conservative": None, "size": fine_run.evaluate(read.fine) if read.fine and finished else None,
+        "ensemble": None, "step": None,
+        "largest_restitution": elastic.evaluate(read.elastic) if read.elastic else None,
+        "scatter": {name: {"deviation": one.deviation, "degrees_of_freedom": one.degrees_of_freedom} if one else None
+                    for name, one in scatters.items()},
         "combinations": combinations.entries(groups, names), "envelope": None, "exceedance": None,
-        "observed": read.observed, "roads": list(questions.roads), "warnings": entries(warnings), "runs": rows}
-    if read.fine and finished:
-        about["size"] = fine_run.evaluate(read.fine)
+        "observed": read.observed, "roads": [dict(one) for one in questions.roads],
+        "warnings": entries(warnings), "runs": rows,
+        "headline": None, "chain": None, "intensity": None}
     several = None
     if order:
         several = ensemble.evaluate(order, rows, read.mobility)
-        about["ensemble"] = {**several.about, "withheld": reasons(read)} if several else None
+        if several:
+            about["ensemble"] = several.about
+            several.about["withheld"] = reasons(read)
     elif read.road and finished:
         about["conservative"], about["step"] = conservative(questions, read, groups, about["size"])
-    shown = {**about, "study": {"balls_thick": read.balls_thick}}
-    about["headline"] = (said := answered.of_study(shown, read.events and read.events.road(finished))) and said.about()
+    said = answered.of_study(about, read.events and read.events.road(finished))
+    about["headline"] = said.about() if said else None
     if read.road and finished:
-        about["stretches"] = stretches(finished, ((about["ensemble"] or {}).get("known_events") or {}).get("weights"))
-    chain = chain_files.evaluate(questions.chain, rows, about["ensemble"]["withheld"], about["size"]) \
+        about["stretches"] = stretches(finished, known_weights(about))
+    chain = chain_files.evaluate(questions.chain, rows, reasons(read), about["size"]) \
         if questions.chain and several and finished else None
-    about["chain"] = chain and chain.about
-    about["intensity"] = intensity.evaluate(questions.intensity, questions.more_than, questions.settings, read.road,
-                                            groups) if finished and not order else None     # drawn values have one run
-    if about["intensity"]:
+    about["chain"] = chain.about if chain else None
+    if finished and not order:      # drawn values have one run
+        about["intensity"] = intensity.evaluate(questions.intensity, questions.more_than, questions.settings,
+                                                read.road, groups)
+    if about["intensity"] and about["conservative"]:
         about["conservative"]["doubts"] += entries(intensity.doubts(about["intensity"]))
     return Outcome(questions, read, groups, names, scatters, warnings, several, chain, about)
 
@@ -143,13 +147,20 @@ def other_thickness(found: Optional[float], here: Optional[float]) -> Optional[F
     return Finding("other thickness", {"found": found, "here": here})
 
 
-def reasons(read: Read) -> List[Dict[str, Any]]:
+def known_weights(about: study_types.Study) -> Optional[Mapping[str, float]]:
+    """{run: share of the known events}, where these weigh the runs of a study."""
+    known = study_types.weighted(about["ensemble"])
+    return known["weights"] if known else None
+
+
+def reasons(read: Read) -> List[study_types.Reason]:
     """Why the numbers of an ensemble are withheld."""
     assert read.case
     return usable.reasons_of_ensemble(read.rows, read.events, read.case._replace(sampled=True)) if read.road else []
 
 
-def conservative(questions: Questions, read: Read, groups: Sequence[combinations.Group], size):
+def conservative(questions: Questions, read: Read, groups: Sequence[combinations.Group],
+                 size: Optional[study_types.Size]) -> Tuple[study_types.Conservative, Optional[study_types.HalfStep]]:
     """The entries of the conservative volume and of the run with half the time step; size: of the fine run."""
     best = combinations.conservative(questions.settings, read.rows, groups,
                                      fine_run.read_effect(size, quantities.REMOVE))
@@ -170,14 +181,16 @@ def unseen(repeated, defaults) -> List[Finding]:
         if offsets else []
 
 
-def stretches(rows: Sequence[Finished], known: Optional[Mapping[str, float]]) -> Dict[str, Any]:
+def stretches(rows: Sequence[Finished], known: Optional[Mapping[str, float]]) -> study_types.Stretches:
     """Of the road that finished runs block; known: weights by known events, or None."""
     weights = known or {row.run: 1.0 for row in rows if not row.batch}
-    return {**road_runs.evaluate([road_runs.Run(weights[row.run], row.at_road.stretches, row.at_road.clearing)
-                                  for row in rows if row.run in weights]), "of_known_events": bool(known)}
+    found = road_runs.evaluate([road_runs.Run(weights[row.run], row.at_road.stretches, row.at_road.clearing)
+                                for row in rows if row.run in weights])
+    found["of_known_events"] = bool(known)
+    return found
 
 
-def largest(rows: Sequence[Finished], key: str) -> Dict[str, Any]:
+def largest(rows: Sequence[Finished], key: str) -> study_types.Largest:
     """The largest value of a column and the first run that has it."""
     best = max(rows, key=lambda row: row.value(key))
     return {"value": best.value(key), "run": best.run}

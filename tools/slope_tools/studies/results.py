@@ -1,5 +1,4 @@
 """The runs of a study: read, evaluated (outcome), and shown in files and on the console, side by side."""
-from dataclasses import replace
 from shlex import quote
 from typing import Any, Dict, Mapping, Optional, Sequence
 
@@ -9,7 +8,7 @@ from ..ensembles import known_events, known_study
 from ..runs.repeats import Repeat
 from ..statistics import headline
 from ..survey import roads
-from ..tables import combinations, elastic, fine_run, next_step, usable, withheld_words
+from ..tables import combinations, elastic, fine_run, next_step, study_types, usable, withheld_words
 from ..tables.rows import Finished, Row, finished_of
 from ..tables.study_maps import Maps
 from . import body_depth, console, files, mapped
@@ -18,7 +17,7 @@ from .run_rows import placed, prefix_of, rows_of, terrain_of, terrain_place
 from .setup import Road, Setup
 
 
-def collect(setup: Setup, questions: Questions, todo, work) -> Optional[Dict[str, Any]]:
+def collect(setup: Setup, questions: Questions, todo, work) -> Optional[study_types.Study]:
     """Read the runs, evaluate them, write and tell what they say; what study.yaml says, None where no run of an
     ensemble finished."""
     if questions.order and all(run.error for run in todo):
@@ -26,20 +25,25 @@ def collect(setup: Setup, questions: Questions, todo, work) -> Optional[Dict[str
     maps = Maps(questions.thresholds)
     first = next((run for run in todo if not run.error), None)
     found = read(setup, questions, todo, maps, work.defaults)
-    outcome = evaluate(questions, found)
-    header = {"deck": setup.deck.name, "known": questions.among, "set": questions.settings,
-              "repeat": questions.repeated, "runs": len(found.rows), "finished": len(found.finished),
-              "method": questions.method, "ranks": work.ranks, "jobs": work.jobs, "package": work.package,
-              "governs": setup.output.name, "balls_thick": found.balls_thick, "collected": provenance.now(),
-              "machine": provenance.machine()}
+    header: study_types.Header = {
+        "deck": setup.deck.name, "known": questions.among, "set": listed(questions.settings),
+        "repeat": listed(questions.repeated), "runs": len(found.rows), "finished": len(found.finished),
+        "method": questions.method, "ranks": work.ranks, "jobs": work.jobs, "package": work.package,
+        "governs": setup.output.name, "balls_thick": found.balls_thick, "collected": provenance.now(),
+        "machine": provenance.machine()}
     if setup.road and first:
         header["road"] = write_road(setup.output, setup.road, first)
-    step = next_step.of_studies([next_step.Made({"study": header, **outcome.about}, setup.output)],
-                                outcome.about["headline"])
-    outcome = replace(outcome, about={**outcome.about, next_step.ENTRY: step and step._asdict()})
-    about = files.write(outcome, header, maps, setup.output, terrain_place(first) if first else None)
+    outcome = evaluate(questions, found, header)
+    step = next_step.of_studies([next_step.Made(outcome.about, setup.output)], outcome.about["headline"])
+    outcome.about["next_step"] = step.about() if step else None
+    about = files.write(outcome, maps, setup.output, terrain_place(first) if first else None)
     console.tell(outcome, about, setup.output, setup.tell, setup.warn)
     return about
+
+
+def listed(several: Mapping[str, Sequence[str]]) -> study_types.Settings:
+    """Values as study.yaml has them."""
+    return {name: list(values) for name, values in several.items()}
 
 
 def read(setup: Setup, questions: Questions, todo, maps: Maps, defaults: Mapping[str, str]) -> Read:

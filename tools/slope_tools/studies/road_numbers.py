@@ -13,6 +13,7 @@ from ..errors import SlopeError
 from ..sites import site_roads
 from ..sites.site_choices import Site
 from ..statistics.answer import Kind
+from ..tables import study_types
 from ..tables.quantities import OF_ROAD
 from ..tables.rows import finished_of
 
@@ -25,7 +26,7 @@ HEAD = ",".join(["run", "road", *KEYS])     # of roads.csv
 class Made(NamedTuple):
     """Studies of one road: what their study.yaml say, the one that governs first, none of a dry run; what failed beside
     them; their page."""
-    abouts: Sequence[Mapping[str, Any]]
+    abouts: Sequence[study_types.Study]
     failed: Optional[Exception]
     page: str = PAGE
 
@@ -93,11 +94,12 @@ def of_all(site: Site, several: bool, tell: Callable[[Any], Any],
 def number(road: str, made: Made) -> Number:
     """Of a road, whose study that governs tells it; the largest of the runs of all its studies."""
     about, *_ = made.abouts
-    said, rows = about["headline"] or {}, finished_of(about["runs"])
+    said, rows = about["headline"], finished_of(about["runs"])
     on_road = [row.at_road.remove_on_road_m3 for row in rows]
     most = max((row.at_road.remove_m3 for each in made.abouts for row in finished_of(each["runs"])), default=0.0)
-    return Number(road, said.get("kind"), said.get("volume_m3"), most, sum(one > 0 for one in on_road), len(rows),
-                  max((said.get("road") or {}).get("reached") or [0.0]), made.page)
+    kind, volume, at = (said["kind"], said["volume_m3"], said["road"]) if said else (None, None, None)
+    return Number(road, kind, volume, most, sum(one > 0 for one in on_road), len(rows),
+                  max(at["reached"] if at else [0.0]), made.page)
 
 
 def in_order(numbers: Sequence[Number]) -> List[Number]:
@@ -111,7 +113,7 @@ def entries(numbers: Sequence[Number]) -> List[Dict[str, Any]]:
 
 
 def read(about: Mapping[str, Any]) -> List[Number]:
-    """Those of a study.yaml; none of a site with one road."""
+    """Those of a study; none of a site with one road."""
     return [Number(**one) for one in about.get(ENTRY) or ()]
 
 
@@ -137,7 +139,7 @@ def check_table(folder: Path, needed: bool) -> None:
         path.unlink()
 
 
-def write(folder: Path, studies: Mapping[str, Sequence[Mapping[str, Any]]]) -> None:
+def write(folder: Path, studies: Mapping[str, Sequence[study_types.Study]]) -> None:
     """roads.csv: a line for each road and finished run; studies: {road: what its study.yaml say}."""
     lines = []
     for road, several in studies.items():

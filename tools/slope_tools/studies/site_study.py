@@ -19,7 +19,7 @@ from ..sites import ground, site_choices, site_deck, site_roads, site_warnings
 from ..sites.site_choices import Choices, OFFSETS, PACKING, Site, other_grounds
 from ..sites.site_layers import OBSERVED
 from ..survey.roads import Asked
-from ..tables import elastic, energy, named_run
+from ..tables import elastic, energy, named_run, study_types
 from ..tables.rows import Failed, finished_of
 from ..tables.step_check import Step, half_of
 from . import fine_runs, mapped, results, study
@@ -40,7 +40,7 @@ def words(numbers: Iterable[float]) -> List[str]:
 class Done(NamedTuple):
     """What was made."""
     study: Optional[Path]                   # its folder, None of a dry run
-    about: Optional[Dict[str, Any]]         # what its study.yaml says
+    about: Optional[study_types.Study]
     failed: Optional[Exception]             # what failed beside it, to be raised once the report is there
 
 
@@ -205,7 +205,7 @@ def elastic_of(setup: Setup, runs: List[repeats.Repeat]) -> Optional[elastic.Mad
     return elastic.Made(float(runs[0].chosen[elastic.VARIABLES[0]]), runs[0].chosen["rolling"], rows)
 
 
-def scored(folder: Path, setup: Setup, about: Mapping[str, Any]) -> None:
+def scored(folder: Path, setup: Setup, about: study_types.Study) -> None:
     """Compare the governing run with the mapped deposit; about: what study.yaml says."""
     from ..deposits import score_run
     name = named_run.governing(about)

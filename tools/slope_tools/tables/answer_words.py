@@ -4,19 +4,19 @@ from typing import Any, Dict, Iterable, List, Mapping, Optional, Tuple
 from ..digits import metres, percent
 from ..findings import Finding
 from ..statistics.answer import Code, Kind, Reason, Source
-from . import quantities
+from . import quantities, study_types
 
 OF = {Source.PAPER: "by the paper's study", Source.ENSEMBLE: "by known events"}
 CONSERVATIVE = "the conservative volume of the paper's study"       # what a floor may not be
 STUDY = {Source.PAPER.value: "the paper's study", Source.ENSEMBLE.value: "the runs weighted by known events"}
 
 
-def lines(about: Mapping[str, Any]) -> List[str]:
+def lines(about: study_types.Headline) -> List[str]:
     """The number, what it is of, and the reasons; a line each."""
     return [f"headline: {number(about)}", *(f"  {text(one)}" for one in told(about))]
 
 
-def number(about: Mapping[str, Any]) -> str:
+def number(about: study_types.Headline) -> str:
     """A sentence without its full stop."""
     if Kind(about["kind"]) is Kind.WITHHELD:
         return "withheld, neither study gives a number" if about["paper"] and about["ensemble"] else "withheld"
@@ -28,11 +28,11 @@ def number(about: Mapping[str, Any]) -> str:
     return f"{'at least ' * floor}{volume}, {of}{share}{beside(about, source)}"
 
 
-def beside(about: Mapping[str, Any], source: Source) -> str:
+def beside(about: study_types.Headline, source: Source) -> str:
     """What the other study gives."""
     if source is Source.ENSEMBLE:
-        return of_other("the paper's study", (about["paper"] or {}).get("volume_m3"))
-    return of_other("95 % of known events", (about["ensemble"] or {}).get("volume_m3"))
+        return of_other("the paper's study", about["paper"]["volume_m3"] if about["paper"] else None)
+    return of_other("95 % of known events", about["ensemble"]["volume_m3"] if about["ensemble"] else None)
 
 
 def of_other(what: str, volume: Optional[float]) -> str:
@@ -41,7 +41,7 @@ def of_other(what: str, volume: Optional[float]) -> str:
 
 # --- why ---
 
-def told(about: Mapping[str, Any]) -> List[Reason]:
+def told(about: study_types.Headline) -> List[Reason]:
     """The reasons as they are told, each once: of a rule that both studies break, of the one that decides."""
     found: Dict[Tuple[Code, Any], Reason] = {}
     for one in map(Reason.read, about["reasons"]):

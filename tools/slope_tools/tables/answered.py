@@ -2,7 +2,7 @@
 import datetime
 import functools
 from pathlib import Path
-from typing import Any, List, Mapping, Optional
+from typing import Any, List, Mapping, Optional, Sequence
 
 from .. import schemas
 from ..schemas import OBJECT, mapping
@@ -10,7 +10,7 @@ from ..statistics import answer, size_family
 from ..statistics.answer import Answer, AtRoad, Code, Ensemble, Paper, Reason, Road, Withheld
 from ..statistics.size_effect import RESOLVED
 from ..statistics.withheld import Kind as Rule
-from . import fine_run
+from . import fine_run, study_types
 from .quantities import REMOVE
 
 STUDY = "study.yaml"
@@ -20,45 +20,41 @@ SCHEMA = mapping({}, conservative=mapping({}, null=True), ensemble=mapping({}, n
                  headline=mapping({}, null=True, road=mapping({}, null=True)), study=OBJECT)
 
 
-def of_study(about: Mapping[str, Any], road: Optional[Road]) -> Optional[Answer]:
+def of_study(about: study_types.Study, road: Optional[Road]) -> Optional[Answer]:
     """Of one study.yaml; None without a road, and of an ensemble that no known events weigh."""
     return answer.of(paper_of(about), ensemble_of(about), road)
 
 
-def paper_of(about: Mapping[str, Any]) -> Optional[Paper]:
+def paper_of(about: study_types.Study) -> Optional[Paper]:
     """Its conservative volume, if it has one, rounded up as it is shown."""
-    best = about.get("conservative")
-    if not best:
-        return None
-    shown = None if best["volume_m3"] is None else (best.get("rounded") or best)["volume_m3"]
-    return Paper(shown, rules(best.get("withheld") or ()), size_of(about))
+    best = about["conservative"]
+    return Paper(best["rounded"]["volume_m3"], rules(best["withheld"]), size_of(about)) if best else None
 
 
-def ensemble_of(about: Mapping[str, Any]) -> Optional[Ensemble]:
+def ensemble_of(about: study_types.Study) -> Optional[Ensemble]:
     """Its weighted ensemble, if it has one with volumes."""
-    whole = about.get("ensemble") or {}
-    one = whole.get("known_events") or {}
-    if not one.get("to_remove"):
+    whole, one = about["ensemble"], study_types.weighted(about["ensemble"])
+    if not whole or not one or not one["to_remove"]:
         return None
-    stopped, effect = (one.get("added") or {}).get("stopped"), fine_run.read_effect(about.get("size") or {}, REMOVE)
+    stopped, effect = one["added"]["stopped"], fine_run.read_effect(about["size"], REMOVE)
 
     def raised(value: Optional[float]) -> Optional[float]:
         return value if value is None or effect is None else value + effect.added(value)
 
     quantiles = {each["share"]: (raised(each["value"]), raised(each["low"]), raised(each["high"]))
                  for each in one["to_remove"]}
-    return Ensemble(quantiles, one["far"], one["longest_m"], rules(whole.get("withheld") or ()),
+    return Ensemble(quantiles, one["far"], one["longest_m"], rules(whole.get("withheld", [])),
                     Reason.read(stopped) if stopped else None, size_of(about))
 
 
-def size_of(about: Mapping[str, Any]) -> Optional[Reason]:
+def size_of(about: study_types.Study) -> Optional[Reason]:
     """Why smaller balls may bring more than its number has; None: the fine run, or the study's own balls, are small
 
     enough. run: how the fine run ended, "" where there is none; balls_thick: of it, else of the study; None: unknown.
     """
-    size, balls = about.get("size") or {}, (about.get("study") or {}).get("balls_thick")
-    done = size.get("run") is not None
-    if done:
+    size, balls = about["size"], about["study"]["balls_thick"]
+    done = size is not None and size["run"] is not None
+    if size and done:
         if not size["open"]:
             return None
         balls = size["balls_thick"]
@@ -69,15 +65,15 @@ def size_of(about: Mapping[str, Any]) -> Optional[Reason]:
                               "enough": RESOLVED, "growth": grown and grown._asdict()})
 
 
-def rules(entries) -> List[Withheld]:
+def rules(entries: Sequence[study_types.Reason]) -> List[Withheld]:
     """Of withheld_words.with_remedies()."""
-    numbers = ((one, one.get("numbers") or {}) for one in entries)
+    numbers = ((one, one.get("numbers", {})) for one in entries)
     return [Withheld(Rule(one["kind"]), of.get("number"), of.get("bound")) for one, of in numbers]
 
 
-def road_of(about: Mapping[str, Any]) -> Optional[Road]:
+def road_of(about: study_types.Study) -> Optional[Road]:
     """That of a headline."""
-    one = (about.get("headline") or {}).get("road")
+    one = about["headline"]["road"] if about["headline"] else None
     if not one:
         return None
     (reached, more_reached), (passed, more_passed) = one["reached"], one["passed"]
@@ -120,7 +116,7 @@ def made(about: Mapping[str, Any]) -> datetime.datetime:
         return datetime.datetime.min.replace(tzinfo=datetime.timezone.utc)
 
 
-def of_both(paper: Mapping[str, Any], ensemble: Mapping[str, Any]) -> Optional[Answer]:
+def of_both(paper: study_types.Study, ensemble: study_types.Study) -> Optional[Answer]:
     """Of both studies of a site, of one command; None without a road."""
     roads = [one for one in map(road_of, (paper, ensemble)) if one]
     road = roads[-1]._replace(

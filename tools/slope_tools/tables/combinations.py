@@ -11,7 +11,7 @@ from ..runs.repeats import key_of
 from ..statistics import headline
 from ..statistics.headline import Combination, Scatter
 from ..statistics.size_effect import Effect
-from . import quantities, withheld_words
+from . import quantities, study_types, withheld_words
 from .rows import Finished, Row, finished_of
 
 GROUND = ("pattern", "spacing", "angle")        # variables of decks that make another ground
@@ -117,7 +117,7 @@ FEW = 0.05      # of the largest volume of runs that differ by chance alone: les
 STANDS = 0.1    # of the largest travel of the centroid among them: less, and the slope did not fail
 
 
-def conservative(settings, rows, groups: Sequence[Group], effect: Optional[Effect] = None) -> Dict[str, Any]:
+def conservative(settings, rows, groups: Sequence[Group], effect: Optional[Effect] = None) -> study_types.Conservative:
     """The entry of the conservative volume in study.yaml: its parts, what it is based on, its caveats (doubts).
 
     effect: of smaller balls on it.
@@ -127,7 +127,7 @@ def conservative(settings, rows, groups: Sequence[Group], effect: Optional[Effec
     governing = next(group for group in groups if group.name == best.combination)
     largest = max(governing.rows, key=lambda row: row.at_road.remove_m3)
     volumes = [row.at_road.remove_m3 for row in governing.rows]
-    differences = []
+    differences: List[study_types.Difference] = []
     for name, line in straight(settings, groups, governing.set):
         if len(line) < 2:
             continue
@@ -142,8 +142,9 @@ def conservative(settings, rows, groups: Sequence[Group], effect: Optional[Effec
         "kind": best.kind, "combination": best.combination, "set": dict(governing.set),
         "label": label(governing.set, settings), "ground": ground(settings, governing), "repeats": best.repeats,
         "runs": best.runs,
-        "combinations": len(groups), "scatter_m3": scatter and scatter.deviation,
-        "degrees_of_freedom": scatter and scatter.degrees_of_freedom, "quantile": scatter and scatter.quantile,
+        "combinations": len(groups), "scatter_m3": scatter.deviation if scatter else None,
+        "degrees_of_freedom": scatter.degrees_of_freedom if scatter else None,
+        "quantile": scatter.quantile if scatter else None,
         # what other starts of the same combination gave
         "starts_m3": [min(volumes), max(volumes)] if len(volumes) > 1 else None,
         # the run whose maps represent it
@@ -153,7 +154,8 @@ def conservative(settings, rows, groups: Sequence[Group], effect: Optional[Effec
         "withheld": [], "zero": None}       # see usable.judge
 
 
-def doubts(settings, rows, groups: Sequence[Group], best: headline.Headline, differences) -> List[Finding]:
+def doubts(settings, rows, groups: Sequence[Group], best: headline.Headline,
+           differences: Sequence[study_types.Difference]) -> List[Finding]:
     """Reasons why the volume may be larger than the headline."""
     found = []
     finished = finished_of(rows)
@@ -227,16 +229,16 @@ def stood(few: Sequence[Finished], rows: Sequence[Finished]) -> int:
     return sum(row.centroid_m < STANDS * most for row in few)
 
 
-def starts(best: Mapping[str, Any]) -> List[str]:
+def starts(best: study_types.Conservative) -> List[str]:
     """What only another start of the balls gives: the range over the repeats of the governing combination, a line."""
-    if not best.get("starts_m3"):       # one run, or a study of an older version
+    if not best["starts_m3"]:       # one run
         return []
     low, high = (headline.text(value, best["place_m3"]) for value in best["starts_m3"])
     number = f"{low} to {high}" if low != high else high
     return [f"another start of the balls gives {number} m3 on the same site ({best['repeats']} runs)"]
 
 
-def describe(best: Mapping[str, Any]) -> List[str]:
+def describe(best: study_types.Conservative) -> List[str]:
     """The conservative volume and its parts, rounded to what is known, differences and caveats; a line each.
 
     In its place why it is withheld, if it is.
@@ -260,12 +262,12 @@ def describe(best: Mapping[str, Any]) -> List[str]:
         text += (f" + {number(parts['size'])}, size of the balls" if parts["size"] is not None
                  else "; what smaller balls would change is not known")
     lines = [text, *starts(best), *([best["zero"]["text"]] if best["zero"] else []),
-             *([best["ground"]] if best.get("ground") else [])]
+             *([best["ground"]] if best["ground"] else [])]
     for entry in best["differences"]:
-        if entry["clear"] is not None:
+        if entry["clear"] is not None and entry["chance_m3"] is not None:
             word = "more than" if entry["clear"] else "no more than"
-            by, chance = (headline.text(entry[key], headline.place_of_digits(entry["chance_m3"]))
-                          for key in ("by_m3", "chance_m3"))
+            by, chance = (headline.text(value, headline.place_of_digits(entry["chance_m3"]))
+                          for value in (entry["by_m3"], entry["chance_m3"]))
             lines.append(f"{entry['variable']}: {by} m3 between {entry['smallest_at']} and {entry['largest_at']}, "
                          f"{word} expected by chance, {chance} m3")
     return lines + [f"it may be exceeded: {text}" for text in texts(best["doubts"])]

@@ -3,11 +3,12 @@
 They estimate reach and area on the safe side (Nakase et al., conclusion) and are none of those that the volume is of.
 """
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import List, NamedTuple, Optional, Sequence, Tuple
 
 from .. import disk
 from ..case import run_folders
 from ..digits import rounded
+from . import study_types
 from .quantities import ALL, DISTANCE, LENGTH
 from .rows import Failed, Finished, Row, finished_of
 
@@ -47,14 +48,15 @@ def read(made: Made, rows: Sequence[Row], output: Path) -> Runs:
     return Runs(made, with_area(made.rows, output), with_area([row for row in rows if not row.batch], output))
 
 
-def evaluate(runs: Runs) -> Dict[str, Any]:
+def evaluate(runs: Runs) -> study_types.Elastic:
     """The entry of study.yaml."""
     made, elastic, others = runs
-    about: Dict[str, Any] = {
+    about: study_types.Elastic = {
         "restitution": made.restitution, "rolling": made.rolling, "thicker_than_m": THICK,
         "runs": [one.row.run for one in elastic],
         "failed": [row.run for row in made.rows if isinstance(row, Failed)],
-        "moving": [one.row.run for one in elastic if not one.row.at_rest], "quantities": {}}
+        "moving": [one.row.run for one in elastic if not one.row.at_rest], "quantities": {},
+        "text": ""}
     if elastic:
         first = elastic[0].row.variables
         same = [one for one in others if all(one.row.variables.get(name) == first.get(name)
@@ -62,8 +64,10 @@ def evaluate(runs: Runs) -> Dict[str, Any]:
         for key in COMPARED:
             found = spread(elastic, key)
             if found is not None:
-                about["quantities"][key] = dict(found, usual=spread(same, key), study=spread(others, key))
-    return {**about, "text": words(about)}
+                about["quantities"][key] = {"mean": found["mean"], "low": found["low"], "high": found["high"],
+                                            "usual": spread(same, key), "study": spread(others, key)}
+    about["text"] = words(about)
+    return about
 
 
 def with_area(rows: Sequence[Row], output: Path) -> List[Spread]:
@@ -76,7 +80,7 @@ def with_area(rows: Sequence[Row], output: Path) -> List[Spread]:
     return found
 
 
-def spread(runs: Sequence[Spread], key: str) -> Optional[Dict[str, float]]:
+def spread(runs: Sequence[Spread], key: str) -> Optional[study_types.Span]:
     """Mean and ends; None where there are no runs, or one without a number."""
     values = [value for one in runs if (value := one.value(key)) is not None]
     if not values or len(values) < len(runs):
@@ -95,7 +99,7 @@ def table(runs: Runs) -> str:
 
 # --- words ---
 
-def words(about: Dict[str, Any]) -> str:
+def words(about: study_types.Elastic) -> str:
     """A sentence without its full stop."""
     runs = len(about["runs"])
     if not runs:
@@ -109,32 +113,32 @@ def words(about: Dict[str, Any]) -> str:
         text += f"99 % of the volume stays within {shown(distance, 'm')}{instead(distance, 'm')}"
     if area:
         text += f"; the deposit covers {shown(area, 'm2')}{instead(area, 'm2')}"
-    for key, what in (("failed", "failed"), ("moving", "had not come to rest")):
-        if about[key]:
-            text += f"; {len(about[key])} {what}"
+    for which, what in ((about["failed"], "failed"), (about["moving"], "had not come to rest")):
+        if which:
+            text += f"; {len(which)} {what}"
     return text
 
 
-def shown(one: Dict[str, float], unit: str) -> str:
-    ends = [rounded(one[end], 3) for end in ("low", "high")]
+def shown(one: study_types.Span, unit: str) -> str:
+    ends = [rounded(end, 3) for end in (one["low"], one["high"])]
     return f"{rounded(one['mean'], 3)} {unit}" + (f" ({' to '.join(ends)})" if ends[0] != ends[1] else "")
 
 
-def instead(one: Dict[str, Any], unit: str) -> str:
+def instead(one: study_types.ElasticQuantity, unit: str) -> str:
     """What the study's own runs have: the same ones otherwise, and the largest of all."""
     if not one["usual"] or not one["study"]:
         return ""
     return f" instead of {shown(one['usual'], unit)}; all other runs, up to {rounded(one['study']['high'], 3)} {unit}"
 
 
-def name_of(key: str, about: Mapping[str, Any]) -> Tuple[str, str]:
+def name_of(key: str, about: study_types.Elastic) -> Tuple[str, str]:
     """What one of COMPARED is called, and its unit."""
     if key == AREA:
         return f"area under more than {about['thicker_than_m']:g} m", "m2"
     return ALL[key].name, ALL[key].unit
 
 
-def far(about: Mapping[str, Any]) -> Optional[float]:
+def far(about: study_types.Elastic) -> Optional[float]:
     """The largest distance that 99 % of the volume stay within, m; None where it is not known. about: the entry."""
     one = about["quantities"].get(DISTANCE)
     return one and one["high"]

@@ -1,11 +1,11 @@
 """The effect of the size of the balls on the numbers of a study: its fine run against the runs with the same values."""
-from typing import Any, Callable, Dict, Mapping, NamedTuple, Optional, Sequence
+from typing import Callable, Dict, NamedTuple, Optional, Sequence
 
 from ..digits import rounded, to_three
 from ..runs.repeats import key_of
 from ..statistics.headline import Combination, Scatter
 from ..statistics.size_effect import RESOLVED, Effect, effect
-from . import quantities
+from . import quantities, study_types
 from .quantities import On
 from .rows import Finished
 
@@ -22,52 +22,55 @@ class Fine(NamedTuple):
     why: str = ""
 
 
-def evaluate(fine: Fine) -> Dict[str, Any]:
+def evaluate(fine: Fine) -> study_types.Size:
     """The entry of study.yaml; its effects are {column: of_effect()}, its text a sentence without its full stop."""
     if fine.row is None or not fine.coarse:
         why = fine.why or "no run with the same values finished"
         return {"run": None, "effects": {}, "open": True, "balls_thick": None, "text": f"not known: {why}"}
     ball = max(row.ball_m3 for row in fine.coarse)
     d, coarse_d = (float(row.variables[VARIABLE]) for row in (fine.row, fine.coarse[0]))
-    effects = {}
+    effects: Dict[str, Effect] = {}
     for key in quantities.known(On.MEAN, [fine.row, *fine.coarse]):
         volumes = Combination(key, {key_of(row.repeat): float(row.value(key)) for row in fine.coarse})
         effects[key] = effect(volumes, float(fine.row.value(key)), fine.scatter(key),
                               ball if quantities.ALL[key].unit in VOLUMES else None)
     balls = fine.depth and fine.depth / d
-    found = {"run": fine.row.run, "d": d, "balls_thick": balls, "coarse_d": coarse_d,
-             "coarse_balls_thick": fine.depth and fine.depth / coarse_d,
-             "coarse_runs": [row.run for row in fine.coarse],
-             "effects": {key: of_effect(one) for key, one in effects.items()},
-             "open": balls is None or balls < RESOLVED}
-    return {**found, "text": words(found)}
+    found: study_types.Size = {
+        "run": fine.row.run, "d": d, "balls_thick": balls, "coarse_d": coarse_d,
+        "coarse_balls_thick": fine.depth and fine.depth / coarse_d,
+        "coarse_runs": [row.run for row in fine.coarse],
+        "effects": {key: of_effect(one) for key, one in effects.items()},
+        "open": balls is None or balls < RESOLVED, "text": ""}
+    found["text"] = words(found)
+    return found
 
 
-def of_effect(one: Effect) -> Dict[str, Any]:
+def of_effect(one: Effect) -> study_types.Effect:
     """As study.yaml has it."""
-    return {**one._asdict(), "difference": one.difference, "clear": one.clear}
+    return {"coarse": one.coarse, "runs": one.runs, "fine": one.fine, "chance": one.chance, "ratio": one.ratio,
+            "difference": one.difference, "clear": one.clear}
 
 
-def read_effect(about: Optional[Mapping[str, Any]], key: str) -> Optional[Effect]:
+def read_effect(about: Optional[study_types.Size], key: str) -> Optional[Effect]:
     """That of a column in an entry of study.yaml; None where it is not known."""
-    one = (about or {}).get("effects", {}).get(key)
-    return one and Effect(*(one[name] for name in Effect._fields))
+    one = about["effects"].get(key) if about else None
+    return one and Effect(one["coarse"], one["runs"], one["fine"], one["chance"], one["ratio"])
 
 
 # --- words ---
 
-def words(found: Mapping[str, Any]) -> str:
+def words(found: study_types.Size) -> str:
     """What the fine run says of the volume to remove, else of the length; and what is left open."""
     key = next((one for one in (quantities.REMOVE, quantities.LENGTH, quantities.DISTANCE) if one in found["effects"]),
                None)
-    thick, coarse = ("" if found[key] is None else f" ({found[key]:.2g}{more})" for key, more in
-                     (("balls_thick", " of them thick"), ("coarse_balls_thick", "")))
+    thick, coarse = ("" if balls is None else f" ({balls:.2g}{more})" for balls, more in
+                     ((found["balls_thick"], " of them thick"), (found["coarse_balls_thick"], "")))
     sizes = f"balls of {found['d']:.3g} m{thick} instead of {found['coarse_d']:.3g} m{coarse}"
     if key is None:
         return f"{sizes}: nothing to compare"
     one, what = found["effects"][key], quantities.ALL[key]
     change = f"{rounded(to_three(one['fine']))} instead of {rounded(to_three(one['coarse']))} {what.unit}"
-    if one["clear"] is None:
+    if one["clear"] is None or one["chance"] is None:
         chance = "chance is not known"
     else:
         more = "more than" if one["clear"] else "no more than"

@@ -6,7 +6,7 @@ than a volume v: P(V > v) is k/n, with the interval of Clopper and Pearson (Biom
 """
 import math
 import re
-from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
+from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 
 from rich.table import Table
 
@@ -16,6 +16,7 @@ from ..case.settings import as_number
 from ..errors import SlopeError
 from ..findings import Finding
 from ..statistics import hazard
+from . import study_types
 from .combinations import Group, stood
 
 NAME = re.compile(r"peak|pga|\w*intensity")     # names of variables that are one without being named
@@ -69,7 +70,7 @@ def probability(above: int, of: int) -> Tuple[float, float, float]:
     return above / of, float(low), float(high)
 
 
-def entry(name: str, groups: Sequence[Group], volumes: Sequence[float]) -> Optional[Dict[str, Any]]:
+def entry(name: str, groups: Sequence[Group], volumes: Sequence[float]) -> Optional[study_types.Intensity]:
     """What study.yaml says of the intensity: lines, one for each combination of the other variables, of points.
 
     None if no run has a volume on the road.
@@ -79,7 +80,7 @@ def entry(name: str, groups: Sequence[Group], volumes: Sequence[float]) -> Optio
         return None
     volumes = list(volumes) or round_volumes(max(row.at_road.remove_on_road_m3 for group in groups
                                                  for row in group.rows))
-    lines: Dict[tuple, Dict[str, Any]] = {}
+    lines: Dict[tuple, study_types.Line] = {}
     for group in groups:
         rest = {other: value for other, value in group.set.items() if other != name}
         line = lines.setdefault(tuple(rest.values()), {"set": rest, "points": []})
@@ -90,11 +91,11 @@ def entry(name: str, groups: Sequence[Group], volumes: Sequence[float]) -> Optio
             "lines": list(lines.values())}
 
 
-def point(at: float, group: Group, volumes: Sequence[float]) -> Dict[str, Any]:
+def point(at: float, group: Group, volumes: Sequence[float]) -> study_types.Point:
     """Volumes of the runs of one intensity (m3), their mean and scatter, and how many exceed each of the volumes."""
     one = group.of(QUANTITY)
     found = list(one.volumes.values())
-    exceed = []
+    exceed: List[study_types.Exceeded] = []
     for volume in volumes:
         above = sum(value > volume for value in found)
         share, low, high = probability(above, len(found))
@@ -106,7 +107,7 @@ def point(at: float, group: Group, volumes: Sequence[float]) -> Dict[str, Any]:
             "not_on_road": len(few), "stood": stood(few, group.rows), "exceed": exceed}
 
 
-def doubts(about: Mapping[str, Any]) -> List[Finding]:
+def doubts(about: study_types.Intensity) -> List[Finding]:
     """The caveat on a common scatter of all runs: chance decides whether the slope fails, or the mass reaches the road.
     """
     mixed = [one for line in about["lines"] for one in line["points"] if 0 < one["not_on_road"] < one["runs"]]
@@ -119,19 +120,23 @@ def doubts(about: Mapping[str, Any]) -> List[Finding]:
     return found
 
 
-def table(about: Mapping[str, Any]) -> str:
+def table(about: study_types.Intensity) -> str:
     """The CSV: a row for each point."""
     columns = ("runs", "mean_m3", "scatter_m3", "smallest_m3", "largest_m3", "share_of_released")
+
+    def numbers(one: study_types.Point):
+        return (one["runs"], one["mean_m3"], one["scatter_m3"], one["smallest_m3"], one["largest_m3"],
+                one["share_of_released"])
     volumes = [f"{volume:g}" for volume in about["more_than_m3"]]
     return disk.csv_text(
         [*about["lines"][0]["set"], about["variable"], *columns,
          *(f"{what}_{volume}_m3" for volume in volumes for what in ("p_more_than", "low", "high"))],
-        ([*line["set"].values(), f"{one['at']:g}", *(one[key] for key in columns),
-          *(each[key] for each in one["exceed"] for key in ("probability", "low", "high"))]
+        ([*line["set"].values(), f"{one['at']:g}", *numbers(one),
+          *(value for each in one["exceed"] for value in (each["probability"], each["low"], each["high"]))]
          for line in about["lines"] for one in line["points"]))
 
 
-def shown_of(about: Mapping[str, Any]) -> Table:
+def shown_of(about: study_types.Intensity) -> Table:
     """The table on the screen."""
     shown = Table(title=f"volume on the road (m3 of ground) against {about['variable']}, and P(V > v), in brackets the "
                         f"{100 * about['confidence']:.0f} % interval of so few runs")
@@ -141,13 +146,13 @@ def shown_of(about: Mapping[str, Any]) -> Table:
     for line in about["lines"]:
         for one in line["points"]:
             shown.add_row(*line["set"].values(), f"{one['at']:g}", str(one["runs"]),
-                          *(f"{one[key]:,.0f}" for key in ("mean_m3", "smallest_m3", "largest_m3")),
+                          *(f"{value:,.0f}" for value in (one["mean_m3"], one["smallest_m3"], one["largest_m3"])),
                           *(chance(each["probability"], each["low"], each["high"]) for each in one["exceed"]))
     return shown
 
 
 def evaluate(named: Optional[str], more_than: Sequence[float], settings: Settings, road: bool,
-             groups: Sequence[Group]) -> Optional[Dict[str, Any]]:
+             groups: Sequence[Group]) -> Optional[study_types.Intensity]:
     """The entry of study.yaml, None without an intensity."""
     name = check(named, settings, road)
     return entry(name, groups, more_than) if name else None

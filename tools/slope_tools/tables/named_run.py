@@ -1,11 +1,12 @@
 """The run that a name on the command line stands for; of a study or a site the one whose maps are on the first page."""
 import re
 from pathlib import Path
-from typing import Any, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import NamedTuple, Optional, Sequence, Tuple
 
 from ..case.run_folders import OF_RUN, RASTERS, prefix_of, summaries, summary_of
 from ..deposits import travel_shares
 from ..errors import SlopeError
+from . import study_types
 from .answered import STUDY, study_in
 from .rows import Finished, finished_of
 from .study_file import read_study
@@ -19,7 +20,7 @@ class Named(NamedTuple):
     study: Optional[Path] = None
 
 
-def governing(about: Mapping[str, Any]) -> str:
+def governing(about: study_types.Study) -> str:
     """The run that represents the headline of a study with a finished run (read_study); else the one that went
     farthest.
 
@@ -32,8 +33,12 @@ def governing(about: Mapping[str, Any]) -> str:
     if ensemble and ensemble["of"]:
         # a quantile is the value of a run
         of = ensemble["of"]
-        entries = (ensemble["known_events"] or {}).get("quantities") or ensemble["quantities"]
-        at = {one["share"]: one["value"] for one in entries[of]["quantiles"]}[0.9] if of in entries else None
+        known = study_types.weighted(ensemble)
+        if known and known["quantities"]:
+            quantiles = known["quantities"][of]["quantiles"] if of in known["quantities"] else []
+        else:
+            quantiles = ensemble["quantities"][of]["quantiles"]
+        at = next((one["value"] for one in quantiles if one["share"] == 0.9), None)
         having = [row for row in rows if row.value(of) is not None]      # others lost it
         if at is None:      # events beyond the runs decide
             return max(having, key=lambda row: row.value(of)).run
@@ -41,19 +46,19 @@ def governing(about: Mapping[str, Any]) -> str:
     return best["run"] if best else travel_shares.farthest(rows).run
 
 
-def of_headline(about: Mapping[str, Any], rows: Sequence[Finished]) -> Optional[str]:
+def of_headline(about: study_types.Study, rows: Sequence[Finished]) -> Optional[str]:
     """The run of an ensemble at whose volume the headline is; the longest where the headline is 0, as no run says more.
 
     None where the headline is of another study, of none, or withheld.
     """
-    number, known = about["headline"] or {}, about["ensemble"]["known_events"] or {}
-    if number.get("source") != "ensemble" or number.get("volume_m3") is None:
+    number, known = about["headline"], study_types.weighted(about["ensemble"])
+    if not number or number["source"] != "ensemble" or number["volume_m3"] is None:
         return None
     if number["volume_m3"] == 0:
         long = [row for row in rows if row.length_m is not None]
         return max(long, key=lambda row: row.length_m or 0.0).run if long else None
-    at: Optional[float] = next((one["value"] for one in known.get("to_remove") or ()
-                                if one["share"] == number.get("share")), None)
+    at = next((one["value"] for one in known["to_remove"] or () if one["share"] == number["share"]), None) \
+        if known else None
     return None if at is None else nearest(rows, "remove_m3", at).run
 
 

@@ -8,7 +8,7 @@ from ..sites import site_choices, site_roads
 from ..sites.site_budget import duration_text
 from ..statistics.answer import Code, Kind, Reason, Source
 from ..statistics.withheld import Kind as Rule
-from . import answer_words
+from . import answer_words, study_types
 from .rows import finished_of
 
 MORE = 2            # times the runs, where more are needed
@@ -37,15 +37,19 @@ class Step(NamedTuple):
         """What is to be typed, "" where that is not known."""
         return "".join(self.command.partition(PROGRAM)[1:])
 
+    def about(self) -> study_types.NextStep:
+        """For study.yaml."""
+        return {"text": self.text, "command": self.command, "seconds": self.seconds}
+
     def __str__(self):
         return f"next step: {self.text}{self.time}: {self.command}"
 
 
 class Made(NamedTuple):
     """A study: study.yaml and its folder; beside: study.yaml of the other study of a site, which one command makes."""
-    study: Mapping[str, Any]
+    study: study_types.Study
     folder: Path
-    beside: Optional[Mapping[str, Any]] = None
+    beside: Optional[study_types.Study] = None
 
     @property
     def source(self) -> Source:
@@ -62,7 +66,7 @@ class Made(NamedTuple):
         """How long all runs took, as many at a time as they were; None: not known."""
         walls = [row.wall_s for row in finished_of(self.study["runs"])]
         known = [wall for wall in walls if wall is not None]
-        jobs = max(1, self.study["study"].get("jobs") or 1)
+        jobs = max(1, self.study["study"]["jobs"])
         return None if len(known) < len(walls) or not walls else sum(known) / jobs
 
     @property
@@ -71,13 +75,13 @@ class Made(NamedTuple):
         return site_roads.home(self.folder)
 
     @property
-    def withheld(self) -> List[Mapping[str, Any]]:
+    def withheld(self) -> List[study_types.Reason]:
         """Why its numbers are, as study.yaml has it."""
-        return [*((self.study["conservative"] or {}).get("withheld") or ()),
-                *((self.study["ensemble"] or {}).get("withheld") or ())]
+        paper, ensemble_ = self.study["conservative"], self.study["ensemble"]
+        return [*(paper["withheld"] if paper else ()), *(ensemble_.get("withheld", ()) if ensemble_ else ())]
 
 
-def of_studies(studies: Sequence[Made], about: Optional[Mapping[str, Any]]) -> Optional[Step]:
+def of_studies(studies: Sequence[Made], about: Optional[study_types.Headline]) -> Optional[Step]:
     """What makes a number of a headline, by the first of its reasons that something can be done about; None where it
     is a number, or there is none.
 
@@ -114,7 +118,8 @@ def step_of(made: Made, code: Code, of: Mapping[str, Any]) -> Optional[Step]:
     rule = Rule(of["rule"])
     mine = next((one for one in made.withheld if one["kind"] == rule.value), None)
     if rule is Rule.LEFT:
-        return Step(*larger_terrain(made, str(((mine or {}).get("numbers") or {}).get("add") or "")), made.whole)
+        add = mine["numbers"].get("add") if mine and "numbers" in mine else ""
+        return Step(*larger_terrain(made, add or ""), made.whole)
     words = {Rule.BALLS: "smaller balls in the model", Rule.RUNS: "more time for the mass to come to rest",
              Rule.MOBILITY: "runs with less resistance"}
     return Step(words[rule], mine["remedy"], times(made, rule, of)) if mine else None
@@ -174,13 +179,14 @@ def larger_terrain(made: Made, add: str = "") -> Tuple[str, str]:
 
 def ensemble(made: Made, factor: int = 1, wider: bool = False) -> str:
     """The command of an ensemble like this one: more points, or wider ranges of what resists."""
-    design = (made.study["ensemble"] or {}).get("design") or {}
-    known = ((made.study["ensemble"] or {}).get("known_events") or {}).get("set")
+    one = made.study["ensemble"]
+    design, weighted = (one["design"], one["known_events"]) if one else (None, None)
+    known = weighted["set"] if weighted else None
     site = made.site
     where = quote(str(site)) if site else f"{quote(str(made.study['study']['deck']))} -o {quote(str(made.folder))}"
-    words = [f"tools/slope study {where} --sample {factor * int(design.get('points') or 64)}"]
+    words = [f"tools/slope study {where} --sample {factor * (design['points'] if design else 64)}"]
     words += [f"--known {events.OWN.stem if known == events.OWN.name else quote(str(known))}"] if known else []
-    for name, text in design.get("variables", {}).items():
+    for name, text in (design["variables"] if design else {}).items():
         words.append(f"--vary {quote(f'{name}={widened(text) if wider else text}')}")
     return " ".join(words)
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..deposits.axis import SAME, Span, merged
 from ..statistics.hazard import weighted
+from . import study_types
 
 SHARES = (0.05, 0.5, 0.95)
 SUMS = ("remove", "remove_lane", "hours", "hours_lane")     # of the stretches of a run
@@ -22,7 +23,7 @@ class Run(NamedTuple):
     totals: Mapping[str, Any]
 
 
-def evaluate(runs: Sequence[Run]) -> Dict[str, Any]:
+def evaluate(runs: Sequence[Run]) -> study_types.Stretches:
     """What study.yaml has of the road; there must be a run."""
     weights = np.array([run.weight for run in runs])
     weights = weights / weights.sum()
@@ -65,7 +66,7 @@ def shares(blocked: Sequence[np.ndarray], weights) -> List[List[float]]:
     return found
 
 
-def rows(about: Mapping[str, Any]):
+def rows(about: study_types.Stretches):
     """Names, then a line for each stretch of evaluate(); of the last one, all of them, the range is empty."""
     names = [name for name in ("length", "passable_width", *SUMS) if name in about["totals"] or
              name == "passable_width" and about["stretches"]]

@@ -2,11 +2,11 @@
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, NamedTuple, Union
 
-from .. import schemas
+from .. import disk, schemas
 from ..case import run_folders
 from ..errors import SlopeError
 from ..schemas import ANY, MAYBE, NUMBER, OBJECT, TEXT, listed, mapping, numbers
-from . import rows as rows_
+from . import rows as rows_, study_types
 from .answered import STUDY as STUDY_FILE, study_in
 from .rows import finished_of
 
@@ -25,7 +25,7 @@ STUDY = mapping(
     envelope=mapping({"max_thickness": mapping({"file": ANY})}, null=True))
 
 
-def read_study(path: Path) -> Dict[str, Any]:
+def read_study(path: Path) -> study_types.Study:
     """study.yaml as a dict, whose runs are rows.Row; SlopeError if something that its readers take is missing."""
     study = schemas.load(path, WHAT, STUDY)
     rows, about, best = [row_of(path, one) for one in study["runs"]], study["study"], study["conservative"]
@@ -40,12 +40,13 @@ def read_study(path: Path) -> Dict[str, Any]:
     if best and (not about.get("road") or best["volume_m3"] is None and not best.get("withheld")
                  or not all(row.road for row in finished)):
         raise SlopeError(path, f"must be {WHAT}: conservative must have a volume, or why it is withheld, and a road")
-    return {**study, "runs": rows}
+    study["runs"] = rows
+    return study
 
 
-def plain(study: Mapping[str, Any]) -> Dict[str, Any]:
-    """What study.yaml has of a study."""
-    return {**study, "runs": [rows_.plain(row) for row in study["runs"]]}
+def plain(study: study_types.Study) -> Dict[str, Any]:
+    """What study.yaml has of a study: values that YAML and JSON know."""
+    return disk.plain({**study, "runs": [rows_.plain(row) for row in study["runs"]]})
 
 
 def row_of(path: Path, one: Mapping[str, Any]) -> rows_.Row:

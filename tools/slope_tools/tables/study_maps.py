@@ -1,6 +1,6 @@
 """The maps over all runs of a study: the largest thickness, and how many runs exceed a thickness."""
 from pathlib import Path
-from typing import Any, Dict, Set
+from typing import Any, Dict, List, Optional, Set, Tuple
 
 import numpy as np
 
@@ -38,9 +38,9 @@ class Maps:
                 exceeding += thickness.z > threshold
             self.count += 1
 
-    def write(self, output, place):
-        """Write all rasters, remove those of an earlier call; what study.yaml says of them."""
-        written: Dict[str, Any] = {"envelope": None, "exceedance": None}
+    def write(self, output, place) -> Tuple[Optional[Dict[str, Any]], Optional[List[Dict[str, Any]]]]:
+        """Write all rasters, remove those of an earlier call; what study.yaml says of them: envelope, exceedance."""
+        of_envelope, of_exceedance = None, None
         kept: Set[Path] = set()
         if self.grid is not None and not self.problem:
             grid, area = self.grid, self.grid.transform.a ** 2
@@ -57,12 +57,12 @@ class Maps:
                     kept.add(path.with_suffix(".tif"))
                 return {"file": path.name, "what": what}
 
-            written["envelope"] = {
+            of_envelope = {
                 key: {**write(f"envelope_{key}", z, what), "largest_m": float(z.max()),
                       "area_m2": float((z > 0).sum() * area)}
                 for (key, z), what in zip(self.envelope.items(), (
                     "largest final thickness over all runs, m", "largest thickness over all runs and times, m"))}
-            written["exceedance"] = [
+            of_exceedance = [
                 {"threshold_m": threshold,
                  **write(f"exceedance_{threshold:g}m", exceeding / self.count,
                          f"share of the runs with a final thickness > {threshold:g} m"),
@@ -72,4 +72,4 @@ class Maps:
         for path in [*output.glob("envelope_*"), *output.glob("exceedance_*")]:
             if path not in kept:
                 path.unlink()
-        return written
+        return of_envelope, of_exceedance

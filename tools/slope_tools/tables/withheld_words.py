@@ -2,11 +2,12 @@
 import math
 from pathlib import Path
 from shlex import quote
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence
+from typing import Any, List, Mapping, NamedTuple, Optional, Sequence, cast
 
 from ..digits import percent
 from ..findings import Finding, entries, texts
 from ..statistics.withheld import BALLS, CONFIDENCE, Kind, exceeded_at_most
+from . import study_types
 
 UNUSABLE = "not usable as a conservative volume"
 MARGIN = 1.1            # of the balls: chance
@@ -83,17 +84,17 @@ def twice(case: Case) -> str:
         return "SECONDS"
 
 
-def with_remedies(found: Sequence[Finding], case: Case) -> List[Dict[str, Any]]:
+def with_remedies(found: Sequence[Finding], case: Case) -> List[study_types.Reason]:
     """What study.yaml says of reasons: with what mends each."""
-    return entries(one._replace(remedy=remedy(one, case)) for one in found)
+    return cast(List[study_types.Reason], entries(one._replace(remedy=remedy(one, case)) for one in found))
 
 
-def lines(withheld: Sequence[Mapping[str, Any]]) -> List[str]:
+def lines(withheld: Sequence[study_types.Reason]) -> List[str]:
     """What stands in the place of the number, of with_remedies()."""
     return [f"{UNUSABLE}:", *(f"  {text}" for text in texts(withheld))]
 
 
-def zero(runs: int, known: Optional[float]) -> Dict[str, Any]:
+def zero(runs: int, known: Optional[float]) -> study_types.Zero:
     """What study.yaml says of a volume of 0: with which probability it is exceeded.
 
     known: the share of known events that go as far as the road, None where no set covers the mass.

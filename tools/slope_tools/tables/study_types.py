@@ -1,0 +1,399 @@
+"""What a study says, as study.yaml has it: every entry, its keys and their kinds. Volumes in m3 of ground (bulk).
+
+A study is such a value from where its runs are evaluated (studies/outcome) to console, files and page: one that the
+type checker knows. What makes an entry is named beside it. None: there is none, or it is not known.
+"""
+from typing import Any, Dict, List, Mapping, NotRequired, Optional, Sequence, TypedDict, cast
+
+from ..statistics.entries import Analysis, Headline
+from .rows import Row
+
+Settings = Mapping[str, List[str]]
+FindingEntry = Dict[str, Any]       # findings.Finding.entry()
+MapEntry = Dict[str, Any]           # of a map over all runs: file, what it shows, and of which threshold or quantile
+
+
+class Header(TypedDict):
+    """What was asked, of whom, and by which programs (studies/results)."""
+    deck: str
+    known: Mapping[str, Any]        # known.Choice.about()
+    set: Settings                   # of what was chosen
+    repeat: Settings                # of what is chance
+    runs: int
+    finished: int
+    method: str                     # of a site's study, in words
+    ranks: int
+    jobs: int
+    package: Optional[str]
+    governs: str                    # folder of the study whose number counts, of those of a site
+    balls_thick: Optional[float]    # balls over the thickness of the body
+    collected: str                  # date and time
+    machine: Mapping[str, Any]
+    road: NotRequired[Mapping[str, Any]]        # setup.Road.about(); local: its file in the study's folder
+
+
+class Largest(TypedDict):
+    """The largest value of a quantity, and whose it is."""
+    value: float
+    run: str
+
+
+class Difference(TypedDict):
+    """What a variable changes in the volume to remove; clear: whether by more than chance, None: nobody knows."""
+    variable: str
+    largest_at: str
+    smallest_at: str
+    by_m3: float
+    chance_m3: Optional[float]
+    clear: Optional[bool]
+
+
+class Reason(TypedDict):
+    """Why a number is withheld (withheld_words)."""
+    kind: str
+    text: str
+    remedy: str
+    numbers: NotRequired[Mapping[str, Any]]
+
+
+class Zero(TypedDict):
+    """What a volume of 0 is worth (withheld_words.zero)."""
+    runs: int
+    exceeded_at_most: float
+    known_events: Optional[float]
+    text: str
+
+
+class Conservative(TypedDict):
+    """The conservative volume (combinations.conservative), its parts and what it is based on."""
+    volume_m3: Optional[float]      # None: withheld
+    mean_m3: float
+    chance_m3: Optional[float]
+    size_m3: Optional[float]
+    rounded: Dict[str, Optional[float]]         # the four above, to what is known
+    place_m3: float                 # power of ten of the last digit that is known
+    kind: str
+    combination: str
+    set: Mapping[str, str]
+    label: str
+    ground: Optional[str]
+    repeats: int
+    runs: int
+    combinations: int
+    scatter_m3: Optional[float]
+    degrees_of_freedom: Optional[float]
+    quantile: Optional[float]
+    starts_m3: Optional[List[float]]
+    run: str
+    remove_m3: float
+    differences: List[Difference]
+    doubts: List[FindingEntry]
+    withheld: List[Reason]
+    zero: Optional[Zero]
+
+
+class Effect(TypedDict):
+    """What smaller balls change in a quantity (size_effect.Effect)."""
+    coarse: float
+    runs: int
+    fine: float
+    chance: Optional[float]
+    ratio: bool
+    difference: float
+    clear: Optional[bool]
+
+
+class Size(TypedDict):
+    """What the fine run says (fine_run.evaluate); those that are not required: of one that finished."""
+    run: Optional[str]
+    effects: Mapping[str, Effect]
+    open: bool                      # whether smaller balls still may bring more
+    balls_thick: Optional[float]
+    text: str
+    d: NotRequired[float]
+    coarse_d: NotRequired[float]
+    coarse_balls_thick: NotRequired[Optional[float]]
+    coarse_runs: NotRequired[List[str]]
+
+
+class HalfStep(TypedDict):
+    """What half the time step changes (step_check.compare)."""
+    step: Optional[float]
+    rolling: str
+    volume_m3: Optional[float]
+    mean_m3: Optional[float]
+    chance_m3: Optional[float]
+    within_chance: Optional[bool]
+    energy: Optional[Mapping[str, Any]]         # energy.read()
+    text: str
+    doubts: NotRequired[List[FindingEntry]]     # go to those of the conservative volume
+
+
+class Span(TypedDict):
+    mean: float
+    low: float
+    high: float
+
+
+class ElasticQuantity(Span):
+    usual: Optional[Span]           # of the runs that are otherwise the same
+    study: Optional[Span]           # of all runs of the study
+
+
+class Elastic(TypedDict):
+    """Reach and area with the largest restitution (elastic.evaluate)."""
+    restitution: float
+    rolling: str
+    thicker_than_m: float
+    runs: List[str]
+    failed: List[str]
+    moving: List[str]
+    quantities: Dict[str, ElasticQuantity]
+    text: str
+
+
+class Observed(TypedDict):
+    """A mapped deposit (studies/mapped)."""
+    file: str
+    threshold_m: float
+    length_m: Optional[float]
+    area_m2: float
+    volume_m3: Optional[float]
+    released_m3: float
+    best: str
+
+
+class Quantile(TypedDict):
+    """That a share of runs, or of known events, stays within; gap: the two runs between which it lies."""
+    share: float
+    value: Optional[float]
+    low: Optional[float]
+    high: Optional[float]
+    gap: NotRequired[Optional[Sequence[float]]]
+
+
+class OfKnown(TypedDict):
+    """A quantity as known events weigh it."""
+    name: str
+    unit: str
+    quantiles: List[Quantile]
+
+
+class OfRuns(OfKnown):
+    """A quantity as the runs have it."""
+    mean: float
+    standard_deviation: Optional[float]
+    smallest: float
+    largest: float
+
+
+class KnownVariable(TypedDict):
+    """A variable in the weighted runs: values that 5, 50 and 95 % of the weight stay within; rank correlations."""
+    quantiles: List[str]
+    rank: Dict[str, Optional[float]]
+
+
+class Gap(TypedDict):
+    low_m: float
+    high_m: float
+    share: float
+
+
+class Added(TypedDict):
+    """The runs towards longer ones (farther.Added); stopped: answer.Reason.about()."""
+    points: int
+    stopped: Optional[Dict[str, Any]]
+    batches: List[Dict[str, Any]]
+
+
+class Known(TypedDict):
+    """Which known events an ensemble was held against; outside: why they weigh nothing, reached is None then."""
+    set: str
+    events: Optional[int]
+    left_out: List[str]
+    confined: Optional[str]
+    path: str
+    volume_Mm3: float
+    outside: List[str]
+    reached: Optional[float]
+    doubts: List[FindingEntry]
+
+
+class Weighted(Known):
+    """An ensemble that known events weigh (known_events.evaluate): how much of them the runs reach, as how many runs
+    these count, and their numbers."""
+    short: float
+    far: float
+    runs: int
+    failed: int
+    effective: float
+    distance: float
+    far_by_lobe: List[float]
+    gaps: List[Gap]
+    shortest_m: float
+    longest_m: float
+    half_beyond_m: Optional[float]
+    path_m: float
+    beyond_path: float
+    added: Added
+    quantities: Dict[str, OfKnown]
+    to_remove: Optional[List[Quantile]]
+    variables: Dict[str, KnownVariable]
+    influence: Dict[str, Analysis]
+    weights: Dict[str, float]
+    maps: List[MapEntry]
+
+
+class Design(TypedDict):
+    """The points of an ensemble (sample.Sample)."""
+    kind: str
+    seed: int
+    points: int
+    variables: Dict[str, str]
+    wide: NotRequired[Dict[str, List[float]]]
+    fit: NotRequired[str]           # SHA-256 of the calibration's file whose sets they are
+
+
+class Ensemble(TypedDict):
+    """An ensemble (ensemble.evaluate)."""
+    design: Design
+    runs: int
+    finished: int
+    failed: int
+    points: int
+    confidence: float
+    of: Optional[str]               # the quantity that counts
+    quantities: Dict[str, OfRuns]
+    influence: Dict[str, Analysis]
+    doubts: List[FindingEntry]
+    maps: List[MapEntry]
+    known_events: Optional[Known]
+    withheld: NotRequired[List[Reason]]
+
+
+def weighted(one: Optional[Ensemble]) -> Optional[Weighted]:
+    """What known events say of an ensemble, where they weigh its runs."""
+    known = one["known_events"] if one else None
+    return cast(Weighted, known) if known and known["reached"] is not None else None
+
+
+class Exceeded(TypedDict):
+    """How many runs have more than a volume on the road."""
+    more_than_m3: float
+    runs: int
+    probability: float
+    low: float
+    high: float
+
+
+class Point(TypedDict):
+    """The runs of one intensity."""
+    at: float
+    runs: int
+    mean_m3: float
+    scatter_m3: Optional[float]
+    smallest_m3: float
+    largest_m3: float
+    released_m3: float
+    share_of_released: float
+    not_on_road: int
+    stood: int
+    exceed: List[Exceeded]
+
+
+class Line(TypedDict):
+    set: Dict[str, str]
+    points: List[Point]
+
+
+class Intensity(TypedDict):
+    """The volume on the road against an intensity (intensity.entry)."""
+    variable: str
+    quantity: str
+    more_than_m3: List[float]
+    confidence: float
+    lines: List[Line]
+
+
+class ChainBody(TypedDict):
+    """A body of a chain."""
+    body: str
+    weight: float
+    volume_m3: Optional[float]
+    runs: int
+    finished: int
+
+
+class ChainCurve(TypedDict):
+    """How likely more than a volume is at each peak acceleration."""
+    more_than_m3: float
+    probability: List[float]
+    low: List[float]
+    high: List[float]
+
+
+class PerYear(TypedDict):
+    """How often a volume is exceeded; contributions: of ranges of the peak acceleration."""
+    more_than_m3: float
+    value: float
+    low: float
+    high: float
+    more_at_most: float
+    contributions: List[Dict[str, Any]]
+
+
+class Chain(TypedDict):
+    """From the earthquake to the blocked road (chain_files.evaluate)."""
+    fragility: str
+    quantity: str
+    confidence: float
+    bodies: List[ChainBody]
+    more_than_m3: List[float]
+    peaks_gal: List[float]
+    curves: List[ChainCurve]
+    per_year: Optional[List[PerYear]]
+    withheld: List[Reason]
+    files: List[str]
+    doubts: List[FindingEntry]
+
+
+class NextStep(TypedDict):
+    """What to do next (next_step.Step)."""
+    text: str
+    command: str
+    seconds: Optional[float]
+
+
+class Stretches(TypedDict):
+    """The stretches of the road that runs block (road_runs.evaluate); of_known_events: whether these weigh the runs."""
+    runs: int
+    share_blocked: float
+    totals: Dict[str, List[float]]
+    stretches: List[Dict[str, Any]]
+    shares: List[List[float]]
+    of_known_events: NotRequired[bool]
+
+
+class Study(TypedDict):
+    """study.yaml."""
+    study: Header
+    largest: Dict[str, Largest]
+    farthest: Optional[str]
+    conservative: Optional[Conservative]
+    size: Optional[Size]
+    ensemble: Optional[Ensemble]
+    step: Optional[HalfStep]
+    largest_restitution: Optional[Elastic]
+    scatter: Mapping[str, Optional[Mapping[str, float]]]
+    combinations: List[Dict[str, Any]]          # combinations.entries()
+    envelope: Optional[Dict[str, MapEntry]]
+    exceedance: Optional[List[MapEntry]]
+    observed: Optional[Observed]
+    roads: List[Dict[str, Any]]     # road_numbers.entries()
+    warnings: List[FindingEntry]
+    runs: List[Row]
+    headline: Optional[Headline]
+    stretches: NotRequired[Stretches]
+    chain: Optional[Chain]
+    intensity: Optional[Intensity]
+    next_step: NotRequired[Optional[NextStep]]
