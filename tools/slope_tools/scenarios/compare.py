@@ -9,7 +9,7 @@ from ..errors import SlopeError
 from ..sites import site_choices, site_deck, site_folder, site_scenarios
 from ..sites.site_choices import FILES, Site
 from ..studies import outdated, site_ground
-from ..tables import named_run
+from ..tables import named_run, study_types
 from ..tables.study_file import read_study
 
 # of the model: what stiffness depends on, and what the ground is
@@ -29,7 +29,7 @@ class One(NamedTuple):
     name: str
     site: Site
     variables: Mapping[str, str]
-    about: Optional[Mapping[str, Any]]
+    about: Optional[study_types.Study]
     run: Optional[Path]
 
 

@@ -13,7 +13,6 @@ from ..schemas import OBJECT, listed, mapping
 from ..sites import site_choices, site_deck, site_roads
 from ..survey.roads import Asked
 from ..tables import named_run
-from . import road_numbers
 
 SCHEMA = mapping({}, study=mapping({}, road=mapping({}, null=True)), roads=listed(OBJECT))
 
@@ -40,7 +39,8 @@ def road_changed(folder: Path, study: Path) -> Optional[str]:
     if "study" not in about:
         return None
     asked, had, above = site.choices["road"], about["study"].get("road"), Path(os.path.abspath(study)).parent
-    known = [one.road for one in road_numbers.read(about)] if above.parent.name != site_roads.FOLDER else [above.name]
+    known = [str(one["road"]) for one in about.get("roads") or ()] if above.parent.name != site_roads.FOLDER \
+        else [above.name]
     several = site_roads.names(site)
     if not set(known) <= set(several) or above.parent.name != site_roads.FOLDER and set(known) != set(several):
         return "choice of roads"

@@ -112,9 +112,9 @@ def entries(numbers: Sequence[Number]) -> List[Dict[str, Any]]:
     return [one._asdict() for one in numbers]
 
 
-def read(about: Mapping[str, Any]) -> List[Number]:
+def read(about: study_types.Study) -> List[Number]:
     """Those of a study; none of a site with one road."""
-    return [Number(**one) for one in about.get(ENTRY) or ()]
+    return [Number(**one) for one in about["roads"]]
 
 
 def shown(numbers: Sequence[Number]) -> Table:

@@ -9,7 +9,7 @@ from ..deposits import left_words, rest
 from ..deposits.travel_shares import BEYOND
 from ..findings import Finding, gathered
 from ..sites.site_warnings import of_volume
-from . import quantities
+from . import quantities, study_types
 from .released import release
 from .rows import Failed, Finished, Row, finished_of
 
@@ -121,10 +121,10 @@ KINDS = {"failed", "in motion", "moving", "lost much", "lost", "bulk factor", "b
          "large", "balance", "programs"}     # of the above: what a file says of them is judged from its rows
 
 
-def limits(study: Optional[Mapping[str, Any]], repeats: bool) -> List[Finding]:
+def limits(study: Optional[study_types.Study], repeats: bool) -> List[Finding]:
     """What no run of a study, or a run alone, can tell; repeats: whether runs were repeated."""
-    sampled = study and study.get("ensemble")
+    sampled, size = (study["ensemble"], study["size"]) if study else (None, None)
     found = [] if repeats or sampled else [Finding("no repeats")]
-    if not (study and (study.get("size") or {}).get("run")):
+    if not (size and size["run"]):
         found.append(Finding("no sizes"))
     return [*found, Finding("slip assumed")]
