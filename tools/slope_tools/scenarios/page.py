@@ -17,6 +17,7 @@ from ..sites import site_scenarios
 from ..sites.site_folder import BODY as NAME_OF_BODY, TERRAIN
 from ..sites.site_roads import ROAD
 from ..statistics.answer import Kind
+from ..statistics.entries import Headline
 from ..studies import road_numbers
 from ..survey import rasters, roads
 from ..survey.rasters import Raster, crs_name
@@ -98,14 +99,15 @@ def numbers(one: One) -> List[str]:
     if one.about is None:
         return [released, "-", "-", "-", "not studied as it is"]
     finished = finished_of(one.about["runs"])
-    far = (one.about["largest"].get(travel_shares.DISTANCE) or {}).get("value")
+    largest = one.about["largest"].get(travel_shares.DISTANCE)
+    far = largest["value"] if largest else None
     worst = "".join(f", {one.road}" for one in road_numbers.read(one.about)[:1])
     lengths = [row.length_m for row in finished if row.length_m is not None]
     return [released, "unknown" if far is None else digits.three(far), digits.three(max(lengths)) if lengths else "-",
-            to_remove(one.about.get("headline")) + worst, f"{len(finished)} of {len(one.about['runs'])}"]
+            to_remove(one.about["headline"]) + worst, f"{len(finished)} of {len(one.about['runs'])}"]
 
 
-def to_remove(headline: Any) -> str:
+def to_remove(headline: Optional[Headline]) -> str:
     """The number of a headline, as page 1 has it."""
     if not headline:
         return "-"
@@ -114,7 +116,7 @@ def to_remove(headline: Any) -> str:
         return "not usable"
     volume = headline["volume_m3"]
     if kind is not Kind.FLOOR:
-        return digits.three(volume)
+        return digits.three(volume or 0.0)
     return f"at least {digits.three(volume)}" if volume else "more than 0"
 
 
