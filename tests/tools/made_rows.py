@@ -1,5 +1,5 @@
 """Rows of a study's table for tests that need a few of their numbers: the others are those of a run that nothing is
-wrong with."""
+wrong with, or unknown."""
 import dataclasses
 
 from slope_tools.tables import rows
@@ -13,26 +13,29 @@ USUAL = {
     "at_rest": True, "end": "at rest", "end_short": "at rest", "moves_share": 0.0, "moving_share": 0.0,
     "release": RELEASE, "log_warnings": [], "wall_s": None, "summary": "one/site.summary.yaml", "slope_version": "1",
     "lammps_version": "1", "structures": {}, "lines": {}}
-ROAD = {"road_on_body_m2": 0.0, "remove_m3": 0.0, "remove_on_road_m3": 0.0, "remove_beside_road_m3": 0.0,
-        "blocked_m": 0.0, "stretches": [], "clearing": {}, "road_warnings": []}
+OF_PART = {"road": {"road_on_body_m2": 0.0, "remove_m3": 0.0, "remove_on_road_m3": 0.0, "remove_beside_road_m3": 0.0,
+                    "blocked_m": 0.0, "stretches": [], "clearing": {}, "road_warnings": []},
+           "mapped": {"overlap": 0.5}}
 FAILED = {"run": "one", "set": {}, "repeat": {}, "batch": 0, "error": "it diverged"}
 
 
-def filled(usual, kind, given):
-    """All fields of a row, those without a usual value unknown."""
-    unknown = {one.name: None for one in dataclasses.fields(kind) if one.name not in ("road", "mapped")}
-    return {**unknown, **usual, **given}
+def names(kind):
+    return [one.name for one in dataclasses.fields(kind) if one.name not in rows.PARTS]
 
 
 def row(**given):
-    """A row of study.yaml with these entries, of a run with a road if one of them is of it."""
+    """A row of study.yaml with these entries, of a run with a road or a mapped deposit if one of them is of it."""
     if given.get("status") == "failed":
         return rows.read({**FAILED, **given})
-    about = filled(USUAL, rows.Finished, given)
-    of_road = {one.name for one in dataclasses.fields(rows.OnRoad)}
-    return rows.read(filled({**ROAD, **about}, rows.OnRoad, given) if of_road & given.keys() else about)
+    about = {**dict.fromkeys(names(rows.Finished)), **USUAL}
+    for part, kind in rows.PARTS.items():
+        if given.keys() & names(kind):
+            about.update({**dict.fromkeys(names(kind)), **OF_PART[part]})
+    unknown = given.keys() - about.keys()
+    assert not unknown, f"no fields: {unknown}"
+    return rows.read({**about, **given})
 
 
 def changed(one, **given):
     """The same row with other entries."""
-    return rows.read({**rows.plain(one), **given})
+    return row(**{**rows.plain(one), **given})

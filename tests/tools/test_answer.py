@@ -228,7 +228,7 @@ def test_an_older_result_is_not_merged_where_all_runs_failed(tmp_path, monkeypat
     def runs(failed):
         if failed:
             raise study.RunsFailed(tmp_path, "all runs failed")
-        return {"study": {"collected": "2026-11-27T10:00:00+00:00"}}
+        return {"study": {"collected": "2026-11-27T10:00:00+00:00"}, "runs": []}
 
     monkeypatch.setattr(study.site_study, "run", lambda *_: site_study.Done(tmp_path, runs(False), None))
     monkeypatch.setattr(study, "run_deck", lambda _: runs(fails))

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from made_rows import row
 
 from slope_tools.seismic import chain, chain_files, fragility
 from slope_tools.statistics.size_effect import Effect
@@ -153,7 +154,7 @@ def test_without_runs_the_whole_body_is_on_the_road():
 def test_the_effect_of_size_raises_what_bodies_leave():
     """By a factor of ten balls or more, else by a difference, and not above the body; never downwards."""
     asked = chain_files.Chain(SimpleNamespace(bodies=["1", "2"]), {"1": 1.0}, {"1": 130.0}, ())
-    rows = [{"status": "finished", "set": {"body": "1", "k": str(k)}, chain_files.QUANTITY: volume}
+    rows = [row(set={"body": "1", "k": str(k)}, **{chain_files.QUANTITY: volume})
             for k, volume in enumerate((0.0, 60.0, 120.0, 140.0))]
 
     def volumes(**effect):

@@ -6,6 +6,7 @@ import pytest
 from scipy import stats
 
 import known_twins as twins
+from made_rows import row
 
 from slope_tools.ensembles import known_events, known_influence
 from slope_tools.ensembles.sample import Sample
@@ -45,8 +46,7 @@ def speed(u, chance=None):
 def runs_of(number, seed, chance=None):
     """known_events.Runs of a stand-in, with its speeds."""
     u, lengths, _ = twins.runs("sobol", number, seed, chance=chance)
-    rows = [{"status": "finished", "length_m": length, "speed": value, "batch": 0,
-             "set": dict(zip("abc", map(repr, place)))}
+    rows = [row(length_m=length, max_speed_m_s=value, set=dict(zip("abc", map(repr, place))))
             for place, length, value in zip(u.tolist(), lengths, speed(u, chance))]
     found = SimpleNamespace(exceedance=twins.exceedance)
     return known_events.Runs(Sample(number, "sobol", seed, VARIABLES), [], rows, found)
@@ -58,7 +58,7 @@ def test_weighted_runs_have_the_indices_of_their_response():
     order = many.mass.order
     by_length = np.log(many.lengths[order]), many.mass.share[order]
     exact = dependent.indices(speed, lambda u: np.interp(np.log(twins.response(u)[0]), *by_length), 3)
-    found = known_influence.evaluate(runs_of(64, 3, np.random.default_rng(3)), "speed")
+    found = known_influence.evaluate(runs_of(64, 3, np.random.default_rng(3)), "max_speed_m_s")
     variables = found["variables"]
     plain = dependent.indices(speed, lambda u: np.ones(len(u)), 3)
     assert plain[0][0] - exact[0][0] > 0.15 and exact[1][1] - plain[1][1] > 0.1   # weights matter
@@ -69,6 +69,6 @@ def test_weighted_runs_have_the_indices_of_their_response():
 
 
 def test_few_runs_have_none():
-    found = known_influence.evaluate(runs_of(6, 3), "speed")
+    found = known_influence.evaluate(runs_of(6, 3), "max_speed_m_s")
     assert found == {"text": "no indices: the runs are too few for an emulator of their lengths", "emulator": None,
                      "variables": {}}

@@ -7,6 +7,9 @@ import numpy as np
 import pytest
 from affine import Affine
 
+import made_rows
+from made_rows import changed
+
 from slope_tools.report import client_part
 from slope_tools.report.numbers import Numbers
 from slope_tools.runs import jobs
@@ -26,9 +29,9 @@ def row(here, name, distance, cells, variables, **more):
     (here / name).mkdir()
     rasters.write_asc_local(here / name / "site.thickness.asc", rasters.Raster(
         thickness, Affine(2, 0, 0, 0, -2, 10), None), {"what": "thickness"})
-    return {"run": name, "status": "finished", "at_rest": True, "set": dict(SET), "repeat": {}, "length_m": distance,
-            "distance_99_m": distance, "front_m": distance + 5, "variables": {**VARIABLES, **variables},
-            "summary": f"{name}/site.summary.yaml", **more}
+    return made_rows.row(**{"run": name, "set": SET, "length_m": distance, "distance_99_m": distance,
+                            "front_m": distance + 5, "variables": {**VARIABLES, **variables},
+                            "summary": f"{name}/site.summary.yaml", **more})
 
 
 @pytest.fixture
@@ -71,7 +74,7 @@ def test_reach_and_area_beside_the_usual_runs(tmp_path, rows):
 
 
 def test_what_left_the_terrain_is_no_distance(tmp_path, rows):
-    about = evaluated(tmp_path, [{**one, "distance_99_m": None} for one in most(tmp_path)], rows)
+    about = evaluated(tmp_path, [changed(one, distance_99_m=None) for one in most(tmp_path)], rows)
     assert "how far the mass goes is not known, as more than 1 % of it left the terrain; the deposit" in about["text"]
     assert elastic.far(about) is None
     assert first_page(about) == (" With the most elastic rock, a restitution of 0.9, more than 1 % of it leaves the "
@@ -80,7 +83,7 @@ def test_what_left_the_terrain_is_no_distance(tmp_path, rows):
 
 def test_failed_and_moving_runs_are_said(tmp_path, rows):
     made = most(tmp_path, at_rest=False)
-    made[0] = {"run": "e1", "status": "failed", "error": "diverged"}
+    made[0] = made_rows.row(run="e1", status="failed", error="diverged")
     about = evaluated(tmp_path, made, rows)
     assert about["text"].endswith("; 1 failed; 2 had not come to rest") and about["runs"] == ["e2", "e3"]
     none = evaluated(tmp_path, made[:1], rows)

@@ -7,6 +7,8 @@ from pathlib import Path
 import pytest
 import yaml
 
+from made_rows import changed
+from made_rows import row as made_row
 from run_helpers import called
 from tiny_collapse import LMP, edit, write_case
 
@@ -48,9 +50,9 @@ def test_round_volumes(largest, expected):
 
 
 def row(peak, rolling, repeat, volume):
-    return {"run": f"{peak} {rolling} {repeat}", "status": "finished", "set": {"peak": peak, "rolling": rolling},
-            "repeat": {"xoffset": repeat} if repeat else {}, "released_m3": 1000.0, "centroid_m": volume,
-            "front_m": float(repeat or 0), "max_speed_m_s": 0.0, "remove_m3": volume, "remove_on_road_m3": volume}
+    return made_row(run=f"{peak} {rolling} {repeat}", set={"peak": peak, "rolling": rolling},
+                    repeat={"xoffset": repeat} if repeat else {}, centroid_m=volume, front_m=float(repeat or 0),
+                    remove_m3=volume, remove_on_road_m3=volume)
 
 
 def test_points_count_the_runs_above_and_keep_other_variables_apart():
@@ -76,8 +78,7 @@ def test_a_scatter_of_failing_is_doubted():
     assert not intensity.doubts(intensity.entry("peak", combinations.grouped(rows[:2] + rows[4:]), []))
     assert one.kind == "fails at times"
     # it came down in all runs, and to the road in one only
-    for each in rows:
-        each["centroid_m"] += 100
+    rows = [changed(each, centroid_m=each.centroid_m + 100) for each in rows]
     one, = intensity.doubts(intensity.entry("peak", combinations.grouped(rows), []))
     assert (one.kind, one.numbers["values"]) == ("reaches at times", "300")
 

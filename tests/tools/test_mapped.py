@@ -8,12 +8,14 @@ import pytest
 import yaml
 
 import test_report
+from made_rows import changed, row
 from tiny_collapse import read_asc
 
+from slope_tools import disk
 from slope_tools.plots import figure_maps
 from slope_tools.studies import mapped
 from slope_tools.survey import rasters
-from slope_tools.tables import study_table
+from slope_tools.tables import study_file, study_table
 
 made, here, slope = test_report.made, test_report.here, test_report.slope       # its fixtures
 LOW, HIGH = (10.0, 6.0), (26.0, 18.0)       # corners of what is mapped, local m
@@ -22,10 +24,10 @@ LOW, HIGH = (10.0, 6.0), (26.0, 18.0)       # corners of what is mapped, local m
 def compared(folder, path):
     """What study.yaml says of a mapped deposit, entered in it."""
     file = folder / "study.yaml"
-    about = yaml.safe_load(file.read_text())
-    terrains = [folder / row["run"] / "terrain.asc" for row in about["runs"]]
-    about["observed"] = mapped.compare(path, folder, about["runs"], terrains)
-    file.write_text(yaml.safe_dump(about))
+    about = study_file.read_study(file)
+    terrains = [folder / one.run / "terrain.asc" for one in about["runs"]]
+    about["runs"], about["observed"] = mapped.compare(path, folder, about["runs"], terrains)
+    file.write_text(yaml.safe_dump(disk.plain(study_file.plain(about))))
     return about
 
 
@@ -51,13 +53,13 @@ def test_overlap_and_run_out_by_hand(here):
     assert entry["file"] == "../observed.csv" and entry["volume_m3"] is None
     assert entry["area_m2"] == pytest.approx((HIGH[0] - LOW[0]) * (HIGH[1] - LOW[1]))
     _, inside, _ = thickness(here / "repeated", here / "other.tif")
-    for row in rows:
-        mine = read_asc(here / "repeated" / row["run"] / "tiny.thickness.asc") > 0.1
-        assert row["overlap"] == pytest.approx((mine & inside).sum() / (mine | inside).sum())
-        assert row["beyond_mapped_m"] == pytest.approx(row["length_m"] - entry["length_m"])
-    assert entry["best"] == max(rows, key=lambda row: row["overlap"])["run"]
+    for one in rows:
+        mine = read_asc(here / "repeated" / one.run / "tiny.thickness.asc") > 0.1
+        assert one.mapped.overlap == pytest.approx((mine & inside).sum() / (mine | inside).sum())
+        assert one.mapped.beyond_mapped_m == pytest.approx(one.length_m - entry["length_m"])
+    assert entry["best"] == max(rows, key=lambda one: one.mapped.overlap).run
     # the farthest corner: the mass comes down from the right
-    assert min(row["length_m"] for row in rows) < entry["length_m"] + 10
+    assert min(one.length_m for one in rows) < entry["length_m"] + 10
     text, = mapped.describe(entry, rows)
     assert re.search(rf"overlap \(Jaccard\) \d\.\d\d to \d\.\d\d, best of {entry['best']}, [+-]\d+ m in run-out", text)
     assert "overlap,beyond_mapped_m" in study_table.table({"rolling": ["0", "0.3"], "steps": ["1200"]}, {}, rows, {
@@ -70,15 +72,15 @@ def test_the_mass_of_a_mapped_thickness(here):
     volume = inside.sum() * cell ** 2
     assert entry["volume_m3"] == pytest.approx(volume) and entry["released_m3"] == pytest.approx(349, abs=1)
     assert f"{100 * (1 - volume / entry['released_m3']):.0f} % less than is released" in mapped.describe(entry, [
-        {"run": entry["best"], "overlap": 0.5, "beyond_mapped_m": None}])[1]
+        row(run=entry["best"], overlap=0.5)])[1]
 
 
 def test_without_a_mapped_deposit_nothing_is_compared(here):
     assert mapped.of_site(None) is None and mapped.of_site(here) is None
     assert mapped.of_site(outline(here / "observed.csv").parent) == here / "observed.csv"
-    rows = [{"status": "failed", "run": "a"}]
-    assert mapped.compare(None, here, rows, [None]) is None
-    assert mapped.compare(here / "observed.csv", here, rows, [None]) is None and "overlap" not in rows[0]
+    rows = [row(status="failed")]
+    assert mapped.compare(None, here, [row()], [None]) == ([row()], None)
+    assert mapped.compare(here / "observed.csv", here, rows, [None]) == (rows, None)
 
 
 @pytest.mark.parametrize("kind", ["outline", "thickness"])
@@ -92,14 +94,14 @@ def test_the_page_compares_whatever_the_method(here, slope, kind, monkeypatch):
     assert all(one.mapped is not None for one in layers)
     assert any(entry.text == "mapped deposit" for entry in figure_maps.entries(layers[0]))
     page = html.unescape((folder / "report.html").read_text(encoding="utf-8"))
-    best = next(row for row in about["runs"] if row["run"] == about["observed"]["best"])
+    best = next(one.mapped for one in about["runs"] if one.run == about["observed"]["best"])
     first = page[:page.index('id="appendix"')]
-    assert f"The best of 6 runs shares {best['overlap']:.3g}" in first
+    assert f"The best of 6 runs shares {best.overlap:.3g}" in first
     assert re.search(r"and ends [\d.]+ m (beyond|short of) its tip\.", first)
     assert ("% less than is released" in first) == (kind == "thickness")
     table = page[page.index('<section id="mapped">'):]
     table = table[:table.index("</section>")]
-    assert "all 6 runs" in table and f"{best['overlap']:.3g}" in table
+    assert "all 6 runs" in table and f"{best.overlap:.3g}" in table
     assert ("volume of the deposit" in table) == (kind == "thickness")
     numbers = Path("repeated/report.numbers.csv").read_text(encoding="utf-8")
     assert "overlap with the mapped deposit" in numbers

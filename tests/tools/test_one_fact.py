@@ -9,6 +9,7 @@ import yaml
 from shapely.affinity import rotate
 from shapely.geometry import LineString, MultiPolygon, box
 
+from made_rows import changed, row
 from run_helpers import called, write_run, write_sidecar
 from test_site import BODY, gis, told, write_layer  # noqa: F401
 from test_site_anew import inside, mine, once  # noqa: F401
@@ -224,12 +225,11 @@ def test_nothing_is_blocked_where_there_is_no_road(tmp_path, monkeypatch, capsys
 
 def rows_of(lengths, **equal):
     """Rows of an ensemble over x, whose runs have these lengths and volumes."""
-    return [{"run": f"x_{k}", "status": "finished", "set": {"x": str(k)}, "batch": 0, "released_m3": 1000.0,
-             "centroid_m": length, "front_m": length, "max_speed_m_s": 9.0, "remove_m3": 10 * length,
-             "length_m": length, **equal} for k, length in enumerate(lengths)]
+    return [row(run=f"x_{k}", set={"x": str(k)}, centroid_m=length, front_m=length, remove_m3=10 * length,
+                length_m=length, **equal) for k, length in enumerate(lengths)]
 
 
-PLAN = SimpleNamespace(names=["x"], places=lambda rows: np.array([[float(row["set"]["x"])] for row in rows]))
+PLAN = SimpleNamespace(names=["x"], places=lambda rows: np.array([[float(one.set["x"])] for one in rows]))
 
 
 @pytest.mark.parametrize("lengths, points", [([50.0] * 8, 1), ([50.0, 60.0] * 4, 2), ([50.0] * 4 + [61.0, 62.0], 3),
@@ -268,7 +268,7 @@ def test_no_run_is_longer_than_the_way_that_the_terrain_shows():
     mobility = exceedance.Mobility(path, 0.05, SimpleNamespace(), {"k": np.array([1.0, 0.6, 0.55])}, "k",
                                    np.ones(3, bool), [])
     assert mobility.end(166.9) == 166.9 and mobility.end(120.0) == 162.5
-    rows = [{**row, "length_by_lobe_m": [row["length_m"]] * 2} for row in rows_of([100.0, 140.0, 166.9])]
+    rows = [changed(one, length_by_lobe_m=[one.length_m] * 2) for one in rows_of([100.0, 140.0, 166.9])]
     reach = known_events.reach(known_events.Runs(PLAN, [], rows, mobility), mobility)
     assert reach["longest_m"] == reach["path_m"] == 166.9 and reach["beyond_path"] == 0.55
     text = mobility_part.beyond_the_terrain(mobility_part.Lies([100.0, 166.9], mobility, ""), ["k", "k"], Numbers(), "")

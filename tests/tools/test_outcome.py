@@ -6,6 +6,8 @@ from types import SimpleNamespace
 
 import pytest
 
+from made_rows import row
+
 import slope_tools
 from slope_tools import kept
 from slope_tools.ensembles import ensemble, known_events
@@ -48,7 +50,7 @@ def page(tmp_path, monkeypatch):
     (run / "finished.yaml").write_text("summary: site.summary.yaml\n")
     (run / "site.thickness.asc").write_text("1 2 3\n")
     about = {"study": {"deck": "in.site", "collected": "then", "machine": {"name": "here"}, "jobs": 2},
-             "runs": [{"run": "one", "status": "finished", "summary": "one/site.summary.yaml"}], "volume": 7.0}
+             "runs": [row(run="one", summary="one/site.summary.yaml")], "volume": 7.0}
     drawn = []
 
     def make(asked):

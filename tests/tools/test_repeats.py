@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from made_rows import changed, row
 from messages import is_one
 from tiny_collapse import edit, loaded
 
@@ -158,9 +159,8 @@ def rows(*several, names=("rolling",), rest=True):
     found = []
     for chosen, volumes in several:
         for i, volume in enumerate(volumes):
-            found.append({"run": f"{'_'.join(chosen)}_{i}", "status": "finished", "set": dict(zip(names, chosen)),
-                          "repeat": {"seed": str(i)} if i else {}, "remove_m3": volume, "at_rest": rest,
-                          "released_m3": 1000.0, "centroid_m": 5 + volume / 7, "front_m": 50.0, "max_speed_m_s": 9.0})
+            found.append(row(run=f"{'_'.join(chosen)}_{i}", set=dict(zip(names, chosen)), at_rest=rest,
+                             repeat={"seed": str(i)} if i else {}, remove_m3=volume, centroid_m=5 + volume / 7))
     return found
 
 
@@ -202,10 +202,9 @@ def test_differences_are_those_of_the_governing_line():
 def test_which_ground_governs():
     """One run each on other grounds: the largest over both, with the chance of a single run."""
     settings = {"rolling": ["0", "1"], "spacing": ["0.9", "0.5"]}
-    several = rows((("0", "0.9"), (70.0, 71, 72)), (("1", "0.9"), (80.0, 82, 81)), (("0", "0.5"), (95.0,)),
-                   (("1", "0.5"), (40.0,)), names=("rolling", "spacing"))
-    for row in several:
-        row["stop_angle_deg"] = 15.5 if row["set"]["spacing"] == "0.5" else 24.5
+    several = [changed(one, stop_angle_deg=15.5 if one.set["spacing"] == "0.5" else 24.5) for one in rows(
+        (("0", "0.9"), (70.0, 71, 72)), (("1", "0.9"), (80.0, 82, 81)), (("0", "0.5"), (95.0,)),
+        (("1", "0.5"), (40.0,)), names=("rolling", "spacing"))]
     best = conservative(settings, several)
     assert best["ground"] == "the ground that governs: spacing 0.5, stop angle 15.5 degrees (tried: spacing 0.9, 0.5)"
     assert best["ground"] in combinations.describe({**best, "withheld": [], "zero": None})
@@ -214,11 +213,10 @@ def test_which_ground_governs():
     assert [(entry["variable"], entry["by_m3"]) for entry in best["differences"]] == [("rolling", 55), ("spacing", 24)]
     entry = combinations.entries(combinations.grouped(several), ["remove_m3"])[0]
     assert entry["stop_angle_deg"] == 24.5
-    several[6]["remove_m3"] = 60.0
+    several[6] = changed(several[6], remove_m3=60.0)
     best = conservative(settings, several)
     assert best["ground"].startswith("the ground that governs: spacing 0.9, stop angle 24.5")
-    for row in several:
-        row["stop_angle_deg"] = None
+    several = [changed(one, stop_angle_deg=None) for one in several]
     assert conservative(settings, several)["ground"] == "the ground that governs: spacing 0.9 (tried: spacing 0.9, 0.5)"
     assert conservative({"rolling": ["0", "1"]}, rows(*SMALL))["ground"] is None
 
@@ -227,8 +225,7 @@ def test_other_doubts():
     alone = rows((("0",), (5.0,)))
     assert conservative({"rolling": ["0"]}, alone)["doubts"] == [Finding("single run").entry()]
     above = rows((("0",), [100.0] * 7 + [101.0] * 7 + [120.0]), (("1",), [100.0 + i / 100 for i in range(30)]))
-    for i, row in enumerate(above):
-        row["front_m"] = i          # no two are the same run
+    above = [changed(one, front_m=i) for i, one in enumerate(above)]        # no two are the same run
     assert Finding("more in a run", {"run": "0_14", "volume": 120.0}).entry() in conservative(
         {"rolling": ["0", "1"]}, above)["doubts"]
     loud = rows((("1",), (90.0, 120, 150)), (("0",), (100.0, 101, 102)))
@@ -241,8 +238,7 @@ def test_more_than_is_released_is_doubted():
     found = conservative({"rolling": ["0", "1"]}, several)
     assert found["volume_m3"] > 1000
     assert Finding("more than released", {"released": 1000.0}).entry() in found["doubts"]
-    for row in several:
-        row["released_m3"] = 2000.0
+    several = [changed(one, released_m3=2000.0) for one in several]
     assert conservative({"rolling": ["0", "1"]}, several)["doubts"] == []
 
 
@@ -257,7 +253,7 @@ def test_runs_of_another_outcome_are_doubted():
     found = conservative({"rolling": ["0", "1"]}, rows((("0",), (500.0, 0, 520)), (("1",), (400.0, 420, 410))))
     assert two_outcomes(found) == [(1, 3, 1)]
     several = rows((("0",), (500.0, 0, 520)), (("1",), (400.0, 420, 410)))
-    several[1]["centroid_m"] = 40.0
+    several[1] = changed(several[1], centroid_m=40.0)
     assert two_outcomes(conservative({"rolling": ["0", "1"]}, several)) == [(1, 3, 0)]
     none = conservative({"rolling": ["0", "1"]}, rows((("0",), (0.0, 0, 0)), (("1",), (400.0, 420, 410))))
     assert not two_outcomes(none)
@@ -369,7 +365,7 @@ def test_wrong_values_of_a_summary_are_one_line(section, value, rule):
     (("straight", "along the fall path"), "length (straight in some runs)", True),
     ((None, None), "length along the fall path", False)])
 def test_a_length_without_a_fall_path_is_called_straight(kinds, name, column):
-    several = [{**row, "length_is": kind, "length_m": 30.0} for row, kind in zip(rows((("0",), (5.0, 6.0))), kinds)]
+    several = [changed(one, length_is=kind, length_m=30.0) for one, kind in zip(rows((("0",), (5.0, 6.0))), kinds)]
     assert quantities.name_of("length_m", several) == name
     assert quantities.name_of("front_m", several) == "farthest ball"
     head = study_table.table({"rolling": ["0"]}, {"seed": []}, several, {"seed": "0"}).splitlines()[0].split(",")

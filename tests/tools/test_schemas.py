@@ -1,9 +1,12 @@
 """YAML files that the tools read: each is checked against a schema; what is wrong with one is a line with its place."""
+import json
 import re
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+
+from made_rows import row
 
 from slope_tools.case import run_folders
 from slope_tools.ensembles import farther, sample
@@ -12,13 +15,15 @@ from slope_tools.fitting import calibration
 from slope_tools.report import convergence_part, heading, reference
 from slope_tools.seismic import fragility_files
 from slope_tools.survey import rasters
-from slope_tools.tables import structures
+from slope_tools.tables import named_run, rows, structures, study_file
 
 TOP = Path(__file__).resolve().parents[2]
 TOOLS = TOP / "tools" / "slope_tools"
 LHS = SimpleNamespace(about={"variables": {}}, kind="lhs", number=4, seed=1)
 SIDECAR = ("{crs: null, origin: {east: 0, north: 0}, size: {rows: 3, columns: 4}, extent: {xlo: 0, xhi: 4, ylo: 0, "
            "yhi: %s}}")
+STUDY = ("{study: {deck: a, runs: 1, finished: 1, set: {}}, runs: %s, conservative: %s, largest: {front_m: {run: one, "
+         "value: 100.0}}}")
 FILES = {       # file: (its reader, a text, what must be said)
     "calibrate.ledger.yaml": (lambda folder: calibration.Ledger(folder, {"seed": 1}, [SimpleNamespace(name="a")]), (
         ("about: {seed: 1}", "must have points"),
@@ -47,10 +52,16 @@ FILES = {       # file: (its reader, a text, what must be said)
     "variables.yaml": (run_folders.begun, (("inputs: [1]", "inputs: must be a section with keys or null, got [1]"),
                                            ("set: {d: 2}", "set: d: must be a text, got 2"))),
     "finished.yaml": (run_folders.ended, (("wall_seconds: 1", "must have summary"),)),
-    "study.yaml": (lambda folder: run_folders.governing_run(folder / "study.yaml"), (
-        ("runs: []", "must have conservative"), ("conservative: null", "with a finished run"),
-        ("{conservative: null, farthest: null, largest: {}}", "with a finished run"),
-        ("conservative: {run: 1}", "conservative: run: must be a text, got 1"))),
+    "study.yaml": (named_run.governing_run, (
+        ("runs: []", "must have study and conservative and largest"),
+        (STUDY % ("[]", "null"), "must have a finished run, got 0 that failed"),
+        (STUDY % (json.dumps([rows.plain(row(status="failed"))]), "null"), "must have a finished run, got 1 that fail"),
+        (STUDY % ("[]", "{run: 1}"), "conservative: must have volume_m3 and"),
+        (STUDY % ("[{run: one, status: finished, set: {}}]", "null"),
+         f"study.yaml: run one: must be {study_file.WHAT}: must have repeat and batch and variables and"),
+        (STUDY % (json.dumps([{**rows.plain(row()), "front_m": "far"}]), "null"),
+         f"study.yaml: run one: must be {study_file.WHAT}: front_m: must be a finite number, got 'far'"),
+        (STUDY % ("[{run: one, status: running, set: {}}]", "null"), "status: must be failed or finished, got 'running'"))),
     "site.yaml": (heading.site_of, (("project: [1]", "project: must be a section with keys or null, got [1]"),
                                     ("terrain: {files: [1]}", "terrain: files: first value: must be a text, got 1"))),
     "converge.yaml": (lambda folder: convergence_part.Sizes(folder / "converge.yaml"), (

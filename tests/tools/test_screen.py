@@ -9,6 +9,7 @@ import pytest
 from rich.console import Console
 from rich.table import Table
 
+from made_rows import row
 from run_helpers import run_command
 
 from slope_tools import cli
@@ -18,6 +19,7 @@ from slope_tools.findings import Finding, entries, finding
 from slope_tools.report import document, heading, structures_part, warnings as report_warnings
 from slope_tools.report.study_part import ENDS, MOST_ROWS, Runs
 from slope_tools.tables import judged, quantities, study_table
+from slope_tools.tables.rows import finished_of
 
 CELLS = {"rolling": "0.05", "released": "17,522", "wall s": "1,234", "reach angle deg": "22.1",
          "99 % within m": "123.4", "length m": "130.2", "farthest ball m": "155.1", "end": "at rest",
@@ -143,14 +145,14 @@ def test_that_a_road_has_no_crs_is_said_beside_the_maps_not_in_red(monkeypatch):
 @pytest.mark.parametrize("number", [MOST_ROWS, 96])
 def test_of_very_many_runs_the_table_has_the_ends(number):
     volumes = [(37 * k) % 97 for k in range(number)]
-    rows = [{"run": f"r{k}", "status": "finished", "remove_m3": volume} for k, volume in enumerate(volumes)]
-    rows[3].update(status="failed")
-    data = SimpleNamespace(rows=rows, finished=[row for row in rows if row["status"] == "finished"])
+    rows = [row(run=f"r{k}", remove_m3=volume) for k, volume in enumerate(volumes)]
+    rows[3] = row(run="r3", status="failed")
+    data = SimpleNamespace(rows=rows, finished=finished_of(rows))
     page = SimpleNamespace(data=data, counts=lambda: quantities.ALL["remove_m3"])
     found = Runs.in_table(page)
     if number == MOST_ROWS:
         assert found == rows and Runs.which_rows(page) == "All runs"
         return
     left = sorted(volume for k, volume in enumerate(volumes) if k != 3)
-    assert [row["remove_m3"] for row in found[:-1]] == [*left[:ENDS], *left[-ENDS:]] and found[-1] is rows[3]
+    assert [one.at_road.remove_m3 for one in found[:-1]] == [*left[:ENDS], *left[-ENDS:]] and found[-1] is rows[3]
     assert '96 runs' in Runs.which_rows(page) and '"to remove"' in Runs.which_rows(page)

@@ -2,6 +2,8 @@
 
 import pytest
 
+from made_rows import row
+
 from slope_tools.errors import SlopeError
 from slope_tools.tables import combinations, energy, step_check
 from slope_tools.tables.step_check import Step
@@ -9,8 +11,7 @@ from slope_tools.tables.step_check import Step
 
 def groups():
     return combinations.grouped([
-        {"status": "finished", "run": f"{rolling}_{k}", "set": {"rolling": rolling}, "repeat": {"seed": str(k)},
-         "remove_m3": volume, "front_m": volume}
+        row(run=f"{rolling}_{k}", set={"rolling": rolling}, repeat={"seed": str(k)}, remove_m3=volume, front_m=volume)
         for rolling, several in (("0", (90.0, 100, 110)), ("0.1", (56.0, 64, 72))) for k, volume in enumerate(several)])
 
 
@@ -27,8 +28,8 @@ def test_half_the_step_against_the_mean_and_chance(volume, within, words):
 
 
 def test_runs_on_another_ground_are_not_compared():
-    rows = [{"status": "finished", "run": spacing, "set": {"rolling": "0", "spacing": spacing}, "repeat": {},
-             "remove_m3": volume, "front_m": volume} for spacing, volume in (("0.5", 300.0), ("0.9", 100.0))]
+    rows = [row(run=spacing, set={"rolling": "0", "spacing": spacing}, remove_m3=volume, front_m=volume)
+            for spacing, volume in (("0.5", 300.0), ("0.9", 100.0))]
     both = combinations.grouped(rows)
     assert step_check.compare(Step("0", 100.0, spacing="0.9"), both)["mean_m3"] == 100
     assert step_check.compare(Step("0", 100.0, spacing="0.7"), both)["mean_m3"] is None
@@ -36,8 +37,7 @@ def test_runs_on_another_ground_are_not_compared():
 
 
 def test_nothing_is_said_in_words():
-    rows = [{"status": "finished", "run": str(k), "set": {"rolling": "0"}, "repeat": {"seed": str(k)}, "remove_m3": 0.0,
-             "front_m": 1.0} for k in range(3)]
+    rows = [row(run=str(k), set={"rolling": "0"}, repeat={"seed": str(k)}, remove_m3=0.0) for k in range(3)]
     entry = step_check.compare(Step("0", 0.0), combinations.grouped(rows))
     assert entry["text"] == "half the time step, rolling 0: nothing to remove, as with the whole step"
     assert entry["within_chance"] is True and entry["chance_m3"] == 0

@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from made_rows import changed, row
+
 from slope_tools import cli
 from slope_tools.statistics import withheld
 from slope_tools.statistics.withheld import Facts, Kind
@@ -88,11 +90,9 @@ def test_the_commands_are_ones_that_the_tools_take(case, changed):
 # --- of the rows of a study ---
 
 def rows(*volumes, **more):
-    return [{"status": "finished", "run": f"seed_{k}", "set": {"rolling": "0"}, "repeat": {"seed": str(k)},
-             "remove_m3": volume, "remove_on_road_m3": volume / 2, "ball_m3": 1.0, "released_m3": 1000.0,
-             "left_before_road_m3": 0.0, "left": None, "off_grid_m3": 0.0, "lost_m3": 0.0, "on_road_m3": volume / 2,
-             "beyond_road_m3": 0.0, "at_rest": True, "length_m": 500.0, "label": "", **more}
-            for k, volume in enumerate(volumes)]
+    return [row(**{"run": f"seed_{k}", "set": {"rolling": "0"}, "repeat": {"seed": str(k)}, "remove_m3": volume,
+                   "remove_on_road_m3": volume / 2, "left_before_road_m3": 0.0, "on_road_m3": volume / 2,
+                   "beyond_road_m3": 0.0, "length_m": 500.0, **more}) for k, volume in enumerate(volumes)]
 
 
 def events(median, reached):
@@ -142,7 +142,7 @@ LEFT = [{"side": "east", "volume": 30.0, "balls": 30, "where": "past", "distance
 def test_what_left_before_the_road_withholds_and_what_passed_it_does_not():
     several = rows(90.0, 100, 110, lost_m3=50.0, left_before_road_m3=9.0)
     assert judged(several, events(400.0, 0.6))["withheld"] == []
-    several[1].update(left_before_road_m3=20.0, left=LEFT)
+    several[1] = changed(several[1], left_before_road_m3=20.0, left=LEFT)
     [entry] = judged(several, events(400.0, 0.6))["withheld"]
     assert entry["text"] == ("2 % of the released volume left the terrain before or beside the road, more than 1 %: "
                              "12 m3 in the north, 123 m before the road; 8 m3 in the south, 40 m before the road")
@@ -162,12 +162,10 @@ def test_where_it_is_not_known_what_left_all_of_it_withholds():
 
 def test_a_run_reaches_the_road_by_what_lies_there_however_small_the_lobe():
     """By a ball at least, on the road or beyond it; the length does not count."""
-    several = rows(0.0, 0, 0, 0, length_m=200.0)
-    for row, (on, past) in zip(several, ((0.6, 0.0), (0.6, 0.5), (0.0, 40.0), (0.0, 0.99))):
-        row.update(on_road_m3=on, beyond_road_m3=past)
+    several = [changed(one, on_road_m3=on, beyond_road_m3=past) for one, (on, past) in zip(
+        rows(0.0, 0, 0, 0, length_m=200.0), ((0.6, 0.0), (0.6, 0.5), (0.0, 40.0), (0.0, 0.99)))]
     road = events(400.0, 0.6).road(several)
     assert road.brought._asdict() == {"runs": 4, "reach": 2, "passing": 1, "volume": 40.0, "balls": 40.0}
     assert not road.missed and road.longest == 200 < road.near
-    for row in several:
-        row.update(on_road_m3=0.4, beyond_road_m3=0.5, length_m=900.0)
+    several = [changed(one, on_road_m3=0.4, beyond_road_m3=0.5, length_m=900.0) for one in several]
     assert events(400.0, 0.6).road(several).missed

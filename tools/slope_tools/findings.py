@@ -89,12 +89,13 @@ def finding(said: Said) -> Finding:
         return said
     if not isinstance(said, Mapping):
         return Finding(OTHER, {"text": str(said)})
-    found = Finding(str(said.get("kind")), said.get("numbers") or {}, tuple(said.get("runs") or ()),
-                    str(said.get("part") or ""), str(said.get("remedy") or ""))
+    remedy = str(said.get("remedy") or "")
     try:
+        found = Finding(str(said.get("kind")), said.get("numbers") or {}, tuple(said.get("runs") or ()),
+                        str(said.get("part") or ""), remedy)
         str(found)
     except (KeyError, ValueError, TypeError, AttributeError):
-        return Finding(OTHER, {"text": str(said.get("text"))}, remedy=found.remedy)
+        return Finding(OTHER, {"text": str(said.get("text"))}, remedy=remedy)
     return found
 
 

@@ -3,11 +3,24 @@ import dataclasses
 import functools
 import typing
 from types import NoneType
-from typing import Any, Dict, Mapping, Tuple, Type, TypeVar, Union
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Type, TypeVar, Union
 
+from . import disk
 from .findings import Finding, finding
+from .schemas import TYPES, nth
 
 T = TypeVar("T")
+WORDS = {str: "string", float: "number", int: "integer", bool: "boolean", Mapping: "object", list: "array"}
+
+
+class NoRecord(ValueError):
+    """A value that is none of its type: where in it, and the rule."""
+
+
+class Fields(NamedTuple):
+    """Of a record: types of its fields, and those without a default."""
+    types: Dict[str, Any]
+    needed: List[str]
 
 
 def plain(value: Any) -> Any:
@@ -20,12 +33,12 @@ def plain(value: Any) -> Any:
         return {name: plain(one) for name, one in value._asdict().items()}
     if isinstance(value, Mapping):
         return {name: plain(one) for name, one in value.items()}
-    return [plain(one) for one in value] if isinstance(value, (list, tuple)) else value
+    return [plain(one) for one in value] if isinstance(value, (list, tuple)) else disk.plain(value)
 
 
 def read(kind: Type[T], value: Any) -> T:
-    """A value of a type from what plain() made of it; KeyError, TypeError or ValueError if it is none. Further keys of
-    a mapping do not count; a field that is missing has its default."""
+    """A value of a type from what plain() made of it; NoRecord if it is none. Further keys of a mapping do not count; a
+    field that is missing has its default."""
     return typing.cast(T, _read(kind, value))
 
 
@@ -35,23 +48,52 @@ def _read(kind: Any, value: Any) -> Any:
         [inner] = [one for one in parts if one is not NoneType]       # Optional: the only one that there is
         return None if value is None else _read(inner, value)
     if isinstance(origin, type) and issubclass(origin, Mapping):
-        return {name: _read(parts[1], one) for name, one in value.items()}
+        check(value, Mapping)
+        return {name: _inside(name, parts[1], one) for name, one in value.items()}
     if isinstance(origin, type):
-        of = parts[0] if parts else Any
-        return tuple(_read(of, one) for one in value) if origin is tuple else [_read(of, one) for one in value]
+        check(value, list)
+        several = [_inside(nth(k), parts[0], one) for k, one in enumerate(value)]
+        return tuple(several) if origin is tuple else several
     if kind is Finding:
         return finding(value)
-    if types := _fields(kind):
-        return kind(**{name: _read(of, value[name]) for name, of in types.items() if name in value})
-    if kind is Any or isinstance(value, kind) or kind is float and isinstance(value, int):
-        return value
-    raise TypeError(f"must be of type {kind.__name__}, got {value!r}")
+    if of := _fields(kind):
+        check(value, Mapping)
+        if lacks := [name for name in of.needed if name not in value]:
+            raise NoRecord(f"must have {' and '.join(lacks)}")
+        return kind(**{name: _inside(name, one, value[name]) for name, one in of.types.items() if name in value})
+    if kind is not Any:
+        check(value, kind)
+    return value
+
+
+def _inside(place: str, kind: Any, value: Any) -> Any:
+    """The same of a part of a value."""
+    try:
+        return _read(kind, value)
+    except NoRecord as error:
+        raise NoRecord(f"{place}: {error}") from None
+
+
+def check(value: Any, kind: Any) -> None:
+    """Raise NoRecord unless a value is what YAML and JSON have for a type."""
+    if kind is float:
+        right = disk.is_number(value)
+    elif kind is list:
+        right = isinstance(value, (list, tuple))
+    else:
+        right = isinstance(value, kind) and (kind is not int or not isinstance(value, bool))
+    if not right:
+        raise NoRecord(f"must be {TYPES[WORDS[kind]]}, got {repr(value)[:60]}")
 
 
 @functools.lru_cache(maxsize=None)
-def _fields(kind: Any) -> Dict[str, Any]:
-    """{field: its type} of a record; none of another type."""
-    names: Tuple[str, ...] = tuple(one.name for one in dataclasses.fields(kind)) if dataclasses.is_dataclass(kind) \
-        else getattr(kind, "_fields", ())
-    types = typing.get_type_hints(kind) if names else {}
-    return {name: types[name] for name in names}
+def _fields(kind: Any) -> Optional[Fields]:
+    """None of a type that is no record."""
+    if dataclasses.is_dataclass(kind):
+        defaults = {one.name: one.default for one in dataclasses.fields(kind)}
+        needed = [name for name, default in defaults.items() if default is dataclasses.MISSING]
+    elif hasattr(kind, "_field_defaults"):
+        needed = [name for name in kind._fields if name not in kind._field_defaults]
+    else:
+        return None
+    return Fields(typing.get_type_hints(kind), needed)

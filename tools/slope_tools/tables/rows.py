@@ -2,7 +2,7 @@
 
 A run that failed has an error, one that finished has numbers; study.yaml has both in one list (plain, read).
 """
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence, Union
 
 from .. import records
@@ -145,9 +145,12 @@ def plain(row: Row) -> Dict[str, Any]:
 
 
 def read(about: Mapping[str, Any]) -> Row:
-    """The same back; KeyError, TypeError or ValueError if it is none."""
+    """The same back, of a mapping with a status; NoRecord if it is none."""
+    if about["status"] not in (FAILED, FINISHED):
+        raise records.NoRecord(f"status: must be {FAILED} or {FINISHED}, got {about['status']!r:.60}")
     if about["status"] == FAILED:
         return records.read(Failed, about)
-    found: Dict[str, Any] = {part: {key: about[key] for key in (one.name for one in fields(kind)) if key in about}
+    parts: Dict[str, Any] = {part: {one.name: about[one.name] for one in fields(kind) if one.name in about}
                              for part, kind in PARTS.items()}
-    return records.read(Finished, {**about, **{part: one or None for part, one in found.items()}})
+    return replace(records.read(Finished, {**about, **dict.fromkeys(PARTS)}),
+                   **{part: records.read(PARTS[part], mine) for part, mine in parts.items() if mine})

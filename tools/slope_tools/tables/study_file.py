@@ -5,6 +5,7 @@ from typing import Any, Dict, List, Mapping, NamedTuple, Union
 from .. import disk, schemas
 from ..case import run_folders
 from ..errors import SlopeError
+from ..records import NoRecord
 from ..schemas import ANY, MAYBE, NUMBER, OBJECT, TEXT, listed, mapping, numbers
 from . import rows as rows_, study_types
 from .answered import STUDY as STUDY_FILE, study_in
@@ -53,8 +54,8 @@ def row_of(path: Path, one: Mapping[str, Any]) -> rows_.Row:
     """The row of an entry of study.yaml."""
     try:
         return rows_.read(one)
-    except (KeyError, TypeError, ValueError) as error:
-        raise SlopeError(f"{path}: run {one['run']}", f"must be {WHAT}", error) from None
+    except NoRecord as error:
+        raise SlopeError(f"{path}: run {one['run']}", f"must be {WHAT}: {error}") from None
 
 
 class Study(NamedTuple):
