@@ -5,6 +5,8 @@ from pathlib import Path
 import pytest
 import yaml
 
+import made_study
+
 from slope_tools import disk
 from slope_tools.commands import study
 from slope_tools.sites import site_choices
@@ -62,9 +64,8 @@ def test_the_effect_of_size_raises_the_quantiles_of_an_ensemble():
     """By a factor of ten balls or more, by the difference of fewer; not where the fine run brings less."""
     def volume(**effect):
         quantile = {"share": 0.95, "value": 100.0, "low": 80.0, "high": None}
-        known = {"to_remove": [quantile], "far": 0.0, "longest_m": 9.0}
-        about = {"ensemble": {"known_events": known},
-                 "size": {"run": "d_1", "open": False, "effects": {"remove_m3": {"runs": 1, "chance": None, **effect}}}}
+        about = made_study.study(ensemble=made_study.ensemble({"to_remove": [quantile]}), size={
+            "run": "d_1", "open": False, "effects": {"remove_m3": {**made_study.EFFECT, **effect}}})
         return answered.ensemble_of(about).quantiles[0.95]
 
     assert volume(coarse=50.0, fine=60.0, ratio=True) == pytest.approx((120.0, 96.0, None))
@@ -75,7 +76,7 @@ def test_the_effect_of_size_raises_the_quantiles_of_an_ensemble():
 def test_a_fine_run_that_failed_makes_a_floor_too():
     """Less is known than with one that finished: the number is no firmer."""
     entry = fine_run.evaluate(fine_run.Fine(None, (), 0.0, lambda key: None, "d_1: diverged"))
-    about = {"conservative": {"volume_m3": 1200.0}, "size": entry}
+    about = made_study.study(conservative=made_study.conservative(1200.0), size=entry)
     found = answer.of(answered.paper_of(about), None, None)
     assert (found.kind, found.volume, codes(found)) == (Kind.FLOOR, 1200.0, [Code.SIZE])
     assert "did not finish" in answer_words.text(found.reasons[0]) and "d_1: diverged" in entry["text"]
@@ -85,18 +86,17 @@ def test_a_fine_run_that_failed_makes_a_floor_too():
 @pytest.mark.parametrize("balls, kind", [(None, Kind.FLOOR), (5.0, Kind.FLOOR), (16.0, Kind.NUMBER)])
 def test_without_a_fine_run_the_number_is_not_conservative(balls, kind):
     """Unless its own balls are small enough; the page says why."""
-    about = {"conservative": {"volume_m3": 1200.0}, "study": {"balls_thick": balls}, "size": None}
+    about = made_study.study({"balls_thick": balls}, conservative=made_study.conservative(1200.0))
     found = answer.of(answered.paper_of(about), None, None)
     assert (found.kind, found.volume) == (kind, 1200.0)
     for text in (answer_words.text, answer_words.client):
         assert ["conservative" in text(one) and "not known" in text(one) for one in found.reasons] == \
             [True] * (kind is Kind.FLOOR)
     quantile = {"share": 0.95, "value": 100.0, "low": None, "high": None}
-    made = next_step.Made({"runs": [], "study": {}, "ensemble": None}, Path("out"))
+    made = next_step.Made(made_study.study(), Path("out"))
     step = next_step.of_studies([made], found.about())
     assert step is None if kind is Kind.NUMBER else step.command == "the same command with --fine 2" == step.before
-    about = {"ensemble": {"known_events": {"to_remove": [quantile], "far": 0.0, "longest_m": 9.0}},
-             "study": {"balls_thick": balls}, "size": None}
+    about = made_study.study({"balls_thick": balls}, ensemble=made_study.ensemble({"to_remove": [quantile]}))
     assert answer.of(None, answered.ensemble_of(about), None).kind is kind
 
 
@@ -107,7 +107,7 @@ def test_the_growth_of_the_family_stands_beside_a_floor(monkeypatch, slides):
     known = size_family.read(["case,balls,remove,beyond,length", *lines])
     monkeypatch.setattr(size_family, "family", lambda: known)
     size = {"run": "d_1", "open": True, "balls_thick": 2.0, "effects": {}}
-    about = {"conservative": {"volume_m3": 1200.0}, "size": size}
+    about = made_study.study(conservative=made_study.conservative(1200.0), size=size)
     floor = answer.of(answered.paper_of(about), None, None)
     said = answer_words.number(floor.about())       # what finer balls bring is open: nothing conservative
     assert said.startswith("at least 1,200 m3 to remove, by the paper's study") and "conservative" not in said
@@ -188,10 +188,9 @@ def test_what_study_yaml_says():
 
 
 def test_the_volume_is_the_one_that_the_study_shows():
-    best = {"volume_m3": 21700.6, "rounded": {"volume_m3": 21710.0}, "withheld": []}
+    best = made_study.conservative(21700.6, rounded={"volume_m3": 21710.0})
     done = {"run": "d_1", "open": False, "effects": {}}
-    assert answered.paper_of({"conservative": best, "size": done}) == Paper(21710.0, [])
-    assert answered.paper_of({"conservative": {**best, "volume_m3": None}}).volume is None
+    assert answered.paper_of(made_study.study(conservative=best, size=done)) == Paper(21710.0, [])
 
 
 # --- which study governs ---
@@ -228,7 +227,7 @@ def test_an_older_result_is_not_merged_where_all_runs_failed(tmp_path, monkeypat
     def runs(failed):
         if failed:
             raise study.RunsFailed(tmp_path, "all runs failed")
-        return {"study": {"collected": "2026-11-27T10:00:00+00:00"}, "runs": []}
+        return made_study.study({"collected": "2026-11-27T10:00:00+00:00"})
 
     monkeypatch.setattr(study.site_study, "run", lambda *_: site_study.Done(tmp_path, runs(False), None))
     monkeypatch.setattr(study, "run_deck", lambda _: runs(fails))

@@ -9,11 +9,12 @@ import yaml
 from scipy import stats
 
 import known_twins as twins
+import made_study
 from messages import is_one
+from made_rows import row
 from tiny_collapse import read_asc
 
 from slope_tools import cli
-from slope_tools.case import run_folders
 from slope_tools.deposits import travel_shares
 from slope_tools.ensembles import conditioned, known_events, known_maps
 from slope_tools.mobility import weights
@@ -21,6 +22,7 @@ from slope_tools.report import ensemble_part
 from slope_tools.report.numbers import Numbers
 from slope_tools.sites import site_warnings
 from slope_tools.statistics.hazard import weighted
+from slope_tools.tables import named_run
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 COMMAND = "study case/in.tiny"
@@ -151,11 +153,10 @@ def test_words_of_a_quantile_in_a_gap(gap):
     line = known_events.quantile_text(one, "m")
     assert ("between 1,890 and 2,950 m" in line) == bool(gap) and ("stay within" in line) != bool(gap)
     assert ensemble_part.cell_of(one) == ("1,890 to 2,950" if gap else "2,950")
-    about = {"reached": 0.9, "effective": 12.0, "doubts": [], "variables": {}, "quantities": {
-        "length_m": {"name": "length", "unit": "m", "quantiles": [one]}}}
-    data = type("Data", (), {"study": {"ensemble": {"known_events": about, "of": "length_m", "confidence": 0.9}}})
+    about = made_study.ensemble({"quantities": {"length_m": {"name": "length", "unit": "m", "quantiles": [one]}}},
+                                of="length_m")
     numbers = Numbers()
-    part = ensemble_part.KnownEvents(data, numbers)
+    part = ensemble_part.KnownEvents(None, numbers, about)
     shown, = part.answer()["parts"]
     assert shown["number"] == ("1,890 to 2,950" if gap else "2,950")
     assert ("no run ends" in shown["note"]) == bool(gap) and "Between 1,500 m" in shown["note"]
@@ -290,10 +291,10 @@ def test_wrong_conditions_are_one_line(slope, arguments, message):
 # --- words ---
 
 def test_what_is_not_reached_is_said():
-    rows = [{"off_grid_m3": lost, "lost_m3": 0, "released_m3": 100} for lost in (0, 5)]
+    rows = [row(off_grid_m3=lost, lost_m3=0.0, released_m3=100.0) for lost in (0.0, 5.0)]
     runs = type("Runs", (), {"rows": rows, "failed": 1})
-    about = {"reached": 0.4, "far": 0.5, "short": 0.1, "longest_m": 1700.4, "shortest_m": 900, "effective": 11.6,
-             "gaps": [{"low_m": 1200, "high_m": 1500, "share": 0.2}]}
+    about = made_study.weighted(reached=0.4, far=0.5, short=0.1, longest_m=1700.4, shortest_m=900, effective=11.6,
+                                gaps=[{"low_m": 1200, "high_m": 1500, "share": 0.2}])
     lines = list(map(str, known_events.doubts(about, runs)))
     for line, text in zip(lines, ("no run goes beyond 1,700 m; 50 % of known events do", "before 900 m; 10 %",
                                   "between 1,200 and 1,500 m no run ends; 20 % of known events do", "as 12 runs",
@@ -307,13 +308,12 @@ def test_what_is_not_reached_is_said():
 def test_a_report_shows_no_number_where_events_go_beyond_the_runs():
     quantiles = [{"share": 0.5, "value": 1000.0, "low": 0.0, "high": None},
                  {"share": 0.9, "value": None, "low": 900.0, "high": None}]
-    about = {"reached": 0.5, "effective": 12.0, "doubts": ["why"], "quantities": {
+    known = {"reached": 0.5, "effective": 12.0, "doubts": ["why"], "quantities": {
         "front_m": {"name": "farthest ball", "unit": "m", "quantiles": quantiles}}}
-    data = type("Data", (), {"study": {"ensemble": {"known_events": about, "of": "front_m", "confidence": 0.9}}})
-    answer = ensemble_part.KnownEvents(data, Numbers()).answer()
+    answer = ensemble_part.KnownEvents(None, Numbers(), made_study.ensemble(known, of="front_m")).answer()
     assert (answer["number"], answer["unit"]) == ("unknown", "")
-    about.update(reached=None, doubts=["the set of known events does not cover this volume"])
-    part = ensemble_part.KnownEvents(data, Numbers())
+    known = {"reached": None, "doubts": ["the set of known events does not cover this volume"]}
+    part = ensemble_part.KnownEvents(None, Numbers(), made_study.ensemble(known, of="front_m"))
     text, maps = part.section(None).blocks
     assert text.text == "The set of known events does not cover this volume." and not maps.pictures
     assert part.answer() is None
@@ -328,20 +328,21 @@ def test_a_report_shows_no_number_where_events_go_beyond_the_runs():
     (None, "a")])
 def test_the_run_shown_is_that_of_the_headline(number, shown):
     """Of an ensemble whose quantile it is; where nothing is to be removed the longest; else as without a headline."""
-    runs = [{"run": name, "remove_m3": volume, "on": on, "length_m": length} for name, volume, on, length in (
-        ("a", 100.0, 9.0, 10.0), ("b", 400.0, 3.0, 40.0), ("c", 900.0, 1.0, 20.0), ("d", 9e3, 0.0, 90.0),
-        ("e", None, None, None))]
+    runs = [row(run=name, remove_m3=volume, remove_on_road_m3=on, length_m=length) for name, volume, on, length in (
+        ("a", 100.0, 9.0, 10.0), ("b", 400.0, 3.0, 40.0), ("c", 900.0, 1.0, 20.0), ("d", 9e3, 0.0, 90.0))]
+    runs.append(row(run="e", status="failed"))
     known = {"to_remove": [{"share": 0.95, "value": 900.0}, {"share": 0.7, "value": 400.0}],
-             "quantities": {"on": {"quantiles": [{"share": 0.9, "value": 9.0}]}}}
-    about = {"conservative": None, "runs": runs, "headline": number, "ensemble": {"of": "on", "known_events": known}}
-    assert run_folders.governing(about) == shown
+             "quantities": {"remove_on_road_m3": {"quantiles": [{"share": 0.9, "value": 9.0}]}}}
+    about = made_study.study(runs=runs, headline=number and made_study.headline(**number),
+                             ensemble=made_study.ensemble(known, of="remove_on_road_m3"))
+    assert named_run.governing(about) == shown
 
 
 @pytest.mark.parametrize("value, shown", [(2100.0, "b"), (None, "c"), ("absent", "c")])
 def test_the_run_shown_has_the_quantity(value, shown):
     """Nearest to what 90 % of known events stay within, or the largest; a run that lost it over the edge has none."""
     quantities = {} if value == "absent" else {"distance_99_m": {"quantiles": [{"share": 0.9, "value": value}]}}
-    runs = [{"run": name, "distance_99_m": one} for name, one in zip("abcd", (1500.0, 2000.0, 2500.0, None))]
-    about = {"conservative": None, "runs": runs, "ensemble": {
-        "of": "distance_99_m", "known_events": {"quantities": {"length_m": {}, **quantities}}}}
-    assert run_folders.governing(about) == shown
+    runs = [row(run=name, distance_99_m=one) for name, one in zip("abcd", (1500.0, 2000.0, 2500.0, None))]
+    about = made_study.study(runs=runs, ensemble=made_study.ensemble(
+        {"quantities": {"length_m": {}, **quantities}}, of="distance_99_m"))
+    assert named_run.governing(about) == shown

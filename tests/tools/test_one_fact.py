@@ -9,6 +9,7 @@ import yaml
 from shapely.affinity import rotate
 from shapely.geometry import LineString, MultiPolygon, box
 
+import made_study
 from made_rows import changed, row
 from run_helpers import called, write_run, write_sidecar
 from test_site import BODY, gis, told, write_layer  # noqa: F401
@@ -69,7 +70,7 @@ def test_what_is_changed_while_the_runs_are_made_does_not_count(mine, monkeypatc
         seen.append((setup.road.cut_angle, collect.__closure__ and [
             cell.cell_contents.known for cell in collect.__closure__ if hasattr(cell.cell_contents, "chain")]))
         (mine / "site.yaml").write_text("broken: [\n")
-        return {"study": {}}
+        return made_study.study()
 
     for place in (study, study_command):
         monkeypatch.setattr(place, "perform", perform)
@@ -98,7 +99,7 @@ def test_the_site_is_one_commands_from_end_to_end(mine, monkeypatch):  # noqa: F
             import fcntl
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         tried.append(True)
-        return {"study": {}}
+        return made_study.study()
 
     tried = []
     monkeypatch.setattr(study_command.site_study, "run", lambda *_: site_study.Done(mine, others(), None))
@@ -237,7 +238,7 @@ PLAN = SimpleNamespace(names=["x"], places=lambda rows: np.array([[float(one.set
 def test_runs_that_are_the_same_are_one(lengths, points):
     rows = rows_of(lengths)
     assert len(set(ensemble.points_of(PLAN, rows))) == points
-    values = ensemble.numbers(np.array(lengths), ensemble.points_of(PLAN, rows), 0)
+    values = ensemble.numbers("length", "m", np.array(lengths), ensemble.points_of(PLAN, rows), 0)
     doubts = ensemble.no_effect(rows)
     assert [one.kind for one in doubts] == ["no effect"] * (points < len(lengths))
     if points == 1:
@@ -269,7 +270,7 @@ def test_no_run_is_longer_than_the_way_that_the_terrain_shows():
                                    np.ones(3, bool), [])
     assert mobility.end(166.9) == 166.9 and mobility.end(120.0) == 162.5
     rows = [changed(one, length_by_lobe_m=[one.length_m] * 2) for one in rows_of([100.0, 140.0, 166.9])]
-    reach = known_events.reach(known_events.Runs(PLAN, [], rows, mobility), mobility)
+    reach = known_events.reach({}, known_events.Runs(PLAN, [], rows, mobility), mobility)
     assert reach["longest_m"] == reach["path_m"] == 166.9 and reach["beyond_path"] == 0.55
     text = mobility_part.beyond_the_terrain(mobility_part.Lies([100.0, 166.9], mobility, ""), ["k", "k"], Numbers(), "")
     assert "167 m" in text and "162" not in text and "163" not in text

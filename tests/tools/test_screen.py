@@ -9,6 +9,7 @@ import pytest
 from rich.console import Console
 from rich.table import Table
 
+import made_study
 from made_rows import row
 from run_helpers import run_command
 
@@ -137,7 +138,7 @@ def test_that_a_road_has_no_crs_is_said_beside_the_maps_not_in_red(monkeypatch):
     for module, name in ((judged, "of_runs"), (judged, "limits"), (judged, "of_logs"),
                          (report_warnings, "below_ground"), (structures_part, "coarse_walls")):
         monkeypatch.setattr(module, name, lambda *_: [])
-    data = SimpleNamespace(judged=[], repeats=[], study={"conservative": None, "warnings": entries(several)})
+    data = SimpleNamespace(judged=[], repeats=[], study=made_study.study(warnings=entries(several)))
     found = report_warnings.listed(report_warnings.findings(data, None), {})
     assert [(level, text.count("too few runs")) for level, text in found] == [("warning", 1)]
 

@@ -1,7 +1,7 @@
 """The page of a site's scenarios: a table, the outlines of the deposits on one map, and in what the models differ."""
 from pathlib import Path
 from shlex import quote
-from typing import Any, Iterator, List, NamedTuple, Optional, Sequence, Tuple
+from typing import Iterator, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 

@@ -1,0 +1,43 @@
+"""A study, as study_types has it, for tests that need a few of its entries: the others say that there is nothing."""
+
+HEADER = {"deck": "in.site", "known": {}, "set": {}, "repeat": {}, "runs": 1, "finished": 1, "method": "", "ranks": 1,
+          "jobs": 1, "package": None, "governs": "study", "balls_thick": None, "collected": "", "machine": {}}
+NOTHING = {"largest": {}, "farthest": None, "conservative": None, "size": None, "ensemble": None, "step": None,
+           "largest_restitution": None, "scatter": {}, "combinations": [], "envelope": None, "exceedance": None,
+           "observed": None, "roads": [], "warnings": [], "runs": [], "headline": None, "chain": None,
+           "intensity": None}
+EFFECT = {"runs": 1, "chance": None, "difference": 0.0, "clear": None}
+
+
+def study(header=None, **entries):
+    return {"study": {**HEADER, **(header or {})}, **NOTHING, **entries}
+
+
+def conservative(volume, **entries):
+    """Of one run, that is not withheld."""
+    parts = {"volume_m3": volume, "mean_m3": volume, "chance_m3": None, "size_m3": None}
+    return {**parts, "rounded": dict(parts), "place_m3": 1.0, "kind": "largest of 1 run; chance unknown",
+            "combination": "base", "set": {}, "label": "", "ground": None, "repeats": 1, "runs": 1, "combinations": 1,
+            "scatter_m3": None, "degrees_of_freedom": None, "quantile": None, "starts_m3": None, "run": "one",
+            "remove_m3": volume, "differences": [], "doubts": [], "withheld": [], "zero": None, **entries}
+
+
+def ensemble(known=None, **entries):
+    """known: entries of what known events say of it, which weigh it unless reached is None."""
+    return {"design": {"kind": "sobol", "seed": 1, "points": 64, "variables": {}}, "runs": 64, "finished": 64,
+            "failed": 0, "points": 64, "confidence": 0.9, "of": None, "quantities": {}, "influence": {}, "doubts": [],
+            "maps": [], "known_events": known and weighted(**known), "withheld": [], **entries}
+
+
+def weighted(**entries):
+    return {"set": "rock_avalanches", "events": 69, "left_out": [], "confined": None, "path": "", "volume_Mm3": 1.0,
+            "outside": [], "reached": 0.95, "doubts": [], "short": 0.0, "far": 0.0, "runs": 64, "failed": 0,
+            "effective": 50.0, "distance": 0.0, "far_by_lobe": [], "gaps": [], "shortest_m": 1.0, "longest_m": 9.0,
+            "half_beyond_m": None, "path_m": 100.0, "beyond_path": 0.0,
+            "added": {"points": 0, "stopped": None, "batches": []}, "quantities": {}, "to_remove": None,
+            "variables": {}, "influence": {}, "weights": {}, "maps": [], **entries}
+
+
+def headline(**entries):
+    return {"kind": "number", "volume_m3": None, "share": None, "low_m3": None, "high_m3": None, "source": None,
+            "paper": None, "ensemble": None, "road": None, "reasons": [], **entries}
