@@ -82,7 +82,7 @@ def slope(tiny_case, capsys):
 
 def test_sizes_that_did_not_finish_leave_no_older_comparison(tmp_path, monkeypatch):
     (tmp_path / "converge.yaml").write_text("of runs before")
-    monkeypatch.setattr(size_study.results, "rows_of", lambda *_: [])
+    monkeypatch.setattr(size_study, "rows_of", lambda *_: [])
     plan = size_study.Plan(SimpleNamespace(output=tmp_path), {}, {}, "d", [])
     size_study.collect(plan, ["front_m"], None)
     assert not (tmp_path / "converge.yaml").exists()

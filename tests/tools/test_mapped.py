@@ -8,7 +8,7 @@ import pytest
 import yaml
 
 import test_report
-from made_rows import changed, row
+from made_rows import row
 from tiny_collapse import read_asc
 
 from slope_tools import disk
