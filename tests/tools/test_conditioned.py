@@ -9,11 +9,11 @@ import yaml
 from scipy import stats
 
 import known_twins as twins
+import made_rows
 from messages import is_one
 from tiny_collapse import read_asc
 
 from slope_tools import cli
-from slope_tools.case import run_folders
 from slope_tools.deposits import travel_shares
 from slope_tools.ensembles import conditioned, known_events, known_maps
 from slope_tools.mobility import weights
@@ -21,6 +21,7 @@ from slope_tools.report import ensemble_part
 from slope_tools.report.numbers import Numbers
 from slope_tools.sites import site_warnings
 from slope_tools.statistics.hazard import weighted
+from slope_tools.tables import named_run
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 COMMAND = "study case/in.tiny"
@@ -290,7 +291,7 @@ def test_wrong_conditions_are_one_line(slope, arguments, message):
 # --- words ---
 
 def test_what_is_not_reached_is_said():
-    rows = [{"off_grid_m3": lost, "lost_m3": 0, "released_m3": 100} for lost in (0, 5)]
+    rows = [made_rows.row(off_grid_m3=lost) for lost in (0, 50)]
     runs = type("Runs", (), {"rows": rows, "failed": 1})
     about = {"reached": 0.4, "far": 0.5, "short": 0.1, "longest_m": 1700.4, "shortest_m": 900, "effective": 11.6,
              "gaps": [{"low_m": 1200, "high_m": 1500, "share": 0.2}]}
@@ -328,20 +329,22 @@ def test_a_report_shows_no_number_where_events_go_beyond_the_runs():
     (None, "a")])
 def test_the_run_shown_is_that_of_the_headline(number, shown):
     """Of an ensemble whose quantile it is; where nothing is to be removed the longest; else as without a headline."""
-    runs = [{"run": name, "remove_m3": volume, "on": on, "length_m": length} for name, volume, on, length in (
-        ("a", 100.0, 9.0, 10.0), ("b", 400.0, 3.0, 40.0), ("c", 900.0, 1.0, 20.0), ("d", 9e3, 0.0, 90.0),
-        ("e", None, None, None))]
+    of = "distance_95_m"
+    runs = [made_rows.row(run=name, remove_m3=volume, distance_95_m=far, length_m=length)
+            for name, volume, far, length in (("a", 100.0, 9.0, 10.0), ("b", 400.0, 3.0, 40.0), ("c", 900.0, 1.0, 20.0),
+                                              ("d", 9e3, 0.0, 90.0), ("e", 0.0, None, None))]
+    runs.append(made_rows.row(run="f", status="failed"))
     known = {"to_remove": [{"share": 0.95, "value": 900.0}, {"share": 0.7, "value": 400.0}],
-             "quantities": {"on": {"quantiles": [{"share": 0.9, "value": 9.0}]}}}
-    about = {"conservative": None, "runs": runs, "headline": number, "ensemble": {"of": "on", "known_events": known}}
-    assert run_folders.governing(about) == shown
+             "quantities": {of: {"quantiles": [{"share": 0.9, "value": 9.0}]}}}
+    about = {"conservative": None, "runs": runs, "headline": number, "ensemble": {"of": of, "known_events": known}}
+    assert named_run.governing(about) == shown
 
 
 @pytest.mark.parametrize("value, shown", [(2100.0, "b"), (None, "c"), ("absent", "c")])
 def test_the_run_shown_has_the_quantity(value, shown):
     """Nearest to what 90 % of known events stay within, or the largest; a run that lost it over the edge has none."""
     quantities = {} if value == "absent" else {"distance_99_m": {"quantiles": [{"share": 0.9, "value": value}]}}
-    runs = [{"run": name, "distance_99_m": one} for name, one in zip("abcd", (1500.0, 2000.0, 2500.0, None))]
-    about = {"conservative": None, "runs": runs, "ensemble": {
+    runs = [made_rows.row(run=name, distance_99_m=one) for name, one in zip("abcd", (1500.0, 2000.0, 2500.0, None))]
+    about = {"conservative": None, "runs": runs, "headline": None, "ensemble": {
         "of": "distance_99_m", "known_events": {"quantities": {"length_m": {}, **quantities}}}}
-    assert run_folders.governing(about) == shown
+    assert named_run.governing(about) == shown

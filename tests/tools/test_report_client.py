@@ -579,7 +579,7 @@ BEST = {"set": {"rolling": "0.1", "spacing": "0.5"}, "chance_m3": 3.0, "size_m3"
     (BEST, {"source": "paper", "volume_m3": None}, "b", "", " Run 2 of the appendix: rolling resistance 0.1.")])
 def test_on_which_runs_the_number_rests(best, headline, own, said, shown):
     """Which of them, and whether the map is of one of them; nothing of this where there is no number."""
-    rows = [{"run": "a", "set": {"rolling": "0.05"}}, {"run": "b", "set": {"rolling": "0.1"}}]
+    rows = [row(run="a", set={"rolling": "0.05"}), row(run="b", set={"rolling": "0.1"})]
     study = {"study": {}, "conservative": best, "headline": {"volume_m3": 5.0, **headline}, "ensemble": None}
     data = SimpleNamespace(study=study, finished=rows, repeats={}, number=lambda name: 1 + "ab".index(name),
                            settings={"rolling": ["0.05", "0.1"], "spacing": ["0.5"]},

@@ -14,21 +14,19 @@ from slope_tools.case import run_folders  # noqa: E402  (after the path is set)
 from slope_tools.deposits import volume  # noqa: E402
 from slope_tools.drawing import maps, pictures  # noqa: E402
 from slope_tools.errors import SlopeError  # noqa: E402
+from slope_tools.tables.rows import finished_of  # noqa: E402
 from slope_tools.tables.study_file import read_study  # noqa: E402
 
 ANGLES = 20.0, 30.0, 40.0       # degrees
 
 
 def main(folder, road, picture):
-    study = read_study(folder / "study.yaml")
     worst = None
-    for row in study["runs"]:
-        if row["status"] != "finished":
-            continue
-        prefix = run_folders.prefix_of(folder / row["summary"])
+    for row in finished_of(read_study(folder / "study.yaml")["runs"]):
+        prefix = run_folders.prefix_of(folder / row.summary)
         for angle in ANGLES:
             found = volume.of_run(prefix, volume.Wanted(road, mesh=10.0, cut_angle=angle, local=True))
-            print(f"{row['run']}: cut of {angle:g} degrees, {found.about['volume']['remove']:.1f} m3 to remove")
+            print(f"{row.run}: cut of {angle:g} degrees, {found.about['volume']['remove']:.1f} m3 to remove")
             if worst is None or found.about["volume"]["remove"] > worst.about["volume"]["remove"]:
                 worst = found
     run = worst.run
