@@ -23,6 +23,8 @@ from tiny_collapse import LMP, write_case  # noqa: E402  (after the path is set)
 from slope_tools import cli, provenance  # noqa: E402
 from slope_tools.fitting import observations  # noqa: E402
 from slope_tools.statistics import backanalysis, distributions  # noqa: E402
+from slope_tools.tables import study_file  # noqa: E402
+from slope_tools.tables.rows import finished_of  # noqa: E402
 
 RANGES = {"friction": "10:40", "rolling": "0:0.3", "spacing": "0.5:1.4"}
 CLOSE = np.array([2.0, 0.02, 0.1])
@@ -63,12 +65,11 @@ def wanted(seed):
 
 def direct(seed):
     """What all direct runs say of a truth."""
-    study = yaml.safe_load(Path("direct/study.yaml").read_text())
+    study = study_file.load_study(Path("direct/study.yaml"))
     of, points, outputs = observations.Observations(wanted(seed)), [], []
-    for row in study["runs"]:
-        if row["status"] == "finished":
-            points.append([one.unit(row["set"][one.name]) for one in VARIABLES])
-            outputs.append(of.measure(Path("direct") / row["summary"], None, row))
+    for row in finished_of(study["runs"]):
+        points.append([one.unit(row.set[one.name]) for one in VARIABLES])
+        outputs.append(of.measure(Path("direct") / row.summary, None, row))
     return backanalysis.posterior(np.array(points), np.array(outputs), of.targets)
 
 

@@ -14,12 +14,12 @@ import pytest
 import rasterio
 import yaml
 
+import made_rows
 import twins
 from messages import is_one
 from run_helpers import called, write_tif
 from tiny_collapse import TOP, loaded, write_case
 
-from slope_tools.deposits import travel_shares
 from slope_tools.digits import three
 from slope_tools.errors import SlopeError
 from slope_tools.fitting import calibration, fit, fit_words, observations
@@ -44,17 +44,17 @@ def wanted(**options):
     ({"front": 100.0}, 9.0, True), ({"front": 100.0}, 11.0, False), ({"area": 100.0}, 11.0, False),
     ({"volume": 100.0}, 11.0, True), ({"observed": Path("a.tif")}, 500.0, True)])
 def test_a_run_whose_mass_left_tells_no_length(options, lost, told):
-    assert wanted(**options).told_by({"lost_m3": lost, "released_m3": 1000.0}) is told
+    assert wanted(**options).told_by(made_rows.row(lost_m3=lost)) is told
 
 
 def test_the_front_is_the_length_along_the_fall_path():
-    row = {"length_m": 12.5, travel_shares.DISTANCE: 40.0, "distance_95_m": None}
+    one = made_rows.row(length_m=12.5, distance_99_m=40.0)
     columns = {name: column for name, (_, column) in observations.FRONTS.items()}
-    assert observations.front(Path("a.summary.yaml"), row, columns["length"]) == 12.5
-    assert observations.front(Path("a.summary.yaml"), row, columns["99"]) == 40.0
-    assert observations.front(Path("a.summary.yaml"), {"length_m": None}, columns["length"]) == 0.0
+    assert observations.front(Path("a.summary.yaml"), one, columns["length"]) == 12.5
+    assert observations.front(Path("a.summary.yaml"), one, columns["99"]) == 40.0
+    assert observations.front(Path("a.summary.yaml"), made_rows.row(length_m=None), columns["length"]) == 0.0
     with pytest.raises(SlopeError, match="a.summary.yaml: must have the distance of a share of the volume .*older"):
-        observations.front(Path("a.summary.yaml"), row, columns["95"])
+        observations.front(Path("a.summary.yaml"), one, columns["95"])
 
 
 # --- the search, on functions ---
@@ -460,13 +460,12 @@ def fit_of(tmp_path, monkeypatch, rest_after, duration="10", fixed=(), fails=())
         for one in todo:
             seconds = float(one.chosen.get("duration", duration))
             one.error = "no" if seconds in fails else None
-            rows.append({"status": "failed"} if one.error else
-                        {"status": "finished", "run": one.name, "at_rest": seconds >= rest_after,
-                         "stop_reason": "halted" if seconds >= rest_after else "run completed", "released_m3": 1000.0,
-                         "lost_m3": 0.0, "seconds": seconds})
+            rows.append(made_rows.row(run=one.name, status="failed") if one.error else made_rows.row(
+                run=one.name, at_rest=seconds >= rest_after, stop_time_s=seconds,
+                stop_reason="halted" if seconds >= rest_after else "run completed"))
         return rows
 
-    monkeypatch.setattr(fit.results, "rows_of", rows_of)
+    monkeypatch.setattr(fit.run_rows, "rows_of", rows_of)
     monkeypatch.setattr(fit.Fit, "summary", lambda self, row: None)
     monkeypatch.setattr(fit.Fit, "terrain", staticmethod(lambda one: None))
     work = SimpleNamespace(store=SimpleNamespace(admit=lambda todo: None), do=lambda todo: None,
@@ -474,7 +473,7 @@ def fit_of(tmp_path, monkeypatch, rest_after, duration="10", fixed=(), fails=())
     ledger = calibration.Ledger(tmp_path, {}, [])
     plan = calibration.Calibration(ledger, tmp_path, dict(fixed), [], 1, 8, 2)
     found = fit.Fit(SimpleNamespace(output=tmp_path, tell=told.append), SimpleNamespace(), plan, work)
-    found.observed = SimpleNamespace(told_by=lambda row: True, measure=lambda summary, terrain, row: row["seconds"],
+    found.observed = SimpleNamespace(told_by=lambda row: True, measure=lambda summary, terrain, row: row.stop_time_s,
                                      volume=None)
     plan.runs = [repeats.Repeat(tmp_path, {**dict(fixed), "friction": "20"}),
                  repeats.Repeat(tmp_path, {**dict(fixed), "friction": "30"}, {"xoffset": "0.5"})]
@@ -497,8 +496,8 @@ def test_how_much_more_time(tmp_path, monkeypatch, more, seconds):
     if seconds is None:
         found, _ = fit_of(tmp_path, monkeypatch, rest_after=35.0)
         found.work.defaults["duration"] = "${T}"
-        assert not found.was_cut(repeats.Repeat(tmp_path, {}), {"status": "finished", "at_rest": False,
-                                                                "stop_reason": "run completed"})
+        cut = made_rows.row(at_rest=False, stop_reason="run completed")
+        assert not found.was_cut(repeats.Repeat(tmp_path, {}), cut)
         return
     found, _ = fit_of(tmp_path, monkeypatch, **more)
     assert found.evaluate(list(found.plan.runs)) == [seconds] * 2

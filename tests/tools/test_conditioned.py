@@ -9,9 +9,9 @@ import yaml
 from scipy import stats
 
 import known_twins as twins
+import made_rows
 import made_study
 from messages import is_one
-from made_rows import row
 from tiny_collapse import read_asc
 
 from slope_tools import cli
@@ -291,7 +291,7 @@ def test_wrong_conditions_are_one_line(slope, arguments, message):
 # --- words ---
 
 def test_what_is_not_reached_is_said():
-    rows = [row(off_grid_m3=lost, lost_m3=0.0, released_m3=100.0) for lost in (0.0, 5.0)]
+    rows = [made_rows.row(off_grid_m3=lost, lost_m3=0.0, released_m3=100.0) for lost in (0.0, 5.0)]
     runs = type("Runs", (), {"rows": rows, "failed": 1})
     about = made_study.weighted(reached=0.4, far=0.5, short=0.1, longest_m=1700.4, shortest_m=900, effective=11.6,
                                 gaps=[{"low_m": 1200, "high_m": 1500, "share": 0.2}])
@@ -328,9 +328,10 @@ def test_a_report_shows_no_number_where_events_go_beyond_the_runs():
     (None, "a")])
 def test_the_run_shown_is_that_of_the_headline(number, shown):
     """Of an ensemble whose quantile it is; where nothing is to be removed the longest; else as without a headline."""
-    runs = [row(run=name, remove_m3=volume, remove_on_road_m3=on, length_m=length) for name, volume, on, length in (
-        ("a", 100.0, 9.0, 10.0), ("b", 400.0, 3.0, 40.0), ("c", 900.0, 1.0, 20.0), ("d", 9e3, 0.0, 90.0))]
-    runs.append(row(run="e", status="failed"))
+    runs = [made_rows.row(run=name, remove_m3=volume, remove_on_road_m3=on, length_m=length)
+            for name, volume, on, length in (("a", 100.0, 9.0, 10.0), ("b", 400.0, 3.0, 40.0), ("c", 900.0, 1.0, 20.0),
+                                             ("d", 9e3, 0.0, 90.0))]
+    runs.append(made_rows.row(run="e", status="failed"))
     known = {"to_remove": [{"share": 0.95, "value": 900.0}, {"share": 0.7, "value": 400.0}],
              "quantities": {"remove_on_road_m3": {"quantiles": [{"share": 0.9, "value": 9.0}]}}}
     about = made_study.study(runs=runs, headline=number and made_study.headline(**number),
@@ -342,7 +343,7 @@ def test_the_run_shown_is_that_of_the_headline(number, shown):
 def test_the_run_shown_has_the_quantity(value, shown):
     """Nearest to what 90 % of known events stay within, or the largest; a run that lost it over the edge has none."""
     quantities = {} if value == "absent" else {"distance_99_m": {"quantiles": [{"share": 0.9, "value": value}]}}
-    runs = [row(run=name, distance_99_m=one) for name, one in zip("abcd", (1500.0, 2000.0, 2500.0, None))]
+    runs = [made_rows.row(run=name, distance_99_m=one) for name, one in zip("abcd", (1500.0, 2000.0, 2500.0, None))]
     about = made_study.study(runs=runs, ensemble=made_study.ensemble(
         {"quantities": {"length_m": {}, **quantities}}, of="distance_99_m"))
     assert named_run.governing(about) == shown

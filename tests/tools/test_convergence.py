@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import pytest
 import yaml
 
+import made_rows
 from run_helpers import called
 from tiny_collapse import edit, rows_of
 
@@ -82,7 +83,7 @@ def slope(tiny_case, capsys):
 
 def test_sizes_that_did_not_finish_leave_no_older_comparison(tmp_path, monkeypatch):
     (tmp_path / "converge.yaml").write_text("of runs before")
-    monkeypatch.setattr(size_study.results, "rows_of", lambda *_: [])
+    monkeypatch.setattr(size_study, "rows_of", lambda *_: [])
     plan = size_study.Plan(SimpleNamespace(output=tmp_path), {}, {}, "d", [])
     size_study.collect(plan, ["front_m"], None)
     assert not (tmp_path / "converge.yaml").exists()
@@ -201,12 +202,13 @@ def test_the_thickness_of_a_site_is_that_of_the_command(here):
     found = {"body": {"mean_depth": 3.0}, "bodies": {}}
     Path("mine/site.yaml").write_text(yaml.safe_dump({"slope_site": 1, "found": found}))
     setup = Setup(Path("mine/in.site"), Path("mine/study"))
-    rows = [{"variables": {"d": "2", "body": "1"}}, {"variables": {"d": "1", "body": "2"}}]
+    rows = [made_rows.row(variables={"d": "2", "body": "1"}), made_rows.row(variables={"d": "1", "body": "2"})]
     assert body_depth.mean(setup, rows[0]) == 3.0 and body_depth.in_balls(setup, rows) == 1.5
     found["bodies"] = {1: {"mean_depth_m": 4.0}, 2: {"mean_depth_m": 5.0}}
     Path("mine/site.yaml").write_text(yaml.safe_dump({"slope_site": 1, "found": found}))
     assert [body_depth.mean(setup, row) for row in rows] == [4.0, 5.0]
-    assert body_depth.in_balls(setup, [{"variables": {"q": "2"}}]) is None and body_depth.in_balls(setup, []) is None
+    assert body_depth.in_balls(setup, [made_rows.row(variables={"q": "2"})]) is None
+    assert body_depth.in_balls(setup, []) is None
 
 
 def test_calibrated_values_belong_to_the_thickness_in_balls(succeed):

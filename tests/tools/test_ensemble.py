@@ -10,6 +10,7 @@ import rasterio
 import yaml
 from scipy import stats
 
+import made_rows
 from messages import is_one
 from tiny_collapse import loaded, read_asc
 
@@ -478,7 +479,7 @@ def test_a_report_says_what_the_emulator_is_worth():
 
 def test_points_of_the_design_are_found_in_the_rows():
     plan = sample.Sample(3, "sobol", 1, (variable("0:10"),))
-    rows = [{"set": {"steps": "9", "x": value}, "front_m": front}
+    rows = [made_rows.row(set={"steps": "9", "x": value}, front_m=front)
             for value, front in (("5", 1.0), ("5", 2.0), ("2.5", 3.0), ("5", 4.0))]
     assert ensemble.points_of(plan, rows) == [0, 0, 1, 0]
     assert plan.places(rows).tolist() == [[0.5], [0.5], [0.25], [0.5]]

@@ -1,4 +1,4 @@
-"""What a run says is computed once, and again when the run, the road or the tools are others: kept.py, results.py."""
+"""What a run says is computed once, and again when the run, the road or the tools are others: kept.py, run_rows.py."""
 import json
 from pathlib import Path
 
@@ -8,7 +8,7 @@ import pytest
 from tiny_collapse import loaded
 
 from slope_tools import kept
-from slope_tools.studies import results
+from slope_tools.studies import run_rows
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 COMMAND = "study case/in.tiny"
@@ -54,10 +54,10 @@ def test_a_second_study_measures_nothing(succeed, monkeypatch):
     before, table = loaded(), Path("out/study.csv").read_text()
     calls = []
     for name in ("measured", "measured_on"):
-        def counted(*given, name=name, really=getattr(results, name)):
+        def counted(*given, name=name, really=getattr(run_rows, name)):
             calls.append(name)
             return really(*given)
-        monkeypatch.setattr(results, name, counted)
+        monkeypatch.setattr(run_rows, name, counted)
     succeed(words)
     assert not calls and Path("out/study.csv").read_text() == table and loaded()[0]["runs"] == before[0]["runs"]
     succeed(f"{words} --cut-angle 45")

@@ -8,7 +8,7 @@ import pytest
 import yaml
 
 import test_report
-from made_rows import changed, row
+from made_rows import row
 from tiny_collapse import read_asc
 
 from slope_tools import disk
@@ -24,7 +24,7 @@ LOW, HIGH = (10.0, 6.0), (26.0, 18.0)       # corners of what is mapped, local m
 def compared(folder, path):
     """What study.yaml says of a mapped deposit, entered in it."""
     file = folder / "study.yaml"
-    about = study_file.read_study(file)
+    about = study_file.load_study(file)
     terrains = [folder / one.run / "terrain.asc" for one in about["runs"]]
     about["runs"], about["observed"] = mapped.compare(path, folder, about["runs"], terrains)
     file.write_text(yaml.safe_dump(disk.plain(study_file.plain(about))))

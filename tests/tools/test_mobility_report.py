@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from shapely.geometry import LineString, Point
 
+import made_rows
 from test_mobility_path import SET, disc, hillside
 
 from slope_tools.digits import three
@@ -22,7 +23,7 @@ def case(lengths, volume=0.78e6, study=True, scar=1, **about):
     """data, ground and numbers of runs of these lengths (m); about: of the known events."""
     mass = disc(hillside(), (300, 300))
     ground = ground_of(mass.raster._replace(z=np.zeros_like(mass.depth)), mass.raster.z, scar * mass.depth, **about)
-    rows = [{"length_m": length, "released_m3": volume} for length in lengths]
+    rows = [made_rows.row(length_m=length, released_m3=volume) for length in lengths]
     one = SimpleNamespace(distance=lengths[0]) if lengths and lengths[0] else None
     data = SimpleNamespace(study=study or None, finished=rows, result=None, label=lambda one: "run",
                            largest_release=lambda: volume, length=lambda: one)

@@ -75,7 +75,7 @@ def test_repeats_are_made_for_each_combination_and_the_headline_is_theirs(slope)
         assert float(line["remove_m3_mean"]) == entry["remove_m3"]["mean"]
         assert float(line["remove_m3_scatter"]) == entry["remove_m3"]["scatter"]
     # one of the readers of study.yaml
-    assert study_file.read_study(Path("out/study.yaml"))["conservative"] == best
+    assert study_file.load_study(Path("out/study.yaml"))["conservative"] == best
 
 
 def test_what_a_repeat_does_not_change_counts_once(succeed):

@@ -20,6 +20,7 @@ import yaml
 from rasterio.crs import CRS
 from rasterio.warp import transform
 
+import made_rows
 from run_helpers import called, examples
 from tiny_collapse import LMP, TOP, height, read_asc, rows_of, write_case
 
@@ -29,7 +30,8 @@ from slope_tools.plots import (figure_charts, figure_maps, ground as report_grou
 from slope_tools.report import data as report_data, paper
 from slope_tools.deposits import travel_shares
 from slope_tools.studies import outcome
-from slope_tools.tables import judged
+from slope_tools.tables import judged, rows
+from slope_tools.tables.rows import finished_of
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
@@ -145,9 +147,9 @@ def change(folder, function):
                 key = travel_shares.DISTANCE
                 about["largest"].pop(key, None)
     if about:
-        finished = [row for row in about["runs"] if row["status"] == "finished"]
+        finished = finished_of(map(rows.read, about["runs"]))
         about["largest"]["front_m"] = outcome.largest(finished, "front_m")
-        if all(row[key] is not None for row in finished):
+        if all(row.value(key) is not None for row in finished):
             about["largest"][key] = outcome.largest(finished, key)
         (folder / "study.yaml").write_text(yaml.safe_dump(about))
 
@@ -457,7 +459,7 @@ def test_the_run_that_lost_most_went_farthest(slope, here):
         for row, share, distance, front in zip(about["runs"], lost, distances, fronts):
             row.update(lost_m3=share * row["released_m3"], distance_99_m=distance, front_m=front)
         path.write_text(yaml.safe_dump(about))
-        assert travel_shares.farthest(about["runs"]) is farthest
+        assert travel_shares.farthest(finished_of(map(rows.read, about["runs"]))).run == farthest["run"]
         assert report_data.Data(Path("out")).result.name == farthest["run"]
 
 
@@ -580,7 +582,7 @@ def test_warnings_of_the_logs_and_failed_runs_are_on_top(slope, here):
     about = yaml.safe_load(Path("out/study.yaml").read_text())
     about["runs"][0]["log_warnings"] = ["Pair gran/restitution: time step 0.0025 s is too long"]
     about["runs"].append({"run": "rolling_9", "status": "failed", "set": {"rolling": "9", "steps": "1200"},
-                          "repeat": {}, "error": "ERROR: lost <b>all</b> atoms", "log_warnings": []})
+                          "repeat": {}, "batch": 0, "error": "ERROR: lost <b>all</b> atoms", "log_warnings": []})
     Path("out/study.yaml").write_text(yaml.safe_dump(about))
     assert slope("out")[0] == 0
     page, reader = read("out/report.html")
@@ -601,7 +603,7 @@ def test_one_line_for_each_kind_of_warning(slope, here):
         about["runs"][k]["mass_error"] = share
     for name in ("a", "b", "c"):
         about["runs"].append({"run": name, "status": "failed", "set": {"rolling": name, "steps": "1200"}, "repeat": {},
-                              "error": f"ERROR: 1{len(about['runs'])} atoms lost", "log_warnings": []})
+                              "batch": 0, "error": f"ERROR: 1{len(about['runs'])} atoms lost", "log_warnings": []})
     Path("repeated/study.yaml").write_text(yaml.safe_dump(about))
     assert slope("repeated")[0] == 0
     texts = [text for level, text in read("repeated/report.html")[1].warnings if level]
@@ -920,7 +922,7 @@ def text_of(path, text):
 
 def only_failed():
     about = yaml.safe_load(Path("out/study.yaml").read_text())
-    about["runs"] = [{"run": "a", "status": "failed", "error": "E", "set": {}}]
+    about["runs"] = [rows.plain(made_rows.row(status="failed"))]
     about["conservative"], about["largest"] = None, {}
     Path("out/study.yaml").write_text(yaml.safe_dump(about))
 

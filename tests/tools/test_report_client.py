@@ -10,6 +10,7 @@ import pytest
 import yaml
 
 import test_report
+from made_rows import changed, row
 from test_report import stands
 
 from slope_tools import digits
@@ -164,7 +165,7 @@ def test_a_study_alone_whose_balls_are_coarse_says_at_least(slope, here, run, ba
 
 def weighted(quantities=None, reached=0.9, gap=None):
     """The data of a study of three runs that known events weigh."""
-    rows = [{"run": name, "distance_99_m": far, "remove_on_road_m3": on, "blocked_m": 40.0, "beyond_road_m3": 0.0}
+    rows = [row(run=name, distance_99_m=far, remove_on_road_m3=on, blocked_m=40.0, beyond_road_m3=0.0)
             for name, far, on in (("a", 200.0, 0.0), ("b", 300.0, 19600.0), ("c", 900.0, 300.0))]
     known = {"reached": reached, "quantities": {
         key: {"quantiles": [{"share": 0.95, "value": value}]} for key, value in (quantities or {}).items()},
@@ -178,7 +179,7 @@ def test_beyond_the_road_smaller_balls_bring_more(balls, said):
     data = weighted()
     data.study["study"] = {"balls_thick": balls}
     assert "smaller balls" not in client_part.road(data, Numbers())
-    data.finished[1]["beyond_road_m3"] = 730.0
+    data.finished[1] = changed(data.finished[1], beyond_road_m3=730.0)
     text = client_part.road(data, Numbers())
     grown = size_family.told(2.7, quantity="beyond_road_m3")
     assert (f"up to 730 m\u00b3; smaller balls in the model brought up to {grown.high:.2g} times as much there in "
@@ -247,7 +248,7 @@ def test_the_number_says_that_it_is_in_a_gap(gap, source, said):
 def test_the_next_step_and_its_time(tmp_path):
     """By the first reason that something can be done about; as long as the runs took, several at a time."""
     design = {"points": 64, "variables": {"friction": "2:30", "rolling": "uniform:0:0.15", "slip": "list:a,b"}}
-    rows = [{"status": "finished", "wall_s": 60.0} for _ in range(20)]
+    rows = [row(wall_s=60.0) for _ in range(20)]
     made_ = next_step.Made({"study": {"jobs": 2, "deck": "in.tiny"}, "conservative": None, "runs": rows, "ensemble": {
         "design": design, "known_events": {"set": "rock_avalanches.csv"}}}, Path("site/ensemble"))
 
@@ -267,14 +268,14 @@ def test_the_next_step_and_its_time(tmp_path):
     (tmp_path / "site.yaml").touch()
     assert step(("terrain ends", TERRAIN["numbers"]), of=made_._replace(folder=tmp_path / "ensemble")).command.endswith(
         f"{tmp_path}/site.yaml, then: tools/slope site {tmp_path} && tools/slope study {tmp_path} --anew")
-    rows[0]["wall_s"] = None
+    rows[0] = row(wall_s=None)
     assert step(("too few runs", {})).time == ""
 
 
 def test_the_next_step_is_of_the_study_whose_reason_comes_first(tmp_path):
     """Of both of a site, which one command makes: its remedy, and the time of both."""
     (tmp_path / "site.yaml").touch()
-    rows = [{"status": "finished", "wall_s": 30.0, "released_m3": 100.0, "ball_m3": 1.0}] * 4
+    rows = [row(wall_s=30.0, released_m3=100.0)] * 4
     mends = f"more time (model.duration) in {tmp_path}/site.yaml, then: tools/slope site {tmp_path} && ..."
     paper = {"study": {"jobs": 1}, "conservative": {"withheld": []}, "ensemble": None, "runs": rows}
     ensemble = {"study": {"jobs": 2}, "conservative": None, "runs": rows, "ensemble": {"withheld": [
@@ -355,13 +356,13 @@ RELEASE = {"released": 50000.0, "body": 50000.0, "factor": 1.91, "from_cubic": 0
 
 def rows_of(*masses, **more):
     """The rows of runs that finished, of (lost m3, released m3) of each."""
-    return [{"run": f"run {k}", "status": "finished", "off_grid_m3": 0.0, "lost_m3": lost, "released_m3": released,
-             "at_rest": True, "moving": False, "release": RELEASE, **more} for k, (lost, released) in enumerate(masses)]
+    return [row(**{"run": f"run {k}", "lost_m3": lost, "released_m3": released, "release": RELEASE, **more})
+            for k, (lost, released) in enumerate(masses)]
 
 
 def data_of(rows, **more):
     """What the findings are made of, of a study."""
-    names = {row["run"]: row["run"] for row in rows}
+    names = {one.run: one.run for one in rows}
     result = SimpleNamespace(summary={"volume": {"released": 50000.0}, "balls": {"released": 1000}})
     return SimpleNamespace(**{"study": {"conservative": None, "warnings": []}, "judged": rows, "repeats": {},
                               "below_ground": lambda: None, "names": lambda: names, "result": result, **more})
@@ -381,7 +382,7 @@ def test_what_was_lost_is_counted_in_one_line_with_its_side():
     assert found.numbers["volume"] == 6000 and found.numbers["percent"] == 12 and found.numbers["of"] == 15
     assert warnings.first_page([found]) == [
         "9 of 15 runs lost mass over the edge, up to 6,000 m³: enlarge the terrain."]
-    rows[6]["left"] = LEFT
+    rows[6] = changed(rows[6], left=LEFT)
     found, = judged.lost(rows)
     assert found.text == (
         "up to 6,000 m3 (12 % of the released volume) left the grid or the box and are not on the maps (5,000 m3 in "
@@ -396,17 +397,16 @@ def test_what_was_lost_is_counted_in_one_line_with_its_side():
 
 
 def moved(rows, *shares):
-    for row, share in zip(rows, shares):
-        row.update(at_rest=False, moving=share > 0.1, moves_share=share, end=f"{share} moves", stop_time_s=20.0,
-                   stop_reason="run completed")
-    return rows
+    ends = [changed(one, at_rest=False, moving=share > 0.1, moves_share=share, end=f"{share} moves",
+                    stop_reason="run completed") for one, share in zip(rows, shares)]
+    return [*ends, *rows[len(ends):]]
 
 
 def test_the_weightiest_come_first_and_three_are_shown():
     """Each kind once, whatever its runs."""
     rows = moved(rows_of(*[(6000.0, 2e6)] * 4), 0.2, 0.02, 0.05)
-    rows.append({"run": "cut", "status": "failed", "error": "ERROR: 3 atoms lost"})
-    rows.append({"run": "cut too", "status": "failed", "error": "ERROR: no memory"})
+    rows.append(row(run="cut", status="failed", error="ERROR: 3 atoms lost"))
+    rows.append(row(run="cut too", status="failed", error="ERROR: no memory"))
     thin = Finding("thin", {"balls": 1.83, "limit": 3.0}).entry()
     data = data_of(rows, study={"conservative": None, "warnings": [thin]})
     found = warnings.findings(data, GROUND)
@@ -452,15 +452,12 @@ def test_a_release_that_is_not_the_body(change, kind, numbers):
 
 def test_soft_contacts_are_one_line_with_the_softest():
     """Runs of other versions, and those without a body, have no number, and are not judged."""
-    rows = rows_of(*[(0.0, 50000.0)] * 4)
-    for row, number in zip(rows, (4970.0, 12000.0, None, 4450.0)):
-        row["stiffness_number"] = number
+    rows = [changed(one, stiffness_number=number) for one, number in zip(
+        rows_of(*[(0.0, 50000.0)] * 4), (4970.0, 12000.0, None, 4450.0))]
     found, = judged.soft(rows)
     assert (found.kind, found.level, found.runs) == ("soft", NOTE, ("run 3", "run 0"))
     assert found.numbers["number"] == 4450 and found.numbers["limit"] == 1e4 and found.kind in judged.KINDS
-    assert found in judged.of_runs([{**row, "status": "finished"} for row in rows]) and judged.soft(rows[1:3]) == []
-    del rows[2]["stiffness_number"]
-    assert judged.soft(rows[2:3]) == []
+    assert found in judged.of_runs(rows) and judged.soft(rows[1:3]) == []
 
 
 def test_runs_of_several_sizes_are_one_line():
@@ -582,7 +579,7 @@ BEST = {"set": {"rolling": "0.1", "spacing": "0.5"}, "chance_m3": 3.0, "size_m3"
     (BEST, {"source": "paper", "volume_m3": None}, "b", "", " Run 2 of the appendix: rolling resistance 0.1.")])
 def test_on_which_runs_the_number_rests(best, headline, own, said, shown):
     """Which of them, and whether the map is of one of them; nothing of this where there is no number."""
-    rows = [{"run": "a", "set": {"rolling": "0.05"}}, {"run": "b", "set": {"rolling": "0.1"}}]
+    rows = [row(run="a", set={"rolling": "0.05"}), row(run="b", set={"rolling": "0.1"})]
     study = {"study": {}, "conservative": best, "headline": {"volume_m3": 5.0, **headline}, "ensemble": None}
     data = SimpleNamespace(study=study, finished=rows, repeats={}, number=lambda name: 1 + "ab".index(name),
                            settings={"rolling": ["0.05", "0.1"], "spacing": ["0.5"]},

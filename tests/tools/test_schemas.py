@@ -61,7 +61,7 @@ FILES = {       # file: (its reader, a text, what must be said)
          f"study.yaml: run one: must be {study_file.WHAT}: must have repeat and batch and variables and"),
         (STUDY % (json.dumps([{**rows.plain(row()), "front_m": "far"}]), "null"),
          f"study.yaml: run one: must be {study_file.WHAT}: front_m: must be a finite number, got 'far'"),
-        (STUDY % ("[{run: one, status: running, set: {}}]", "null"), "status: must be failed or finished, got 'running'"))),
+        (STUDY % ("[{run: one, status: running, set: {}}]", "null"), "status: must be failed or finished, got 'run"))),
     "site.yaml": (heading.site_of, (("project: [1]", "project: must be a section with keys or null, got [1]"),
                                     ("terrain: {files: [1]}", "terrain: files: first value: must be a text, got 1"))),
     "converge.yaml": (lambda folder: convergence_part.Sizes(folder / "converge.yaml"), (

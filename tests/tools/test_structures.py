@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import yaml
 
+import made_rows
 from run_helpers import called
 from tiny_collapse import LMP, edit, write_case, write_stl
 
@@ -181,7 +182,7 @@ def test_a_mesh_file_that_is_none(tmp_path, text):
 
 def test_the_force_at_rest_scatters_between_equal_runs_only():
     def row(rolling, force):
-        return {"set": {"rolling": rolling}, "structures": {"dam": {"end_force_n": force}}}
+        return made_rows.row(set={"rolling": rolling}, structures={"dam": {"end_force_n": force}})
     rows = [row("0", 90.0), row("0", 110.0), row("1", 1000.0)]
     assert structures.scatter_at_rest(rows)["dam"] == (pytest.approx(0.1 * 2 ** 0.5), 2)
     assert structures.scatter_at_rest(rows[1:]) == structures.scatter_at_rest([]) == {}

@@ -16,7 +16,7 @@ from ..survey import rasters
 from ..studies import run_rows
 from ..tables import named_run, quantities, study_types
 from ..tables.rows import Finished, Row, finished_of
-from ..tables.study_file import read_study
+from ..tables.study_file import load_study
 from . import heading
 
 MOST_SHOWN = 9          # runs that get a map and a line in the section
@@ -106,7 +106,7 @@ class Data:
 
     def _read_study(self, shown):
         path = self.folder / "study.yaml"
-        self.study = self.study or read_study(path)
+        self.study = self.study or load_study(path)
         self.rows = self.study["runs"]
         self.finished = finished_of(self.rows)
         about = self.study["study"]

@@ -22,7 +22,7 @@ from ..studies import results, site_study, study
 from ..studies.setup import Road, Setup
 from ..survey import polygons, rasters
 from ..tables.rows import finished_of
-from ..tables.study_file import read_study
+from ..tables.study_file import load_study
 from .choices import Choices
 from .corridor import TERRAIN
 from .search import SLIPS
@@ -133,7 +133,7 @@ def is_collected(one: Asked, new) -> bool:
     if any(run.folder in new or run.error for run in one.todo):
         return False
     try:
-        about = read_study(one.setup.output / "study.yaml")
+        about = load_study(one.setup.output / "study.yaml")
     except SlopeError:
         return False
     road = about["study"].get("road") or {}

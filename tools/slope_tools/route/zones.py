@@ -20,7 +20,7 @@ from ..survey.geopackage import Layer
 from ..survey.rasters import Raster, crs_name
 from ..tables import answered, named_run, study_types
 from ..tables.rows import Failed, finished_of
-from ..tables.study_file import read_study
+from ..tables.study_file import load_study
 from . import choices, corridor, reached, results, search
 from .reached import Source
 from .yearly import Yearly
@@ -91,7 +91,7 @@ def ground_of(name: str, warn) -> Ground:
         run = deposit.read(named_run.read(name).prefix, None, warn)
         return Ground(run.raster, [Source(1, [Path(run.prefix)], np.ones(1), 0, run.raster.offset)], None)
     study = study or folder
-    about = read_study(study / answered.STUDY)
+    about = load_study(study / answered.STUDY)
     weighted = study_types.weighted(about["ensemble"])
     known = weighted["weights"] if weighted else None
     rows = [row for row in finished_of(about["runs"]) if (row.run in known if known else not row.batch)]

@@ -10,7 +10,7 @@ from ..sites import site_choices, site_deck, site_folder, site_scenarios
 from ..sites.site_choices import FILES, Site
 from ..studies import outdated, site_ground
 from ..tables import named_run, study_types
-from ..tables.study_file import read_study
+from ..tables.study_file import load_study
 
 # of the model: what stiffness depends on, and what the ground is
 STIFFNESS = {"speed": ("the stiffness is for a speed of", "m/s"), "thick": ("the stiffness is for a thickness of", "m"),
@@ -45,7 +45,7 @@ def one(folder: Path, name: str) -> One:
     variables = decks.index_variables(deck) if deck.is_file() else {}
     if study is None or outdated.changed(folder, study):
         return One(name, site, variables, None, None)
-    about = read_study(study / named_run.STUDY)
+    about = load_study(study / named_run.STUDY)
     inside = run_folders.summaries(named_run.governing_run(study)[1])
     if len(inside) != 1:
         raise SlopeError(study, "must hold the governing run of the study, with its summary")

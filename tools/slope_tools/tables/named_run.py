@@ -9,7 +9,7 @@ from ..errors import SlopeError
 from . import study_types
 from .answered import STUDY, study_in
 from .rows import Finished, finished_of
-from .study_file import read_study
+from .study_file import load_study
 
 
 class Named(NamedTuple):
@@ -21,7 +21,7 @@ class Named(NamedTuple):
 
 
 def governing(about: study_types.Study) -> str:
-    """The run that represents the headline of a study with a finished run (read_study); else the one that went
+    """The run that represents the headline of a study with a finished run (load_study); else the one that went
     farthest.
 
     Of an ensemble whose quantile is the headline the one at this quantile; else the one at the 90 % quantile of what
@@ -69,7 +69,7 @@ def nearest(rows: Sequence[Finished], key: str, value: float) -> Finished:
 
 def governing_run(study: Path) -> Tuple[str, Path]:
     """Name and folder of the governing run of the study in a folder."""
-    about = read_study(study / STUDY)
+    about = load_study(study / STUDY)
     name = governing(about)
     return name, next(summary_of(study, row.summary).parent for row in finished_of(about["runs"]) if row.run == name)
 

@@ -26,7 +26,7 @@ STUDY = mapping(
     envelope=mapping({"max_thickness": mapping({"file": ANY})}, null=True))
 
 
-def read_study(path: Path) -> study_types.Study:
+def load_study(path: Path) -> study_types.Study:
     """study.yaml as a dict, whose runs are rows.Row; SlopeError if something that its readers take is missing."""
     study = schemas.load(path, WHAT, STUDY)
     rows, about, best = [row_of(path, one) for one in study["runs"]], study["study"], study["conservative"]
@@ -43,6 +43,11 @@ def read_study(path: Path) -> study_types.Study:
         raise SlopeError(path, f"must be {WHAT}: conservative must have a volume, or why it is withheld, and a road")
     study["runs"] = rows
     return study
+
+
+def read_study(path: Path) -> Dict[str, Any]:
+    """The same for scripts: of values that YAML knows."""
+    return plain(load_study(path))
 
 
 def plain(study: study_types.Study) -> Dict[str, Any]:
@@ -68,7 +73,7 @@ class Study(NamedTuple):
         """That of its folder, or the one that governs of the folder of a site; SlopeError if there is none."""
         place = Path(folder)
         found = study_in(place) or place
-        return cls(found, plain(read_study(found / STUDY_FILE)))
+        return cls(found, read_study(found / STUDY_FILE))
 
     @property
     def runs(self) -> List[Dict[str, Any]]:
