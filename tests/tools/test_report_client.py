@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import yaml
 
+import made_study
 import test_report
 from made_rows import changed, row
 from test_report import stands
@@ -23,7 +24,7 @@ from slope_tools.report.numbers import Numbers
 from slope_tools.statistics import size_family
 from slope_tools.statistics.size_effect import Effect
 from slope_tools.statistics.withheld import Kind as Rule
-from slope_tools.tables import answer_words, judged, next_step
+from slope_tools.tables import answer_words, judged, next_step, study_file
 
 made, here, slope = test_report.made, test_report.here, test_report.slope       # its fixtures
 # of options, files, runs and variables
@@ -120,8 +121,9 @@ def test_what_stands_first(slope, here, case):
     """A number, a floor, one that is withheld, nothing: never only that it is unknown, each number with its unit."""
     path = here / "repeated" / "study.yaml"
     about = yaml.safe_load(path.read_text())
-    del about["next_step"]      # of an older file
-    path.write_text(yaml.safe_dump({**about, "headline": HEADLINES[case]}))
+    study = {**study_file.load_study(path), "headline": HEADLINES[case]}
+    step = next_step.of_studies([next_step.Made(study, path.parent)], HEADLINES[case])
+    path.write_text(yaml.safe_dump({**about, "headline": HEADLINES[case], "next_step": step and step.about()}))
     assert slope("repeated")[0] == 0
     text = " ".join(client(here / "repeated" / "report.html").split())
     for words in SAID[case]:
@@ -170,14 +172,15 @@ def weighted(quantities=None, reached=0.9, gap=None):
     known = {"reached": reached, "quantities": {
         key: {"quantiles": [{"share": 0.95, "value": value}]} for key, value in (quantities or {}).items()},
         "to_remove": [{"share": 0.95, "value": 9e3, "low": 0.0, "high": None, "gap": gap}]}
-    return SimpleNamespace(finished=rows, road=True, study={"ensemble": {"known_events": known}})
+    return SimpleNamespace(finished=rows, compared=rows, road=True,
+                           study=made_study.study(ensemble=made_study.ensemble(known)))
 
 
 @pytest.mark.parametrize("balls, said", [(None, False), (2.7, True), (16.0, False)])
 def test_beyond_the_road_smaller_balls_bring_more(balls, said):
     """By as much as in the family of slides, where enough of them tell; nothing where nothing lies there."""
     data = weighted()
-    data.study["study"] = {"balls_thick": balls}
+    data.study["study"]["balls_thick"] = balls
     assert "smaller balls" not in client_part.road(data, Numbers())
     data.finished[1] = changed(data.finished[1], beyond_road_m3=730.0)
     text = client_part.road(data, Numbers())
@@ -212,7 +215,8 @@ MAP = {"raster": "thickness", "threshold": 0.1}
     ({"maps": []}, 64, None, None), (None, 64, None, None)])
 def test_the_map_has_the_outlines_of_an_ensemble(study, runs, whom, file):
     """Of known events where these weigh it; none where 5 % of the runs are no run."""
-    data = SimpleNamespace(finished=[{}] * runs, study={"ensemble": study}, read_map=lambda name: name)
+    about = study and made_study.ensemble(study.get("known_events"), maps=study["maps"])
+    data = SimpleNamespace(finished=[{}] * runs, study=made_study.study(ensemble=about), read_map=lambda name: name)
     found = ensemble_part.exceeded(data)
     assert (found and found.whom, found and found.share) == (whom, file)
     assert found is None or found.far == (0.07 if whom == "known events" else 0.0)
@@ -231,7 +235,7 @@ def test_ranges_beside_a_weighted_number():
     data = weighted({"remove_on_road_m3": None})        # known events go beyond the runs
     assert client_part.road(data, numbers).startswith(
         "On the road itself single runs, each counted alike, leave 0 to 19,600 m3")
-    for data in (weighted(reached=None), SimpleNamespace(**{**vars(weighted()), "study": {"ensemble": None}}),
+    for data in (weighted(reached=None), SimpleNamespace(**{**vars(weighted()), "study": made_study.study()}),
                  SimpleNamespace(**{**vars(weighted()), "study": None})):
         assert client_part.road(data, numbers).startswith("On the road itself lie 0 to 19,600 m3")
         assert client_part.distance(data, numbers, True).startswith("In all 3 runs 99 % of the volume stays within 200")
@@ -364,7 +368,7 @@ def data_of(rows, **more):
     """What the findings are made of, of a study."""
     names = {one.run: one.run for one in rows}
     result = SimpleNamespace(summary={"volume": {"released": 50000.0}, "balls": {"released": 1000}})
-    return SimpleNamespace(**{"study": {"conservative": None, "warnings": []}, "judged": rows, "repeats": {},
+    return SimpleNamespace(**{"study": made_study.study(), "judged": rows, "repeats": {},
                               "below_ground": lambda: None, "names": lambda: names, "result": result, **more})
 
 
@@ -408,7 +412,7 @@ def test_the_weightiest_come_first_and_three_are_shown():
     rows.append(row(run="cut", status="failed", error="ERROR: 3 atoms lost"))
     rows.append(row(run="cut too", status="failed", error="ERROR: no memory"))
     thin = Finding("thin", {"balls": 1.83, "limit": 3.0}).entry()
-    data = data_of(rows, study={"conservative": None, "warnings": [thin]})
+    data = data_of(rows, study=made_study.study(warnings=[thin]))
     found = warnings.findings(data, GROUND)
     told = warnings.first_page(found)
     by_kind = {one.kind: one for one in found}
@@ -428,8 +432,8 @@ def test_what_no_run_tells_is_on_the_first_page_alone():
     found = warnings.findings(data_of(rows), GROUND)
     assert [one.kind for one in found] == ["no repeats", "no sizes", "slip assumed"]
     assert warnings.listed(found, {}) == [] and len(warnings.first_page(found)) == 3
-    found = warnings.findings(data_of(rows, repeats={"seed": ["1"]}, study={
-        "conservative": {"doubts": []}, "size": {"run": "d_1"}, "warnings": []}), GROUND)
+    found = warnings.findings(data_of(rows, repeats={"seed": ["1"]}, study=made_study.study(
+        conservative=made_study.conservative(1.0), size={"run": "d_1"})), GROUND)
     assert [one.kind for one in found] == ["slip assumed"]
 
 
@@ -466,8 +470,7 @@ def test_runs_of_several_sizes_are_one_line():
                                (f"rolling_0_d_{volume:g}",), "sizes of balls") for volume in (337.0, 4.21)], 4)
     several = [sizes.entry(), "the slope is steep", "the toe is wet",
                {"kind": "moving", "text": "judged from the rows"}]
-    found = warnings.findings(data_of([], study={"conservative": None, "warnings": several}, repeats={"x": []}),
-                              GROUND)
+    found = warnings.findings(data_of([], study=made_study.study(warnings=several), repeats={"x": []}), GROUND)
     assert [one.text for one in found if one.level == WARNING][1:] == ["the slope is steep", "the toe is wet"]
     assert sizes.numbers["volume"] == 337 and sizes.numbers["of"] == 4 and len(sizes.runs) == 2
     assert found[-3] == sizes and warnings.first_page([sizes]) == []
@@ -547,7 +550,7 @@ def test_volumes_and_units_as_they_are_read():
 
 
 def test_what_the_runs_differ_in_is_said_without_names_of_variables():
-    data = SimpleNamespace(study={"study": {}}, repeats={"xoffset": ["0.5"]}, finished=[{}] * 8,
+    data = SimpleNamespace(study=made_study.study(), repeats={"xoffset": ["0.5"]}, finished=[{}] * 8,
                            settings={"rolling": ["0", "1"], "d": ["1", "2"], "zeta": ["1", "2"], "x": ["1"]})
     assert numbers.basis(data) == (
         "8 runs of a computer model of equal balls, which differ in the rolling resistance, the size of the model's "
@@ -580,7 +583,8 @@ BEST = {"set": {"rolling": "0.1", "spacing": "0.5"}, "chance_m3": 3.0, "size_m3"
 def test_on_which_runs_the_number_rests(best, headline, own, said, shown):
     """Which of them, and whether the map is of one of them; nothing of this where there is no number."""
     rows = [row(run="a", set={"rolling": "0.05"}), row(run="b", set={"rolling": "0.1"})]
-    study = {"study": {}, "conservative": best, "headline": {"volume_m3": 5.0, **headline}, "ensemble": None}
+    study = made_study.study(conservative=made_study.conservative(5.0, **best), runs=rows,
+                             headline=made_study.headline(**{"volume_m3": 5.0, **headline}))
     data = SimpleNamespace(study=study, finished=rows, repeats={}, number=lambda name: 1 + "ab".index(name),
                            settings={"rolling": ["0.05", "0.1"], "spacing": ["0.5"]},
                            result=SimpleNamespace(name=own, row=rows["ab".index(own)]))
