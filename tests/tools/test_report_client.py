@@ -170,7 +170,7 @@ def weighted(quantities=None, reached=0.9, gap=None):
     known = {"reached": reached, "quantities": {
         key: {"quantiles": [{"share": 0.95, "value": value}]} for key, value in (quantities or {}).items()},
         "to_remove": [{"share": 0.95, "value": 9e3, "low": 0.0, "high": None, "gap": gap}]}
-    return SimpleNamespace(finished=rows, road=True, study={"ensemble": {"known_events": known}})
+    return SimpleNamespace(finished=rows, compared=rows, road=True, study={"ensemble": {"known_events": known}})
 
 
 @pytest.mark.parametrize("balls, said", [(None, False), (2.7, True), (16.0, False)])
@@ -212,7 +212,7 @@ MAP = {"raster": "thickness", "threshold": 0.1}
     ({"maps": []}, 64, None, None), (None, 64, None, None)])
 def test_the_map_has_the_outlines_of_an_ensemble(study, runs, whom, file):
     """Of known events where these weigh it; none where 5 % of the runs are no run."""
-    data = SimpleNamespace(finished=[{}] * runs, study={"ensemble": study}, read_map=lambda name: name)
+    data = SimpleNamespace(finished=[row()] * runs, study={"ensemble": study}, read_map=lambda name: name)
     found = ensemble_part.exceeded(data)
     assert (found and found.whom, found and found.share) == (whom, file)
     assert found is None or found.far == (0.07 if whom == "known events" else 0.0)
@@ -580,7 +580,8 @@ BEST = {"set": {"rolling": "0.1", "spacing": "0.5"}, "chance_m3": 3.0, "size_m3"
 def test_on_which_runs_the_number_rests(best, headline, own, said, shown):
     """Which of them, and whether the map is of one of them; nothing of this where there is no number."""
     rows = [row(run="a", set={"rolling": "0.05"}), row(run="b", set={"rolling": "0.1"})]
-    study = {"study": {}, "conservative": best, "headline": {"volume_m3": 5.0, **headline}, "ensemble": None}
+    study = {"study": {}, "conservative": best, "headline": {"volume_m3": 5.0, **headline}, "ensemble": None,
+             "runs": rows}
     data = SimpleNamespace(study=study, finished=rows, repeats={}, number=lambda name: 1 + "ab".index(name),
                            settings={"rolling": ["0.05", "0.1"], "spacing": ["0.5"]},
                            result=SimpleNamespace(name=own, row=rows["ab".index(own)]))

@@ -1,7 +1,7 @@
 """The files of a run: its summary and the rasters that fix deposit/grid wrote."""
 import os
 from pathlib import Path
-from typing import Any, Dict
+from typing import Any, Dict, Union
 
 from .. import disk, schemas
 from ..errors import SlopeError
@@ -53,7 +53,7 @@ def summaries(folder):
     return sorted(Path(folder).glob("*.summary.yaml"))
 
 
-def prefix_of(summary):
+def prefix_of(summary: Union[str, Path]) -> Path:
     """PREFIX of the rasters that belong to a summary."""
     return Path(str(summary).removesuffix(".summary.yaml"))
 

@@ -4,7 +4,7 @@ Files, console and pages are made of it side by side (files, console, report); r
 """
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from ..deposits import travel_shares
 from ..ensembles import ensemble
@@ -14,9 +14,9 @@ from ..runs import repeats
 from ..runs.repeats import Repeat
 from ..seismic import chain_files
 from ..statistics.headline import Scatter
-from ..tables.rows import Finished, Row, finished_of
 from ..tables import (answered, combinations, elastic, fine_run, intensity, judged, quantities, road_runs,
                       step_check, usable, withheld_words)
+from ..tables.rows import Finished, Row, finished_of
 
 LIKE = 1.5              # times as many balls over the thickness: values found with fewer, or more, are of another model
 
@@ -149,7 +149,8 @@ def reasons(read: Read) -> List[Dict[str, Any]]:
     return usable.reasons_of_ensemble(read.rows, read.events, read.case._replace(sampled=True)) if read.road else []
 
 
-def conservative(questions: Questions, read: Read, groups: Sequence[combinations.Group], size):
+def conservative(questions: Questions, read: Read, groups: Sequence[combinations.Group],
+                 size: Optional[Mapping[str, Any]]) -> Tuple[Dict[str, Any], Optional[Dict[str, Any]]]:
     """The entries of the conservative volume and of the run with half the time step; size: of the fine run."""
     best = combinations.conservative(questions.settings, read.rows, groups,
                                      fine_run.read_effect(size, quantities.REMOVE))
@@ -163,7 +164,7 @@ def conservative(questions: Questions, read: Read, groups: Sequence[combinations
     return best, step
 
 
-def unseen(repeated, defaults) -> List[Finding]:
+def unseen(repeated: Mapping[str, Sequence[str]], defaults: Mapping[str, str]) -> List[Finding]:
     """The caveat that the scatter is incomplete: only seeds were repeated, though the deck can place its balls anew."""
     offsets = repeats.only_seeds(repeated, defaults)
     return [Finding("not repeated", {"repeated": ", ".join(repeated), "offsets": ", ".join(offsets)})] \
@@ -179,5 +180,5 @@ def stretches(rows: Sequence[Finished], known: Optional[Mapping[str, float]]) ->
 
 def largest(rows: Sequence[Finished], key: str) -> Dict[str, Any]:
     """The largest value of a column and the first run that has it."""
-    best = max(rows, key=lambda row: row.value(key))
+    best = max(rows, key=lambda row: float(row.value(key)))
     return {"value": best.value(key), "run": best.run}
