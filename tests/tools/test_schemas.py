@@ -50,7 +50,10 @@ FILES = {       # file: (its reader, a text, what must be said)
         ("{bodies: [{body: '1', base_sha256: a}], peaks_gal: [a], hazard_curve: null, warnings: []}",
          "peaks_gal: first value: must be a finite number, got 'a'"))),
     "variables.yaml": (run_folders.begun, (("inputs: [1]", "inputs: must be a section with keys or null, got [1]"),
-                                           ("set: {d: 2}", "set: d: must be a text, got 2"))),
+                                           ("set: {d: 2}", "set: d: must be a text, got 2"),
+                                           ("ranks: two", "ranks: must be a whole number, got 'two'"),
+                                           ("package: 1.0", "package: must be a text or null, got 1.0"),
+                                           ("lmp_sha256: [a]", "lmp_sha256: must be a text or null, got ['a']"))),
     "finished.yaml": (run_folders.ended, (("wall_seconds: 1", "must have summary"),)),
     "study.yaml": (named_run.governing_run, (
         ("runs: []", "must have study and conservative and largest"),
