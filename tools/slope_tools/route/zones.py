@@ -92,7 +92,7 @@ def ground_of(name: str, warn) -> Ground:
         return Ground(run.raster, [Source(1, [Path(run.prefix)], np.ones(1), 0, run.raster.offset)], None)
     study = study or folder
     about = read_study(study / answered.STUDY)
-    known = ((about["ensemble"] or {}).get("known_events") or {}).get("weights")
+    known = ((about.get("ensemble") or {}).get("known_events") or {}).get("weights")
     rows = [row for row in finished_of(about["runs"]) if (row.run in known if known else not row.batch)]
     if not rows:
         raise SlopeError(study, "must have finished runs that are counted alike, or have weights")

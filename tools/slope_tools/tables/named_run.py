@@ -26,7 +26,7 @@ def governing(about: Mapping[str, Any]) -> str:
     Of an ensemble whose quantile is the headline the one at this quantile; else the one at the 90 % quantile of what
     counts, or the largest where known events go beyond all runs.
     """
-    rows, ensemble, best = finished_of(about["runs"]), about["ensemble"], about["conservative"]
+    rows, ensemble, best = finished_of(about["runs"]), about.get("ensemble"), about["conservative"]
     if ensemble and (number := of_headline(about, rows)):
         return number
     if ensemble and ensemble["of"]:
@@ -46,7 +46,7 @@ def of_headline(about: Mapping[str, Any], rows: Sequence[Finished]) -> Optional[
 
     None where the headline is of another study, of none, or withheld.
     """
-    number, known = about["headline"] or {}, about["ensemble"]["known_events"] or {}
+    number, known = about.get("headline") or {}, about["ensemble"]["known_events"] or {}
     if number.get("source") != "ensemble" or number.get("volume_m3") is None:
         return None
     if number["volume_m3"] == 0:
