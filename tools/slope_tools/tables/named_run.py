@@ -29,10 +29,10 @@ def governing(about: Mapping[str, Any]) -> str:
     rows, ensemble, best = finished_of(about["runs"]), about.get("ensemble"), about["conservative"]
     if ensemble and (number := of_headline(about, rows)):
         return number
-    if ensemble and ensemble["of"]:
+    if ensemble and ensemble.get("of"):
         # a quantile is the value of a run
         of = ensemble["of"]
-        entries = (ensemble["known_events"] or {}).get("quantities") or ensemble["quantities"]
+        entries = (ensemble.get("known_events") or {}).get("quantities") or ensemble["quantities"]
         at = {one["share"]: one["value"] for one in entries[of]["quantiles"]}[0.9] if of in entries else None
         having = [row for row in rows if row.value(of) is not None]      # others lost it
         if at is None:      # events beyond the runs decide
@@ -46,7 +46,7 @@ def of_headline(about: Mapping[str, Any], rows: Sequence[Finished]) -> Optional[
 
     None where the headline is of another study, of none, or withheld.
     """
-    number, known = about.get("headline") or {}, about["ensemble"]["known_events"] or {}
+    number, known = about.get("headline") or {}, about["ensemble"].get("known_events") or {}
     if number.get("source") != "ensemble" or number.get("volume_m3") is None:
         return None
     if number["volume_m3"] == 0:

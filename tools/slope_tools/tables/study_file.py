@@ -16,6 +16,8 @@ HEADLINE = mapping(     # the conservative volume
     {**dict.fromkeys(("volume_m3", "chance_m3", "size_m3", "scatter_m3", "degrees_of_freedom"), MAYBE),
      **numbers("mean_m3", "remove_m3"), "kind": ANY, "repeats": ANY, "rounded": ANY, "run": TEXT}, null=True,
     withheld=listed(mapping({"text": TEXT, "remedy": TEXT}), null=True))        # none in older ones
+QUANTILES = listed(mapping({"share": NUMBER, "value": MAYBE}), null=True)
+QUANTITIES = {"type": "object", "additionalProperties": mapping({}, quantiles=QUANTILES)}
 STUDY = mapping(
     {"study": mapping({"deck": TEXT, "runs": NUMBER, "finished": NUMBER,
                        "set": {"type": "object", "additionalProperties": listed(ANY)}},
@@ -23,7 +25,10 @@ STUDY = mapping(
      "runs": listed(mapping({"run": TEXT, "status": TEXT, "set": OBJECT})), "conservative": HEADLINE,
      "largest": OBJECT},
     exceedance=listed(mapping(numbers("threshold_m", "area_in_any_run_m2", "area_in_every_run_m2")), null=True),
-    envelope=mapping({"max_thickness": mapping({"file": ANY})}, null=True))
+    envelope=mapping({"max_thickness": mapping({"file": ANY})}, null=True),
+    ensemble=mapping({}, null=True, of={"type": ["string", "null"]}, quantities=QUANTITIES,
+                     known_events=mapping({}, null=True, quantities=QUANTITIES, to_remove=QUANTILES)),
+    headline=mapping({}, null=True, source={"type": ["string", "null"]}, share=MAYBE, volume_m3=MAYBE))
 
 
 def read_study(path: Path) -> Dict[str, Any]:
