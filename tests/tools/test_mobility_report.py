@@ -150,7 +150,8 @@ def test_the_first_page_has_both_answers(known):
     half, near, far = (three(known.length_at(share)) for share in (0.5, 0.9, 0.1))
     for lengths, differs in (((0.9 * known.length_at(0.5), known.length_at(0.5)), False),
                              ((0.5 * known.length_at(0.9), 0.9 * known.length_at(0.9)), True)):
-        data = SimpleNamespace(study={}, finished=[{"length_m": length} for length in (*lengths, None)])
+        data = SimpleNamespace(study={}, finished=[
+            made_rows.row(length_m=length) for length in (*lengths, None)])
         data.study = {"ensemble": None}
         text = mobility_part.on_first_page(data, ground, Numbers())
         runs = f"{three(lengths[0])} to {three(lengths[1])} m"

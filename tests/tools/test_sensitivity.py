@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-
+import made_rows
 from tiny_collapse import edit, rows_of
 
 from slope_tools.studies import sensitivity
@@ -76,8 +76,9 @@ def test_what_is_clear_depends_on_the_number_of_equivalent_runs():
     """t(0.975) sqrt(1 + 1/n): 4.97 of three runs, 2.37 of ten."""
     for count, most in ((3, 4.303 * math.sqrt(4 / 3)), (10, 2.2622 * math.sqrt(1.1))):
         about = {"runs": count, "mean": 100.0, "standard_deviation": 2.0}
-        assert sensitivity.is_clear({"a": 100 - 2 * most * 1.001}, "a", about) is True
-        assert sensitivity.is_clear({"a": 100 + 2 * most * 0.999}, "a", about) is False
+        for value, clear in ((100 - 2 * most * 1.001, True), (100 + 2 * most * 0.999, False)):
+            tried = sensitivity.Tried("vary", "rolling", "0.1", made_rows.row(front_m=value))
+            assert sensitivity.is_clear(tried, "front_m", about) is clear
 
 
 def test_without_repeats_the_scatter_is_said_to_be_unknown(succeed):

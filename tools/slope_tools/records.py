@@ -1,4 +1,4 @@
-"""Frozen dataclasses and named tuples to and from the plain values of a file: what a type says, in one place."""
+"""Records (frozen dataclasses, named tuples, typed dicts) to and from plain values of files: a type is its schema."""
 import dataclasses
 import functools
 import typing
@@ -37,8 +37,8 @@ def plain(value: Any) -> Any:
 
 
 def read(kind: Type[T], value: Any) -> T:
-    """A value of a type from what plain() made of it; NoRecord if it is none. Further keys of a mapping do not count; a
-    field that is missing has its default."""
+    """A value of a type from what plain() made of it; NoRecord if it is none. Further keys do not count, but stay in a
+    typed dict; a field that is missing has its default."""
     return typing.cast(T, _read(kind, value))
 
 
@@ -60,7 +60,8 @@ def _read(kind: Any, value: Any) -> Any:
         check(value, Mapping)
         if lacks := [name for name in of.needed if name not in value]:
             raise NoRecord(f"must have {' and '.join(lacks)}")
-        return kind(**{name: _inside(name, one, value[name]) for name, one in of.types.items() if name in value})
+        parts_ = {name: _inside(name, one, value[name]) for name, one in of.types.items() if name in value}
+        return {**value, **parts_} if typing.is_typeddict(kind) else kind(**parts_)
     if kind is not Any:
         check(value, kind)
     return value
@@ -94,6 +95,8 @@ def _fields(kind: Any) -> Optional[Fields]:
         needed = [name for name, default in defaults.items() if default is dataclasses.MISSING]
     elif hasattr(kind, "_field_defaults"):
         needed = [name for name in kind._fields if name not in kind._field_defaults]
+    elif typing.is_typeddict(kind):
+        needed = [name for name in typing.get_type_hints(kind) if name in kind.__required_keys__]
     else:
         return None
     return Fields(typing.get_type_hints(kind), needed)

@@ -1,11 +1,11 @@
 """The files of a run: its summary and the rasters that fix deposit/grid wrote."""
 import os
 from pathlib import Path
-from typing import Any, Dict
+from typing import Any, Dict, Union
 
 from .. import disk, schemas
 from ..errors import SlopeError
-from ..schemas import ABOVE_0, ANY, FLAG, MAYBE, NUMBER, OBJECT, TEXT, listed, mapping, named, numbers
+from ..schemas import ABOVE_0, ANY, COUNT, FLAG, MAYBE, NUMBER, OBJECT, TEXT, listed, mapping, named, numbers
 from ..survey import rasters
 
 RASTERS = {     # what fix deposit/grid writes, PREFIX.KIND.asc: quantity, unit
@@ -22,10 +22,11 @@ OF_RUN = "output of fix deposit/grid: its prefix, one of its files, or the folde
 VARIABLES = "variables.yaml"       # what `slope study` runs, written before the run
 MARKER = "finished.yaml"           # written when the run is complete
 OF_STUDY = "what `slope study` wrote"
+MAYBE_TEXT = {"type": ["string", "null"]}
 DIGESTS = {"type": ["object", "null"], "additionalProperties": TEXT}   # {what: SHA-256}
 # of VARIABLES and MARKER, also of older versions
 BEGUN = mapping({}, set=named(TEXT), variables=named(TEXT), program=DIGESTS, environment=DIGESTS, inputs=DIGESTS,
-                continued=listed(OBJECT))
+                continued=listed(OBJECT), ranks=COUNT, package=MAYBE_TEXT, lmp_sha256=MAYBE_TEXT)
 ENDED = mapping({"summary": TEXT}, wall_seconds=NUMBER, environment=DIGESTS, inputs=DIGESTS)
 WHAT = "a summary that fix deposit/grid wrote"
 # what `slope volume`, `score` and `export` need of one, and what the others do
@@ -36,7 +37,7 @@ SUMMARY = mapping(
      "travel": mapping(numbers("front", "front_at_release", "centroid", "reach_angle"), quantiles=listed(mapping(
          {"share": NUMBER, "distance": MAYBE, "reach_angle": MAYBE}), null=True)),
      "largest": mapping(numbers("thickness", "max_thickness", "max_speed", "max_energy")),
-     "stop": mapping({"step": NUMBER, "time": NUMBER, "reason": ANY}),
+     "stop": mapping({"step": NUMBER, "time": NUMBER, "reason": TEXT}),
      "grid": mapping({"cell": ABOVE_0, "extent": ANY}), "balls": mapping({"released": ABOVE_0, "lost": NUMBER}),
      "motion": {**mapping(numbers("moving_share", "threshold"),
                           **numbers("fast_share", "fast_volume", "fast_speed", "rest_share")),
@@ -53,7 +54,7 @@ def summaries(folder):
     return sorted(Path(folder).glob("*.summary.yaml"))
 
 
-def prefix_of(summary):
+def prefix_of(summary: Union[str, Path]) -> Path:
     """PREFIX of the rasters that belong to a summary."""
     return Path(str(summary).removesuffix(".summary.yaml"))
 

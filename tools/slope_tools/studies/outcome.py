@@ -174,7 +174,7 @@ def conservative(questions: Questions, read: Read, groups: Sequence[combinations
     return best, step
 
 
-def unseen(repeated, defaults) -> List[Finding]:
+def unseen(repeated: Mapping[str, Sequence[str]], defaults: Mapping[str, str]) -> List[Finding]:
     """The caveat that the scatter is incomplete: only seeds were repeated, though the deck can place its balls anew."""
     offsets = repeats.only_seeds(repeated, defaults)
     return [Finding("not repeated", {"repeated": ", ".join(repeated), "offsets": ", ".join(offsets)})] \
@@ -192,5 +192,6 @@ def stretches(rows: Sequence[Finished], known: Optional[Mapping[str, float]]) ->
 
 def largest(rows: Sequence[Finished], key: str) -> study_types.Largest:
     """The largest value of a column and the first run that has it."""
-    best = max(rows, key=lambda row: row.value(key))
-    return {"value": best.value(key), "run": best.run}
+    values = [float(row.value(key)) for row in rows]
+    k = values.index(max(values))
+    return {"value": values[k], "run": rows[k].run}

@@ -129,15 +129,15 @@ def in_folder(one: Finding, folder: Path) -> Finding:
                                  for name, value in one.numbers.items()})
 
 
-def placed(raster, run: Repeat):
+def placed(raster: rasters.Raster, run: Repeat) -> rasters.Raster:
     """The raster with the CRS and the offset of the run's terrain."""
     place = terrain_place(run)
     return raster._replace(crs=place.crs, offset=place.offset) if place else raster
 
 
-def terrain_place(run: Repeat):
+def terrain_place(run: Repeat) -> Optional[rasters.Place]:
     """CRS and offset of the runs' local metres, from the sidecar of their terrain; None without one."""
-    return run.log.terrain and rasters.read_sidecar(run.folder / run.log.terrain)
+    return rasters.read_sidecar(run.folder / run.log.terrain) if run.log.terrain else None
 
 
 def terrain_of(folder: Path, log: logs.Log) -> Optional[Path]:

@@ -9,7 +9,7 @@ import os
 import sys
 import warnings
 from pathlib import Path
-from typing import Dict, NamedTuple, Optional, Tuple
+from typing import Dict, NamedTuple, Optional, Tuple, Union
 
 import numpy as np
 import rasterio
@@ -307,7 +307,7 @@ class Place(NamedTuple):
     extent: Tuple[float, float, float, float]  # local xlo, ylo, xhi, yhi
 
 
-def read_sidecar(path):
+def read_sidecar(path: Union[str, Path]) -> Optional[Place]:
     """The Place of an .asc that write_asc_local wrote, None if it has no sidecar; the .asc itself is not read."""
     sidecar = Path(path).with_suffix(".yaml")
     if Path(path).suffix != ".asc" or not sidecar.exists():

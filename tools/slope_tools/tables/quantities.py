@@ -1,7 +1,7 @@
 """The quantities of a run: each once, with its column, name, unit, digits, and where it is shown.
 
 Tables on the screen, study.csv, study.yaml, pages, charts, ensembles and their options read it here. A new one is an
-entry, with its place in a summary; else studies/results gives its value.
+entry and a field of a row, with its place in a summary; else studies/run_rows gives its value.
 """
 from enum import Flag, auto
 from typing import Any, Callable, Dict, Iterable, List, Mapping, NamedTuple, Optional, Union

@@ -2,46 +2,41 @@
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, NamedTuple, Union
 
-from .. import disk, schemas
+from .. import disk, records, schemas
 from ..case import run_folders
 from ..errors import SlopeError
 from ..records import NoRecord
-from ..schemas import ANY, MAYBE, NUMBER, OBJECT, TEXT, listed, mapping, numbers
+from ..schemas import TEXT, listed, mapping
 from . import rows as rows_, study_types
 from .answered import STUDY as STUDY_FILE, study_in
 from .rows import finished_of
 
 WHAT = "what `slope study` wrote, of this version (the same command rewrites it, and keeps the runs)"
-HEADLINE = mapping(     # the conservative volume
-    {**dict.fromkeys(("volume_m3", "chance_m3", "size_m3", "scatter_m3", "degrees_of_freedom"), MAYBE),
-     **numbers("mean_m3", "remove_m3"), "kind": ANY, "repeats": ANY, "rounded": ANY, "run": TEXT}, null=True,
-    withheld=listed(mapping({"text": TEXT, "remedy": TEXT}), null=True))        # none in older ones
-STUDY = mapping(
-    {"study": mapping({"deck": TEXT, "runs": NUMBER, "finished": NUMBER,
-                       "set": {"type": "object", "additionalProperties": listed(ANY)}},
-                      road=mapping(numbers("cut_angle", "mesh"), null=True)),
-     "runs": listed(mapping({"run": TEXT, "status": TEXT, "set": OBJECT})), "conservative": HEADLINE,
-     "largest": OBJECT},
-    exceedance=listed(mapping(numbers("threshold_m", "area_in_any_run_m2", "area_in_every_run_m2")), null=True),
-    envelope=mapping({"max_thickness": mapping({"file": ANY})}, null=True))
+SCHEMA = mapping({"runs": listed(mapping({"run": TEXT, "status": TEXT}))})
 
 
 def load_study(path: Path) -> study_types.Study:
-    """study.yaml as a dict, whose runs are rows.Row; SlopeError if something that its readers take is missing."""
-    study = schemas.load(path, WHAT, STUDY)
-    rows, about, best = [row_of(path, one) for one in study["runs"]], study["study"], study["conservative"]
+    """The study of a study.yaml; SlopeError if it is none of this version."""
+    held = schemas.load(path, WHAT, SCHEMA)
+    rows = [row_of(path, one) for one in held["runs"]]
     finished = finished_of(rows)
     if not finished:
         raise SlopeError(path, "must have a finished run", f"{len(rows)} that failed")
-    farthest = study["largest"].get("front_m")
+    try:
+        study = records.read(study_types.Study, {**held, "runs": []})
+        if study["ensemble"] and (weighted := study_types.weighted(study["ensemble"])):
+            records.read(study_types.Weighted, weighted)
+    except NoRecord as error:
+        raise SlopeError(path, f"must be {WHAT}: {error}") from None
+    study["runs"] = rows
+    about, best, farthest = study["study"], study["conservative"], study["largest"].get("front_m")
     if any(row.set.keys() != about["set"].keys() for row in rows) or not (
-            isinstance(farthest, dict) and all(one["run"] in [row.run for row in finished]
-                                               for one in (best or farthest, farthest))):
+            farthest and all(name in [row.run for row in finished]
+                             for name in ((best or farthest)["run"], farthest["run"]))):
         raise SlopeError(path, f"must be {WHAT}: runs, set, conservative and largest must be of one study")
-    if best and (not about.get("road") or best["volume_m3"] is None and not best.get("withheld")
+    if best and (not about.get("road") or best["volume_m3"] is None and not best["withheld"]
                  or not all(row.road for row in finished)):
         raise SlopeError(path, f"must be {WHAT}: conservative must have a volume, or why it is withheld, and a road")
-    study["runs"] = rows
     return study
 
 
