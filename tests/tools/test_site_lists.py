@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import yaml
 
+import made_rows
 from run_helpers import write_asc
 from test_site import CELL, COLUMNS, ROWS, gis, make_mine, told, work_in, write_files, write_layer  # noqa: F401
 from test_site_anew import MAPPED, edit, inside  # noqa: F401
@@ -22,6 +23,7 @@ from slope_tools.sites import site_budget, site_choices, site_deck, site_trial
 from slope_tools.studies.road_numbers import Made
 from slope_tools.studies import ahead, outdated, site_study, study
 from slope_tools.studies.setup import Setup
+from slope_tools.tables import rows
 
 POINTS = 8
 ENGINE = Setup(Path("in.site"), Path("."))
@@ -242,13 +244,15 @@ def test_keys_without_an_option_are_named(capsys):
 @pytest.mark.parametrize("words, changed", [
     (None, None), ("--rolling 0.05 0.1 0.15", None), ("--cut-angle 45", None),       # lists and the road: the runs stay
     ("--friction 25", "in.site"), ("--depth 4", "in.site"), ("--spacing 0.8", "in.site")])
-def test_a_study_of_other_choices_is_no_answer(mine, inside, words, changed):  # noqa: F811
+def test_a_study_of_other_choices_is_no_answer(mine, inside, monkeypatch, words, changed):  # noqa: F811
     """A page, files and scenarios of a site that was rebuilt since do not show its old numbers as its own."""
     (mine / "study").mkdir(exist_ok=True)
     name = next(path.name for path in (mine / "runs").iterdir() if "restitution" not in path.name)
-    (mine / "study" / "study.yaml").write_text(
-        f"conservative: {{run: {name}}}\nlargest: {{}}\n"
-        f"runs: [{{run: {name}, summary: ../runs/{name}/site.summary.yaml}}]\n")
+    row = made_rows.row(run=name, summary=f"../runs/{name}/site.summary.yaml")
+    (mine / "study" / "study.yaml").write_text(yaml.safe_dump({
+        "study": {"deck": "in.site", "runs": 1, "finished": 1, "set": {}}, "runs": [rows.plain(row)],
+        "conservative": None, "largest": {"front_m": {"run": name, "value": row.front_m}}}))
+    monkeypatch.setattr(outdated, "road_changed", lambda *_: None)      # the runs alone count here
     if words:
         inside(f"mine {words}")
     assert outdated.changed(mine, mine / "study") == changed
