@@ -16,10 +16,11 @@ from test_site import write_layer
 from test_site_zones import write_zones
 from tiny_collapse import LMP
 
-from slope_tools.blocks import kinds, page, runs, site as of_blocks, study
+from slope_tools.blocks import page, runs, site as of_blocks, study
 from slope_tools.case import decks
 from slope_tools.plots import figure_maps, site_map
 from slope_tools.sites import site_choices, site_deck, site_zones
+from slope_tools.sites.site_sections import OfBlocks
 from slope_tools.survey.rasters import Raster
 from slope_tools.survey.resampling import sample
 from slope_tools.tables.structures import table_of
@@ -111,18 +112,18 @@ def zoned(tmp_path_factory):
     (folder / "mine" / "site.yaml").write_text(yaml.safe_dump(about))
     assert cli.main(["site", "mine"]) == 0 and cli.main(["study", "mine", "--jobs", "2"]) == 0
     patch.undo()
-    found = site_choices.load(folder / "mine", kinds.BLOCKS)
+    found = site_choices.load_kind(folder / "mine", OfBlocks)
     return SimpleNamespace(folder=folder / "mine", site=found, known=study.read(found, study.planned(found)))
 
 
 def test_the_deck_has_the_coefficients_of_the_zones(zoned):
     variables = {**decks.index_variables(zoned.folder / site_deck.NAME), "rolling": "0.05"}
     log = (zoned.known.runs[0].folder / "log.lammps").read_text()
-    for number, zone in enumerate(zoned.site.found["zones"], of_blocks.FIELD + 1):
-        now = site_zones.now(zone, zoned.site.choices["model"], variables)
+    for number, zone in enumerate(zoned.site.found.zones, of_blocks.FIELD + 1):
+        now = site_zones.now(zone, zoned.site.choices.model, variables)
         coeff = re.findall(rf"^pair_coeff  1 {number} .*restitution (\S+) friction (\S+) rolling (\S+)$", log, re.M)[-1]
         assert [float(one) for one in coeff] == pytest.approx([now["field_e"], now["friction"], now["rolling"]])
-    assert [zone["name"] for zone in zoned.site.found["zones"]] == ["rough", "scree 2"]
+    assert [zone.name for zone in zoned.site.found.zones] == ["rough", "scree 2"]
     assert "zone zone_rough 4 0.4 " in log and re.search(r"zone zone_scree_2 5$", log, re.M)
 
 

@@ -230,12 +230,12 @@ def test_a_site_with_zones(gis, mine):
     assert re.search(r"zone 森: stop angle 30.\d degrees at a rolling resistance of 0.15$", mine, re.M)
     site = site_choices.load(gis / "mine")
     found = site.found
-    assert [zone["name"] for zone in found["zones"]] == ["scree", "森", "zone 3"]
-    assert {"ground.gpkg", "ground.scree.csv", "ground.zone.csv", "ground.zone_3.csv"} <= set(found["files"])
+    assert [zone.name for zone in found.zones] == ["scree", "森", "zone 3"]
+    assert {"ground.gpkg", "ground.scree.csv", "ground.zone.csv", "ground.zone_3.csv"} <= set(found.files)
     variables = decks.index_variables(gis / "mine" / "in.site")
     own = [variables[name] for name in ("friction_scree", "rolling_zone", "spacing_zone_3")]
     assert own == ["35", "0.15", "0.5"]
-    angles = site_ground.of_zone(found["zones"][0], site.choices["model"], variables)
+    angles = site_ground.of_zone(found.zones[0], site.choices.model, variables)
     assert angles == pytest.approx(site_ground.of_variables({**variables, "friction": 35, "spacing": 0.6}))
 
 
@@ -260,7 +260,7 @@ def test_the_deck_has_the_values_of_a_run(gis, mine, changed):
     words = [word for name, value in changed.items() for word in ("-var", name, value)]
     log = lmp(folder, *words, "-var", "duration", "0.001")
     site = site_choices.load(folder)
-    variables, model = decks.index_variables(folder / "in.site"), site.choices["model"]
+    variables, model = decks.index_variables(folder / "in.site"), site.choices.model
     d = float(variables["d"])
 
     # 1.5 times the rule's step; on ground closer than 0.4 d, of a zone, too, the rule's
@@ -326,5 +326,5 @@ def test_the_sites_of_a_route_have_the_zones_that_lie_on_them(tmp_path):
     for name, there in (("here.geojson", True), ("far.geojson", False)):
         path = str(tmp_path / name)
         choices = Choices([], "", 5.0, 100.0, None, None, 1800.0, ground=path)
-        found = runs.choices_of(choices, tmp_path, about, 1)["ground"]
-        assert found == {"file": path if there else None, "table": None}
+        found = runs.choices_of(choices, tmp_path, about, 1).ground
+        assert (found.file, found.table) == (path if there else None, None)

@@ -9,6 +9,7 @@ from ..drawing import figures, palettes
 from ..plots import figure_maps, known_reach
 from ..plots.ground import box_of
 from ..sites import site_zones
+from ..sites.site_found import Found
 from ..survey.rasters import crs_name
 from . import ensemble_part, heading, mobility_part
 from .numbers import shown_run
@@ -20,7 +21,7 @@ OPEN = " The last class is open: it holds the few thicker cells, most of them in
 
 def zones_of(data, raster) -> Dict[str, Any]:
     """Polygons of the zones of a site's ground, by name."""
-    zones, path = (data.site.get("found") or {}).get("zones"), heading.site_file(Path(data.folder))
+    zones, path = Found.of(data.site).zones, heading.site_file(Path(data.folder))
     return site_zones.outlines(path.parent, zones, raster) if zones and path else {}
 
 
