@@ -2,6 +2,7 @@
 import re
 import shutil
 import subprocess
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -67,8 +68,8 @@ ROADS = {"one": box(28, 0, 33, 50), "two": MultiPolygon([box(34, 0, 37, 50), box
 def test_forward_is_onto_the_road_at_all_its_edges(tmp_path, name, size):
     """From whichever side a block comes: fix control/line has forward from the left of a line to its right."""
     layers = SimpleNamespace(road=ROADS[name], lines=[])
-    choices = {"release": {"polygon": None}, "road": {"file": None}}
-    lines = of_blocks.edges(choices, layers, SimpleNamespace(**{**vars(START), "sizes": (size, size)}), tmp_path)
+    start = SimpleNamespace(**{**vars(START), "sizes": (size, size)})
+    lines = of_blocks.edges(OfBlocks.of({}), layers, start, tmp_path)
     touched = of_blocks.touched(ROADS[name], size, TERRAIN)
     assert sum(LineString(line.points).length for line in lines) == pytest.approx(touched.boundary.length, abs=1e-3)
     for line in lines:
@@ -156,7 +157,7 @@ def test_the_page_says_what_the_ground_is_where(zoned, monkeypatch):
         assert layers.zones["rough"].equals_exact(Polygon(ROUGH), 1e-3) or layers.zones["rough"].equals(Polygon(ROUGH))
         assert list(layers.zones) == ["rough", "scree 2"] and layers.release.sum() == 50
     assert "0.1 outside of the zones" in (zoned.folder / "again.html").read_text(encoding="utf-8")
-    assert "zones" not in page.how(zoned.site._replace(found={**zoned.site.found, "zones": []}))
+    assert "zones" not in page.how(replace(zoned.site, found=replace(zoned.site.found, zones=())))
 
 
 def test_both_polygons_of_a_road_count(zoned):

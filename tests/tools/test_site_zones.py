@@ -22,6 +22,8 @@ from slope_tools.report import maps_part
 from slope_tools.route import runs
 from slope_tools.route.choices import Choices
 from slope_tools.sites import site_choices, site_warnings, site_zones
+from slope_tools.sites.site_found import Zone
+from slope_tools.sites.site_sections import OfMass
 from slope_tools.studies import site_ground
 from slope_tools.survey import polygons
 from slope_tools.survey.rasters import Raster, read_asc_local, write_asc_local
@@ -168,7 +170,7 @@ def test_a_resistance_that_looks_like_an_angle_is_warned_of_by_its_zone(tmp_path
 
 # --- what changes with the site's values ---
 
-MODEL = {"friction": 30, "field_restitution": 0.1, "spacing": 0.9}
+MODEL = OfMass.of({"model": {"friction": 30, "field_restitution": 0.1, "spacing": 0.9}}).model
 RUN = {"friction": "30", "rolling": "0", "field_e": "0.1", "spacing": "0.9"}
 
 
@@ -184,12 +186,13 @@ RUN = {"friction": "30", "rolling": "0", "field_e": "0.1", "spacing": "0.9"}
     ({"spacing": "0.3", "spacing_a": "0.15"}, {"spacing": 0.15}),
     ({"rolling": "0.1"}, {"rolling": 0.1})])
 def test_values_change_by_the_factor_of_the_sites(changed, now):
-    zone = {"name": "a", "variables": "a", "friction": 35.0, "restitution": 0.3, "spacing": 0.6}
-    found = site_zones.now(zone, MODEL, {**RUN, **changed})
+    values = {"friction": 35.0, "restitution": 0.3, "spacing": 0.6}
+    found = site_zones.now(Zone("a", "a", values, 0.1), MODEL, {**RUN, **changed})
     assert {name: found[name] for name in now} == pytest.approx(now)
-    own = site_zones.now({**zone, "rolling": 0.15}, MODEL, {**RUN, "rolling": "0.1"})
+    rolls = Zone("a", "a", {**values, "rolling": 0.15}, 0.1)
+    own = site_zones.now(rolls, MODEL, {**RUN, "rolling": "0.1"})
     assert own["rolling"] == 0.15       # a factor of 0 has no meaning
-    assert site_zones.now({**zone, "rolling": 0.15}, MODEL, {**RUN, "rolling_a": "0.2"})["rolling"] == 0.2
+    assert site_zones.now(rolls, MODEL, {**RUN, "rolling_a": "0.2"})["rolling"] == 0.2
 
 
 # --- the site ---
@@ -268,12 +271,12 @@ def test_the_deck_has_the_values_of_a_run(gis, mine, changed):
               for pattern in (r"^Stiffness: kn (\S+)", r"^timestep +([0-9]\S*)"))
     rule = 0.25 * (float(variables["density"]) * np.pi / 6 * d ** 3 / kn) ** 0.5
     assert dt == pytest.approx((1.0 if "spacing" in changed else 1.5) * rule, rel=1e-3)
-    for number, zone in enumerate(site.found["zones"], 4):
+    for number, zone in enumerate(site.found.zones, 4):
         now = site_zones.now(zone, model, {**variables, **changed})
         coeff = re.findall(rf"^pair_coeff  1 {number} .*restitution (\S+) friction (\S+) rolling (\S+)$", log, re.M)[-1]
         assert [float(one) for one in coeff] == pytest.approx([now["field_e"], now["friction"], now["rolling"]])
-        if "spacing" in zone:
-            [apart] = re.findall(rf"zone zone_{zone['variables']} {number} (\S+)", log)[-1:]
+        if "spacing" in zone.values:
+            [apart] = re.findall(rf"zone zone_{zone.variables} {number} (\S+)", log)[-1:]
             assert float(apart) == pytest.approx(now["spacing"] * d)
 
 

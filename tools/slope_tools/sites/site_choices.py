@@ -20,7 +20,8 @@ from ..survey import vectors
 from ..survey.crs import as_crs
 from . import site_found
 from .site_found import Found
-from .site_sections import KINDS, OFFSETS, PACKING, RETIRED, C, Choices, Key, OfMass, kind_of, schema, sections, widest
+from .site_sections import (KINDS, OFFSETS, PACKING, RETIRED, C, Choices, Key, OfMass, kind_of, older, schema,
+                            sections, widest)
 
 NAME = "site.yaml"
 VERSION = 1             # of site.yaml, also in its schema
@@ -47,8 +48,8 @@ LATER = (("ground", "file"), ("ground", "table"), ("model", "film"), ("structure
 # keys of section model, and of others, that make the model's balls, cells and stiffness; not what is asked for
 OF_MODEL = (*DERIVED, ("model", "least_speed"), ("model", "least_thick"))
 
-# keys that older versions had, and that have no meaning any more
-DROPPED = {"study": ("sizes",)}
+# keys of study that older versions had, and that have no meaning any more
+DROPPED = ("sizes",)
 
 # sections that `slope study` and the report read when they run, except for files, of which the folder has copies
 READ_LATER = ("project", "road", "study", "known")
@@ -56,46 +57,26 @@ Derived = Mapping[str, Any]     # {"section.key": value} of DERIVED
 K = TypeVar("K", bound=Choices, covariant=True)
 
 
-def has_old_ground(given: Mapping[str, Any]) -> bool:
-    """Whether a file is of an older site, see RETIRED."""
-    model = given.get("model")
-    return isinstance(model, dict) and any(key in model for key in RETIRED)
+def of_now(given: Any) -> Any:
+    """What a file of any version holds, without the keys of older ones (RETIRED, OFFSETS, DROPPED).
 
-
-def without_old_ground(given: Dict[str, Any]) -> Dict[str, Any]:
-    """What a file holds without keys of older sites, and with a spacing that is possible now."""
-    if not has_old_ground(given):
-        return given
-    model = {key: value for key, value in given["model"].items() if key not in RETIRED}
-    if disk.is_number(model.get("spacing")):
-        model["spacing"] = min(model["spacing"], widest())
-    return {**given, "model": model}
-
-
-def without_dropped(given: Any) -> Any:
-    """What a file holds, without the keys that have no meaning any more."""
+    The spacing of the ground's balls is one that is possible now; the balls have as many repeats, and are as heavy
+    together, as those that began on a cubic lattice.
+    """
     if not isinstance(given, dict):
         return given
-    return {name: {key: value for key, value in entries.items() if key not in DROPPED.get(name, ())}
-            if isinstance(entries, dict) else entries for name, entries in given.items()}
-
-
-def has_lattice(given: Mapping[str, Any]) -> bool:
-    """Whether a file is of an older site, see OFFSETS."""
-    study = given.get("study")
-    return isinstance(study, dict) and any(key in study for key in OFFSETS)
-
-
-def without_lattice(given: Dict[str, Any]) -> Dict[str, Any]:
-    """The same without the lattice of older sites: as many repeats, and the ground as heavy as before."""
-    if not has_lattice(given):
-        return given
-    study = {key: value for key, value in given["study"].items() if key not in OFFSETS}
-    moved = sum(len(several) for key in OFFSETS if isinstance(several := given["study"].get(key), list))
-    model = given.get("model")
-    if isinstance(model, dict) and disk.is_number(model.get("density")):
-        model = {**model, "density": round(model["density"] * math.pi / 6 * packing.BULK, 1)}
-    return {**given, **({"model": model} if model else {}), "study": {**study, PACKING: list(range(2, 2 + moved))}}
+    gone, was = {"model": RETIRED, "study": (*OFFSETS, *DROPPED)}, older(given)
+    found = {name: {key: value for key, value in entries.items() if key not in gone.get(name, ())}
+             if isinstance(entries, dict) else entries for name, entries in given.items()}
+    model = found["model"] if isinstance(found.get("model"), dict) else {}
+    if "model" in was and disk.is_number(model.get("spacing")):
+        model["spacing"] = min(model["spacing"], widest())
+    if "study" in was:
+        moved = sum(len(several) for several in was["study"].values() if isinstance(several, list))
+        found["study"][PACKING] = list(range(2, 2 + moved))
+        if disk.is_number(model.get("density")):
+            model["density"] = round(model["density"] * math.pi / 6 * packing.BULK, 1)
+    return found
 
 
 def chance(variables: Mapping[str, str]) -> str:
@@ -200,10 +181,9 @@ def load_kind(folder: Path, kind: Type[C]) -> Folder[C]:
     if kind_of(content) != kind.KIND:
         raise SlopeError(folder, f"must be a site of {kind.KIND or 'a mass'} here",
                          f"one of {kind_of(content) or 'a mass'}")
-    given = without_dropped(content)
-    check(without_lattice(without_old_ground(given)) if isinstance(given, dict) else given, str(path))
+    check(of_now(content), str(path))
     schemas.check(content, site_found.SCHEMA, path, WHAT)
-    written, place = kind.of(given), real(folder)
+    written, place = kind.of(content), real(folder)
     return Folder(folder, with_files(written, lambda name: os.path.normpath(place / name)), written,
                   Found.of(content), content)
 

@@ -13,25 +13,15 @@ def renewed(choices: C, folder: Path, spacing_given: bool, tell: Callable[[str],
     spacing_given: whether another spacing of the ground's balls replaces theirs. Raises SlopeError where theirs is too
     wide for scattered balls.
     """
-    return with_packing(with_ground(choices, folder, spacing_given, tell), folder, tell)
-
-
-def with_packing(choices: C, folder: Path, tell: Callable[[str], Any]) -> C:
-    if not choices.older.get("study"):
-        return choices
-    tell(f"{folder / site_choices.NAME}: {', '.join(OFFSETS)} of an older version no longer count: the balls begin in "
-         "a disordered packing, not on a cubic lattice")
-    return choices.of(site_choices.without_lattice(choices.entries()))
-
-
-def with_ground(choices: C, folder: Path, spacing_given: bool, tell: Callable[[str], Any]) -> C:
-    if not choices.older.get("model"):
-        return choices
-    spacing, most = choices.model.spacing, widest()
-    if spacing > most and not spacing_given:
-        raise SlopeError(f"{folder / site_choices.NAME}: model.spacing", f"must be <= {most:g}: the ground of an older "
-                         "version was a plan grid, now it is scattered balls; give --spacing 0.9, the default, or keep "
-                         "the folder as it is: its study still runs", f"{spacing:g}")
-    tell(f"{folder / site_choices.NAME}: {' and '.join(RETIRED)} of an older version no longer count: the ground is "
-         "scattered balls as large as those of the soil")
-    return choices.of(site_choices.without_old_ground(choices.entries()))
+    path, most = folder / site_choices.NAME, widest()
+    if "model" in choices.older:
+        if choices.model.spacing > most and not spacing_given:
+            raise SlopeError(f"{path}: model.spacing", f"must be <= {most:g}: the ground of an older version was a "
+                             "plan grid, now it is scattered balls; give --spacing 0.9, the default, or keep the "
+                             "folder as it is: its study still runs", f"{choices.model.spacing:g}")
+        tell(f"{path}: {' and '.join(RETIRED)} of an older version no longer count: the ground is scattered balls as "
+             "large as those of the soil")
+    if "study" in choices.older:
+        tell(f"{path}: {', '.join(OFFSETS)} of an older version no longer count: the balls begin in a disordered "
+             "packing, not on a cubic lattice")
+    return choices.of(site_choices.of_now(choices.entries())) if choices.older else choices

@@ -317,7 +317,7 @@ def widest() -> float:
 
 def older(given: Mapping[str, Any]) -> Dict[str, Dict[str, Any]]:
     """The keys of older sites in what a file holds: all of RETIRED where there is one of them."""
-    model, study = (given.get(name) or {} for name in ("model", "study"))
+    model, study = (one if isinstance(one := given.get(name), dict) else {} for name in ("model", "study"))
     ground = {key: model.get(key) for key in RETIRED if any(one in model for one in RETIRED)}
     lattice = {key: study[key] for key in OFFSETS if key in study}
     return {name: one for name, one in (("model", ground), ("study", lattice)) if one}
