@@ -5,10 +5,13 @@ from collections import abc
 from typing import ClassVar, Mapping, Tuple, Union, get_args, get_origin, get_type_hints
 
 import pytest
+import yaml
 
 from run_helpers import TOOLS
 
-from slope_tools.sites import site_sections
+from slope_tools.errors import SlopeError
+from slope_tools.sites import site_choices, site_sections
+from slope_tools.sites.site_found import Body, Found, Origin, SlipBody, Zone
 from slope_tools.sites.site_sections import KINDS, Choices, OfBlocks, OfMass, attribute, sections
 
 TYPES = {"number": float, "integer": int, "string": str, "null": type(None), "boolean": bool}
@@ -90,3 +93,28 @@ def test_no_signature_takes_choices_for_a_mapping():
                         wrong.append(f"{path.name}: {node.name}: {said or 'none'}")
     assert wrong == []
     assert issubclass(OfMass, Choices) and site_sections.schema()["properties"].keys() > {"road", "model"}
+
+
+def test_what_was_found_lacks_what_older_sites_do_not_have():
+    assert Found.of({"found": None}) == Found.of({}) == Found()
+    made = Found.of({"found": {
+        "files": ["a"], "body": {"volume": 5.0}, "trial": {"balls": 3}, "zones": None, "roads": None,
+        "origin": {"east": 1}, "bodies": {2: {"volume_m3": 7.0}}}})
+    assert made.files == ("a",) and made.body == Body(5.0) and made.trial is None and made.origin == Origin(1, 0.0)
+    assert made.bodies == {"2": SlipBody(7.0)} and made.zones == made.roads == ()
+    zone = {"name": "n", "variables": "v", "friction": 35, "area_m2": 9.0, "share": 0.2}
+    assert Found.of({"found": {"zones": [zone]}}).zones == (Zone("n", "v", {"friction": 35}, 0.2),)
+
+
+@pytest.mark.parametrize("found, where", [
+    ({"files": 3}, "files"), ({"roads": "x"}, "roads"), ({"zones": [{}]}, "zones: first value"),
+    ({"body": [1]}, "body"), ({"bodies": {"1": {}}}, "bodies: 1"), ({"sources_sha256": "x"}, "sources_sha256"),
+    ({"trial": 4}, "trial"), ({"origin": {"east": "x"}}, "origin: east"), ({"derived": []}, "derived"),
+    ({"blocks": {"down": 1}}, "blocks: down")])
+def test_what_was_found_is_checked_when_it_is_read(tmp_path, found, where):
+    """It is not to be changed; who did gets a line, whatever reads it."""
+    about = {"slope_site": 1, "terrain": {"files": ["dem.tif"]}, "release": {}, "found": found}
+    (tmp_path / "site.yaml").write_text(yaml.safe_dump(about))
+    for read in (site_choices.load, site_choices.found):
+        with pytest.raises(SlopeError, match=f"site.yaml: must be a site.yaml of `slope site`: found: {where}: must"):
+            read(tmp_path)

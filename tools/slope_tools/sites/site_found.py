@@ -2,14 +2,16 @@
 from dataclasses import dataclass, field, fields
 from typing import Any, Dict, Mapping, Optional, Tuple
 
-from ..schemas import NUMBER, OBJECT, TEXT, listed, mapping
+from ..schemas import NUMBER, TEXT, listed, mapping, named
 from .site_budget import Trial
 from .site_sections import Numbers, Texts, frozen
 
 PART = mapping({}, null=True)
+BODIES = {**named(mapping({"volume_m3": NUMBER})), "type": ["object", "null"]}
+ZONES = listed(mapping({"name": TEXT, "variables": TEXT}, share=NUMBER), null=True)
 SCHEMA = mapping({}, found=mapping(
-    {}, null=True, **dict.fromkeys(("bodies", "derived", "sources_sha256", "trial", "trial_of"), PART),
-    files=listed(TEXT, null=True), roads=listed(TEXT, null=True), zones=listed(OBJECT, null=True),
+    {}, null=True, **dict.fromkeys(("derived", "sources_sha256", "trial", "trial_of"), PART),
+    files=listed(TEXT, null=True), roads=listed(TEXT, null=True), bodies=BODIES, zones=ZONES,
     body=mapping({}, null=True, volume=NUMBER), origin=mapping({}, null=True, east=NUMBER, north=NUMBER),
     blocks=mapping({}, null=True, down=listed(NUMBER))))
 
@@ -70,8 +72,9 @@ class Found:
         about = given.get("found") or {}
         body, trial = (about.get(name) or {} for name in ("body", "trial"))
         return cls(**{
-            **taken(cls, about), "origin": Origin(**(about.get("origin") or {})),
-            "zones": tuple(map(zone, about.get("zones") or ())), "body": Body(**taken(Body, body)) if body else None,
+            **taken(cls, about), "origin": Origin(**taken(Origin, about.get("origin") or {})),
+            "zones": tuple(map(zone, about.get("zones") or ())),
+            "body": Body(**taken(Body, body)) if "volume" in body else None,
             "bodies": {str(rank): SlipBody(**taken(SlipBody, one))
                        for rank, one in (about.get("bodies") or {}).items()},
             "trial": Trial(**trial) if set(trial) == set(Trial._fields) else None,
@@ -85,4 +88,4 @@ def taken(kind: Any, about: Mapping[str, Any]) -> Dict[str, Any]:
 
 def zone(about: Mapping[str, Any]) -> Zone:
     own = {key: value for key, value in about.items() if key not in ("name", "variables", "area_m2", "share")}
-    return Zone(about["name"], about["variables"], own, about["share"])
+    return Zone(about["name"], about["variables"], own, about.get("share", 0.0))
