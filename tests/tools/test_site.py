@@ -753,7 +753,7 @@ def test_a_site_that_could_not_be_made_keeps_its_choices(gis, told):
     (mine / "site.yaml").write_text((mine / "site.yaml").read_text().replace("depth: 500", "depth: 5"))
     status, out, err = told(mine.name)
     assert status == 0 and "then: tools/slope study 'Damm Fluchth\u00f6rn'" in out, err
-    assert "failed" not in site_choices.found(mine)
+    assert site_choices.found(mine).failed is None
     status, out, err = told("--depth", "4", *given)
     assert status == 2 and "`slope site 'Damm Fluchth\u00f6rn'` rebuilds this one" in err
     shutil.rmtree(mine)
