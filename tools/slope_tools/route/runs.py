@@ -55,7 +55,7 @@ def make_site(choices: Choices, folder: Path, about: Mapping[str, Any], number: 
     site_study.check(made)
     now = made.choices.changed(later(choices, about))
     if now != made.choices:
-        disk.write(place / site_choices.NAME, site_choices.text(now, made.content["found"], place))
+        disk.write(place / site_choices.NAME, site_choices.text(now, made.content.get("found") or {}, place))
     return place
 
 
