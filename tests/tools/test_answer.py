@@ -10,6 +10,7 @@ import made_study
 from slope_tools import disk
 from slope_tools.commands import study
 from slope_tools.sites import site_choices
+from slope_tools.sites.site_sections import OfMass
 from slope_tools.statistics import answer, size_family
 from slope_tools.statistics.answer import AtRoad, Code, Ensemble, Kind, Paper, Road, Source, Withheld
 from slope_tools.statistics.withheld import Kind as Rule
@@ -234,7 +235,7 @@ def test_an_older_result_is_not_merged_where_all_runs_failed(tmp_path, monkeypat
     monkeypatch.setattr(study, "of_ensemble", lambda *_: None)
     monkeypatch.setattr(study, "write_report", lambda *_, **__: None)
     monkeypatch.setattr(study.answered, "of_both", lambda *several: calls.append(several))
-    asked, site = study.Request(deck=tmp_path), site_choices.Site(tmp_path, {}, {}, {}, {})
+    asked, site = study.Request(deck=tmp_path), site_choices.unread(OfMass.of({}), tmp_path)
     if fails:
         assert isinstance(study.run_both(asked, site, 4).failed, study.RunsFailed)
     else:

@@ -22,6 +22,7 @@ from slope_tools.case import decks
 from slope_tools.deposits import road_sides
 from slope_tools.plots import site_map
 from slope_tools.sites import site_choices, site_deck
+from slope_tools.sites.site_sections import OfBlocks, OfMass
 from slope_tools.statistics import withheld
 from slope_tools.survey.rasters import read_asc_local
 
@@ -72,7 +73,7 @@ def made(gis):
     assert cli.main(["study", "tmp", "--jobs", "2"]) == 0
     patch.undo()
     from slope_tools.blocks import study
-    found = site_choices.load(gis / "tmp", kinds.BLOCKS)
+    found = site_choices.load_kind(gis / "tmp", OfBlocks)
     return SimpleNamespace(folder=gis / "tmp", site=found, known=study.read(found, study.planned(found)))
 
 
@@ -100,20 +101,20 @@ def test_the_deck_has_no_list_of_blocks_with_each_other(made):
 def test_a_speed_is_down_the_fall_line(told, gis):
     assert told("site", *WORDS, "--speed", "5", "--line", "calm.geojson", "--rolling", "5", "-o", "fast")[0] == 0
     assert "large rolling" in (gis / "fast" / "warnings.yaml").read_text()
-    found = site_choices.found(gis / "fast")["blocks"]
-    assert found["down"] == pytest.approx([-np.cos(np.radians(ANGLE)), 0, -np.sin(np.radians(ANGLE))], abs=1e-3)
+    down = site_choices.found(gis / "fast").down
+    assert down == pytest.approx([-np.cos(np.radians(ANGLE)), 0, -np.sin(np.radians(ANGLE))], abs=1e-3)
     assert decks.index_variables(gis / "fast" / site_deck.NAME)["start"] == "5"
     deck = (gis / "fast" / site_deck.NAME).read_text()
     (gis / "fast" / "short").write_text(deck.split("variable    steps")[0] + "run 0\n")
     subprocess.run([LMP, "-in", "short", "-log", "none", "-screen", "none"], cwd=gis / "fast", check=True)
     [(heads, rows)] = runs.dumps.frames(gis / "fast" / "site.00000000.dump")
     speeds = rows[:, heads.index("vx"):heads.index("vx") + 3]
-    assert speeds == pytest.approx(np.broadcast_to(5 * np.array(found["down"]), speeds.shape), abs=1e-4)
+    assert speeds == pytest.approx(np.broadcast_to(5 * np.array(down), speeds.shape), abs=1e-4)
 
 
 def test_a_mass_knows_nothing_of_it(told, gis):
     """Its site.yaml has no kind, and its commands refuse a site of blocks."""
-    assert "kind" not in site_choices.complete({}) and "blocks" not in site_choices.complete({})
+    assert not {"kind", "blocks"} & OfMass.of({}).entries().keys()
     with pytest.raises(kinds.SlopeError, match="must be a site of a mass here, got one of blocks"):
         assert told("site", *WORDS, "-o", "other")[0] == 0
         site_choices.load(gis / "other")

@@ -2,6 +2,7 @@
 import re
 import shutil
 import subprocess
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -16,10 +17,11 @@ from test_site import write_layer
 from test_site_zones import write_zones
 from tiny_collapse import LMP
 
-from slope_tools.blocks import kinds, page, runs, site as of_blocks, study
+from slope_tools.blocks import page, runs, site as of_blocks, study
 from slope_tools.case import decks
 from slope_tools.plots import figure_maps, site_map
 from slope_tools.sites import site_choices, site_deck, site_zones
+from slope_tools.sites.site_sections import OfBlocks
 from slope_tools.survey.rasters import Raster
 from slope_tools.survey.resampling import sample
 from slope_tools.tables.structures import table_of
@@ -66,8 +68,8 @@ ROADS = {"one": box(28, 0, 33, 50), "two": MultiPolygon([box(34, 0, 37, 50), box
 def test_forward_is_onto_the_road_at_all_its_edges(tmp_path, name, size):
     """From whichever side a block comes: fix control/line has forward from the left of a line to its right."""
     layers = SimpleNamespace(road=ROADS[name], lines=[])
-    choices = {"release": {"polygon": None}, "road": {"file": None}}
-    lines = of_blocks.edges(choices, layers, SimpleNamespace(**{**vars(START), "sizes": (size, size)}), tmp_path)
+    start = SimpleNamespace(**{**vars(START), "sizes": (size, size)})
+    lines = of_blocks.edges(OfBlocks.of({}), layers, start, tmp_path)
     touched = of_blocks.touched(ROADS[name], size, TERRAIN)
     assert sum(LineString(line.points).length for line in lines) == pytest.approx(touched.boundary.length, abs=1e-3)
     for line in lines:
@@ -111,18 +113,18 @@ def zoned(tmp_path_factory):
     (folder / "mine" / "site.yaml").write_text(yaml.safe_dump(about))
     assert cli.main(["site", "mine"]) == 0 and cli.main(["study", "mine", "--jobs", "2"]) == 0
     patch.undo()
-    found = site_choices.load(folder / "mine", kinds.BLOCKS)
+    found = site_choices.load_kind(folder / "mine", OfBlocks)
     return SimpleNamespace(folder=folder / "mine", site=found, known=study.read(found, study.planned(found)))
 
 
 def test_the_deck_has_the_coefficients_of_the_zones(zoned):
     variables = {**decks.index_variables(zoned.folder / site_deck.NAME), "rolling": "0.05"}
     log = (zoned.known.runs[0].folder / "log.lammps").read_text()
-    for number, zone in enumerate(zoned.site.found["zones"], of_blocks.FIELD + 1):
-        now = site_zones.now(zone, zoned.site.choices["model"], variables)
+    for number, zone in enumerate(zoned.site.found.zones, of_blocks.FIELD + 1):
+        now = site_zones.now(zone, zoned.site.choices.model, variables)
         coeff = re.findall(rf"^pair_coeff  1 {number} .*restitution (\S+) friction (\S+) rolling (\S+)$", log, re.M)[-1]
         assert [float(one) for one in coeff] == pytest.approx([now["field_e"], now["friction"], now["rolling"]])
-    assert [zone["name"] for zone in zoned.site.found["zones"]] == ["rough", "scree 2"]
+    assert [zone.name for zone in zoned.site.found.zones] == ["rough", "scree 2"]
     assert "zone zone_rough 4 0.4 " in log and re.search(r"zone zone_scree_2 5$", log, re.M)
 
 
@@ -155,7 +157,7 @@ def test_the_page_says_what_the_ground_is_where(zoned, monkeypatch):
         assert layers.zones["rough"].equals_exact(Polygon(ROUGH), 1e-3) or layers.zones["rough"].equals(Polygon(ROUGH))
         assert list(layers.zones) == ["rough", "scree 2"] and layers.release.sum() == 50
     assert "0.1 outside of the zones" in (zoned.folder / "again.html").read_text(encoding="utf-8")
-    assert "zones" not in page.how(zoned.site._replace(found={**zoned.site.found, "zones": []}))
+    assert "zones" not in page.how(replace(zoned.site, found=replace(zoned.site.found, zones=())))
 
 
 def test_both_polygons_of_a_road_count(zoned):

@@ -19,6 +19,7 @@ from slope_tools.commands import site as site_command
 from slope_tools.options import declare
 from slope_tools.runs import dependencies, jobs
 from slope_tools.sites import site_choices
+from slope_tools.sites.site_sections import KINDS, OfMass, sections
 
 # --- options of the commands that make runs ---
 
@@ -62,8 +63,8 @@ LATER = {("project", "name"), ("project", "client"), ("project", "author"), ("ro
          *(("road", key) for key in ("width", "from", "blocked", "lane", "clearing", "loosening")),
          ("study", "rolling"), ("study", "spacing"), ("study", "points"), ("known", "set"), ("known", "confined"),
          ("study", "packing"), ("study", "fine"), ("study", "largest_restitution")}
-KEYS = [(section, key) for section, about in site_choices.sections() for key in about["properties"]]
-OF_BLOCKS = [(section, key) for section, about in site_choices.sections("blocks") for key in about["properties"]]
+KEYS = [(section, key) for section, about in sections() for key in about["properties"]]
+OF_BLOCKS = [(section, key) for section, about in sections("blocks") for key in about["properties"]]
 NOT_FILES = {("terrain", "crs"), ("terrain", "assign_crs"), ("terrain", "z_unit"), ("release", "shape"),
              ("release", "scar_is"), ("project", "name"), ("project", "client"), ("project", "author"),
              ("known", "set"), ("known", "confined"), ("study", "fine")}
@@ -79,7 +80,7 @@ def test_every_file_of_a_site_is_known():
     def is_text(about):
         kinds = about.get("items", about).get("type", [])
         return "string" in kinds or any(isinstance(one, str) for one in about.get("enum", []))
-    texts = {(section, key) for section, about in site_choices.sections()
+    texts = {(section, key) for section, about in sections()
              for key, entry in about["properties"].items() if is_text(entry)}
     assert texts - NOT_FILES == set(site_choices.FILES)
 
@@ -87,11 +88,11 @@ def test_every_file_of_a_site_is_known():
 @pytest.mark.parametrize("kind, section, key", [*(("", *one) for one in KEYS),
                                                 *(("blocks", *one) for one in OF_BLOCKS)])
 def test_a_choice_of_a_site_counts(tmp_path, kind, section, key):
-    choices = site_choices.complete({"kind": kind, "terrain": {"files": [str(tmp_path / "dem.asc")]}})
-    before = site_choices.Site.of(choices, tmp_path).fingerprint()
-    several = isinstance(choices[section].get(key), list)
-    choices[section][key] = [str(tmp_path / "other")] if several else str(tmp_path / "other")
-    assert (site_choices.Site.of(choices, tmp_path).fingerprint() == before) == ((section, key) in LATER)
+    choices = KINDS[kind].of({"terrain": {"files": [str(tmp_path / "dem.asc")]}})
+    before = site_choices.unread(choices, tmp_path).fingerprint()
+    several = isinstance(choices.value(section, key), tuple)
+    choices = choices.changed({(section, key): [str(tmp_path / "other")] if several else str(tmp_path / "other")})
+    assert (site_choices.unread(choices, tmp_path).fingerprint() == before) == ((section, key) in LATER)
 
 
 @pytest.mark.parametrize("section, key", site_choices.FILES)
@@ -100,12 +101,12 @@ def test_a_file_of_a_site_counts_by_what_is_in_it(tmp_path, section, key, end):
     source = tmp_path / "source.x"
     changed = source.with_suffix(end) if end else source
     source.write_text("1")
-    choices = site_choices.complete({})
-    choices[section][key] = [str(source)] if isinstance(choices[section].get(key, []), list) else str(source)
+    several = isinstance(OfMass.of({}).value(section, key), tuple)
+    choices = OfMass.of({}).changed({(section, key): [str(source)] if several else str(source)})
     changed.write_text("1")
-    before = site_choices.Site.of(choices, tmp_path).sources()
+    before = site_choices.unread(choices, tmp_path).sources()
     changed.write_text("2")
-    assert len(before) == 1 and site_choices.Site.of(choices, tmp_path).sources() != before
+    assert len(before) == 1 and site_choices.unread(choices, tmp_path).sources() != before
 
 
 # --- results that are computed each time: their yaml says of what ---

@@ -1,4 +1,6 @@
 """tools/slope study SITE: by the paper's method, and weighted by known events, for masses of all sizes."""
+from dataclasses import asdict
+
 import numpy as np
 import pytest
 
@@ -12,6 +14,7 @@ from slope_tools.ensembles import known_events, known_study
 from slope_tools.errors import SlopeError
 from slope_tools.mobility import body, known
 from slope_tools.sites import site_budget, site_choices
+from slope_tools.sites.site_sections import Known
 from slope_tools.studies import results, site_study
 from slope_tools.survey import rasters
 
@@ -94,9 +97,9 @@ def test_other_grounds_at_both_ends_of_rolling(mine, capsys, monkeypatch):  # no
     assert sum("_d_" in line for line in out.splitlines()) == 1 and "18 runs, 0 of them finished" in out
     status, out, _ = study(capsys, monkeypatch, "mine --paper --fine no")
     assert status == 0 and "_d_" not in out and "17 runs, 0 of them finished" in out
-    choices = site_choices.read(mine)
-    choices["study"].update(spacing=[0.5, 0.9], rolling=[0.2])      # its own ground is none of the others
-    assert site_choices.other_grounds(choices) == [(0.5, 0.2)]
+    choices = site_choices.load(mine).choices
+    own = choices.changed({("study", "spacing"): [0.5, 0.9], ("study", "rolling"): [0.2]})
+    assert own.other_grounds == [(0.5, 0.2)]        # its own ground is none of the others
 
 
 @pytest.mark.parametrize("words, line", [
@@ -128,7 +131,7 @@ def test_known_of_site_yaml_reaches_the_study(mine, capsys, monkeypatch):  # noq
         found = known_events.mobility_of(condition, mine, mine)
         assert found.law.path == path and found.in_range and (condition.found.strict is not None) == named
         assert asked.about() == {"set": None if given == "null" else given, "left_out": [], "confined": "unknown"}
-        kept = results.Questions({}, {}, (), known=site_choices.load(mine).choices["known"]).among
+        kept = results.Questions({}, {}, (), known=asdict(site_choices.load(mine).choices.known)).among
         assert kept == {"set": asked.about()["set"], "confined": "unknown"}
         assert known.of_about(kept).row == asked.row
     with pytest.raises(SlopeError, match="--known: must be a set that covers the mass"):
@@ -136,19 +139,19 @@ def test_known_of_site_yaml_reaches_the_study(mine, capsys, monkeypatch):  # noq
 
 
 def test_the_estimate_is_of_the_study_that_is_made(large):
-    choices = site_choices.read(large)
-    assert site_choices.found(large)["study"]["runs"] == 18 + choices["study"]["points"] == 82
+    choices = site_choices.load(large).choices
+    assert site_choices.load(large).content["found"]["study"]["runs"] == 18 + choices.study.points == 82
     plan = site_budget.plan(choices)
     assert plan.runs == 82 and not plan.half_step and "64 runs weighted by known events" in plan.text
-    choices["study"]["points"] = 0
+    choices = choices.changed({("study", "points"): 0})
     plan = site_budget.plan(choices)
     assert plan.runs == 17 and not plan.half_step       # no road: nothing to compare
-    assert site_budget.plan({**choices, "road": {**choices["road"], "file": "road.csv"}}).half_step
+    assert site_budget.plan(choices.changed({("road", "file"): "road.csv"})).half_step
     assert plan.text == ("17 runs: 3 rolling resistances x 3 packings, 4 on other grounds, 3 with the largest "
                          "restitution, 1 with balls of 1/2 of the diameter")
-    assert site_budget.plan({**choices, "study": {**choices["study"], "spacing": []}}).runs == 13
-    assert site_budget.plan({**choices, "study": {**choices["study"], "fine": False}}).runs == 16
-    assert site_budget.plan({**choices, "study": {**choices["study"], "largest_restitution": None}}).runs == 14
+    assert site_budget.plan(choices.changed({("study", "spacing"): []})).runs == 13
+    assert site_budget.plan(choices.changed({("study", "fine"): False})).runs == 16
+    assert site_budget.plan(choices.changed({("study", "largest_restitution"): None})).runs == 14
 
 
 def test_the_method_is_in_the_results(mine, monkeypatch, capsys):  # noqa: F811
@@ -182,6 +185,6 @@ def test_a_site_of_a_mass_on_top_of_the_terrain(large, inside):  # noqa: F811
     text = (top / "site.yaml").read_text()
     assert "confined: 'no'" in text and "set: rockfalls" in text
     (top / "site.yaml").write_text(text.replace("confined: 'no'", "confined: yes"))
-    assert site_choices.read(top)["known"] == {"set": "rockfalls", "confined": "yes"}
+    assert site_choices.load(top).choices.known == Known("rockfalls", "yes")
     inside("top --name again")
     assert rasters.read_asc_local(top / "terrain.asc").z == pytest.approx(before.z, abs=1e-6)      # once, not twice

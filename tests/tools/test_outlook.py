@@ -43,13 +43,14 @@ def test_where_the_terrain_ends_and_what_is_to_be_added(inside, gis):  # noqa: F
 
 def test_balls_that_show_what_smaller_ones_bring(mine):  # noqa: F811
     """As many as it asks for make sixteen over the thickness of the body."""
-    choices, found = site_choices.read(mine), site_choices.found(mine)
+    choices, found = site_choices.load(mine).choices, site_choices.found(mine)
     thick, balls = re.fullmatch(r"the finest balls are (\S+) over .* \(--balls (\d+)\)", outlook.coarse(choices, found)
                                 ).groups()
-    assert float(thick) == pytest.approx(2 * found["body"]["mean_depth"] / choices["balls"]["diameter"], rel=0.02)
-    choices["balls"]["diameter"] *= (found["balls"] / int(balls)) ** (1 / 3) / 1.02
+    assert float(thick) == pytest.approx(2 * found.body.mean_depth / choices.balls.diameter, rel=0.02)
+    d = choices.balls.diameter * (found.balls / int(balls)) ** (1 / 3) / 1.02
+    choices = choices.changed({("balls", "diameter"): d})
     assert outlook.coarse(choices, found) is None
-    choices["study"]["fine"] = "no"
+    choices = choices.changed({("study", "fine"): "no"})
     assert outlook.coarse(choices, found).startswith("the finest balls are 8")
 
 
@@ -93,13 +94,13 @@ def test_a_coarse_elevation_model(inside, gis):  # noqa: F811
 
 
 def test_the_disk_of_a_study_grows_with_balls_and_runs(mine):  # noqa: F811
-    choices, found = site_choices.read(mine), site_choices.found(mine)
+    choices, found = site_choices.load(mine).choices, site_choices.found(mine)
     whole = site_disk.study(mine, choices, found)
-    choices["study"]["points"] = 0
+    choices = choices.changed({("study", "points"): 0})
     paper = site_disk.study(mine, choices, found)
-    choices["study"]["fine"] = "no"
+    choices = choices.changed({("study", "fine"): "no"})
     without = site_disk.study(mine, choices, found)
     assert whole > 3 * paper > 3 * without
-    choices["balls"]["diameter"] /= 2
+    choices = choices.changed({("balls", "diameter"): choices.balls.diameter / 2})
     assert 3 < (site_disk.study(mine, choices, found) - site_disk.PAGES) / (without - site_disk.PAGES) < 8
     assert site_disk.text(1.53e9) == "1.53 GB" and site_disk.text(2.931e8) == "293 MB"

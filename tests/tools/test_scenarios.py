@@ -69,10 +69,10 @@ def test_a_scenario_is_a_whole_site_with_the_balls_of_its_own(here, capsys, fast
     assert {name: half[name] for name in KEPT} == {name: mine[name] for name in KEPT}
     assert float(half["speed"]) == pytest.approx(faster * float(mine["speed"]), rel=0.05)
     assert float(half["thick"]) == float(mine["thick"]) > 0
-    choices = site_choices.read(Path("mine/scenarios/half"))
-    assert choices["study"]["packing"] == [2, 5] and choices["study"]["rolling"] == [0.02, 0.08]
-    assert site_choices.found(Path("mine/scenarios/half"))["body"]["volume"] == pytest.approx(800, rel=0.02)
-    assert choices["project"]["name"] == "mine, half"
+    choices = site_choices.load(Path("mine/scenarios/half")).choices
+    assert choices.study.packing == (2, 5) and choices.study.rolling == (0.02, 0.08)
+    assert site_choices.found(Path("mine/scenarios/half")).body.volume == pytest.approx(800, rel=0.02)
+    assert choices.project.name == "mine, half"
     assert before == ((Path("mine") / "site.yaml").read_bytes(), sorted(
         path.name for path in Path("mine").iterdir() if path.name != "scenarios"))
     # a thicker one
@@ -95,12 +95,12 @@ def test_it_equals_a_site_made_by_hand_with_the_same_values(here, capsys, words)
     given = {"--terrain": "dem.tif", "--release": "release.geojson", "--road": "road.geojson"}
     given.update({name: value for name, value in zip(words[::2], words[1::2]) if name in given})
     more = [word for name, value in zip(words[::2], words[1::2]) if name not in given for word in (name, value)]
-    mine = site_choices.read(Path("mine"))
-    size = [] if {"--volume", "--depth"} & {*words} else ["--depth", f"{mine['release']['depth']:g}"]
-    assert cli.main(["site", *[word for pair in given.items() for word in pair], "--shape", mine["release"]["shape"],
-                     *size, *more, "--diameter", repr(mine["balls"]["diameter"]), "-o", "hand"]) == 0
-    model = site_choices.read(other)["model"]
-    edit(Path("hand"), "model", **{key: model[key] for key in (
+    mine = site_choices.load(Path("mine")).choices
+    size = [] if {"--volume", "--depth"} & {*words} else ["--depth", f"{mine.release.depth:g}"]
+    assert cli.main(["site", *[word for pair in given.items() for word in pair], "--shape", mine.release.shape,
+                     *size, *more, "--diameter", repr(mine.balls.diameter), "-o", "hand"]) == 0
+    model = site_choices.load(other).choices.model
+    edit(Path("hand"), "model", **{key: getattr(model, key) for key in (
         "cell", "duration", "film", "least_speed", "least_thick")})
     edit(Path("hand"), "study", packing=[2, 5], rolling=[0.02, 0.08])
     assert cli.main(["site", "hand"]) == 0

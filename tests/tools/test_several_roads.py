@@ -72,7 +72,7 @@ def about_in(folder):
 def test_each_road_has_the_numbers_of_a_site_with_it_alone(done, tmp_path, monkeypatch):
     folder, said, _ = done
     mine = folder / "mine"
-    assert site_choices.found(mine)["roads"] == ["far", "road", "near"]
+    assert site_choices.found(mine).roads == ("far", "road", "near")
     assert "far.road.csv: 1 polygon" in said and "near.road.csv" in said
     monkeypatch.setattr(study_command, "write_report", lambda *_, **__: None)
     with open(mine / "roads.csv", encoding="utf-8", newline="") as file:
@@ -225,8 +225,8 @@ def test_roads_of_one_name_and_of_a_layer(told, gis):  # noqa: F811
     assert status == 0, err
     site = site_choices.load(gis / "mine")
     assert site_roads.names(site) == ["Old_road", "Route_4", "Route_4_2", "国道4号"]
-    assert site.choices["road"]["file"].endswith("two.geojson")
-    assert len(site.choices["road"]["others"]) == 1 and "Route_4_2.road.csv: 1 line of 65 m, 2 m wide" in out
+    assert site.choices.road.file.endswith("two.geojson")
+    assert len(site.choices.road.others) == 1 and "Route_4_2.road.csv: 1 line of 65 m, 2 m wide" in out
     status, out, err = told("mine", "--road", "road.geojson")
     assert status == 2 and "--road-width" in err        # it is a polygon
     edited = yaml.safe_load((gis / "mine" / "site.yaml").read_text())

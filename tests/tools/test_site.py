@@ -26,6 +26,7 @@ from slope_tools.deposits import volume_files
 from slope_tools.ensembles import farther
 from slope_tools.releases import release_chart
 from slope_tools.sites import site_budget, site_choices, site_deck, site_warnings
+from slope_tools.sites.site_sections import OfMass, sections
 from slope_tools.sites.site import numbers as site_numbers
 from slope_tools.errors import SlopeError
 from slope_tools.plots import site_map
@@ -183,9 +184,9 @@ def test_two_commands_lead_from_gis_files_to_a_report(done):
     assert (mine / "report.mp4").exists() == bool(shutil.which("ffmpeg"))
     assert not list(folder.glob(".mine*"))
     assert str(folder) not in (mine / "release.yaml").read_text() + (mine / "site.yaml").read_text()
-    about = site_choices.read(mine)
-    assert about["project"]["author"] == "A. N. Engineer" and about["balls"]["number"] == BALLS
-    assert f"{round(site_choices.found(mine)['balls'])}" in first.replace(",", "")
+    about = site_choices.load(mine).choices
+    assert about.project.author == "A. N. Engineer" and about.balls.number == BALLS
+    assert f"{round(site_choices.found(mine).balls)}" in first.replace(",", "")
 
 
 def test_both_studies_give_one_number(done, tmp_path, monkeypatch, capsys, fitted_once):
@@ -258,7 +259,7 @@ def test_the_page_of_a_site_and_its_scenarios(done, tmp_path):
     made = inside(tmp_path, "report", "mine", "--no-film")
     assert made.returncode == 0 and "mine/scenarios.html: the site and its 1 scenarios" in made.stdout, made.stderr
     page = (mine / "scenarios.html").read_text(encoding="utf-8")
-    volume = digits.rounded(site_choices.found(mine)["body"]["volume"], 4)
+    volume = digits.rounded(site_choices.found(mine).body.volume, 4)
     for words in ("not studied as it is", "volume 800", ">small<", f">{volume}<", "<li>small: ", "data:image/png",
                   "Outlines of the deposits"):
         assert words in page, words
@@ -399,7 +400,7 @@ def test_the_folder_is_made_anew_from_its_file(done, tmp_path):
     assert again.returncode == 0, again.stderr
     variables = decks.index_variables(mine / "in.site")
     assert variables["friction"] == "25"
-    volume = site_choices.found(mine)["body"]["volume"]
+    volume = site_choices.found(mine).body.volume
     assert 0.6 * 6 / np.pi * volume / float(variables["d"]) ** 3 == pytest.approx(300, rel=0.02)
 
     # runs of other values stay, and are not mixed with those of these
@@ -459,8 +460,8 @@ def test_an_earthquake_sets_the_body_off(gis):
     assert "ground/motion ${motion} scale ${scale}" in deck and "fix         drag" in deck
     variables = decks.index_variables(gis / "mine" / "in.site")
     assert float(variables["peak_friction"]) >= 33 and variables["shaking"] == "3.98"
-    found = site_choices.found(gis / "mine")["trial"]
-    assert found["rest"] > 0 and found["balls"] > 40
+    found = site_choices.found(gis / "mine").trial
+    assert found.rest > 0 and found.balls > 40
 
 
 def test_layers_in_other_systems_lie_where_they_belong(done):
@@ -483,7 +484,7 @@ def test_a_volume_of_frank_by_polygon(tmp_path):
     site = slope(tmp_path, "site", "--terrain", frank, "--release", "release.csv", "--shape", "slbl", "--volume", "1e6",
                  "--balls", "400", "-o", "mine")
     assert site.returncode == 0, site.stderr
-    assert site_choices.found(tmp_path / "mine")["body"]["volume"] == pytest.approx(1e6, rel=1e-3)
+    assert site_choices.found(tmp_path / "mine").body.volume == pytest.approx(1e6, rel=1e-3)
     for d in ("20", "14"):
         subprocess.run([LMP, "-in", "in.site", "-var", "d", d, "-var", "duration", "0.1", "-var", "out", f"d{d}"],
                        cwd=tmp_path / "mine", check=True, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
@@ -497,8 +498,7 @@ SOIL = site_budget.Soil(2000.0, 5.0, 47.0, 0.9)
 
 
 def budget(**balls):
-    choices = site_choices.complete({"terrain": {"files": ["dem.tif"]}, "balls": balls})
-    choices["model"].update(duration=60.0)
+    choices = OfMass.of({"terrain": {"files": ["dem.tif"]}, "balls": balls, "model": {"duration": 60.0}})
     trial = site_budget.Trial(800, 3.5, 15.0, True, 13.0, 1e-7, 0.5, 2.0, 0.0)
     return site_budget.size(choices, 35000.0, SOIL, trial, 2, 6144)
 
@@ -518,7 +518,7 @@ def test_the_size_of_the_balls_comes_from_the_budget():
 
 def test_the_run_time_in_the_deck_is_that_of_one_run():
     """Set-up, and what steps and balls cost: 15 s in steps of 1.5 quarters of sqrt(m/k), of 1 on close ground."""
-    choices = site_choices.complete({"terrain": {"files": ["dem.tif"]}})
+    choices = OfMass.of({"terrain": {"files": ["dem.tif"]}})
     trial = site_budget.Trial(800, 3.5, 15.0, True, 13.0, 1e-7, 0.5, 2.0, 0.0, step=3e-5)
     size = budget(number=2240)
     step = 1.5 * 0.25 * 0.05 * size.diameter / 60.0     # at 60 m/s a contact overlaps by a twentieth of the diameter
@@ -567,7 +567,7 @@ def test_a_second_trial_tells_how_long_most_runs_take():
     assert site_budget.duration(both) == site_budget.duration(coarse) == 360.0
     assert site_budget.duration(fine._replace(rest=5.0)) == 120.0
 
-    choices = site_choices.complete({"terrain": {"files": ["dem.tif"]}, "balls": {"minutes": 1.0}})
+    choices = OfMass.of({"terrain": {"files": ["dem.tif"]}, "balls": {"minutes": 1.0}})
     wanted = site_budget.plan(choices)
     took = [site_budget.study_seconds(2.0, 3e4, one, SOIL, wanted, 2) for one in (fine, both)]
     assert took[0] == took[1]
@@ -576,13 +576,13 @@ def test_a_second_trial_tells_how_long_most_runs_take():
 def test_the_second_trial_has_other_balls():
     """Finer for a budget of time, otherwise coarser; none where it would have hardly any."""
     trial = site_budget.Trial(800, 3.6, 45.0, True, 21.0, 1e-7, 0.5, 2.0, 0.0)
-    choices = site_choices.complete({"terrain": {"files": ["dem.tif"]}, "balls": {"minutes": 1.0}})
+    balls = OfMass.of({"balls": {"minutes": 1.0}}).balls
     fine, coarse = pytest.approx(3.6 / 3 ** (1 / 3), rel=2e-3), pytest.approx(3.6 * 3 ** (1 / 3), rel=2e-3)
-    assert site_budget.other_diameter(choices, trial) == fine
-    assert site_budget.other_diameter(choices, trial._replace(seconds=3.0)) == coarse       # 13 s, more than a fifth
-    choices["balls"]["number"] = 3000
-    assert site_budget.other_diameter(choices, trial) == coarse
-    assert site_budget.other_diameter(choices, trial._replace(balls=299)) is None
+    assert site_budget.other_diameter(balls, trial) == fine
+    assert site_budget.other_diameter(balls, trial._replace(seconds=3.0)) == coarse       # 13 s, more than a fifth
+    balls = OfMass.of({"balls": {"minutes": 1.0, "number": 3000}}).balls
+    assert site_budget.other_diameter(balls, trial) == coarse
+    assert site_budget.other_diameter(balls, trial._replace(balls=299)) is None
 
 
 @pytest.mark.parametrize("order", [1, -1])
@@ -689,18 +689,14 @@ def test_refused(gis, words, start):
 
 def test_angles_that_look_like_coefficients_are_asked_about():
     """That of the cut only where there is a road."""
-    choices = site_choices.complete({})
-    choices["model"].update(friction=0.5, slip_friction=0)
-    choices["road"]["cut_angle"] = 0.6
-
-    def options():
-        return [one.numbers["option"] for one in site_warnings.of_resistance(choices)]
-    assert options() == ["--friction"]
-    choices["road"]["file"] = "road.csv"
-    assert options() == ["--friction", "--cut-angle"]
-    assert "A coefficient of 0.6 is 31 degrees" in str(site_warnings.of_resistance(choices)[1])
-    choices["road"]["cut_angle"] = 3
-    assert options() == ["--friction"]
+    def asked_about(file, cut_angle):
+        choices = OfMass.of({"model": {"friction": 0.5, "slip_friction": 0},
+                             "road": {"file": file, "cut_angle": cut_angle}})
+        return {one.numbers["option"]: str(one) for one in site_warnings.of_resistance(choices)}
+    assert list(asked_about(None, 0.6)) == ["--friction"]
+    said = asked_about("road.csv", 0.6)
+    assert list(said) == ["--friction", "--cut-angle"] and "A coefficient of 0.6 is 31 degrees" in said["--cut-angle"]
+    assert list(asked_about("road.csv", 3)) == ["--friction"]
 
 
 def test_refused_files(gis):
@@ -752,12 +748,12 @@ def test_a_site_that_could_not_be_made_keeps_its_choices(gis, told):
     status, out, err = told("--depth", "500", *given)
     assert status == 2 and "--depth: must be at most" in err
     assert "site.yaml was kept: change it, then: tools/slope site 'Damm Fluchth\u00f6rn'; or repeat the command" in out
-    assert site_choices.read(mine)["release"]["depth"] == 500
-    assert "must be at most" in site_choices.found(mine)["failed"]
+    assert site_choices.load(mine).choices.release.depth == 500
+    assert "must be at most" in site_choices.found(mine).failed
     (mine / "site.yaml").write_text((mine / "site.yaml").read_text().replace("depth: 500", "depth: 5"))
     status, out, err = told(mine.name)
     assert status == 0 and "then: tools/slope study 'Damm Fluchth\u00f6rn'" in out, err
-    assert "failed" not in site_choices.found(mine)
+    assert site_choices.found(mine).failed is None
     status, out, err = told("--depth", "4", *given)
     assert status == 2 and "`slope site 'Damm Fluchth\u00f6rn'` rebuilds this one" in err
     shutil.rmtree(mine)
@@ -781,8 +777,8 @@ def test_files_in_a_crs_that_they_do_not_name(gis, told):
     given = ("--assign-crs", "road.geojson=EPSG:6677", "--assign-crs", "./line.geojson=EPSG:6677")
     status, out, err = told(*words, *given, "-o", "mine")
     assert status == 0 and "road.csv: 1 polygon, 1,280 m2" in out, err
-    assert site_choices.read(gis / "mine")["crs"]["assigned"] == {"road.geojson": "EPSG:6677",
-                                                                  "line.geojson": "EPSG:6677"}
+    assert site_choices.load(gis / "mine").choices.crs.assigned == {
+        "road.geojson": "EPSG:6677", "line.geojson": "EPSG:6677"}
     status, out, err = told("mine")
     assert status == 0 and "road.csv: 1 polygon, 1,280 m2" in out, err
     for word, rule in (("rood.geojson=EPSG:6677", "FILE=EPSG:n must name a file of the site that has coordinates, "
@@ -877,7 +873,7 @@ def test_without_lammps_the_folder_is_made_and_that_is_said(gis, told):
 
 def test_the_page_names_every_key():
     page = (TOP / "doc" / "src" / "tool_site.rst").read_text(encoding="ascii")
-    for section, about in site_choices.sections():
+    for section, about in sections():
         assert f"*{section}*" in page, section
         for key in about["properties"]:
             assert re.search(rf"\*{key}\*|\*--{key.replace('_', '-')}\*", page), (section, key)

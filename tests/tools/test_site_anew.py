@@ -87,8 +87,8 @@ def test_names_of_the_files_are_known_before(inside, mine):
     write_layer(mine.parent / "observed.geojson", [(36, 50), (36, 30)], kind=LineString)
     write_layer(mine.parent / "mapped.geojson", MAPPED)
     inside("mine --line observed.geojson --observed mapped.geojson")
-    assert site_folder.planned(site_choices.read(mine)) - {site_trial.REACHED} == set(
-        site_choices.found(mine)["files"]) == {path.name for path in mine.iterdir() if path.name != ".lock"}
+    assert site_folder.planned(site_choices.load(mine).choices) - {site_trial.REACHED} == set(
+        site_choices.found(mine).files) == {path.name for path in mine.iterdir() if path.name != ".lock"}
     assert len((mine / "observed.csv").read_text().splitlines()) >= 5
     assert (mine / "observed_2.csv").read_text().splitlines()[1:] == ["36,50", "36,30"]
 
@@ -192,33 +192,33 @@ def edit(mine, section, **values):
 
 
 def test_another_body_gets_balls_of_its_own(inside, mine):
-    first = site_choices.read(mine)
+    first = site_choices.load(mine).choices
     inside("mine --volume 500")
-    second = site_choices.read(mine)
-    assert second["balls"]["number"] == first["balls"]["number"] and second["release"]["depth"] is None
-    assert second["balls"]["diameter"] < first["balls"]["diameter"] / 1.5
-    assert site_choices.found(mine)["balls"] == pytest.approx(site_budget.DEFAULT, rel=0.02)
+    second = site_choices.load(mine).choices
+    assert second.balls.number == first.balls.number and second.release.depth is None
+    assert second.balls.diameter < first.balls.diameter / 1.5
+    assert site_choices.found(mine).balls == pytest.approx(site_budget.DEFAULT, rel=0.02)
     for key in ("speed", "duration"):       # a trial run of the other body may have been slower
         edit(mine, "model", **{key: 99.0})
         about = yaml.safe_load((mine / "site.yaml").read_text())
         about["found"]["derived"][f"model.{key}"] = 99.0
         (mine / "site.yaml").write_text(yaml.safe_dump(about))
     inside("mine --client somebody")
-    assert site_choices.read(mine)["model"]["speed"] == site_choices.read(mine)["model"]["duration"] == 99
+    assert site_choices.load(mine).choices.model.speed == site_choices.load(mine).choices.model.duration == 99
     inside("mine --depth 4")
-    model = site_choices.read(mine)["model"]
-    assert (model["speed"], model["duration"]) == (47, 600)
+    model = site_choices.load(mine).choices.model
+    assert (model.speed, model.duration) == (47, 600)
 
 
 def test_what_the_user_chose_stays(inside, mine):
-    diameter = site_choices.read(mine)["balls"]["diameter"]
+    diameter = site_choices.load(mine).choices.balls.diameter
     inside(f"mine --diameter {diameter}")       # the same, but chosen now
     edit(mine, "model", speed=60.0, cell=3.0)
     inside("mine")
     inside("mine --volume 500")
-    choices = site_choices.read(mine)
-    assert choices["balls"]["diameter"] == diameter and choices["balls"]["number"] is None
-    assert choices["model"]["speed"] == 60 and choices["model"]["cell"] == 3
+    choices = site_choices.load(mine).choices
+    assert choices.balls.diameter == diameter and choices.balls.number is None
+    assert choices.model.speed == 60 and choices.model.cell == 3
 
 
 def test_a_shape_that_nobody_named_is_none(inside, gis):  # noqa: F811
@@ -226,7 +226,7 @@ def test_a_shape_that_nobody_named_is_none(inside, gis):  # noqa: F811
     for words, shape in (("", "sphere"), ("--dip 30", "plane"), ("--dip 28", "plane")):
         if words:
             inside(f"mine {words}")
-        assert site_choices.read(gis / "mine")["release"]["shape"] is None
+        assert site_choices.load(gis / "mine").choices.release.shape is None
         assert yaml.safe_load((gis / "mine" / "release.yaml").read_text())["shape"] == shape
     inside("--terrain dem.tif --release release.geojson --volume 400 -o other")
     inside("other --curvature 0.002")
@@ -279,8 +279,8 @@ def older(mine, **model):
 
 def test_the_study_of_an_older_site_is_as_it_was(mine):
     older(mine)
-    choices = site_choices.read(mine)
-    assert choices["model"]["field_diameter"] == 2 and choices["model"]["spacing"] == 1
+    choices = site_choices.load(mine).choices
+    assert choices.older["model"]["field_diameter"] == 2 and choices.model.spacing == 1
     site_study.check(site_choices.load(mine))
     assert site_study.grounds(choices, decks.index_variables(mine / site_deck.NAME)) == []
     edit(mine, "model", field_diameter=3.0)
@@ -295,9 +295,9 @@ def test_an_older_site_is_rebuilt_with_the_ground_of_now(inside, mine):
     assert line.startswith("slope site: mine/site.yaml: model.spacing: must be <= 0.95: ") and line.count("\n") == 1
     assert "--spacing 0.9" in line and line.endswith(", got 1\n") and contents(mine) == before
     assert "field_diameter and field_ratio of an older version" in inside("mine --spacing 0.9").out
-    choices = site_choices.read(mine)
-    assert choices["model"]["spacing"] == 0.9 and not set(site_choices.RETIRED) & set(choices["model"])
-    assert choices["study"]["spacing"] == [0.5, 0.7]
+    choices = site_choices.load(mine).choices
+    assert choices.model.spacing == 0.9 and not choices.older
+    assert choices.study.spacing == (0.5, 0.7)
     older(mine, spacing=0.33)
     inside("mine")
     assert decks.index_variables(mine / site_deck.NAME)["spacing"] == "0.33"
@@ -327,13 +327,13 @@ def test_the_study_of_a_site_with_a_lattice_is_as_it_was(inside, mine, monkeypat
 
 
 def test_a_site_with_a_lattice_is_rebuilt_with_a_packing(inside, mine):
-    before = site_choices.read(mine)
+    before = site_choices.load(mine).choices
     with_lattice(mine)
     out = inside("mine").out
     assert "xoffset, yoffset, zoffset of an older version" in out
-    choices = site_choices.read(mine)
-    assert choices["study"]["packing"] == [2, 3, 4] and not set(site_choices.OFFSETS) & set(choices["study"])
-    assert choices["model"]["density"] == 2977 and choices["balls"] == before["balls"]
+    choices = site_choices.load(mine).choices
+    assert choices.study.packing == (2, 3, 4) and not choices.older
+    assert choices.model.density == 2977 and choices.balls == before.balls
     assert "fill body seed" in (mine / site_deck.NAME).read_text()
 
 
@@ -344,7 +344,7 @@ def test_a_site_with_a_lattice_is_rebuilt_with_a_packing(inside, mine):
 def test_a_wrong_spacing_in_the_file(mine, model, rule):
     edit(mine, "model", **model)
     with pytest.raises(SlopeError, match=re.escape(f"site.yaml: {rule}")):
-        site_choices.read(mine)
+        site_choices.load(mine)
 
 
 # --- soil and ground ---
@@ -352,8 +352,8 @@ def test_a_wrong_spacing_in_the_file(mine, model, rule):
 def test_options_of_soil_and_ground_reach_the_deck(inside, mine):
     out = inside("mine --friction 25 --rolling 0 0.07 --slip-friction 5 --spacing 0.5 --density 1600 "
                  "--field-restitution 0.3").out
-    choices = site_choices.read(mine)
-    assert choices["study"]["rolling"] == [0, 0.07]
+    choices = site_choices.load(mine).choices
+    assert choices.study.rolling == (0, 0.07)
     assert "friction 25 degrees, on the slip surface 5; rolling resistance 0, 0.07" in out
     assert "bulk density 1,600 kg/m3" in out
     deck = decks.index_variables(mine / site_deck.NAME)
@@ -397,7 +397,7 @@ def test_all_warnings_are_kept_in_the_folder(inside, mine):
     assert "--bounds reaches beyond the input" in kept(mine)[0]
     inside("mine --balls 100000")
     assert not any("thick on average" in line for line in kept(mine)) and len(kept(mine)) == 4
-    assert site_warnings.NAME in site_choices.found(mine)["files"]
+    assert site_warnings.NAME in site_choices.found(mine).files
 
 
 # --- the program ---

@@ -115,7 +115,7 @@ CHANGES = [
 @pytest.mark.parametrize("section, values, words, there, new", CHANGES)
 def test_a_list_that_changes_and_changes_back_keeps_all_runs(mine, inside, trials, section, values, words,  # noqa: F811
                                                              there, new):
-    before, variables = site_choices.read(mine), decks.index_variables(mine / site_deck.NAME)
+    before, variables = site_choices.load(mine).choices.entries(), decks.index_variables(mine / site_deck.NAME)
     edit(mine, section, **values)
     assert counts(mine) == (there, new)
     edit(mine, section, **before[section])
@@ -123,12 +123,12 @@ def test_a_list_that_changes_and_changes_back_keeps_all_runs(mine, inside, trial
     if words:
         out = inside(f"mine {words}").out
         assert counts(mine) == (there, new) and f"the study: {there} of {there + new} runs are there" in out
-        assert site_choices.read(mine)[section] == {**before[section], **values}
+        assert site_choices.load(mine).choices.entries()[section] == {**before[section], **values}
         edit(mine, section, **before[section])
         inside("mine")
     assert counts(mine) == (ALL, 0) and decks.index_variables(mine / site_deck.NAME) == variables
     assert trials == []        # none was made again
-    after = site_choices.read(mine)
+    after = site_choices.load(mine).choices.entries()
     assert all(after[section][key] == before[section][key] for section, key in site_choices.DERIVED)
 
 

@@ -22,6 +22,8 @@ from slope_tools.report import maps_part
 from slope_tools.route import runs
 from slope_tools.route.choices import Choices
 from slope_tools.sites import site_choices, site_warnings, site_zones
+from slope_tools.sites.site_found import Zone
+from slope_tools.sites.site_sections import OfMass
 from slope_tools.studies import site_ground
 from slope_tools.survey import polygons
 from slope_tools.survey.rasters import Raster, read_asc_local, write_asc_local
@@ -168,7 +170,7 @@ def test_a_resistance_that_looks_like_an_angle_is_warned_of_by_its_zone(tmp_path
 
 # --- what changes with the site's values ---
 
-MODEL = {"friction": 30, "field_restitution": 0.1, "spacing": 0.9}
+MODEL = OfMass.of({"model": {"friction": 30, "field_restitution": 0.1, "spacing": 0.9}}).model
 RUN = {"friction": "30", "rolling": "0", "field_e": "0.1", "spacing": "0.9"}
 
 
@@ -184,12 +186,13 @@ RUN = {"friction": "30", "rolling": "0", "field_e": "0.1", "spacing": "0.9"}
     ({"spacing": "0.3", "spacing_a": "0.15"}, {"spacing": 0.15}),
     ({"rolling": "0.1"}, {"rolling": 0.1})])
 def test_values_change_by_the_factor_of_the_sites(changed, now):
-    zone = {"name": "a", "variables": "a", "friction": 35.0, "restitution": 0.3, "spacing": 0.6}
-    found = site_zones.now(zone, MODEL, {**RUN, **changed})
+    values = {"friction": 35.0, "restitution": 0.3, "spacing": 0.6}
+    found = site_zones.now(Zone("a", "a", values, 0.1), MODEL, {**RUN, **changed})
     assert {name: found[name] for name in now} == pytest.approx(now)
-    own = site_zones.now({**zone, "rolling": 0.15}, MODEL, {**RUN, "rolling": "0.1"})
+    rolls = Zone("a", "a", {**values, "rolling": 0.15}, 0.1)
+    own = site_zones.now(rolls, MODEL, {**RUN, "rolling": "0.1"})
     assert own["rolling"] == 0.15       # a factor of 0 has no meaning
-    assert site_zones.now({**zone, "rolling": 0.15}, MODEL, {**RUN, "rolling_a": "0.2"})["rolling"] == 0.2
+    assert site_zones.now(rolls, MODEL, {**RUN, "rolling_a": "0.2"})["rolling"] == 0.2
 
 
 # --- the site ---
@@ -230,12 +233,12 @@ def test_a_site_with_zones(gis, mine):
     assert re.search(r"zone 森: stop angle 30.\d degrees at a rolling resistance of 0.15$", mine, re.M)
     site = site_choices.load(gis / "mine")
     found = site.found
-    assert [zone["name"] for zone in found["zones"]] == ["scree", "森", "zone 3"]
-    assert {"ground.gpkg", "ground.scree.csv", "ground.zone.csv", "ground.zone_3.csv"} <= set(found["files"])
+    assert [zone.name for zone in found.zones] == ["scree", "森", "zone 3"]
+    assert {"ground.gpkg", "ground.scree.csv", "ground.zone.csv", "ground.zone_3.csv"} <= set(found.files)
     variables = decks.index_variables(gis / "mine" / "in.site")
     own = [variables[name] for name in ("friction_scree", "rolling_zone", "spacing_zone_3")]
     assert own == ["35", "0.15", "0.5"]
-    angles = site_ground.of_zone(found["zones"][0], site.choices["model"], variables)
+    angles = site_ground.of_zone(found.zones[0], site.choices.model, variables)
     assert angles == pytest.approx(site_ground.of_variables({**variables, "friction": 35, "spacing": 0.6}))
 
 
@@ -260,7 +263,7 @@ def test_the_deck_has_the_values_of_a_run(gis, mine, changed):
     words = [word for name, value in changed.items() for word in ("-var", name, value)]
     log = lmp(folder, *words, "-var", "duration", "0.001")
     site = site_choices.load(folder)
-    variables, model = decks.index_variables(folder / "in.site"), site.choices["model"]
+    variables, model = decks.index_variables(folder / "in.site"), site.choices.model
     d = float(variables["d"])
 
     # 1.5 times the rule's step; on ground closer than 0.4 d, of a zone, too, the rule's
@@ -268,12 +271,12 @@ def test_the_deck_has_the_values_of_a_run(gis, mine, changed):
               for pattern in (r"^Stiffness: kn (\S+)", r"^timestep +([0-9]\S*)"))
     rule = 0.25 * (float(variables["density"]) * np.pi / 6 * d ** 3 / kn) ** 0.5
     assert dt == pytest.approx((1.0 if "spacing" in changed else 1.5) * rule, rel=1e-3)
-    for number, zone in enumerate(site.found["zones"], 4):
+    for number, zone in enumerate(site.found.zones, 4):
         now = site_zones.now(zone, model, {**variables, **changed})
         coeff = re.findall(rf"^pair_coeff  1 {number} .*restitution (\S+) friction (\S+) rolling (\S+)$", log, re.M)[-1]
         assert [float(one) for one in coeff] == pytest.approx([now["field_e"], now["friction"], now["rolling"]])
-        if "spacing" in zone:
-            [apart] = re.findall(rf"zone zone_{zone['variables']} {number} (\S+)", log)[-1:]
+        if "spacing" in zone.values:
+            [apart] = re.findall(rf"zone zone_{zone.variables} {number} (\S+)", log)[-1:]
             assert float(apart) == pytest.approx(now["spacing"] * d)
 
 
@@ -326,5 +329,5 @@ def test_the_sites_of_a_route_have_the_zones_that_lie_on_them(tmp_path):
     for name, there in (("here.geojson", True), ("far.geojson", False)):
         path = str(tmp_path / name)
         choices = Choices([], "", 5.0, 100.0, None, None, 1800.0, ground=path)
-        found = runs.choices_of(choices, tmp_path, about, 1)["ground"]
-        assert found == {"file": path if there else None, "table": None}
+        found = runs.choices_of(choices, tmp_path, about, 1).ground
+        assert (found.file, found.table) == (path if there else None, None)

@@ -11,6 +11,7 @@ import platform
 import shutil
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import Any
 
 import yaml
 import numpy as np
@@ -115,7 +116,7 @@ def _sha256(path, *_) -> str:
     return digest.hexdigest()
 
 
-def parse_yaml(path, what):
+def parse_yaml(path: Any, what: str) -> Any:
     """What is in a YAML file, of whatever type."""
     try:
         return written_yaml.load(Path(path).read_text(encoding="utf-8"))
@@ -127,7 +128,7 @@ def parse_yaml(path, what):
         raise SlopeError(path, f"must be {what} ({getattr(error, 'strerror', None) or error})") from error
 
 
-def is_number(value):
+def is_number(value: Any) -> bool:
     """Whether it is a finite number, as YAML has them."""
     try:
         return not isinstance(value, bool) and math.isfinite(value)
@@ -266,7 +267,7 @@ def check_file(path, suffix, inputs=(), called="an input"):
         raise SlopeError("-o", f"must not be {called}", path)
 
 
-def plain(value):
+def plain(value: Any) -> Any:
     """numpy's numbers, tuples and paths as what YAML and JSON know."""
     if isinstance(value, dict):
         return {key: plain(inner) for key, inner in value.items()}

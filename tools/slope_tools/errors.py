@@ -12,7 +12,7 @@ class SlopeError(Exception):
 
     LONGEST = 500     # characters of a value
 
-    def __init__(self, where, rule, got=None):
+    def __init__(self, where: object, rule: str, got: object = None) -> None:
         line = f"{where}: {rule}"
         if got is not None:
             got = str(got)

@@ -1,14 +1,14 @@
 """The one place that picks what a command does by the kind of a site: a mass, or blocks (`kind` of site.yaml)."""
 import dataclasses
 from pathlib import Path
-from typing import Any, Dict, Tuple
+from typing import Any, Dict
 
 from .. import disk
 from ..errors import SlopeError
 from ..sites import site, site_choices, site_roads
+from ..sites.site_sections import Choices, Key, OfBlocks, OfMass
 from ..studies import site_study
 
-BLOCKS = "blocks"
 WRONG = "must not be given with a site of single blocks"
 # of a command: what it calls a site's folder, and the options that have a meaning for blocks
 TAKEN = {"study": ("deck", "np", "jobs", "lmp", "dry_run", "anew", "launcher", "engine", "slurm"),
@@ -19,14 +19,14 @@ def run(command: str, module: Any, request: Any, tell: Any) -> None:
     """Do a command of TAKEN: what its module does, or on a site of blocks what is done with these."""
     folder, *taken = TAKEN[command]
     named = getattr(request, folder)
-    if named is None or site_choices.kind_in(Path(named)) != BLOCKS:
+    if named is None or site_choices.kind_in(Path(named)) is not OfBlocks:
         return module.run(request)
     for field in dataclasses.fields(request):
         default = field.default_factory() if callable(field.default_factory) else field.default
         if field.metadata and field.name not in (folder, *taken) and getattr(request, field.name) != default:
             name = next(iter(field.metadata["names"]), "") or f"--{field.name.replace('_', '-')}"
             raise SlopeError(name, WRONG)
-    found = site_choices.load(Path(named), BLOCKS)
+    found = site_choices.load_kind(Path(named), OfBlocks)
     site_study.check(found)
     if command == "study":
         from . import study
@@ -34,7 +34,7 @@ def run(command: str, module: Any, request: Any, tell: Any) -> None:
     return (export if command == "export" else report)(found, request.output, request.overwrite, tell)
 
 
-def export(found: site_choices.Site, output, overwrite: bool, tell) -> None:
+def export(found: site_choices.Folder[OfBlocks], output, overwrite: bool, tell) -> None:
     """The files for a GIS."""
     from . import files, study as of_blocks
     folder = output or found.folder / "export"
@@ -46,7 +46,7 @@ def export(found: site_choices.Site, output, overwrite: bool, tell) -> None:
     tell(f"written to {folder}: {' '.join(files.NAMES)} export.yaml")
 
 
-def report(found: site_choices.Site, output, overwrite: bool, tell) -> None:
+def report(found: site_choices.Folder[OfBlocks], output, overwrite: bool, tell) -> None:
     """The page once more."""
     from ..report import document
     from . import page, study as of_blocks
@@ -58,25 +58,23 @@ def report(found: site_choices.Site, output, overwrite: bool, tell) -> None:
 
 # --- slope site ---
 
-def begun(number: Any) -> site_choices.Choices:
+def begun(number: Any) -> Choices:
     """The choices of a new site; number: of blocks, None of a mass."""
-    return site_choices.complete({} if number is None else {"kind": BLOCKS})
+    return OfMass.of({}) if number is None else OfBlocks.of({})
 
 
-def check(choices: site_choices.Choices, given: Dict[str, Tuple[str, str]]) -> None:
+def check(choices: Choices, given: Dict[str, Key]) -> None:
     """Raise SlopeError unless options, of these sections and keys, have a meaning for the kind of a site."""
-    kind = site_choices.kind_of(choices)
-    known = {name: about["properties"] for name, about in site_choices.sections(kind)}
-    if kind and "roads" in given:
+    if choices.KIND and "roads" in given:
         raise SlopeError("--road", site_roads.ONE)
-    for name, (section, key) in given.items():
-        if key not in known.get(section, {}):
-            raise SlopeError(f"--{name.replace('_', '-')}", WRONG if kind else "must be given with --blocks")
+    for name, place in given.items():
+        if not choices.has(*place):
+            raise SlopeError(f"--{name.replace('_', '-')}", WRONG if choices.KIND else "must be given with --blocks")
 
 
-def build(choices: site_choices.Choices) -> site.Build:
+def build(choices: Choices) -> site.Build:
     """What makes the files of a site."""
-    if site_choices.kind_of(choices) != BLOCKS:
+    if not isinstance(choices, OfBlocks):
         return site.build
     from .site import build as of_blocks
     return of_blocks

@@ -16,7 +16,9 @@ from ..report.data import Data
 from ..report.sections import Figures, Picture, Section, Table, Text
 from ..releases import release_area
 from ..sites import site_deck, site_zones
+from ..sites.site_choices import Folder
 from ..sites.site_folder import BODY
+from ..sites.site_sections import OfBlocks
 from ..survey import polygons
 from ..survey.rasters import crs_name
 from . import files
@@ -83,13 +85,13 @@ def tables(known) -> Iterator[Section]:
         [[one.rolling, f"{one.blocks:,}", one.grounds, *(share.text for share in (one.reach, one.past) if share),
           *(one.crossed[line].text for line in lines), f"{one.left:,}", f"{one.moving:,}"] for one in results], (),
         marks)])
-    if zones := known.site.found["zones"]:
-        model, variables = known.site.choices["model"], decks.index_variables(known.site.folder / site_deck.NAME)
+    if zones := known.site.found.zones:
+        model, variables = known.site.choices.model, decks.index_variables(known.site.folder / site_deck.NAME)
         variables["rolling"] = known.outcome.best.rolling
         yield Section("ground", "The ground", [Table(
             "What the ground is, where: zones as on the maps, and the ground outside of them; the rolling resistance "
             "is that of the runs that govern, or the zone's own.", limits_part.ZONE_HEADS, [
-                [zone["name"], f"{100 * zone['share']:.3g}",
+                [zone.name, f"{100 * zone.share:.3g}",
                  *(f"{value:.3g}" for value in site_zones.now(zone, model, variables).values())]
                 for zone in site_zones.with_rest(zones)])])
     yield Section("travel", "How far they go", [Figures([curve(known)]), *(Table(
@@ -129,7 +131,7 @@ def maps(known, data: Data, ground: Ground) -> Dict[str, Picture]:
                                 figures.contour_interval(ground.before), {}, {
                                     name: points for name, points in ground.obstacles.lines.items()
                                     if name in known.terrain.lines},
-                                zones=site_zones.outlines(known.site.folder, known.site.found["zones"], raster))
+                                zones=site_zones.outlines(known.site.folder, known.site.found.zones, raster))
     for name, unit in files.LARGEST.items():
         factor, prefix = digits.prefix(several[name].max())
         values, what = several[name] / factor, name.replace("max_", "")
@@ -165,15 +167,15 @@ def write(known, output: Path) -> str:
     return f"{output}: {len(html) / 1e6:.1f} MB"
 
 
-def how(site) -> str:
+def how(site: Folder[OfBlocks]) -> str:
     """What was run."""
-    of, model, (low, high) = site.choices["blocks"], site.choices["model"], sizes_of(site.choices)
+    of, model, (low, high) = site.choices.blocks, site.choices.model, sizes_of(site.choices)
     size = f"of {low:g} m" if low == high else f"of {low:g} to {high:g} m, all sizes as frequent,"
-    start = f"at {of['speed']:g} m/s down the fall line of the release area" if of["speed"] else "at rest"
+    start = f"at {of.speed:g} m/s down the fall line of the release area" if of.speed else "at rest"
     smooth = "; larger blocks find them smoother, the smallest one must not fall between them" if low < high else ""
-    outside = " outside of the zones" if site.found["zones"] else ""
-    return (f"Blocks {size} and {model['density']:,g} kg/m3 begin {start}, evenly over the release area, just above "
-            f"the ground; they do not see each other. The ground is scattered balls of {low:g} m, {model['spacing']:g} "
-            f"diameters apart{smooth}: friction {model['friction']:g} degrees, restitution "
-            f"{model['field_restitution']:g}{outside}. Each run has other balls of the ground and other places of "
+    outside = " outside of the zones" if site.found.zones else ""
+    return (f"Blocks {size} and {model.density:,g} kg/m3 begin {start}, evenly over the release area, just above "
+            f"the ground; they do not see each other. The ground is scattered balls of {low:g} m, {model.spacing:g} "
+            f"diameters apart{smooth}: friction {model.friction:g} degrees, restitution "
+            f"{model.field_restitution:g}{outside}. Each run has other balls of the ground and other places of "
             "blocks.")

@@ -8,13 +8,14 @@ from shapely.geometry import Point
 
 from ..case import run_folders
 from ..deposits import dumps, road_sides
-from ..sites.site_choices import Site
+from ..sites.site_choices import Folder
 from ..sites.site_folder import TERRAIN
 from ..sites.site_roads import ROAD
+from ..sites.site_sections import OfBlocks
 from ..survey import rasters, roads
 from ..survey.rasters import Raster
 from ..tables.structures import table_of
-from .site import EDGE, sizes_of, touched
+from .site import EDGE, touched
 
 PREFIX = "site"         # of a run's files: out of the deck
 AT_ROAD = "road"        # the name of its near edge among the lines
@@ -52,19 +53,20 @@ class Run:
     overlap: float          # the deepest of a contact, in radii
 
 
-def terrain_of(site: Site) -> Terrain:
+def terrain_of(site: Folder[OfBlocks]) -> Terrain:
     """What all runs of a site share."""
     raster, road, sides = rasters.read_asc_local(site.folder / TERRAIN), None, None
-    names = [Path(name) for name in site.found["files"] if name.endswith(".csv")]
+    names = [Path(name) for name in site.found.files if name.endswith(".csv")]
     lines = [one.stem for one in names if (site.folder / one).read_text(encoding="utf-8").startswith("# control line")]
-    if site.choices["road"]["file"]:
-        road = roads.read_local(site.folder / ROAD, raster, roads.Asked.of(site.choices["road"]), True)
+    if site.choices.road.file:
+        road = roads.read_local(site.folder / ROAD, raster, site.choices.road.asked, True)
         text = (site.folder / "blocks.1.data").read_text(encoding="ascii").split("sphere\n")[1]
         columns, rows = ~raster.transform * np.loadtxt(text.splitlines(), ndmin=2)[:, 4:6].T
         starts = np.zeros(raster.z.shape, bool)
         starts[rows.astype(int), columns.astype(int)] = True
-        sides = road_sides.divide(touched(road.polygon, sizes_of(site.choices)[1], raster), road.line, raster, starts)
-    down = np.array(site.found["blocks"]["down"][:2])
+        largest_block = site.choices.blocks.size[-1]
+        sides = road_sides.divide(touched(road.polygon, largest_block, raster), road.line, raster, starts)
+    down = np.array(site.found.down[:2])
     return Terrain(raster, down / np.hypot(*down), road, sides, lines)
 
 

@@ -2,6 +2,7 @@
 import math
 import os
 import shutil
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Dict, List, NamedTuple, Optional, Tuple
 
@@ -18,9 +19,10 @@ from ..geometry import box_of, extent, polygons_of
 from ..releases.release_area import FLAT
 from ..sites import site, site_budget, site_choices, site_deck, site_layers, site_warnings
 from ..sites.site_budget import GRAVITY, Trial
-from ..sites.site_choices import Choices, Derived
+from ..sites.site_choices import Derived
 from ..sites.site_folder import BODY, MAP
 from ..sites.site_inputs import Line
+from ..sites.site_sections import OfBlocks, widest
 from ..survey import polygons
 from ..survey.rasters import Raster
 from ..survey.resampling import sample
@@ -62,7 +64,7 @@ class Start(NamedTuple):
                     for k, (d, (x, y), h) in enumerate(zip(diameters, points, z), 1)))
 
 
-def build(given: Choices, known: Derived, new: Path, folder: Path, machine: site.Machine, tell, warn,
+def build(given: OfBlocks, known: Derived, new: Path, folder: Path, machine: site.Machine, tell, warn,
           draw: site.Draw) -> site.Made:
     """Everything, into the folder `new`, which will be `folder`: as site.build() of a mass."""
     warnings: List[Finding] = []
@@ -70,20 +72,19 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: site
     def keep(said) -> None:
         warnings.append(finding(said))
         warn(said)
-    choices = {name: dict(one) if isinstance(one, dict) else one for name, one in given.items()}
-    site_choices.check_assigned(choices)
-    several, grounds = choices["study"]["rolling"], choices["blocks"]["grounds"]
+    site_choices.check_assigned(given)
+    several, grounds = given.study.rolling, given.blocks.grounds
     runs = len(several) * grounds
-    each = math.ceil(choices["blocks"]["number"] / runs)
-    check(choices, runs)
-    raster, _ = site.terrain(choices, new, tell, keep)
-    start = start_of(choices, raster, new, tell, keep)
-    layers = site_layers.read_layers(choices, raster, new, tell, keep)
+    each = math.ceil(given.blocks.number / runs)
+    check(given, runs)
+    raster, _ = site.terrain(given, new, tell, keep)
+    start = start_of(given, raster, new, tell, keep)
+    layers = site_layers.read_layers(given, raster, new, tell, keep)
     start = start._replace(types=FIELD + len(layers.zones))
-    title = choices["project"]["name"] or folder.absolute().name
-    said = deck_values(choices, title, start, [*layers.lines, *edges(choices, layers, start, new)], layers.zones)
-    trial = tried(choices, start, said, new, machine, tell)
-    settle(choices, start, trial)
+    title = given.project.name or folder.absolute().name
+    said = deck_values(given, title, start, [*layers.lines, *edges(given, layers, start, new)], layers.zones)
+    trial = tried(given, start, said, new, machine, tell)
+    choices = settled(given, start, trial)
     for ground in range(1, grounds + 1):
         disk.write(new / f"blocks.{ground}.data", start.data(ground, each))
     seconds = trial and trial.setup + trial.cost * each * trial.rest / step_of(choices)
@@ -105,10 +106,10 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: site
     return site.Made(folder, list(about["files"] or ()))
 
 
-def check(choices: Choices, runs: int) -> None:
+def check(choices: OfBlocks, runs: int) -> None:
     """Raise SlopeError unless the choices make sense together."""
-    (low, high), number = sizes_of(choices), choices["blocks"]["number"]
-    if not choices["release"]["polygon"]:
+    (low, high), number = sizes_of(choices), choices.blocks.number
+    if not choices.release.polygon:
         raise SlopeError("--release", "must be given, the polygon in which blocks start")
     if number < runs:
         raise SlopeError("--blocks", f"must be at least {runs}, one for each run: chance is measured on several "
@@ -120,15 +121,16 @@ def check(choices: Choices, runs: int) -> None:
         raise SlopeError("--size", f"must be D or D:D2, m, with D <= D2 <= {WIDEST:g} D", f"{low:g}:{high:g}")
 
 
-def sizes_of(choices: Choices) -> Tuple[float, float]:
-    return choices["blocks"]["size"][0], choices["blocks"]["size"][-1]
+def sizes_of(choices: OfBlocks) -> Tuple[float, float]:
+    return choices.blocks.size[0], choices.blocks.size[-1]
 
 
 # --- where they start ---
 
-def start_of(choices: Choices, raster: Raster, new: Path, tell, warn) -> Start:
+def start_of(choices: OfBlocks, raster: Raster, new: Path, tell, warn) -> Start:
     """Where the blocks start; SlopeError unless all of it has ground, and a fall line if they have a speed."""
-    path, sizes, speed = choices["release"]["polygon"], sizes_of(choices), choices["blocks"]["speed"]
+    path, sizes, speed = choices.release.polygon, sizes_of(choices), choices.blocks.speed
+    assert path
     polygon = polygons.read_local(path, raster, crs=site_layers.assigned(choices, path),
                                   advice=site_layers.advice(choices, path), warn=warn)
     polygon = polygons.write(new / f"{BODY}.csv", polygon, raster)
@@ -187,7 +189,7 @@ def touched(road: BaseGeometry, largest: float, raster: Raster) -> BaseGeometry:
     return road.buffer(largest / 2).intersection(box_of(raster))
 
 
-def edges(choices: Choices, layers: site_layers.Layers, start: Start, new: Path) -> List[Line]:
+def edges(choices: OfBlocks, layers: site_layers.Layers, start: Start, new: Path) -> List[Line]:
     """Closed control lines around the road, and around what it encloses: forward is onto it."""
     if layers.road is None:
         return []
@@ -212,57 +214,61 @@ def edges(choices: Choices, layers: site_layers.Layers, start: Start, new: Path)
 
 # --- deck, and a trial of it ---
 
-def deck_values(choices: Choices, title: str, start: Start, lines, zones) -> Dict[str, Any]:
+def deck_values(choices: OfBlocks, title: str, start: Start, lines, zones) -> Dict[str, Any]:
     """What the template is filled in with, but for what a trial tells."""
-    model, (low, high), raster = choices["model"], start.sizes, start.raster
+    model, (low, high), raster = choices.model, start.sizes, start.raster
     room = box_of(raster).area * (start.top - float(np.nanmin(raster.z)))
-    return {"title": title, "terrain": ", ".join(Path(name).name for name in choices["terrain"]["files"]),
+    return {"title": title, "terrain": ", ".join(Path(name).name for name in choices.terrain.files),
             "deck": site_deck.NAME, "size": f"{low:g}" if low == high else f"{low:g} to {high:g}",
-            "grounds": choices["blocks"]["grounds"], "headroom": math.ceil(start.top - float(np.nanmax(raster.z))),
+            "grounds": choices.blocks.grounds, "headroom": math.ceil(start.top - float(np.nanmax(raster.z))),
             "bins": f"{max(2.0, (room / BINS) ** (1 / 3) / high):.3g}", "lines": lines, "shown": SHOWN,
             "zones": site_deck.zone_values(zones, FIELD, model), "down": [site_deck.plain(one) for one in start.down],
             **{name: site_deck.plain(value) for name, value in (
-                ("d", low), ("largest", high), ("spacing", model["spacing"]), ("widest", site_choices.widest()),
-                ("rolling", min(choices["study"]["rolling"])), ("friction", model["friction"]),
-                ("field_e", model["field_restitution"]), ("density", model["density"]),
-                ("start", choices["blocks"]["speed"]), ("step", site_budget.STEP), ("close", site_budget.CLOSE))}}
+                ("d", low), ("largest", high), ("spacing", model.spacing), ("widest", widest()),
+                ("rolling", min(choices.study.rolling)), ("friction", model.friction),
+                ("field_e", model.field_restitution), ("density", model.density),
+                ("start", choices.blocks.speed), ("step", site_budget.STEP), ("close", site_budget.CLOSE))}}
 
 
-def deck(choices: Choices, said: Dict[str, Any], blocks: str, run_time: str) -> str:
-    open_ = {name: site_deck.plain(choices["model"][name]) for name in ("speed", "duration", "cell", "film")}
-    return site_deck.filled(TEMPLATE, {**said, **open_, "blocks": blocks, "run_time": run_time})
+def deck(choices: OfBlocks, said: Dict[str, Any], blocks: str, run_time: str) -> str:
+    model = choices.model
+    assert model.speed and model.duration and model.cell and model.film       # settled
+    return site_deck.filled(TEMPLATE, {
+        **said, "speed": site_deck.plain(model.speed), "duration": site_deck.plain(model.duration),
+        "cell": site_deck.plain(model.cell), "film": site_deck.plain(model.film), "blocks": blocks,
+        "run_time": run_time})
 
 
-def tried(choices: Choices, start: Start, said: Dict[str, Any], new: Path, machine: site.Machine,
+def tried(choices: OfBlocks, start: Start, said: Dict[str, Any], new: Path, machine: site.Machine,
           tell) -> Optional[Trial]:
     """What a run of some blocks with the least rolling resistance measures; None where there is no LAMMPS."""
     if machine.lmp is None:
         return None
-    own = {**choices, "model": dict(choices["model"])}
-    settle(own, start, None)
     folder = new / "trial"
     folder.mkdir()
     for path in (*new.glob("*.asc"), *new.glob("*.csv")):
         os.symlink(f"../{path.name}", folder / path.name)
     disk.write(folder / "blocks.1.data", start.data(1, TRIAL))
-    disk.write(folder / site_deck.NAME, deck(own, said, f"{TRIAL}", "some seconds"))
+    disk.write(folder / site_deck.NAME, deck(settled(choices, start, None), said, f"{TRIAL}", "some seconds"))
     found = site_budget.measure(folder, site_deck.NAME, machine.lmp, {})
     shutil.rmtree(folder)
     tell(f"trial run, {site.trial_text(found._replace(diameter=start.sizes[0]))}; took {found.seconds:.1f} s")
     return found
 
 
-def settle(choices: Choices, start: Start, trial: Optional[Trial]) -> None:
-    """Fill in what the choices leave open; without a trial by the height through which a block can fall."""
-    model, raster = choices["model"], start.raster
+def settled(choices: OfBlocks, start: Start, trial: Optional[Trial]) -> OfBlocks:
+    """With what they leave open; without a trial by the height through which a block can fall."""
+    model, raster = choices.model, start.raster
     falling = math.sqrt(2 * GRAVITY * (start.top - float(np.nanmin(raster.z))))
-    model["speed"] = model["speed"] or (site_budget.stiff_to(trial) if trial else float(f"{falling:.2g}"))
-    model["duration"] = model["duration"] or site_budget.duration(trial)
-    model["film"] = model["film"] or site_deck.frame(trial.rest if trial else site_budget.LEAST_DURATION / 3)
-    model["cell"] = model["cell"] or float(raster.transform.a)
+    return replace(choices, model=replace(
+        model, speed=model.speed or (site_budget.stiff_to(trial) if trial else float(f"{falling:.2g}")),
+        duration=model.duration or site_budget.duration(trial),
+        film=model.film or site_deck.frame(trial.rest if trial else site_budget.LEAST_DURATION / 3),
+        cell=model.cell or float(raster.transform.a)))
 
 
-def step_of(choices: Choices) -> float:
+def step_of(choices: OfBlocks) -> float:
     """The deck's time step, s."""
-    low, high = sizes_of(choices)
-    return site_budget.STEP * 0.25 * site_budget.OVERLAP * high / choices["model"]["speed"] * (low / high) ** 1.5
+    (low, high), speed = sizes_of(choices), choices.model.speed
+    assert speed
+    return site_budget.STEP * 0.25 * site_budget.OVERLAP * high / speed * (low / high) ** 1.5

@@ -6,7 +6,8 @@ from ..errors import SlopeError
 from ..findings import Finding
 from ..runs import repeats
 from ..sites import site_deck
-from ..sites.site_choices import Site
+from ..sites.site_choices import Folder
+from ..sites.site_sections import OfBlocks
 from ..studies import site_study, study
 from ..studies.setup import RUNS, Setup
 from . import files, outcome, page, runs
@@ -14,24 +15,24 @@ from . import files, outcome, page, runs
 
 class Known(NamedTuple):
     """A site and what its finished runs say."""
-    site: Site
+    site: Folder[OfBlocks]
     terrain: runs.Terrain
     runs: Sequence[runs.Run]
     outcome: outcome.Outcome
     doubts: Sequence[Finding]
 
 
-def settings_of(site: Site):
+def settings_of(site: Folder[OfBlocks]):
     """{variable of the deck: its values}."""
-    return {"rolling": site_study.words(site.choices["study"]["rolling"]),
-            "ground": [str(k) for k in range(1, site.choices["blocks"]["grounds"] + 1)]}
+    return {"rolling": site_study.words(site.choices.study.rolling),
+            "ground": [str(k) for k in range(1, site.choices.blocks.grounds + 1)]}
 
 
-def planned(site: Site) -> List[repeats.Repeat]:
+def planned(site: Folder[OfBlocks]) -> List[repeats.Repeat]:
     return repeats.plan(site.folder / RUNS, settings_of(site), {}, decks.index_variables(site.folder / site_deck.NAME))
 
 
-def run(site: Site, engine: Setup) -> None:
+def run(site: Folder[OfBlocks], engine: Setup) -> None:
     """Make or continue all runs and show the outcome; raises SlopeError on bad input, and last if a run failed."""
     setup = engine._replace(deck=site.folder / site_deck.NAME, output=site.folder / site_study.STUDY, site=site.folder,
                             road=None)
@@ -50,7 +51,7 @@ def run(site: Site, engine: Setup) -> None:
         study.perform(setup, settings_of(site), planned(site), collect)
 
 
-def read(site: Site, todo: Sequence[Any]) -> Known:
+def read(site: Folder[OfBlocks], todo: Sequence[Any]) -> Known:
     """What those of these runs say that finished; SlopeError if none did."""
     terrain = runs.terrain_of(site)
     found = [runs.read(one.name, one.folder, one.chosen, terrain) for one in todo if one.finished]

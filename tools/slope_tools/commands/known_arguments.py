@@ -5,7 +5,8 @@ from typing import Any, List, Optional
 from ..mobility import known, landslides
 from ..mobility.exceedance import CONFINED
 from ..options import option, several
-from ..sites import site_choices
+from ..sites.site_choices import Site
+from ..sites.site_sections import OfMass
 
 SETS = ("rock_avalanches (49 of Canada, the default; where they do not cover the mass, landslides of all sizes do), "
         f"or the landslides of a TYPE[:PATH] of Corominas (1996), {', '.join(landslides.TYPES)}; paths all, "
@@ -36,7 +37,7 @@ class Known(Confined):
 
 
 def choice_of(events: Optional[str], left_out: List[str], confined: Optional[str],
-              site: Optional[site_choices.Site] = None) -> known.Choice:
+              site: Optional[Site] = None) -> known.Choice:
     """What these options ask for; what they leave open is that of a site, if there is one."""
-    own = site.choices["known"] if site else {}
-    return known.choice(events or own.get("set"), left_out, confined or own.get("confined", "unknown"))
+    own = (site.choices if site else OfMass.of({})).known
+    return known.choice(events or own.set, left_out, confined or own.confined)

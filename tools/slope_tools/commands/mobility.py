@@ -62,8 +62,8 @@ def run(args: Request) -> None:
     print("\n".join(results.words(found, source, met)))
     if site and not args.road:
         for name in site_roads.names(site):
-            other = roads.read_local(site.folder / site_roads.file_name(name), mass.raster,
-                                     roads.Asked.of(site.choices["road"]), local=True).polygon
+            other = roads.read_local(site.folder / site_roads.file_name(name), mass.raster, site.choices.road.asked,
+                                     local=True).polygon
             print(outlook.road_text(found.decides, road.at_road(found.decides.path, other), name))
     for line in results.doubts(found):
         tell(line)
@@ -99,8 +99,7 @@ def road_of(args: Request, site: Optional[site_choices.Site], mass: body.Body):
     own = Path(args.terrain, ROAD)
     if not (site and own.is_file()):
         return None
-    asked = roads.Asked.of(site.choices["road"])
-    return roads.read_local(own, mass.raster, asked, local=True).polygon
+    return roads.read_local(own, mass.raster, site.choices.road.asked, local=True).polygon
 
 
 def line_of(path: Path, local: bool, mass: body.Body):

@@ -4,7 +4,7 @@ from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from shlex import quote
-from typing import Any, Dict, List, Optional, Sequence
+from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 from ..blocks import kinds
 from ..case import decks
@@ -19,6 +19,7 @@ from ..releases.release import SHAPES
 from ..releases.release_scar import KINDS
 from ..runs import jobs
 from ..sites import site, site_choices, site_deck, site_older, site_scenarios
+from ..sites.site_sections import Choices, Key, OfMass, sections
 from ..slips import bodies
 from ..studies import ahead, outlook, site_ground
 from ..studies.setup import RUNS, Setup
@@ -60,6 +61,7 @@ SIZES = ("diameter", "balls", "minutes", "memory")
 ONE_OF = (("depth", "volume", "curvature"), SIZES)
 OF_SOIL = ("friction", "rolling", "spacing", "field_restitution", "density", "slip_friction")
 LIGHT = 100                 # kg/m3; less is not a ground's density, but one in t/m3 or relative to water's
+Chosen = Tuple[Path, Choices, site_choices.Derived]
 
 DESCRIPTION = "A folder for a site: terrain, body, layers, deck, map, and site.yaml with every choice."
 EPILOG = """\
@@ -90,7 +92,7 @@ a light and smooth ground:
 FOLDER/site.yaml holds every choice, and what each means; change it and give FOLDER alone to rebuild the folder. Changes
 of road, known and study take effect in the next `slope study FOLDER`, which makes only the runs that are not there.
 Keys of it that no option has:
-""" + "\n".join(f"  {section}.{key}: {entry.get('description', '')}" for section, about in site_choices.sections()
+""" + "\n".join(f"  {section}.{key}: {entry.get('description', '')}" for section, about in sections()
                 for key, entry in about["properties"].items() if (section, key) not in OPTIONS.values()) + "\n"
 
 
@@ -240,27 +242,25 @@ class Request(Ground, Layers, known_arguments.Confined, Model, Size, Blocks, Abo
 def run(args: Request) -> None:
     """Do the command; raises SlopeError on bad input. Prints what was read, found and written."""
     folder, choices, known = chosen(args)
-    build = kinds.build(choices)
-    if build is site.build and any(getattr(args, option) is not None for option in OF_SOIL):
+    if isinstance(choices, OfMass) and any(getattr(args, option) is not None for option in OF_SOIL):
         print(soil(choices))
     cores = args.jobs or jobs.cores()
     with jobs.signals_interrupt(), site_scenarios.room(folder) if args.scenario is not None else nullcontext():
         made = site.make(choices, folder, site.Machine(program(args.lmp), cores),
                          lambda line: print(line, flush=True), printer("site"), site_map.draw,
-                         again=args.folder is not None and args.scenario is None, known=known, how=build)
-    if build is site.build:
+                         again=args.folder is not None and args.scenario is None, known=known, how=kinds.build(choices))
+    if isinstance(choices, OfMass):
         for line in (*site_ground.lines(site_choices.load(folder)), *outlook.lines(folder)):
             print(line)
         if (folder / RUNS).is_dir():
-            print(runs_ahead(args, folder, choices))
+            print(runs_ahead(args, folder, choices.study.points))
     print(f"written to {folder}: {' '.join(made.files)}")
     print(f"look at {folder / site.MAP}, then: tools/slope study {quote(str(folder))}")
 
 
-def runs_ahead(args: Request, folder: Path, choices) -> str:
+def runs_ahead(args: Request, folder: Path, points: int) -> str:
     """Which runs of the study are there now."""
     engine = Setup(folder / site_deck.NAME, folder, jobs=args.jobs, lmp=args.lmp)
-    points = choices["study"]["points"]
     try:
         points = 0 if known_study.why_not(folder) else points
         return f"the study: {ahead.of_site(site_choices.load(folder), engine, points).text}"
@@ -268,7 +268,7 @@ def runs_ahead(args: Request, folder: Path, choices) -> str:
         return f"the study: {error}"
 
 
-def chosen(args: Request):
+def chosen(args: Request) -> Chosen:
     """The folder; the choices of the command line, or of the folder with those of the command line; and what of them
     was found before.
     """
@@ -288,30 +288,27 @@ def chosen(args: Request):
             raise SlopeError("--terrain" if args.terrain is None else "-o", "must be given, or the folder of a site")
         folder, choices, known = args.output, kinds.begun(args.blocks), {}
     kinds.check(choices, {name: OPTIONS[name] for name in given})
-    if "density" in given and kinds.build(choices) is site.build:
+    if "density" in given and isinstance(choices, OfMass):
         given["density"] = density_of_ball(given["density"])
-    replace(choices, given)
-    site_choices.check({"slope_site": site_choices.VERSION, **choices}, str(folder / site_choices.NAME),
+    choices = replaced(choices, given)
+    site_choices.check({"slope_site": site_choices.VERSION, **choices.entries()}, str(folder / site_choices.NAME),
                        {OPTIONS[option]: OTHERWISE.get(option, f"--{option.replace('_', '-')}") for option in given})
     return folder, choices, known
 
 
-def rebuilt(folder: Path, given: Dict[str, Any]):
+def rebuilt(folder: Path, given: Dict[str, Any]) -> Chosen:
     """The folder of a site, its choices, and of them what counts of what was found before."""
-    choices = site_choices.read(folder, site_choices.kind_in(folder))
-    known = site_choices.found(folder).get("derived") or {}
-    older = site_choices.has_lattice(choices)
-    choices = site_older.renewed(choices, folder, "spacing" in given, print)
-    if older or given.keys() - BESIDE:
-        site_choices.forget(choices, known)
-        known = {}
-    elif choices["model"]["film"] is None and (folder / site_deck.NAME).is_file():      # an older folder has none
+    made = site_choices.load_kind(folder, site_choices.kind_in(folder))
+    choices, known = site_older.renewed(made.choices, folder, "spacing" in given, print), made.found.derived
+    if made.choices.older.get("study") or given.keys() - BESIDE:
+        return folder, site_choices.forgotten(choices, known), {}
+    if choices.model.film is None and (folder / site_deck.NAME).is_file():      # an older folder has none
         film = decks.index_variables(folder / site_deck.NAME).get("film", "")
-        choices["model"]["film"] = float(film) if film else None
+        choices = choices.changed({("model", "film"): float(film) if film else None})
     return folder, choices, known
 
 
-def of_scenario(args: Request, given: Dict[str, Any]):
+def of_scenario(args: Request, given: Dict[str, Any]) -> Chosen:
     """The same of a new scenario, of which nothing was found before."""
     assert args.folder is not None and args.scenario is not None
     folder, of = site_scenarios.place(args.folder, args.scenario), site_choices.load(args.folder)
@@ -348,12 +345,12 @@ def density_of_ball(bulk):
     return round(bulk * packing.BULK, 1)
 
 
-def soil(choices):
+def soil(choices: OfMass) -> str:
     """The values of soil and ground in words."""
-    of = choices["model"]
-    return (f"friction {of['friction']:g} degrees, on the slip surface {of['slip_friction']:g}; rolling resistance "
-            f"{', '.join(f'{one:g}' for one in choices['study']['rolling'])}; the ground: spacing {of['spacing']:g}, "
-            f"restitution {of['field_restitution']:g}; bulk density {of['density'] / packing.BULK:,.0f} kg/m3")
+    of = choices.model
+    return (f"friction {of.friction:g} degrees, on the slip surface {of.slip_friction:g}; rolling resistance "
+            f"{', '.join(f'{one:g}' for one in choices.study.rolling)}; the ground: spacing {of.spacing:g}, "
+            f"restitution {of.field_restitution:g}; bulk density {of.density / packing.BULK:,.0f} kg/m3")
 
 
 def assigned_crs(words):
@@ -371,22 +368,19 @@ def assigned_crs(words):
     return given
 
 
-def replace(choices, given):
-    """Enter options in the choices; those that one of them replaces become null."""
-    for group in ONE_OF:
-        if any(name in given for name in group):
-            for name in group:
-                section, key = OPTIONS[name]
-                choices[section][key] = None
-    if "bodies" in choices["release"] and ("scar" in given or "release" in given):
-        choices["release"]["bodies"] = []
-    if "road" in given and "others" in choices["road"]:
-        choices["road"]["others"] = []
+def replaced(choices: Choices, given: Dict[str, Any]) -> Choices:
+    """The choices with options; those that one of them replaces become null."""
+    new: Dict[Key, Any] = {OPTIONS[name]: None for group in ONE_OF if given.keys() & set(group) for name in group}
     if "scar" in given:
-        choices["release"].update(shape=None, depth=None, volume=None, curvature=None, dip=None, direction=None)
+        new.update({("release", key): None for key in ("shape", "depth", "volume", "curvature", "dip", "direction")})
+    if isinstance(choices, OfMass) and ("scar" in given or "release" in given):
+        new["release", "bodies"] = []
+    if isinstance(choices, OfMass) and "road" in given:
+        new["road", "others"] = []
     for name, value in given.items():
         section, key = OPTIONS[name]
-        choices[section][key] = {**choices[section][key], **value} if isinstance(value, dict) else value
+        new[section, key] = {**choices.value(section, key), **value} if isinstance(value, dict) else value
+    return choices.changed(new)
 
 
 def program(option):

@@ -3,7 +3,7 @@
 Order of the work: check the deck and the settings, plan the runs (repeats.py), make their folders and run what is not
 finished (jobs.py), collect (results.py), combine (combinations.py, headline.py).
 """
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, Optional, Sequence
 
@@ -14,13 +14,13 @@ from ..errors import SlopeError
 from ..options import flag, option, positional, several
 from ..runs import repeats
 from ..sites import site_choices, site_deck, site_roads
-from ..sites.site_choices import Site
 from ..sites.site_bodies import VARIABLE
+from ..sites.site_choices import Site
+from ..sites.site_sections import OfMass
 from ..statistics.answer import Source
 from ..studies import ahead, console, files, fine_runs, results, road_numbers, site_ground, site_study, study
 from ..studies.road_numbers import Made
 from ..studies.study import OfAKind, RunsFailed, check_more_than, check_thresholds, perform
-from ..survey import roads
 from ..tables import answered, intensity, next_step, study_types
 from . import known_arguments, road_arguments
 from .run_arguments import DECK, Intensity, Repeats, Runs, Sample, setup_of
@@ -136,7 +136,7 @@ def run_site_of(args: Request, site: Site) -> Made:
     if args.sample is not None or args.fit is not None:
         return run_site_ensemble(args, site)
     site_study.check(site)
-    points = site.choices["study"]["points"]
+    points = site.choices.study.points
     why = "" if args.paper else known_study.why_not(args.deck) if points else known_study.NONE
     if args.paper or why:
         condition_of(replace(args, around=site))        # has no meaning here
@@ -230,12 +230,13 @@ def condition_of(args: Request) -> Optional[known_events.Condition]:
     """What --known and its company ask for; SlopeError if some are there without it."""
     choice = known_arguments.choice_of(args.known, args.left_out, args.confined, args.around) \
         if args.known is not None or args.weigh else None
-    return study.condition_of(choice, args.known, args.around and args.around.folder, args.left_out, args.confined)
+    folder = args.around.folder if args.around else None
+    return study.condition_of(choice, args.known, folder, args.left_out, args.confined)
 
 
 def known_of(args: Request) -> Mapping[str, Any]:
     """With which known events the runs of a site's deck are compared."""
-    return args.around.choices["known"] if args.around else {}
+    return asdict(args.around.choices.known) if args.around else {}
 
 
 def check_fit(args: Request) -> None:
@@ -263,7 +264,7 @@ def chain_of(args: Request):
         if words.startswith(f"{VARIABLE}="):
             raise SlopeError("--vary", f"must not have {VARIABLE}, which --fragility draws", words)
     found = chain_files.check(fragility_files.read(args.fragility),
-                              args.around.found.get("bodies") or {}, args.site, args.more_than or ())
+                              args.around.found.bodies, args.site, args.more_than or ())
     fixed, drawn = chain_files.options(found)
     return replace(args, set=[*args.set, *fixed], vary=[*args.vary, *drawn], more_than=None), found
 
@@ -316,21 +317,21 @@ def of_ensemble(args: Request, asked: Site, method="") -> Request:
         raise SlopeError("-o", "must not be given with a site of several roads, each of which has its folder",
                          args.output)
     site, choices = asked.folder, asked.choices
-    about = choices["road"]
+    about = choices.road
     chance = site_choices.chance(decks.index_variables(site / site_deck.NAME))
-    road = {name: about[roads.KEYS[field]] for name, field in road_arguments.OPTIONS.items()}
-    road.update(road=site_roads.file_of(asked), road_name=asked.road, cut_angle=about["cut_angle"], mesh=about["mesh"])
+    road = {name: getattr(about.asked, field) for name, field in road_arguments.OPTIONS.items()}
+    road.update(road=site_roads.file_of(asked), road_name=asked.road, cut_angle=about.cut_angle, mesh=about.mesh)
     vary = args.vary or ([] if args.fit else [*of_fragility(choices), chance] if args.fragility
                          else [*known_study.VARY, chance])
     return replace(args, deck=site / site_deck.NAME, site=site, around=asked, method=method,
                    set=[*args.set, *not_varied(args, choices, vary)],
-                   fine=args.fine or str(choices["study"]["fine"] or "no"),
+                   fine=args.fine or str(choices.study.fine or "no"),
                    output=args.output or site_roads.results(asked) / site_study.ENSEMBLE,
                    wide={} if args.vary or args.fit or args.fragility else known_study.WIDE,
-                   vary=vary, **(road if about["file"] else {}))
+                   vary=vary, **(road if about.file else {}))
 
 
-def not_varied(args: Request, choices, vary) -> List[str]:
+def not_varied(args: Request, choices: OfMass, vary) -> List[str]:
     """--set of what a site has a list of and an ensemble does not vary."""
     names = {words.partition("=")[0] for words in (*vary, *args.set, *args.repeat)}
     if args.fit:
@@ -339,9 +340,9 @@ def not_varied(args: Request, choices, vary) -> List[str]:
     return [f"{name}={value}" for name, value in site_choices.not_varied(choices, names).items()]
 
 
-def of_fragility(choices):
+def of_fragility(choices: OfMass) -> List[str]:
     """--vary of a site's chain, unless it is given, beside what is chance: the rolling resistances of its study."""
-    rolling = choices["study"]["rolling"]
+    rolling = choices.study.rolling
     return [f"rolling={min(rolling):.10g}:{max(rolling):.10g}"] * (min(rolling) < max(rolling))
 
 

@@ -6,6 +6,8 @@ from ..deposits import travel_shares
 from ..digits import rounded
 from ..errors import SlopeError
 from ..sites import site_zones
+from ..sites.site_found import Found
+from ..sites.site_sections import OfMass
 from ..statistics import headline
 from ..studies import site_ground
 from ..tables.quantities import STOP
@@ -58,16 +60,17 @@ def shown(numbers, degrees: float, label: str = "") -> str:
 def zones_of_ground(data: Data, numbers: Numbers) -> Optional[Section]:
     """Which zones the ground has, with which values in the shown run; None without zones, or where it is no site's."""
     site = data.site
-    zones, variables = (site.get("found") or {}).get("zones") or [], data.result.row.variables
+    zones, variables = Found.of(site).zones, data.result.row.variables
     if not zones or not set(site_zones.VALUES.values()) <= set(variables):
         return None
     rows = []
+    model = OfMass.of(site).model
     for zone in site_zones.with_rest(zones):
-        now = site_zones.now(zone, site["model"], variables)
-        degrees = site_ground.of_zone(zone, site["model"], variables)
-        numbers.rows.append((f"ground: {zone['name']}: share of the terrain", "%", "", f"{100 * zone['share']:.3g}",
-                             100 * zone["share"]))
-        rows.append((zone["name"], f"{100 * zone['share']:.3g}", *(f"{value:.3g}" for value in now.values()),
+        now = site_zones.now(zone, model, variables)
+        degrees = site_ground.of_zone(zone, model, variables)
+        numbers.rows.append((f"ground: {zone.name}: share of the terrain", "%", "", f"{100 * zone.share:.3g}",
+                             100 * zone.share))
+        rows.append((zone.name, f"{100 * zone.share:.3g}", *(f"{value:.3g}" for value in now.values()),
                      "" if degrees is None else f"{degrees:.1f}"))
     return Section("ground", "The ground", [Table(ZONES, [*ZONE_HEADS, Cell("stop angle", "degrees")], rows)])
 

@@ -9,6 +9,7 @@ from ..drawing import figures, palettes
 from ..plots import figure_maps, known_reach
 from ..plots.ground import box_of
 from ..sites import site_zones
+from ..sites.site_found import Found
 from ..survey.rasters import crs_name
 from . import ensemble_part, heading, mobility_part
 from .data import Data
@@ -21,7 +22,7 @@ OPEN = " The last class is open: it holds the few thicker cells, most of them in
 
 def zones_of(data: Data, raster) -> Dict[str, Any]:
     """Polygons of the zones of a site's ground, by name."""
-    zones, path = (data.site.get("found") or {}).get("zones"), heading.site_file(Path(data.folder))
+    zones, path = Found.of(data.site).zones, heading.site_file(Path(data.folder))
     return site_zones.outlines(path.parent, zones, raster) if zones and path else {}
 
 

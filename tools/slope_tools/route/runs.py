@@ -4,6 +4,7 @@ The folder of a body is a site as `slope site` makes it, with its own runs: `slo
 them over, and a route those.
 """
 import contextlib
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, NamedTuple, Sequence
 
@@ -16,6 +17,7 @@ from ..errors import SlopeError
 from ..runs import jobs
 from ..sites import site, site_budget, site_choices, site_deck, site_zones
 from ..sites.site_roads import ROAD
+from ..sites.site_sections import Ground, Key, OfMass
 from ..slips import bodies
 from ..statistics import designs
 from ..studies import results, site_study, study
@@ -52,48 +54,46 @@ def make_site(choices: Choices, folder: Path, about: Mapping[str, Any], number: 
         site.make(choices_of(choices, slips, about, number), place, machine, tell, warn, draw)
     made = site_choices.load(place)
     site_study.check(made)
-    known = made.choices
-    changed = {section: {**known[section], **now} for section, now in later(choices, about).items()}
-    if any(known[section] != now for section, now in changed.items()):
-        disk.write(place / site_choices.NAME, site_choices.text({**known, **changed}, made.found, place))
+    now = made.choices.changed(later(choices, about))
+    if now != made.choices:
+        disk.write(place / site_choices.NAME, site_choices.text(now, made.content.get("found") or {}, place))
     return place
 
 
-def later(choices: Choices, about: Mapping[str, Any]) -> Dict[str, Dict[str, Any]]:
-    """The sections of a body's site whose choices may change when it is made."""
-    return {"road": {"cut_angle": choices.cut_angle, "mesh": choices.mesh,
-                     **choices.asked._replace(start=about["road_from_m"] / 1000).about()},
-            "project": {"name": f"{choices.name + ', ' if choices.name else ''}{about['name']}",
-                        "client": choices.client, "author": choices.author}}
+def later(choices: Choices, about: Mapping[str, Any]) -> Dict[Key, Any]:
+    """Those choices of a body's site that may change when it is made."""
+    asked = choices.asked._replace(start=about["road_from_m"] / 1000).about()
+    return {("road", "cut_angle"): choices.cut_angle, ("road", "mesh"): choices.mesh,
+            **{("road", key): value for key, value in asked.items()},
+            ("project", "name"): f"{choices.name + ', ' if choices.name else ''}{about['name']}",
+            ("project", "client"): choices.client, ("project", "author"): choices.author}
 
 
-def choices_of(choices: Choices, slips: Path, about: Mapping[str, Any], number: int) -> site_choices.Choices:
+def choices_of(choices: Choices, slips: Path, about: Mapping[str, Any], number: int) -> OfMass:
     """The choices of a body's site."""
     base = str(slips / f"{PREFIX}.{about['body']}.base.asc")
-    found = site_choices.complete({})
-    found["terrain"]["files"] = [str(slips / TERRAIN)]
-    found["release"].update(scar=base, scar_is="surface",
-                            bodies=[base] if (slips / f"{PREFIX}{bodies.END}").is_file() else [])
-    found["road"]["file"] = str(slips / "road.csv")
+    found = OfMass.of({
+        "terrain": {"files": [str(slips / TERRAIN)]},
+        "release": {"scar": base, "scar_is": "surface",
+                    "bodies": [base] if (slips / f"{PREFIX}{bodies.END}").is_file() else []},
+        "road": {"file": str(slips / "road.csv")}, "balls": {"number": choices.balls},
+        "model": {"density": choices.ball_density}, "known": {"confined": choices.confined}})
+    found = found.changed(later(choices, about))
     zones = site_zones.Source(choices.ground, choices.ground_table, None, polygons.ADVICE) if choices.ground else None
     if zones and site_zones.touch(zones, rasters.read_asc_local(slips / TERRAIN)):
-        found["ground"] = {"file": zones.path, "table": zones.table}
-    for section, now in later(choices, about).items():
-        found[section].update(now)
-    found["balls"]["number"] = choices.balls
+        found = replace(found, ground=Ground(zones.path, zones.table))
     if choices.minutes:     # a site's are those of its own study, which has more runs
-        found["balls"]["minutes"] = choices.minutes / number * site_budget.plan(found).runs / choices.sample
-    found["model"]["density"] = choices.ball_density
-    found["known"]["confined"] = choices.confined
-    site_choices.check({"slope_site": site_choices.VERSION, **found}, str(slips))
+        minutes = choices.minutes / number * site_budget.plan(found).runs / choices.sample
+        found = replace(found, balls=replace(found.balls, minutes=minutes))
+    site_choices.check({"slope_site": site_choices.VERSION, **found.entries()}, str(slips))
     return found
 
 
 def asked_of(choices: Choices, place: Path, engine: Setup) -> Asked:
     """The study of a body's site, as `slope study SITE --sample N --seed BODY --vary ...` makes it."""
-    deck, known = place / site_deck.NAME, site_choices.read(place)
-    given = known["road"]
-    road = Road(place / ROAD, given["cut_angle"], given["mesh"], asked=choices.asked.of(given))
+    deck, known = place / site_deck.NAME, site_choices.load(place).choices
+    given = known.road
+    road = Road(place / ROAD, given.cut_angle, given.mesh, asked=given.asked)
     setup = engine._replace(deck=deck, output=place / STUDY, site=place, road=road)
     fixed = site_choices.not_varied(known, {words.partition("=")[0] for words in choices.vary})
     plan = sample.check(choices.sample, designs.SOBOL, int(place.name), choices.vary, deck, fixed, {})
@@ -101,7 +101,8 @@ def asked_of(choices: Choices, place: Path, engine: Setup) -> Asked:
     thresholds = list(site_study.THRESHOLDS)
     order = ensemble.Order(plan, ensemble.check_quantity(None, True),
                            ensemble_maps.Thresholds(thresholds, [5.0], [1e5]))
-    questions = results.Questions(sample.settings_of(todo), {}, thresholds, order, site=place, known=known["known"])
+    questions = results.Questions(sample.settings_of(todo), {}, thresholds, order, site=place,
+                                  known=asdict(known.known))
     return Asked(setup, questions, plan, todo)
 
 

@@ -1,13 +1,14 @@
 """A site and its scenarios: what each releases, what its study says, and in what its choices and its model differ."""
 import os
 from pathlib import Path
-from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Optional
+from typing import Any, Iterator, List, Mapping, NamedTuple, Optional
 
 from .. import disk
 from ..case import decks, run_folders
 from ..errors import SlopeError
 from ..sites import site_choices, site_deck, site_folder, site_scenarios
 from ..sites.site_choices import FILES, Site
+from ..sites.site_sections import sections
 from ..studies import outdated, site_ground
 from ..tables import named_run, study_types
 from ..tables.study_file import load_study
@@ -35,7 +36,7 @@ class One(NamedTuple):
 
 def read(folder: Path) -> List[One]:
     """The site of a folder, then its scenarios."""
-    name = site_choices.load(folder).choices["project"]["name"] or folder.absolute().name
+    name = site_choices.load(folder).choices.project.name or folder.absolute().name
     return [one(folder, name), *(one(place, place.name) for place in site_scenarios.of_site(folder))]
 
 
@@ -55,7 +56,7 @@ def one(folder: Path, name: str) -> One:
 def choices_that_differ(mine: Site, other: Site) -> List[str]:
     """Those of a scenario, in words: keys of site.yaml and their values."""
     found = []
-    for name, about in site_choices.sections():
+    for name, about in sections():
         if name in ("project", "balls"):
             continue
         for key in about["properties"]:
@@ -64,7 +65,7 @@ def choices_that_differ(mine: Site, other: Site) -> List[str]:
             was, now = (plain(site, name, key) for site in (mine, other))
             if was == now:
                 continue
-            if now not in (None, [], {}):
+            if now not in (None, (), [], {}):
                 found.append(f"{key.replace('_', ' ')} {text(now)}")
             elif (name, key) in FILES:
                 found.append(f"without {name} {key}")
@@ -73,10 +74,9 @@ def choices_that_differ(mine: Site, other: Site) -> List[str]:
 
 def plain(site: Site, section: str, key: str) -> Any:
     """A choice, with files by their places."""
-    value = site.choices[section].get(key)
-    if (section, key) not in FILES:
-        return value
-    return [os.path.abspath(one) for one in value] if isinstance(value, list) else value and os.path.abspath(value)
+    if (section, key) in FILES:
+        return [os.path.abspath(one) for one in site.choices.files(section, key)]
+    return site.choices.value(section, key)
 
 
 def text(value: Any) -> str:
@@ -98,8 +98,7 @@ def differences(mine: One, other: One) -> Iterator[str]:
                 yield f"{what} {now}{unit and f' {unit}'} instead of {was}"
     if (digests := [terrain(each.site.folder) for each in (mine, other)])[0] != digests[1]:
         yield "another terrain"
-    zones: List[Dict[str, Any]] = [{zone["name"]: zone["variables"] for zone in each.site.found.get("zones") or ()}
-                                   for each in (mine, other)]
+    zones = [{zone.name: zone.variables for zone in each.site.found.zones} for each in (mine, other)]
     if zones[0] != zones[1]:
         yield "other zones of the ground"
     angles = [site_ground.stop_angles(each.site) for each in (mine, other)]

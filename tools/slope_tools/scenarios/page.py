@@ -51,8 +51,8 @@ def write(folder: Path, output: Path, overwrite: bool) -> str:
     disk.check_standing(output, [output], [document.MADE_BY], overwrite, f"slope report {quote(str(folder))}")
     several = read(folder)
     content = {
-        "title": several[0].name, "client": several[0].site.choices["project"]["client"],
-        "author": several[0].site.choices["project"]["author"], "made": provenance.now(),
+        "title": several[0].name, "client": several[0].site.choices.project.client,
+        "author": several[0].site.choices.project.author, "made": provenance.now(),
         "mark": document.mark(folder),
         "sections": [Section("scenarios", "Side by side", [table(several), Figures([drawn(several)], "two-thirds")]),
                      Section("models", "In what the models differ", [Listing(list(models(several)))])],
@@ -94,8 +94,8 @@ def table(several: Sequence[One]) -> Table:
 
 def numbers(one: One) -> List[str]:
     """Of a row: what is released, how far it goes, what is to be removed, how many runs finished."""
-    body = one.site.found.get("body") or {}
-    released = digits.rounded(body["volume"], 4) if body else "-"
+    body = one.site.found.body
+    released = digits.rounded(body.volume, 4) if body else "-"
     if one.about is None:
         return [released, "-", "-", "-", "not studied as it is"]
     finished = finished_of(one.about["runs"])
@@ -135,9 +135,8 @@ def drawn(several: Sequence[One]) -> Optional[Picture]:
         return None
     raster = rasters.read_asc_local(mine.folder / TERRAIN)
     whole = maps.window(raster, *boxes)
-    road = mine.choices["road"]
-    polygon = roads.read_local(mine.folder / ROAD, raster, roads.Asked.of(road), local=True).polygon \
-        if road["file"] else None
+    road = mine.choices.road
+    polygon = roads.read_local(mine.folder / ROAD, raster, road.asked, local=True).polygon if road.file else None
     layers = figure_maps.Layers(raster, raster.z, whole, None, polygon, None, figures.contour_interval(raster.z))
     title = "Outlines of the deposits"
     return Picture(map_of(layers, shown, title), title, f"{title}, where they are thicker than {THICK:g} m at the "
@@ -147,8 +146,7 @@ def drawn(several: Sequence[One]) -> Optional[Picture]:
 
 def origin(one: One) -> np.ndarray:
     """Coordinates of the local 0 0 of a site."""
-    about = one.site.found.get("origin") or {"east": 0.0, "north": 0.0}
-    return np.array([about["east"], about["north"]])
+    return np.array([one.site.found.origin.east, one.site.found.origin.north])
 
 
 def outline(raster: Raster, by: np.ndarray) -> Optional[Outline]:

@@ -13,6 +13,7 @@ from ..digits import percent
 from ..errors import SlopeError
 from ..findings import Finding, entries, finding, texts
 from ..sites.site_bodies import VARIABLE
+from ..sites.site_found import SlipBody
 from ..statistics import hazard
 from ..statistics.size_effect import Effect
 from ..tables import fine_run, intensity, study_types
@@ -36,9 +37,8 @@ class Chain(NamedTuple):
 
 # --- before the runs ---
 
-def check(found: Fragility, bodies: Mapping[Any, Mapping[str, Any]], site: Path, more_than: Sequence[float]) -> Chain:
+def check(found: Fragility, here: Mapping[str, SlipBody], site: Path, more_than: Sequence[float]) -> Chain:
     """The Chain of a site whose bodies (site.yaml: found) are those of a fragility; SlopeError if they are not."""
-    here = {str(rank): one for rank, one in bodies.items()}
     if not here:
         raise SlopeError("--fragility", "needs a site with bodies of slope stability, which slope site --slips makes",
                          site)
@@ -50,13 +50,13 @@ def check(found: Fragility, bodies: Mapping[Any, Mapping[str, Any]], site: Path,
         if name in weights and name not in here:
             raise SlopeError("--fragility", f"must be of the bodies of {site}, {', '.join(here)}: body {name} may "
                              "fail, too; slope site --slips without --body has all of them", found.folder)
-        if name in here and here[name]["base_sha256"] != digest:
+        if name in here and here[name].base_sha256 != digest:
             raise SlopeError("--fragility", f"must be of the bodies of {site}: body {name} is another one there",
                              found.folder)
     for name in here:
         if name not in found.bodies:
             raise SlopeError("--fragility", f"must have all bodies of {site}, but has no body {name}", found.folder)
-    return Chain(found, weights, {name: float(here[name]["volume_m3"]) for name in weights}, more_than)
+    return Chain(found, weights, {name: float(here[name].volume_m3) for name in weights}, more_than)
 
 
 def options(asked: Chain) -> Tuple[List[str], List[str]]:

@@ -5,9 +5,9 @@ Order of the work: terrain and body (survey), layers (site_inputs), trial run an
 places (site_folder).
 """
 import contextlib
-import copy
 import os
 import shutil
+from dataclasses import replace
 from pathlib import Path
 from shlex import quote
 from typing import Any, Callable, Dict, List, NamedTuple, Optional, Tuple
@@ -23,9 +23,10 @@ from ..survey import local_terrain, polygons, rasters
 from ..survey.rasters import Raster, crs_name
 from . import site_bodies, site_budget, site_choices, site_deck, site_folder, site_trial, site_warnings
 from .site_budget import Size, Trial
-from .site_choices import Choices, Derived
+from .site_choices import Derived
 from .site_folder import BODY, BODY_DECK, MAP, TERRAIN
 from .site_layers import Layers, Shown, advice, read_layers, swapped
+from .site_sections import Choices, MassModel, OfMass
 from .site_trial import Tried
 
 
@@ -47,7 +48,7 @@ def check_target(folder: Path, again: bool) -> None:
         raise SlopeError("-o", "must be in an existing folder", folder)
     if again:
         deck = folder / site_deck.NAME
-        known = site_choices.found(folder).get("deck_sha256")
+        known = site_choices.found(folder).deck_sha256
         if deck.is_file() and known != disk.sha256(deck):
             raise SlopeError(deck, "must not have been changed by hand, the changes would be lost: rename or remove it "
                              "first")
@@ -78,7 +79,7 @@ def make(choices: Choices, folder: Path, machine: Machine, tell: Callable[[str],
     new = disk.beside_folder(place)
     check_target(folder, again)
     known_files = again or site_folder.was_not_made(folder)
-    old = set(site_choices.found(folder).get("files") or ()) if known_files else set()
+    old = set(site_choices.found(folder).files) if known_files else set()
     site_folder.check(choices, folder, old)
     try:
         with disk.alone_in(folder) if again else contextlib.nullcontext():
@@ -109,17 +110,16 @@ def built(how: Build, choices: Choices, known: Derived, new: Path, folder: Path,
         raise
 
 
-def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Machine, tell, warn, draw: Draw) -> Made:
+def build(given: OfMass, known: Derived, new: Path, folder: Path, machine: Machine, tell, warn, draw: Draw) -> Made:
     """Everything, into the folder `new`, which will be `folder`."""
     warnings: List[Finding] = []
 
     def keep(said) -> None:
         warnings.append(finding(said))
         warn(said)
-    choices = {name: dict(section) for name, section in given.items()}
-    wanted = wanted_body(choices, new)
-    raster, about = terrain(choices, new, tell, keep)
-    found = body_of(choices, wanted, raster, keep)
+    wanted = wanted_body(given, new)
+    raster, about = terrain(given, new, tell, keep)
+    found = body_of(given, wanted, raster, keep)
     if found.choices.get("scar_is") == "height":
         steps = [*about["steps"], f"the height of the mass in {wanted.scar} added"]
         rasters.write_asc_local(new / TERRAIN, found.raster, {"filled_cells": about["filled_cells"],
@@ -128,18 +128,19 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
     tell(release.text(found))
     for line in found.warnings:
         keep(line)
-    several = site_bodies.write(choices, new, BODY, wanted, keep)
+    several = site_bodies.write(given, new, BODY, wanted, keep)
     body = site_bodies.around(write_body(new, wanted, found), BODY, several)
-    body = body._replace(thick=max(body.thick, choices["model"]["least_thick"] or 0.0))
-    layers = read_layers(choices, raster, new, tell, keep)
-    title = choices["project"]["name"] or folder.absolute().name
-    parts = site_deck.Parts(title, ", ".join(Path(name).name for name in choices["terrain"]["files"]), body,
+    body = body._replace(thick=max(body.thick, given.model.least_thick or 0.0))
+    layers = read_layers(given, raster, new, tell, keep)
+    title = given.project.name or folder.absolute().name
+    parts = site_deck.Parts(title, ", ".join(Path(name).name for name in given.terrain.files), body,
                             layers.structures, layers.lines, layers.motion, room_of(raster), layers.zones)
-    first = tried(given, choices, known, parts, found, new, folder, machine, tell)
+    choices = with_peak(given, parts, found)
+    first = tried(choices, known, parts, found, new, folder, machine, tell)
     trial = first and first.trial
     if first:
         site_trial.keep(new, first, raster)
-    size = settle(choices, parts, found, trial, machine, raster)
+    choices, size = settled(choices, parts, found, trial, machine, raster)
     for one in of_road(choices, found, layers, size):
         keep(one)
     derived = site_choices.derived(given, choices, known)
@@ -147,13 +148,13 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
     for one in (*site_warnings.of_resistance(choices), *site_warnings.of_zones(layers.zones),
                 *site_warnings.site_warnings(found.measures, size, trial),
                 *site_warnings.of_cells(found.area.z - found.slip, found.area.cell, max(
-                    map(rasters.surveyed_cell, choices["terrain"]["files"]))),
+                    map(rasters.surveyed_cell, choices.terrain.files))),
                 *(one for name, road in layers.roads.items() for one in site_warnings.of_road(
-                    road, choices["road"]["width"], size.diameter, max(found.area.cell, choices["model"]["cell"]),
+                    road, choices.road.width, size.diameter, max(found.area.cell, choices.model.cell or 0.0),
                     name))):
         keep(one)
     site_warnings.write(new, warnings)
-    deck = site_deck.text(choices, parts, numbers(choices, soil_of(choices, parts), trial, size))
+    deck = site_deck.text(choices, parts, numbers(choices, soil_of(choices.model, parts), trial, size))
     disk.write(new / site_deck.NAME, deck)
     draw(new / MAP, shown(found, layers, first and first.reached), f"{title}: {found.measures.volume:,.0f} m\u00b3")
     about = {**about_made(choices, new, folder, raster, layers), "derived": derived,
@@ -167,7 +168,7 @@ def build(given: Choices, known: Derived, new: Path, folder: Path, machine: Mach
 
 def about_made(choices: Choices, new: Path, folder: Path, raster: Raster, layers: Layers) -> Dict[str, Any]:
     """What site.yaml says of what was made, of whatever kind: files, digests, place, zones."""
-    site = site_choices.Site.of(choices, folder)
+    site = site_choices.unread(choices, folder)
     return {"slope_version": provenance.version(), "made": provenance.now(),
             "files": sorted([path.name for path in new.iterdir()] + [site_choices.NAME]),
             "deck_sha256": disk.sha256(new / site_deck.NAME), "choices_sha256": site.fingerprint(),
@@ -177,11 +178,11 @@ def about_made(choices: Choices, new: Path, folder: Path, raster: Raster, layers
             "roads": list(layers.roads) if len(layers.roads) > 1 else []}
 
 
-def of_road(choices: Choices, found: release.Body, layers: Layers, size: Size) -> List[Finding]:
+def of_road(choices: OfMass, found: release.Body, layers: Layers, size: Size) -> List[Finding]:
     """That a road, or a part of it, lies on the body, or that the slip surface comes out under it."""
     raster, said = found.raster, []
     for name, road in layers.roads.items():
-        file = choices["road"]["file"] if len(layers.roads) == 1 else name
+        file = name if len(layers.roads) > 1 else str(choices.road.file)
         on = release_toe.on_body(depth_of(found) > 0, raster, road,
                                  release_toe.rim(size.diameter ** 3, raster.transform.a))
         under = None if on and on.wholly else release_toe.under(found.area, found.slip, road)
@@ -192,35 +193,32 @@ def of_road(choices: Choices, found: release.Body, layers: Layers, size: Size) -
 
 # --- ground ---
 
-def wanted_body(choices: Choices, new: Path) -> release.Wanted:
+def wanted_body(choices: OfMass, new: Path) -> release.Wanted:
     """What is asked of the body, checked before anything is read."""
-    given = {key: value for key, value in choices["release"].items() if key != "bodies"}
-    if not (given["polygon"] or given["scar"]):
+    one = choices.release
+    where = one.polygon or one.scar
+    if not where:
         raise SlopeError("--release", "must be given, a polygon, or --scar, a raster")
     site_choices.check_assigned(choices)
-    crs, scar_crs = (given[key] and site_choices.assigned(choices, given[key]) for key in ("polygon", "scar"))
-    return release.check(release.Wanted(str(new / TERRAIN), **given, crs=crs, scar_crs=scar_crs,
-                                        advice=advice(choices, given["polygon"] or given["scar"])))
+    crs, scar_crs = (path and site_choices.assigned(choices, path) for path in (one.polygon, one.scar))
+    return release.check(release.Wanted(
+        str(new / TERRAIN), one.polygon, one.shape, one.depth, one.volume, one.curvature, one.dip, one.direction,
+        one.scar, one.scar_is, one.least, crs, scar_crs, advice=advice(choices, where)))
 
 
 def terrain(choices: Choices, new: Path, tell, warn) -> Tuple[Raster, Dict[str, Any]]:
     """Write the terrain and read it back, as the deck will; what its sidecar says."""
-    given = choices["terrain"]
-    own = {path: crs for path in given["files"] if (crs := site_choices.assigned(choices, path))}
-    wanted = local_terrain.Wanted(given["crs"], None, given["cell"], given["bounds"], given["fill"],
-                                  given["assign_crs"], own, given["z_unit"], nodata_of(choices), pits=False)
-    about = local_terrain.make(given["files"], new / TERRAIN, wanted, tell, warn)
+    given = choices.terrain
+    own = {path: crs for path in given.files if (crs := site_choices.assigned(choices, path))}
+    nodata = given.nodata if isinstance(given.nodata, tuple) else () if given.nodata is None else (given.nodata,)
+    wanted = local_terrain.Wanted(given.crs, None, given.cell, given.bounds, given.fill, given.assign_crs, own,
+                                  given.z_unit, nodata, pits=False)
+    about = local_terrain.make(given.files, new / TERRAIN, wanted, tell, warn)
     tell(local_terrain.summary(TERRAIN, about))
     return rasters.read_asc_local(new / TERRAIN), about
 
 
-def nodata_of(choices: Choices) -> List[float]:
-    """Values of the rasters that stand for no height; site.yaml may have one, several, or none."""
-    given = choices["terrain"]["nodata"]
-    return given if isinstance(given, list) else [] if given is None else [given]
-
-
-def body_of(choices: Choices, wanted: release.Wanted, raster: Raster, warn) -> release.Body:
+def body_of(choices: OfMass, wanted: release.Wanted, raster: Raster, warn) -> release.Body:
     """The body; SlopeError, in other words where release area and road seem to be swapped."""
     try:
         found = release.body_of(wanted)
@@ -251,51 +249,54 @@ def room_of(raster: Raster) -> float:
     return geometry.box_of(raster).area * max(float(np.nanmax(raster.z) - np.nanmin(raster.z)), raster.transform.a)
 
 
-def soil_of(choices: Choices, parts: site_deck.Parts) -> site_budget.Soil:
+def soil_of(model: MassModel, parts: site_deck.Parts) -> site_budget.Soil:
     """What the step depends on; of the trial run, where the speed is still unknown, by weight alone."""
-    model = choices["model"]
-    spacing = min([model["spacing"], *(zone.values.get("spacing", model["spacing"]) for zone in parts.zones)])
-    return site_budget.Soil(model["density"], parts.body.thick, model["speed"] or site_budget.SLOW, spacing)
+    spacing = min([model.spacing, *(zone.values.get("spacing", model.spacing) for zone in parts.zones)])
+    return site_budget.Soil(model.density, parts.body.thick, model.speed or site_budget.SLOW, spacing)
 
 
-def numbers(choices: Choices, soil: site_budget.Soil, trial: Optional[Trial], size: Optional[Size],
+def numbers(choices: OfMass, soil: site_budget.Soil, trial: Optional[Trial], size: Optional[Size],
             diameter: Optional[float] = None):
     """What the choices leave open, for the deck."""
-    model = choices["model"]
+    model = choices.model
     d = diameter or (size.diameter if size else 0.0)
     seconds = None
     if trial and size:
         seconds = trial.run(d, size.balls, soil)
     return site_deck.Numbers(d, soil.speed,
-                             model["duration"] or site_budget.LONGEST, model["cell"] or 1.0, model["film"] or 1.0,
-                             choices["motion"]["peak_friction"] or site_deck.LEAST_PEAK, trial and trial.typical,
+                             model.duration or site_budget.LONGEST, model.cell or 1.0, model.film or 1.0,
+                             choices.motion.peak_friction or site_deck.LEAST_PEAK, trial and trial.typical,
                              seconds)
 
 
-def tried(given: Choices, choices: Choices, known: Derived, parts: site_deck.Parts, found: release.Body, new: Path,
+def with_peak(choices: OfMass, parts: site_deck.Parts, found: release.Body) -> OfMass:
+    """With a strength that holds the body until it is shaken."""
+    if choices.motion.peak_friction is not None or not parts.motion:
+        return choices
+    return replace(choices, motion=replace(choices.motion, peak_friction=site_deck.peak_friction(
+        found.measures.slip_slope)))
+
+
+def tried(choices: OfMass, known: Derived, parts: site_deck.Parts, found: release.Body, new: Path,
           folder: Path, machine: Machine, tell) -> Optional[Tried]:
     """Two trial runs with coarse balls; what the site's folder has of them, if that is still right; None where there is
     no LAMMPS. They know nothing of what is determined from them.
     """
-    if choices["motion"]["peak_friction"] is None and parts.motion:
-        choices["motion"]["peak_friction"] = site_deck.peak_friction(found.measures.slip_slope)
     if machine.lmp is None:
         return None
-    own = copy.deepcopy(choices)
-    site_choices.forget(own, known)
-    own["motion"]["peak_friction"] = choices["motion"]["peak_friction"]
-    least, middle = min(choices["study"]["rolling"]), settings.middle(choices["study"]["rolling"])
-    settled = all(given[section][key] for section, key in site_choices.DERIVED if section == "model") and bool(
-        given["balls"]["diameter"])
-    place = trial_folder(site_budget.trial_diameter(own, parts.body.volume), own, parts, found, new)
+    own = replace(site_choices.forgotten(choices, known), motion=choices.motion)
+    least, middle = min(choices.study.rolling), settings.middle(choices.study.rolling)
+    fixed = all((choices.model.speed, choices.model.duration, choices.model.film, choices.model.cell,
+                 choices.balls.diameter))
+    place = trial_folder(site_budget.trial_diameter(own.balls, parts.body.volume), own, parts, found, new)
     about = site_trial.about(place, site_deck.NAME, machine.lmp, [least, middle])
-    before = site_trial.kept(folder, about, settled)
-    if before and (settled or not own["balls"]["minutes"]):
+    before = site_trial.kept(folder, about, fixed)
+    if before and (fixed or not own.balls.minutes):
         shutil.rmtree(place)
         tell(f"the trial run is there: {trial_text(before.trial)}")
         return before
     trial, reached = tried_with(place, least, own, found, machine.lmp, tell)
-    other_d = site_budget.other_diameter(own, trial)
+    other_d = site_budget.other_diameter(own.balls, trial)
     if other_d is None:
         return Tried(trial, reached, about)
     place = trial_folder(other_d, own, parts, found, new)
@@ -303,28 +304,28 @@ def tried(given: Choices, choices: Choices, known: Derived, parts: site_deck.Par
     return Tried(site_budget.joined(trial, second), its_reach if other_d < trial.diameter else reached, about)
 
 
-def trial_folder(d: float, choices: Choices, parts: site_deck.Parts, found: release.Body, new: Path) -> Path:
+def trial_folder(d: float, choices: OfMass, parts: site_deck.Parts, found: release.Body, new: Path) -> Path:
     """A folder with the deck of a trial run with balls of diameter d (m)."""
-    coarse = {**choices, "model": {**choices["model"], "cell": max(found.area.cell, d / 2)}}
+    coarse = replace(choices, model=replace(choices.model, cell=max(found.area.cell, d / 2)))
     folder = new / "trial"
     folder.mkdir()
     for path in list(new.iterdir()):
         if path.suffix in (".asc", ".stl", ".csv", ".txt"):
             os.symlink(f"../{path.name}", folder / path.name)
-    soil = soil_of(coarse, parts)
+    soil = soil_of(coarse.model, parts)
     disk.write(folder / site_deck.NAME, site_deck.text(coarse, parts, numbers(coarse, soil, None, None, d)))
     return folder
 
 
-def tried_with(folder: Path, rolling: float, choices: Choices, found: release.Body, lmp: Path, tell, what="trial run"):
+def tried_with(folder: Path, rolling: float, choices: OfMass, found: release.Body, lmp: Path, tell, what="trial run"):
     """The Trial of a run in a folder, which is removed, and its largest thickness."""
     deck = folder / site_deck.NAME
     d = float(decks.index_variables(deck)["d"])
     try:
         trial = site_budget.measure(folder, deck.name, lmp, {"rolling": rolling})._replace(diameter=d)
     except SlopeError as error:
-        if choices["motion"]["file"]:
-            site_warnings.require_standing(error, choices["motion"]["peak_friction"], found.measures.mean_slope)
+        if choices.motion.file and choices.motion.peak_friction is not None:
+            site_warnings.require_standing(error, choices.motion.peak_friction, found.measures.mean_slope)
         raise
     reached = rasters.read(next(iter(folder.glob("*.max_thickness.asc"))), heights=False)
     shutil.rmtree(folder)
@@ -338,25 +339,24 @@ def trial_text(trial: Trial) -> str:
             f"{trial.rest:.0f} s, up to {trial.speed:.0f} m/s")
 
 
-def settle(choices: Choices, parts: site_deck.Parts, found: release.Body, trial: Optional[Trial], machine: Machine,
-           raster: Raster) -> Size:
-    """Fill in what the choices leave open, and with it the size of the balls."""
-    model, balls = choices["model"], choices["balls"]
-    model["speed"] = model["speed"] or max(site_budget.stiff_to(trial), model["least_speed"] or 0.0)
-    model["duration"] = model["duration"] or site_budget.duration(trial)
-    model["film"] = model["film"] or site_deck.frame(trial.typical if trial else model["duration"] / 3)
-    size = site_budget.size(choices, parts.body.volume, soil_of(choices, parts), trial, machine.jobs, raster.z.size)
-    balls["diameter"] = size.diameter
-    model["cell"] = model["cell"] or max(found.area.cell, site_budget.three_digits(size.diameter / 2))
-    return size
+def settled(choices: OfMass, parts: site_deck.Parts, found: release.Body, trial: Optional[Trial], machine: Machine,
+            raster: Raster) -> Tuple[OfMass, Size]:
+    """With what they leave open, and with it the size of the balls."""
+    model, balls = choices.model, site_budget.asked(choices.balls)
+    duration = model.duration or site_budget.duration(trial)
+    model = replace(model, speed=model.speed or max(site_budget.stiff_to(trial), model.least_speed or 0.0),
+                    duration=duration, film=model.film or site_deck.frame(trial.typical if trial else duration / 3))
+    size = site_budget.size(choices, parts.body.volume, soil_of(model, parts), trial, machine.jobs, raster.z.size)
+    cell = model.cell or max(found.area.cell, site_budget.three_digits(size.diameter / 2))
+    return replace(choices, model=replace(model, cell=cell), balls=replace(balls, diameter=size.diameter)), size
 
 
-def say_size(choices: Choices, size: Size, found: release.Body, machine: Machine, tell):
+def say_size(choices: OfMass, size: Size, found: release.Body, machine: Machine, tell):
     """Tell the user the size of the balls, and the time and memory of the study."""
     thick = found.measures.mean_depth / size.diameter, found.measures.largest_depth / size.diameter
     tell(f"balls of {size.diameter:g} m: {size.balls:,} of them, the body is {thick[0]:.1f} balls thick on average, "
          f"{thick[1]:.1f} at most")
-    tell(f"the ground: scattered balls as large as those of the soil, spacing {choices['model']['spacing']:g}")
+    tell(f"the ground: scattered balls as large as those of the soil, spacing {choices.model.spacing:g}")
     took = ""
     if size.seconds is not None and size.most is not None:
         took = f", about {site_budget.duration_text(size.seconds)} if nothing else runs"

@@ -9,7 +9,7 @@ from ..releases import release, release_deck, release_files
 from ..slips.bodies import rank_of
 from ..survey import rasters
 from . import site_choices
-from .site_choices import Choices
+from .site_sections import Choices, OfMass
 
 VARIABLE = "body"
 
@@ -28,14 +28,14 @@ def slip_name(name: str, rank: object) -> str:
 
 def planned(choices: Choices, name: str) -> Set[str]:
     """Names of the files that write() makes."""
-    slips = {slip_name(name, rank_of(Path(path))) for path in site_choices.listed(choices, "release", "bodies")}
+    slips = {slip_name(name, rank_of(Path(path))) for path in choices.files("release", "bodies")}
     return slips | {str(Path(one).with_suffix(".yaml")) for one in slips}
 
 
-def write(choices: Choices, folder: Path, name: str, wanted: release.Wanted, warn) -> Dict[int, Known]:
+def write(choices: OfMass, folder: Path, name: str, wanted: release.Wanted, warn) -> Dict[int, Known]:
     """The ground without each of the bodies, in a folder; {rank: what is known of it}."""
     found = {}
-    for path in choices["release"]["bodies"]:
+    for path in choices.release.bodies:
         rank = rank_of(Path(path))
         body = release.body_of(wanted._replace(scar=path, scar_crs=site_choices.assigned(choices, path)))
         if path != wanted.scar:

@@ -8,6 +8,7 @@ import math
 import re
 import resource
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 from typing import Callable, List, Mapping, NamedTuple, Optional, Tuple
 
@@ -16,7 +17,7 @@ from ..case import last_words, logs, run_folders
 from ..digits import rounded
 from ..errors import SlopeError
 from ..releases import packing
-from .site_choices import Choices, PACKING, other_grounds
+from .site_sections import Balls, OfMass
 
 DEFAULT = 2000          # balls, if no budget is given: 12 to 18 minutes on two cores for 6 million m3 of rock
 TRIAL = 800             # balls of the trial run
@@ -110,24 +111,22 @@ def three_digits(value: float) -> float:
 
 # --- the trial run ---
 
-def trial_diameter(choices: Choices, volume: float) -> float:
+def trial_diameter(balls: Balls, volume: float) -> float:
     """Of the trial's balls (m): TRIAL of them, or fewer if the site has fewer."""
-    balls = choices["balls"]
     number: float = TRIAL
-    if balls["diameter"]:
-        number_of(choices, volume, balls["diameter"])
-        number = min(number, packing.number(volume, balls["diameter"]))
-    elif balls["number"]:
-        number = min(number, balls["number"])
+    if balls.diameter:
+        number_of(balls, volume, balls.diameter)
+        number = min(number, packing.number(volume, balls.diameter))
+    elif balls.number:
+        number = min(number, balls.number)
     return three_digits(packing.diameter(volume, max(number, 1)))
 
 
-def other_diameter(choices: Choices, trial: Trial) -> Optional[float]:
+def other_diameter(balls: Balls, trial: Trial) -> Optional[float]:
     """Of the balls of a second trial run (m): finer where a budget of time allows it; None with too few balls."""
-    balls = choices["balls"]
-    minutes = balls["minutes"]
-    for_time = minutes and not balls["diameter"] and not balls["number"]
-    if for_time and trial.seconds * OTHER ** (4 / 3) <= FINER_SHARE * 60 * minutes:
+    minutes = balls.minutes
+    if minutes and not balls.diameter and not balls.number and \
+            trial.seconds * OTHER ** (4 / 3) <= FINER_SHARE * 60 * minutes:
         return three_digits(trial.diameter * OTHER ** (-1 / 3))
     return three_digits(trial.diameter * OTHER ** (1 / 3)) if trial.balls >= OTHER * FEWEST else None
 
@@ -201,28 +200,26 @@ class Plan(NamedTuple):
         return sum(runs for _, runs in self.parts) + self.points
 
 
-def plan(choices: Choices) -> Plan:
+def plan(choices: OfMass) -> Plan:
     """Of the study by the paper's method, and the ensemble that is weighted by known events."""
-    study, points = choices["study"], choices["study"]["points"]
-    each = 1 + len(study[PACKING])
-    grounds = other_grounds(choices)
-    fine = study["fine"] not in ("no", False)
-    elastic = each if study["largest_restitution"] else 0
-    parts = [(1.0, each * len(study["rolling"]) + len(grounds) + elastic)]
-    if fine:        # one of the paper's study, one of the ensemble
-        parts.append((1 / study["fine"], 1 + (points > 0)))
-    text = (f"{sum(runs for _, runs in parts)} runs: {len(study['rolling'])} rolling resistances x {each} "
+    study, points, grounds = choices.study, choices.study.points, choices.other_grounds
+    each = 1 + len(study.packing)
+    elastic = each if study.largest_restitution else 0
+    parts = [(1.0, each * len(study.rolling) + len(grounds) + elastic)]
+    if study.finer > 1:     # one of the paper's study, one of the ensemble
+        parts.append((1 / study.finer, 1 + (points > 0)))
+    text = (f"{sum(runs for _, runs in parts)} runs: {len(study.rolling)} rolling resistances x {each} "
             "packings")
     if grounds:
         text += f", {len(grounds)} on other grounds"
     if elastic:
         text += f", {elastic} with the largest restitution"
-    if fine:
-        text += f", {'2' if points else '1'} with balls of 1/{study['fine']} of the diameter"
+    if study.finer > 1:
+        text += f", {'2' if points else '1'} with balls of 1/{study.finer} of the diameter"
     if points:
         text += (f"; {points} runs weighted by known events, and up to as many more where these go farther (study "
                  "--paper leaves them out)")
-    return Plan(parts, bool(choices["road"]["file"]), points, text)
+    return Plan(parts, bool(choices.road.file), points, text)
 
 
 def study_seconds(d: float, volume: float, trial: Trial, soil: Soil, wanted: Plan, jobs: int) -> Tuple[float, float]:
@@ -269,41 +266,45 @@ def duration(trial: Optional[Trial]) -> float:
     return max(LEAST_DURATION, 10.0 * math.ceil(PATIENCE * trial.rest / 10)) if trial else LONGEST
 
 
-def size(choices: Choices, volume: float, soil: Soil, trial: Optional[Trial], jobs: int, cells: int) -> Size:
+def asked(balls: Balls) -> Balls:
+    """With a number where no size is asked for."""
+    given = balls.diameter or balls.number or balls.minutes or balls.memory
+    return balls if given else replace(balls, number=DEFAULT)
+
+
+def size(choices: OfMass, volume: float, soil: Soil, trial: Optional[Trial], jobs: int, cells: int) -> Size:
     """The balls by the first of diameter, number, minutes, memory that is given; SlopeError if there are none such.
 
     volume: of the body, m3; cells: of the terrain.
     """
-    balls, wanted = choices["balls"], plan(choices)
+    balls, wanted = asked(choices.balls), plan(choices)
 
     def seconds(d: float) -> Tuple[float, float]:
         assert trial is not None
         return study_seconds(d, volume, trial, soil, wanted, jobs)
 
-    if balls["diameter"]:
-        d = balls["diameter"]
-    elif balls["number"]:
-        d = three_digits(packing.diameter(volume, balls["number"]))
-    elif balls["minutes"]:
+    if balls.diameter:
+        d = balls.diameter
+    elif balls.number:
+        d = three_digits(packing.diameter(volume, balls.number))
+    elif balls.minutes:
         if trial is None:
             raise SlopeError("--minutes", "needs a LAMMPS program (LMP, --lmp) to measure this machine, --balls "
-                             "does not", f"{balls['minutes']:g}")
-        d = up(fit(balls["minutes"], lambda one: seconds(one)[1] / 60, volume, "--minutes", "minutes"))
-    elif balls["memory"]:
-        d = up(fit(balls["memory"], lambda one: gigabytes(one, volume, cells, jobs, wanted), volume, "--memory", "GB"))
+                             "does not", f"{balls.minutes:g}")
+        d = up(fit(balls.minutes, lambda one: seconds(one)[1] / 60, volume, "--minutes", "minutes"))
     else:
-        balls["number"] = DEFAULT
-        d = three_digits(packing.diameter(volume, DEFAULT))
+        assert balls.memory
+        d = up(fit(balls.memory, lambda one: gigabytes(one, volume, cells, jobs, wanted), volume, "--memory", "GB"))
     least, most = seconds(d) if trial else (None, None)
-    return Size(d, number_of(choices, volume, d), wanted.runs, least, most, gigabytes(d, volume, cells, jobs, wanted),
+    return Size(d, number_of(balls, volume, d), wanted.runs, least, most, gigabytes(d, volume, cells, jobs, wanted),
                 wanted.text)
 
 
-def number_of(choices: Choices, volume: float, d: float) -> int:
+def number_of(balls: Balls, volume: float, d: float) -> int:
     """The balls of diameter d (m) that a body (m3) is made of; SlopeError if they are too large or too many."""
     number = round(packing.number(volume, d))
     if not 1 <= number <= MOST:
-        raise SlopeError("--diameter" if choices["balls"]["diameter"] else "--balls", f"must make 1 to {MOST:,} balls "
+        raise SlopeError("--diameter" if balls.diameter else "--balls", f"must make 1 to {MOST:,} balls "
                          f"of a body of {rounded(volume)} m3: {'smaller' if number < 1 else 'larger'} ones",
                          f"{number:,} of {d:g} m")
     return number

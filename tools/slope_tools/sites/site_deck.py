@@ -10,8 +10,8 @@ from ..releases import packing
 from ..releases.release_deck import Body
 from ..slips.bodies import rank_of
 from . import site_budget
-from .site_choices import Choices, widest
 from .site_inputs import Line, Motion, Structure
+from .site_sections import Model, OfMass, widest
 from .site_zones import LIMITS, VALUES, Zone, whole
 
 NAME = "in.site"
@@ -53,7 +53,7 @@ class Numbers(NamedTuple):
     run_seconds: Optional[float] = None
 
 
-def text(choices: Choices, parts: Parts, numbers: Numbers) -> str:
+def text(choices: OfMass, parts: Parts, numbers: Numbers) -> str:
     """The deck."""
     return filled(Path(__file__).with_name(TEMPLATE), values(choices, parts, numbers))
 
@@ -66,9 +66,9 @@ def filled(template: Path, parameters: Mapping[str, Any]) -> str:
     return aligned(environment.get_template(template.name).render(parameters))
 
 
-def values(choices: Choices, parts: Parts, numbers: Numbers) -> Dict[str, Any]:
+def values(choices: OfMass, parts: Parts, numbers: Numbers) -> Dict[str, Any]:
     """What the template is filled in with."""
-    model, motion, body = choices["model"], choices["motion"], parts.body
+    model, motion, body = choices.model, choices.motion, parts.body
     balls = packing.number(body.volume, numbers.diameter)
     parameters: Dict[str, Any] = {
         "title": parts.title, "terrain": parts.terrain, "deck": NAME, "volume": f"{body.volume:,.0f}",
@@ -77,21 +77,21 @@ def values(choices: Choices, parts: Parts, numbers: Numbers) -> Dict[str, Any]:
         "box": " ".join(plain(value) for value in body.box), "types": types_before(parts) + len(parts.zones),
         "zones": zone_values(parts.zones, types_before(parts), model),
         "bins": bins(parts.room, body.volume),
-        "slip_file": body.slip, "body": choices["release"]["bodies"] and body_number(choices),
+        "slip_file": body.slip, "body": choices.release.bodies and rank_of(Path(choices.release.scar or "")),
         "structures": [{"name": one.name, "file": one.file, "point": words(one.point),
                         "move": f" move {words(one.move)}" if any(one.move) else ""} for one in parts.structures],
         "lines": parts.lines, "motion": parts.motion.file if parts.motion else "", }
     parameters.update({name: plain(value) for name, value in (
-        ("d", numbers.diameter), ("spacing", model["spacing"]), ("widest", widest()),
-        ("rolling", ROLLING), ("friction", model["friction"]), ("slip", model["slip_friction"]),
-        ("restitution", model["restitution"]), ("field_e", model["field_restitution"]), ("density", model["density"]),
+        ("d", numbers.diameter), ("spacing", model.spacing), ("widest", widest()),
+        ("rolling", ROLLING), ("friction", model.friction), ("slip", model.slip_friction),
+        ("restitution", model.restitution), ("field_e", model.field_restitution), ("density", model.density),
         ("thick", body.thick), ("stiffness_number", site_budget.STIFFNESS_NUMBER), ("rest", REST),
         ("step", site_budget.STEP), ("close", site_budget.CLOSE),
         ("speed", numbers.speed), ("duration", numbers.duration), ("cell", numbers.cell), ("film", numbers.film),
-        ("concrete", choices["structures"]["friction"]), ("concrete_e", choices["structures"]["restitution"]),
-        ("scale", motion["scale"]), ("shaking", parts.motion.length if parts.motion else 0),
-        ("peak_friction", numbers.peak_friction), ("peak_rolling", motion["peak_rolling"]),
-        ("trigger", motion["trigger"]))})
+        ("concrete", choices.structures.friction), ("concrete_e", choices.structures.restitution),
+        ("scale", motion.scale), ("shaking", parts.motion.length if parts.motion else 0),
+        ("peak_friction", numbers.peak_friction), ("peak_rolling", motion.peak_rolling),
+        ("trigger", motion.trigger))})
     return parameters
 
 
@@ -100,7 +100,7 @@ def types_before(parts: Parts) -> int:
     return 4 if parts.structures else 3
 
 
-def zone_values(zones: Sequence[Zone], before: int, model: Mapping[str, Any]) -> List[Dict[str, Any]]:
+def zone_values(zones: Sequence[Zone], before: int, model: Model) -> List[Dict[str, Any]]:
     """What a template needs of the zones of the ground; before: types of balls beside theirs.
 
     What a zone has changes by the factor by which the site's own value, the variable without the zone's name, is
@@ -138,11 +138,6 @@ def bins(room: float, volume: float) -> str:
     """Side of the neighbor list's bins (diameters) in a box around the ground (m3); "": the list's reach, as usual."""
     side = (room / (BINS * volume)) ** (1 / 3)
     return f"{min(side, WIDEST):.3g}" if side > REACH else ""
-
-
-def body_number(choices: Choices) -> int:
-    """Which of the bodies of slope stability the site's is."""
-    return rank_of(Path(choices["release"]["scar"]))
 
 
 def plain(value: float) -> str:

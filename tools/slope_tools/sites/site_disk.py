@@ -1,14 +1,16 @@
 """How much of the disk the study of a site takes: copies of its input, snapshots, restart files and rasters."""
 from pathlib import Path
-from typing import Any, Dict
 
 import numpy as np
 
 from ..case.data_files import OUTPUTS
 from ..digits import three
 from ..errors import SlopeError
+from ..releases import packing
 from ..survey import rasters
 from . import site_budget, site_trial
+from .site_found import Found
+from .site_sections import OfMass
 
 FRAME = 100.0           # bytes of a ball in a snapshot
 RESTART = 1000.0        # of a ball in a restart file, with its contacts
@@ -20,16 +22,18 @@ RUN = 200e3             # of logs, and the volume on the road, with its map
 PAGES = 12e6            # of maps, reports and film
 
 
-def study(folder: Path, choices: Dict[str, Any], found: Dict[str, Any]) -> float:
-    """Bytes of all runs of a study, without those that may be added, and of its pages."""
-    d, volume, plan = choices["balls"]["diameter"], found["body"]["volume"], site_budget.plan(choices)
+def study(folder: Path, choices: OfMass, found: Found) -> float:
+    """Bytes of all runs of a study, without those that may be added, and of its pages; of a site that is made."""
+    d, body, plan = choices.balls.diameter, found.body, site_budget.plan(choices)
+    assert d and body and choices.model.duration and choices.model.film and choices.model.cell
+    of_site = packing.number(body.volume, d)
     inputs = sum(path.stat().st_size for path in folder.iterdir() if path.is_file() and not OUTPUTS.search(path.name))
-    rest = (found.get("trial") or {}).get("rest") or choices["model"]["duration"] / site_budget.PATIENCE
-    frames = 1 + rest / choices["model"]["film"]
-    cells = reached(folder) / choices["model"]["cell"] ** 2
+    rest = found.trial and found.trial.rest or choices.model.duration / site_budget.PATIENCE
+    frames = 1 + rest / choices.model.film
+    cells = reached(folder) / choices.model.cell ** 2
 
     def run(factor: float) -> float:
-        balls = site_budget.packing.number(volume, factor * d)
+        balls = of_site / factor ** 3
         return inputs + RUN + CELL * cells + FILES * (BASE + RESTART * balls) + FRAME * balls * frames
     others = plan.points + plan.half_step
     return PAGES + sum(number * run(factor) for factor, number in plan.parts) + others * run(1.0)

@@ -8,9 +8,9 @@ from ..releases import release_files
 from ..survey import vectors
 from ..survey.rasters import ENDINGS
 from . import site_bodies, site_choices, site_deck, site_inputs, site_trial, site_warnings, site_zones
-from .site_choices import Choices
 from .site_layers import OBSERVED
 from .site_roads import ROAD, file_name, listed, named
+from .site_sections import Choices
 
 MAP = "map.png"
 TERRAIN = "terrain.asc"
@@ -24,28 +24,28 @@ def planned(choices: Choices) -> Set[str]:
              site_warnings.NAME, site_trial.REACHED,
              *(path.name for path in release_files.paths(Path(BODY)))} - {BODY_DECK}
     names |= site_bodies.planned(choices, BODY)
-    for observed in site_choices.listed(choices, "observed", "file"):
+    for observed in choices.files("observed", "file"):
         names.add(OBSERVED + (".tif" if Path(observed).suffix.lower() in ENDINGS else ".csv"))
     if several := listed(choices):
         taken_: Set[str] = set()
         names |= {ROAD, *(file_name(named(site_inputs.stem(file), taken_)) for file in several
                           if len(several) > 1)}
-    if site_choices.listed(choices, "motion", "file"):
+    if choices.files("motion", "file"):
         names.add(site_inputs.MOTION)
-    if choices["ground"]["file"]:
+    if choices.ground.file:
         names.add(site_zones.ALL)
     taken = set(site_inputs.TAKEN)
     for section, key, suffix in (("structures", "files", ".stl"), ("structures", "walls", ".stl"),
                                  ("lines", "files", ".csv")):
         names |= {site_inputs.unused(site_inputs.stem(file), taken) + suffix
-                  for file in site_choices.listed(choices, section, key)}
+                  for file in choices.files(section, key)}
     return names
 
 
 def was_not_made(folder: Path) -> bool:
     """Whether all that a folder has is the site.yaml of a site that could not be made."""
     names = [path.name for path in folder.iterdir()] if folder.is_dir() else []
-    return names == [site_choices.NAME] and "failed" in site_choices.found(folder)
+    return names == [site_choices.NAME] and site_choices.found(folder).failed is not None
 
 
 def is_free(folder: Path) -> bool:

@@ -17,8 +17,8 @@ from ..survey import beside, polygons, rasters, roads, vectors
 from ..survey.crs import as_crs, same_crs
 from ..survey.rasters import Raster, crs_name
 from . import site_choices, site_inputs, site_roads, site_zones
-from .site_choices import Choices
 from .site_inputs import Line, Motion, Structure
+from .site_sections import Choices, OfMass
 from .site_zones import Zone
 
 OBSERVED = "observed"       # .csv of an outline, .tif of a raster
@@ -58,27 +58,27 @@ def read_layers(choices: Choices, raster: Raster, folder: Path, tell, warn) -> L
 
     Raises SlopeError, which names the file, if one does not fit the terrain.
     """
-    road = road_layers(choices, raster, folder, tell, warn)
-    observed = observed_layer(choices, raster, folder, tell, warn) if "observed" in choices else None
+    road, mass = road_layers(choices, raster, folder, tell, warn), choices if isinstance(choices, OfMass) else None
+    observed = observed_layer(mass, raster, folder, tell, warn) if mass else None
     taken: Set[str] = set(site_inputs.TAKEN)
-    along = choices.get("structures", {})
-    structures = site_inputs.structures(along.get("files", ()), raster, folder, taken)
-    structures += site_inputs.walls(drawn(choices, along.get("walls", ())), raster, along.get("height"),
-                                    along.get("width"), folder, taken, warn)
-    lines = site_inputs.control_lines(drawn(choices, choices["lines"]["files"]), raster, folder, taken, warn)
-    motions = [site_inputs.motion(path, folder) for path in site_choices.listed(choices, "motion", "file")]
-    motion = motions[0] if motions else None
-    path = choices["ground"]["file"]
-    zones = site_zones.of_choices(choices, site_zones.Source(path, choices["ground"]["table"], assigned(choices, path),
-                                                             advice(choices, path)),
+    structures: List[Structure] = []
+    if mass:
+        along = mass.structures
+        structures = site_inputs.structures(along.files, raster, folder, taken)
+        structures += site_inputs.walls(drawn(choices, along.walls), raster, along.height, along.width, folder, taken,
+                                        warn)
+    lines = site_inputs.control_lines(drawn(choices, choices.lines.files), raster, folder, taken, warn)
+    motion = site_inputs.motion(mass.motion.file, folder) if mass and mass.motion.file else None
+    path = choices.ground.file
+    zones = site_zones.of_choices(site_zones.Source(path, choices.ground.table, assigned(choices, path),
+                                                    advice(choices, path)),
                                   raster, folder, tell, warn) if path else []
     for one in structures:
         tell(one.summary)
     for line in lines:
         tell(f"{line.file}: control line of {len(line.points)} points")
-    if motion:
-        tell(f"{motion.file}: {motion.length:g} s, up to {100 * motion.peak * choices['motion']['scale']:.4g} gal "
-             "horizontally")
+    if mass and motion:
+        tell(f"{motion.file}: {motion.length:g} s, up to {100 * motion.peak * mass.motion.scale:.4g} gal horizontally")
     return Layers(road, observed, structures, lines, motion, zones)
 
 
@@ -90,7 +90,7 @@ def drawn(choices: Choices, files: Sequence[str]) -> List[site_inputs.Drawn]:
 def advice(choices: Choices, path: str) -> polygons.Advice:
     """What can be done in slope site where a file does not fit the terrain."""
     own = f"--assign-crs {shlex.quote(Path(vectors.source(path).path).name + '=EPSG:n')}, or save it with its CRS"
-    return polygons.Advice(choices["terrain"]["files"][0], "--crs EPSG:n gives it one", own,
+    return polygons.Advice(choices.terrain.files[0], "--crs EPSG:n gives it one", own,
                            f"{own}; a GeoJSON that names none is in longitude and latitude")
 
 
@@ -132,9 +132,9 @@ def swapped(choices: Choices, raster: Raster, wholly: bool = False) -> Optional[
 
     That is a road on higher and steeper ground; wholly: no part of it as low as the top of the release area.
     """
-    paths = choices["release"]["polygon"], choices["road"]["file"]
+    paths = choices.release.polygon, choices.road.file
     release, road = (ground_of(choices, path, raster, asked) if path else None for path, asked in
-                     zip(paths, (roads.NOTHING, roads.Asked.of(choices["road"]))))
+                     zip(paths, (roads.NOTHING, choices.road.asked)))
     higher = release and road and (road.low > release.high if wholly else road.mean > release.mean)
     if release and road and higher and road.slope > release.slope:
         return f"--release {paths[0]}: {release.words}; --road {paths[1]}: {road.words}"
@@ -165,7 +165,7 @@ def road_layers(choices: Choices, raster: Raster, folder: Path, tell, warn) -> D
         if len(written) == 1 and len(found) > 1:
             roads.write(folder / site_roads.ROAD, road, raster)
         what = "polygon" if road.line is None else \
-            f"line of {road.line.length:,.0f} m, {choices['road']['width']:g} m wide"
+            f"line of {road.line.length:,.0f} m, {choices.road.width:g} m wide"
         tell(f"{target.name}: {len(polygons.polygons_of(geometry))} {what}, {geometry.area:,.0f} m2")
     return written
 
@@ -177,9 +177,9 @@ def warn_outside(path: str, geometry: BaseGeometry, raster: Raster, warn) -> Non
         warn(Finding("outside", {"file": str(path), "percent": 100 * beyond, "terrain": "the terrain"}))
 
 
-def observed_layer(choices: Choices, raster: Raster, folder: Path, tell, warn):
+def observed_layer(choices: OfMass, raster: Raster, folder: Path, tell, warn):
     """The mapped deposit: an outline in local metres, or None after a raster was copied."""
-    path = choices["observed"]["file"]
+    path = choices.observed.file
     if not path:
         return None
     if Path(path).suffix.lower() not in rasters.ENDINGS:

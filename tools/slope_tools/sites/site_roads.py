@@ -6,6 +6,7 @@ folder too, as if it were alone: whatever takes the folder of a site takes them.
 import os
 import re
 import shutil
+from dataclasses import replace
 from pathlib import Path
 from typing import Dict, List, Optional, Set, Tuple
 
@@ -13,7 +14,8 @@ from ..errors import SlopeError
 from ..survey import roads
 from ..survey.rasters import Raster
 from . import site_choices
-from .site_choices import Choices, Site
+from .site_choices import Site
+from .site_sections import Choices
 
 ROAD, FOLDER = "road.csv", "roads"      # in a site's folder: the road, or the worst; what is known of each of several
 ONE = "must be one with single blocks; --line takes others"
@@ -23,8 +25,7 @@ TABLE = "roads.csv"     # of each run, for each road
 
 def names(site: Site) -> List[str]:
     """Of several roads; none of a single one."""
-    several = site.found.get("roads")
-    return several if isinstance(several, list) and all(isinstance(one, str) for one in several) else []
+    return list(site.found.roads)
 
 
 def results(site: Site) -> Path:
@@ -44,7 +45,7 @@ def file_name(name: str) -> str:
 def worst(site: Site, name: str) -> Site:
     """The site as if this road were alone; studies of another one in its folder are none of it any more (outdated)."""
     shutil.copyfile(site.folder / file_name(name), site.folder / ROAD)
-    return site._replace(road="")
+    return replace(site, road="")
 
 
 def named(name: str, taken: Set[str]) -> str:
@@ -66,17 +67,17 @@ def home(study: Path) -> Optional[Path]:
 
 def listed(choices: Choices) -> List[str]:
     """The files of roads."""
-    return [*site_choices.listed(choices, "road", "file"), *(choices["road"].get("others") or ())]
+    return choices.files("road", "file") + choices.files("road", "others")
 
 
 def read(choices: Choices, raster: Raster, crs, advice, warn) -> Dict[str, Tuple[str, roads.Road]]:
     """{name: (file, road in local metres)}; crs, advice: functions of a file, see site_layers."""
     taken: Set[str] = set()
-    asked, found = roads.Asked.of(choices["road"]), {}
+    asked, found = choices.road.asked, {}
     roads.check(asked)
     for path in listed(choices):
         for name, road in roads.read_each(path, raster, asked, crs(path), advice(path), warn).items():
             found[named(name, taken)] = path, road
-    if len(found) > 1 and choices.get("kind"):
+    if len(found) > 1 and choices.KIND:
         raise SlopeError("--road", ONE, ", ".join(found))
     return found

@@ -3,9 +3,9 @@
 A scenario has the balls, cells, time limit and packings of its site, and is at least as stiff, so that its numbers are
 of the same model; its runs are its own. Once made it is a site like any other.
 """
-import copy
 import re
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from pathlib import Path
 from shlex import quote
 from typing import Iterator, List, Optional
@@ -13,7 +13,8 @@ from typing import Iterator, List, Optional
 from ..case import decks
 from ..errors import SlopeError
 from . import site_choices, site_deck, site_folder
-from .site_choices import Choices, Site
+from .site_choices import Site
+from .site_sections import Balls, OfMass
 
 FOLDER = "scenarios"        # in that of the site
 NAMES = re.compile(r"\w[\w.-]*")
@@ -55,17 +56,16 @@ def room(folder: Path) -> Iterator[None]:
             folder.parent.rmdir()
 
 
-def choices(site: Site, name: str) -> Choices:
+def choices(site: Site, name: str) -> OfMass:
     """Those of a scenario of a site, before what differs in it; SlopeError if the site is not there as a whole."""
     deck = site.folder / site_deck.NAME
     if not deck.is_file():
         raise SlopeError("--scenario", "must be of a site that is made: "
                          f"`slope site {quote(str(site.folder))}` makes it", site.folder)
-    found = copy.deepcopy(site.choices)
-    model = found["model"]
-    found["balls"] = {**dict.fromkeys(found["balls"]), "diameter": found["balls"]["diameter"]}
-    model.update(least_speed=model["speed"], speed=None, least_thick=float(decks.index_variables(deck)["thick"]))
-    site_choices.forget(found, {key: value for key, value in (site.found.get("derived") or {}).items()
-                                if key == "motion.peak_friction"})
-    found["project"]["name"] = f"{found['project']['name'] or site.folder.absolute().name}, {name}"
-    return found
+    found = site.choices
+    own = {name: value for name, value in site.found.derived.items() if name == "motion.peak_friction"}
+    name = f"{found.project.name or site.folder.absolute().name}, {name}"
+    return site_choices.forgotten(replace(
+        found, project=replace(found.project, name=name), balls=Balls(found.balls.diameter, None, None, None),
+        model=replace(found.model, least_speed=found.model.speed, speed=None,
+                      least_thick=float(decks.index_variables(deck)["thick"]))), own)

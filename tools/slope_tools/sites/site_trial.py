@@ -1,7 +1,7 @@
 """The trial run of a site, which is kept: it is not repeated as long as nothing that it depends on has changed."""
 import hashlib
 from pathlib import Path
-from typing import Any, Dict, List, NamedTuple, Optional
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional
 
 from rasterio.transform import Affine
 
@@ -20,7 +20,7 @@ class Tried(NamedTuple):
     """What a trial run measured, where its mass went, and of what it was."""
     trial: Trial
     reached: Raster             # largest thickness, m, in local metres
-    about: Dict[str, Any]       # digest of deck, data and machine; the rolling resistances, which those do not hold
+    about: Mapping[str, Any]    # digest of deck, data and machine; the rolling resistances, which those do not hold
 
 
 def about(folder: Path, deck: str, lmp: Path, rolling: List[float]) -> Dict[str, Any]:
@@ -40,17 +40,16 @@ def kept(folder: Path, wanted: Dict[str, Any], settled: bool) -> Optional[Tried]
     if not (folder / site_choices.NAME).is_file():
         return None
     found = site_choices.found(folder)
-    had, trial = found.get("trial_of") or {}, found.get("trial") or {}
+    had = found.trial_of
     if had.get("sha256") != wanted["sha256"] or not (settled or had.get("rolling") == wanted["rolling"]) or \
-            set(trial) != set(Trial._fields):
+            found.trial is None:
         return None
     try:
         raster = rasters.read(folder / REACHED, heights=False)
     except SlopeError:
         return None
-    east, north = (found["origin"][side] for side in ("east", "north"))
-    return Tried(Trial(**trial), raster._replace(transform=Affine.translation(-east, -north) * raster.transform,
-                                                 crs=None), had)
+    to_local = Affine.translation(-found.origin.east, -found.origin.north)
+    return Tried(found.trial, raster._replace(transform=to_local * raster.transform, crs=None), had)
 
 
 def keep(folder: Path, tried: Tried, terrain: Raster) -> None:

@@ -14,7 +14,7 @@ from ..errors import SlopeError
 from ..findings import Finding, entries
 from ..releases.release_solve import Measures
 from .site_budget import Size, Trial
-from .site_choices import Choices
+from .site_sections import Choices, OfMass
 from .site_zones import Zone
 
 NAME = "warnings.yaml"
@@ -58,10 +58,12 @@ def of_volume(volume: float) -> List[Finding]:
 
 def of_resistance(choices: Choices) -> List[Finding]:
     """Angles that look like coefficients, and coefficients that look like angles or percents."""
-    angles = {"--friction": choices["model"]["friction"], "--slip-friction": choices["model"].get("slip_friction", 0.0)}
-    if choices["road"]["file"]:
-        angles["--cut-angle"] = choices["road"].get("cut_angle", 0.0)
-    return [*of_angles(angles), *of_rolling("--rolling", *choices["study"]["rolling"])]
+    angles = {"--friction": choices.model.friction}
+    if isinstance(choices, OfMass):
+        angles["--slip-friction"] = choices.model.slip_friction
+        if choices.road.file:
+            angles["--cut-angle"] = choices.road.cut_angle
+    return [*of_angles(angles), *of_rolling("--rolling", *choices.study.rolling)]
 
 
 def of_zones(zones: Sequence[Zone]) -> List[Finding]:

@@ -23,13 +23,14 @@ from ..findings import Finding
 from ..geometry import box_of, extent, polygons_of
 from ..survey import beside, geopackage, polygons, vectors
 from ..survey.rasters import ENDINGS, Raster
-from . import site_choices, site_inputs
-from .site_choices import Choices
+from . import site_inputs
+from .site_found import Zone as Known
+from .site_sections import Model, schema, widest
 
 # what a zone may have: the key of site.yaml's model, or of study where it is a list, and what the deck calls it
 VALUES = {"friction": "friction", "rolling": "rolling", "restitution": "field_e", "spacing": "spacing"}
 # of a value that changes with the site's, as far as its own one lies within them: those of the runs of a study
-LIMITS = {"friction": (0.0, 89.0), "restitution": (0.001, 0.9), "spacing": (0.2, site_choices.widest())}
+LIMITS = {"friction": (0.0, 89.0), "restitution": (0.001, 0.9), "spacing": (0.2, widest())}
 SHORT = {"restitutio": "restitution"}       # a shapefile's names have ten letters
 NAME, CLASS = "name", "class"
 LIKE = 0.75             # of a name that is meant to be one of these
@@ -194,7 +195,7 @@ def on_terrain(where: str, geometry, crs, given: Mapping[str, Any], source: Sour
 
 def range_of(name: str) -> Dict[str, Any]:
     """The schema of a value."""
-    about = site_choices.schema()["properties"]
+    about = schema()["properties"]
     if name == "rolling":
         return about["study"]["properties"]["rolling"]["items"]
     return about["model"]["properties"]["field_restitution" if name == "restitution" else name]
@@ -240,32 +241,31 @@ def write(zones: List[Zone], raster: Raster, folder: Path) -> None:
     geopackage.write(folder / ALL, {"ground": geopackage.Layer("MultiPolygon", kinds, rows)}, raster)
 
 
-def outlines(folder: Path, zones: Sequence[Mapping[str, Any]], raster: Raster) -> Dict[str, BaseGeometry]:
-    """{name: polygon}, as write() left them in a site's folder; zones: those of Zone.about()."""
-    files = {zone["name"]: folder / FILE.format(zone["variables"]) for zone in zones}
+def outlines(folder: Path, zones: Sequence[Known], raster: Raster) -> Dict[str, BaseGeometry]:
+    """{name: polygon}, as write() left them in a site's folder."""
+    files = {zone.name: folder / FILE.format(zone.variables) for zone in zones}
     return {name: polygons.read_local(path, raster, True) for name, path in files.items() if path.is_file()}
 
 
-def with_rest(zones: Sequence[Mapping[str, Any]]) -> List[Mapping[str, Any]]:
-    """Those of Zone.about(), and the ground outside of them."""
-    rest = {"name": "outside of all zones", "variables": "", "share": 1 - sum(zone["share"] for zone in zones)}
-    return [*zones, rest]
+def with_rest(zones: Sequence[Known]) -> List[Known]:
+    """And the ground outside of them."""
+    return [*zones, Known("outside of all zones", "", {}, 1 - sum(zone.share for zone in zones))]
 
 
 # --- what the values are in a run ---
 
-def whole(name: str, model: Mapping[str, Any]) -> float:
+def whole(name: str, model: Model) -> float:
     """The site's value, with which that of a zone changes; 0: it does not, as a rolling resistance, which may be 0."""
-    return 0.0 if name == "rolling" else model["field_restitution" if name == "restitution" else name]
+    return {"friction": model.friction, "restitution": model.field_restitution, "spacing": model.spacing}.get(name, 0.0)
 
 
-def now(zone: Mapping[str, Any], model: Mapping[str, Any], variables: Mapping[str, Any]) -> Dict[str, float]:
-    """{variable of the ground: its value in a zone} in a run with these variables; zone: Zone.about()."""
+def now(zone: Known, model: Model, variables: Mapping[str, Any]) -> Dict[str, float]:
+    """{variable of the ground: its value in a zone} in a run with these variables."""
     found = {}
     for name, variable in VALUES.items():
         value = float(variables[variable])
-        if name in zone:
-            own = float(variables.get(f"{variable}_{zone['variables']}", zone[name]))
+        if name in zone.values:
+            own = float(variables.get(f"{variable}_{zone.variables}", zone.values[name]))
             of = whole(name, model)
             low, high = LIMITS.get(name, (0.0, 0.0))
             value = min(max(own * (value / of), min(own, low)), max(own, high)) if of else own
@@ -273,7 +273,7 @@ def now(zone: Mapping[str, Any], model: Mapping[str, Any], variables: Mapping[st
     return found
 
 
-def of_choices(choices: Choices, source: Source, raster: Raster, folder: Path, tell, warn) -> List[Zone]:
+def of_choices(source: Source, raster: Raster, folder: Path, tell, warn) -> List[Zone]:
     """Read the zones of a site, say what they are, and write them into its folder."""
     zones = read(source, raster, warn)
     write(zones, raster, folder)

@@ -6,7 +6,7 @@ from ..case.data_files import data_files
 from ..ensembles import farther, known_study, sample
 from ..runs import dependencies, jobs, repeats, store
 from ..sites import site_budget, site_choices
-from ..sites.site_budget import Soil, Trial
+from ..sites.site_budget import Soil
 from ..sites.site_choices import Site
 from ..statistics import designs
 from . import fine_runs, site_study, study
@@ -50,21 +50,21 @@ def of_site(site: Site, engine: Setup, points: int, asked: Optional[str] = None)
     wanted = [one for one in once if not one.finished]
     there, more, fine = len(once) - len(wanted), 0, 0
     design: List[repeats.Repeat] = []
-    factor = fine_runs.factor_of(asked, planned.choices)
+    factor = fine_runs.factor_of(asked, planned.choices.study.finer)
     if points:
         todo, more = points_of(planned, points)
         runs.admit(todo)
         once = store.once(todo)
         design = [one for one in once if not one.finished]
         there += len(once) - len(design)
-        if factor not in fine_runs.NONE:
+        if factor > 1:
             fine = int(bool(design) or not any(fine_of(setup, runs, factor, todo, planned.variables)))
             there += 1 - fine
     new = len(wanted) + len(design) + fine
     half, fines = (sum(one in several for one in wanted) for several in (planned.half, planned.fine))
     parts = [(1.0, len(wanted) - half - fines)]
     if fines + fine:
-        parts.append((1 / int(factor), fines + fine))
+        parts.append((1 / factor, fines + fine))
     known = new and setup.engine == "local"
     return Ahead(there, new, seconds(site, planned, parts, half > 0, len(design)) if known else None, more)
 
@@ -94,13 +94,12 @@ def seconds(site: Site, planned: site_study.Planned, parts: List[Tuple[float, in
             points: int) -> Optional[float]:
     """What runs take on this machine; parts, half, points: as of site_budget.Plan."""
     found = site.found
-    trial = found.get("trial") or {}
-    if set(trial) != set(Trial._fields) or not found.get("body"):
+    if found.trial is None or found.body is None:
         return None
     d, density, thick, speed = (float(planned.variables[name]) for name in ("d", "density", "thick", "speed"))
-    setup, spacing = planned.setup, site.choices["model"]["spacing"]
-    closest = min([spacing, *(zone.get("spacing", spacing) for zone in found.get("zones") or ())])
+    setup, spacing = planned.setup, site.choices.model.spacing
+    closest = min([spacing, *(zone.values.get("spacing", spacing) for zone in found.zones)])
     wanted = site_budget.plan(planned.choices)._replace(parts=parts, half_step=half, points=points)
     soil = Soil(density, thick, speed, closest)
-    return site_budget.study_seconds(d, found["body"]["volume"], Trial(**trial), soil, wanted,
+    return site_budget.study_seconds(d, found.body.volume, found.trial, soil, wanted,
                                      setup.jobs or max(1, jobs.cores() // setup.ranks))[0]

@@ -22,9 +22,8 @@ def mean(setup: Setup, row: Finished) -> Optional[float]:
     site = setup.site or setup.deck.parent
     if setup.deck.name == site_deck.NAME and (site / site_choices.NAME).is_file():
         found = site_choices.found(site)
-        several = {str(rank): one for rank, one in (found.get("bodies") or {}).items()}
-        mine = several.get(str(row.variables.get(VARIABLE)), {}).get("mean_depth_m")
-        known = mine if several else (found.get("body") or {}).get("mean_depth")
+        mine = found.bodies.get(str(row.variables.get(VARIABLE)))
+        known = mine and mine.mean_depth_m if found.bodies else found.body and found.body.mean_depth
         if known:       # sites of older versions have none of several bodies
             return float(known)
     return by_rasters(setup, row)

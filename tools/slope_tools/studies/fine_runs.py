@@ -3,7 +3,7 @@
 What it says of the size of the balls: tables/fine_run.
 """
 import statistics
-from typing import Any, Dict, List, Mapping, Optional, Sequence
+from typing import List, Mapping, Optional, Sequence
 
 from ..case.settings import as_number, middle
 from ..errors import SlopeError
@@ -15,7 +15,6 @@ from .run_rows import rows_of
 from .setup import Setup
 
 OPTION = "--fine"
-NONE = ("no", False, None)      # no fine run
 
 
 def smaller(runs, combination: Mapping[str, str], factor: int, diameter: str) -> List[Repeat]:
@@ -26,22 +25,22 @@ def smaller(runs, combination: Mapping[str, str], factor: int, diameter: str) ->
     return repeats.with_repeats(runs, [{**combination, VARIABLE: f"{size / factor:.10g}"}], (), (VARIABLE,))
 
 
-def in_the_middle(setup: Setup, factor: Any, settings: Mapping[str, Sequence[str]],
+def in_the_middle(setup: Setup, factor: int, settings: Mapping[str, Sequence[str]],
                   defaults: Mapping[str, str]) -> List[Repeat]:
     """At the middle of the values of each variable, or none; defaults: of the deck's index variables."""
-    if factor in NONE:
+    if factor == 1:
         return []
     values = {name: middle(several) for name, several in settings.items()}
     known = {**defaults, **values}
     if VARIABLE not in known:
         raise SlopeError(OPTION, f"must be of a deck whose variable {VARIABLE} is the diameter of the balls",
                          setup.deck)
-    return smaller(setup.runs, values, int(factor), known[VARIABLE])
+    return smaller(setup.runs, values, factor, known[VARIABLE])
 
 
-def of_median_length(setup: Setup, factor: Any, todo: Sequence[Repeat], defaults: Mapping[str, str]) -> List[Repeat]:
+def of_median_length(setup: Setup, factor: int, todo: Sequence[Repeat], defaults: Mapping[str, str]) -> List[Repeat]:
     """At the values of the run whose length is nearest to the median of those that finished, or none."""
-    if factor in NONE:
+    if factor == 1:
         return []
     first = [one for one in todo if not one.batch and not one.repeat and not one.error]
     rows = finished_of(rows_of(setup._replace(road=None), first))
@@ -51,11 +50,9 @@ def of_median_length(setup: Setup, factor: Any, todo: Sequence[Repeat], defaults
     median = statistics.median(lengths.values())
     nearest = min((one for one in first if one.name in lengths), key=lambda one: abs(lengths[one.name] - median))
     known = {**defaults, **nearest.combination}
-    return smaller(setup.runs, nearest.combination, int(factor), known.get(VARIABLE, "none"))
+    return smaller(setup.runs, nearest.combination, factor, known.get(VARIABLE, "none"))
 
 
-def factor_of(asked: Optional[str], choices: Optional[Dict[str, Any]] = None) -> Any:
-    """How many times smaller its balls are: what the option asks for, else what site.yaml says, else no."""
-    if asked is not None:
-        return asked if asked == "no" else int(asked)
-    return choices["study"]["fine"] if choices else "no"
+def factor_of(asked: Optional[str], of_site: int = 1) -> int:
+    """How many times smaller its balls are: what the option asks for, else what site.yaml says; 1: there is none."""
+    return of_site if asked is None else 1 if asked == "no" else int(asked)

@@ -11,7 +11,6 @@ from ..errors import SlopeError
 from ..runs import dependencies, jobs
 from ..schemas import OBJECT, listed, mapping
 from ..sites import site_choices, site_deck, site_roads
-from ..survey.roads import Asked
 from ..tables import named_run
 
 SCHEMA = mapping({}, study=mapping({}, road=mapping({}, null=True)), roads=listed(OBJECT))
@@ -38,20 +37,20 @@ def road_changed(folder: Path, study: Path) -> Optional[str]:
     site, about = site_choices.load(folder), schemas.load(study / named_run.STUDY, "what `slope study` wrote", SCHEMA)
     if "study" not in about:
         return None
-    asked, had, above = site.choices["road"], about["study"].get("road"), Path(os.path.abspath(study)).parent
+    road, had, above = site.choices.road, about["study"].get("road"), Path(os.path.abspath(study)).parent
     known = [str(one["road"]) for one in about.get("roads") or ()] if above.parent.name != site_roads.FOLDER \
         else [above.name]
     several = site_roads.names(site)
     if not set(known) <= set(several) or above.parent.name != site_roads.FOLDER and set(known) != set(several):
         return "choice of roads"
-    if bool(asked["file"]) != bool(had):
+    if bool(road.file) != bool(had):
         return "road"
     if not had:
         return None
     mine = folder / site_roads.file_name(had.get("name") or "")
     if not (mine.is_file() and mine.read_bytes() == (study / str(had["local"])).read_bytes()):
         return "road"
-    now = {"cut_angle": asked["cut_angle"], "mesh": asked["mesh"], **Asked.of(asked).about()}
+    now = {"cut_angle": road.cut_angle, "mesh": road.mesh, **road.asked.about()}
     return next((f"{key} of the road" for key, value in now.items() if had.get(key, value) != value), None)
 
 

@@ -1,7 +1,7 @@
 """What the study of a site can say, before it takes its time: by fall path, known events, road, balls and disk."""
 import math
 from pathlib import Path
-from typing import Any, Dict, List, Optional
+from typing import List, Optional
 
 import numpy as np
 
@@ -13,6 +13,8 @@ from ..mobility import body, known, results, road
 from ..mobility.exceedance import Mobility
 from ..mobility.fall_path import TERRAIN, FallPath
 from ..sites import site_choices, site_disk, site_roads
+from ..sites.site_found import Found
+from ..sites.site_sections import OfMass
 from ..statistics.size_effect import RESOLVED
 from ..survey import roads
 from ..survey.rasters import Raster
@@ -28,7 +30,7 @@ def lines(folder: Path) -> List[str]:
     said, floors = [], []
     try:
         mass = body.of_site(folder)
-        asked = known.choice(choices["known"]["set"], (), choices["known"]["confined"])
+        asked = known.choice(choices.known.set, (), choices.known.confined)
         decides = known.of_body(mass, asked)
     except SlopeError as error:
         said.append(f"the mass cannot be compared with known events: {error}")
@@ -37,8 +39,8 @@ def lines(folder: Path) -> List[str]:
         length, fall = (rounded(float(values[-1]), 4) for values in (counts.path.length, counts.path.fall))
         said += [f"fall path of {length} m, down to {fall} m below the crown, {counts.path.end}",
                  events_text(counts, asked)]
-        for name in site_roads.names(site) or [""] * bool(choices["road"]["file"]):
-            lane = roads.read_local(folder / site_roads.file_name(name), mass.raster, roads.Asked.of(choices["road"]),
+        for name in site_roads.names(site) or [""] * bool(choices.road.file):
+            lane = roads.read_local(folder / site_roads.file_name(name), mass.raster, choices.road.asked,
                                     local=True).polygon
             said.append(road_text(counts, road.at_road(counts.path, lane), name))
         floors += [why] if (why := terrain_ends(counts, mass.raster)) else []
@@ -91,13 +93,13 @@ def side_of(path: FallPath, raster: Raster) -> str:
     return " and the ".join(sorted(near, key=lambda name: name in SIDES[0]))
 
 
-def coarse(choices: Dict[str, Any], found: Dict[str, Any]) -> Optional[str]:
+def coarse(choices: OfMass, found: Found) -> Optional[str]:
     """Why balls that are smaller than the finest may bring more, and how many would tell; None where they do not."""
-    d, fine, depth = choices["balls"]["diameter"], choices["study"]["fine"], found["body"]["mean_depth"]
-    factor = 1 if fine in ("no", False) else fine
-    thick = factor * depth / d
+    depth = found.body and found.body.mean_depth
+    assert depth and choices.balls.diameter
+    thick = choices.study.finer * depth / choices.balls.diameter
     if thick >= RESOLVED:
         return None
-    balls = math.ceil(found["balls"] * (RESOLVED / thick) ** 3)
+    balls = math.ceil(found.balls * (RESOLVED / thick) ** 3)
     return (f"the finest balls are {rounded(thick, 2)} over the mean thickness of the body, {RESOLVED:g} show what "
             f"smaller ones bring (--balls {float(f'{balls:.2g}'):.0f})")

@@ -3,6 +3,7 @@
 The worst is the one with the largest volume; a floor counts as its volume, and a road without a usable number as the
 largest of its runs. Of equal ones that is worse whose number may be larger, then the one that more known events reach.
 """
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
@@ -78,8 +79,8 @@ def of_all(site: Site, several: bool, tell: Callable[[Any], Any],
     if several:
         check_table(site.folder, bool(names))
     if not names or not several:
-        return make(site._replace(road=names[0]) if names else site, (), False)
-    made = {name: make(site._replace(road=name), (), True) for name in names}
+        return make(replace(site, road=names[0]) if names else site, (), False)
+    made = {name: make(replace(site, road=name), (), True) for name in names}
     if not all(one.abouts for one in made.values()):
         return next(one for one in made.values() if not one.abouts)
     found = in_order([number(name, one) for name, one in made.items()])

@@ -4,8 +4,10 @@ from typing import Any, Dict, List, Mapping, Optional
 from ..case import decks
 from ..errors import SlopeError
 from ..mobility import body, steeper
-from ..sites import ground, site_choices, site_deck, site_zones
+from ..sites import ground, site_deck, site_zones
 from ..sites.site_choices import Site
+from ..sites.site_found import Zone
+from ..sites.site_sections import Model
 from ..sites.stop_angle import stop_angle
 
 FIELD_SIZE = 1e-6       # of d; the table is of grounds of balls as large as the soil's
@@ -25,7 +27,7 @@ def of_variables(variables: Optional[Mapping[str, Any]]) -> Optional[float]:
         return None     # of a deck that has no such ground
 
 
-def of_zone(zone: Mapping[str, Any], model: Mapping[str, Any], variables: Mapping[str, Any]) -> Optional[float]:
+def of_zone(zone: Zone, model: Model, variables: Mapping[str, Any]) -> Optional[float]:
     """The stop angle of a zone, as if the soil had its friction and rolling resistance, too; None where unknown."""
     try:
         return of_variables({**variables, **site_zones.now(zone, model, variables)})
@@ -39,9 +41,9 @@ def stop_angles(site: Site, others: bool = False) -> Dict[str, Dict[str, float]]
     others: those of the other grounds of its study, too.
     """
     variables, choices = decks.index_variables(site.folder / site_deck.NAME), site.choices
-    runs = [(variables.get("spacing", ""), f"{one:g}") for one in choices["study"]["rolling"]]
+    runs = [(variables.get("spacing", ""), f"{one:g}") for one in choices.study.rolling]
     if others and ground.SEED in variables:
-        runs += [(f"{spacing:g}", f"{rolling:g}") for spacing, rolling in site_choices.other_grounds(choices)]
+        runs += [(f"{spacing:g}", f"{rolling:g}") for spacing, rolling in choices.other_grounds]
     found: Dict[str, Dict[str, float]] = {}
     for spacing, rolling in runs:
         degrees = of_variables({**variables, "spacing": spacing, "rolling": rolling})
@@ -66,14 +68,14 @@ def lines(site: Site, others: bool = False) -> List[str]:
             text += ("; of the slope below the body "
                      f"{', '.join(f'{100 * slope.steeper(degrees):.0f}' for degrees in known.values())} % is steeper")
         texts.append(text)
-    return texts + [text for zone in site.found.get("zones") or () if (text := zone_line(site, zone))]
+    return texts + [text for zone in site.found.zones if (text := zone_line(site, zone))]
 
 
-def zone_line(site: Site, zone: Mapping[str, Any]) -> str:
+def zone_line(site: Site, zone: Zone) -> str:
     """The stop angle of a zone at the site's own spacing, in words; empty where it is unknown."""
     variables, choices = decks.index_variables(site.folder / site_deck.NAME), site.choices
-    rolling = [zone["rolling"]] if "rolling" in zone else choices["study"]["rolling"]
-    runs = {f"{one:g}": of_zone(zone, choices["model"], {**variables, "rolling": one}) for one in rolling}
+    rolling = [zone.values["rolling"]] if "rolling" in zone.values else choices.study.rolling
+    runs = {f"{one:g}": of_zone(zone, choices.model, {**variables, "rolling": one}) for one in rolling}
     known = {name: f"{degrees:.1f}" for name, degrees in runs.items() if degrees is not None}
-    return (f"zone {zone['name']}: stop angle {', '.join(known.values())} degrees at a rolling resistance of "
+    return (f"zone {zone.name}: stop angle {', '.join(known.values())} degrees at a rolling resistance of "
             f"{', '.join(known)}" if known else "")

@@ -4,6 +4,7 @@ Order of the work: plan all runs, make them (study), what the fine run and half 
 (results), the score of the run that the answer rests on. The same call resumes it.
 """
 import shutil
+from dataclasses import asdict
 from pathlib import Path
 from shlex import quote
 from typing import Any, Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence
@@ -16,9 +17,9 @@ from ..findings import Finding, finding
 from ..runs import repeats
 from ..schemas import FINDINGS
 from ..sites import ground, site_choices, site_deck, site_roads, site_warnings
-from ..sites.site_choices import Choices, OFFSETS, PACKING, Site, other_grounds
+from ..sites.site_choices import Folder, Site
 from ..sites.site_layers import OBSERVED
-from ..survey.roads import Asked
+from ..sites.site_sections import PACKING, Choices, OfMass
 from ..tables import elastic, energy, named_run, study_types
 from ..tables.rows import Failed, finished_of
 from ..tables.step_check import Step, half_of
@@ -46,7 +47,7 @@ class Done(NamedTuple):
 
 class Planned(NamedTuple):
     """The runs of the paper's study."""
-    choices: Choices
+    choices: OfMass
     setup: Setup
     variables: Dict[str, str]               # of the deck
     settings: Dict[str, List[str]]
@@ -65,13 +66,14 @@ class Planned(NamedTuple):
 def plan(site: Site, engine: Setup, asked: Optional[str] = None) -> Planned:
     """All runs of a site by the paper's method; asked: of --fine."""
     folder, choices = site.folder, site.choices
-    deck, road, several = folder / site_deck.NAME, choices["road"], choices["study"]
+    deck, road, several = folder / site_deck.NAME, choices.road, choices.study
     setup = engine._replace(deck=deck, output=site_roads.results(site) / STUDY, site=folder, road=None)
-    if road["file"]:
-        setup = setup._replace(road=Road(site_roads.file_of(site), road["cut_angle"], road["mesh"],
-                                         asked=Asked.of(road), name=site.road))
-    settings, variables = {"rolling": words(several["rolling"])}, decks.index_variables(deck)
-    repeated = {name: words(several[name]) for name in (PACKING, *OFFSETS) if name in variables and several.get(name)}
+    if road.file:
+        setup = setup._replace(road=Road(site_roads.file_of(site), road.cut_angle, road.mesh, asked=road.asked,
+                                         name=site.road))
+    settings, variables = {"rolling": words(several.rolling)}, decks.index_variables(deck)
+    chances: Dict[str, Any] = {PACKING: several.packing, **choices.older.get("study", {})}
+    repeated = {name: words(values) for name, values in chances.items() if name in variables and values}
     middle = middle_of(settings["rolling"])
     others = grounds(choices, variables)
     if others:
@@ -79,9 +81,9 @@ def plan(site: Site, engine: Setup, asked: Optional[str] = None) -> Planned:
     todo = repeats.plan(setup.runs, settings, repeated, variables, others)
     if others:
         settings["spacing"] = list(dict.fromkeys([*settings["spacing"], *(one["spacing"] for one in others)]))
-    fine = fine_runs.in_the_middle(setup, fine_runs.factor_of(asked, choices), {"rolling": [middle]}, variables)
+    fine = fine_runs.in_the_middle(setup, fine_runs.factor_of(asked, several.finer), {"rolling": [middle]}, variables)
     half = half_steps(setup, middle, variables) if setup.road else []
-    elastics = elastic_runs(setup, several["largest_restitution"], settings["rolling"], repeated, variables)
+    elastics = elastic_runs(setup, several.largest_restitution, settings["rolling"], repeated, variables)
     return Planned(choices, setup, variables, settings, repeated, middle, todo, fine, half, elastics)
 
 
@@ -100,7 +102,7 @@ def run(site: Site, engine: Setup, method: str, asked: Optional[str] = None,
             planned.settings, planned.repeated, THRESHOLDS, notes=notes_of(site, roads), site=folder,
             fine=fine[0] if fine else None, most_elastic=elastic_of(setup, planned.elastics),
             step=step_of(setup, half[0], planned.middle, variables) if half else None, method=method,
-            known=planned.choices["known"], roads=roads)
+            known=asdict(planned.choices.known), roads=roads)
         return results.collect(setup, questions, todo, work)
 
     failed: Optional[Exception] = None
@@ -115,7 +117,7 @@ def run(site: Site, engine: Setup, method: str, asked: Optional[str] = None,
             raise failed from None
     if setup.dry_run:
         return Done(None, None, failed)
-    if planned.choices["observed"]["file"] and not site.road:
+    if planned.choices.observed.file and not site.road:
         shutil.rmtree(folder / SCORE, ignore_errors=True)       # of other runs
         try:
             scored(folder, setup, about)
@@ -124,19 +126,18 @@ def run(site: Site, engine: Setup, method: str, asked: Optional[str] = None,
     return Done(setup.output, about, failed)
 
 
-def check(site: Site) -> None:
+def check(site: Folder[Choices]) -> None:
     """Raise SlopeError unless all files of a site exist and match its choices."""
     folder, found = site.folder, site.found
-    for name in (site_deck.NAME, *(found.get("files") or ())):
+    for name in (site_deck.NAME, *found.files):
         if not (folder / name).is_file():
             raise SlopeError(folder / name, f"must exist; `slope site {quote(str(folder))}` rebuilds it")
-    if found.get("choices_sha256", "") not in ("", site.fingerprint()):
+    if found.choices_sha256 not in ("", site.fingerprint()):
         raise SlopeError(folder / site_choices.NAME, f"must not have been changed since {site_deck.NAME} was made from "
                          f"it: `slope site {quote(str(folder))}` rebuilds the deck (project, road, study and "
                          "known may change)")
-    before = found.get("sources_sha256") or {}
     for name, digest in site.sources().items():      # a folder may have gone without its sources
-        if before.get(name, digest) != digest:
+        if found.sources_sha256.get(name, digest) != digest:
             raise SlopeError(folder / name, f"must not have changed since {site_deck.NAME} was made from it: "
                              f"`slope site {quote(str(folder))}` rebuilds the deck")
     mapped.check(folder)
@@ -144,7 +145,7 @@ def check(site: Site) -> None:
 
 def digests(site: Site) -> Dict[str, str]:
     """{file: digest} of the deck and its data."""
-    return {name: disk.sha256(site.folder / name) for name in (site_deck.NAME, *(site.found.get("files") or ()))
+    return {name: disk.sha256(site.folder / name) for name in (site_deck.NAME, *site.found.files)
             if name != site_choices.NAME and (site.folder / name).is_file()}
 
 
@@ -162,9 +163,9 @@ def notes_of(site: Site, roads: Sequence[Mapping[str, Any]]) -> List[Finding]:
     return [one for one in warnings_of(site.folder) if one.numbers.get("file") not in others]
 
 
-def grounds(choices: Choices, variables: Dict[str, str]) -> List[Dict[str, str]]:
+def grounds(choices: OfMass, variables: Dict[str, str]) -> List[Dict[str, str]]:
     """The runs on other grounds; none for a deck of an older version, whose ground is a plan grid."""
-    return [{"rolling": rolling, "spacing": spacing} for spacing, rolling in map(words, other_grounds(choices))] \
+    return [{"rolling": rolling, "spacing": spacing} for spacing, rolling in map(words, choices.other_grounds)] \
         if ground.SEED in variables else []
 
 

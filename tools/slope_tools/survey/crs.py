@@ -1,5 +1,6 @@
 """Coordinate reference systems: are two the same, is a metre a metre."""
 import math
+from typing import Any
 
 import numpy as np
 import rasterio
@@ -15,7 +16,7 @@ from .rasters import crs_name, epsg
 STRETCH = 0.01         # relative error of lengths in a CRS from which on the user is warned
 
 
-def as_crs(option, name):
+def as_crs(option: str, name: Any) -> CRS:
     """The CRS that an option names; SlopeError if there is none of that name."""
     try:
         with rasterio.Env():  # GDAL's own message is not for stderr
