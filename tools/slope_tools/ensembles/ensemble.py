@@ -1,7 +1,7 @@
 """What the runs of an ensemble say together: quantiles and hazard curves, which variables matter, maps over all runs.
 
-Order of the work: the numbers of each quantity (hazard.py), which variables it depends on (emulator.py), maps
-(ensemble_maps.py); what study.yaml says of them, hazard.csv and influence.csv.
+Order of the work: which variables each quantity depends on (emulator.py), which takes long and is kept with the study;
+its numbers (hazard.py), maps (ensemble_maps.py); what study.yaml says of them, hazard.csv and influence.csv.
 """
 from dataclasses import dataclass
 from pathlib import Path
@@ -53,46 +53,76 @@ def check_quantity(of: Optional[str], road: bool) -> str:
 
 
 class Evaluated(NamedTuple):
-    """about: what study.yaml says of an ensemble, but for its maps; curves, analyses: of its quantities; finished: rows
-    of the planned runs that did, of so many points, as failed did not; known: weighted by known events."""
+    """about: what study.yaml says of an ensemble, but for its maps; curves: of its quantities; finished: rows of the
+    planned runs that did, of so many points, as failed did not; known: weighted by known events."""
     about: Dict[str, Any]
     curves: Mapping[str, hazard.Curve]
-    analyses: Mapping[str, emulator.Analysis]
     finished: Sequence[Mapping[str, Any]]
     points: int
     failed: int
     known: Optional[known_events.Evaluated]
 
 
-def evaluate(order: Order, rows: Sequence[Mapping[str, Any]], mobility: Optional[Mobility]) -> Optional[Evaluated]:
-    """What an ensemble says, None where all runs failed; rows: of study.csv; mobility: of an order with a condition."""
-    planned = [row for row in rows if not row.get("batch")]
-    finished = [row for row in planned if row["status"] == "finished"]
+def planned(rows: Sequence[Mapping[str, Any]]) -> List[Mapping[str, Any]]:
+    """The rows of the design, without those that were added."""
+    return [row for row in rows if not row.get("batch")]
+
+
+def done(rows: Sequence[Mapping[str, Any]]) -> List[Mapping[str, Any]]:
+    """Those of the design that finished."""
+    return [row for row in planned(rows) if row["status"] == "finished"]
+
+
+def main_of(order: Order, finished: Sequence[Mapping[str, Any]]) -> List[str]:
+    """The quantities whose dependence on the variables counts."""
+    known = quantities.known(On.ASKED, finished)
+    return [name for name in dict.fromkeys((order.of, *quantities.keys(On.INFLUENCE))) if name in known]
+
+
+def emulate(order: Order, rows: Sequence[Mapping[str, Any]], mobility: Optional[Mobility]) -> Dict[str, Any]:
+    """What emulators of the runs say, for evaluate(), which does without where all runs failed."""
+    finished = done(rows)
+    if not finished:
+        return {}
+    point, places, main = points_of(order.sample, finished), order.sample.places(finished), main_of(order, finished)
+    found: Dict[str, Any] = {"influence": {
+        name: emulator.analyse(order.sample.names, places, column(finished, name), point, order.sample.snap).about()
+        for name in main}}
+    if order.condition:
+        assert order.added and mobility
+        found["known_events"] = known_events.emulate(order.sample, order.added, rows, mobility, main)
+    return found
+
+
+def evaluate(order: Order, rows: Sequence[Mapping[str, Any]], mobility: Optional[Mobility],
+             emulated: Mapping[str, Any]) -> Optional[Evaluated]:
+    """What an ensemble says, None where all runs failed.
+
+    rows: of study.csv; mobility: of an order with a condition; emulated: of emulate().
+    """
+    finished = done(rows)
     if not finished:
         return None
-    failed = len(planned) - len(finished)
+    failed = len(planned(rows)) - len(finished)
     point = points_of(order.sample, finished)
     of_quantity = {name: (quantities.name_of(name, finished), quantities.ALL[name].unit)
                    for name in quantities.known(On.ASKED, finished)}
     curves = {name: hazard.curve(column(finished, name), point, failed) for name in of_quantity}
     about: Dict[str, Any] = {
-        "design": order.sample.about, "runs": len(planned), "finished": len(finished), "failed": failed,
+        "design": order.sample.about, "runs": len(finished) + failed, "finished": len(finished), "failed": failed,
         "points": len(set(point)), "confidence": hazard.CONFIDENCE, "of": order.of if order.of in curves else None,
         "quantities": {name: {"name": what, "unit": unit, **numbers(column(finished, name), point, failed)}
                        for name, (what, unit) in of_quantity.items()}}
-    places = order.sample.places(finished)
-    main = [name for name in dict.fromkeys((order.of, *quantities.keys(On.INFLUENCE))) if name in of_quantity]
-    analyses = {name: emulator.analyse(order.sample.names, places, column(finished, name), point, order.sample.snap)
-                for name in main}
-    about["influence"] = {name: one.about() for name, one in analyses.items()}
+    about["influence"] = emulated["influence"]
     about["doubts"] = entries([*no_effect(finished), *doubts(about)])
     about.update(maps=[], known_events=None)
     known = None
     if order.condition:
         assert order.added and mobility
-        known = known_events.evaluate(order.condition, order.sample, order.added, rows, mobility, of_quantity, main)
+        known = known_events.evaluate(order.condition, order.sample, order.added, rows, mobility, of_quantity,
+                                      emulated["known_events"])
         about["known_events"] = known.about
-    return Evaluated(about, curves, analyses, finished, len(set(point)), failed, known)
+    return Evaluated(about, curves, finished, len(set(point)), failed, known)
 
 
 def write(found: Evaluated, levels: ensemble_maps.Thresholds, output: Path, place,
@@ -107,7 +137,7 @@ def write(found: Evaluated, levels: ensemble_maps.Thresholds, output: Path, plac
     if found.known:
         maps["known_events"] = {**found.known.about, **known_events.write(found.known, levels, output, place, grids)}
     disk.write(output / HAZARD, hazard.table(found.curves))
-    disk.write(output / INFLUENCE, influence_table(found.analyses))
+    disk.write(output / INFLUENCE, influence_table(found.about["influence"]))
     return maps
 
 
@@ -171,13 +201,13 @@ def doubts(about: Mapping[str, Any]) -> List[Finding]:
 
 # --- tables ---
 
-def influence_table(analyses: Mapping[str, emulator.Analysis]) -> str:
-    """The CSV of ranks and indices; a cell is empty where the emulator says nothing."""
+def influence_table(influence: Mapping[str, Mapping[str, Any]]) -> str:
+    """The CSV of ranks and indices, of what study.yaml has of them; a cell is empty where the emulator says nothing."""
     return disk.csv_text(
         ["quantity", "variable", "rank", "rank_clear", *emulator.SIGN, "emulator_explains", "emulator_error"],
-        ([name, one.name, one.rank, "yes" if one.rank_clear else "no", *(getattr(one, key) for key in emulator.SIGN),
-          *((analysis.check.explained, analysis.check.error) if analysis.check else (None, None))]
-         for name, analysis in analyses.items() for one in analysis.influences))
+        ([name, variable, one["rank"], "yes" if one["rank_clear"] else "no", *(one[key] for key in emulator.SIGN),
+          *((entry["emulator"][key] for key in ("explained", "error")) if entry["emulator"] else (None, None))]
+         for name, entry in influence.items() for variable, one in entry["variables"].items()))
 
 
 # --- words ---

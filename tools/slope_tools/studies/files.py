@@ -6,17 +6,18 @@ from .. import disk
 from ..ensembles import ensemble
 from ..seismic import chain_files
 from ..tables import answered, combinations, elastic, intensity, road_runs, structures, study_table
-from ..tables.study_maps import Maps
 from .outcome import Outcome
 
 
-def write(outcome: Outcome, header: Mapping[str, Any], maps: Maps, output: Path, place) -> Dict[str, Any]:
+def write(outcome: Outcome, header: Mapping[str, Any], maps: Mapping[str, Any], output: Path,
+          place) -> Dict[str, Any]:
     """All of them; what study.yaml says.
 
-    header: what it says of what was asked, and of the programs; place: CRS and offset of the maps, None without.
+    header: what it says of what was asked, and of the programs; maps: over all runs; place: their CRS and offset, None
+    without.
     """
     asked, read = outcome.questions, outcome.read
-    about: Dict[str, Any] = {"study": dict(header), **outcome.about, **maps.write(output, place)}
+    about: Dict[str, Any] = {"study": dict(header), **outcome.about, **maps}
     if outcome.ensemble:
         assert asked.order
         about["ensemble"] = {**about["ensemble"], **ensemble.write(outcome.ensemble, asked.order.levels, output, place,

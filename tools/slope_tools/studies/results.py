@@ -11,15 +11,16 @@ import numpy as np
 from .. import disk, kept, provenance
 from ..case import run_folders
 from ..deposits import gone
-from ..ensembles import known_events, known_study
+from ..ensembles import ensemble, known_events, known_study
 from ..findings import Finding, entries
+from ..mobility.exceedance import Mobility
 from ..releases import release_toe
 from ..runs.repeats import Repeat
 from ..sites import site_choices
 from ..statistics import headline
 from ..survey import rasters, roads
-from ..tables import combinations, elastic, fine_run, judged, next_step, quantities, structures, usable, withheld_words
-from ..tables.study_maps import Maps
+from ..tables import (combinations, elastic, fine_run, judged, next_step, quantities, structures, study_maps, usable,
+                      withheld_words)
 from . import body_depth, console, files, mapped, site_ground
 from .outcome import Questions, Read, evaluate
 from .setup import Road, Setup
@@ -32,9 +33,12 @@ def collect(setup: Setup, questions: Questions, todo, work) -> Optional[Dict[str
     ensemble finished."""
     if questions.order and all(run.error for run in todo):
         return None     # study.perform says so
-    maps = Maps(questions.thresholds)
-    first = next((run for run in todo if not run.error), None)
-    found = read(setup, questions, todo, maps, work.defaults)
+    rows, finished = rows_of(setup, todo), [run for run in todo if not run.error]
+    first = finished[0] if finished else None
+    place = terrain_place(first) if first else None
+    maps = study_maps.write([study_maps.Source(run.name, prefix_of(run), not run.batch) for run in finished],
+                            questions.thresholds, setup.output, place)
+    found = read(setup, questions, todo, rows, maps.pop("problem"), work.defaults)
     outcome = evaluate(questions, found)
     header = {"deck": setup.deck.name, "known": questions.among, "set": questions.settings,
               "repeat": questions.repeated, "runs": len(found.rows), "finished": len(found.finished),
@@ -46,14 +50,14 @@ def collect(setup: Setup, questions: Questions, todo, work) -> Optional[Dict[str
     step = next_step.of_studies([next_step.Made({"study": header, **outcome.about}, setup.output)],
                                 outcome.about["headline"])
     outcome = replace(outcome, about={**outcome.about, next_step.ENTRY: step and step._asdict()})
-    about = files.write(outcome, header, maps, setup.output, terrain_place(first) if first else None)
+    about = files.write(outcome, header, maps, setup.output, place)
     console.tell(outcome, about, setup.output, setup.tell, setup.warn)
     return about
 
 
-def read(setup: Setup, questions: Questions, todo, maps: Maps, defaults: Mapping[str, str]) -> Read:
-    """What an Outcome is evaluated from; rasters go to the maps."""
-    rows = rows_of(setup, todo, maps)
+def read(setup: Setup, questions: Questions, todo, rows: List[Dict[str, Any]], problem: Optional[str],
+         defaults: Mapping[str, str]) -> Read:
+    """What an Outcome is evaluated from; problem: why there are no maps over all runs."""
     observed = mapped.compare(mapped.of_site(questions.site), setup.output, rows, [terrain_of(run) for run in todo])
     first = next((run for run in todo if not run.error), None)
     row = next((row for row in rows if row["status"] == "finished"), None)
@@ -63,12 +67,21 @@ def read(setup: Setup, questions: Questions, todo, maps: Maps, defaults: Mapping
     if row and questions.order and questions.order.condition:
         summary = run_folders.summary_of(setup.output, row)
         mobility = known_events.mobility_of(questions.order.condition, summary.parent, summary)
+    emulated = emulated_of(setup, questions.order, rows, mobility) if questions.order else {}
     if row and questions.fine:
         fine = compared(setup, questions.fine, rows, None if questions.order else combinations.grouped(rows))
     most = elastic.read(questions.most_elastic, rows, setup.output) if row and questions.most_elastic else None
-    return Read(rows, setup.road is not None, events, mobility, observed, fine, most, maps.problem,
+    return Read(rows, setup.road is not None, events, mobility, emulated, observed, fine, most, problem,
                 case_of(setup, questions, row) if row else None,
                 body_depth.in_balls(setup, [one for one in rows if one["status"] == "finished"]), defaults)
+
+
+def emulated_of(setup: Setup, order: ensemble.Order, rows: Sequence[Mapping[str, Any]],
+                mobility: Optional[Mobility]) -> Dict[str, Any]:
+    """What emulators say of the runs of an ensemble, kept with the study."""
+    made_of = [order.sample.about, order.of, order.added and order.added.batches, rows,
+               mobility and [mobility.outside, mobility.path.length, mobility.curves[mobility.chosen]]]
+    return kept.value(setup.output / ".emulated.json", made_of, lambda: ensemble.emulate(order, rows, mobility))
 
 
 def compared(setup: Setup, fine: Repeat, rows: Sequence[Mapping[str, Any]],
@@ -109,8 +122,8 @@ def case_of(setup: Setup, questions: Questions, row) -> withheld_words.Case:
                                command=command)
 
 
-def rows_of(setup: Setup, todo, maps: Optional[Maps] = None) -> List[Dict[str, Any]]:
-    """A row for each run, finished or failed; what finished is added to the maps."""
+def rows_of(setup: Setup, todo) -> List[Dict[str, Any]]:
+    """A row for each run, finished or failed."""
     rows = []
     for run in rasters.progress(todo, "collecting the runs"):
         row = {"run": run.name, "status": "failed" if run.error else "finished", "set": run.combination,
@@ -119,10 +132,6 @@ def rows_of(setup: Setup, todo, maps: Optional[Maps] = None) -> List[Dict[str, A
             rows.append({**row, "error": run.error, "log_warnings": run.log.warnings})
             continue
         row.update(result(run, setup.output))
-        if maps:
-            prefix = prefix_of(run)
-            thickness, most = (run_folders.load_raster(prefix, name) for name in ("thickness", "max_thickness"))
-            maps.add(run.name, thickness, most, not row.get("batch"))
         if setup.road:
             row.update(on_road(run, setup, row))
         rows.append(row)
@@ -173,7 +182,7 @@ def on_road(run, setup: Setup, row) -> Dict[str, Any]:
                "file": site_choices.content(str(road.file))}
     folder = run.folder / quantities.volume_folder(road.name)
     return kept.value(folder / "row.json", made_of, functools.partial(measured_on, road, run, row),
-                      [folder / name for name in ("volume.yaml", "volume.tif", "volume_mesh.tif")])
+                      lambda: [folder / name for name in ("volume.yaml", "volume.tif", "volume_mesh.tif")])
 
 
 def measured_on(road: Road, run, row) -> Dict[str, Any]:
