@@ -131,6 +131,24 @@ def test_nothing_is_added_where_the_runs_reach_far_enough(tmp_path):
     assert added.propose(u, lengths, beyond, PATH) is not None
 
 
+def test_where_runs_are_longer_is_found_once(tmp_path, monkeypatch):
+    """Of the same runs and distributions."""
+    u, fitted = designs.points(designs.SOBOL, 3, RUNS, 1), []
+    beyond = twins.exceedance(response(u)[0])
+    u[:2] = 0, 0, 1         # no more: the same is asked by each study
+
+    def counted(*given, really=farther.Longer):
+        fitted.append(1)
+        return really(*given)
+
+    monkeypatch.setattr(farther, "Longer", counted)
+    lengths = response(u)[0]
+    for wanted, scale in ((1, 1.0), (1, 1.0), (2, np.linspace(0.99, 1, RUNS)), (2, np.linspace(0.99, 1, RUNS))):
+        added = farther.Added(tmp_path, planned())
+        assert added.propose(u, lengths * scale, beyond, PATH) is None
+        assert added.stopped.code is Code.RANGE and len(fitted) == wanted
+
+
 def test_why_no_more_are_added(tmp_path):
     u = designs.points(designs.SOBOL, 3, RUNS, 1)
     lengths = response(u)[0]

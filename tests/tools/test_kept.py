@@ -1,18 +1,25 @@
-"""What a run says is computed once, and again when the run, the road or the tools are others: kept.py, run_rows.py."""
+"""What runs say is computed once, and again when a run, the road, what is asked or the tools are others: kept.py."""
 import json
+import shutil
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from test_conditioned import write_set
 from tiny_collapse import loaded
 
 from slope_tools import kept
+from slope_tools.ensembles import conditioned, ensemble, ensemble_maps, known_maps
 from slope_tools.studies import run_rows
+from slope_tools.tables import study_maps
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 COMMAND = "study case/in.tiny"
 ROAD = "--road case/road.csv --local"
+ENSEMBLE = ("--sample 8 --vary friction=2:40 --vary rolling=0:0.3 --set steps=900 --mobility small.csv --unconfined "
+            f"--exceed 0.1 {ROAD} -o out")
+KEPT = ".emulated.json", ".maps.json", "ensemble/.maps.json", "known_events/.maps.json"
 
 
 @pytest.fixture
@@ -30,7 +37,7 @@ def test_a_value_is_made_once(tmp_path, monkeypatch):
         return {"x": (np.float64(0.1) + 0.2, None, float("inf")), "n": np.int64(len(made))}
 
     def value(made_of=1):
-        return kept.value(tmp_path / "value.json", {"of": made_of, "path": tmp_path}, make, [beside])
+        return kept.value(tmp_path / "value.json", {"of": made_of, "path": tmp_path}, make, lambda: [beside])
     first = value()
     assert first == value() == {"x": [0.1 + 0.2, None, float("inf")], "n": 1} and made == [0]
     assert value(2)["n"] == 2 and value(2)["n"] == 2        # of something else
@@ -38,9 +45,12 @@ def test_a_value_is_made_once(tmp_path, monkeypatch):
     assert value(2)["n"] == 3 and beside.read_text() == "3"
     beside.unlink()
     assert value(2)["n"] == 4
-    for text in ("", "{", "[]", json.dumps({"made_of": "x"})):
+    whole = (tmp_path / "value.json").read_text()
+    for text in ("", "{", "[]", json.dumps({"made_of": "x"}), whole[:-1], whole.replace("0.30000000000000004", "0.3")):
         (tmp_path / "value.json").write_text(text)
         assert value(2)["n"] == len(made)
+    (tmp_path / "value.json").write_bytes(b"\xff" + whole.encode())
+    assert value(2)["n"] == len(made) == 11
     assert kept.value(tmp_path / "nowhere" / "value.json", 1, lambda: 5) == 5      # which cannot be written
     before = len(made)
     monkeypatch.setattr(kept, "tools", lambda: "other tools")
@@ -78,3 +88,83 @@ def test_a_second_study_measures_nothing(succeed, monkeypatch):
     Path("out/rolling_0.3/volume/volume.tif").write_bytes(b"")
     succeed(words)
     assert calls[8:] == ["measured_on"] and Path("out/rolling_0.3/volume/volume.tif").stat().st_size
+
+
+def test_arrays_and_dataclasses_count_in_full():
+    """A text of theirs would be cut short."""
+    one = np.arange(5000.0)
+    other = one.copy()
+    other[2500] += 1e-9
+    assert kept.digest(one) != kept.digest(other)
+    levels, mass = ensemble_maps.Thresholds([0.1], [5.0], [1e5]), [conditioned.Masses(each, 0.1, each, 3.0, 1, each)
+                                                                   for each in (one, other)]
+    assert len({kept.digest([levels, each]) for each in mass}) == 2
+    assert kept.digest([levels, mass[0]]) == kept.digest([levels, conditioned.Masses(one, 0.1, one, 3.0, 1, one)])
+
+
+@pytest.fixture
+def again(here, succeed, monkeypatch):
+    """again(WORDS): an ensemble that is weighted by known events; gives what was made anew, and all of its files."""
+    write_set("small.csv")
+    made = []
+    for name, module, function in (("emulators", ensemble, "emulate"), ("over all", study_maps.Maps, "write"),
+                                   ("ensemble", ensemble_maps, "of_kind"), ("known events", known_maps, "of_kind")):
+        def counted(*given, name=name, really=getattr(module, function), **more):
+            made.append(name)
+            return really(*given, **more)
+        monkeypatch.setattr(module, function, counted)
+
+    def study(words=ENSEMBLE):
+        made.clear()
+        succeed(words)
+        files = {str(path): path.read_bytes() for folder in ("out", "out/ensemble", "out/known_events")
+                 for path in Path(folder).iterdir() if path.is_file() and not path.name.startswith(".")}
+        about = files.pop("out/study.yaml").decode().splitlines()
+        files["study.yaml"] = [line for line in about if not line.startswith("  collected: ")]
+        return set(made), files
+    return study
+
+
+def test_a_second_ensemble_fits_nothing_and_maps_nothing(again):
+    """And says the same; what the user did to a file, a run that changed or was added, and other events are seen."""
+    everything = {"emulators", "over all", "ensemble", "known events"}
+    made, before = again()
+    assert made == everything and {"out/exceedance_0.1m.asc", "out/ensemble/thickness_q50.asc",
+                                   "out/known_events/thickness.tif", "out/influence.csv"} <= set(before)
+    assert again() == (set(), before)
+    for name in KEPT:
+        Path("out", name).unlink()
+    assert again() == (everything, before)
+    for name in KEPT:
+        shutil.copy("case/in.tiny", Path("out", name))
+    assert again() == (everything, before)
+
+    # files of the user's
+    Path("out/exceedance_0.1m.asc").write_text("mine")
+    assert again() == ({"over all"}, before)
+    Path("out/envelope_thickness.yaml").unlink()
+    Path("out/exceedance_7m.asc").write_text("of another study")
+    assert again() == ({"over all"}, before)
+    with open("out/ensemble/max_speed.tif", "ab") as out:
+        out.write(b"0")
+    assert again() == ({"ensemble"}, before)
+    Path("out/known_events/arrival_reached.asc").rename("out/known_events/arrival_reachec.asc")
+    assert again() == ({"known events"}, before)
+
+    # other questions
+    made, other = again(f"{ENSEMBLE} --except 'event 3'")
+    assert made == {"emulators", "known events"} and other["out/hazard.csv"] == before["out/hazard.csv"]
+    assert other["out/weights.csv"] != before["out/weights.csv"]
+    made, other = again(ENSEMBLE.replace("--exceed 0.1", "--exceed 0.2"))
+    assert made == everything - {"emulators"} and "out/exceedance_0.1m.asc" not in other
+    assert again()[1] == before
+
+    # other runs
+    raster = next(Path("out").glob("steps_*/*.max_speed.asc"))
+    text = raster.read_text().splitlines(True)
+    raster.write_text("".join(text[:6] + [line.replace("0", "9") for line in text[6:]]))
+    made, other = again()
+    assert made >= {"ensemble", "known events"} and "over all" not in made
+    assert other["out/ensemble/max_speed.tif"] != before["out/ensemble/max_speed.tif"]
+    made, other = again(ENSEMBLE.replace("--sample 8", "--sample 12"))
+    assert made == everything and len(other["out/study.csv"].splitlines()) > len(before["out/study.csv"].splitlines())

@@ -280,7 +280,7 @@ def plain(value: Any) -> Any:
 
 def yaml_text(comment, about) -> str:
     """A YAML file with a comment on its first line; what is in it twice is written twice, not as an alias."""
-    return f"# {comment}\n" + yaml.safe_dump(plain(about), sort_keys=False, allow_unicode=True)
+    return f"# {comment}\n" + yaml.dump(plain(about), Dumper=written_yaml.DUMPER, sort_keys=False, allow_unicode=True)
 
 
 def write_yaml(path, about, comment):

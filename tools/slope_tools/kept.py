@@ -1,10 +1,11 @@
 """Values that take long to compute, kept in a file beside what they were made of, and made again when that changes."""
 import contextlib
+import dataclasses
 import functools
 import hashlib
 import json
 from pathlib import Path
-from typing import Any, Callable, Sequence
+from typing import Any, Callable, Iterable
 
 from . import disk
 from .errors import SlopeError
@@ -20,24 +21,29 @@ def tools() -> str:
 
 
 def digest(made_of: Any) -> str:
-    """Of values that JSON knows, and of these tools."""
-    text = json.dumps([tools(), disk.plain(made_of)], sort_keys=True, default=str)
+    """Of values that JSON knows, dataclasses of them, and what has a text; and of these tools."""
+    text = json.dumps([tools(), disk.plain(made_of)], sort_keys=True, default=lambda one: disk.plain(vars(one))
+                      if dataclasses.is_dataclass(one) else str(one))
     return hashlib.sha256(text.encode("utf-8")).hexdigest()
 
 
-def value(path: Path, made_of: Any, make: Callable[[], Any], written: Sequence[Path] = ()) -> Any:
+def value(path: Path, made_of: Any, make: Callable[[], Any], written: Callable[[], Iterable[Path]] = list) -> Any:
     """What make() gives, numbers, texts, lists, and mappings with texts as keys; from the file, if that is of the same.
 
-    written: files that make() writes, too, and that must be as it left them.
+    written: names the files that make() writes, too, and that must be as it left them.
     """
     mine = digest(made_of)
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-        if content["made_of"] == mine and content["written"] == list(map(disk.sha256, written)):
-            return content["value"]
-    except (OSError, ValueError, KeyError, TypeError):
-        pass        # none, or of something else
-    found = json.loads(json.dumps(disk.plain(make())))      # the same as when it is read
+
+    def seal(text: str) -> str:
+        """Of a value as it stands in the file, below this."""
+        parts = [mine, *(part for one in written() for part in (one.name, disk.sha256(one))), text]
+        return hashlib.sha256("\n".join(parts).encode("utf-8")).hexdigest()
+
+    with contextlib.suppress(OSError, ValueError):      # none, or damaged
+        before, _, text = path.read_text(encoding="utf-8").partition("\n")
+        if before == seal(text):
+            return json.loads(text)
+    text = json.dumps(disk.plain(make()))
     with contextlib.suppress(OSError, SlopeError):      # the folder is somebody else's: it is made again next time
-        disk.write(path, json.dumps({"made_of": mine, "written": list(map(disk.sha256, written)), "value": found}))
-    return found
+        disk.write(path, f"{seal(text)}\n{text}")
+    return json.loads(text)     # the same as when it is read

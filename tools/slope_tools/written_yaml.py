@@ -11,6 +11,7 @@ import yaml
 INT, FLOAT, TIMESTAMP, MERGE = (f"tag:yaml.org,2002:{name}" for name in ("int", "float", "timestamp", "merge"))
 DECIMAL = re.compile(r"[-+]?(0|[1-9][0-9]*)")
 C_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+DUMPER = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
 
 
 class Misleading(ValueError):

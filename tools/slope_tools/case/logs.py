@@ -1,7 +1,8 @@
 """What the log of a run says."""
+import functools
 import re
 from pathlib import Path
-from typing import Iterable, List, Optional
+from typing import FrozenSet, Iterable, List, Optional, Sequence, Tuple
 
 from . import decks
 
@@ -15,6 +16,13 @@ REMOVED_SHARE = re.compile(r"Delete_balls: ([\d.]+) % of the volume of group")
 FILLED = re.compile(r"Create_balls: \d+ balls of diameter \S+ fill region ")
 LOST = re.compile(r"Fix deposit/grid \S+: ball \d+ left the box")
 INPUT_PLACE = re.compile(r"\s*\([^()]*\.(?:cpp|h):\d+\)\s*$")     # LAMMPS names its source line at the end of a message
+
+
+@functools.lru_cache(maxsize=4096)
+def read_of(line: str) -> Tuple[Sequence[str], FrozenSet[str]]:
+    """The words of a command, and those of them that may name files; the runs of a study have nearly the same."""
+    said = decks.words_of(line)
+    return said, frozenset(decks.read_words([said]) if said else ())
 
 
 class Log:
@@ -118,9 +126,9 @@ class Log:
 
     def _command(self, words, line):
         """A command as the log echoes it; the last of its echoes has all variables replaced."""
-        said = decks.words_of(line)
+        said, read = read_of(line)
         if said:
-            self.names |= decks.read_words([said])
+            self.names |= read
             if said[0] == "variable" and said[2:3] == ["getenv"] and len(said) > 3:
                 self.environment.add(said[3])
         if "${" in line:

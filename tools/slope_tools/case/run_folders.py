@@ -1,7 +1,8 @@
 """The files of a run: its summary and the rasters that fix deposit/grid wrote."""
+import functools
 import os
 from pathlib import Path
-from typing import Any, Dict, Union
+from typing import Any, Dict, Iterable, List, Mapping, Optional, Tuple, Union
 
 from .. import disk, schemas
 from ..errors import SlopeError
@@ -64,15 +65,26 @@ def summary_of(output: Path, summary: str) -> Path:
     return Path(os.path.normpath(output / summary))
 
 
-def begun(folder: Path) -> Dict[str, Any]:
+def begun(folder: Path) -> Mapping[str, Any]:
     """What a study wrote before it made the run in a folder: its values, and the digests of what it depends on."""
-    return schemas.load(Path(folder) / VARIABLES, OF_STUDY, BEGUN)
+    return _load(Path(folder) / VARIABLES)
 
 
-def ended(folder: Path) -> Dict[str, Any]:
+def ended(folder: Path) -> Mapping[str, Any]:
     """What it wrote when the run was complete; empty while it is not."""
     path = Path(folder) / MARKER
-    return schemas.load(path, OF_STUDY, ENDED) if path.exists() else {}
+    return _load(path) if path.exists() else {}
+
+
+def _load(path: Path) -> Mapping[str, Any]:
+    """One of both, which a command asks for many times."""
+    about = os.stat(path) if path.exists() else None
+    return _loaded(path, about and (about.st_ino, about.st_size, about.st_mtime_ns, about.st_ctime_ns))
+
+
+@functools.lru_cache(maxsize=4096)
+def _loaded(path: Path, _) -> Mapping[str, Any]:
+    return schemas.load(path, OF_STUDY, BEGUN if path.name == VARIABLES else ENDED)
 
 
 def load_summary(path, schema=SUMMARY):
@@ -86,6 +98,12 @@ def state(folder: Path) -> Dict[str, Any]:
     return {"marker": disk.sha256(marker) if marker.is_file() else None,
             "files": sorted((one.name, one.stat().st_size, one.stat().st_mtime_ns) for one in os.scandir(folder)
                             if one.is_file() and not one.name.startswith("."))}
+
+
+def stamps(prefix: Path, names: Iterable[str]) -> List[Optional[Tuple[int, int]]]:
+    """What tells whether rasters of a run are the same: sizes and times."""
+    found = [Path(f"{prefix}.{name}.asc") for name in names]
+    return [(one.stat().st_size, one.stat().st_mtime_ns) if one.is_file() else None for one in found]
 
 
 def load_raster(prefix, name, heights=True):

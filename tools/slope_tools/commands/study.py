@@ -13,7 +13,7 @@ from ..ensembles import known_events, known_study, sample
 from ..errors import SlopeError
 from ..options import flag, option, positional, several
 from ..runs import repeats
-from ..sites import site_choices, site_deck, site_roads
+from ..sites import site_choices, site_deck, site_roads, site_scenarios
 from ..sites.site_bodies import VARIABLE
 from ..sites.site_choices import Site
 from ..sites.site_sections import OfMass
@@ -112,10 +112,10 @@ def run_folder(args: Request) -> None:
     site = site_choices.load(args.deck)
     made = road_numbers.of_all(site, not args.dry_run, setup_of(args).tell, lambda one, several, quiet: run_site_of(
         replace(args, roads=several, quiet=quiet), one))
-    if made.abouts:
-        from ..scenarios import page
-        if said := page.refresh(args.deck):
-            print(said)
+    above = site_scenarios.site_of(args.deck) or args.deck
+    if made.abouts and site_scenarios.of_site(above):
+        from ..scenarios import page        # with pictures: half a second
+        print(page.refresh(above))
     if made.failed:
         raise made.failed
 

@@ -101,15 +101,15 @@ def estimate(exceeding: np.ndarray, mass: Masses, factor=1.0, several: float = 1
     return part, low * (1 - failed), high + failed * (1 - high)
 
 
-def curve(values: hazard.Values, mass: Masses, effect: Optional[Callable] = None, several: float = 1.0,
-          failed: float = 0.0) -> hazard.Curve:
+def curve(values: hazard.Values, mass: Masses, effect: Optional[Tuple[hazard.Values, hazard.Values]] = None,
+          several: float = 1.0, failed: float = 0.0) -> hazard.Curve:
     """The share of known events above each value of the runs, with bounds; it begins as hazard.curve does.
 
-    effect: factor of the variance at each of an array of values, of the design (Design.effect); see estimate().
+    effect: of the design (Design.effect), on the variance; several, failed: see estimate().
     """
     given = np.asarray(values, float)
     at = hazard.levels_of(given)
-    part, low, high = estimate(above(given, at), mass, effect(at) if effect else 1.0, several, failed)
+    part, low, high = estimate(above(given, at), mass, np.interp(at, *effect) if effect else 1.0, several, failed)
     high = np.maximum.accumulate((high + mass.far)[::-1])[::-1]
     return hazard.Curve(at, part + mass.far, np.minimum.accumulate(low), np.minimum(high, 1.0))
 
@@ -204,13 +204,12 @@ class Design:
         found = fitted.at(np.concatenate(self.points)).reshape(self.chance.shape) + left_out[self.chance]
         return np.clip(found, values.min(), values.max())
 
-    def effect(self, values: hazard.Values) -> Callable:
-        """The factor of the variance, at most 1, as a function of the levels of a quantity."""
+    def effect(self, values: hazard.Values) -> Tuple[np.ndarray, np.ndarray]:
+        """Levels of a quantity, and the factor of the variance at each of them, at most 1."""
         given = np.asarray(values, float)
         levels = np.unique(np.quantile(given, (np.arange(LEVELS) + 0.5) / LEVELS, method="inverted_cdf"))
         shares = np.array([mass.share @ above(one, levels) + mass.far
                            for one, mass in zip(self.simulate(given), self.masses)])
         even, independent = (part.var(axis=0, ddof=1) for part in (shares[:SIMULATED], shares[SIMULATED:]))
         ratio = np.divide(even, independent, out=np.ones_like(even), where=independent > 0)
-        factor = np.minimum(ratio, 1.0)
-        return lambda at: np.interp(at, levels, factor)
+        return levels, np.minimum(ratio, 1.0)

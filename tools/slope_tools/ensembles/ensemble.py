@@ -1,11 +1,11 @@
 """What the runs of an ensemble say together: quantiles and hazard curves, which variables matter, maps over all runs.
 
-Order of the work: the numbers of each quantity (hazard.py), which variables it depends on (emulator.py), maps
-(ensemble_maps.py); what study.yaml says of them, hazard.csv and influence.csv.
+Order of the work: which variables each quantity depends on (emulator.py), which takes long and is kept with the study;
+its numbers (hazard.py), maps (ensemble_maps.py); what study.yaml says of them, hazard.csv and influence.csv.
 """
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Dict, List, Mapping, NamedTuple, Optional, Sequence
+from typing import Any, Dict, List, Mapping, NamedTuple, NotRequired, Optional, Sequence, TypedDict
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from ..errors import SlopeError
 from ..findings import Finding, entries, texts
 from ..mobility.exceedance import Mobility
 from ..statistics import emulator, hazard
+from ..statistics.entries import Analysis, Check, Influence
 from ..tables import combinations, quantities, study_types, withheld_words
 from ..tables.quantities import On
 from ..tables.rows import Finished, Row, finished_of
@@ -54,46 +55,76 @@ def check_quantity(of: Optional[str], road: bool) -> str:
 
 
 class Evaluated(NamedTuple):
-    """about: what study.yaml says of an ensemble, but for its maps; curves, analyses: of its quantities; finished: rows
-    of the planned runs that did, of so many points, as failed did not; known: weighted by known events."""
+    """about: what study.yaml says of an ensemble; curves: of its quantities; finished: rows of the planned runs that
+    did, of so many points, as failed did not; known: weighted by known events."""
     about: study_types.Ensemble
     curves: Mapping[str, hazard.Curve]
-    analyses: Mapping[str, emulator.Analysis]
     finished: Sequence[Finished]
     points: int
     failed: int
     known: Optional[known_events.Evaluated]
 
 
-def evaluate(order: Order, rows: Sequence[Row], mobility: Optional[Mobility]) -> Optional[Evaluated]:
-    """What an ensemble says, None where all runs failed; rows: of study.csv; mobility: of an order with a condition."""
-    planned = [row for row in rows if not row.batch]
-    finished = finished_of(planned)
+class Emulated(TypedDict):
+    """What emulators of the runs say; of an order with a condition, what they say of its known events."""
+    influence: Dict[str, Analysis]
+    known_events: NotRequired[known_events.Emulated]
+
+
+def planned(rows: Sequence[Row]) -> List[Row]:
+    """The rows of the design, without those that were added."""
+    return [row for row in rows if not row.batch]
+
+
+def main_of(order: Order, finished: Sequence[Finished]) -> List[str]:
+    """The quantities whose dependence on the variables counts."""
+    known = quantities.known(On.ASKED, finished)
+    return [name for name in dict.fromkeys((order.of, *quantities.keys(On.INFLUENCE))) if name in known]
+
+
+def emulate(order: Order, rows: Sequence[Row], mobility: Optional[Mobility]) -> Emulated:
+    """For evaluate(), which does without where all runs failed."""
+    finished = finished_of(planned(rows))
+    if not finished:
+        return {"influence": {}}
+    point, places, main = points_of(order.sample, finished), order.sample.places(finished), main_of(order, finished)
+    found: Emulated = {"influence": {
+        name: emulator.analyse(order.sample.names, places, column(finished, name), point, order.sample.snap).about()
+        for name in main}}
+    if order.condition:
+        assert order.added and mobility
+        found["known_events"] = known_events.emulate(order.sample, order.added, rows, mobility, main)
+    return found
+
+
+def evaluate(order: Order, rows: Sequence[Row], mobility: Optional[Mobility],
+             emulated: Emulated) -> Optional[Evaluated]:
+    """What an ensemble says, None where all runs failed.
+
+    rows: of study.csv; mobility: of an order with a condition; emulated: of emulate().
+    """
+    finished = finished_of(planned(rows))
     if not finished:
         return None
-    failed = len(planned) - len(finished)
+    failed = len(planned(rows)) - len(finished)
     point = points_of(order.sample, finished)
     of_quantity = {name: (quantities.name_of(name, finished), quantities.ALL[name].unit)
                    for name in quantities.known(On.ASKED, finished)}
     curves = {name: hazard.curve(column(finished, name), point, failed) for name in of_quantity}
-    places = order.sample.places(finished)
-    main = [name for name in dict.fromkeys((order.of, *quantities.keys(On.INFLUENCE))) if name in of_quantity]
-    analyses = {name: emulator.analyse(order.sample.names, places, column(finished, name), point, order.sample.snap)
-                for name in main}
     about: study_types.Ensemble = {
-        "design": order.sample.about, "runs": len(planned), "finished": len(finished), "failed": failed,
+        "design": order.sample.about, "runs": len(finished) + failed, "finished": len(finished), "failed": failed,
         "points": len(set(point)), "confidence": hazard.CONFIDENCE, "of": order.of if order.of in curves else None,
         "quantities": {name: numbers(what, unit, column(finished, name), point, failed)
                        for name, (what, unit) in of_quantity.items()},
-        "influence": {name: one.about() for name, one in analyses.items()}, "doubts": [], "maps": [],
-        "known_events": None}
+        "influence": emulated["influence"], "doubts": [], "maps": [], "known_events": None}
     about["doubts"] = entries([*no_effect(finished), *doubts(about)])
     known = None
     if order.condition:
         assert order.added and mobility
-        known = known_events.evaluate(order.condition, order.sample, order.added, rows, mobility, of_quantity, main)
+        known = known_events.evaluate(order.condition, order.sample, order.added, rows, mobility, of_quantity,
+                                      emulated["known_events"])
         about["known_events"] = known.about
-    return Evaluated(about, curves, analyses, finished, len(set(point)), failed, known)
+    return Evaluated(about, curves, finished, len(set(point)), failed, known)
 
 
 def write(found: Evaluated, levels: ensemble_maps.Thresholds, output: Path, place, grids: Optional[str]) -> None:
@@ -107,7 +138,7 @@ def write(found: Evaluated, levels: ensemble_maps.Thresholds, output: Path, plac
     if found.known:
         known_events.write(found.known, levels, output, place, grids)
     disk.write(output / HAZARD, hazard.table(found.curves))
-    disk.write(output / INFLUENCE, influence_table(found.analyses))
+    disk.write(output / INFLUENCE, influence_table(found.about["influence"]))
 
 
 def points_of(sample: Sample, finished: Sequence[Finished]) -> List[int]:
@@ -172,13 +203,16 @@ def doubts(about: study_types.Ensemble) -> List[Finding]:
 
 # --- tables ---
 
-def influence_table(analyses: Mapping[str, emulator.Analysis]) -> str:
+def influence_table(influence: Mapping[str, Analysis]) -> str:
     """The CSV of ranks and indices; a cell is empty where the emulator says nothing."""
+    def line(name: str, variable: str, one: Influence, check: Optional[Check]) -> Sequence[Any]:
+        return (name, variable, one["rank"], "yes" if one["rank_clear"] else "no", one["first"], one["first_error"],
+                one["total"], one["total_error"], *((check["explained"], check["error"]) if check else (None, None)))
+
     return disk.csv_text(
         ["quantity", "variable", "rank", "rank_clear", *emulator.SIGN, "emulator_explains", "emulator_error"],
-        ([name, one.name, one.rank, "yes" if one.rank_clear else "no", *(getattr(one, key) for key in emulator.SIGN),
-          *((analysis.check.explained, analysis.check.error) if analysis.check else (None, None))]
-         for name, analysis in analyses.items() for one in analysis.influences))
+        (line(name, variable, one, entry["emulator"])
+         for name, entry in influence.items() for variable, one in entry["variables"].items()))
 
 
 # --- words ---

@@ -1,11 +1,13 @@
 """The maps over all runs of an ensemble: quantiles and exceedance of each raster of fix deposit/grid, with bounds."""
+import functools
 import math
 import tempfile
 from pathlib import Path
-from typing import Any, Dict, List, NamedTuple, Optional, Sequence
+from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence
 
 import numpy as np
 
+from .. import kept
 from ..case import run_folders
 from ..statistics import hazard
 from ..survey import rasters
@@ -42,6 +44,18 @@ class Thresholds(NamedTuple):
         return {"max_speed": self.speed, "max_energy": self.energy, "arrival": ()}.get(kind.name, self.thickness)
 
 
+def once(make: Callable[..., List[Dict[str, Any]]]) -> Callable[..., List[Dict[str, Any]]]:
+    """make(folder, prefixes, ...) writes maps of runs to a folder: not again while all that they are made of, and the
+    maps, are as they were."""
+    @functools.wraps(make)
+    def write(folder: Path, prefixes: Sequence[Path], *asked: Any) -> List[Dict[str, Any]]:
+        runs = [(prefix.parent.name, run_folders.stamps(prefix, [kind.name for kind in KINDS])) for prefix in prefixes]
+        return kept.value(folder / ".maps.json", [runs, asked], lambda: make(folder, prefixes, *asked),
+                          lambda: sorted(maps_in(folder)))
+    return write
+
+
+@once
 def write(folder: Path, prefixes: Sequence[Path], points: int, failed: int, thresholds: Thresholds,
           place) -> List[Dict]:
     """Write all maps of finished runs (their PREFIXes) to a folder; a dict for each, as study.yaml has it.
@@ -63,9 +77,12 @@ def write(folder: Path, prefixes: Sequence[Path], points: int, failed: int, thre
 def emptied(folder: Path) -> None:
     """Make the folder of maps, without those of a study before."""
     folder.mkdir(exist_ok=True)
-    for old in folder.iterdir():
-        if old.suffix in (".asc", ".yaml", ".tif"):
-            old.unlink()
+    for old in maps_in(folder):
+        old.unlink()
+
+
+def maps_in(folder: Path) -> List[Path]:
+    return [one for one in folder.iterdir() if one.suffix in (".asc", ".yaml", ".tif")]
 
 
 class Stack:

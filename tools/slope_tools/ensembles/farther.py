@@ -16,7 +16,7 @@ from typing import Dict, List, NamedTuple, Optional, Sequence
 import numpy as np
 import yaml
 
-from .. import disk, schemas
+from .. import disk, kept, schemas
 from ..digits import metres, percent
 from ..schemas import NUMBER, OBJECT, TEXT, listed, mapping, named
 from ..statistics import backanalysis, designs, distributions, emulator
@@ -114,10 +114,11 @@ class Added:
         elif left <= 0:
             self.stopped = Reason(Code.RUNS, {"points": self.number})
         else:
-            found = Longer(places, lengths, self.sample)
-            box = found.box if found.more else None
+            found = kept.value(self.path.with_name(".longer.json"), [places, lengths, self.sample.about],
+                               lambda: vars(Longer(places, lengths, self.sample)))
+            box = found["box"] if found["more"] else None
             if box is None:
-                self.stopped = Reason(Code.RANGE, {"ends": self.ends(found.box)})
+                self.stopped = Reason(Code.RANGE, {"ends": self.ends(found["box"])})
         if box is None:
             return None
         number = min(left, max(LEAST, self.sample.number // PART))

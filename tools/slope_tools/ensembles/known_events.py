@@ -4,9 +4,10 @@ Order of the work: where known events end on the path of this mass (mobility), t
 (mobility.weights), curves and quantiles of the weighted runs (conditioned), the parameters that they have, maps
 (known_maps). The numbers of the ensemble as its distributions have it are not touched.
 """
+import functools
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, cast
+from typing import Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Tuple, TypedDict, cast
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from ..errors import SlopeError
 from ..findings import Finding, entries, texts
 from ..mobility import body, exceedance, known, run_length, weights
 from ..statistics import answer, emulator, hazard
+from ..statistics.entries import Analysis
 from ..tables import answer_words, combinations, quantities, study_types
 from ..tables.rows import Row, finished_of
 from . import conditioned, farther, known_influence, known_maps
@@ -93,11 +95,13 @@ class Runs:
     def column(self, name: str) -> np.ndarray:
         return np.array([float(row.value(name)) for row in self.rows])
 
-    def have(self, name: str) -> bool:
-        """A value of all; the distance of the last per cents has none where they left the terrain."""
-        return all(row.value(name) is not None for row in self.rows)
+    def comparable(self, names: Iterable[str]) -> List[str]:
+        """Those of which all have a value, which grows with the length; the distance of the last per cents has none
+        where they left the terrain."""
+        return [name for name in names if name not in NOT_FARTHER and not name.endswith("_deg")
+                and all(row.value(name) is not None for row in self.rows)]
 
-    @property
+    @functools.cached_property
     def places(self) -> np.ndarray:
         return self.sample.places(self.rows)
 
@@ -118,6 +122,11 @@ class Runs:
                                   self.sample.snap)
 
 
+def weighs(found: exceedance.Mobility, runs: Runs) -> bool:
+    """Whether known events weigh the runs."""
+    return not found.outside and len(runs.rows) >= 2
+
+
 class Evaluated(NamedTuple):
     """about: what study.yaml says of the weighted runs, but for their maps; runs: None where nothing weighs them."""
     about: study_types.Known
@@ -125,12 +134,31 @@ class Evaluated(NamedTuple):
     curves: Mapping[str, hazard.Curve]
 
 
+class Emulated(TypedDict):
+    """What emulators of the weighted runs say: quantities whose dependence counts, the factor of the bounds that their
+    design makes, and how they depend on the variables."""
+    main: List[str]
+    effects: Dict[str, Tuple[hazard.Values, hazard.Values]]
+    influence: Dict[str, Analysis]
+
+
+def emulate(sample: Sample, added: farther.Added, rows: Sequence[Row], found: exceedance.Mobility,
+            main: Sequence[str]) -> Emulated:
+    """main: quantities whose dependence counts, the one of the curve first."""
+    runs = Runs(sample, added.batches, rows, found)
+    comparable = runs.comparable(main) if weighs(found, runs) else []
+    design = runs.design() if comparable else None
+    return {"main": comparable,
+            "effects": {name: design.effect(runs.column(name)) for name in comparable} if design else {},
+            "influence": {name: known_influence.evaluate(runs, name) for name in comparable[:1]}}
+
+
 def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: Sequence[Row],
-             found: exceedance.Mobility, names: Mapping[str, Tuple[str, str]], main: Sequence[str]) -> Evaluated:
+             found: exceedance.Mobility, names: Mapping[str, Tuple[str, str]], emulated: Emulated) -> Evaluated:
     """What the weighted runs say.
 
     rows: of study.csv, finished and failed; found: the mass among known events; names: {column: (what, unit)} of the
-    quantities; main: those whose dependence counts.
+    quantities; emulated: of emulate().
     """
     asked = condition.asked
     known: study_types.Known = {
@@ -138,17 +166,12 @@ def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: S
         "confined": asked.confined, "path": exceedance.WORDS[found.chosen], "volume_Mm3": found.volume,
         "outside": found.outside, "reached": None, "doubts": []}
     runs = Runs(sample, added.batches, rows, found)
-    if found.outside or len(runs.rows) < 2:
+    if not weighs(found, runs):
         known["doubts"] = entries([Finding("no event", {"text": text}) for text in found.outside]
                                   or [Finding("few lengths")])
         return Evaluated(known, None, {})
-    names = {name: one for name, one in names.items()
-             if name not in NOT_FARTHER and not name.endswith("_deg") and runs.have(name)}
-    main = [name for name in main if name in names]
-    design = runs.design()
-    factors = {name: design.effect(runs.column(name)) for name in main} if design else {}
-    curves = {name: conditioned.curve(runs.column(name), runs.mass, factors.get(name), runs.several, runs.failed_share)
-              for name in names}
+    curves = {name: conditioned.curve(runs.column(name), runs.mass, emulated["effects"].get(name), runs.several,
+                                      runs.failed_share) for name in runs.comparable(names)}
     about = reach(known, runs, found)
     about["added"] = added.about()
     about["quantities"] = {
@@ -156,8 +179,8 @@ def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: S
                "quantiles": quantiles(curve, runs, name, hazard.SHARES)} for name, curve in curves.items()}
     about["to_remove"] = quantiles(curves[REMOVE], runs, REMOVE, answer.shares(about["far"])) \
         if REMOVE in curves else None
-    about["variables"] = {name: variable(runs, k, main) for k, name in enumerate(sample.names)}
-    about["influence"] = {name: known_influence.evaluate(runs, name) for name in main[:1]}
+    about["variables"] = {name: variable(runs, k, emulated["main"]) for k, name in enumerate(sample.names)}
+    about["influence"] = emulated["influence"]
     about["doubts"] = entries(doubts(about, runs))
     about["weights"] = whole_weights(runs)
     about["maps"] = []

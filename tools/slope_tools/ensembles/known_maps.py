@@ -13,11 +13,12 @@ from ..statistics import hazard
 from ..survey import rasters
 from . import conditioned
 from .conditioned import Masses
-from .ensemble_maps import BOUND, KINDS, Kind, SIDES, Stack, Thresholds, emptied
+from .ensemble_maps import BOUND, KINDS, Kind, SIDES, Stack, Thresholds, emptied, once
 
 BLOCK = 20_000          # cells at a time
 
 
+@once
 def write(folder: Path, prefixes: Sequence[Path], mass: Masses, several: float, failed: float, thresholds: Thresholds,
           place) -> List[Dict[str, Any]]:
     """Write all maps of the runs with masses (their PREFIXes) to a folder; a dict for each, as study.yaml has it.

@@ -4,7 +4,7 @@ import platform
 from importlib import metadata
 from pathlib import Path
 from shlex import join, quote
-from typing import Any, Dict, Iterable, List, Tuple
+from typing import Any, Dict, Iterable, List, Mapping, Tuple
 
 from .. import disk, provenance
 from ..case import run_folders
@@ -18,7 +18,7 @@ LIBRARIES = ("numpy", "scipy", "rasterio", "shapely", "matplotlib", "scikit-lear
 RESULTS = ("study.yaml", "study.csv", "combinations.csv", "hazard.csv", "influence.csv", "structures.csv", "lines.csv")
 
 
-Run = Tuple[str, Path, Dict[str, Any], Dict[str, Any]]      # label, folder, of its command, of its end
+Run = Tuple[str, Path, Mapping[str, Any], Mapping[str, Any]]      # label, folder, of its command, of its end
 
 
 def lines(folder: Path) -> List[str]:

@@ -64,6 +64,7 @@ class Dependencies:
                  source: Optional[Path] = None):
         self.deck, self.digests, self.source = deck, dict(digests), source or deck
         self.program = program(lmp) if lmp else None
+        self._bases: Dict[str, Set[str]] = {}       # of a file and those whose sidecar it is
         commands = decks.commands(deck)
         self.values = {**{name: text for name, (style, text) in decks.variables(deck).items() if style == "string"},
                        **decks.index_variables(deck)}
@@ -135,8 +136,9 @@ class Dependencies:
 
     def _used(self, name: str, words: str) -> bool:
         """Whether a file in the run folder counts: the deck, what a word names in whatever spelling, its sidecars."""
-        return name == self.deck.name or any(
-            os.path.basename(one) in words for one in (name, *sidecar_of(name, self.digests)))
+        if name not in self._bases:
+            self._bases[name] = {os.path.basename(one) for one in (name, *sidecar_of(name, self.digests))}
+        return name == self.deck.name or any(one in words for one in self._bases[name])
 
 
 def by_value(variables: Mapping[str, str]) -> FrozenSet[Tuple[str, Any]]:

@@ -252,11 +252,10 @@ class Work:
 
     def _reopen_folder(self, run):
         """Prepare the folder of an interrupted run for its continuation."""
-        about = run_folders.begun(run.folder)
-        about["ranks"] = self.ranks
-        step, path = run.restart
-        about.setdefault("continued", []).append({"step": step, "restart": str(path.relative_to(run.folder)),
-                                                  "ranks": self.ranks, "started": provenance.now()})
+        before, (step, path) = run_folders.begun(run.folder), run.restart
+        about = {**before, "ranks": self.ranks, "continued": [*before.get("continued", ()), {
+            "step": step, "restart": str(path.relative_to(run.folder)), "ranks": self.ranks,
+            "started": provenance.now()}]}
         disk.write(run.folder / run_folders.VARIABLES, yaml.safe_dump(about, sort_keys=False))
         if run.log.path.exists():
             logs.part(run.log.path)

@@ -13,7 +13,6 @@ from ..errors import SlopeError
 from ..plots import figure_maps, sheets
 from ..report import document
 from ..report.sections import Cell, Figures, Listing, Picture, Section, Table
-from ..sites import site_scenarios
 from ..sites.site_folder import BODY as NAME_OF_BODY, TERRAIN
 from ..sites.site_roads import ROAD
 from ..statistics.answer import Kind
@@ -61,11 +60,8 @@ def write(folder: Path, output: Path, overwrite: bool) -> str:
     return f"{output}: the site and its {len(several) - 1} scenarios"
 
 
-def refresh(folder: Path) -> Optional[str]:
-    """The page anew after a study of a site or scenario; why not, where it is none of ours; None without scenarios."""
-    site = site_scenarios.site_of(folder) or folder
-    if not site_scenarios.of_site(site):
-        return None
+def refresh(site: Path) -> str:
+    """The page of a site anew after a study of it or of a scenario; why not, where it is none of ours."""
     try:
         return write(site, site / PAGE, False)
     except SlopeError as error:

@@ -72,8 +72,8 @@ class Emulator:
         return bool(self.kernel.k2.noise_level > 100 * NOISE[0])
 
     def at(self, points: np.ndarray) -> np.ndarray:
-        """Mean of the process."""
-        return self.mean + self.scale * self.process.predict(points)
+        """Mean of the process, without what predict() does for a deviation."""
+        return self.mean + self.scale * (self.kernel(points, self.process.X_train_) @ self.process.alpha_)
 
     def unseen(self, values: np.ndarray):
         """Each of the values that it was fitted to, predicted from the others: mean, and deviation with chance.

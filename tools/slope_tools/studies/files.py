@@ -7,14 +7,15 @@ from ..ensembles import ensemble
 from ..seismic import chain_files
 from ..tables import (answered, combinations, elastic, intensity, road_runs, structures, study_file, study_table,
                       study_types)
-from ..tables.study_maps import Maps
+from ..tables.study_maps import OverAll
 from .outcome import Outcome
 
 
-def write(outcome: Outcome, maps: Maps, output: Path, place) -> study_types.Study:
-    """All of them; what study.yaml says. place: CRS and offset of the maps, None without."""
+def write(outcome: Outcome, maps: OverAll, output: Path, place) -> study_types.Study:
+    """All of them; what study.yaml says. maps: over all runs, which are there; place: their CRS and offset, None
+    without."""
     asked, read, about = outcome.questions, outcome.read, outcome.about
-    about["envelope"], about["exceedance"] = maps.write(output, place)
+    about["envelope"], about["exceedance"] = maps["envelope"], maps["exceedance"]
     if outcome.ensemble:
         assert asked.order
         ensemble.write(outcome.ensemble, asked.order.levels, output, place, read.problem)

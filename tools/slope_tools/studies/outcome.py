@@ -50,15 +50,16 @@ class Read(NamedTuple):
     """What was read of the runs of a study.
 
     rows: one for each run, finished or failed; road: whether there is one; events: what known events did of the mass;
-    mobility: of the mass, for the weights of an ensemble; observed: the mapped deposit, as study.yaml has it; fine: the
-    run with smaller balls; elastic: those with the largest restitution; problem: why there are no maps over all runs;
-    case: for the command that mends a reason, None where no run finished; balls_thick: over the thickness of the body;
-    defaults: of the deck's variables.
+    mobility: of the mass, for the weights of an ensemble; emulated: ensemble.emulate() of it; observed: the mapped
+    deposit, as study.yaml has it; fine: the run with smaller balls; elastic: those with the largest restitution;
+    problem: why there are no maps over all runs; case: for the command that mends a reason, None where no run finished;
+    balls_thick: over the thickness of the body; defaults: of the deck's variables.
     """
     rows: List[Row]
     road: bool
     events: Optional[usable.Events]
     mobility: Optional[Mobility]
+    emulated: Optional[ensemble.Emulated]
     observed: Optional[study_types.Observed]
     fine: Optional[fine_run.Fine]
     elastic: Optional[elastic.Runs]
@@ -108,7 +109,8 @@ def evaluate(questions: Questions, read: Read, header: study_types.Header) -> Ou
         "headline": None, "chain": None, "intensity": None}
     several = None
     if order:
-        several = ensemble.evaluate(order, rows, read.mobility)
+        assert read.emulated is not None
+        several = ensemble.evaluate(order, rows, read.mobility, read.emulated)
         if several:
             about["ensemble"] = several.about
             several.about["withheld"] = reasons(read)

@@ -2,15 +2,15 @@
 from shlex import quote
 from typing import Any, Dict, Mapping, Optional, Sequence
 
-from .. import provenance
+from .. import kept, provenance
 from ..case import run_folders
-from ..ensembles import known_events, known_study
+from ..ensembles import ensemble, known_events, known_study
+from ..mobility.exceedance import Mobility
 from ..runs.repeats import Repeat
 from ..statistics import headline
 from ..survey import roads
-from ..tables import combinations, elastic, fine_run, next_step, study_types, usable, withheld_words
+from ..tables import combinations, elastic, fine_run, next_step, study_maps, study_types, usable, withheld_words
 from ..tables.rows import Finished, Row, finished_of
-from ..tables.study_maps import Maps
 from . import body_depth, console, files, mapped
 from .outcome import Questions, Read, evaluate
 from .run_rows import placed, prefix_of, rows_of, terrain_of, terrain_place
@@ -22,9 +22,12 @@ def collect(setup: Setup, questions: Questions, todo, work) -> Optional[study_ty
     ensemble finished."""
     if questions.order and all(run.error for run in todo):
         return None     # study.perform says so
-    maps = Maps(questions.thresholds)
-    first = next((run for run in todo if not run.error), None)
-    found = read(setup, questions, todo, maps, work.defaults)
+    rows, done = rows_of(setup, todo), [run for run in todo if not run.error]
+    first = done[0] if done else None
+    place = terrain_place(first) if first else None
+    maps = study_maps.write([study_maps.Source(run.name, prefix_of(run), not run.batch) for run in done],
+                            questions.thresholds, setup.output, place)
+    found = read(setup, questions, todo, rows, maps["problem"], work.defaults)
     header: study_types.Header = {
         "deck": setup.deck.name, "known": questions.among, "set": listed(questions.settings),
         "repeat": listed(questions.repeated), "runs": len(found.rows), "finished": len(found.finished),
@@ -36,7 +39,7 @@ def collect(setup: Setup, questions: Questions, todo, work) -> Optional[study_ty
     outcome = evaluate(questions, found, header)
     step = next_step.of_studies([next_step.Made(outcome.about, setup.output)], outcome.about["headline"])
     outcome.about["next_step"] = step.about() if step else None
-    about = files.write(outcome, maps, setup.output, terrain_place(first) if first else None)
+    about = files.write(outcome, maps, setup.output, place)
     console.tell(outcome, about, setup.output, setup.tell, setup.warn)
     return about
 
@@ -46,9 +49,9 @@ def listed(several: Mapping[str, Sequence[str]]) -> study_types.Settings:
     return {name: list(values) for name, values in several.items()}
 
 
-def read(setup: Setup, questions: Questions, todo, maps: Maps, defaults: Mapping[str, str]) -> Read:
-    """What an Outcome is evaluated from; rasters go to the maps."""
-    rows = rows_of(setup, todo, maps)
+def read(setup: Setup, questions: Questions, todo, rows: Sequence[Row], problem: Optional[str],
+         defaults: Mapping[str, str]) -> Read:
+    """What an Outcome is evaluated from; problem: why there are no maps over all runs."""
     rows, observed = mapped.compare(mapped.of_site(questions.site), setup.output, rows,
                                     [terrain_of(run.folder, run.log) for run in todo])
     first, finished = next((run for run in todo if not run.error), None), finished_of(rows)
@@ -59,12 +62,21 @@ def read(setup: Setup, questions: Questions, todo, maps: Maps, defaults: Mapping
     if row and questions.order and questions.order.condition:
         summary = run_folders.summary_of(setup.output, row.summary)
         mobility = known_events.mobility_of(questions.order.condition, summary.parent, summary)
+    emulated = emulated_of(setup, questions.order, rows, mobility) if questions.order else None
     if row and questions.fine:
         fine = compared(setup, questions.fine, rows, None if questions.order else combinations.grouped(rows))
     most = elastic.read(questions.most_elastic, rows, setup.output) if row and questions.most_elastic else None
-    return Read(rows, setup.road is not None, events, mobility, observed, fine, most, maps.problem,
+    return Read(rows, setup.road is not None, events, mobility, emulated, observed, fine, most, problem,
                 case_of(setup, questions, row) if row else None,
                 body_depth.in_balls(setup, finished), defaults)
+
+
+def emulated_of(setup: Setup, order: ensemble.Order, rows: Sequence[Row],
+                mobility: Optional[Mobility]) -> ensemble.Emulated:
+    """What emulators say of the runs of an ensemble, kept with the study."""
+    made_of = [order.sample.about, order.of, order.added and order.added.batches, rows,
+               mobility and [mobility.outside, mobility.path.length, mobility.curves[mobility.chosen]]]
+    return kept.value(setup.output / ".emulated.json", made_of, lambda: ensemble.emulate(order, rows, mobility))
 
 
 def compared(setup: Setup, fine: Repeat, rows: Sequence[Row],

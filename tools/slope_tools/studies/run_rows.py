@@ -16,25 +16,20 @@ from ..sites import site_choices
 from ..survey import rasters
 from ..tables import judged, quantities, structures
 from ..tables.rows import Failed, Finished, OnRoad, Row
-from ..tables.study_maps import Maps
 from . import body_depth, site_ground
 from .setup import Road, Setup
 
 OF_SUMMARY = ("moves", "not counted")      # kinds of warnings
 
 
-def rows_of(setup: Setup, todo: Sequence[Repeat], maps: Optional[Maps] = None) -> List[Row]:
-    """A row for each run, finished or failed; what finished is added to the maps."""
+def rows_of(setup: Setup, todo: Sequence[Repeat]) -> List[Row]:
+    """A row for each run, finished or failed."""
     found: List[Row] = []
     for run in rasters.progress(todo, "collecting the runs"):
         if run.error:
             found.append(Failed(run.name, run.combination, run.repeat, run.batch, run.error, run.log.warnings))
             continue
         row = finished(run, setup.output)
-        if maps:
-            thickness, most = (run_folders.load_raster(prefix_of(run), name)
-                               for name in ("thickness", "max_thickness"))
-            maps.add(run.name, thickness, most, not row.batch)
         found.append(with_road(run, setup.road, row) if setup.road else row)
     return found
 
@@ -92,7 +87,7 @@ def with_road(run: Repeat, road: Road, row: Finished) -> Finished:
                "file": site_choices.content(str(road.file))}
     folder = run.folder / quantities.volume_folder(road.name)
     found = kept.value(folder / "row.json", made_of, functools.partial(measured_on, road, run, row),
-                       [folder / name for name in ("volume.yaml", "volume.tif", "volume_mesh.tif")])
+                       lambda: [folder / name for name in ("volume.yaml", "volume.tif", "volume_mesh.tif")])
     return replace(row, road=records.read(OnRoad, found), left=found["left"])
 
 

@@ -1,10 +1,51 @@
 """The maps over all runs of a study: the largest thickness, and how many runs exceed a thickness."""
 from pathlib import Path
-from typing import Any, Dict, List, Optional, Set, Tuple
+from typing import Dict, List, NamedTuple, Optional, Sequence, Set, Tuple, TypedDict
 
 import numpy as np
 
+from .. import kept
+from ..case import run_folders
 from ..survey import rasters
+from .study_types import MapEntry
+
+RASTERS = "thickness", "max_thickness"
+
+
+class Source(NamedTuple):
+    """A finished run, of these rasters (PREFIX); counted: whether it counts in the shares of the runs."""
+    name: str
+    prefix: Path
+    counted: bool
+
+
+class OverAll(TypedDict):
+    """The maps over all runs as study.yaml has them; problem: why there are none."""
+    envelope: Optional[Dict[str, MapEntry]]
+    exceedance: Optional[List[MapEntry]]
+    problem: Optional[str]
+
+
+def write(runs: Sequence[Source], thresholds: Sequence[float], output: Path, place: Optional[rasters.Place]) -> OverAll:
+    """Write all rasters, remove those of an earlier call. They are not made again while runs and rasters are as they
+    were.
+
+    place: CRS and offset of the runs.
+    """
+    made_of = [[(run.name, run.counted, run_folders.stamps(run.prefix, RASTERS)) for run in runs], thresholds, place]
+
+    def make() -> OverAll:
+        maps = Maps(thresholds)
+        for run in rasters.progress(runs, "maps over all runs"):
+            thickness, most = (run_folders.load_raster(run.prefix, name) for name in RASTERS)
+            maps.add(run.name, thickness, most, run.counted)
+        envelope, exceedance = maps.write(output, place)
+        return {"envelope": envelope, "exceedance": exceedance, "problem": maps.problem}
+    return kept.value(output / ".maps.json", made_of, make, lambda: sorted(maps_in(output)))
+
+
+def maps_in(output: Path) -> List[Path]:
+    return [*output.glob("envelope_*"), *output.glob("exceedance_*")]
 
 
 def same_grid(one, other):
@@ -31,17 +72,17 @@ class Maps:
                             f"{self.first}")
         if self.problem:
             return
-        for key, raster in (("thickness", thickness), ("max_thickness", max_thickness)):
+        for key, raster in zip(RASTERS, (thickness, max_thickness)):
             np.fmax(self.envelope[key], raster.z, out=self.envelope[key])
         if counted:
             for threshold, exceeding in zip(self.thresholds, self.exceeding):
                 exceeding += thickness.z > threshold
             self.count += 1
 
-    def write(self, output, place) -> Tuple[Optional[Dict[str, Any]], Optional[List[Dict[str, Any]]]]:
+    def write(self, output, place) -> Tuple[Optional[Dict[str, MapEntry]], Optional[List[MapEntry]]]:
         """Write all rasters, remove those of an earlier call; what study.yaml says of them: envelope, exceedance."""
         of_envelope, of_exceedance = None, None
-        kept: Set[Path] = set()
+        mine: Set[Path] = set()
         if self.grid is not None and not self.problem:
             grid, area = self.grid, self.grid.transform.a ** 2
 
@@ -51,10 +92,10 @@ class Maps:
                     raster = raster._replace(crs=place.crs, offset=place.offset)
                 path = output / f"{name}.asc"
                 rasters.write_asc_local(path, raster, {"what": what})
-                kept.update((path, path.with_suffix(".yaml")))
+                mine.update((path, path.with_suffix(".yaml")))
                 if raster.crs is not None:
                     rasters.write_geotiff(path.with_suffix(".tif"), {what: z}, raster)
-                    kept.add(path.with_suffix(".tif"))
+                    mine.add(path.with_suffix(".tif"))
                 return {"file": path.name, "what": what}
 
             of_envelope = {
@@ -69,7 +110,7 @@ class Maps:
                  "area_in_any_run_m2": float((exceeding > 0).sum() * area),
                  "area_in_every_run_m2": float((exceeding == self.count).sum() * area)}
                 for threshold, exceeding in zip(self.thresholds, self.exceeding)]
-        for path in [*output.glob("envelope_*"), *output.glob("exceedance_*")]:
-            if path not in kept:
+        for path in maps_in(output):
+            if path not in mine:
                 path.unlink()
         return of_envelope, of_exceedance
