@@ -1,4 +1,7 @@
 """A study, as study_types has it, for tests that need a few of its entries: the others say that there is nothing."""
+import yaml
+
+from slope_tools.tables import study_file
 
 HEADER = {"deck": "in.site", "known": {}, "set": {}, "repeat": {}, "runs": 1, "finished": 1, "method": "", "ranks": 1,
           "jobs": 1, "package": None, "governs": "study", "balls_thick": None, "collected": "", "machine": {}}
@@ -41,3 +44,12 @@ def weighted(**entries):
 def headline(**entries):
     return {"kind": "number", "volume_m3": None, "share": None, "low_m3": None, "high_m3": None, "source": None,
             "paper": None, "ensemble": None, "road": None, "reasons": [], **entries}
+
+
+def write(folder, rows, header=None, **entries):
+    """study.yaml of rows (made_rows), whose first one has the farthest ball unless entries say otherwise."""
+    given = {"largest": {"front_m": {"value": 1.0, "run": rows[0].run}}, **entries}
+    if given.get("conservative"):
+        header = {"road": {"cut_angle": 30, "mesh": 10, "local": "road.csv"}, **(header or {})}
+    about = study({"runs": len(rows), "finished": len(rows), **(header or {})}, runs=list(rows), **given)
+    (folder / "study.yaml").write_text(yaml.safe_dump(study_file.plain(about)))

@@ -9,6 +9,8 @@ import pytest
 import rasterio
 import yaml
 
+import made_study
+from made_rows import row
 from run_helpers import CRS_M, EAST, NORTH, write_asc, write_run, write_sidecar, examples
 from tiny_collapse import LMP, read_asc, write_case
 
@@ -64,15 +66,16 @@ def test_every_raster_in_the_coordinates_of_the_survey(slope):
     assert told["run.max_energy.tif"]["unit"] == "J" and told["run.arrival.tif"]["unit"] == "s"
 
 
-@pytest.mark.parametrize("study", ["conservative: null\nlargest: {front_m: {run: two}}",      # of an older version
-                                   "conservative: null\nfarthest: two\nlargest: {front_m: {run: one}}",
-                                   "conservative: {run: two}\nfarthest: one\nlargest: {front_m: {run: one}}"])
-def test_a_run_by_its_folder_or_one_of_its_files(slope, here, study):
+@pytest.mark.parametrize("best", [None, "two"])
+def test_a_run_by_its_folder_or_one_of_its_files(slope, here, best):
     """They are the rasters of the prefix; of a study those of its governing run, which is said."""
     for run in ("one", "two"):
         Path("mine/study", run).mkdir(parents=True)
         write_rasters(f"mine/study/{run}/site")
-    Path("mine/study/study.yaml").write_text(study)
+    made_study.write(Path("mine/study"), [     # the farthest ball is of the first one
+        row(run=name, summary=f"{name}/site.summary.yaml", distance_99_m=distance, remove_m3=1.0)
+        for name, distance in (("one", 50.0), ("two", 40.0 if best else 60.0))],
+        conservative=best and made_study.conservative(1.0, run=best))
     for name, folder in (("mine/study/two/site.max_speed.asc", "mine/study/two/site.export"),
                          ("mine/study/two/site.summary.yaml", "mine/study/two/site.export"),
                          ("mine/study/two", "mine/study/two/export"), ("mine/study", "mine/study/export"),
@@ -88,36 +91,39 @@ def test_a_run_by_its_folder_or_one_of_its_files(slope, here, study):
         shutil.rmtree(folder)
 
 
-ENSEMBLE = """
-conservative: null
-farthest: one
-ensemble: {of: length_m, quantities: {length_m: {quantiles: [{share: 0.9, value: 210.0}]}}, known_events: %s}
-runs: [{run: one, length_m: 300.0, summary: %s/one/site.summary.yaml},
-       {run: two, length_m: 200.0, summary: %s/two/site.summary.yaml}, {run: three, status: failed}]
-"""
-KNOWN = "{quantities: {length_m: {quantiles: [{share: 0.9, value: %s}]}}}"
+def quantiles(value):
+    return {"length_m": {"name": "length", "unit": "m",
+                         "quantiles": [{"share": 0.9, "value": value, "low": None, "high": None}]}}
+
+
+OWN = {name: {**one, "mean": 1.0, "standard_deviation": None, "smallest": 1.0, "largest": 1.0}
+       for name, one in quantiles(210.0).items()}
 
 
 @pytest.mark.parametrize("known, inside, run", [
-    ("null", ".", "two"),                           # at the 90 % quantile of the runs as they are
-    (KNOWN % 290.0, "../study", "one"),             # of the weighted runs; they are those of the paper's study
-    (KNOWN % "null", ".", "one"),                   # known events go beyond all runs: the longest
-    ("{quantities: {}}", ".", "two")])              # nothing is weighted
+    (None, ".", "two"),                             # at the 90 % quantile of the runs as they are
+    ({"quantities": quantiles(290.0)}, "../study", "one"),      # of the weighted runs; those of the paper's study
+    ({"quantities": quantiles(None)}, ".", "one"),  # known events go beyond all runs: the longest
+    ({"quantities": {}}, ".", "two")])              # nothing is weighted
 @pytest.mark.parametrize("paper", [True, False])
 def test_a_site_is_the_run_of_the_first_page(slope, here, known, inside, run, paper):
     """Of the study that governs, by its own rule, whatever else lies there; the files name it."""
     write_sidecar(40, 60, 2.5)
-    headline = "headline: {source: ensemble}\n"
+    said, of = made_study.headline(source="ensemble"), {"governs": "ensemble"}
     for name in ("one", "two"):
         Path("mine/ensemble", inside, name).mkdir(parents=True)
         write_rasters(f"mine/ensemble/{inside}/{name}/site")
         shutil.copy("terrain.asc", f"mine/ensemble/{inside}/{name}")
         shutil.copy("terrain.yaml", f"mine/ensemble/{inside}/{name}")
     write_rasters("mine/byhand")
-    Path("mine/ensemble/study.yaml").write_text(headline + ENSEMBLE % (known, inside, inside))
+    rows = [row(run=name, length_m=length, summary=f"{inside}/{name}/site.summary.yaml")
+            for name, length in (("one", 300.0), ("two", 200.0))]
+    made_study.write(Path("mine/ensemble"), [*rows, row(run="three", status="failed")], of, headline=said,
+                     ensemble=made_study.ensemble(known, of="length_m", quantities=OWN))
     if paper:
         Path("mine/study").mkdir(exist_ok=True)
-        Path("mine/study/study.yaml").write_text(headline + "conservative: {run: other}")
+        made_study.write(Path("mine/study"), [row(run="other", remove_m3=1.0)], of, headline=said,
+                         conservative=made_study.conservative(1.0, run="other"))
     status, out, err = slope("mine")
     assert (status, err) == (0, "") and f"{run}, the governing run of mine/ensemble: " in out
     about = yaml.safe_load(Path("mine/export/export.yaml").read_text())
@@ -126,17 +132,11 @@ def test_a_site_is_the_run_of_the_first_page(slope, here, known, inside, run, pa
         assert tif.tags()["run"] == f"{run}, the governing run of mine/ensemble"
 
 
-def test_a_study_of_an_older_version_is_the_run_of_its_first_page(slope, here):
-    """By the rows, as on the page, where the file does not name the farthest run."""
-    for run in ("one", "two"):
-        Path("mine", run).mkdir(parents=True)
-        write_rasters(f"mine/{run}/site")
-    row = "{run: %s, status: finished, lost_m3: %g, released_m3: 100.0, front_m: %g, distance_99_m: %g}"
-    Path("mine/study.yaml").write_text(
-        f"conservative: null\nlargest: {{front_m: {{run: two}}}}\nruns:\n- {row % ('one', 0, 70, 60)}\n"
-        f"- {row % ('two', 0, 900, 50)}\n")
+def test_a_study_of_an_older_version_is_made_once_more(slope, here):
+    Path("mine").mkdir()
+    Path("mine/study.yaml").write_text("conservative: null\nlargest: {front_m: {run: two}}\nruns: []\n")
     status, out, err = slope("mine")
-    assert status == 0 and "one, the governing run of mine" in out, err
+    assert (status, out) == (2, "") and "mine/study.yaml: must " in err and err.count("\n") == 1
 
 
 def test_without_a_terrain_in_local_metres(slope):
@@ -237,6 +237,6 @@ def test_every_example_of_the_page_and_the_help_runs(slope, here, command):
         write_rasters(f"{folder}/embankment")
         shutil.copy("terrain.asc", folder)
         shutil.copy("terrain.yaml", folder)
-    Path("mine/study/study.yaml").write_text("conservative: {run: rolling_0}")
+    made_study.write(Path("mine/study"), [row(run="rolling_0", summary="rolling_0/embankment.summary.yaml")])
     status, out, err = slope(command)
     assert (status, err) == (0, "") and ("--help" in command or "8 rasters, EPSG:6677" in out)

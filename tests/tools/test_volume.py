@@ -18,6 +18,8 @@ from shapely.affinity import rotate, translate
 from shapely.geometry import LineString, MultiPolygon, Point, Polygon, box, shape
 from shapely.ops import unary_union
 
+import made_rows
+import made_study
 from run_helpers import (BULK, CRS_M, EAST, NORTH, TOP, centres, examples, warned, write_asc, write_geojson, write_run,
                          write_sidecar)
 
@@ -604,7 +606,9 @@ def write_site(road):
         Path("mine/study", run).mkdir(parents=True)
         write_sidecar(80, 100, 2.5, f"mine/study/{run}/terrain.asc")
         write_run(strip(thickness=thickness), 0.0, 2.5, f"mine/study/{run}/site")
-    Path("mine/study/study.yaml").write_text("conservative: {run: two}")
+    made_study.write(Path("mine/study"), [made_rows.row(run=name, summary=f"{name}/site.summary.yaml", remove_m3=1.0)
+                                          for name in ("one", "two")],
+                     conservative=made_study.conservative(1.0, run="two"))
     Path("mine/road.csv").write_text("".join(f"{x},{y}\n" for x, y in road.exterior.coords[:-1]))
 
 
