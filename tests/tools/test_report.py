@@ -357,7 +357,7 @@ def test_the_size_part(slope, here):
     best = about["conservative"]
     best.update(size_m3=40.0, volume_m3=best["volume_m3"] + 40)
     best["rounded"].update(size_m3=40.0, volume_m3=best["rounded"]["volume_m3"] + 40)
-    about["size"] = {"run": "d_0.5", "open": False,
+    about["size"] = {"run": "d_0.5", "open": False, "balls_thick": 20.0,
                      "text": "balls of 0.5 m instead of 1 m: to remove 240 instead of 200 m3",
                      "effects": {}}
     Path("repeated/study.yaml").write_text(yaml.safe_dump(about))
@@ -598,7 +598,7 @@ def test_one_line_for_each_kind_of_warning(slope, here):
         row["log_warnings"] = [f"Pair gran/restitution: {k + 3} contacts were seen deeper than 10 %", "Neighbor lists"]
     about["runs"][0]["log_warnings"] += ["Pair gran/restitution: 99 contacts were seen deeper than 10 %"]
     about["runs"][4]["log_warnings"] = ["Only here"]
-    about["warnings"] += ["the road ends in the grid"]
+    about["warnings"] += [{"kind": "of another version", "text": "the road ends in the grid"}]
     for k, share in ((1, 1e-5), (2, 3e-5)):
         about["runs"][k]["mass_error"] = share
     for name in ("a", "b", "c"):
@@ -671,7 +671,8 @@ def test_warnings_of_the_study_s_tools_are_shown_each(slope, here):
     without_log_warnings(here / "out")
     stands("out")
     about = yaml.safe_load(Path("out/study.yaml").read_text())
-    about["warnings"] = [*texts, *({"kind": kind, "text": "of the rows"} for kind in ("lost", "moving"))]
+    about["warnings"] = [*({"kind": "of another version", "text": text} for text in texts),
+                         *({"kind": kind, "text": "of the rows"} for kind in ("lost", "moving"))]
     Path("out/study.yaml").write_text(yaml.safe_dump(about))
     status, out, _ = slope("out")
     page, reader = read("out/report.html")

@@ -8,6 +8,7 @@ import pytest
 import yaml
 
 import made_rows
+import made_study
 from run_helpers import write_asc
 from test_site import CELL, COLUMNS, ROWS, gis, make_mine, told, work_in, write_files, write_layer  # noqa: F401
 from test_site_anew import MAPPED, edit, inside  # noqa: F401
@@ -249,9 +250,7 @@ def test_a_study_of_other_choices_is_no_answer(mine, inside, monkeypatch, words,
     (mine / "study").mkdir(exist_ok=True)
     name = next(path.name for path in (mine / "runs").iterdir() if "restitution" not in path.name)
     row = made_rows.row(run=name, summary=f"../runs/{name}/site.summary.yaml")
-    (mine / "study" / "study.yaml").write_text(yaml.safe_dump({
-        "study": {"deck": "in.site", "runs": 1, "finished": 1, "set": {}}, "runs": [rows.plain(row)],
-        "conservative": None, "largest": {"front_m": {"run": name, "value": row.front_m}}}))
+    made_study.write(mine / "study", [row])
     monkeypatch.setattr(outdated, "road_changed", lambda *_: None)      # the runs alone count here
     if words:
         inside(f"mine {words}")

@@ -19,7 +19,7 @@ def write(outcome: Outcome, maps: OverAll, output: Path, place) -> study_types.S
     if outcome.ensemble:
         assert asked.order
         ensemble.write(outcome.ensemble, asked.order.levels, output, place, read.problem)
-    if "stretches" in about:
+    if about["stretches"]:
         head, *lines = road_runs.rows(about["stretches"])
         disk.write(output / road_runs.FILE, disk.csv_text(head, lines))
     if outcome.chain:

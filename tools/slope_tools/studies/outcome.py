@@ -106,7 +106,7 @@ def evaluate(questions: Questions, read: Read, header: study_types.Header) -> Ou
         "combinations": combinations.entries(groups, names), "envelope": None, "exceedance": None,
         "observed": read.observed, "roads": [dict(one) for one in questions.roads],
         "warnings": entries(warnings), "runs": rows,
-        "headline": None, "chain": None, "intensity": None}
+        "headline": None, "stretches": None, "chain": None, "intensity": None}
     several = None
     if order:
         assert read.emulated is not None
