@@ -31,7 +31,8 @@ def write(outcome: Outcome, header: Mapping[str, Any], maps: Maps, output: Path,
     structures.write(output, read.finished)
     disk.write(output / "study.csv", study_table.table(asked.settings, asked.repeated, read.rows, read.defaults))
     disk.write(output / "combinations.csv", combinations.table(outcome.groups, outcome.names, asked.settings))
-    write_about(output, about)
+    if asked.alone:
+        write_abouts({output: about})
     return about
 
 
@@ -43,6 +44,8 @@ def write_or_remove(path: Path, text: Optional[str]) -> None:
         path.unlink(missing_ok=True)
 
 
-def write_about(output: Path, about: Mapping[str, Any]) -> None:
-    """study.yaml."""
-    disk.write(output / "study.yaml", disk.yaml_text(answered.TITLE, about))
+def write_abouts(abouts: Mapping[Path, Mapping[str, Any]]) -> None:
+    """study.yaml in one folder, or in those of both studies of a site, one right after the other."""
+    with disk.beside(*(output / "study.yaml" for output in abouts)) as new:
+        for path, about in zip(new, abouts.values()):
+            path.write_text(disk.yaml_text(answered.TITLE, about), encoding="utf-8")
