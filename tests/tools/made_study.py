@@ -7,8 +7,8 @@ HEADER = {"deck": "in.site", "known": {}, "set": {}, "repeat": {}, "runs": 1, "f
           "jobs": 1, "package": None, "governs": "study", "balls_thick": None, "collected": "", "machine": {}}
 NOTHING = {"largest": {}, "farthest": None, "conservative": None, "size": None, "ensemble": None, "step": None,
            "largest_restitution": None, "scatter": {}, "combinations": [], "envelope": None, "exceedance": None,
-           "observed": None, "roads": [], "warnings": [], "runs": [], "headline": None, "stretches": None, "chain": None,
-           "intensity": None}
+           "observed": None, "roads": [], "warnings": [], "runs": [], "headline": None, "stretches": None,
+           "chain": None, "intensity": None}
 EFFECT = {"runs": 1, "chance": None, "difference": 0.0, "clear": None}
 
 

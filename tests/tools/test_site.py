@@ -234,6 +234,18 @@ def test_both_studies_give_one_number(done, tmp_path, monkeypatch, capsys, fitte
     governs, other = ("study", "ensemble") if found["source"] == "paper" else ("ensemble", "study")
     assert pages == [(other, {"study": "paper.html", "ensemble": "ensemble.html"}[other], False),
                      (governs, "report.html", True)]
+    # what a second study finds is that of both, or nothing: killed between them, the site says what it said
+    before = [(mine / name / "study.yaml").read_bytes() for name in ("study", "ensemble")]
+    (mine / "site.yaml").write_text((mine / "site.yaml").read_text().replace("[0, 0.05, 0.1]", "[0, 0.1]"))
+    for where, name in ((study_command, "run_deck"), (answered, "of_both")):
+        with monkeypatch.context() as patch:
+            patch.setattr(where, name, fails)
+            assert cli.main(["study", "mine"]) == 2
+        assert before == [(mine / name / "study.yaml").read_bytes() for name in ("study", "ensemble")]
+
+
+def fails(*_, **__):
+    raise SlopeError("x", "must fail")
 
 
 def test_the_report_of_a_sites_folder(done, tmp_path):

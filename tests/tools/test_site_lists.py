@@ -24,7 +24,6 @@ from slope_tools.sites import site_budget, site_choices, site_deck, site_trial
 from slope_tools.studies.road_numbers import Made
 from slope_tools.studies import ahead, outdated, site_study, study
 from slope_tools.studies.setup import Setup
-from slope_tools.tables import rows
 
 POINTS = 8
 ENGINE = Setup(Path("in.site"), Path("."))

@@ -148,9 +148,13 @@ def run_site_of(args: Request, site: Site) -> Made:
 
 
 def run_both(args: Request, asked: Site, points: int) -> Made:
-    """The paper's study and the ensemble of a site, the number that both give, and a report of each."""
+    """The paper's study and the ensemble of a site, the number that both give, and a report of each.
+
+    Where there is an ensemble, what both study.yaml say of the site stands until both are there anew.
+    """
     site, before = site_roads.results(asked), site_study.digests(asked)
-    paper = site_study.run(asked, setup_of(args), known_study.BESIDE, args.fine, args.roads)
+    paper = site_study.run(asked, setup_of(args), known_study.BESIDE, args.fine, args.roads,
+                           alone=not (site / site_study.ENSEMBLE / "study.yaml").is_file())
     failed, weighted = paper.failed, None
     if site_study.digests(asked) != before:
         raise SlopeError(asked.folder, f"must not change while its study is made: {site_deck.NAME} and its data are "
@@ -173,7 +177,7 @@ def run_both(args: Request, asked: Site, points: int) -> Made:
         about["study"]["governs"], about["headline"] = governs, number
         about["next_step"] = step.about() if step else None
         about["largest_restitution"] = paper.about["largest_restitution"] if paper.about else None
-        files.write_about(site / name, about)
+    files.write_abouts({site / name: about for name, about in made.items()})
     for name, about in made.items():
         if name != governs:
             write_report(site / name, site / PAGES[name], about, asked, film=False, quiet=args.quiet)
@@ -370,7 +374,7 @@ def run_ensemble(args: Request, settings, repeated, thresholds, defaults, condit
     several = sample.settings_of(todo)
     order = ensemble.Order(plan, of, levels, condition, condition and farther.Added(setup.output, plan))
     questions = results.Questions(several, repeated, thresholds, order, site=args.site, method=args.method,
-                                  chain=chain, known=known_of(args), roads=args.roads)
+                                  chain=chain, known=known_of(args), roads=args.roads, alone=not args.weigh)
 
     def collect(todo, work):
         fine = fine_runs.of_median_length(setup, fine_runs.factor_of(args.fine), todo, defaults)

@@ -1,6 +1,6 @@
 """The files of a study: study.yaml, tables and maps over all runs, which are prints of its Outcome."""
 from pathlib import Path
-from typing import Optional
+from typing import Mapping, Optional
 
 from .. import disk
 from ..ensembles import ensemble
@@ -29,7 +29,8 @@ def write(outcome: Outcome, maps: OverAll, output: Path, place) -> study_types.S
     structures.write(output, read.finished)
     disk.write(output / "study.csv", study_table.table(asked.settings, asked.repeated, read.rows, read.defaults))
     disk.write(output / "combinations.csv", combinations.table(outcome.groups, outcome.names, asked.settings))
-    write_about(output, about)
+    if asked.alone:
+        write_abouts({output: about})
     return about
 
 
@@ -41,6 +42,8 @@ def write_or_remove(path: Path, text: Optional[str]) -> None:
         path.unlink(missing_ok=True)
 
 
-def write_about(output: Path, about: study_types.Study) -> None:
-    """study.yaml."""
-    disk.write(output / answered.STUDY, disk.yaml_text(answered.TITLE, study_file.plain(about)))
+def write_abouts(abouts: Mapping[Path, study_types.Study]) -> None:
+    """study.yaml in one folder, or in those of both studies of a site, one right after the other."""
+    with disk.beside(*(output / answered.STUDY for output in abouts)) as new:
+        for path, about in zip(new, abouts.values()):
+            path.write_text(disk.yaml_text(answered.TITLE, study_file.plain(about)), encoding="utf-8")

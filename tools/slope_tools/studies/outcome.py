@@ -38,6 +38,7 @@ class Questions(NamedTuple):
     chain: Optional[chain_files.Chain] = None       # of an ensemble: how likely its bodies fail in an earthquake
     known: Mapping[str, Any] = {}                   # of site.yaml: with which known events the runs are compared
     roads: Sequence[Mapping[str, Any]] = ()         # of a site with several, whose worst is asked: road_numbers.entries
+    alone: bool = True                              # else study.yaml waits for the other study of the site
 
     @property
     def among(self) -> Mapping[str, Any]:

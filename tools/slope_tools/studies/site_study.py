@@ -88,11 +88,11 @@ def plan(site: Site, engine: Setup, asked: Optional[str] = None) -> Planned:
 
 
 def run(site: Site, engine: Setup, method: str, asked: Optional[str] = None,
-        roads: Sequence[Mapping[str, Any]] = ()) -> Done:
+        roads: Sequence[Mapping[str, Any]] = (), alone: bool = True) -> Done:
     """Make or continue all runs of a site, and their results.
 
     engine: how the runs are made; its deck, output and road do not count; method: of the study, in words; asked: of
-    --fine; roads: of Questions. Raises SlopeError on bad input, and if no run of the study finished.
+    --fine; roads, alone: of Questions. Raises SlopeError on bad input, and if no run of the study finished.
     """
     folder, planned = site.folder, plan(site, engine, asked)
     setup, todo, fine, half, variables = planned.setup, planned.todo, planned.fine, planned.half, planned.variables
@@ -102,7 +102,7 @@ def run(site: Site, engine: Setup, method: str, asked: Optional[str] = None,
             planned.settings, planned.repeated, THRESHOLDS, notes=notes_of(site, roads), site=folder,
             fine=fine[0] if fine else None, most_elastic=elastic_of(setup, planned.elastics),
             step=step_of(setup, half[0], planned.middle, variables) if half else None, method=method,
-            known=asdict(planned.choices.known), roads=roads)
+            known=asdict(planned.choices.known), roads=roads, alone=alone)
         return results.collect(setup, questions, todo, work)
 
     failed: Optional[Exception] = None
