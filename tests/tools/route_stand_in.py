@@ -8,11 +8,11 @@ from rasterio.crs import CRS
 from shapely.geometry import LineString
 
 import made_rows
+import made_study
 import run_helpers
 
 from slope_tools.route import choices, corridor, runs, search  # noqa: E402
 from slope_tools.survey import rasters  # noqa: E402
-from slope_tools.tables.rows import plain  # noqa: E402
 
 PLACE = {"crs": CRS.from_user_input(run_helpers.CRS_M), "offset": (run_helpers.EAST, run_helpers.NORTH)}
 
@@ -50,14 +50,12 @@ def make(folder, shape, cell, bodies, y_road=50.0, points=None, **given):
                 run_helpers.write_asc(run / f"run.{kind}.asc", thickness, size, xlo, ylo)
             entries = [{"from": low, "to": high, "passable_width": 2.0, "remove": 10.0 * (k + 1)}
                        for low, high in ranges]
-            rows.append(plain(made_rows.row(
+            rows.append(made_rows.row(
                 run=f"run_{k}", set={"rolling": str(k)}, remove_on_road_m3=10.0 * k, stretches=entries,
                 summary=f"../runs/run_{k}/run.summary.yaml",
                 clearing={"road_width": 8.0, "blocked_length": sum(b - a for a, b in ranges),
-                          "remove": sum(one["remove"] for one in entries)})))
-        about = {"study": {"deck": "in.site", "runs": len(rows), "finished": len(rows), "set": {"rolling": ["0"]}},
-                 "runs": rows, "conservative": None, "largest": {"front_m": {"value": 0.0, "run": "run_0"}}}
-        (place / runs.STUDY / "study.yaml").write_text(yaml.dump(about, Dumper=yaml.CSafeDumper))
+                          "remove": sum(one["remove"] for one in entries)}))
+        made_study.write(place / runs.STUDY, rows, {"set": {"rolling": ["0"]}})
     found = {"bodies": table, "left_out": []}
     (folder / search.TABLE).write_text(yaml.safe_dump(found))
     return Path(folder), found

@@ -155,6 +155,7 @@ def test_a_second_ensemble_fits_nothing_and_maps_nothing(again):
     made, other = again(f"{ENSEMBLE} --except 'event 3'")
     assert made == {"emulators", "known events"} and other["out/hazard.csv"] == before["out/hazard.csv"]
     assert other["out/weights.csv"] != before["out/weights.csv"]
+    assert again() == ({"emulators", "known events"}, before)
     made, other = again(ENSEMBLE.replace("--exceed 0.1", "--exceed 0.2"))
     assert made == everything - {"emulators"} and "out/exceedance_0.1m.asc" not in other
     assert again()[1] == before

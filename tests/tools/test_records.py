@@ -164,8 +164,8 @@ def test_a_key_of_one_part_is_of_no_other():
 @pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 def test_a_study_is_read_as_it_was_written(tiny_case, monkeypatch, capsys):
     """The rows of runs, one of which failed, before they are written, and after."""
-    made, write = [], files.write_about
-    monkeypatch.setattr(files, "write_about", lambda output, about: made.append(about) or write(output, about))
+    made, write = [], files.write_abouts
+    monkeypatch.setattr(files, "write_abouts", lambda abouts: made.extend(abouts.values()) or write(abouts))
     Path("case/road.csv").write_text("13,0\n18,0\n18,24\n13,24\n")
     edit("case/in.tiny", "group       soil", 'if "${rolling} == 0.5" then "nonsense"\ngroup       soil')
     status, _, err = called(capsys, ["study", "case/in.tiny", "--set", "rolling=0,0.3,0.5", "--set", "steps=300",
