@@ -30,7 +30,7 @@ from slope_tools.plots import (figure_charts, figure_maps, ground as report_grou
 from slope_tools.report import data as report_data, paper
 from slope_tools.deposits import travel_shares
 from slope_tools.studies import outcome
-from slope_tools.tables import judged, rows
+from slope_tools.tables import judged, quantities, rows
 from slope_tools.tables.rows import finished_of
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
@@ -141,7 +141,8 @@ def change(folder, function):
         path.write_text(yaml.safe_dump(summary))
         for row in about["runs"] if about else ():
             if row["status"] == "finished" and row["summary"] == str(path.relative_to(folder)):
-                known = judged.columns(summary, SimpleNamespace(notes=[], warnings=[]))
+                known = {**quantities.of_summary(summary),
+                         **judged.columns(summary, SimpleNamespace(notes=[], warnings=[]))}
                 row.update({key: known[key] for key in known if key not in ("release", "log_warnings", "released_m3")},
                            front_m=summary["travel"]["front"], **travel_shares.columns(summary))
                 key = travel_shares.DISTANCE

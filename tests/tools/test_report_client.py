@@ -247,6 +247,10 @@ def test_the_number_says_that_it_is_in_a_gap(gap, source, said):
     about = {"source": source, "share": 0.95}
     text = client_part.in_gap(weighted(gap=gap), about, Numbers())
     assert ("between 2,000 m3 and 9,000 m3" in text) == said and bool(text) == said
+    data = weighted(gap=gap)        # the number is raised for smaller balls
+    effect = {**made_study.EFFECT, "coarse": 100.0, "fine": 120.0, "ratio": True}
+    data.study["size"] = {"effects": {"remove_m3": effect}}
+    assert ("between 2,400 m3 and 10,800 m3" in client_part.in_gap(data, about, Numbers())) == said
 
 
 def test_the_next_step_and_its_time(tmp_path):

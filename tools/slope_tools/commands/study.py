@@ -1,7 +1,7 @@
 """slope study: one deck over the product of lists of its variables, several runs at a time; a table and maps over all.
 
 Order of the work: check the deck and the settings, plan the runs (repeats.py), make their folders and run what is not
-finished (jobs.py), collect (results.py), combine (combinations.py, headline.py).
+finished (jobs.py), collect (results.py), evaluate (outcome.py); of a site one number of both studies (answered.py).
 """
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path

@@ -10,8 +10,8 @@ from ..digits import percent
 from ..findings import Finding
 from ..statistics import headline, size_family
 from ..statistics.answer import SHARE, Code, Kind, Source
-from ..tables import answer_words, combinations, elastic, next_step, study_types
-from ..tables.quantities import ALL, DISTANCE
+from ..tables import answer_words, combinations, elastic, fine_run, next_step, study_types
+from ..tables.quantities import ALL, DISTANCE, REMOVE as QUANTITY
 from . import body, mobility_part, road_part, structures_part, warnings
 from .data import Data
 from .numbers import basis, farthest_of, Numbers
@@ -43,6 +43,8 @@ def unsaid(data: Data, found: Sequence[Finding]) -> List[Finding]:
 
 
 # --- the number, from the headline of study.yaml: of both studies of a site ---
+# It is that of of_headline() where an ensemble stands beside, and governs or makes a floor; else the conservative
+# volume of numbers.answer(), by of_answer().
 
 REMOVE = "Volume to remove from the road"
 WHO = "known events of this volume and height"
@@ -71,14 +73,16 @@ def step_of(data: Data) -> Optional[next_step.Step]:
 
 
 def in_gap(data: Data, about: study_types.Headline, numbers: Numbers) -> str:
-    """A sentence, where the share's known events end between two runs."""
+    """A sentence, where the share's known events end between two runs; raised for smaller balls as the number is."""
     known = known_of(data)
     if about["source"] != Source.ENSEMBLE.value or not known:
         return ""
     gap = next((one.get("gap") for one in known["to_remove"] or () if one["share"] == about["share"]), None)
     if not gap:
         return ""
-    low, high = (numbers(f"{REMOVE.lower()}, {end} of the gap where no run ends", "m3", value)
+    effect = fine_run.read_effect(data.study["size"] if data.study else None, QUANTITY)
+    low, high = (numbers(f"{REMOVE.lower()}, {end} of the gap where no run ends", "m3",
+                         value + (effect.added(value) if effect else 0.0))
                  for end, value in zip(("begin", "end"), gap))
     return f" No run ends where these known events do: between {low} m3 and {high} m3, of which the larger counts."
 

@@ -23,7 +23,7 @@ COLUMNS = (("length", "m", "length"), ("passable", "m", "passable_width"), ("to 
 
 def section(data: Data, numbers: Numbers, maps) -> Optional[Section]:
     """Of a data.Data; None where no run blocks the road, or of older studies."""
-    about = data.study["stretches"] if data.study else None
+    about = data.study.get("stretches") if data.study else None
     if not (about and about["stretches"]):
         return None
     asked, all_ = Asked.of(data.of_study["study"]["road"]), about["share_blocked"]
@@ -106,7 +106,7 @@ def shares(data: Data, asked: Asked, about: study_types.Stretches, runs: str, ma
 
 def on_first_page(data: Data, numbers: Numbers, withheld: bool) -> List[str]:
     """What lane and hours were asked for: a sentence in a list; none where neither was, or the numbers are withheld."""
-    about = data.study["stretches"] if data.study else None
+    about = data.study.get("stretches") if data.study else None
     if not about or withheld:
         return []
     asked, totals = Asked.of(data.of_study["study"]["road"]), about["totals"]

@@ -33,8 +33,8 @@ def tell(outcome: Outcome, about: study_types.Study, output: Path, say: Callable
                                    "of ground"))
     if any(outcome.scatters.values()) and not asked.order:
         say(study_table.combinations_shown(asked.settings, outcome.groups, outcome.scatters))
-    if about["stretches"]:
-        say(f"{output / road_runs.FILE}: {len(about['stretches']['stretches'])} stretches of the road that runs block")
+    if stretches := about.get("stretches"):
+        say(f"{output / road_runs.FILE}: {len(stretches['stretches'])} stretches of the road that runs block")
     say(f"{output / 'study.yaml'}, {output / 'study.csv'}, {output / 'combinations.csv'}: all numbers")
     tell_numbers(about, output, say)
     if about["observed"]:

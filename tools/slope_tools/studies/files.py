@@ -19,8 +19,8 @@ def write(outcome: Outcome, maps: OverAll, output: Path, place) -> study_types.S
     if outcome.ensemble:
         assert asked.order
         ensemble.write(outcome.ensemble, asked.order.levels, output, place, read.problem)
-    if about["stretches"]:
-        head, *lines = road_runs.rows(about["stretches"])
+    if stretches := about.get("stretches"):
+        head, *lines = road_runs.rows(stretches)
         disk.write(output / road_runs.FILE, disk.csv_text(head, lines))
     if outcome.chain:
         chain_files.write(outcome.chain, output)

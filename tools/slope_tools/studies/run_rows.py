@@ -74,7 +74,7 @@ def measured(folder: Path, summary_name: str, log: logs.Log) -> Dict[str, Any]:
             **quantities.of_length(length), "left": gone.entries(left),
             "ball_m3": volume["released"] / summary["balls"]["released"],
             "mass_error": (on_grid - stays) / volume["released"],
-            **judged.columns(summary, log), "change_rate": summary.get("change_rate"),
+            **quantities.of_summary(summary), **judged.columns(summary, log), "change_rate": summary.get("change_rate"),
             "wall_s": marker.get("wall_seconds"), "summary": summary_name,
             "slope_version": summary["slope_version"], "lammps_version": summary["lammps_version"],
             "lmp_sha256": about.get("lmp_sha256"), **structures.of_run(folder, log.settings)}

@@ -9,7 +9,7 @@ from ..deposits import left_words, rest
 from ..deposits.travel_shares import BEYOND
 from ..findings import Finding, gathered
 from ..sites.site_warnings import of_volume
-from . import quantities, study_types
+from . import study_types
 from .released import release
 from .rows import Failed, Finished, Row, finished_of
 
@@ -20,10 +20,10 @@ VERSIONS = ("slope_version", "lammps_version", "lmp_sha256")
 
 
 def columns(summary: Mapping[str, Any], log) -> Dict[str, Any]:
-    """What a row has of a run that is judged, by its summary and its Log."""
+    """What a row has, beside its quantities, of how a run ended, by its summary and its Log."""
     state, motion = rest.state(summary), summary["motion"]
-    return {**quantities.of_summary(summary), "at_rest": state.at_rest, "end": state.text, "end_short": state.short,
-            "moves_share": state.share, "moving_share": motion["moving_share"], "fast_share": motion.get("fast_share"),
+    return {"at_rest": state.at_rest, "end": state.text, "end_short": state.short, "moves_share": state.share,
+            "moving_share": motion["moving_share"], "fast_share": motion.get("fast_share"),
             "stiffness_number": (summary.get("release") or {}).get("stiffness_number"),
             "fast_volume_m3": motion.get("fast_volume"), "fast_speed_m_s": motion.get("fast_speed"),
             "release": release(summary, [*log.notes, *log.warnings])._asdict(), "log_warnings": log.warnings}

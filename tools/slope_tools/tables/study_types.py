@@ -393,7 +393,7 @@ class Study(TypedDict):
     warnings: List[FindingEntry]
     runs: List[Row]
     headline: Optional[Headline]
-    stretches: Optional[Stretches]          # None without a road
+    stretches: NotRequired[Optional[Stretches]]         # None without a road
     chain: Optional[Chain]
     intensity: Optional[Intensity]
     next_step: NotRequired[Optional[NextStep]]
