@@ -199,12 +199,12 @@ def test_a_deck_without_a_diameter_has_no_fine_run(slope):
 def test_the_thickness_of_a_site_is_that_of_the_command(here):
     """Not that of the cells with balls, which the thin rim lacks; of a body of several that of this one."""
     Path("mine").mkdir()
-    found = {"body": {"mean_depth": 3.0}, "bodies": {}}
+    found = {"body": {"volume": 900.0, "mean_depth": 3.0}, "bodies": {}}
     Path("mine/site.yaml").write_text(yaml.safe_dump({"slope_site": 1, "found": found}))
     setup = Setup(Path("mine/in.site"), Path("mine/study"))
     rows = [made_rows.row(variables={"d": "2", "body": "1"}), made_rows.row(variables={"d": "1", "body": "2"})]
     assert body_depth.mean(setup, rows[0]) == 3.0 and body_depth.in_balls(setup, rows) == 1.5
-    found["bodies"] = {1: {"mean_depth_m": 4.0}, 2: {"mean_depth_m": 5.0}}
+    found["bodies"] = {rank: {"volume_m3": 900.0, "mean_depth_m": depth} for rank, depth in ((1, 4.0), (2, 5.0))}
     Path("mine/site.yaml").write_text(yaml.safe_dump({"slope_site": 1, "found": found}))
     assert [body_depth.mean(setup, row) for row in rows] == [4.0, 5.0]
     assert body_depth.in_balls(setup, [made_rows.row(variables={"q": "2"})]) is None

@@ -1,7 +1,6 @@
 """tools/slope study --sample: distributions, designs, bounds, indices, and an ensemble of small collapses."""
 import csv
 import math
-import types
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +10,7 @@ import yaml
 from scipy import stats
 
 import made_rows
+import made_study
 from messages import is_one
 from tiny_collapse import loaded, read_asc
 
@@ -454,12 +454,13 @@ def test_wrong_ensembles_are_one_line(slope, arguments, message):
 
 
 def test_what_an_ensemble_says_in_words():
-    about = {"finished": 5, "points": 5, "confidence": 0.9, "of": "front_m", "doubts": ["why"], "quantities": {
-        "front_m": {"name": "farthest ball", "unit": "m", "quantiles": [{"share": 0.9, "value": 120.0, "low": 100.0,
-                                                                         "high": None}]}},
-             "influence": {"front_m": {"text": "so", "variables": {
-                 "a": {"rank": 0.1, "first": 0.1, "first_error": 0.0, "total": 0.2, "total_error": 0.05},
-                 "b": {"rank": -0.7, "first": 0.7, "first_error": 0.0, "total": 0.9, "total_error": 0.01}}}}}
+    quantiles = [{"share": 0.9, "value": 120.0, "low": 100.0, "high": None}]
+    about = made_study.ensemble(
+        finished=5, points=5, of="front_m", doubts=["why"],
+        quantities={"front_m": {"name": "farthest ball", "unit": "m", "quantiles": quantiles}},
+        influence={"front_m": {"text": "so", "variables": {
+            "a": {"rank": 0.1, "first": 0.1, "first_error": 0.0, "total": 0.2, "total_error": 0.05},
+            "b": {"rank": -0.7, "first": 0.7, "first_error": 0.0, "total": 0.9, "total_error": 0.01}}}})
     assert ensemble.describe(about) == [
         "ensemble: 5 runs of 5 points; bounds hold with 90 %",
         "farthest ball: 90 % of the runs stay within 120 m (100 to ?)",
@@ -470,9 +471,8 @@ def test_what_an_ensemble_says_in_words():
 
 def test_a_report_says_what_the_emulator_is_worth():
     entry = {"text": "as it is", "variables": {"a": dict.fromkeys(ensemble.emulator.SIGN, 0.5)}}
-    study = {"ensemble": {"of": None, "quantities": {"front_m": {"name": "farthest ball"}},
-                          "influence": {"front_m": entry}}}
-    part = ensemble_part.Ensemble(types.SimpleNamespace(study=study), None)
+    about = made_study.ensemble(quantities={"front_m": {"name": "farthest ball"}}, influence={"front_m": entry})
+    part = ensemble_part.Ensemble(None, None, about)
     assert [one.caption for one in part.indices()] == [
         "Sobol indices for farthest ball, with the error of the total ones; as it is."]
 

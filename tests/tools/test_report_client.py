@@ -19,7 +19,7 @@ from slope_tools.ensembles import known_study
 from slope_tools.finding_words import WORDS, words_of
 from slope_tools.findings import LIMIT, NOTE, WARNING, Finding, finding, gathered
 from slope_tools.plots.obstacles import Obstacles
-from slope_tools.report import body, client_part, ensemble_part, numbers, structures_part, warnings
+from slope_tools.report import body, client_part, ensemble_part, limits_part, numbers, structures_part, warnings
 from slope_tools.report.numbers import Numbers
 from slope_tools.statistics import size_family
 from slope_tools.statistics.size_effect import Effect
@@ -603,3 +603,17 @@ def test_the_body_in_a_sentence():
         "(assigned).")
     assert body.sentence(body.Body(119e6, None, None, None, "a given slip surface", None, None, False, None)) == (
         "The body has 119 million m³, above a given slip surface. Coordinates: local metres.")
+
+
+def test_the_stop_angle_of_a_run_alone():
+    """One of a study's folder knows its deck's variables, and has no others beside it."""
+    def said(*rows, finished=()):
+        data = SimpleNamespace(result=SimpleNamespace(row=rows[0]), compared=rows, finished=finished,
+                               label=lambda one: "a")
+        ground = SimpleNamespace(below=SimpleNamespace(steeper=lambda degrees: 0.25))
+        [(_, text)] = limits_part.resistance(data, ground, Numbers())
+        return text
+    alone = row(run="", stop_angle_deg=20.0)
+    assert "below 20.0 degrees (stop angle, run a). Of the slope below the body 25 % is steeper" in said(alone)
+    several = [row(stop_angle_deg=degrees) for degrees in (20.0, 24.0)]
+    assert "in all runs 20.0 to 24.0" in said(*several, finished=several)

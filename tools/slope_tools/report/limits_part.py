@@ -37,7 +37,7 @@ def resistance(data: Data, ground, numbers: Numbers) -> CONTENT:
     degrees, label = data.result.row.value(STOP), data.label(data.result)
     if degrees is None:
         return []
-    others = [row.value(STOP) for row in data.finished if row.value(STOP) is not None]
+    others = [row.value(STOP) for row in data.compared if row.value(STOP) is not None]
     text = (f"A sheet of three balls stops on it where the slope is below {shown(numbers, degrees, label)} degrees "
             f"(stop angle, run {label}")
     if max(others) - min(others) > 0.05:

@@ -23,10 +23,11 @@ COLUMNS = (("length", "m", "length"), ("passable", "m", "passable_width"), ("to 
 
 def section(data: Data, numbers: Numbers, maps) -> Optional[Section]:
     """Of a data.Data; None where no run blocks the road, or of older studies."""
-    about = data.study.get("stretches") if data.study else None
-    if not (about and about["stretches"]):
+    study = data.study
+    about = study.get("stretches") if study else None
+    if not (study and about and about["stretches"]):
         return None
-    asked, all_ = Asked.of(data.of_study["study"]["road"]), about["share_blocked"]
+    asked, all_ = Asked.of(study["study"]["road"]), about["share_blocked"]
     columns = [one for one in COLUMNS if one[2] in about["stretches"][0]]
 
     def cells(one, name):
@@ -106,10 +107,11 @@ def shares(data: Data, asked: Asked, about: study_types.Stretches, runs: str, ma
 
 def on_first_page(data: Data, numbers: Numbers, withheld: bool) -> List[str]:
     """What lane and hours were asked for: a sentence in a list; none where neither was, or the numbers are withheld."""
-    about = data.study.get("stretches") if data.study else None
-    if not about or withheld:
+    study = data.study
+    about = study.get("stretches") if study else None
+    if not study or not about or withheld:
         return []
-    asked, totals = Asked.of(data.of_study["study"]["road"]), about["totals"]
+    asked, totals = Asked.of(study["study"]["road"]), about["totals"]
 
     def span(what: str, unit: str, key: str) -> str:
         low, _, high = (numbers(what, unit, value) for value in totals[key])
