@@ -230,7 +230,7 @@ def test_an_older_result_is_not_merged_where_all_runs_failed(tmp_path, monkeypat
             raise study.RunsFailed(tmp_path, "all runs failed")
         return made_study.study({"collected": "2026-11-27T10:00:00+00:00"})
 
-    monkeypatch.setattr(study.site_study, "run", lambda *_: site_study.Done(tmp_path, runs(False), None))
+    monkeypatch.setattr(study.site_study, "run", lambda *_, **__: site_study.Done(tmp_path, runs(False), None))
     monkeypatch.setattr(study, "run_deck", lambda _: runs(fails))
     monkeypatch.setattr(study, "of_ensemble", lambda *_: None)
     monkeypatch.setattr(study, "write_report", lambda *_, **__: None)

@@ -71,7 +71,7 @@ def test_the_ensemble_varies_ground_and_restitution(large, capsys, monkeypatch):
     seen = []
     monkeypatch.setattr(study_command, "perform", lambda setup, *rest, **more: None)
     monkeypatch.setattr(study_command.results, "Questions", lambda *args, **more: seen.append(args[3]))
-    monkeypatch.setattr(study_command.site_study, "run", lambda *_: site_study.Done(None, None, None))
+    monkeypatch.setattr(study_command.site_study, "run", lambda *_, **__: site_study.Done(None, None, None))
     assert study(capsys, monkeypatch, "big")[0] == 0
     [order] = seen
     assert {one.name: (one.low, one.high) for one in order.sample.variables} == {

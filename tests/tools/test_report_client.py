@@ -81,7 +81,8 @@ def test_a_number_that_is_withheld_gives_way_to_its_reasons(slope, here):
     assert not TOOLS_WORDS.search(text) and "slope study --set d=1" in (here / "out" / "report.html").read_text()
 
 
-ROAD = {"near_m": 2400.0, "far_m": 2412.0, "reached": [0.2, 0.3], "passed": [0.18, 0.27], "longest_m": 1846.0}
+ROAD = {"near_m": 2400.0, "far_m": 2412.0, "reached": [0.2, 0.3], "passed": [0.18, 0.27], "longest_m": 1846.0,
+        "brought": {"runs": 6, "reach": 0, "passing": 0, "volume": 0.0, "balls": 0.0}}
 BEYOND = {"code": "known beyond runs", "numbers": {"far": 0.12, "longest_m": 2300.0}}
 TERRAIN = {"code": "terrain ends", "numbers": {"share": 0.08, "path_m": 3600.0}}
 MISSED = {"code": "road not reached", "numbers": {"low": 0.2, "high": 0.3, "near_m": 2400.0, "longest_m": 1846.0}}
