@@ -26,7 +26,7 @@ def case(lengths, volume=0.78e6, study=True, scar=1, **about):
     rows = [made_rows.row(length_m=length, released_m3=volume) for length in lengths]
     one = SimpleNamespace(distance=lengths[0]) if lengths and lengths[0] else None
     data = SimpleNamespace(study=study or None, finished=rows, result=None, label=lambda one: "run",
-                           largest_release=lambda: volume, length=lambda: one)
+                           largest_release=lambda: volume, length=one)
     return data, ground, Numbers()
 
 

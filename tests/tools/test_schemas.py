@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
+import made_study
 from made_rows import row
 
 from slope_tools.case import run_folders
@@ -22,8 +23,14 @@ TOOLS = TOP / "tools" / "slope_tools"
 LHS = SimpleNamespace(about={"variables": {}}, kind="lhs", number=4, seed=1)
 SIDECAR = ("{crs: null, origin: {east: 0, north: 0}, size: {rows: 3, columns: 4}, extent: {xlo: 0, xhi: 4, ylo: 0, "
            "yhi: %s}}")
-STUDY = ("{study: {deck: a, runs: 1, finished: 1, set: {}}, runs: %s, conservative: %s, largest: {front_m: {run: one, "
-         "value: 100.0}}}")
+
+
+def study(runs=(), **entries):
+    """The text of a study.yaml."""
+    largest = {"front_m": {"run": "one", "value": 100.0}}
+    return json.dumps({**made_study.study(largest=largest, **entries), "runs": list(runs)})
+
+
 FILES = {       # file: (its reader, a text, what must be said)
     "calibrate.ledger.yaml": (lambda folder: calibration.Ledger(folder, {"seed": 1}, [SimpleNamespace(name="a")]), (
         ("about: {seed: 1}", "must have points"),
@@ -56,19 +63,18 @@ FILES = {       # file: (its reader, a text, what must be said)
                                            ("lmp_sha256: [a]", "lmp_sha256: must be a text or null, got ['a']"))),
     "finished.yaml": (run_folders.ended, (("wall_seconds: 1", "must have summary"),)),
     "study.yaml": (named_run.governing_run, (
-        ("runs: []", "must have study and conservative and largest"),
-        (STUDY % ("[]", "null"), "must have a finished run, got 0 that failed"),
-        (STUDY % (json.dumps([rows.plain(row(status="failed"))]), "null"), "must have a finished run, got 1 that fail"),
-        ((STUDY % ("[]", "null"))[:-1] + ", ensemble: {of: 1}}", "ensemble: of: must be a text or null, got 1"),
-        ((STUDY % ("[]", "null"))[:-1] + ", headline: {share: a}}", "headline: share: must be a finite number or null"),
-        ((STUDY % ("[]", "null"))[:-1] + ", ensemble: {known_events: {to_remove: [{}]}}}",
-         "known_events: to_remove: first value: must have share and value"),
-        (STUDY % ("[]", "{run: 1}"), "conservative: must have volume_m3 and"),
-        (STUDY % ("[{run: one, status: finished, set: {}}]", "null"),
+        ("runs: []", "must have study and largest and farthest and conservative and"),
+        (study(), "must have a finished run, got 0 that failed"),
+        (study([rows.plain(row(status="failed"))]), "must have a finished run, got 1 that fail"),
+        (study(ensemble=made_study.ensemble(of=1)), "ensemble: of: must be a text, got 1"),
+        (study(headline=made_study.headline(share="a")), "headline: share: must be a finite number, got 'a'"),
+        (study(ensemble=made_study.ensemble({"to_remove": [{}]})), "to_remove: first value: must have share and value"),
+        (study(conservative={"run": 1}), "conservative: must have volume_m3 and"),
+        (study([{"run": "one", "status": "finished", "set": {}}]),
          f"study.yaml: run one: must be {study_file.WHAT}: must have repeat and batch and variables and"),
-        (STUDY % (json.dumps([{**rows.plain(row()), "front_m": "far"}]), "null"),
+        (study([{**rows.plain(row()), "front_m": "far"}]),
          f"study.yaml: run one: must be {study_file.WHAT}: front_m: must be a finite number, got 'far'"),
-        (STUDY % ("[{run: one, status: running, set: {}}]", "null"), "status: must be failed or finished, got 'run"))),
+        (study([{"run": "one", "status": "running", "set": {}}]), "status: must be failed or finished, got 'run"))),
     "site.yaml": (heading.site_of, (("project: [1]", "project: must be a section with keys or null, got [1]"),
                                     ("terrain: {files: [1]}", "terrain: files: first value: must be a text, got 1"))),
     "converge.yaml": (lambda folder: convergence_part.Sizes(folder / "converge.yaml"), (

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import yaml
+import made_rows
 from test_mobility_path import disc, terrain
 from test_site import gis, told  # noqa: F401
 from test_site_anew import inside, mine, once  # noqa: F401
@@ -86,9 +87,10 @@ def test_a_site_and_its_study_say_it_of_each_ground(inside, mine):  # noqa: F811
     assert site_ground.lines(site_choices.load(mine), others=True) == []
 
 
-def shown(below, **row):
-    other = {"stop_angle_deg": 28.2}
-    data = SimpleNamespace(result=SimpleNamespace(row=row), label=lambda _: "rolling 0", finished=[row, other, {}])
+def shown(below, **given):
+    row = made_rows.row(**given)
+    data = SimpleNamespace(result=SimpleNamespace(row=row), label=lambda _: "rolling 0",
+                           compared=[row, made_rows.row(stop_angle_deg=28.2), made_rows.row()])
     return limits_part.resistance(data, below, Numbers())
 
 

@@ -18,17 +18,16 @@ SCHEMA = mapping({"runs": listed(mapping({"run": TEXT, "status": TEXT}))})
 def load_study(path: Path) -> study_types.Study:
     """The study of a study.yaml; SlopeError if it is none of this version."""
     held = schemas.load(path, WHAT, SCHEMA)
-    rows = [row_of(path, one) for one in held["runs"]]
-    finished = finished_of(rows)
-    if not finished:
-        raise SlopeError(path, "must have a finished run", f"{len(rows)} that failed")
     try:
         study = records.read(study_types.Study, {**held, "runs": []})
         if study["ensemble"] and (weighted := study_types.weighted(study["ensemble"])):
             records.read(study_types.Weighted, weighted)
     except NoRecord as error:
         raise SlopeError(path, f"must be {WHAT}: {error}") from None
-    study["runs"] = rows
+    rows = study["runs"] = [row_of(path, one) for one in held["runs"]]
+    finished = finished_of(rows)
+    if not finished:
+        raise SlopeError(path, "must have a finished run", f"{len(rows)} that failed")
     about, best, farthest = study["study"], study["conservative"], study["largest"].get("front_m")
     if any(row.set.keys() != about["set"].keys() for row in rows) or not (
             farthest and all(name in [row.run for row in finished]
