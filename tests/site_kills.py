@@ -39,7 +39,8 @@ MOMENTS = "runs", "rows", "kept", "files"       # of kills, in turn
 PAIRS = ("study", "study"), ("study", "site"), ("site", "study"), ("study", "report"), ("study", "export")
 COMMANDS = {"study": "study mine", "site": "site mine", "report": "report mine --no-film -o page.html --overwrite",
             "export": "export mine -o gis --overwrite"}
-OF_THE_TIME = re.compile(r"^ *(collected|made|machine|jobs|package|seconds|wall_s|wall_seconds): .*$", re.MULTILINE)
+OF_THE_TIME = re.compile(r"^ *((collected|made|machine|jobs|package|seconds|wall_s|wall_seconds): .*|"
+                         r"(started|finished): '\d{4}-.*)$", re.MULTILINE)
 SMALL = {"rolling": "[0.05]", "spacing": "[]", "packing": "[2]", "fine": "no", "largest_restitution": "null",
          "points": "8"}       # of the study in site.yaml
 # the command with blank pictures and no film, which take most of its time; it ends itself before the KILL_ATth name
