@@ -19,7 +19,6 @@ from ..tables.quantities import OF_ROAD
 from ..tables.rows import finished_of
 
 PAGE = "report.html"    # in that of a road
-ENTRY = "roads"         # of study.yaml
 KEYS = [one.key for one in OF_ROAD]
 HEAD = ",".join(["run", "road", *KEYS])     # of roads.csv
 

@@ -13,7 +13,6 @@ from .rows import finished_of
 
 MORE = 2            # times the runs, where more are needed
 PROGRAM = "tools/slope "
-ENTRY = "next_step"  # of study.yaml
 
 
 class Step(NamedTuple):
