@@ -31,6 +31,7 @@ from slope_tools.sites.site import numbers as site_numbers
 from slope_tools.errors import SlopeError
 from slope_tools.plots import site_map
 from slope_tools.statistics.size_effect import Effect
+from slope_tools.studies import study
 from slope_tools.tables import answer_words, answered, elastic
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
@@ -242,6 +243,21 @@ def test_both_studies_give_one_number(done, tmp_path, monkeypatch, capsys, fitte
             patch.setattr(where, name, fails)
             assert cli.main(["study", "mine"]) == 2
         assert before == [(mine / name / "study.yaml").read_bytes() for name in ("study", "ensemble")]
+    # a first study, too: the paper's number alone is never the site's
+    for name in ("study", "ensemble"):
+        (mine / name / "study.yaml").unlink()
+    for how, says in ((fails, "x: must fail"), (no_run_finishes, "mine: has no number without its ensemble")):
+        with monkeypatch.context() as patch:
+            patch.setattr(study_command, "run_deck", how)
+            assert cli.main(["study", "mine"]) == 2
+        assert says in capsys.readouterr().err
+        assert cli.main(["report", "mine"]) == 2
+        assert "must hold the study of this site" in capsys.readouterr().err
+        assert not list(mine.glob("*/study.yaml"))
+
+
+def no_run_finishes(*_, **__):
+    raise study.RunsFailed("ensemble", "8 of 8 runs failed")
 
 
 def fails(*_, **__):

@@ -150,12 +150,12 @@ def run_site_of(args: Request, site: Site) -> Made:
 def run_both(args: Request, asked: Site, points: int) -> Made:
     """The paper's study and the ensemble of a site, the number that both give, and a report of each.
 
-    Where there is an ensemble, what both study.yaml say of the site stands until both are there anew.
+    One of both is never the site's: what both study.yaml say of it, or that there are none, stands until both are there
+    anew.
     """
     site, before = site_roads.results(asked), site_study.digests(asked)
-    paper = site_study.run(asked, setup_of(args), known_study.BESIDE, args.fine, args.roads,
-                           alone=not (site / site_study.ENSEMBLE / "study.yaml").is_file())
-    failed, weighted = paper.failed, None
+    paper = site_study.run(asked, setup_of(args), known_study.BESIDE, args.fine, args.roads, alone=False)
+    failed = paper.failed
     if site_study.digests(asked) != before:
         raise SlopeError(asked.folder, f"must not change while its study is made: {site_deck.NAME} and its data are "
                          "not those of the runs so far; the same command again, with --anew")
@@ -163,20 +163,21 @@ def run_both(args: Request, asked: Site, points: int) -> Made:
         weighted = run_deck(of_ensemble(replace(args, sample=points, known=None, weigh=True), asked,
                                         known_study.WEIGHTED))
     except RunsFailed as error:     # the others count
+        if error.found is None:
+            raise SlopeError(asked.folder, "has no number without its ensemble, but by the paper's method alone "
+                             f"(--paper): {error}") from None
         failed, weighted = failed or error, error.found
-    if args.dry_run:
+    if args.dry_run or paper.about is None:
         return Made((), None)
-    made: Dict[str, study_types.Study] = {
-        name: about for name, about in ((site_study.STUDY, paper.about), (site_study.ENSEMBLE, weighted)) if about}
-    found, governs = answered.of_both(*made.values()) if len(made) == 2 else None, list(made)[-1]
-    if found:
-        governs = site_study.STUDY if found.source is Source.PAPER else site_study.ENSEMBLE
-    number = found.about() if found else made[governs]["headline"]
+    made: Dict[str, study_types.Study] = {site_study.STUDY: paper.about, site_study.ENSEMBLE: weighted}
+    found = answered.of_both(paper.about, weighted)
+    governs = site_study.STUDY if found and found.source is Source.PAPER else site_study.ENSEMBLE
+    number = found.about() if found else weighted["headline"]
     step = next_step.of_studies([next_step.Made(about, site / name) for name, about in made.items()], number)
     for name, about in made.items():
         about["study"]["governs"], about["headline"] = governs, number
         about["next_step"] = step.about() if step else None
-        about["largest_restitution"] = paper.about["largest_restitution"] if paper.about else None
+        about["largest_restitution"] = paper.about["largest_restitution"]
     files.write_abouts({site / name: about for name, about in made.items()})
     for name, about in made.items():
         if name != governs:
