@@ -23,7 +23,8 @@ def indices(seeds=5):
     for seed in range(seeds):
         points = designs.points(designs.SOBOL, 3, 256, seed)
         found = emulator.analyse("abc", points, ishigami(points), range(256))
-        mine = np.array([one.first for one in found.influences] + [one.total for one in found.influences])
+        each = found.variables.values()
+        mine = np.array([one.first for one in each] + [one.total for one in each])
         print(f"indices, seed {seed}: largest error {np.abs(mine - exact).max():.4f}; {found.text}", flush=True)
 
 

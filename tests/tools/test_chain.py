@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
+import made_study
 from made_rows import row
 
 from slope_tools.seismic import chain, chain_files, fragility
@@ -173,7 +174,8 @@ def test_the_effect_of_size_raises_what_bodies_leave():
     ({"open": False, "fine": 60.0}, ["chain raised"]), ({"open": False, "fine": 40.0}, [])])
 def test_what_the_size_of_the_balls_does_to_a_chain_is_said(size, kinds):
     effect = size and Effect(50.0, 1, size["fine"], None, True)
-    assert [one.kind for one in chain_files.of_size(size, effect, 100.0)] == kinds
+    said = size and made_study.study(size={"open": size["open"]}).size
+    assert [one.kind for one in chain_files.of_size(said, effect, 100.0)] == kinds
 
 
 def test_bounds_of_runs_and_of_runs_that_failed():

@@ -2,12 +2,14 @@
 import csv
 import os
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 import yaml
 
+import made_study
 from run_helpers import anew, called
 from test_fragility import SOIL, write_slips
 from tiny_collapse import rows_of
@@ -17,6 +19,7 @@ from slope_tools.commands import study
 from slope_tools.report import chain_part
 from slope_tools.report.numbers import Numbers
 from slope_tools.seismic import chain_files, fragility_files
+from slope_tools.tables import study_types
 
 needs_lmp = pytest.mark.skipif(not os.environ.get("LMP"), reason="needs the LAMMPS program (LMP)")
 ROAD = "1,0\n8,0\n8,51\n1,51\n"
@@ -85,9 +88,10 @@ def test_the_chain_of_two_bodies(mine, capsys):
     assert first == pytest.approx(any_body, abs=1e-4) and max(any_body.values()) > 0.9
     for one in found["per_year"]:
         assert sum(part["per_year"] for part in one["contributions"]) == pytest.approx(one["value"], rel=1e-6)
+    said = made_study.made(study_types.Chain, found)
     if not found["withheld"]:
-        assert all(f"{text}\n" in out for text in chain_files.sentences(found))
-    assert "the road is blocked by more than" in chain_files.sentences(found)[0]
+        assert all(f"{text}\n" in out for text in chain_files.sentences(said))
+    assert "the road is blocked by more than" in chain_files.sentences(said)[0]
     shown_in_the_report(of)
 
     # the same again takes the runs that are there, other volumes are another question
@@ -103,8 +107,10 @@ def fragility_rows():
 
 
 def shown_in_the_report(of):
+    chain = made_study.made(study_types.Chain, {**of["chain"], "withheld": []})
+
     class Data:
-        study, folder = {**of, "chain": {**of["chain"], "withheld": []}}, Path("mine/ensemble")
+        study, folder = made_study.study(chain=chain), Path("mine/ensemble")
 
     *texts, figures, _, parts, _ = chain_part.section(Data, Numbers()).blocks
     picture, = figures.pictures
@@ -112,8 +118,7 @@ def shown_in_the_report(of):
     assert len(texts) == len(of["chain"]["more_than_m3"]) + 1 and len(parts.rows) == chain_part.MOST_ROWS
     total = sum(float(row[1]) for row in parts.rows)
     assert total == pytest.approx(of["chain"]["per_year"][0]["value"], rel=0.05)
-    Data.study = of
-    Data.study["chain"]["withheld"] = ["few balls"]
+    Data.study = made_study.study(chain=replace(chain, withheld=["few balls"]))
     assert chain_part.section(Data, Numbers()) is None
 
 

@@ -22,6 +22,7 @@ from slope_tools.report import ensemble_part
 from slope_tools.report.numbers import Numbers
 from slope_tools.sites import site_warnings
 from slope_tools.statistics.hazard import weighted
+from slope_tools.statistics.entries import KnownQuantile
 from slope_tools.tables import named_run
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
@@ -149,7 +150,7 @@ def test_without_a_gap_there_is_no_either():
 @pytest.mark.parametrize("gap", [(1888.0, 2950.0), None])
 def test_words_of_a_quantile_in_a_gap(gap):
     """Console, card, table and numbers have both ends, and no single value."""
-    one = {"share": 0.5, "value": 2950.0, "low": 1500.0, "high": 3100.0, "gap": gap}
+    one = KnownQuantile(0.5, 2950.0, 1500.0, 3100.0, gap)
     line = known_events.quantile_text(one, "m")
     assert ("between 1,890 and 2,950 m" in line) == bool(gap) and ("stay within" in line) != bool(gap)
     assert ensemble_part.cell_of(one) == ("1,890 to 2,950" if gap else "2,950")
@@ -157,9 +158,9 @@ def test_words_of_a_quantile_in_a_gap(gap):
                                 of="length_m")
     numbers = Numbers()
     part = ensemble_part.KnownEvents(None, numbers, about)
-    shown, = part.answer()["parts"]
-    assert shown["number"] == ("1,890 to 2,950" if gap else "2,950")
-    assert ("no run ends" in shown["note"]) == bool(gap) and "Between 1,500 m" in shown["note"]
+    shown, = part.answer().parts
+    assert shown.number == ("1,890 to 2,950" if gap else "2,950")
+    assert ("no run ends" in shown.note) == bool(gap) and "Between 1,500 m" in shown.note
     assert sum("gap" in row[0] for row in numbers.rows) == (2 if gap else 0)
     assert part.tables()[0].rows[0][1] == ("1,890 to 2,950" if gap else "2,950")
 
@@ -301,7 +302,7 @@ def test_what_is_not_reached_is_said():
                                   "1 of 3 runs have no length", "1 of 2 runs lost more than 1 %")):
         assert text in line
     assert len(lines) == 6
-    assert known_events.doubts({**about, "reached": 0.96, "far": 0.02, "short": 0.02, "gaps": [], "effective": 60},
+    assert known_events.doubts(made_study.weighted(reached=0.96, far=0.02, short=0.02, effective=60),
                                type("Runs", (), {"rows": rows[:1], "failed": 0})) == []
 
 
@@ -311,14 +312,14 @@ def test_a_report_shows_no_number_where_events_go_beyond_the_runs():
     known = {"reached": 0.5, "effective": 12.0, "doubts": ["why"], "quantities": {
         "front_m": {"name": "farthest ball", "unit": "m", "quantiles": quantiles}}}
     answer = ensemble_part.KnownEvents(None, Numbers(), made_study.ensemble(known, of="front_m")).answer()
-    assert (answer["number"], answer["unit"]) == ("unknown", "")
+    assert (answer.number, answer.unit) == ("unknown", "")
     known = {"reached": None, "doubts": ["the set of known events does not cover this volume"]}
     part = ensemble_part.KnownEvents(None, Numbers(), made_study.ensemble(known, of="front_m"))
     text, maps = part.section(None).blocks
     assert text.text == "The set of known events does not cover this volume." and not maps.pictures
     assert part.answer() is None
-    assert "50 % of the known events" in answer["note"]
-    assert answer["parts"][0]["note"].startswith("At least 0 m with 90 %")
+    assert "50 % of the known events" in answer.note
+    assert answer.parts[0].note.startswith("At least 0 m with 90 %")
 
 
 @pytest.mark.parametrize("number, shown", [
@@ -334,8 +335,8 @@ def test_the_run_shown_is_that_of_the_headline(number, shown):
     runs.append(made_rows.row(run="e", status="failed"))
     known = {"to_remove": [{"share": 0.95, "value": 900.0}, {"share": 0.7, "value": 400.0}],
              "quantities": {"remove_on_road_m3": {"quantiles": [{"share": 0.9, "value": 9.0}]}}}
-    about = made_study.study(runs=runs, headline=number and made_study.headline(**number),
-                             ensemble=made_study.ensemble(known, of="remove_on_road_m3"))
+    about = made_study.study(runs=runs, headline=number and made_study.headline(**number), ensemble=made_study.ensemble(
+        known, of="remove_on_road_m3", quantities={"remove_on_road_m3": {}}))
     assert named_run.governing(about) == shown
 
 
@@ -345,5 +346,5 @@ def test_the_run_shown_has_the_quantity(value, shown):
     quantities = {} if value == "absent" else {"distance_99_m": {"quantiles": [{"share": 0.9, "value": value}]}}
     runs = [made_rows.row(run=name, distance_99_m=one) for name, one in zip("abcd", (1500.0, 2000.0, 2500.0, None))]
     about = made_study.study(runs=runs, ensemble=made_study.ensemble(
-        {"quantities": {"length_m": {}, **quantities}}, of="distance_99_m"))
+        {"quantities": {"length_m": {}, **quantities}}, of="distance_99_m", quantities={"distance_99_m": {}}))
     assert named_run.governing(about) == shown

@@ -8,6 +8,7 @@ import pytest
 from affine import Affine
 
 import made_rows
+import made_study
 from made_rows import changed
 
 from slope_tools.report import client_part
@@ -16,6 +17,7 @@ from slope_tools.runs import jobs
 from slope_tools.studies import site_study
 from slope_tools.survey import rasters
 from slope_tools.tables import elastic
+from slope_tools.tables.study_types import ElasticQuantity, Span
 
 VARIABLES = {"rolling": "0", "spacing": "0.9", "restitution": "0.48", "field_e": "0.1", "packing": "1"}
 SET = {"rolling": "0", "spacing": "0.9"}
@@ -55,13 +57,10 @@ def evaluated(here, made, rows):
 def test_reach_and_area_beside_the_usual_runs(tmp_path, rows):
     made = most(tmp_path)
     about = evaluated(tmp_path, made, rows)
-    assert about["quantities"]["distance_99_m"] == {
-        "mean": 110, "low": 100, "high": 120, "usual": {"mean": 85, "low": 80, "high": 90},
-        "study": {"mean": pytest.approx(265 / 3), "low": 80, "high": 95}}
-    assert about["quantities"]["area_m2"] == {
-        "mean": 92, "low": 80, "high": 108, "usual": {"mean": 44, "low": 40, "high": 48},
-        "study": {"mean": 48, "low": 40, "high": 56}}
-    assert about["text"] == (
+    assert about.quantities["distance_99_m"] == ElasticQuantity(
+        110, 100, 120, Span(85, 80, 90), Span(pytest.approx(265 / 3), 80, 95))
+    assert about.quantities["area_m2"] == ElasticQuantity(92, 80, 108, Span(44, 40, 48), Span(48, 40, 56))
+    assert about.text == (
         "restitution 0.9 of soil, slip surface and ground, rolling 0, 3 runs: 99 % of the volume stays within 110 m "
         "(100 to 120) instead of 85 m (80 to 90); all other runs, up to 95 m; the deposit covers 92 m2 (80 to 108) "
         "instead of 44 m2 (40 to 48); all other runs, up to 56 m2")
@@ -75,7 +74,7 @@ def test_reach_and_area_beside_the_usual_runs(tmp_path, rows):
 
 def test_what_left_the_terrain_is_no_distance(tmp_path, rows):
     about = evaluated(tmp_path, [changed(one, distance_99_m=None) for one in most(tmp_path)], rows)
-    assert "how far the mass goes is not known, as more than 1 % of it left the terrain; the deposit" in about["text"]
+    assert "how far the mass goes is not known, as more than 1 % of it left the terrain; the deposit" in about.text
     assert elastic.far(about) is None
     assert first_page(about) == (" With the most elastic rock, a restitution of 0.9, more than 1 % of it leaves the "
                                  "terrain.")
@@ -85,21 +84,21 @@ def test_failed_and_moving_runs_are_said(tmp_path, rows):
     made = most(tmp_path, at_rest=False)
     made[0] = made_rows.row(run="e1", status="failed", error="diverged")
     about = evaluated(tmp_path, made, rows)
-    assert about["text"].endswith("; 1 failed; 2 had not come to rest") and about["runs"] == ["e2", "e3"]
+    assert about.text.endswith("; 1 failed; 2 had not come to rest") and about.runs == ["e2", "e3"]
     none = evaluated(tmp_path, made[:1], rows)
-    assert none["text"] == "not known: e1 failed" and first_page(none) == ""
+    assert none.text == "not known: e1 failed" and first_page(none) == ""
     alone = evaluated(tmp_path, made[1:], [])        # none of the usual ones finished
-    assert "instead of" not in alone["text"] and alone["quantities"]["distance_99_m"]["usual"] is None
+    assert "instead of" not in alone.text and alone.quantities["distance_99_m"].usual is None
 
 
 def first_page(about):
-    return client_part.most_elastic(SimpleNamespace(study={elastic.ENTRY: about}), Numbers())
+    return client_part.most_elastic(SimpleNamespace(study=made_study.study(largest_restitution=about)), Numbers())
 
 
 def test_the_first_page_has_the_farthest(tmp_path, rows):
     about = evaluated(tmp_path, most(tmp_path), rows)
     assert first_page(about) == " With the most elastic rock, a restitution of 0.9, within 120 m."
-    assert client_part.most_elastic(SimpleNamespace(study={}), Numbers()) == ""     # of an older version
+    assert client_part.most_elastic(SimpleNamespace(study=made_study.study()), Numbers()) == ""
 
 
 @pytest.mark.parametrize("largest, variables, expected", [

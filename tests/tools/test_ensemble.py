@@ -189,11 +189,11 @@ def ishigami_indices(a=7.0, b=0.1):
 def test_indices_of_a_known_function():
     points = designs.points(designs.SOBOL, 3, 256, 1)
     found = emulator.analyse("abc", points, ishigami(points), range(256))
-    assert found.check.verdict == "good"
+    assert found.emulator.verdict == "good"
     first, total = ishigami_indices()
-    assert [one.first for one in found.influences] == pytest.approx(first, abs=0.03)
-    assert [one.total for one in found.influences] == pytest.approx(total, abs=0.03)
-    for one, exact in zip(found.influences, total):
+    assert [one.first for one in found.variables.values()] == pytest.approx(first, abs=0.03)
+    assert [one.total for one in found.variables.values()] == pytest.approx(total, abs=0.03)
+    for one, exact in zip(found.variables.values(), total):
         assert abs(one.total - exact) < 3 * one.total_error + 0.005 and one.total_error < 0.06
 
 
@@ -204,9 +204,9 @@ def test_indices_of_variables_that_the_emulator_drops_have_an_error(number, seed
     values = sobol_g(points)
     values = values + noise * values.std() * np.random.default_rng(seed).normal(size=number)
     found = emulator.analyse("abcd", points, values, range(number))
-    assert found.check.verdict == "good"
+    assert found.emulator.verdict == "good"
     first, total = sobol_g_indices()
-    for one, alone, whole in zip(found.influences, first, total):
+    for one, alone, whole in zip(found.variables.values(), first, total):
         assert abs(one.first - alone) < 2 * one.first_error and abs(one.total - whole) < 2 * one.total_error
         assert one.total_error < 0.2
 
@@ -216,19 +216,19 @@ def test_the_noise_of_chance_is_seen_and_idle_variables_too():
     points = designs.points(designs.SOBOL, 3, 64, 1)
     values = 100 * points[:, 0] + 30 * points[:, 1] + rng.normal(0, 5, 64)
     found = emulator.analyse("abc", points, values, range(64))
-    assert found.check.verdict == "good" and found.check.noise == pytest.approx(5, rel=0.4)
+    assert found.emulator.verdict == "good" and found.emulator.noise == pytest.approx(5, rel=0.4)
     exact = 100 ** 2 / (100 ** 2 + 30 ** 2)
-    assert [one.first for one in found.influences] == pytest.approx([exact, 1 - exact, 0], abs=0.05)
-    assert [one.rank_clear for one in found.influences] == [True, True, False]
+    assert [one.first for one in found.variables.values()] == pytest.approx([exact, 1 - exact, 0], abs=0.05)
+    assert [one.rank_clear for one in found.variables.values()] == [True, True, False]
 
 
 def test_an_emulator_that_explains_nothing_gives_no_indices():
     points = designs.points(designs.SOBOL, 2, 40, 1)
     found = emulator.analyse("ab", points, np.random.default_rng(3).normal(0, 1, 40), range(40))
-    assert found.check.verdict == "bad" and "no indices" in found.text
-    assert all(one.first is None and one.total is None for one in found.influences)
+    assert found.emulator.verdict == "bad" and "no indices" in found.text
+    assert all(one.first is None and one.total is None for one in found.variables.values())
     few = emulator.analyse("ab", points[:5], points[:5, 0], range(5))
-    assert few.check is None and "5 points are too few for an emulator of 2 variables" in few.text
+    assert few.emulator is None and "5 points are too few for an emulator of 2 variables" in few.text
     assert "same in all runs" in emulator.analyse("ab", points, np.ones(40), range(40)).text
 
 

@@ -188,7 +188,7 @@ def test_values_beyond_the_bounds():
     assert (plain.places, plain.value(-0.1), plain.unit("2")) == ((0, 1), "5", 0.0)
     known_ones = [distributions.distribution(*words.split("="), "--vary", "") for words in known_study.VARY]
     wide = sample.Sample(RUNS, designs.SOBOL, 1, tuple(known_ones)).widened(known_study.WIDE)
-    assert wide.about["wide"] == {"friction": [2.0, 30.0], "spacing": [0.2, 0.95]}
+    assert wide.about.wide == {"friction": [2.0, 30.0], "spacing": [0.2, 0.95]}
     assert {one.name: (one.low, one.high) for one in known_ones} == {
         "friction": (5, 30), "rolling": (0, 0.15), "spacing": (0.3, 0.95), "field_e": (0.05, 0.5)}
 

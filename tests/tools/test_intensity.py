@@ -59,14 +59,14 @@ def test_points_count_the_runs_above_and_keep_other_variables_apart():
     rows = [row("300", "0", "", 40.0), row("300", "0", "0.5", 60.0), row("0", "0", "", 0.0), row("0", "0", "0.5", 0.0),
             row("300", "0.1", "", 10.0), row("300", "0.1", "0.5", 50.0)]
     about = intensity.entry("peak", combinations.grouped(rows), [0.0, 50.0])
-    assert [line["set"] for line in about["lines"]] == [{"rolling": "0"}, {"rolling": "0.1"}]
-    low, high = about["lines"][0]["points"]     # by the intensity, not in the order of the runs
-    assert (low["at"], high["at"]) == (0.0, 300.0) and (low["runs"], high["runs"]) == (2, 2)
-    assert [one["runs"] for one in low["exceed"]] == [0, 0] and [one["runs"] for one in high["exceed"]] == [2, 1]
-    assert high["mean_m3"] == 50.0 and high["scatter_m3"] == pytest.approx(200 ** 0.5)
-    assert (high["smallest_m3"], high["largest_m3"], high["share_of_released"]) == (40.0, 60.0, 0.05)
+    assert [line.set for line in about.lines] == [{"rolling": "0"}, {"rolling": "0.1"}]
+    low, high = about.lines[0].points     # by the intensity, not in the order of the runs
+    assert (low.at, high.at) == (0.0, 300.0) and (low.runs, high.runs) == (2, 2)
+    assert [one.runs for one in low.exceed] == [0, 0] and [one.runs for one in high.exceed] == [2, 1]
+    assert high.mean_m3 == 50.0 and high.scatter_m3 == pytest.approx(200 ** 0.5)
+    assert (high.smallest_m3, high.largest_m3, high.share_of_released) == (40.0, 60.0, 0.05)
     # 50 m3 are not more than 50 m3
-    assert [one["runs"] for one in about["lines"][1]["points"][0]["exceed"]] == [2, 0]
+    assert [one.runs for one in about.lines[1].points[0].exceed] == [2, 0]
 
 
 def test_a_scatter_of_failing_is_doubted():

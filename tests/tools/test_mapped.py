@@ -1,6 +1,7 @@
 """The runs of a study against a mapped deposit: overlap, run-out and volume by hand, and on the page."""
 import html
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,7 @@ import test_report
 from made_rows import row
 from tiny_collapse import read_asc
 
-from slope_tools import disk
+from slope_tools import disk, records
 from slope_tools.plots import figure_maps
 from slope_tools.studies import mapped
 from slope_tools.survey import rasters
@@ -25,8 +26,9 @@ def compared(folder, path):
     """What study.yaml says of a mapped deposit, entered in it."""
     file = folder / "study.yaml"
     about = study_file.load_study(file)
-    terrains = [folder / one.run / "terrain.asc" for one in about["runs"]]
-    about["runs"], about["observed"] = mapped.compare(path, folder, about["runs"], terrains)
+    terrains = [folder / one.run / "terrain.asc" for one in about.runs]
+    found, observed = mapped.compare(path, folder, about.runs, terrains)
+    about = replace(about, runs=found, observed=observed)
     file.write_text(yaml.safe_dump(disk.plain(study_file.plain(about))))
     return about
 
@@ -49,7 +51,7 @@ def thickness(folder, path, of=2.0):
 
 def test_overlap_and_run_out_by_hand(here):
     about = compared(here / "repeated", outline(here / "observed.csv"))
-    entry, rows = about["observed"], about["runs"]
+    entry, rows = records.plain(about.observed), about.runs
     assert entry["file"] == "../observed.csv" and entry["volume_m3"] is None
     assert entry["area_m2"] == pytest.approx((HIGH[0] - LOW[0]) * (HIGH[1] - LOW[1]))
     _, inside, _ = thickness(here / "repeated", here / "other.tif")
@@ -60,7 +62,7 @@ def test_overlap_and_run_out_by_hand(here):
     assert entry["best"] == max(rows, key=lambda one: one.mapped.overlap).run
     # the farthest corner: the mass comes down from the right
     assert min(one.length_m for one in rows) < entry["length_m"] + 10
-    text, = mapped.describe(entry, rows)
+    text, = mapped.describe(about.observed, rows)
     assert re.search(rf"overlap \(Jaccard\) \d\.\d\d to \d\.\d\d, best of {entry['best']}, [+-]\d+ m in run-out", text)
     assert "overlap,beyond_mapped_m" in study_table.table({"rolling": ["0", "0.3"], "steps": ["1200"]}, {}, rows, {
         "seed": "0"}).splitlines()[0]
@@ -68,11 +70,11 @@ def test_overlap_and_run_out_by_hand(here):
 
 def test_the_mass_of_a_mapped_thickness(here):
     path, inside, cell = thickness(here / "repeated", here / "observed.tif", 1.0)
-    entry = compared(here / "repeated", path)["observed"]
+    entry = compared(here / "repeated", path).observed
     volume = inside.sum() * cell ** 2
-    assert entry["volume_m3"] == pytest.approx(volume) and entry["released_m3"] == pytest.approx(349, abs=1)
-    assert f"{100 * (1 - volume / entry['released_m3']):.0f} % less than is released" in mapped.describe(entry, [
-        row(run=entry["best"], overlap=0.5)])[1]
+    assert entry.volume_m3 == pytest.approx(volume) and entry.released_m3 == pytest.approx(349, abs=1)
+    assert f"{100 * (1 - volume / entry.released_m3):.0f} % less than is released" in mapped.describe(entry, [
+        row(run=entry.best, overlap=0.5)])[1]
 
 
 def test_without_a_mapped_deposit_nothing_is_compared(here):
@@ -94,7 +96,7 @@ def test_the_page_compares_whatever_the_method(here, slope, kind, monkeypatch):
     assert all(one.mapped is not None for one in layers)
     assert any(entry.text == "mapped deposit" for entry in figure_maps.entries(layers[0]))
     page = html.unescape((folder / "report.html").read_text(encoding="utf-8"))
-    best = next(one.mapped for one in about["runs"] if one.run == about["observed"]["best"])
+    best = next(one.mapped for one in about.runs if one.run == about.observed.best)
     first = page[:page.index('id="appendix"')]
     assert f"The best of 6 runs shares {best.overlap:.3g}" in first
     assert re.search(r"and ends [\d.]+ m (beyond|short of) its tip\.", first)

@@ -1,11 +1,13 @@
 """The way of the data: evaluation writes and tells nothing, and a page is drawn when something of it has changed."""
 import ast
 import inspect
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 
+import made_study
 from made_rows import row
 
 import slope_tools
@@ -49,8 +51,8 @@ def page(tmp_path, monkeypatch):
     run.mkdir(parents=True)
     (run / "finished.yaml").write_text("summary: site.summary.yaml\n")
     (run / "site.thickness.asc").write_text("1 2 3\n")
-    about = {"study": {"deck": "in.site", "collected": "then", "machine": {"name": "here"}, "jobs": 2},
-             "runs": [row(run="one", summary="one/site.summary.yaml")], "volume": 7.0}
+    about = made_study.study({"collected": "then", "machine": {"name": "here"}, "jobs": 2},
+                             runs=[row(run="one", summary="one/site.summary.yaml")], farthest="one")
     drawn = []
 
     def make(asked):
@@ -66,7 +68,7 @@ def page(tmp_path, monkeypatch):
     def update(site=None, **change):
         output = tmp_path / "report.html"
         before = len(drawn)
-        asked = Asked(folder, film=output.with_suffix(".mp4"), study={**about, **change}, site=site or {})
+        asked = Asked(folder, film=output.with_suffix(".mp4"), study=replace(about, **change), site=site or {})
         lines = document.update(asked, output)
         assert ("unchanged" in lines[0]) == (len(drawn) == before)
         return len(drawn) - before
@@ -76,7 +78,7 @@ def page(tmp_path, monkeypatch):
 
 def test_a_page_is_drawn_once(page):
     assert [page() for _ in range(3)] == [1, 0, 0]
-    again = {**page.about["study"], "collected": "now", "machine": {"name": "there"}, "jobs": 4}
+    again = replace(page.about.study, collected="now", machine={"name": "there"}, jobs=4)
     assert page(study=again) == 0
 
 
@@ -85,7 +87,7 @@ def test_a_page_is_drawn_when_something_of_it_has_changed(page, monkeypatch, wha
     assert page() == 1
     change = {}
     if what == "number":
-        change = {"volume": 8.0}
+        change = {"farthest": "another"}
     elif what == "run":
         (page.folder / "one" / "finished.yaml").write_text("summary: site.summary.yaml\nfinished: later\n")
     elif what == "raster":

@@ -1,5 +1,5 @@
 """Typed values to and from what files have, the rows of a study among them: both ways, and what is wrong in a line."""
-from dataclasses import MISSING, dataclass, fields
+from dataclasses import MISSING, dataclass, fields, replace
 from pathlib import Path
 from typing import Any, Mapping, NamedTuple, Optional, Sequence, Tuple
 
@@ -8,6 +8,7 @@ import pytest
 import yaml
 
 import made_rows
+import made_study
 from run_helpers import called
 from tiny_collapse import edit
 
@@ -15,7 +16,7 @@ from slope_tools import disk, records
 from slope_tools.errors import SlopeError
 from slope_tools.findings import Finding
 from slope_tools.studies import files
-from slope_tools.tables import quantities, rows, study_file
+from slope_tools.tables import quantities, rows, study_file, study_types
 from slope_tools.tables.rows import Failed, Finished, Mapped, OnRoad
 
 ROAD = {"remove_m3": 12.5, "lane_hours": 3.0, "stretches": [{"from": 1.0, "to": 2.5}], "clearing": {"hours": 4.0},
@@ -161,6 +162,27 @@ def test_a_key_of_one_part_is_of_no_other():
     assert made_rows.row().value("remove_m3") is None
 
 
+def test_a_record_of_several_kinds_is_the_smallest_that_has_all_keys():
+    """An entry that lacks a key is refused, and not taken for a smaller one: of known events that weigh nothing."""
+    weighted, known = made_study.weighted(), made_study.weighted(reached=None)
+    for one in (weighted, known):
+        entry = records.plain(made_study.ensemble(dict(vars(one))))
+        assert records.read(study_types.Ensemble, entry).known_events == one
+    entry = records.plain(made_study.ensemble({}))
+    for name in vars(weighted).keys() - vars(known).keys():
+        lacks = {key: value for key, value in entry["known_events"].items() if key != name}
+        with pytest.raises(records.NoRecord, match=f"known_events: must have {name}"):
+            records.read(study_types.Ensemble, {**entry, "known_events": lacks})
+
+
+def test_what_is_none_by_default_is_not_written():
+    design = study_types.Design("sobol", 1, 64, {})
+    assert records.plain(design) == {"kind": "sobol", "seed": 1, "points": 64, "variables": {}}
+    assert records.plain(replace(design, fit="a"))["fit"] == "a"
+    assert records.plain(study_types.KnownVariable([], {"a": None})) == {"quantiles": [], "rank": {"a": None}}
+    assert records.read(study_types.Design, records.plain(design)) == design
+
+
 @pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 def test_a_study_is_read_as_it_was_written(tiny_case, monkeypatch, capsys):
     """The rows of runs, one of which failed, before they are written, and after."""
@@ -172,7 +194,7 @@ def test_a_study_is_read_as_it_was_written(tiny_case, monkeypatch, capsys):
                                      "--road", "case/road.csv", "--local", "-o", "out"])
     assert status == 2 and "1 of 3 runs failed" in err, err
     [about] = made
-    kinds = [(type(row), getattr(row, "road", None) is not None) for row in about["runs"]]
+    kinds = [(type(row), getattr(row, "road", None) is not None) for row in about.runs]
     assert kinds == [(Finished, True)] * 2 + [(Failed, False)]
-    assert study_file.load_study(Path("out/study.yaml"))["runs"] == about["runs"]
-    assert study_file.Study.read("out").runs == [rows.plain(row) for row in about["runs"]]
+    assert study_file.load_study(Path("out/study.yaml")).runs == about.runs
+    assert study_file.Study.read("out").runs == [rows.plain(row) for row in about.runs]

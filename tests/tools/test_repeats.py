@@ -9,6 +9,7 @@ from made_rows import changed, row
 from messages import is_one
 from tiny_collapse import edit, loaded
 
+from slope_tools import records
 from slope_tools import schemas
 from slope_tools.case import run_folders
 from slope_tools.deposits import rest, travel_shares
@@ -49,20 +50,20 @@ def test_repeats_are_made_for_each_combination_and_the_headline_is_theirs(slope)
 
     volumes = [[float(row["remove_m3"]) for row in table if row["rolling"] == rolling] for rolling in ("0", "0.3")]
     means = [statistics.fmean(several) for several in volumes]
-    best, larger = about["conservative"], means.index(max(means))
-    assert min(means) > 1 and best["kind"] == "prediction"
-    assert best["mean_m3"] == pytest.approx(max(means)) and best["set"]["rolling"] == ("0", "0.3")[larger]
+    best, larger = study_file.load_study(Path("out/study.yaml")).conservative, means.index(max(means))
+    assert min(means) > 1 and best.kind == "prediction"
+    assert best.mean_m3 == pytest.approx(max(means)) and best.set["rolling"] == ("0", "0.3")[larger]
     assert max(means) <= 2 * min(means)     # the scatter is that of both, in proportion to the root of the mean
     deviation = (sum(max(means) / mean * statistics.variance(each) for mean, each in zip(means, volumes)) / 2) ** 0.5
-    assert best["starts_m3"] == [min(volumes[larger]), max(volumes[larger])]
-    assert best["scatter_m3"] == pytest.approx(deviation) and 2 <= best["degrees_of_freedom"] <= 4
-    assert best["chance_m3"] == pytest.approx(best["quantile"] * deviation * (4 / 3) ** 0.5)
-    assert best["repeats"] == 3 and best["size_m3"] is None
-    assert best["remove_m3"] == max(volumes[larger])
-    assert [row["run"] for row in table if float(row["remove_m3"]) == best["remove_m3"]] == [best["run"]]
+    assert best.starts_m3 == [min(volumes[larger]), max(volumes[larger])]
+    assert best.scatter_m3 == pytest.approx(deviation) and 2 <= best.degrees_of_freedom <= 4
+    assert best.chance_m3 == pytest.approx(best.quantile * deviation * (4 / 3) ** 0.5)
+    assert best.repeats == 3 and best.size_m3 is None
+    assert best.remove_m3 == max(volumes[larger])
+    assert [row["run"] for row in table if float(row["remove_m3"]) == best.remove_m3] == [best.run]
     # the runs are cut short: the number is withheld
-    assert best["volume_m3"] is None and best["rounded"]["volume_m3"] is None
-    assert [one["kind"] for one in best["withheld"]] == ["runs not at rest or failed"]
+    assert best.volume_m3 is None and best.rounded["volume_m3"] is None
+    assert [one.kind for one in best.withheld] == ["runs not at rest or failed"]
     assert "not usable as a conservative volume:\n  6 of 6 runs failed or are not at rest" in out
     assert "conservative volume to remove" not in out
 
@@ -74,17 +75,16 @@ def test_repeats_are_made_for_each_combination_and_the_headline_is_theirs(slope)
         assert entry["remove_m3"]["scatter"] == pytest.approx(statistics.stdev(several))
         assert float(line["remove_m3_mean"]) == entry["remove_m3"]["mean"]
         assert float(line["remove_m3_scatter"]) == entry["remove_m3"]["scatter"]
-    # one of the readers of study.yaml
-    assert study_file.load_study(Path("out/study.yaml"))["conservative"] == best
+    assert records.plain(best) == about["conservative"]
 
 
 def test_what_a_repeat_does_not_change_counts_once(succeed):
     """A variable that the deck does not use: the runs are one, and chance is not known."""
     succeed(f"--set rolling=0,0.3 --repeat unused=2,3 --equally-good unused {ROAD} -o out")
-    best = loaded()[0]["conservative"]
-    assert best["kind"] == "largest of 2 runs; chance unknown" and best["repeats"] == 1
-    same, = (one for one in best["doubts"] if one["kind"] == "no effect")
-    assert same["runs"][0] == "rolling_0_unused_2"
+    best = study_file.load_study(Path("out/study.yaml")).conservative
+    assert best.kind == "largest of 2 runs; chance unknown" and best.repeats == 1
+    same, = (one for one in best.doubts if one.kind == "no effect")
+    assert same.runs[0] == "rolling_0_unused_2"
 
 
 def test_a_value_that_changes_nothing_is_said(succeed):
@@ -174,29 +174,29 @@ LARGE = (("0",), (10.0, 12, 11)), (("1",), (90.0, 92, 91))
 
 def test_a_difference_below_chance_is_no_trend_and_no_doubt():
     best = conservative({"rolling": ["0", "1"]}, rows(*SMALL))
-    [entry] = best["differences"]
-    assert (entry["largest_at"], entry["smallest_at"], entry["clear"]) == ("1", "0", False) and entry["by_m3"] == 4
-    assert best["doubts"] == []
+    [entry] = best.differences
+    assert (entry.largest_at, entry.smallest_at, entry.clear) == ("1", "0", False) and entry.by_m3 == 4
+    assert best.doubts == []
     assert any("no more than expected by chance" in line for line in combinations.describe(best))
 
 
 def test_a_difference_larger_than_chance_at_the_end_of_a_range_is_a_doubt():
     best = conservative({"rolling": ["0", "1"]}, rows(*LARGE))
-    assert best["differences"][0]["clear"] is True
-    assert best["doubts"] == [Finding("end of range", {"variable": "rolling", "low": 0.0, "high": 1.0}).entry()]
+    assert best.differences[0].clear is True
+    assert best.doubts == [Finding("end of range", {"variable": "rolling", "low": 0.0, "high": 1.0})]
     # a value of 0, which cannot be less, is no end; neither is one in the middle, or a name
-    assert conservative({"rolling": ["0", "1"]}, rows((("0",), (90.0, 92)), (("1",), (10.0, 12))))["doubts"] == []
+    assert conservative({"rolling": ["0", "1"]}, rows((("0",), (90.0, 92)), (("1",), (10.0, 12)))).doubts == []
     middle = rows((("1",), (10.0, 12)), (("2",), (90.0, 92)), (("3",), (10.1, 12)))
-    assert conservative({"rolling": ["1", "2", "3"]}, middle)["doubts"] == []
-    assert conservative({"rolling": ["a", "b"]}, rows((("a",), (10.0, 12)), (("b",), (90.0, 92))))["doubts"] == []
+    assert conservative({"rolling": ["1", "2", "3"]}, middle).doubts == []
+    assert conservative({"rolling": ["a", "b"]}, rows((("a",), (10.0, 12)), (("b",), (90.0, 92)))).doubts == []
 
 
 def test_differences_are_those_of_the_governing_line():
     several = rows((("0", "20"), (10.0, 11)), (("1", "20"), (50.0, 51)), (("0", "30"), (70.0, 71)),
                    (("1", "30"), (90.0, 91)), names=("rolling", "friction"))
     best = conservative({"rolling": ["0", "1"], "friction": ["20", "30"]}, several)
-    assert [(entry["variable"], entry["by_m3"]) for entry in best["differences"]] == [("rolling", 20), ("friction", 40)]
-    assert best["label"] == "rolling 1, friction 30"
+    assert [(entry.variable, entry.by_m3) for entry in best.differences] == [("rolling", 20), ("friction", 40)]
+    assert best.label == "rolling 1, friction 30"
 
 
 def test_which_ground_governs():
@@ -206,46 +206,46 @@ def test_which_ground_governs():
         (("0", "0.9"), (70.0, 71, 72)), (("1", "0.9"), (80.0, 82, 81)), (("0", "0.5"), (95.0,)),
         (("1", "0.5"), (40.0,)), names=("rolling", "spacing"))]
     best = conservative(settings, several)
-    assert best["ground"] == "the ground that governs: spacing 0.5, stop angle 15.5 degrees (tried: spacing 0.9, 0.5)"
-    assert best["ground"] in combinations.describe({**best, "withheld": [], "zero": None})
-    assert (best["mean_m3"], best["repeats"], best["label"]) == (95, 1, "rolling 0, spacing 0.5")
-    assert best["chance_m3"] == pytest.approx(best["quantile"] * best["scatter_m3"] * 2 ** 0.5)
-    assert [(entry["variable"], entry["by_m3"]) for entry in best["differences"]] == [("rolling", 55), ("spacing", 24)]
+    assert best.ground == "the ground that governs: spacing 0.5, stop angle 15.5 degrees (tried: spacing 0.9, 0.5)"
+    assert best.ground in combinations.describe(best)
+    assert (best.mean_m3, best.repeats, best.label) == (95, 1, "rolling 0, spacing 0.5")
+    assert best.chance_m3 == pytest.approx(best.quantile * best.scatter_m3 * 2 ** 0.5)
+    assert [(entry.variable, entry.by_m3) for entry in best.differences] == [("rolling", 55), ("spacing", 24)]
     entry = combinations.entries(combinations.grouped(several), ["remove_m3"])[0]
     assert entry["stop_angle_deg"] == 24.5
     several[6] = changed(several[6], remove_m3=60.0)
     best = conservative(settings, several)
-    assert best["ground"].startswith("the ground that governs: spacing 0.9, stop angle 24.5")
+    assert best.ground.startswith("the ground that governs: spacing 0.9, stop angle 24.5")
     several = [changed(one, stop_angle_deg=None) for one in several]
-    assert conservative(settings, several)["ground"] == "the ground that governs: spacing 0.9 (tried: spacing 0.9, 0.5)"
-    assert conservative({"rolling": ["0", "1"]}, rows(*SMALL))["ground"] is None
+    assert conservative(settings, several).ground == "the ground that governs: spacing 0.9 (tried: spacing 0.9, 0.5)"
+    assert conservative({"rolling": ["0", "1"]}, rows(*SMALL)).ground is None
 
 
 def test_other_doubts():
     alone = rows((("0",), (5.0,)))
-    assert conservative({"rolling": ["0"]}, alone)["doubts"] == [Finding("single run").entry()]
+    assert conservative({"rolling": ["0"]}, alone).doubts == [Finding("single run")]
     above = rows((("0",), [100.0] * 7 + [101.0] * 7 + [120.0]), (("1",), [100.0 + i / 100 for i in range(30)]))
     above = [changed(one, front_m=i) for i, one in enumerate(above)]        # no two are the same run
-    assert Finding("more in a run", {"run": "0_14", "volume": 120.0}).entry() in conservative(
-        {"rolling": ["0", "1"]}, above)["doubts"]
+    assert Finding("more in a run", {"run": "0_14", "volume": 120.0}) in conservative(
+        {"rolling": ["0", "1"]}, above).doubts
     loud = rows((("1",), (90.0, 120, 150)), (("0",), (100.0, 101, 102)))
-    assert Finding("scatters more", {"mine": 30.0, "others": 1.1}).entry() in conservative(
-        {"rolling": ["1", "0"]}, loud)["doubts"]
+    assert Finding("scatters more", {"mine": 30.0, "others": 1.1}) in conservative(
+        {"rolling": ["1", "0"]}, loud).doubts
 
 
 def test_more_than_is_released_is_doubted():
     several = rows((("0",), (700.0, 900, 800)), (("1",), (710.0, 890, 805)))
     found = conservative({"rolling": ["0", "1"]}, several)
-    assert found["volume_m3"] > 1000
-    assert Finding("more than released", {"released": 1000.0}).entry() in found["doubts"]
+    assert found.volume_m3 > 1000
+    assert Finding("more than released", {"released": 1000.0}) in found.doubts
     several = [changed(one, released_m3=2000.0) for one in several]
-    assert conservative({"rolling": ["0", "1"]}, several)["doubts"] == []
+    assert conservative({"rolling": ["0", "1"]}, several).doubts == []
 
 
 def two_outcomes(found):
     """Of these doubts: how many of how many runs have hardly any, and in how many of them the slope stood."""
-    return [tuple(one["numbers"][name] for name in ("few", "runs", "stood")) for one in found["doubts"]
-            if one["kind"] in ("two outcomes", "hardly reaches")]
+    return [tuple(one.numbers[name] for name in ("few", "runs", "stood")) for one in found.doubts
+            if one.kind in ("two outcomes", "hardly reaches")]
 
 
 def test_runs_of_another_outcome_are_doubted():

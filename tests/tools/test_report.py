@@ -24,6 +24,8 @@ import made_rows
 from run_helpers import called, examples
 from tiny_collapse import LMP, TOP, height, read_asc, rows_of, write_case
 
+from slope_tools import records
+from slope_tools.findings import Finding
 from slope_tools.drawing import figures
 from slope_tools.plots import (figure_charts, figure_maps, ground as report_ground,
                                section as report_section)
@@ -149,9 +151,9 @@ def change(folder, function):
                 about["largest"].pop(key, None)
     if about:
         finished = finished_of(map(rows.read, about["runs"]))
-        about["largest"]["front_m"] = outcome.largest(finished, "front_m")
+        about["largest"]["front_m"] = records.plain(outcome.largest(finished, "front_m"))
         if all(row.value(key) is not None for row in finished):
-            about["largest"][key] = outcome.largest(finished, key)
+            about["largest"][key] = records.plain(outcome.largest(finished, key))
         (folder / "study.yaml").write_text(yaml.safe_dump(about))
 
 
@@ -673,7 +675,7 @@ def test_warnings_of_the_study_s_tools_are_shown_each(slope, here):
     stands("out")
     about = yaml.safe_load(Path("out/study.yaml").read_text())
     about["warnings"] = [*({"kind": "of another version", "text": text} for text in texts),
-                         *({"kind": kind, "text": "of the rows"} for kind in ("lost", "moving"))]
+                         Finding("moving", {"among": "", "end": "of the rows", "time": 9.0}).entry()]
     Path("out/study.yaml").write_text(yaml.safe_dump(about))
     status, out, _ = slope("out")
     page, reader = read("out/report.html")

@@ -2,6 +2,7 @@
 import html
 import re
 import string
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -14,7 +15,7 @@ import test_report
 from made_rows import changed, row
 from test_report import stands
 
-from slope_tools import digits
+from slope_tools import digits, records
 from slope_tools.ensembles import known_study
 from slope_tools.finding_words import WORDS, words_of
 from slope_tools.findings import LIMIT, NOTE, WARNING, Finding, finding, gathered
@@ -71,13 +72,14 @@ def test_a_number_that_is_withheld_gives_way_to_its_reasons(slope, here):
     path = here / "out" / "study.yaml"
     about = yaml.safe_load(path.read_text())
     best = about["conservative"]
-    best.update(withheld=[{"kind": "balls on the road", "number": 3.0, "bound": 10, "text": "on the road lie 3 balls",
+    best.update(withheld=[{"kind": "balls on the road", "numbers": {"number": 3.0, "bound": 10, "balls": "3 balls"},
                            "remedy": "slope study --set d=1"}], volume_m3=None)
     best["rounded"]["volume_m3"] = None
     path.write_text(yaml.safe_dump(about))
     assert slope("out")[0] == 0
     text = client(here / "out" / "report.html")
-    assert "Not usable as a conservative volume" in text and "On the road lie 3 balls." in text
+    assert "Not usable as a conservative volume" in text
+    assert "On the road lies the volume of 3 balls, fewer than 10." in text
     assert not TOOLS_WORDS.search(text) and "slope study --set d=1" in (here / "out" / "report.html").read_text()
 
 
@@ -122,9 +124,11 @@ def test_what_stands_first(slope, here, case):
     """A number, a floor, one that is withheld, nothing: never only that it is unknown, each number with its unit."""
     path = here / "repeated" / "study.yaml"
     about = yaml.safe_load(path.read_text())
-    study = {**study_file.load_study(path), "headline": HEADLINES[case]}
-    step = next_step.of_studies([next_step.Made(study, path.parent)], HEADLINES[case])
-    path.write_text(yaml.safe_dump({**about, "headline": HEADLINES[case], "next_step": step and step.about()}))
+    number = made_study.headline(**HEADLINES[case])
+    study = replace(study_file.load_study(path), headline=number)
+    step = next_step.of_studies([next_step.Made(study, path.parent)], number)
+    path.write_text(yaml.safe_dump({**about, "headline": HEADLINES[case],
+                                    "next_step": step and records.plain(step.about())}))
     assert slope("repeated")[0] == 0
     text = " ".join(client(here / "repeated" / "report.html").split())
     for words in SAID[case]:
@@ -166,7 +170,7 @@ def test_a_study_alone_whose_balls_are_coarse_says_at_least(slope, here, run, ba
         assert grown == pytest.approx(1.5 * volume, rel=0.01)
 
 
-def weighted(quantities=None, reached=0.9, gap=None):
+def weighted(quantities=None, reached=0.9, gap=None, header=None, **entries):
     """The data of a study of three runs that known events weigh."""
     rows = [row(run=name, distance_99_m=far, remove_on_road_m3=on, blocked_m=40.0, beyond_road_m3=0.0)
             for name, far, on in (("a", 200.0, 0.0), ("b", 300.0, 19600.0), ("c", 900.0, 300.0))]
@@ -174,14 +178,13 @@ def weighted(quantities=None, reached=0.9, gap=None):
         key: {"quantiles": [{"share": 0.95, "value": value}]} for key, value in (quantities or {}).items()},
         "to_remove": [{"share": 0.95, "value": 9e3, "low": 0.0, "high": None, "gap": gap}]}
     return SimpleNamespace(finished=rows, compared=rows, road=True,
-                           study=made_study.study(ensemble=made_study.ensemble(known)))
+                           study=made_study.study(header, ensemble=made_study.ensemble(known), **entries))
 
 
 @pytest.mark.parametrize("balls, said", [(None, False), (2.7, True), (16.0, False)])
 def test_beyond_the_road_smaller_balls_bring_more(balls, said):
     """By as much as in the family of slides, where enough of them tell; nothing where nothing lies there."""
-    data = weighted()
-    data.study["study"]["balls_thick"] = balls
+    data = weighted(header={"balls_thick": balls})
     assert "smaller balls" not in client_part.road(data, Numbers())
     data.finished[1] = changed(data.finished[1], beyond_road_m3=730.0)
     text = client_part.road(data, Numbers())
@@ -197,7 +200,7 @@ def test_beyond_the_road_smaller_balls_bring_more(balls, said):
 def test_numbers_of_runs_say_what_smaller_balls_bring(effect, said):
     """Stretches, hazard curves and intensities are of the runs, and not raised as the headline is."""
     entry = effect and dict(zip(Effect._fields, effect))
-    for study in ({"size": effect and {"effects": {"remove_on_road_m3": entry}}}, None):
+    for study in (made_study.study(size=effect and {"effects": {"remove_on_road_m3": entry}}), None):
         text = numbers.as_run(SimpleNamespace(study=study), "remove_on_road_m3")
         assert (said in text and bool(text) is bool(said)) if study else text == ""
         assert numbers.as_run(SimpleNamespace(study=study), "length_m") == ""
@@ -245,12 +248,11 @@ def test_ranges_beside_a_weighted_number():
 @pytest.mark.parametrize("gap, source, said", [([2e3, 9e3], "ensemble", True), (None, "ensemble", False),
                                                ([2e3, 9e3], "paper", False)])
 def test_the_number_says_that_it_is_in_a_gap(gap, source, said):
-    about = {"source": source, "share": 0.95}
+    about = made_study.headline(source=source, share=0.95)
     text = client_part.in_gap(weighted(gap=gap), about, Numbers())
     assert ("between 2,000 m3 and 9,000 m3" in text) == said and bool(text) == said
-    data = weighted(gap=gap)        # the number is raised for smaller balls
     effect = {**made_study.EFFECT, "coarse": 100.0, "fine": 120.0, "ratio": True}
-    data.study["size"] = {"effects": {"remove_m3": effect}}
+    data = weighted(gap=gap, size={"effects": {"remove_m3": effect}})       # the number is raised for smaller balls
     assert ("between 2,400 m3 and 10,800 m3" in client_part.in_gap(data, about, Numbers())) == said
 
 
@@ -258,11 +260,12 @@ def test_the_next_step_and_its_time(tmp_path):
     """By the first reason that something can be done about; as long as the runs took, several at a time."""
     design = {"points": 64, "variables": {"friction": "2:30", "rolling": "uniform:0:0.15", "slip": "list:a,b"}}
     rows = [row(wall_s=60.0) for _ in range(20)]
-    made_ = next_step.Made({"study": {"jobs": 2, "deck": "in.tiny"}, "conservative": None, "runs": rows, "ensemble": {
-        "design": design, "known_events": {"set": "rock_avalanches.csv"}}}, Path("site/ensemble"))
+    whole = made_study.ensemble({"set": "rock_avalanches.csv"}, design=design)
+    made_ = next_step.Made(made_study.study({"jobs": 2, "deck": "in.tiny"}, runs=rows, ensemble=whole),
+                           Path("site/ensemble"))
 
     def step(*codes, of=made_):
-        return next_step.of_studies([of], headline_of("floor", source="ensemble", reasons=[
+        return next_step.of_studies([of], made_study.headline(kind="floor", source="ensemble", reasons=[
             {"code": code, "numbers": numbers} for code, numbers in codes]))
 
     beyond = ("known beyond runs", BEYOND["numbers"])
@@ -277,8 +280,8 @@ def test_the_next_step_and_its_time(tmp_path):
     (tmp_path / "site.yaml").touch()
     assert step(("terrain ends", TERRAIN["numbers"]), of=made_._replace(folder=tmp_path / "ensemble")).command.endswith(
         f"{tmp_path}/site.yaml, then: tools/slope site {tmp_path} && tools/slope study {tmp_path} --anew")
-    rows[0] = row(wall_s=None)
-    assert step(("too few runs", {})).time == ""
+    study = replace(made_.study, runs=[row(wall_s=None), *rows])
+    assert step(("too few runs", {}), of=made_._replace(study=study)).time == ""
 
 
 def test_the_next_step_is_of_the_study_whose_reason_comes_first(tmp_path):
@@ -286,26 +289,26 @@ def test_the_next_step_is_of_the_study_whose_reason_comes_first(tmp_path):
     (tmp_path / "site.yaml").touch()
     rows = [row(wall_s=30.0, released_m3=100.0)] * 4
     mends = f"more time (model.duration) in {tmp_path}/site.yaml, then: tools/slope site {tmp_path} && ..."
-    paper = {"study": {"jobs": 1}, "conservative": {"withheld": []}, "ensemble": None, "runs": rows}
-    ensemble = {"study": {"jobs": 2}, "conservative": None, "runs": rows, "ensemble": {"withheld": [
-        {"kind": "runs not at rest or failed", "remedy": mends, "numbers": {"number": 6, "bound": 20}}]}}
+    paper = made_study.study({"jobs": 1}, conservative=made_study.conservative(9.0), runs=rows)
+    withheld = [Finding("runs not at rest or failed", {"number": 6, "bound": 20, "most": 10.0}, remedy=mends)]
+    ensemble = made_study.study({"jobs": 2}, runs=rows, ensemble=made_study.ensemble(withheld=withheld))
     both = [next_step.Made(paper, tmp_path / "study"), next_step.Made(ensemble, tmp_path / "ensemble")]
     size = {"code": "size of balls", "numbers": {"run": "finished", "balls_thick": 5.0, "enough": 16.0, "growth": None}}
     rule = {"code": "rule", "numbers": {"source": "ensemble", "rule": "runs not at rest or failed", "number": 6}}
-    about = headline_of("floor", volume_m3=9.0, source="paper", reasons=[rule, size])
+    about = made_study.headline(kind="floor", volume_m3=9.0, source="paper", reasons=[rule, size])
     step = next_step.of_studies(both, about)
     assert (step.command, step.seconds) == (mends, 2 * (120 + 60)) and step.line.startswith("tools/slope site")
     assert step.before.endswith("/site.yaml, then:")
-    step = next_step.of_studies(both, {**about, "reasons": [size, rule]})
+    step = next_step.of_studies(both, replace(about, reasons=[size, rule]))
     assert step.command.startswith(f"tools/slope site {tmp_path} --balls 800 && ") and step.before == ""
-    assert next_step.of_studies(both, {**about, "kind": "number"}) is None
+    assert next_step.of_studies(both, replace(about, kind="number")) is None
 
 
 def test_each_reason_is_told_once():
     """Of both studies; the console and the first page, in the same order."""
     other = {**MOVING, "numbers": {**MOVING["numbers"], "source": "ensemble"}}
     size = {"code": "size of balls", "numbers": {"run": "", "balls_thick": None, "enough": 16.0, "growth": None}}
-    about = headline_of("withheld", reasons=[other, size, MOVING, size])
+    about = made_study.headline(**headline_of("withheld", reasons=[other, size, MOVING, size]))
     said = client_part.reasons(about)
     assert len(said) == 2 and said[0].startswith("More than a tenth of the runs failed")
     assert len(answer_words.lines(about)) == 3 and "rule" in answer_words.lines(about)[1]
@@ -416,7 +419,7 @@ def test_the_weightiest_come_first_and_three_are_shown():
     rows = moved(rows_of(*[(6000.0, 2e6)] * 4), 0.2, 0.02, 0.05)
     rows.append(row(run="cut", status="failed", error="ERROR: 3 atoms lost"))
     rows.append(row(run="cut too", status="failed", error="ERROR: no memory"))
-    thin = Finding("thin", {"balls": 1.83, "limit": 3.0}).entry()
+    thin = Finding("thin", {"balls": 1.83, "limit": 3.0})
     data = data_of(rows, study=made_study.study(warnings=[thin]))
     found = warnings.findings(data, GROUND)
     told = warnings.first_page(found)
@@ -473,8 +476,8 @@ def test_runs_of_several_sizes_are_one_line():
     sizes, = gathered([Finding("lost much", {"volume": volume, "percent": 3.0, "up_to": "up to ", "where": "",
                                              "add": ""},
                                (f"rolling_0_d_{volume:g}",), "sizes of balls") for volume in (337.0, 4.21)], 4)
-    several = [sizes.entry(), "the slope is steep", "the toe is wet",
-               {"kind": "moving", "text": "judged from the rows"}]
+    moving = Finding("moving", {"among": "", "end": "slow", "time": 9.0})       # judged from the rows
+    several = [sizes, finding("the slope is steep"), finding("the toe is wet"), moving]
     found = warnings.findings(data_of([], study=made_study.study(warnings=several), repeats={"x": []}), GROUND)
     assert [one.text for one in found if one.level == WARNING][1:] == ["the slope is steep", "the toe is wet"]
     assert sizes.numbers["volume"] == 337 and sizes.numbers["of"] == 4 and len(sizes.runs) == 2
@@ -560,12 +563,13 @@ def test_what_the_runs_differ_in_is_said_without_names_of_variables():
     assert numbers.basis(data) == (
         "8 runs of a computer model of equal balls, which differ in the rolling resistance, the size of the model's "
         "balls and 1 other setting and, by chance, in how the balls lie at the start.")
-    data.study["study"]["method"] = "by the paper's method; the set of known events does not cover this volume, 900 m3"
+    data.study = made_study.study({
+        "method": "by the paper's method; the set of known events does not cover this volume, 900 m3"})
     assert numbers.basis(data).endswith(
         "at the start. Known events of this size do not count in them: the set of known events does not cover this "
         "volume, 900 m3.")
     for method in (known_study.WEIGHTED, known_study.BESIDE):
-        data.study["study"]["method"] = method
+        data.study = made_study.study({"method": method})
         assert numbers.basis(data).endswith("at the start.")
     data.repeats, data.settings = {}, {"friction": ["5", "30"], "packing": ["1", "2"]}      # an ensemble
     assert numbers.basis(data).endswith("which differ in the friction and, by chance, in how the balls lie at the "

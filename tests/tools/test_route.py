@@ -26,6 +26,7 @@ import test_export
 from run_helpers import TOOLS, called, write_asc
 
 from slope_tools.errors import SlopeError
+from slope_tools import records
 from slope_tools.route import choices, corridor, page as route_page, results, search, zones
 from slope_tools.route.yearly import Yearly
 from slope_tools.seismic import chain, fragility
@@ -874,7 +875,7 @@ def test_zones_of_a_study(two, capsys):
     assert (entry["at_least_m2"], entry["cannot_tell_m2"]) == (50 * 25, 30 * 25)    # 4 of 4; 3, 2 and 1 of 4
     about = yaml.safe_load((folder / "study.yaml").read_text())
     weights = {"run_0": 0.02, "run_1": 0.02, "run_2": 0.02, "run_3": 0.94}
-    about["ensemble"] = made_study.ensemble({"weights": weights})
+    about["ensemble"] = records.plain(made_study.ensemble({"weights": weights}))
     (folder / "study.yaml").write_text(yaml.safe_dump(about))
     assert zones_of(folder, capsys, "--zones", "0.4", "--overwrite")[0] == 0
     [entry] = yaml.safe_load((folder / "zones/zones.yaml").read_text())["zones"]

@@ -9,6 +9,7 @@ import yaml
 from affine import Affine
 from shapely.geometry import LineString
 
+import made_study
 from test_site import gis, make_mine, told, work_in, write_dem, write_files, write_layer  # noqa: F401
 from test_site_anew import edit, inside  # noqa: F401
 from test_site_lists import measure
@@ -199,7 +200,7 @@ def test_what_differs_is_said(here, capsys):
     ({"kind": "floor", "volume_m3": 20120.0}, "at least 20,100"), ({"kind": "floor", "volume_m3": 0.0}, "more than 0"),
     ({"kind": "nothing", "volume_m3": 0.0}, "0")])
 def test_the_number_of_a_scenario(headline, shown):
-    assert page.to_remove(headline) == shown
+    assert page.to_remove(headline and made_study.headline(**headline)) == shown
 
 
 def test_an_outline_lies_where_it_is_on_the_ground():

@@ -9,6 +9,7 @@ import pytest
 import made_study
 from made_rows import row
 
+from slope_tools import records
 from slope_tools.case import run_folders
 from slope_tools.ensembles import farther, sample
 from slope_tools.errors import SlopeError
@@ -28,7 +29,17 @@ SIDECAR = ("{crs: null, origin: {east: 0, north: 0}, size: {rows: 3, columns: 4}
 def study(runs=(), **entries):
     """The text of a study.yaml."""
     largest = {"front_m": {"run": "one", "value": 100.0}}
-    return json.dumps({**made_study.study(largest=largest, **entries), "runs": list(runs)})
+    return json.dumps({**study_file.plain(made_study.study(largest=largest)), **entries, "runs": list(runs)})
+
+
+def weighted(**entries):
+    """An ensemble's entry, whose known events have these."""
+    about = records.plain(made_study.ensemble({}))
+    return {**about, "known_events": {**about["known_events"], **entries}}
+
+
+def without(about, name):
+    return {key: value for key, value in about.items() if key != name}
 
 
 FILES = {       # file: (its reader, a text, what must be said)
@@ -66,9 +77,12 @@ FILES = {       # file: (its reader, a text, what must be said)
         ("runs: []", "must have study and largest and farthest and conservative and"),
         (study(), "must have a finished run, got 0 that failed"),
         (study([rows.plain(row(status="failed"))]), "must have a finished run, got 1 that fail"),
-        (study(ensemble=made_study.ensemble(of=1)), "ensemble: of: must be a text, got 1"),
-        (study(headline=made_study.headline(share="a")), "headline: share: must be a finite number, got 'a'"),
-        (study(ensemble=made_study.ensemble({"to_remove": [{}]})), "to_remove: first value: must have share and value"),
+        (study(ensemble={**weighted(), "of": 1}), "ensemble: of: must be a text, got 1"),
+        (study(headline={**records.plain(made_study.headline()), "share": "a"}),
+         "headline: share: must be a finite number, got 'a'"),
+        (study(ensemble=weighted(to_remove=[{}])), "to_remove: first value: must have share and value"),
+        (study(ensemble={**weighted(), "known_events": without(weighted()["known_events"], "weights")}),
+         "known_events: must have weights"),
         (study(conservative={"run": 1}), "conservative: must have volume_m3 and"),
         (study([{"run": "one", "status": "finished", "set": {}}]),
          f"study.yaml: run one: must be {study_file.WHAT}: must have repeat and batch and variables and"),

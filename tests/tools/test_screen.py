@@ -16,7 +16,7 @@ from run_helpers import run_command
 from slope_tools import cli
 from slope_tools.commands import polygon, run_arguments
 from slope_tools.errors import SlopeError
-from slope_tools.findings import Finding, entries, finding
+from slope_tools.findings import Finding, finding
 from slope_tools.report import document, heading, structures_part, warnings as report_warnings
 from slope_tools.report.study_part import ENDS, MOST_ROWS, Runs
 from slope_tools.tables import judged, quantities, study_table
@@ -138,7 +138,7 @@ def test_that_a_road_has_no_crs_is_said_beside_the_maps_not_in_red(monkeypatch):
     for module, name in ((judged, "of_runs"), (judged, "limits"), (judged, "of_logs"),
                          (report_warnings, "below_ground"), (structures_part, "coarse_walls")):
         monkeypatch.setattr(module, name, lambda *_: [])
-    data = SimpleNamespace(judged=[], repeats=[], study=made_study.study(warnings=entries(several)))
+    data = SimpleNamespace(judged=[], repeats=[], study=made_study.study(warnings=several))
     found = report_warnings.listed(report_warnings.findings(data, None), {})
     assert [(level, text.count("too few runs")) for level, text in found] == [("warning", 1)]
 

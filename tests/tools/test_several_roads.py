@@ -18,6 +18,7 @@ from slope_tools.studies import road_numbers
 from slope_tools.studies.road_numbers import Number
 from slope_tools.survey import rasters, roads
 from slope_tools.tables import named_run
+from slope_tools.tables.study_file import load_study
 
 NEAR, FAR = [(38, 0), (46, 0), (46, 80), (38, 80)], [(4, 0), (12, 0), (12, 80), (4, 80)]
 OF_ONE = ("collected", "machine", "jobs", "package", "road")     # of study.study, which are of the time, or of the name
@@ -120,7 +121,7 @@ def test_the_worst_stands_for_the_site(done):
     folder, _, said = done
     mine = folder / "mine"
     whole = about_in(mine / "study")
-    first, *others = road_numbers.read(whole)
+    first, *others = road_numbers.read(load_study(mine / "study" / "study.yaml"))
     assert first.counts_m3 == max(one.counts_m3 for one in (first, *others)) and len(others) == 2
     assert plain(whole) == plain(about_in(mine / "roads" / first.road / "study"))
     assert (mine / "road.csv").read_text() == (mine / f"{first.road}.road.csv").read_text()
@@ -175,7 +176,7 @@ def test_a_run_on_a_road_is_drawn_with_its_own_volume(done):
     run = next(one for one in (mine / "runs").iterdir() if (one / "volume" / "volume.yaml").is_file())
     found = {name: yaml.safe_load((run / name / "volume.yaml").read_text())["volume"]["remove"]
              for name in ("volume", "volume_far", "volume_road", "volume_near")}
-    worst = road_numbers.read(about_in(mine / "study"))[0].road
+    worst = road_numbers.read(load_study(mine / "study" / "study.yaml"))[0].road
     assert found["volume"] == found[f"volume_{worst}"] and len(set(found.values())) == 3
 
 

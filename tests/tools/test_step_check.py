@@ -19,41 +19,41 @@ def groups():
     (120.0, True, "half the time step, rolling 0: 120 m3 instead of 100 to remove, +20.0 %; no more than chance "),
     (155.0, False, "+55.0 %; more than chance explains, "), (45.0, False, "-55.0 %; more than chance")])
 def test_half_the_step_against_the_mean_and_chance(volume, within, words):
-    entry = step_check.compare(Step("0", volume), groups())
+    entry, doubts = step_check.compare(Step("0", volume), groups())
     # s is 10, and 8 sqrt(100/64); all repeats are alike, 2 degrees of freedom: t(0.975, 2) s sqrt(1 + 1/3)
-    assert entry["chance_m3"] == pytest.approx(4.302653 * 10 * (4 / 3) ** 0.5)
-    assert entry["mean_m3"] == 100 and entry["within_chance"] is within and words in entry["text"]
-    assert [(one["kind"], one["text"], one["numbers"]["volume"]) for one in entry["doubts"]] == (
-        [] if within else [("half step", entry["text"], str(int(volume)))])
+    assert entry.chance_m3 == pytest.approx(4.302653 * 10 * (4 / 3) ** 0.5)
+    assert entry.mean_m3 == 100 and entry.within_chance is within and words in entry.text
+    assert [(one.kind, one.text, one.numbers["volume"]) for one in doubts] == (
+        [] if within else [("half step", entry.text, str(int(volume)))])
 
 
 def test_runs_on_another_ground_are_not_compared():
     rows = [row(run=spacing, set={"rolling": "0", "spacing": spacing}, remove_m3=volume, front_m=volume)
             for spacing, volume in (("0.5", 300.0), ("0.9", 100.0))]
     both = combinations.grouped(rows)
-    assert step_check.compare(Step("0", 100.0, spacing="0.9"), both)["mean_m3"] == 100
-    assert step_check.compare(Step("0", 100.0, spacing="0.7"), both)["mean_m3"] is None
-    assert step_check.compare(Step("0", 100.0, spacing="0.7"), groups())["mean_m3"] == 100
+    assert step_check.compare(Step("0", 100.0, spacing="0.9"), both)[0].mean_m3 == 100
+    assert step_check.compare(Step("0", 100.0, spacing="0.7"), both)[0].mean_m3 is None
+    assert step_check.compare(Step("0", 100.0, spacing="0.7"), groups())[0].mean_m3 == 100
 
 
 def test_nothing_is_said_in_words():
     rows = [row(run=str(k), set={"rolling": "0"}, repeat={"seed": str(k)}, remove_m3=0.0) for k in range(3)]
-    entry = step_check.compare(Step("0", 0.0), combinations.grouped(rows))
-    assert entry["text"] == "half the time step, rolling 0: nothing to remove, as with the whole step"
-    assert entry["within_chance"] is True and entry["chance_m3"] == 0
+    entry, _ = step_check.compare(Step("0", 0.0), combinations.grouped(rows))
+    assert entry.text == "half the time step, rolling 0: nothing to remove, as with the whole step"
+    assert entry.within_chance is True and entry.chance_m3 == 0
 
 
 def test_without_repeats_chance_is_unknown():
-    entry = step_check.compare(Step("0.1", 65.0), [group for one in groups() for group in combinations.grouped(
+    entry, _ = step_check.compare(Step("0.1", 65.0), [group for one in groups() for group in combinations.grouped(
         one.rows[1:2])])
-    assert entry["within_chance"] is None and entry["text"].endswith("instead of 64 to remove, +1.6 %; chance unknown")
+    assert entry.within_chance is None and entry.text.endswith("instead of 64 to remove, +1.6 %; chance unknown")
 
 
 def test_a_run_that_was_not_made_says_why():
-    entry = step_check.compare(Step("0", None, "the disk is full"), groups())
-    assert entry["text"] == "half the time step: not tried: the disk is full"
-    entry = step_check.compare(Step("0.2", 5.0), groups())
-    assert entry["text"] == "half the time step: not tried: no run with the same values finished"
+    entry, _ = step_check.compare(Step("0", None, "the disk is full"), groups())
+    assert entry.text == "half the time step: not tried: the disk is full"
+    entry, _ = step_check.compare(Step("0.2", 5.0), groups())
+    assert entry.text == "half the time step: not tried: no run with the same values finished"
 
 
 def written(here, *rows):
@@ -103,7 +103,7 @@ def test_a_file_of_the_energy_that_is_damaged_is_named(tmp_path):
 @pytest.mark.parametrize("variables, half", [({"step": "1.0"}, "0.5"), ({"step": "1.5"}, "0.75"), ({}, "0.5")])
 def test_half_the_step_is_half_of_the_decks(variables, half):
     assert step_check.half_of(variables) == half
-    assert step_check.compare(Step("0", 100.0, step=float(half)), groups())["step"] == float(half)
+    assert step_check.compare(Step("0", 100.0, step=float(half)), groups())[0].step == float(half)
 
 
 def test_a_step_that_is_no_number_is_refused():

@@ -2,6 +2,7 @@
 import argparse
 import re
 import shlex
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -67,7 +68,7 @@ ANEW = "tools/slope site 'my site'{} && tools/slope study 'my site' --anew"
     ({"failed": 5}, DECK, "5 of 20 runs", "the same command again, once the cause of the failures is removed")])
 def test_the_reason_and_the_command_that_mends_it(changed, case, text, remedy):
     [entry] = withheld_words.with_remedies(withheld.reasons(GOOD._replace(**changed)), case)
-    assert text in entry["text"] and entry["remedy"] == remedy
+    assert text in entry.text and entry.remedy == remedy
 
 
 @pytest.mark.parametrize("case", [SITE, PAPER, SAMPLED, DECK,
@@ -75,7 +76,7 @@ def test_the_reason_and_the_command_that_mends_it(changed, case, text, remedy):
 @pytest.mark.parametrize("changed", [{"on_road": 50.0}, {"length": 700.0}, {"left": 0.3}, {"moving": 5}])
 def test_the_commands_are_ones_that_the_tools_take(case, changed):
     [entry] = withheld_words.with_remedies(withheld.reasons(GOOD._replace(**changed)), case)
-    typed = re.findall(r"tools/slope (?:'[^']*'|[^&;,])*", entry["remedy"])
+    typed = re.findall(r"tools/slope (?:'[^']*'|[^&;,])*", entry.remedy)
     assert typed or case.site is None or case.sampled
     for words in map(shlex.split, typed):
         parser = argparse.ArgumentParser()
@@ -102,23 +103,22 @@ def events(median, reached):
 
 def judged(several, events=None):
     best = combinations.conservative({"rolling": ["0"]}, several, combinations.grouped(several))
-    usable.judge(best, several, events, SITE)
-    return best
+    return usable.judge(best, several, events, SITE)
 
 
 def test_a_number_that_may_stand():
     best = judged(rows(90.0, 100, 110), events(400.0, 0.6))
-    assert best["withheld"] == [] and best["volume_m3"] > 110 and best["zero"] is None
+    assert best.withheld == [] and best.volume_m3 > 110 and best.zero is None
     [first, *_] = combinations.describe(best)
     assert first.startswith("volume to remove, not conservative: ")
     assert "smaller balls would change is not known" in first
-    assert combinations.describe({**best, "rounded": {**best["rounded"], "size_m3": 0.0}})[0].startswith(
+    assert combinations.describe(replace(best, rounded={**best.rounded, "size_m3": 0.0}))[0].startswith(
         "conservative volume to remove: ")
 
 
 def test_a_number_that_is_withheld_is_nowhere():
     best = judged(rows(90.0, 100, 110), events(600.0, 0.6))
-    assert best["volume_m3"] is None and best["rounded"]["volume_m3"] is None
+    assert best.volume_m3 is None and best.rounded["volume_m3"] is None
     lines = combinations.describe(best)
     assert lines[0] == "not usable as a conservative volume:" and "no run reaches 600 m" in lines[1]
     assert not any("m3" in line for line in lines)
@@ -126,7 +126,7 @@ def test_a_number_that_is_withheld_is_nowhere():
 
 def test_zero_has_a_probability():
     best = judged(rows(0.0, 0, 0), events(400.0, 0.25))
-    assert best["volume_m3"] == 0 and best["zero"]["exceeded_at_most"] == pytest.approx(1 - 0.05 ** (1 / 3))
+    assert best.volume_m3 == 0 and best.zero.exceeded_at_most == pytest.approx(1 - 0.05 ** (1 / 3))
     assert combinations.describe(best)[1] == (
         "nothing is to be removed in any of 3 runs: in another one something is with a probability of at most 63 % "
         "(95 % confidence); 25 % of known events of this volume and height go as far as the road")
@@ -141,21 +141,21 @@ LEFT = [{"side": "east", "volume": 30.0, "balls": 30, "where": "past", "distance
 
 def test_what_left_before_the_road_withholds_and_what_passed_it_does_not():
     several = rows(90.0, 100, 110, lost_m3=50.0, left_before_road_m3=9.0)
-    assert judged(several, events(400.0, 0.6))["withheld"] == []
+    assert judged(several, events(400.0, 0.6)).withheld == []
     several[1] = changed(several[1], left_before_road_m3=20.0, left=LEFT)
-    [entry] = judged(several, events(400.0, 0.6))["withheld"]
-    assert entry["text"] == ("2 % of the released volume left the terrain before or beside the road, more than 1 %: "
-                             "12 m3 in the north, 123 m before the road; 8 m3 in the south, 40 m before the road")
-    assert entry["remedy"] == ("a larger elevation model, by about 170 m in the north, about 60 m in the south "
-                               "(terrain.files, terrain.bounds) in 'my site'/site.yaml, then: " + ANEW.format(""))
+    [entry] = judged(several, events(400.0, 0.6)).withheld
+    assert entry.text == ("2 % of the released volume left the terrain before or beside the road, more than 1 %: "
+                          "12 m3 in the north, 123 m before the road; 8 m3 in the south, 40 m before the road")
+    assert entry.remedy == ("a larger elevation model, by about 170 m in the north, about 60 m in the south "
+                            "(terrain.files, terrain.bounds) in 'my site'/site.yaml, then: " + ANEW.format(""))
 
 
 def test_where_it_is_not_known_what_left_all_of_it_withholds():
     several = rows(90.0, 100, 110, off_grid_m3=6.0, lost_m3=5.0, left_before_road_m3=None)
-    [entry] = judged(several, events(400.0, 0.6))["withheld"]
-    assert entry["text"].endswith("more than 1 %: it is not known where, as the runs are of an older version")
+    [entry] = judged(several, events(400.0, 0.6)).withheld
+    assert entry.text.endswith("more than 1 %: it is not known where, as the runs are of an older version")
     several = rows(90.0, 100, 110, off_grid_m3=5.0, lost_m3=5.0, left_before_road_m3=None)
-    assert judged(several, events(400.0, 0.6))["withheld"] == []
+    assert judged(several, events(400.0, 0.6)).withheld == []
 
 
 # --- what reaches the road ---

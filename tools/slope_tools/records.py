@@ -1,4 +1,4 @@
-"""Records (frozen dataclasses, named tuples, typed dicts) to and from plain values of files: a type is its schema."""
+"""Records (frozen dataclasses, named tuples) to and from plain values of files: a type is its schema."""
 import dataclasses
 import functools
 import typing
@@ -24,11 +24,13 @@ class Fields(NamedTuple):
 
 
 def plain(value: Any) -> Any:
-    """What YAML and JSON have of a value: records as mappings, in the order of their fields."""
+    """What YAML and JSON have of a value: records as mappings, in the order of their fields, without those that
+    are None where that is the default."""
     if isinstance(value, Finding):
         return value.entry()
     if dataclasses.is_dataclass(value):
-        return {one.name: plain(getattr(value, one.name)) for one in dataclasses.fields(value)}
+        parts = ((getattr(value, one.name), one) for one in dataclasses.fields(value))
+        return {one.name: plain(part) for part, one in parts if part is not None or one.default is not None}
     if hasattr(value, "_asdict"):
         return {name: plain(one) for name, one in value._asdict().items()}
     if isinstance(value, Mapping):
@@ -37,23 +39,25 @@ def plain(value: Any) -> Any:
 
 
 def read(kind: Type[T], value: Any) -> T:
-    """A value of a type from what plain() made of it; NoRecord if it is none. Further keys do not count, but stay in a
-    typed dict; a field that is missing has its default."""
+    """A value of a type from what plain() made of it; NoRecord if it is none. Further keys do not count; a field that
+    is missing has its default."""
     return typing.cast(T, _read(kind, value))
 
 
 def _read(kind: Any, value: Any) -> Any:
     origin, parts = typing.get_origin(kind), typing.get_args(kind)
     if origin is Union:
-        [inner] = [one for one in parts if one is not NoneType]       # Optional: the only one that there is
-        return None if value is None else _read(inner, value)
+        if value is None and NoneType in parts:
+            return None
+        several = [one for one in parts if one is not NoneType]
+        return _read(next((one for one in reversed(several) if _knows(one, value)), several[0]), value)
     if isinstance(origin, type) and issubclass(origin, Mapping):
         check(value, Mapping)
         return {name: _inside(name, parts[1], one) for name, one in value.items()}
     if isinstance(origin, type):
         check(value, list)
-        several = [_inside(nth(k), parts[0], one) for k, one in enumerate(value)]
-        return tuple(several) if origin is tuple else several
+        found = [_inside(nth(k), parts[0], one) for k, one in enumerate(value)]
+        return tuple(found) if origin is tuple else found
     if kind is Finding:
         return finding(value)
     if of := _fields(kind):
@@ -61,7 +65,7 @@ def _read(kind: Any, value: Any) -> Any:
         if lacks := [name for name in of.needed if name not in value]:
             raise NoRecord(f"must have {' and '.join(lacks)}")
         parts_ = {name: _inside(name, one, value[name]) for name, one in of.types.items() if name in value}
-        return {**value, **parts_} if typing.is_typeddict(kind) else kind(**parts_)
+        return kind(**parts_)
     if kind is not Any:
         check(value, kind)
     return value
@@ -73,6 +77,12 @@ def _inside(place: str, kind: Any, value: Any) -> Any:
         return _read(kind, value)
     except NoRecord as error:
         raise NoRecord(f"{place}: {error}") from None
+
+
+def _knows(kind: Any, value: Any) -> bool:
+    """Whether all keys of a value are of a record: of several the last such one is meant, the others have more."""
+    of = _fields(kind)
+    return of is not None and isinstance(value, Mapping) and value.keys() <= of.types.keys()
 
 
 def check(value: Any, kind: Any) -> None:
@@ -95,8 +105,6 @@ def _fields(kind: Any) -> Optional[Fields]:
         needed = [name for name, default in defaults.items() if default is dataclasses.MISSING]
     elif hasattr(kind, "_field_defaults"):
         needed = [name for name in kind._fields if name not in kind._field_defaults]
-    elif typing.is_typeddict(kind):
-        needed = [name for name in typing.get_type_hints(kind) if name in kind.__required_keys__]
     else:
         return None
     return Fields(typing.get_type_hints(kind), needed)

@@ -103,7 +103,7 @@ def run(args: Request) -> None:
             return run_folder(args)
     if args.paper:
         raise SlopeError("--paper", "must be given with the folder of a site", args.deck)
-    return run_deck(replace(args, around=site_choices.around(args.deck)))
+    run_deck(replace(args, around=site_choices.around(args.deck)))
 
 
 def run_folder(args: Request) -> None:
@@ -167,17 +167,16 @@ def run_both(args: Request, asked: Site, points: int) -> Made:
             raise SlopeError(asked.folder, "has no number without its ensemble, but by the paper's method alone "
                              f"(--paper): {error}") from None
         failed, weighted = failed or error, error.found
-    if args.dry_run or paper.about is None:
+    if paper.about is None or weighted is None:         # of a dry run
         return Made((), None)
     made: Dict[str, study_types.Study] = {site_study.STUDY: paper.about, site_study.ENSEMBLE: weighted}
     found = answered.of_both(paper.about, weighted)
     governs = site_study.STUDY if found and found.source is Source.PAPER else site_study.ENSEMBLE
-    number = found.about() if found else weighted["headline"]
+    number = found.about() if found else weighted.headline
     step = next_step.of_studies([next_step.Made(about, site / name) for name, about in made.items()], number)
-    for name, about in made.items():
-        about["study"]["governs"], about["headline"] = governs, number
-        about["next_step"] = step.about() if step else None
-        about["largest_restitution"] = paper.about["largest_restitution"]
+    made = {name: replace(about, study=replace(about.study, governs=governs), headline=number,
+                          next_step=step.about() if step else None,
+                          largest_restitution=paper.about.largest_restitution) for name, about in made.items()}
     files.write_abouts({site / name: about for name, about in made.items()})
     for name, about in made.items():
         if name != governs:
@@ -196,7 +195,7 @@ def say(args: Request, site: Site, method: str, points: int) -> None:
                      ahead.of_site(site, setup_of(args), points, args.fine).text]), flush=True)
 
 
-def run_deck(args: Request) -> Any:
+def run_deck(args: Request) -> Optional[study_types.Study]:
     """The runs of a deck; what study.yaml says of them, None of a dry run."""
     if args.output is None and not args.deck.exists():
         raise SlopeError(args.deck, "must be a deck or the folder of a site, there is none of that name")
@@ -351,7 +350,8 @@ def of_fragility(choices: OfMass) -> List[str]:
     return [f"rolling={min(rolling):.10g}:{max(rolling):.10g}"] * (min(rolling) < max(rolling))
 
 
-def run_ensemble(args: Request, settings, repeated, thresholds, defaults, condition, chain=None) -> Any:
+def run_ensemble(args: Request, settings, repeated, thresholds, defaults, condition,
+                 chain=None) -> Optional[study_types.Study]:
     """The runs of --sample; what study.yaml says of them."""
     from ..ensembles import ensemble, ensemble_maps, farther
     from ..fitting import calibrated

@@ -15,13 +15,14 @@ near the source they may leave more), so that in an upper bound they exceed ever
 beyond the longest exceed every value, in a lower bound none.
 """
 from dataclasses import dataclass
-from typing import Callable, List, NamedTuple, Optional, Sequence, Tuple
+from typing import Callable, List, Optional, Sequence, Tuple
 
 import numpy as np
 from scipy import linalg, stats
 
 from ..mobility import weights
 from ..statistics import designs, hazard
+from ..statistics.entries import KnownQuantile
 
 SIMULATED = 100         # designs of either kind
 LEVELS = 25             # values at which designs are compared
@@ -101,7 +102,7 @@ def estimate(exceeding: np.ndarray, mass: Masses, factor=1.0, several: float = 1
     return part, low * (1 - failed), high + failed * (1 - high)
 
 
-def curve(values: hazard.Values, mass: Masses, effect: Optional[Tuple[hazard.Values, hazard.Values]] = None,
+def curve(values: hazard.Values, mass: Masses, effect: Optional[Sequence[hazard.Values]] = None,
           several: float = 1.0, failed: float = 0.0) -> hazard.Curve:
     """The share of known events above each value of the runs, with bounds; it begins as hazard.curve does.
 
@@ -109,7 +110,8 @@ def curve(values: hazard.Values, mass: Masses, effect: Optional[Tuple[hazard.Val
     """
     given = np.asarray(values, float)
     at = hazard.levels_of(given)
-    part, low, high = estimate(above(given, at), mass, np.interp(at, *effect) if effect else 1.0, several, failed)
+    factor = np.interp(at, effect[0], effect[1]) if effect else 1.0
+    part, low, high = estimate(above(given, at), mass, factor, several, failed)
     high = np.maximum.accumulate((high + mass.far)[::-1])[::-1]
     return hazard.Curve(at, part + mass.far, np.minimum.accumulate(low), np.minimum(high, 1.0))
 
@@ -124,7 +126,7 @@ def bounds(share: np.ndarray, found: np.ndarray, runs: float):
 
 
 def quantiles(found: hazard.Curve, shares: Sequence[float] = hazard.SHARES, values: Optional[hazard.Values] = None,
-              mass: Optional[Masses] = None) -> List["Quantile"]:
+              mass: Optional[Masses] = None) -> List[KnownQuantile]:
     """Values that shares of the known events stay within; None where events beyond the longest run decide.
 
     values, mass: of the runs of the curve, which tell whether events decide that end where no run does.
@@ -135,27 +137,14 @@ def quantiles(found: hazard.Curve, shares: Sequence[float] = hazard.SHARES, valu
     several = []
     for share in shares:
         value, low, high = (first_within(levels, one, 1 - share) for one in sides)
-        several.append(Quantile(share, value, low, high))
+        several.append(KnownQuantile(share, value, low, high))
     if mass is None or mass.either is None:
         return several
     given = np.asarray(values, float)
     return [in_gap(one, *(within(given, side, one.share) for side in mass.either)) for one in several]
 
 
-class Quantile(NamedTuple):
-    """As hazard.Quantile, but there may be no value at all.
-
-    gap: the values if the events that end where no run does count as the runs on either side, where these differ; the
-    value is the larger of them then.
-    """
-    share: float
-    value: Optional[float]
-    low: Optional[float]
-    high: Optional[float]
-    gap: Optional[Tuple[float, float]] = None
-
-
-def in_gap(one: Quantile, before: Optional[float], after: Optional[float]) -> Quantile:
+def in_gap(one: KnownQuantile, before: Optional[float], after: Optional[float]) -> KnownQuantile:
     """A quantile, given its values with the events in gaps on either side."""
     if one.value is None or before is None or after is None or before == after:
         return one

@@ -3,9 +3,9 @@
 Order of the work: which variables each quantity depends on (emulator.py), which takes long and is kept with the study;
 its numbers (hazard.py), maps (ensemble_maps.py); what study.yaml says of them, hazard.csv and influence.csv.
 """
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, NamedTuple, NotRequired, Optional, Sequence, TypedDict
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence
 
 import numpy as np
 
@@ -13,10 +13,10 @@ from .. import disk
 from ..case import run_folders
 from ..deposits import travel_shares
 from ..errors import SlopeError
-from ..findings import Finding, entries, texts
+from ..findings import Finding, texts
 from ..mobility.exceedance import Mobility
 from ..statistics import emulator, hazard
-from ..statistics.entries import Analysis, Check, Influence
+from ..statistics.entries import Analysis, Check, Influence, Quantile
 from ..tables import combinations, quantities, study_types, withheld_words
 from ..tables.quantities import On
 from ..tables.rows import Finished, Row, finished_of
@@ -65,10 +65,11 @@ class Evaluated(NamedTuple):
     known: Optional[known_events.Evaluated]
 
 
-class Emulated(TypedDict):
+@dataclass(frozen=True)
+class Emulated:
     """What emulators of the runs say; of an order with a condition, what they say of its known events."""
     influence: Dict[str, Analysis]
-    known_events: NotRequired[known_events.Emulated]
+    known_events: Optional[known_events.Emulated]
 
 
 def planned(rows: Sequence[Row]) -> List[Row]:
@@ -86,15 +87,15 @@ def emulate(order: Order, rows: Sequence[Row], mobility: Optional[Mobility]) -> 
     """For evaluate(), which does without where all runs failed."""
     finished = finished_of(planned(rows))
     if not finished:
-        return {"influence": {}}
+        return Emulated({}, None)
     point, places, main = points_of(order.sample, finished), order.sample.places(finished), main_of(order, finished)
-    found: Emulated = {"influence": {
-        name: emulator.analyse(order.sample.names, places, column(finished, name), point, order.sample.snap).about()
-        for name in main}}
-    if order.condition:
-        assert order.added and mobility
-        found["known_events"] = known_events.emulate(order.sample, order.added, rows, mobility, main)
-    return found
+    influence = {
+        name: emulator.analyse(order.sample.names, places, column(finished, name), point, order.sample.snap)
+        for name in main}
+    if not order.condition:
+        return Emulated(influence, None)
+    assert order.added and mobility
+    return Emulated(influence, known_events.emulate(order.sample, order.added, rows, mobility, main))
 
 
 def evaluate(order: Order, rows: Sequence[Row], mobility: Optional[Mobility],
@@ -111,34 +112,33 @@ def evaluate(order: Order, rows: Sequence[Row], mobility: Optional[Mobility],
     of_quantity = {name: (quantities.name_of(name, finished), quantities.ALL[name].unit)
                    for name in quantities.known(On.ASKED, finished)}
     curves = {name: hazard.curve(column(finished, name), point, failed) for name in of_quantity}
-    about: study_types.Ensemble = {
-        "design": order.sample.about, "runs": len(finished) + failed, "finished": len(finished), "failed": failed,
-        "points": len(set(point)), "confidence": hazard.CONFIDENCE, "of": order.of if order.of in curves else None,
-        "quantities": {name: numbers(what, unit, column(finished, name), point, failed)
-                       for name, (what, unit) in of_quantity.items()},
-        "influence": emulated["influence"], "doubts": [], "maps": [], "known_events": None}
-    about["doubts"] = entries([*no_effect(finished), *doubts(about)])
     known = None
     if order.condition:
-        assert order.added and mobility
+        assert order.added and mobility and emulated.known_events
         known = known_events.evaluate(order.condition, order.sample, order.added, rows, mobility, of_quantity,
-                                      emulated["known_events"])
-        about["known_events"] = known.about
-    return Evaluated(about, curves, finished, len(set(point)), failed, known)
+                                      emulated.known_events)
+    about = study_types.Ensemble(
+        design=order.sample.about, runs=len(finished) + failed, finished=len(finished), failed=failed,
+        points=len(set(point)), confidence=hazard.CONFIDENCE, of=order.of if order.of in curves else None,
+        quantities={name: numbers(what, unit, column(finished, name), point, failed)
+                    for name, (what, unit) in of_quantity.items()},
+        influence=emulated.influence, doubts=[], maps=[], known_events=known.about if known else None, withheld=[])
+    return Evaluated(replace(about, doubts=[*no_effect(finished), *doubts(about)]), curves, finished, len(set(point)),
+                     failed, known)
 
 
-def write(found: Evaluated, levels: ensemble_maps.Thresholds, output: Path, place, grids: Optional[str]) -> None:
-    """Tables and maps, whose entries go to what study.yaml says of the ensemble and of its known events.
+def write(found: Evaluated, levels: ensemble_maps.Thresholds, output: Path, place,
+          grids: Optional[str]) -> study_types.Ensemble:
+    """Tables and maps; what study.yaml says of the ensemble and of its known events, with the entries of the maps.
 
     place: CRS and offset of the maps; grids: why there can be none.
     """
-    found.about["maps"] = [] if grids else ensemble_maps.write(
-        output / MAPS, [run_folders.prefix_of(run_folders.summary_of(output, row.summary)) for row in found.finished],
-        found.points, found.failed, levels, place)
-    if found.known:
-        known_events.write(found.known, levels, output, place, grids)
     disk.write(output / HAZARD, hazard.table(found.curves))
-    disk.write(output / INFLUENCE, influence_table(found.about["influence"]))
+    disk.write(output / INFLUENCE, influence_table(found.about.influence))
+    prefixes = [run_folders.prefix_of(run_folders.summary_of(output, row.summary)) for row in found.finished]
+    maps = [] if grids else ensemble_maps.write(output / MAPS, prefixes, found.points, found.failed, levels, place)
+    known = known_events.write(found.known, levels, output, place, grids) if found.known else None
+    return replace(found.about, maps=maps, known_events=known)
 
 
 def points_of(sample: Sample, finished: Sequence[Finished]) -> List[int]:
@@ -158,11 +158,9 @@ def numbers(name: str, unit: str, values: np.ndarray, point: Sequence[int], fail
     """Of a quantity: mean, deviation, range and quantiles."""
     quantiles = [one if several(point) else one._replace(low=None, high=None)
                  for one in hazard.quantiles(values, point, failed)]
-    return {"name": name, "unit": unit, "mean": float(values.mean()),
-            "standard_deviation": float(values.std(ddof=1)) if len(values) > 1 else None,
-            "smallest": float(values.min()), "largest": float(values.max()),
-            "quantiles": [{"share": one.share, "value": one.value, "low": one.low, "high": one.high}
-                          for one in quantiles]}
+    return study_types.OfRuns(name, unit, float(values.mean()), float(values.std(ddof=1)) if len(values) > 1 else None,
+                              float(values.min()), float(values.max()),
+                              quantiles)
 
 
 def several(point: Sequence[int]) -> bool:
@@ -185,19 +183,19 @@ def no_effect(finished: Sequence[Finished]) -> List[Finding]:
 def doubts(about: study_types.Ensemble) -> List[Finding]:
     """The caveats on the numbers."""
     found = []
-    if about["failed"]:
-        wide = about["failed"] / about["runs"] > FEW
-        found.append(Finding("failed points", {"failed": about["failed"], "runs": about["runs"],
+    if about.failed:
+        wide = about.failed / about.runs > FEW
+        found.append(Finding("failed points", {"failed": about.failed, "runs": about.runs,
                                                "wide": ", so they are wide" * wide}))
-    of = about["of"]
+    of = about.of
     if of:
-        quantity, one = about["quantities"][of]["name"], about["influence"][of]
-        open_ = [entry["share"] for entry in about["quantities"][of]["quantiles"] if entry["high"] is None]
+        quantity, one = about.quantities[of].name, about.influence[of]
+        open_ = [entry.share for entry in about.quantities[of].quantiles if entry.high is None]
         if open_:
-            found.append(Finding("unbounded", {"finished": about["finished"], "quantity": quantity,
+            found.append(Finding("unbounded", {"finished": about.finished, "quantity": quantity,
                                                "shares": ", ".join(f"{100 * share:g} %" for share in open_)}))
-        if one["emulator"] and one["emulator"]["verdict"] != "good":
-            found.append(Finding("emulator", {"quantity": quantity, "verdict": one["text"]}))
+        if one.emulator and one.emulator.verdict != "good":
+            found.append(Finding("emulator", {"quantity": quantity, "verdict": one.text}))
     return found
 
 
@@ -206,46 +204,46 @@ def doubts(about: study_types.Ensemble) -> List[Finding]:
 def influence_table(influence: Mapping[str, Analysis]) -> str:
     """The CSV of ranks and indices; a cell is empty where the emulator says nothing."""
     def line(name: str, variable: str, one: Influence, check: Optional[Check]) -> Sequence[Any]:
-        return (name, variable, one["rank"], "yes" if one["rank_clear"] else "no", one["first"], one["first_error"],
-                one["total"], one["total_error"], *((check["explained"], check["error"]) if check else (None, None)))
+        return (name, variable, one.rank, "yes" if one.rank_clear else "no", one.first, one.first_error,
+                one.total, one.total_error, *((check.explained, check.error) if check else (None, None)))
 
     return disk.csv_text(
         ["quantity", "variable", "rank", "rank_clear", *emulator.SIGN, "emulator_explains", "emulator_error"],
-        (line(name, variable, one, entry["emulator"])
-         for name, entry in influence.items() for variable, one in entry["variables"].items()))
+        (line(name, variable, one, entry.emulator)
+         for name, entry in influence.items() for variable, one in entry.variables.items()))
 
 
 # --- words ---
 
 def describe(about: study_types.Ensemble) -> List[str]:
     """The ensemble in a few lines: the quantiles of the main quantity, what it depends on, the caveats."""
-    lines = [f"ensemble: {about['finished']} runs of {about['points']} points; bounds hold with "
-             f"{100 * about['confidence']:g} %"]
-    of = about["of"]
-    lines += withheld_words.lines(about["withheld"]) if about.get("withheld") else []
+    lines = [f"ensemble: {about.finished} runs of {about.points} points; bounds hold with "
+             f"{100 * about.confidence:g} %"]
+    of = about.of
+    lines += withheld_words.lines(about.withheld) if about.withheld else []
     if of:
-        entry = about["quantities"][of]
-        if not about.get("withheld"):
-            shares = (quantile_text(one, entry["unit"]) for one in entry["quantiles"])
-            lines.append(f"{entry['name']}: " + "; ".join(shares))
-        lines.append(f"{entry['name']} depends on " + dependence_text(about["influence"][of]))
-    lines += [f"caveat: {text}" for text in texts(about["doubts"])]
+        entry = about.quantities[of]
+        if not about.withheld:
+            shares = (quantile_text(one, entry.unit) for one in entry.quantiles)
+            lines.append(f"{entry.name}: " + "; ".join(shares))
+        lines.append(f"{entry.name} depends on " + dependence_text(about.influence[of]))
+    lines += [f"caveat: {text}" for text in texts(about.doubts)]
     return lines + known_events.describe(about)
 
 
-def quantile_text(one: study_types.Quantile, unit: str) -> str:
+def quantile_text(one: Quantile, unit: str) -> str:
     number = quantities.number
-    low = "?" if one["low"] is None else number(one["low"])
-    high = "?" if one["high"] is None else number(one["high"])
-    return f"{100 * one['share']:g} % of the runs stay within {number(one['value'])} {unit} ({low} to {high})"
+    low = "?" if one.low is None else number(one.low)
+    high = "?" if one.high is None else number(one.high)
+    return f"{100 * one.share:g} % of the runs stay within {number(one.value)} {unit} ({low} to {high})"
 
 
 def dependence_text(entry: study_types.Analysis) -> str:
     """The variables, the one that matters most first."""
-    variables = entry["variables"]
-    if all(one["total"] is None for one in variables.values()):
-        order = sorted(variables, key=lambda name: -abs(variables[name]["rank"]))
-        return ", ".join(f"{name} (rank {variables[name]['rank']:+.2f})" for name in order) + f"; {entry['text']}"
-    order = sorted(variables, key=lambda name: -(variables[name]["total"] or 0.0))
-    return ", ".join(f"{name} ({variables[name]['first']:.2f} alone, {variables[name]['total']:.2f} with others, +- "
-                     f"{variables[name]['total_error']:.2f})" for name in order) + f"; {entry['text']}"
+    variables = entry.variables
+    if all(one.total is None for one in variables.values()):
+        order = sorted(variables, key=lambda name: -abs(variables[name].rank))
+        return ", ".join(f"{name} (rank {variables[name].rank:+.2f})" for name in order) + f"; {entry.text}"
+    order = sorted(variables, key=lambda name: -(variables[name].total or 0.0))
+    return ", ".join(f"{name} ({variables[name].first:.2f} alone, {variables[name].total:.2f} with others, +- "
+                     f"{variables[name].total_error:.2f})" for name in order) + f"; {entry.text}"

@@ -82,7 +82,7 @@ class Added:
         self.stopped: Optional[Reason] = None
         if self.path.is_file():
             before = schemas.load(self.path, f"{WHAT} (remove it)", SCHEMA)
-            if before["variables"] == sample.about["variables"]:
+            if before["variables"] == sample.about.variables:
                 self.batches = [Batch(one["box"], one["points"]) for one in before["batches"]]
 
     @property
@@ -93,7 +93,7 @@ class Added:
     def keep(self) -> None:
         """Write the batches, before they are run."""
         disk.write(self.path, f"# {WHAT}: sides of the boxes as shares of the distributions\n" + yaml.safe_dump(
-            {"variables": self.sample.about["variables"], "batches": [one._asdict() for one in self.batches]},
+            {"variables": self.sample.about.variables, "batches": [one._asdict() for one in self.batches]},
             sort_keys=False))
 
     def propose(self, places: np.ndarray, lengths: np.ndarray, beyond: np.ndarray, end: End) -> Optional[Batch]:
@@ -152,8 +152,8 @@ class Added:
 
     def about(self) -> study_types.Added:
         """What study.yaml says of it."""
-        return {"points": self.number, "stopped": self.stopped.about() if self.stopped else None,
-                "batches": [{"points": len(one.points), "ranges": self.text(one)} for one in self.batches]}
+        return study_types.Added(self.number, self.stopped.about() if self.stopped else None,
+                                 [{"points": len(one.points), "ranges": self.text(one)} for one in self.batches])
 
 
 class Longer:

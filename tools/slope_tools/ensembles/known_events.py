@@ -5,9 +5,9 @@ Order of the work: where known events end on the path of this mass (mobility), t
 (known_maps). The numbers of the ensemble as its distributions have it are not touched.
 """
 import functools
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Tuple, TypedDict, cast
+from typing import Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -16,10 +16,10 @@ from ..case import logs, run_folders
 from ..deposits import deposit
 from ..digits import metres, percent, three_at_least
 from ..errors import SlopeError
-from ..findings import Finding, entries, texts
+from ..findings import Finding, texts
 from ..mobility import body, exceedance, known, run_length, weights
 from ..statistics import answer, emulator, hazard
-from ..statistics.entries import Analysis
+from ..statistics.entries import Analysis, KnownQuantile
 from ..tables import answer_words, combinations, quantities, study_types
 from ..tables.rows import Row, finished_of
 from . import conditioned, farther, known_influence, known_maps
@@ -134,11 +134,12 @@ class Evaluated(NamedTuple):
     curves: Mapping[str, hazard.Curve]
 
 
-class Emulated(TypedDict):
-    """What emulators of the weighted runs say: quantities whose dependence counts, the factor of the bounds that their
-    design makes, and how they depend on the variables."""
+@dataclass(frozen=True)
+class Emulated:
+    """What emulators of the weighted runs say: quantities whose dependence counts, values of them and
+    the factors that their design makes of the bounds there, and how they depend on the variables."""
     main: List[str]
-    effects: Dict[str, Tuple[hazard.Values, hazard.Values]]
+    effects: Dict[str, List[List[float]]]
     influence: Dict[str, Analysis]
 
 
@@ -148,9 +149,9 @@ def emulate(sample: Sample, added: farther.Added, rows: Sequence[Row], found: ex
     runs = Runs(sample, added.batches, rows, found)
     comparable = runs.comparable(main) if weighs(found, runs) else []
     design = runs.design() if comparable else None
-    return {"main": comparable,
-            "effects": {name: design.effect(runs.column(name)) for name in comparable} if design else {},
-            "influence": {name: known_influence.evaluate(runs, name) for name in comparable[:1]}}
+    effects = {name: design.effect(runs.column(name)) for name in comparable} if design else {}
+    return Emulated(comparable, {name: [np.asarray(side).tolist() for side in both] for name, both in effects.items()},
+                    {name: known_influence.evaluate(runs, name) for name in comparable[:1]})
 
 
 def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: Sequence[Row],
@@ -161,74 +162,64 @@ def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: S
     quantities; emulated: of emulate().
     """
     asked = condition.asked
-    known: study_types.Known = {
-        "set": asked.name(found), "events": asked.number(found), "left_out": list(asked.left_out),
-        "confined": asked.confined, "path": exceedance.WORDS[found.chosen], "volume_Mm3": found.volume,
-        "outside": found.outside, "reached": None, "doubts": []}
+    known = study_types.Known(
+        asked.name(found), asked.number(found), list(asked.left_out), asked.confined, exceedance.WORDS[found.chosen],
+        found.volume, found.outside, None, [])
     runs = Runs(sample, added.batches, rows, found)
     if not weighs(found, runs):
-        known["doubts"] = entries([Finding("no event", {"text": text}) for text in found.outside]
-                                  or [Finding("few lengths")])
-        return Evaluated(known, None, {})
-    curves = {name: conditioned.curve(runs.column(name), runs.mass, emulated["effects"].get(name), runs.several,
+        said = [Finding("no event", {"text": text}) for text in found.outside] or [Finding("few lengths")]
+        return Evaluated(replace(known, doubts=said), None, {})
+    curves = {name: conditioned.curve(runs.column(name), runs.mass, emulated.effects.get(name), runs.several,
                                       runs.failed_share) for name in runs.comparable(names)}
-    about = reach(known, runs, found)
-    about["added"] = added.about()
-    about["quantities"] = {
-        name: {"name": names[name][0], "unit": names[name][1],
-               "quantiles": quantiles(curve, runs, name, hazard.SHARES)} for name, curve in curves.items()}
-    about["to_remove"] = quantiles(curves[REMOVE], runs, REMOVE, answer.shares(about["far"])) \
-        if REMOVE in curves else None
-    about["variables"] = {name: variable(runs, k, emulated["main"]) for k, name in enumerate(sample.names)}
-    about["influence"] = emulated["influence"]
-    about["doubts"] = entries(doubts(about, runs))
-    about["weights"] = whole_weights(runs)
-    about["maps"] = []
-    return Evaluated(about, runs, curves)
+    one, longest = runs.weights, float(runs.lengths.max())
+    about = study_types.Weighted(
+        **vars(replace(known, reached=one.reached)), short=one.short, far=one.far, runs=len(runs.rows),
+        failed=runs.failed, effective=one.effective, distance=one.distance, far_by_lobe=far_by_lobe(runs, found),
+        gaps=[study_types.Gap(gap.low, gap.high, gap.share) for gap in one.gaps],
+        shortest_m=float(runs.lengths.min()), longest_m=longest, half_beyond_m=found.length_at(0.5),
+        path_m=found.end(longest), beyond_path=found.beyond_path(), added=added.about(),
+        quantities={name: study_types.OfKnown(*names[name], quantiles(curve, runs, name, hazard.SHARES))
+                    for name, curve in curves.items()},
+        to_remove=quantiles(curves[REMOVE], runs, REMOVE, answer.shares(one.far)) if REMOVE in curves else None,
+        variables={name: variable(runs, k, emulated.main) for k, name in enumerate(sample.names)},
+        influence=emulated.influence, weights=whole_weights(runs), maps=[])
+    return Evaluated(replace(about, doubts=doubts(about, runs)), runs, curves)
 
 
-def write(one: Evaluated, levels, output: Path, place, grids: Optional[str]) -> None:
-    """Tables and maps, whose entries go to what study.yaml says. levels, place, grids: see ensemble.write."""
+def write(one: Evaluated, levels, output: Path, place, grids: Optional[str]) -> study_types.Known:
+    """Tables and maps; what study.yaml says, with the entries of the maps. levels, place, grids: see ensemble.write."""
     runs = one.runs
     if runs is None:
         for name in (HAZARD, WEIGHTS):
             (output / name).unlink(missing_ok=True)         # of a study before this one
-        return
+        return one.about
     disk.write(output / HAZARD, hazard.table(one.curves))
     disk.write(output / WEIGHTS, weights_table(runs))
     prefixes = [run_folders.prefix_of(run_folders.summary_of(output, row.summary)) for row in runs.rows]
-    cast(study_types.Weighted, one.about)["maps"] = [] if grids else known_maps.write(
-        output / FOLDER, prefixes, runs.mass, runs.several, runs.failed_share, levels, place)
+    return replace(one.about, maps=[] if grids else known_maps.write(
+        output / FOLDER, prefixes, runs.mass, runs.several, runs.failed_share, levels, place))
 
 
-def quantiles(curve: hazard.Curve, runs: Runs, name: str, shares: Sequence[float]) -> List[study_types.Quantile]:
+def quantiles(curve: hazard.Curve, runs: Runs, name: str, shares: Sequence[float]) -> List[KnownQuantile]:
     """What study.yaml says of those of a quantity."""
     found = conditioned.quantiles(curve, shares, runs.column(name), runs.mass)
     if len(set(runs.point)) == 1:       # one run has no bounds
         found = [one._replace(low=None, high=None) for one in found]
-    return [{"share": one.share, "value": one.value, "low": one.low, "high": one.high, "gap": one.gap}
-            for one in found]
+    return found
 
 
-def reach(known: study_types.Known, runs: Runs, found: exceedance.Mobility) -> study_types.Weighted:
-    """With how much of the known events the runs reach, and how many runs that is; without numbers yet."""
-    one, longest = runs.weights, float(runs.lengths.max())
-    return {**known, "reached": one.reached, "short": one.short, "far": one.far,        # type: ignore[misc]
-            "runs": len(runs.rows), "failed": runs.failed, "effective": one.effective, "distance": one.distance,
-            "far_by_lobe": [float(found.exceedance(max(row.length_by_lobe_m[k] for row in runs.rows
-                                                       if row.length_by_lobe_m)))
-                            for k in range(len(run_length.OTHERS))],
-            "gaps": [{"low_m": gap.low, "high_m": gap.high, "share": gap.share} for gap in one.gaps],
-            "shortest_m": float(runs.lengths.min()), "longest_m": longest, "half_beyond_m": found.length_at(0.5),
-            "path_m": found.end(longest), "beyond_path": found.beyond_path()}
+def far_by_lobe(runs: Runs, found: exceedance.Mobility) -> List[float]:
+    """The shares of known events beyond the runs if other lobes count."""
+    return [float(found.exceedance(max(row.length_by_lobe_m[k] for row in runs.rows if row.length_by_lobe_m)))
+            for k in range(len(run_length.OTHERS))]
 
 
 def variable(runs: Runs, k: int, main: Sequence[str]) -> study_types.KnownVariable:
     """Of a variable of the weighted runs: quantiles, and rank correlations with the main quantities."""
     places = runs.places[:, k]
     one = runs.sample.variables[k]
-    return {"quantiles": [one.value(place) for place in hazard.weighted(places, runs.mass.share, MIDDLE)],
-            "rank": {name: rank(places, runs.column(name), runs.mass.share) for name in main}}
+    return study_types.KnownVariable([one.value(place) for place in hazard.weighted(places, runs.mass.share, MIDDLE)],
+                                     {name: rank(places, runs.column(name), runs.mass.share) for name in main})
 
 
 def rank(x: np.ndarray, y: np.ndarray, share: np.ndarray) -> Optional[float]:
@@ -246,18 +237,18 @@ def rank(x: np.ndarray, y: np.ndarray, share: np.ndarray) -> Optional[float]:
 
 def doubts(about: study_types.Weighted, runs: Runs) -> List[Finding]:
     """The caveats, in the order of their weight."""
-    found, stopped, reached = [], about["added"]["stopped"], about["reached"] or 0.0
-    if about["far"] >= 1 - farther.REACHED:
+    found, stopped, reached = [], about.added.stopped, about.reached or 0.0
+    if about.far >= 1 - farther.REACHED:
         remedy = answer_words.text(answer.Reason.read(stopped)) if stopped else "vary towards more mobile masses"
-        found.append(Finding("events beyond", {"length": metres(about["longest_m"]), "share": percent(about["far"]),
+        found.append(Finding("events beyond", {"length": metres(about.longest_m), "share": percent(about.far),
                                                "remedy": remedy}))
-    if reached < farther.REACHED and about["short"] > (1 - farther.REACHED) / 2:
-        found.append(Finding("events before", {"length": metres(about["shortest_m"]),
-                                               "share": percent(about["short"])}))
-    found += [Finding("gap", {"low": three_at_least(gap["low_m"]), "high": metres(gap["high_m"]),
-                              "share": percent(gap["share"])}) for gap in about["gaps"]]
-    if about["effective"] < LEAST_EFFECTIVE:
-        found.append(Finding("few effective", {"effective": about["effective"]}))
+    if reached < farther.REACHED and about.short > (1 - farther.REACHED) / 2:
+        found.append(Finding("events before", {"length": metres(about.shortest_m),
+                                               "share": percent(about.short)}))
+    found += [Finding("gap", {"low": three_at_least(gap.low_m), "high": metres(gap.high_m),
+                              "share": percent(gap.share)}) for gap in about.gaps]
+    if about.effective < LEAST_EFFECTIVE:
+        found.append(Finding("few effective", {"effective": about.effective}))
     if runs.failed:
         found.append(Finding("no length", {"failed": runs.failed, "runs": len(runs.rows) + runs.failed}))
     left = sum(row.off_grid_m3 + row.lost_m3 > LEFT * row.released_m3 for row in runs.rows)
@@ -287,42 +278,41 @@ def weights_table(runs: Runs) -> str:
 
 def describe(one: study_types.Ensemble) -> List[str]:
     """The weighted ensemble in a few lines: what is reached, by how many runs, the quantiles, the caveats."""
-    lines, about, known, of = [], study_types.weighted(one), one["known_events"], one["of"]
+    lines, about, known, of = [], study_types.weighted(one), one.known_events, one.of
     if about:
         lines = ["known events: " + summary(about)]
-        if of and of in about["quantities"]:
-            entry = about["quantities"][of]
-            lines.append(f"{entry['name']}: " + "; ".join(quantile_text(one, entry["unit"])
-                                                          for one in entry["quantiles"]))
-    return lines + [f"caveat: known events: {text}" for text in texts(known["doubts"] if known else ())]
+        if of and of in about.quantities:
+            entry = about.quantities[of]
+            lines.append(f"{entry.name}: " + "; ".join(quantile_text(one, entry.unit) for one in entry.quantiles))
+    return lines + [f"caveat: known events: {text}" for text in texts(known.doubts if known else ())]
 
 
 def summary(about: study_types.Weighted) -> str:
-    added = about["added"]["points"]
+    added = about.added.points
     more = f" (those of {added} points towards longer ones among them)" if added else ""
-    reached = percent(about["reached"] or 0.0)
-    return (f"the runs reach from {three_at_least(about['shortest_m'])} to {metres(about['longest_m'])}, where "
-            f"{reached} of {about['events']} events of {about['set']} end ({percent(about['short'])} "
-            f"before, {percent(about['far'])} beyond{by_lobe(about)}; {about['path']}); weighted by them the "
-            f"{about['runs']} runs{more} say as much as {about['effective']:.0f}")
+    reached = percent(about.reached or 0.0)
+    return (f"the runs reach from {three_at_least(about.shortest_m)} to {metres(about.longest_m)}, where "
+            f"{reached} of {about.events} events of {about.set} end ({percent(about.short)} "
+            f"before, {percent(about.far)} beyond{by_lobe(about)}; {about.path}); weighted by them the "
+            f"{about.runs} runs{more} say as much as {about.effective:.0f}")
 
 
 def by_lobe(about: study_types.Weighted) -> str:
     """What share lies beyond if other lobes count, where that is another one."""
-    shares = [percent(one) for one in about["far_by_lobe"]]
-    if all(one == percent(about["far"]) for one in shares):
+    shares = [percent(one) for one in about.far_by_lobe]
+    if all(one == percent(about.far) for one in shares):
         return ""
     least = " and ".join(percent(one) for one in run_length.OTHERS)
     return f" (with lobes of {least} {' and '.join(shares)})"
 
 
-def quantile_text(one: study_types.Quantile, unit: str) -> str:
+def quantile_text(one: KnownQuantile, unit: str) -> str:
     """A quantile with its bounds; without a value, what is known instead."""
-    share = f"{100 * one['share']:g} % of known events"
-    if one["value"] is None:
+    share = f"{100 * one.share:g} % of known events"
+    if one.value is None:
         return f"{share}: unknown, they go beyond the runs"
-    low, high = ("?" if side is None else quantities.number(side) for side in (one["low"], one["high"]))
-    if gap := one.get("gap"):
+    low, high = ("?" if side is None else quantities.number(side) for side in (one.low, one.high))
+    if gap := one.gap:
         first, last = map(quantities.number, gap)
         return f"{share}: between {first} and {last} {unit}, as no run ends where they do ({low} to {high})"
-    return f"{share} stay within {quantities.number(one['value'])} {unit} ({low} to {high})"
+    return f"{share} stay within {quantities.number(one.value)} {unit} ({low} to {high})"

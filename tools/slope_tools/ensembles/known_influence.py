@@ -6,10 +6,11 @@ the known events over the density of the distributions. So the variables depend 
 import numpy as np
 
 from ..digits import percent
-from ..statistics import dependent, emulator, entries
+from ..statistics import dependent, emulator
+from ..statistics.entries import Analysis
 
 
-def evaluate(runs, quantity: str) -> entries.Analysis:
+def evaluate(runs, quantity: str) -> Analysis:
     """What study.yaml says of it; runs: a known_events.Runs, quantity: the column that counts."""
     values = runs.column(quantity)
     _, point = np.unique(np.array(runs.point), axis=0, return_inverse=True)
@@ -22,8 +23,8 @@ def evaluate(runs, quantity: str) -> entries.Analysis:
             weighting = dependent.Weighting(weight(runs, length.whole), [weight(runs, one) for one in length.parts],
                                             length.check.unseen)
     if weighting is None:
-        return {"text": f"no indices: {text}", "emulator": None, "variables": {}}
-    return emulator.analyse(names, runs.places, values, point, runs.sample.snap, weighting).about()
+        return Analysis(f"no indices: {text}", None, {})
+    return emulator.analyse(names, runs.places, values, point, runs.sample.snap, weighting)
 
 
 def weight(runs, length: emulator.Emulator):

@@ -6,7 +6,7 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 
-from .. import disk, schemas
+from .. import disk, records, schemas
 from ..case.settings import MOST_RUNS
 from ..errors import SlopeError
 from ..runs import repeats
@@ -35,12 +35,9 @@ class Sample:
     @property
     def about(self) -> study_types.Design:
         """What design.yaml and study.yaml say of it."""
-        found: study_types.Design = {"kind": self.kind, "seed": self.seed, "points": self.number,
-                                     "variables": {one.name: one.text for one in self.variables}}
         wide = {one.name: list(one.wide) for one in self.variables if getattr(one, "wide", None)}
-        if wide:
-            found["wide"] = wide
-        return found
+        return study_types.Design(self.kind, self.seed, self.number, {one.name: one.text for one in self.variables},
+                                  wide or None)
 
     def widened(self, bounds: Mapping[str, Tuple[float, float]]) -> "Sample":
         """The same, whose variables of these names may have added runs between wider bounds."""
@@ -118,7 +115,7 @@ def check_growth(folder: Path, sample: Sample) -> None:
     if not path.is_file():
         return
     before = schemas.load(path, WHAT, OBJECT)
-    if designs.LHS in (before.get("kind"), sample.kind) and before != sample.about:
+    if designs.LHS in (before.get("kind"), sample.kind) and before != records.plain(sample.about):
         raise SlopeError("--design", f"lhs cannot grow or change: {folder} has {before.get('points')} points of "
                          f"{before.get('kind')} with seed {before.get('seed')}; give another -o, or take sobol",
                          f"{sample.number} of {sample.kind} with seed {sample.seed}")
@@ -126,4 +123,4 @@ def check_growth(folder: Path, sample: Sample) -> None:
 
 def keep(folder: Path, sample: Sample) -> None:
     """Write design.yaml, before the first run."""
-    disk.write(folder / FILE, disk.yaml_text(WHAT, sample.about))
+    disk.write(folder / FILE, disk.yaml_text(WHAT, records.plain(sample.about)))

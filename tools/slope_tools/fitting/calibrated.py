@@ -1,5 +1,5 @@
 """The sets of values that a calibration found equally good, as the points of an ensemble."""
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
@@ -26,9 +26,7 @@ class Calibrated(Sample):
 
     @property
     def about(self) -> study_types.Design:
-        found = super().about
-        found["fit"] = self.fit
-        return found
+        return replace(super().about, fit=self.fit)
 
     def combinations(self) -> List[Dict[str, str]]:
         return [dict(one) for one in self.sets[:self.number]]

@@ -6,17 +6,9 @@ from matplotlib.ticker import MaxNLocator, PercentFormatter, StrMethodFormatter
 
 from ..drawing import figures, pictures
 from ..drawing.figures import COLOURS, GRAY, HALF, STYLE
+from ..statistics.entries import KnownQuantile
 
 THOUSANDS = StrMethodFormatter("{x:,.6g}")
-
-
-class Quantile(NamedTuple):
-    """A point of the curve that has a name; its bounds are None where nothing bounds it; gap: it is between these."""
-    share: float
-    value: float
-    low: Optional[float]
-    high: Optional[float]
-    gap: Optional[Sequence[float]] = None
 
 
 class Bar(NamedTuple):
@@ -28,7 +20,7 @@ class Bar(NamedTuple):
     total_error: float
 
 
-def hazard_curve(values, share, low, high, quantiles: Sequence[Quantile], x_label: str, title: str,
+def hazard_curve(values, share, low, high, quantiles: Sequence[KnownQuantile], x_label: str, title: str,
                  what: str = "runs") -> str:
     """Share of the runs above each value (arrays, values ascending), with its bounds and the quantiles.
 

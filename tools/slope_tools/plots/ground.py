@@ -42,7 +42,7 @@ class Ground:
         self.obstacles = obstacles.of_run(one)
         self.mapped = data.mapped
         self.volume = data.largest_release()
-        self.events = {"confined": "unknown", **((data.study or {}).get("study", {}).get("known") or {})}
+        self.events = {"confined": "unknown", **(data.study.study.known if data.study else {})}
         if not self.touched.any():
             raise SlopeError(f"{one.prefix}.max_thickness.asc", "must have a cell that the mass ever touched")
 

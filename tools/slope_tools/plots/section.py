@@ -171,7 +171,7 @@ class Section:
         spans = []
         for part in lines.lines_of(self.line.intersection(road)).geoms:
             spans.append(sorted(self.line.project(Point(end)) for end in (part.coords[0], part.coords[-1])))
-        tangent = math.tan(math.radians(self.data.study["study"]["road"]["cut_angle"]))
+        tangent = math.tan(math.radians(self.data.of_study.study.the_road["cut_angle"]))
         raster = self.ground.raster
         inside = geometry.to_index(geometry.as_multi(road.intersection(geometry.box_of(raster))), raster)
         try:
@@ -217,7 +217,7 @@ class Section:
             caption += (f"; below, the thickness on a scale of its own, exaggerated {thickness_factor:g} times, "
                         "because it would not show at the scale of the heights")
         if self._where_it_cuts(height) is not None:
-            caption += (f"; cut surface rising at {self.data.study['study']['road']['cut_angle']:g} degrees from the "
+            caption += (f"; cut surface rising at {self.data.of_study.study.the_road['cut_angle']:g} degrees from the "
                         "road's edges")
         return uri, "Section through the slope before and after", caption + "."
 

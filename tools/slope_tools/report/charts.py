@@ -32,7 +32,7 @@ class Charts:
 
     def __init__(self, data: Data, reference):
         self.data, self.reference = data, reference
-        self.scatter: Mapping[str, Optional[Mapping[str, float]]] = data.study["scatter"] if data.study else {}
+        self.scatter: Mapping[str, Optional[Mapping[str, float]]] = data.study.scatter if data.study else {}
 
     def variable(self):
         """The first variable with several values, rolling if it has; None if they are no numbers."""
@@ -47,7 +47,7 @@ class Charts:
     def all(self):
         """Pictures; the first one is that of the volume to remove, if there is any."""
         data = self.data
-        if not data.study or len(data.finished) < 2 or data.study["ensemble"]:
+        if not data.study or len(data.finished) < 2 or data.study.ensemble:
             return []
         far = [travel_shares.DISTANCE] if all(row.value(travel_shares.DISTANCE) is not None for row in data.finished) \
             else [] if any(map(travel_shares.lost, data.finished)) else ["front_m"]
@@ -104,24 +104,24 @@ class Charts:
 
     def mark(self, name):
         """The point of the conservative volume, and its level where it is more than the point."""
-        best = self.data.of_study["conservative"]
+        best = self.data.of_study.conservative
         if not best:
             return None, []
-        volume = best["rounded"]["volume_m3"]
-        if best["withheld"] or volume is None:
-            return (float(best["set"][name]), best["mean_m3"], "governing mean, not usable"), []
-        number = headline.text(volume, best["place_m3"])
-        x = float(best["set"][name])
-        if best["chance_m3"] is None and best["size_m3"] is None:
-            return (x, best["mean_m3"], f"{best['kind'].split(';')[0]}, {number} m3"), []
-        what = "conservative volume" if best["chance_m3"] is not None else "with the size of the balls"
-        return (x, best["mean_m3"], "governing mean"), [(f"{what}, {number} m3", best["volume_m3"])]
+        volume = best.rounded["volume_m3"]
+        if best.withheld or volume is None:
+            return (float(best.set[name]), best.mean_m3, "governing mean, not usable"), []
+        number = headline.text(volume, best.place_m3)
+        x = float(best.set[name])
+        if best.chance_m3 is None and best.size_m3 is None:
+            return (x, best.mean_m3, f"{best.kind.split(';')[0]}, {number} m3"), []
+        what = "conservative volume" if best.chance_m3 is not None else "with the size of the balls"
+        return (x, best.mean_m3, "governing mean"), [(f"{what}, {number} m3", best.volume_m3)]
 
     def scatter_of(self, key):
         """The scatter of a run in a column; None without repeats."""
-        best = self.data.study["conservative"] if self.data.study else None
-        if key == REMOVE and best and best["scatter_m3"] is not None:   # that of the governing combination
-            return headline.Scatter(best["scatter_m3"], best["degrees_of_freedom"] or 0.0)
+        best = self.data.study.conservative if self.data.study else None
+        if key == REMOVE and best and best.scatter_m3 is not None:   # that of the governing combination
+            return headline.Scatter(best.scatter_m3, best.degrees_of_freedom or 0.0)
         found = self.scatter.get(key)
         if found:
             return headline.Scatter(found["deviation"], found["degrees_of_freedom"])
@@ -156,20 +156,20 @@ def chance_text(clear):
 
 def differences(data: Data, numbers: Numbers):
     """Sentences on what the variables do to the conservative volume, against chance."""
-    best = data.study["conservative"] if data.study else None
+    best = data.study.conservative if data.study else None
     found = []
-    for entry in best["differences"] if best else ():
-        if entry["by_m3"] == 0:
-            found.append(f"{entry['variable']}: the means of all its values are the same, so that there is no trend.")
+    for entry in best.differences if best else ():
+        if entry.by_m3 == 0:
+            found.append(f"{entry.variable}: the means of all its values are the same, so that there is no trend.")
             continue
-        by = numbers(f"difference over {entry['variable']}", "m3", entry["by_m3"])
-        text = (f"{entry['variable']}: the means at {entry['smallest_at']} and {entry['largest_at']} (the largest) "
+        by = numbers(f"difference over {entry.variable}", "m3", entry.by_m3)
+        text = (f"{entry.variable}: the means at {entry.smallest_at} and {entry.largest_at} (the largest) "
                 f"differ by {by} m3")
-        if entry["clear"] is None:
+        if entry.clear is None:
             text += ", of one run each: chance unknown"
         else:
-            chance = numbers(f"chance over {entry['variable']}", "m3", entry["chance_m3"])
-            text += f", {'more than' if entry['clear'] else 'within'} chance ({chance} m3)"
-            text += "" if entry["clear"] else ": no trend"
+            chance = numbers(f"chance over {entry.variable}", "m3", entry.chance_m3)
+            text += f", {'more than' if entry.clear else 'within'} chance ({chance} m3)"
+            text += "" if entry.clear else ": no trend"
         found.append(text + ".")
     return found

@@ -2,7 +2,7 @@
 
 No names of options, variables or files: these are in the appendix, and on the console.
 """
-from typing import Any, Dict, List, Optional, Sequence
+from typing import Any, Dict, List, NamedTuple, Optional, Sequence
 
 from .. import digits
 from ..deposits import travel_shares
@@ -14,10 +14,21 @@ from ..tables import answer_words, combinations, elastic, fine_run, next_step, s
 from ..tables.quantities import ALL, DISTANCE, REMOVE as QUANTITY
 from . import body, mobility_part, road_part, structures_part, warnings
 from .data import Data
-from .numbers import basis, farthest_of, Numbers
+from .numbers import MainCard, Numbers, basis, farthest_of
 
 
-def content(data: Data, ground, numbers: Numbers, answers: Sequence[Optional[Dict[str, Any]]], found,
+class First(NamedTuple):
+    """What stands first: a number, or why there is none; kind: see statistics.answer; step: what to do next."""
+    title: str
+    number: Optional[str]
+    unit: str = "m3"
+    band: str = ""
+    kind: str = Kind.NUMBER.value
+    reasons: Sequence[str] = ()
+    step: Optional[next_step.Step] = None
+
+
+def content(data: Data, ground, numbers: Numbers, answers: Sequence[Optional[MainCard]], found,
             listed: int) -> Dict[str, Any]:
     """What the template takes; answers: those of the study, the first that there is counts; found: all findings.
 
@@ -25,19 +36,19 @@ def content(data: Data, ground, numbers: Numbers, answers: Sequence[Optional[Dic
     """
     main, spoken = next((one for one in answers if one), None), of_headline(data, numbers)
     return {"body": body.sentence(body.of_data(data, ground)),
-            "answer": spoken or (floored(data, of_answer(data, main, numbers), numbers) if main else
+            "answer": spoken or (floored(data, of_answer(data, main), numbers) if main else
                                  of_reach(data, numbers)),
             "basis": basis(data),
             "sentences": [*road_part.others(data), mobility_part.on_first_page(data, ground, numbers),
                           *sentences(data, ground, numbers, bool(main)),
-                          *road_part.on_first_page(data, numbers, bool(main and main["withheld"])),
+                          *road_part.on_first_page(data, numbers, bool(main and main.withheld)),
                           Finding("dry").client()],
             "caveats": warnings.first_page(unsaid(data, found))[:warnings.MOST], "rest": warnings.rest_of(listed)}
 
 
 def unsaid(data: Data, found: Sequence[Finding]) -> List[Finding]:
     """The findings without what the reasons of the number say already."""
-    about = data.study["headline"] if data.study else None
+    about = data.study.headline if data.study else None
     said = {"no sizes"} if about and any(one.code is Code.SIZE for one in answer_words.told(about)) else set()
     return [one for one in found if one.kind not in said]
 
@@ -52,35 +63,35 @@ ALIKE = "each counted alike"
 ON_ROAD = "remove_on_road_m3"
 
 
-def of_headline(data: Data, numbers: Numbers) -> Optional[Dict[str, Any]]:
-    """What the template takes; None without a headline, and where the paper's study says all, with its parts."""
-    about = data.study["headline"] if data.study else None
-    if not about or not about["ensemble"]:
+def of_headline(data: Data, numbers: Numbers) -> Optional[First]:
+    """That of both studies of a site; None without a headline, and where the paper's study says all, with its parts."""
+    about = data.study.headline if data.study else None
+    if not about or not about.ensemble:
         return None
-    kind = Kind(about["kind"])
-    if kind is Kind.NUMBER and about["source"] == Source.PAPER.value:
+    kind = Kind(about.kind)
+    if kind is Kind.NUMBER and about.source == Source.PAPER.value:
         return None
     found = {Kind.NUMBER: of_number, Kind.FLOOR: of_floor, Kind.WITHHELD: of_withheld, Kind.NOTHING: of_nothing}[kind](
         about, numbers)
-    found["band"] += in_gap(data, about, numbers)
-    return {"kind": kind.value, "reasons": reasons(about), "step": step_of(data), **found}
+    return found._replace(kind=kind.value, reasons=reasons(about), step=step_of(data),
+                          band=found.band + in_gap(data, about, numbers))
 
 
 def step_of(data: Data) -> Optional[next_step.Step]:
     """The next step of the headline."""
-    said = data.of_study.get("next_step")
-    return next_step.Step(**said) if said else None
+    said = data.of_study.next_step
+    return next_step.Step(**vars(said)) if said else None
 
 
 def in_gap(data: Data, about: study_types.Headline, numbers: Numbers) -> str:
     """A sentence, where the share's known events end between two runs; raised for smaller balls as the number is."""
     known = known_of(data)
-    if about["source"] != Source.ENSEMBLE.value or not known:
+    if about.source != Source.ENSEMBLE.value or not known:
         return ""
-    gap = next((one.get("gap") for one in known["to_remove"] or () if one["share"] == about["share"]), None)
+    gap = next((one.gap for one in known.to_remove or () if one.share == about.share), None)
     if not gap:
         return ""
-    effect = fine_run.read_effect(data.study["size"] if data.study else None, QUANTITY)
+    effect = fine_run.read_effect(data.study.size if data.study else None, QUANTITY)
     low, high = (numbers(f"{REMOVE.lower()}, {end} of the gap where no run ends", "m3",
                          value + (effect.added(value) if effect else 0.0))
                  for end, value in zip(("begin", "end"), gap))
@@ -89,17 +100,17 @@ def in_gap(data: Data, about: study_types.Headline, numbers: Numbers) -> str:
 
 # --- what stands in the place of the number ---
 
-def of_number(about: study_types.Headline, numbers: Numbers) -> Dict[str, Any]:
-    share = percent(about["share"] or 0.0)
-    return {"title": f"{REMOVE}: {share} of known events stay within", "unit": "m3",
-            "number": numbers(f"{REMOVE.lower()}, {share} of known events", "m3", about["volume_m3"]),
-            "band": bounds(about, numbers) + of_paper(about, numbers)}
+def of_number(about: study_types.Headline, numbers: Numbers) -> First:
+    share = percent(about.share or 0.0)
+    return First(f"{REMOVE}: {share} of known events stay within",
+                 numbers(f"{REMOVE.lower()}, {share} of known events", "m3", about.volume_m3),
+                 band=bounds(about, numbers) + of_paper(about, numbers))
 
 
 def bounds(about: study_types.Headline, numbers: Numbers) -> str:
     """Its bounds, each with its unit."""
     low, high = (None if value is None else numbers(f"{REMOVE.lower()}, {name} bound", "m3", value)
-                 for value, name in ((about["low_m3"], "lower"), (about["high_m3"], "upper")))
+                 for value, name in ((about.low_m3, "lower"), (about.high_m3, "upper")))
     if low is None and high is None:
         return "No bounds: the runs are too few for them."
     if high is None:
@@ -109,61 +120,59 @@ def bounds(about: study_types.Headline, numbers: Numbers) -> str:
 
 def of_paper(about: study_types.Headline, numbers: Numbers) -> str:
     """The conservative volume of the other study, where it has one and does not govern."""
-    volume = about["paper"]["volume_m3"] if about["paper"] else None
-    if volume is None or about["source"] != Source.ENSEMBLE.value:
+    volume = about.paper.volume_m3 if about.paper else None
+    if volume is None or about.source != Source.ENSEMBLE.value:
         return ""
     return (" A study that takes the largest of few settings, without known events, gives "
             f"{numbers('conservative volume', 'm3', volume)} m3.")
 
 
-def of_floor(about: study_types.Headline, numbers: Numbers) -> Dict[str, Any]:
+def of_floor(about: study_types.Headline, numbers: Numbers) -> First:
     """At least so much; where no run reaches the road, how many known events do."""
-    if not about["volume_m3"]:
+    if not about.volume_m3:
         return not_reached(about)
-    text = numbers(f"{REMOVE.lower()}, at least", "m3", about["volume_m3"])
-    share = about["share"]
+    text = numbers(f"{REMOVE.lower()}, at least", "m3", about.volume_m3)
+    share = about.share
     if share:
         band = f"{percent(share)} of {WHO} stay within {text} m3; what the others bring these runs do not show."
-    elif about["source"] == Source.PAPER.value:
+    elif about.source == Source.PAPER.value:
         band = ("A further run of the governing settings stays below, in 97.5 % of such studies; more mobile masses "
                 "may bring more.")
     else:
         band = ""
     title = f"{REMOVE}, with {percent(share)}" if share else REMOVE
-    return {"title": title, "number": f"at least {text}", "unit": "m3",
-            "band": band + by_family(about, numbers) + of_paper(about, numbers)}
+    return First(title, f"at least {text}", band=band + by_family(about, numbers) + of_paper(about, numbers))
 
 
 def by_family(about: study_types.Headline, numbers: Numbers) -> str:
     """What the number becomes by the largest factor that a slide of the family grew by with smaller balls."""
-    growth = [one["numbers"]["growth"] for one in about["reasons"] if one["numbers"].get("growth")]
+    growth = [one["numbers"]["growth"] for one in about.reasons if one["numbers"].get("growth")]
     if not growth:
         return ""
-    most = max(size_family.Growth(**one).covered(about["volume_m3"] or 0.0) for one in growth)
+    most = max(size_family.Growth(**one).covered(about.volume_m3 or 0.0) for one in growth)
     text = numbers(f"{REMOVE.lower()}, by the largest growth with smaller balls", "m3", most)
     return f" With as much more by smaller balls as the slide that grew most, {text} m3."
 
 
-def not_reached(about: study_types.Headline) -> Dict[str, Any]:
-    road = about["road"]
+def not_reached(about: study_types.Headline) -> First:
+    road = about.road
     if not road:
-        return {"title": REMOVE, "number": "more than 0", "unit": "m3", "band": ""}
-    return {"title": "No run reaches the road, but known events do", "number": answer_words.shares(road["reached"]),
-            "unit": "of known events reach it",
-            "band": "More than 0 m3 is to be removed then; how much, these runs do not show."}
+        return First(REMOVE, "more than 0")
+    return First("No run reaches the road, but known events do", answer_words.shares(road.reached),
+                 "of known events reach it", "More than 0 m3 is to be removed then; how much, these runs do not show.")
 
 
-def of_withheld(about: study_types.Headline, numbers: Numbers) -> Dict[str, Any]:
+def of_withheld(about: study_types.Headline, numbers: Numbers) -> First:
     del about, numbers
-    return {"title": f"{REMOVE}: not usable", "number": None, "unit": "", "band": ""}
+    return First(f"{REMOVE}: not usable", None)
 
 
-def of_nothing(about: study_types.Headline, numbers: Numbers) -> Dict[str, Any]:
-    road = about["road"]
-    band = f"{answer_words.shares(road['reached'])} of {WHO} reach the road." if road else \
+def of_nothing(about: study_types.Headline, numbers: Numbers) -> First:
+    road = about.road
+    band = f"{answer_words.shares(road.reached)} of {WHO} reach the road." if road else \
         "No known events can be compared with this mass."
-    return {"title": REMOVE, "number": numbers(REMOVE.lower(), "m3", 0.0), "unit": "m3",
-            "band": f"Nothing comes to lie on the road in any run. {band}"}
+    return First(REMOVE, numbers(REMOVE.lower(), "m3", 0.0),
+                 band=f"Nothing comes to lie on the road in any run. {band}")
 
 
 # --- why ---
@@ -175,51 +184,45 @@ def reasons(about: study_types.Headline) -> List[str]:
 
 # --- the number of one study ---
 
-WITHHELD: Dict[str, Any] = {"kind": "withheld", "number": None, "unit": "", "band": "", "step": None}
-
-
-def of_answer(data: Data, answer: Dict[str, Any], numbers: Numbers) -> Dict[str, Any]:
-    """Of an answer as the appendix has it: title, number, unit, reasons, band."""
-    reasons = [one["text"] for one in answer["withheld"]]
-    if reasons:
-        return {**WITHHELD, "title": answer["title"], "reasons": reasons,
-                "step": next_step.first_remedy(next_step.Made(data.of_study, data.folder))}
-    best = data.of_study["conservative"]
-    if answer.get("zero"):
-        band = f"{answer['zero'][0].upper()}{answer['zero'][1:]}."
-    elif "band" in answer:
-        band = answer["band"]
-    elif best is None or best["chance_m3"] is None:
+def of_answer(data: Data, answer: MainCard) -> First:
+    """Of an answer as the appendix has it."""
+    if answer.withheld:
+        return First(answer.title, None, kind=Kind.WITHHELD.value, reasons=[one.text for one in answer.withheld],
+                     step=next_step.first_remedy(next_step.Made(data.of_study, data.folder)))
+    best = data.of_study.conservative
+    if answer.zero:
+        band = f"{answer.zero[0].upper()}{answer.zero[1:]}."
+    elif answer.band is not None:
+        band = answer.band
+    elif best is None or best.chance_m3 is None:
         band = "No band: no run was repeated, so that chance is unknown."
     else:
-        mean, chance = (best["rounded"][key] or 0.0 for key in ("mean_m3", "chance_m3"))
-        low, high = (headline.text(value, best["place_m3"]) for value in (max(0.0, mean - chance), mean + chance))
-        band = f"Another run gives {low} to {high} m3, in 95 % of cases; the mean is {answer['parts'][0]['number']} m3."
+        mean, chance = (best.rounded[key] or 0.0 for key in ("mean_m3", "chance_m3"))
+        low, high = (headline.text(value, best.place_m3) for value in (max(0.0, mean - chance), mean + chance))
+        band = f"Another run gives {low} to {high} m3, in 95 % of cases; the mean is {answer.parts[0].number} m3."
         band += "".join(f" {one[0].upper()}{one[1:]}." for one in combinations.starts(best))
-    return {"kind": "number", "title": answer["title"], "number": answer["number"], "unit": answer.get("unit", "m3"),
-            "reasons": [], "band": band, "step": None}
+    return First(answer.title, answer.number, answer.unit, band)
 
 
-def floored(data: Data, answer: Dict[str, Any], numbers: Numbers) -> Dict[str, Any]:
+def floored(data: Data, first: First, numbers: Numbers) -> First:
     """The same as a floor, where the headline of the one study says so."""
-    about = data.study["headline"] if data.study else None
-    if answer["number"] is None or not about or about["ensemble"] or Kind(about["kind"]) is not Kind.FLOOR:
-        return answer
-    return {**answer, "kind": Kind.FLOOR.value, "title": REMOVE, "number": f"at least {answer['number']}",
-            "reasons": reasons(about), "band": answer["band"] + by_family(about, numbers),
-            "step": step_of(data)}
+    about = data.study.headline if data.study else None
+    if first.number is None or not about or about.ensemble or Kind(about.kind) is not Kind.FLOOR:
+        return first
+    return first._replace(kind=Kind.FLOOR.value, title=REMOVE, number=f"at least {first.number}",
+                          reasons=reasons(about), band=first.band + by_family(about, numbers), step=step_of(data))
 
 
-def of_reach(data: Data, numbers: Numbers) -> Dict[str, Any]:
+def of_reach(data: Data, numbers: Numbers) -> First:
     """Without a road the reach is the result."""
     title = f"{travel_shares.HEADLINE} % of the volume stays within"
     values = reaches(data)
     if not values:
-        return {**WITHHELD, "title": title,
-                "reasons": ["more than 1 % of the volume left the terrain, farther than anybody knows"]}
+        return First(title, None, kind=Kind.WITHHELD.value,
+                     reasons=["more than 1 % of the volume left the terrain, farther than anybody knows"])
     low, high = (numbers.quantity(DISTANCE, value) for value in (min(values), max(values)))
     band = f"{low} to {high} m over {len(values)} runs." if len(values) > 1 else "One run: no band."
-    return {"kind": "number", "title": title, "number": high, "unit": "m", "reasons": [], "band": band, "step": None}
+    return First(title, high, "m", band)
 
 
 def reaches(data: Data) -> List[float]:
@@ -252,14 +255,14 @@ def runs_of(data: Data) -> str:
 def weighted(data: Data, numbers: Numbers, key: str) -> str:
     """What SHARE of known events stay within, where they weigh the runs and tell it; else ""."""
     known = known_of(data)
-    entry = known["quantities"].get(key) if known else None
-    at = {one["share"]: one["value"] for one in entry["quantiles"]}.get(SHARE) if entry else None
+    entry = known.quantities.get(key) if known else None
+    at = {one.share: one.value for one in entry.quantiles}.get(SHARE) if entry else None
     return "" if at is None else f"{numbers.quantity(key, at)} {ALL[key].unit}"
 
 
 def known_of(data: Data) -> Optional[study_types.Weighted]:
     """What known events say, where they weigh the runs of the number."""
-    return study_types.weighted(data.study["ensemble"]) if data.study else None
+    return study_types.weighted(data.study.ensemble) if data.study else None
 
 
 def distance(data: Data, numbers: Numbers, has_road_number: bool) -> str:
@@ -281,10 +284,10 @@ def distance(data: Data, numbers: Numbers, has_road_number: bool) -> str:
 
 def most_elastic(data: Data, numbers: Numbers) -> str:
     """A sentence on how far it goes with the largest restitution; "" without such runs."""
-    about = data.study["largest_restitution"] if data.study else None
-    if not about or not about["runs"]:
+    about = data.study.largest_restitution if data.study else None
+    if not about or not about.runs:
         return ""
-    text = f" With the most elastic rock, a restitution of {about['restitution']:g},"
+    text = f" With the most elastic rock, a restitution of {about.restitution:g},"
     far = elastic.far(about)
     return f"{text} more than 1 % of it leaves the terrain." if far is None else \
         f"{text} within {numbers.quantity(DISTANCE, far)} m."
@@ -314,7 +317,7 @@ def road(data: Data, numbers: Numbers) -> str:
 
 def finer(data: Data) -> str:
     """By how much what lies beyond the road grew with smaller balls in a family of slides; "" where nobody can tell."""
-    balls = data.study["study"]["balls_thick"] if data.study else None
+    balls = data.study.study.balls_thick if data.study else None
     grown = None if balls is None else size_family.told(balls, quantity="beyond_road_m3")
     if grown is None:
         return ""
@@ -338,7 +341,7 @@ def structures(data: Data, ground) -> str:
 
 def thickness(data: Data, numbers: Numbers) -> str:
     if data.study:
-        value, speed = (data.study["largest"][key]["value"] for key in ("thickness_m", "max_speed_m_s"))
+        value, speed = (data.study.largest[key].value for key in ("thickness_m", "max_speed_m_s"))
     else:
         value, speed = (data.result.summary["largest"][key] for key in ("thickness", "max_speed"))
     return (f"The deposit is up to {numbers.quantity('thickness_m', value)} m thick; the "

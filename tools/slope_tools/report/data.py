@@ -107,10 +107,10 @@ class Data:
     def _read_study(self, shown):
         path = self.folder / "study.yaml"
         self.study = self.study or load_study(path)
-        self.rows = self.study["runs"]
+        self.rows = self.study.runs
         self.finished = finished_of(self.rows)
-        about = self.study["study"]
-        self.settings, self.repeats = about["set"], about["repeat"]
+        about = self.study.study
+        self.settings, self.repeats = about.set, about.repeat
         names = [row.run for row in self.finished]
         shown = shown or named_run.governing(self.study)
         if shown not in names:
@@ -119,18 +119,18 @@ class Data:
         drawn = [self.result if name == shown else self._load(self.finished[names.index(name)])
                  for name in self._beside(shown)]
         self.drawn = [one for one in drawn if same_grid(one, self.result)]
-        road = about.get("road")
+        road = about.road
         if road:
             from ..survey import roads
             given = roads.read_local(self.folder / str(road["local"]), self.result.deposit.raster, roads.Asked.of(road),
                                      True)
             self.road, self.road_line = given
-        if self.study["observed"]:
-            self.mapped = score.read_observed(self.folder / str(self.study["observed"]["file"]),
+        if self.study.observed:
+            self.mapped = score.read_observed(self.folder / str(self.study.observed.file),
                                               self.result.deposit.raster, score.THRESHOLD, False)
         # everything is read before anything is drawn: drawing takes a while
-        if len(self.finished) > 1 and self.study["envelope"]:
-            for entry in (self.study["envelope"]["max_thickness"], *(self.study["exceedance"] or ())):
+        if len(self.finished) > 1 and self.study.envelope:
+            for entry in (self.study.envelope["max_thickness"], *(self.study.exceedance or ())):
                 self.over_all[entry["file"]] = self.read_map(entry["file"])
         if road:
             self.removed = self._removed()
@@ -154,7 +154,7 @@ class Data:
 
     def _volume(self) -> str:
         """Where runs have the volume to remove from the road of the study."""
-        return quantities.volume_folder(self.of_study["study"]["road"].get("name") or "")
+        return quantities.volume_folder(self.of_study.study.the_road.get("name") or "")
 
     def _removed(self):
         found = []

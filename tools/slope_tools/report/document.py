@@ -81,13 +81,13 @@ def write(asked: Asked, output: Path, made_of: Optional[str] = None) -> List[str
 def digest_of(asked: Asked, study: study_types.Study) -> str:
     """Of the page that is asked for on a study: what its runs say, their files, the site, and these tools."""
     about = study_file.plain(study)
-    about["study"] = {key: value for key, value in study["study"].items() if key not in BESIDE}
+    about["study"] = {key: value for key, value in about["study"].items() if key not in BESIDE}
     site = site_file(asked.folder)
     found = {"asked": disk.plain({**asked._asdict(), "study": None, "site": None}),
              "about": about,
              "site": asked.site if asked.site is not None else site and disk.sha256(site),
              "runs": {row.run: run_folders.state(run_folders.summary_of(asked.folder, row.summary).parent)
-                      for row in finished_of(study["runs"])},
+                      for row in finished_of(study.runs)},
              "film": str(shutil.which("ffmpeg")) if asked.film else ""}
     return kept.digest(found)
 

@@ -1,6 +1,6 @@
 """What a report shows of an ensemble, by its distributions and as known events weigh it: curves, tables, maps."""
 import csv
-from typing import Any, Dict, List, Optional, Sequence
+from typing import Any, List, Optional, Sequence
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from ..statistics import entries
 from ..tables import quantities, study_types, withheld_words
 from .charts import AXIS
 from .data import Data, is_number
-from .numbers import as_run, Numbers
+from .numbers import CardPart, MainCard, Numbers, as_run
 from .sections import Cell, Figures, Picture, Section, Table, Text
 
 MOST_SCATTER = 4        # variables with a chart of the runs against them
@@ -23,22 +23,22 @@ IN_GAP = "In a gap: no run ends where these known events do."
 SHARES = ("50 %", "90 %", "95 %", "99 %")
 
 
-def answer(data: Data, numbers: Numbers) -> Optional[Dict[str, Any]]:
+def answer(data: Data, numbers: Numbers) -> Optional[MainCard]:
     """For the card on top: of the known events where these weigh the runs, else of the runs; None of other studies."""
-    about = data.study["ensemble"] if data.study else None
+    about = data.study.ensemble if data.study else None
     if not about:
         return None
     mine = Ensemble(data, numbers, about).answer()
-    known = KnownEvents(data, numbers, about).answer() if about["known_events"] else None
-    return {**known, "withheld": []} if known and not (mine or {}).get("withheld") else mine
+    known = KnownEvents(data, numbers, about).answer() if about.known_events else None
+    return known if known and not (mine and mine.withheld) else mine
 
 
 def sections(data: Data, numbers: Numbers, maps) -> List[Section]:
     """Of an ensemble; maps: a maps_part.Maps."""
-    about = data.study["ensemble"] if data.study else None
+    about = data.study.ensemble if data.study else None
     if not about:
         return []
-    known = [KnownEvents(data, numbers, about).section(maps)] if about["known_events"] else []
+    known = [KnownEvents(data, numbers, about).section(maps)] if about.known_events else []
     return [*known, Ensemble(data, numbers, about).section(maps)]
 
 
@@ -47,46 +47,45 @@ class Ensemble:
 
     def __init__(self, data: Data, numbers: Numbers, about: study_types.Ensemble):
         self.data, self.numbers, self.about = data, numbers, about
-        self.of = self.about["of"]
-        self.entry = self.about["quantities"].get(self.of) if self.of else None
+        self.of = self.about.of
+        self.entry = self.about.quantities.get(self.of) if self.of else None
 
-    def answer(self):
+    def answer(self) -> Optional[MainCard]:
         """For the card on top: the quantiles of the quantity that counts."""
         entry = self.entry
         if not entry:
             return None
-        what, unit = entry["name"], entry["unit"]
-        if self.about.get("withheld"):
-            return {"title": withheld_words.UNUSABLE.capitalize(), "withheld": self.about["withheld"], "number": None,
-                    "unit": unit, "parts": [], "note": self.design()}
+        what, unit = entry.name, entry.unit
+        if self.about.withheld:
+            return MainCard(withheld_words.UNUSABLE.capitalize(), None, unit, withheld=self.about.withheld,
+                            note=self.design())
         parts = []
-        for one in entry["quantiles"]:
-            bounds = [None if side is None else self.number(f"{100 * one['share']:g} % {name}", unit, side)
-                      for name, side in (("low", one["low"]), ("high", one["high"]))]
-            note = band(bounds, unit, self.about["confidence"])
-            share = f"{100 * one['share']:g} % of the runs stay within"
-            parts.append({"number": self.number(share, unit, one["value"]), "what": share,
-                          "note": note})
-        shown = next((part for part, one in zip(parts, entry["quantiles"]) if one["share"] == 0.9), parts[-1])
-        return {"title": f"{what[0].upper()}{what[1:]}: 90 % of the runs stay within", "number": shown["number"],
-                "unit": unit, "parts": parts, "note": self.design(), "withheld": [], "band": shown["note"]}
+        for one in entry.quantiles:
+            bounds = [None if side is None else self.number(f"{100 * one.share:g} % {name}", unit, side)
+                      for name, side in (("low", one.low), ("high", one.high))]
+            note = band(bounds, unit, self.about.confidence)
+            share = f"{100 * one.share:g} % of the runs stay within"
+            parts.append(CardPart(self.number(share, unit, one.value), share, note))
+        shown = next((part for part, one in zip(parts, entry.quantiles) if one.share == 0.9), parts[-1])
+        return MainCard(f"{what[0].upper()}{what[1:]}: 90 % of the runs stay within", shown.number, unit, parts,
+                        band=shown.note, note=self.design())
 
     def number(self, what, unit, value):
-        return self.numbers(f"{self.entry['name'] if self.entry else ''}: {what}", unit, value)
+        return self.numbers(f"{self.entry.name if self.entry else ''}: {what}", unit, value)
 
     def design(self):
-        design = self.about["design"]
-        distributions = "; ".join(f"{name} {text}" for name, text in design["variables"].items())
-        if design["kind"] == "calibrated":
-            return (f"An ensemble of {design['points']} sets of values that a calibration found equally good, within "
+        design = self.about.design
+        distributions = "; ".join(f"{name} {text}" for name, text in design.variables.items())
+        if design.kind == "calibrated":
+            return (f"An ensemble of {design.points} sets of values that a calibration found equally good, within "
                     f"{distributions}.")
-        return (f"An ensemble of {design['points']} points ({design['kind']}, seed {design['seed']}), "
-                f"{self.about['finished']} runs: {distributions}. It is only as good as these distributions.")
+        return (f"An ensemble of {design.points} points ({design.kind}, seed {design.seed}), "
+                f"{self.about.finished} runs: {distributions}. It is only as good as these distributions.")
 
     def section(self, maps) -> Section:
         return Section("ensemble", "How likely, and what matters", [
             Figures([self.curve()], "two-thirds"), Figures(self.indices(), "columns"), self.table(),
-            Figures(self.scatter(), "columns"), Figures(draw(self.data, self.about["maps"], maps), "columns")])
+            Figures(self.scatter(), "columns"), Figures(draw(self.data, self.about.maps, maps), "columns")])
 
     # --- charts ---
 
@@ -97,65 +96,64 @@ class Ensemble:
         points = read_curve(self.data.folder / ensemble.HAZARD, self.of)
         if points is None:
             return None
-        quantiles = [ensemble_charts.Quantile(one["share"], one["value"], one["low"], one["high"])
-                     for one in self.entry["quantiles"] if one["value"] is not None]
-        title = f"Hazard curve: {self.entry['name']}"
+        quantiles = [entries.KnownQuantile(*one) for one in self.entry.quantiles]
+        title = f"Hazard curve: {self.entry.name}"
         return Picture(
             ensemble_charts.hazard_curve(points[0], points[1], points[2], points[3], quantiles,
-                                         f"{self.entry['name']} ({self.entry['unit']})", title),
+                                         f"{self.entry.name} ({self.entry.unit})", title),
             title, f"The hazard curve: share of the runs in which the quantity is larger, with its "
-            f"{100 * self.about['confidence']:g} % bounds; dots: what 50, 90, 95 and 99 % of the runs stay within."
+            f"{100 * self.about.confidence:g} % bounds; dots: what 50, 90, 95 and 99 % of the runs stay within."
             + as_run(self.data, self.of))
 
     def indices(self) -> List[Picture]:
         """A chart for each quantity whose emulator says something, the one that counts first, three at most."""
         found: List[Picture] = []
-        for name, entry in self.about["influence"].items():
-            variables = entry["variables"]
-            if len(found) == 3 or any(one["total"] is None for one in variables.values()):
+        for name, entry in self.about.influence.items():
+            variables = entry.variables
+            if len(found) == 3 or any(one.total is None for one in variables.values()):
                 continue
-            what = self.about["quantities"][name]["name"]
-            bars = [ensemble_charts.Bar(key, one["first"] or 0.0, one["first_error"] or 0.0, one["total"] or 0.0,
-                                        one["total_error"] or 0.0) for key, one in variables.items()]
+            what = self.about.quantities[name].name
+            bars = [ensemble_charts.Bar(key, one.first or 0.0, one.first_error or 0.0, one.total or 0.0,
+                                        one.total_error or 0.0) for key, one in variables.items()]
             title = f"What matters: {what}"
             found.append(Picture(ensemble_charts.influence(bars, title), title,
-                                 f"Sobol indices for {what}, with the error of the total ones; {entry['text']}."))
+                                 f"Sobol indices for {what}, with the error of the total ones; {entry.text}."))
         return found
 
     def scatter(self):
         """The quantity that counts against each variable, those first on which it depends most."""
         if not self.entry or not self.of:
             return []
-        variables = self.about["influence"][self.of]["variables"]
-        names = sorted(variables, key=lambda name: -abs(variables[name]["total"] or variables[name]["rank"]))
+        variables = self.about.influence[self.of].variables
+        names = sorted(variables, key=lambda name: -abs(variables[name].total or variables[name].rank))
         found = []
         for name in names[:MOST_SCATTER]:
             rows = self.data.finished
             if not all(is_number(row.set[name]) for row in rows):
                 continue
-            what = self.entry["name"]
+            what = self.entry.name
             title = f"{what[0].upper()}{what[1:]} against {name}"
             uri = ensemble_charts.against([float(row.set[name]) for row in rows], [row.value(self.of) for row in rows],
-                                          AXIS.get(name, name), f"{what} ({self.entry['unit']})", title)
+                                          AXIS.get(name, name), f"{what} ({self.entry.unit})", title)
             found.append(Picture(uri, title, f"{title}: a dot for each run; rank correlation "
-                                             f"{variables[name]['rank']:+.2f}."))
+                                             f"{variables[name].rank:+.2f}."))
         return found
 
     def table(self):
         """Of the quantities: quantiles, and the variables' indices."""
-        names, rows = list(self.about["design"]["variables"]), []
-        for name, entry in self.about["quantities"].items():
-            found = self.about["influence"].get(name)
-            cells = [quantities.number(one["value"]) for one in entry["quantiles"]]
+        names, rows = list(self.about.design.variables), []
+        for name, entry in self.about.quantities.items():
+            found = self.about.influence.get(name)
+            cells = [quantities.number(one.value) for one in entry.quantiles]
             of_variables = []
             for key in names:
-                one = found and found["variables"][key]
-                of_variables.append("" if not one else f"rank {one['rank']:+.2f}" if one["total"] is None else
+                one = found and found.variables[key]
+                of_variables.append("" if not one else f"rank {one.rank:+.2f}" if one.total is None else
                                     indices_text(one))
-            check = found and found["emulator"]
-            explains = Cell(f"{100 * max(0, check['explained']):.0f} %",
-                            style="" if check["verdict"] == "good" else "doubt") if check else ""
-            rows.append([Cell(entry["name"], entry["unit"]), *cells, *of_variables, explains])
+            check = found and found.emulator
+            explains = Cell(f"{100 * max(0, check.explained):.0f} %",
+                            style="" if check.verdict == "good" else "doubt") if check else ""
+            rows.append([Cell(entry.name, entry.unit), *cells, *of_variables, explains])
         return Table("The values that the given share of the runs stay within; for each variable its Sobol indices, "
                      "first order / total \N{PLUS-MINUS SIGN} the error of the total one, or its rank correlation "
                      "where the emulator is bad. Explained: the share of the variance of left-out runs that the "
@@ -168,51 +166,50 @@ class KnownEvents:
 
     def __init__(self, data: Data, numbers: Numbers, whole: study_types.Ensemble):
         self.data, self.numbers = data, numbers
-        self.known, self.about = whole["known_events"], study_types.weighted(whole)
-        self.of, self.confidence = whole["of"], whole["confidence"]
-        self.entry = self.about["quantities"].get(self.of) if self.about and self.of else None
+        self.known, self.about = whole.known_events, study_types.weighted(whole)
+        self.of, self.confidence = whole.of, whole.confidence
+        self.entry = self.about.quantities.get(self.of) if self.about and self.of else None
 
     def section(self, maps) -> Section:
         about = self.about
-        lines = [*([known_events.summary(about)] if about else []), *texts(self.known["doubts"] if self.known else ())]
+        lines = [*([known_events.summary(about)] if about else []), *texts(self.known.doubts if self.known else ())]
         blocks: List[Any] = [Text(f"{text[0].upper()}{text[1:]}.") for text in lines]
         if about:
             curve = self.curve()
             blocks += [*([Figures([curve], "two-thirds")] if curve else []), *self.tables()]
         return Section("known-events", "Weighted by known events", [
-            *blocks, Figures(draw(self.data, about["maps"], maps) if about else [], "columns")])
+            *blocks, Figures(draw(self.data, about.maps, maps) if about else [], "columns")])
 
     def number(self, what: str, unit: str, value: Optional[float]) -> str:
         return "unknown" if value is None else self.numbers(f"known events: {what}", unit, value)
 
-    def quantile(self, share: str, unit: str, one: study_types.Quantile) -> str:
+    def quantile(self, share: str, unit: str, one: entries.KnownQuantile) -> str:
         """The value, or the two between which it is."""
-        gap = one.get("gap")
+        gap = one.gap
         if not gap:
-            return self.number(share, unit, one["value"])
+            return self.number(share, unit, one.value)
         return " to ".join(self.number(f"{share}, {end} of the gap where no run ends", unit, value)
                            for end, value in zip(("begin", "end"), gap))
 
-    def answer(self):
+    def answer(self) -> Optional[MainCard]:
         """For the card on top, instead of that of the runs as their distributions have them."""
         if not self.entry or not self.about:
             return None
-        what, unit = self.entry["name"], self.entry["unit"]
+        what, unit = self.entry.name, self.entry.unit
         parts = []
-        for one in self.entry["quantiles"]:
-            share = f"{100 * one['share']:g} % of known events stay within"
+        for one in self.entry.quantiles:
+            share = f"{100 * one.share:g} % of known events stay within"
             bounds = [None if side is None else self.number(f"{share}, {name}", unit, side)
-                      for name, side in (("low", one["low"]), ("high", one["high"]))]
+                      for name, side in (("low", one.low), ("high", one.high))]
             note = band(bounds, unit, self.confidence)
-            if one.get("gap"):
+            if one.gap:
                 note = f"{IN_GAP} {note}"
-            parts.append({"number": self.quantile(share, unit, one), "what": share, "note": note,
-                          "unit": "" if one["value"] is None else unit})
-        shown = next((part for part, one in zip(parts, self.entry["quantiles"]) if one["share"] == 0.9), parts[-1])
-        return {"title": f"{what[0].upper()}{what[1:]}: 90 % of known events stay within", "number": shown["number"],
-                "unit": shown["unit"], "parts": parts, "band": shown["note"],
-                "note": f"The runs reach {percent(self.about['reached'] or 0.0)} of the known events of this volume "
-                        f"and height, and weighted by them say as much as {self.about['effective']:.0f} runs."}
+            parts.append(CardPart(self.quantile(share, unit, one), share, note, unit="" if one.value is None else unit))
+        shown = next((part for part, one in zip(parts, self.entry.quantiles) if one.share == 0.9), parts[-1])
+        return MainCard(f"{what[0].upper()}{what[1:]}: 90 % of known events stay within", shown.number,
+                        shown.unit or "", parts, band=shown.note,
+                        note=f"The runs reach {percent(self.about.reached or 0.0)} of the known events of this volume "
+                             f"and height, and weighted by them say as much as {self.about.effective:.0f} runs.")
 
     def curve(self):
         """The weighted hazard curve."""
@@ -221,11 +218,10 @@ class KnownEvents:
         points = read_curve(self.data.folder / known_events.HAZARD, self.of)
         if points is None:
             return None
-        named = [ensemble_charts.Quantile(one["share"], one["value"], one["low"], one["high"], one.get("gap"))
-                 for one in self.entry["quantiles"] if one["value"] is not None]
-        title = f"Hazard curve by known events: {self.entry['name']}"
+        named = [one for one in self.entry.quantiles if one.value is not None]
+        title = f"Hazard curve by known events: {self.entry.name}"
         uri = ensemble_charts.hazard_curve(points[0], points[1], points[2], points[3], named,
-                                           f"{self.entry['name']} ({self.entry['unit']})", title, "known events")
+                                           f"{self.entry.name} ({self.entry.unit})", title, "known events")
         return Picture(uri, title, "The weighted hazard curve: share of known events in which the quantity is "
                        f"larger, with its {100 * self.confidence:g} % bounds. What the runs do not reach is not "
                        "shared out: known events beyond the longest run exceed every value. A line: no run ends where "
@@ -235,15 +231,15 @@ class KnownEvents:
         """Quantiles of all quantities; which parameters the weighted runs have, and how the first depends on them."""
         if not self.about:
             return []
-        quantiles: List[Any] = [[Cell(entry["name"], entry["unit"]), *map(cell_of, entry["quantiles"])]
-                                for entry in self.about["quantities"].values()]
-        analysis = self.about["influence"].get(self.of) if self.of else None
-        indices = analysis["variables"] if analysis else {}
+        quantiles: List[Any] = [[Cell(entry.name, entry.unit), *map(cell_of, entry.quantiles)]
+                                for entry in self.about.quantities.values()]
+        analysis = self.about.influence.get(self.of) if self.of else None
+        indices = analysis.variables if analysis else {}
         rows: List[Any] = []
-        for name, entry in self.about["variables"].items():
-            rank, one = entry["rank"].get(self.of) if self.of else None, indices.get(name)
-            rows.append([name, *map(str, entry["quantiles"]), "-" if rank is None else f"{rank:+.2f}",
-                         indices_text(one) if one and one["total"] is not None else "-"])
+        for name, entry in self.about.variables.items():
+            rank, one = entry.rank.get(self.of) if self.of else None, indices.get(name)
+            rows.append([name, *map(str, entry.quantiles), "-" if rank is None else f"{rank:+.2f}",
+                         indices_text(one) if one and one.total is not None else "-"])
         return [] if not quantiles else [
             Table("The values that the given share of known events stay within. \"?\": they go beyond the runs; two "
                   f"values: {IN_GAP[0].lower()}{IN_GAP[1:-1]}.",
@@ -255,11 +251,11 @@ class KnownEvents:
                   ["parameter", "5 %", "50 %", "95 %", "rank", "indices"], rows)]
 
 
-def cell_of(one: study_types.Quantile) -> str:
+def cell_of(one: entries.KnownQuantile) -> str:
     """A quantile in a table."""
-    if one["value"] is None:
+    if one.value is None:
         return "?"
-    return " to ".join(map(quantities.number, one.get("gap") or [one["value"]]))
+    return " to ".join(map(quantities.number, one.gap or [one.value]))
 
 
 # --- of both ---
@@ -302,15 +298,15 @@ def shown(entry) -> bool:
 def exceeded(data: Data) -> Optional[figure_maps.Exceeded]:
     """In which share of an ensemble the deposit is thicker than its least threshold; of known events, where these weigh
     it. None of other studies, and of runs too few for the smallest share."""
-    about = data.study["ensemble"] if data.study else None
+    about = data.study.ensemble if data.study else None
     known = study_types.weighted(about)
-    maps = known["maps"] if known else about["maps"] if about else []
+    maps = known.maps if known else about.maps if about else []
     shown_maps = [one for one in maps if one["raster"] == "thickness" and one.get("threshold")]
     if not shown_maps or len(data.finished) < 1 / min(figure_maps.OUTLINES):
         return None
     least = min(shown_maps, key=lambda one: one["threshold"])
     whom = "known events" if known else "runs"
-    return figure_maps.Exceeded(data.read_map(least["file"]), whom, least["threshold"], known["far"] if known else 0.0)
+    return figure_maps.Exceeded(data.read_map(least["file"]), whom, least["threshold"], known.far if known else 0.0)
 
 
 def draw(data: Data, several: Sequence[study_types.MapEntry], maps) -> List[Picture]:
@@ -336,4 +332,4 @@ def draw(data: Data, several: Sequence[study_types.MapEntry], maps) -> List[Pict
 
 def indices_text(one: entries.Influence) -> str:
     """First and total Sobol index of a variable that has them, with the error of the latter."""
-    return f"{one['first']:.2f} / {one['total']:.2f} \N{PLUS-MINUS SIGN} {one['total_error']:.2f}"
+    return f"{one.first:.2f} / {one.total:.2f} \N{PLUS-MINUS SIGN} {one.total_error:.2f}"

@@ -80,16 +80,16 @@ def zones_of_ground(data: Data, numbers: Numbers) -> Optional[Section]:
 def uncertainty(data: Data, numbers: Numbers) -> CONTENT:
     """How far a run differs by chance, and the effect of the size of the balls."""
     study = data.study
-    best = study["conservative"] if study else None
+    best = study.conservative if study else None
     found = []
-    if best and best["chance_m3"] is not None and not best["mean_m3"] and not best["chance_m3"]:
+    if best and best.chance_m3 is not None and not best.mean_m3 and not best.chance_m3:
         found.append(f"In none of the {len(data.finished)} runs anything is to be removed.")
-    elif best and best["chance_m3"] is not None:
-        low, high = (headline.text(value, best["place_m3"]) for value in
-                     (max(0.0, best["mean_m3"] - best["chance_m3"]), best["mean_m3"] + best["chance_m3"]))
+    elif best and best.chance_m3 is not None:
+        low, high = (headline.text(value, best.place_m3) for value in
+                     (max(0.0, best.mean_m3 - best.chance_m3), best.mean_m3 + best.chance_m3))
         found.append(f"Another run with the same values gives {low} to {high} m3 to remove, in 95 % of cases.")
     key = travel_shares.DISTANCE
-    scatter = study["scatter"].get(key) if study else None
+    scatter = study.scatter.get(key) if study else None
     if scatter:
         deviation = scatter["deviation"]
         text = headline.text(deviation, 10 * headline.place_of_digits(deviation))       # two digits
@@ -98,17 +98,17 @@ def uncertainty(data: Data, numbers: Numbers) -> CONTENT:
                      "(standard deviation).")
     if not found:
         found = ["Unknown: no run was repeated, and equivalent runs may differ by several percent (study --repeat)."] \
-            if not (study and study["ensemble"]) else []
+            if not (study and study.ensemble) else []
     chance = [("Chance", " ".join(found))] if found else []
-    size, step, most = (study["size"], study["step"], study["largest_restitution"]) if study else (None, None, None)
-    chance.append(("Size of the balls", f"{size['text'][0].upper()}{size['text'][1:]}." if size else
+    size, step, most = (study.size, study.step, study.largest_restitution) if study else (None, None, None)
+    chance.append(("Size of the balls", f"{size.text[0].upper()}{size.text[1:]}." if size else
                    "What smaller balls change is not known (study --fine 2)."))
-    chance.append(("Time step", f"{step['text'][0].upper()}{step['text'][1:]}." if step else
+    chance.append(("Time step", f"{step.text[0].upper()}{step.text[1:]}." if step else
                    "What half the time step changes was not tried (the study of a site does, or --set step=0.5)."))
-    if step and (energy := step["energy"]):
+    if step and (energy := step.energy):
         chance.append(("Energy", f"In the run with half the time step, {energy['text']}."))
     if most:
-        chance.append(("Largest restitution", f"{most['text'][0].upper()}{most['text'][1:]}. Reach and area only: "
+        chance.append(("Largest restitution", f"{most.text[0].upper()}{most.text[1:]}. Reach and area only: "
                        "these runs are none of those that the volume is of."))
     return chance
 

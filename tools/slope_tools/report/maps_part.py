@@ -135,7 +135,7 @@ class Maps:
         removed, mesh = data.removed
         layers = self.layers._replace(shown=self.ground.window(box_of(self.layers.raster, removed > 0)),
                                       reach=known_reach.NOTHING)
-        road = data.of_study["study"]["road"]
+        road = data.of_study.study.the_road
         uri, numbered = figure_maps.mesh_map(layers, removed, mesh, "Volume to remove", self.crs)
         squares = f", and its volume in m3 in squares of {mesh.transform.a:g} m" if numbered else ""
         more = "" if numbered else (f" The volumes in squares of {mesh.transform.a:g} m are too many to be read here: "
@@ -161,14 +161,14 @@ class Maps:
                 figure_maps.small_maps(layers, [(data.label(one), one.thickness) for one in data.drawn],
                                        "thickness (m)", bounds, palettes.THICKNESS),
                 "Final thickness of the runs", "Final thickness of the runs." + some)
-        envelope = data.study.get("envelope")
+        envelope = data.study.envelope
         if envelope:
             found["envelope"] = self.thickness(
                 data.over_all[envelope["max_thickness"]["file"]], "Envelope of all runs", "Envelope",
                 f"Largest thickness over all {len(data.finished)} runs and all times.", layers=layers)
         volume, balls = data.result.summary["volume"]["released"], data.result.summary["balls"]["released"]
         side = (volume / balls) ** (1 / 3)
-        for entry in data.study.get("exceedance") or ():
+        for entry in data.study.exceedance or ():
             if entry["file"] not in data.over_all:
                 continue
             values = data.over_all[entry["file"]]

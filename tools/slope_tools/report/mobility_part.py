@@ -163,16 +163,16 @@ def mapped_sentence(data: Data, numbers: Numbers) -> str:
     found = mapped_runs(data)
     if not found:
         return ""
-    about = data.of_study["observed"]
+    about = data.of_study.observed
     assert about
-    best, mine = next((row, one) for row, one in found if row.run == about["best"])
+    best, mine = next((row, one) for row, one in found if row.run == about.best)
     share = numbers.quantity(OVERLAP, mine.overlap, data.label_of(best))
     which = f"The best of {len(found)} runs" if len(found) > 1 else "The run"
     text = f"{which} shares {share} of the area that it or the mapped deposit covers (1: the same area)"
     if mine.beyond_mapped_m is not None:
         by = numbers.quantity(BEYOND, abs(mine.beyond_mapped_m), data.label_of(best))
         text += f", and ends {by} m {'beyond' if mine.beyond_mapped_m > 0 else 'short of'} its tip"
-    lacks = mass(about["volume_m3"], about["released_m3"])
+    lacks = mass(about.volume_m3, about.released_m3)
     return f"{text}." + (f" {lacks.text[0].upper()}{lacks.text[1:]}." if lacks else "")
 
 
@@ -181,9 +181,9 @@ def mapped(data: Data, numbers: Numbers) -> Optional[Section]:
     found = mapped_runs(data)
     if not found:
         return None
-    about = data.of_study["observed"]
+    about = data.of_study.observed
     assert about
-    volume, length = about["volume_m3"], about["length_m"]
+    volume, length = about.volume_m3, about.length_m
     by_name = {row.run: row for row, _ in found}
     heads: List[Any] = ["", Cell("overlap (Jaccard)", ""), Cell("length", "m"), Cell("difference", "m")]
     columns = [(OVERLAP, "1"), ("length_m", "m"), (BEYOND, "m")]
@@ -206,18 +206,18 @@ def mapped(data: Data, numbers: Numbers) -> Optional[Section]:
                                   [value - volume for value in kept], label))
         return texts
 
-    shown = [("on the maps", data.result.name), ("best overlap", about["best"])]
+    shown = [("on the maps", data.result.name), ("best overlap", about.best)]
     for what, name in shown if shown[0][1] != shown[1][1] else [("on the maps, best overlap", shown[0][1])]:
         if name in by_name:
             label = data.label_of(by_name[name])
             rows.append(row(f"run {data.number(name)}, {what}", [by_name[name]], label))
     if len(found) > 1:
         rows.append(row(f"all {len(found)} runs", [one for one, _ in found], ""))
-    lacks = mass(volume, about["released_m3"])
+    lacks = mass(volume, about.released_m3)
     return Section("mapped", "Against the mapped deposit", [
         Text(f"{lacks.text[0].upper()}{lacks.text[1:]}.") if lacks else None,
         Table("Overlap: the area that both cover over that which either covers, thicker than "
-              f"{about['threshold_m']:g} m. Lengths are those of the table of runs; of an outline that to its "
+              f"{about.threshold_m:g} m. Lengths are those of the table of runs; of an outline that to its "
               "farthest point. Negative differences: the run ends short, or holds less.", heads, rows)])
 
 

@@ -2,16 +2,17 @@
 which runs it rests."""
 import csv
 import io
-from typing import Any, Dict, List, Mapping, Optional, Sequence
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence
 
 from .. import disk
 from ..deposits import rest, travel_shares
 from ..digits import measured, rounded, three
 from ..ensembles import known_study
+from ..findings import Finding
 from ..mobility.run_length import ON_PATH
 from ..statistics import headline
 from ..statistics.answer import Source
-from ..tables import fine_run, named_run, withheld_words
+from ..tables import fine_run, named_run, study_types, withheld_words
 from ..tables.quantities import ALL, KNOWN, LENGTH, REACH, written
 from ..tables.released import over_runs
 from .data import Data, is_number
@@ -74,20 +75,48 @@ class Numbers:
 
 # --- the answer ---
 
-def answer(data: Data, numbers: Numbers):
+class CardPart(NamedTuple):
+    """A number of which an answer is made, or another one of its kind; unit: None: that of the answer."""
+    number: Optional[str]
+    what: str
+    note: str
+    sign: str = ""
+    unit: Optional[str] = None
+
+
+class MainCard(NamedTuple):
+    """The number of a study, on top of the appendix; withheld: why there is none; note: on which runs it rests.
+
+    Of the conservative volume: predicted: whether chance is in it; zero: what a volume of 0 is worth; below, ground:
+    what else is said of it; road: see study_types.Header.
+    """
+    title: str
+    number: Optional[str]
+    unit: str = "m3"
+    parts: Sequence[CardPart] = ()
+    withheld: Sequence[Finding] = ()
+    band: Optional[str] = None
+    note: str = ""
+    predicted: bool = False
+    zero: Optional[str] = None
+    below: str = ""
+    ground: str = ""
+    road: Optional[Mapping[str, Any]] = None
+
+
+def answer(data: Data, numbers: Numbers) -> Optional[MainCard]:
     """The conservative volume: its number (or why it is withheld), what it may be called, its parts.
 
     None without a road.
     """
-    best = data.study["conservative"] if data.study else None
+    best = data.study.conservative if data.study else None
     if not best or not data.study:
         return None
-    road, place = data.study["study"]["road"], best["place_m3"]
-    if best["withheld"]:
-        return {"title": withheld_words.UNUSABLE.capitalize(), "withheld": best["withheld"], "road": road,
-                "number": None, "parts": [], "predicted": False, "below": "", "zero": None, "ground": ""}
-    who = best["label"] or best["combination"]
-    rounded_ = best["rounded"]
+    road, place = data.study.study.road, best.place_m3
+    if best.withheld:
+        return MainCard(withheld_words.UNUSABLE.capitalize(), None, withheld=best.withheld, road=road)
+    who = best.label or best.combination
+    rounded_ = best.rounded
 
     def part(key: str, exact: Optional[float]):
         value = rounded_[key]
@@ -97,27 +126,25 @@ def answer(data: Data, numbers: Numbers):
         numbers.rows.append((f"conservative: {key}", "m3", who, text, exact))
         return text
 
-    predicted, scatter = best["chance_m3"] is not None, best["scatter_m3"] or 0.0
-    parts = [{"sign": "", "number": part("mean_m3", best["mean_m3"]), "what": "mean" if predicted else "largest run",
-              "note": (f"of {best['repeats']} runs, {who}" if predicted else f"{who}; of {best['runs']} runs")}]
+    predicted, scatter = best.chance_m3 is not None, best.scatter_m3 or 0.0
+    parts = [CardPart(part("mean_m3", best.mean_m3), "mean" if predicted else "largest run",
+                      f"of {best.repeats} runs, {who}" if predicted else f"{who}; of {best.runs} runs")]
     if predicted:
-        parts.append({
-            "sign": "+", "number": part("chance_m3", best["chance_m3"]), "what": "chance",
-            "note": f"97.5 % of single runs lie below: t {best['quantile']:.3g} x standard deviation of a run "
-                    f"{headline.text(scatter, headline.place_of_digits(scatter))} m3 x sqrt(1 + 1/"
-                    f"{best['repeats']}), {best['degrees_of_freedom']:.3g} degrees of freedom"})
+        parts.append(CardPart(
+            part("chance_m3", best.chance_m3), "chance",
+            f"97.5 % of single runs lie below: t {best.quantile:.3g} x standard deviation of a run "
+            f"{headline.text(scatter, headline.place_of_digits(scatter))} m3 x sqrt(1 + 1/{best.repeats}), "
+            f"{best.degrees_of_freedom:.3g} degrees of freedom", "+"))
     else:
-        parts.append({"sign": "+", "number": UNKNOWN, "what": "chance",
-                      "note": "no run was repeated (study --repeat seed=..., xoffset=...)"})
-    parts.append(size_part(data.study["size"], part("size_m3", best["size_m3"])))
-    title = f"Volume to remove from the road: {best['kind']}"
+        parts.append(CardPart(UNKNOWN, "chance", "no run was repeated (study --repeat seed=..., xoffset=...)", "+"))
+    parts.append(size_part(data.study.size, part("size_m3", best.size_m3)))
+    title = f"Volume to remove from the road: {best.kind}"
     if predicted:
-        title = "Conservative volume to remove from the road" if best["size_m3"] is not None else \
+        title = "Conservative volume to remove from the road" if best.size_m3 is not None else \
             "Volume to remove from the road, not conservative: smaller balls may bring more"
-    return {"number": part("volume_m3", best["volume_m3"]), "title": title, "parts": parts, "predicted": predicted,
-            "road": road,
-            "zero": best["zero"]["text"] if best["zero"] else None, "withheld": [],
-            "below": below_ground(data, numbers), "ground": best["ground"] or ""}
+    return MainCard(title, part("volume_m3", best.volume_m3), parts=parts, predicted=predicted, road=road,
+                    zero=best.zero.text if best.zero else None, below=below_ground(data, numbers),
+                    ground=best.ground or "")
 
 
 def below_ground(data: Data, numbers: Numbers):
@@ -132,12 +159,9 @@ def below_ground(data: Data, numbers: Numbers):
             "before the collapse.")
 
 
-def size_part(size, number):
+def size_part(size: Optional[study_types.Size], number: Optional[str]) -> CardPart:
     """What smaller balls add; size: of study.yaml, None where none were tried."""
-    if number is None:
-        return {"sign": "+", "number": UNKNOWN, "what": "size of the balls",
-                "note": size["text"] if size else "not tried (study --fine 2)"}
-    return {"sign": "+", "number": number, "what": "size of the balls", "note": size["text"]}
+    return CardPart(number or UNKNOWN, "size of the balls", size.text if size else "not tried (study --fine 2)", "+")
 
 
 def cards(data: Data, numbers: Numbers):
@@ -165,15 +189,15 @@ def travel_card(data: Data, numbers: Numbers):
     key, unit = travel_shares.DISTANCE, "m"
     what = f"{travel_shares.HEADLINE} % of the volume stays within"
     if data.study:
-        largest = data.study["largest"]
+        largest = data.study.largest
         far = largest["front_m"]
         names = {row.run: row for row in data.finished}
-        who = data.label_of(names[far["run"]])
-        farthest = f"; farthest ball {numbers.quantity('front_m', far['value'], who)} m, {who}"
+        who = data.label_of(names[far.run])
+        farthest = f"; farthest ball {numbers.quantity('front_m', far.value, who)} m, {who}"
         if key not in largest:
             left = any(map(travel_shares.lost, data.finished))
             return {"what": what, "number": UNKNOWN, "unit": "", "note": f"a run {LOST if left else OLD}{farthest}"}
-        row = names[largest[key]["run"]]
+        row = names[largest[key].run]
         value, angle, name = row.value(key), row.value(REACH), data.label_of(row)
         length = row.value(LENGTH)
     else:
@@ -204,8 +228,8 @@ def farthest_of(summary):
 
 def thickness_card(data: Data, numbers: Numbers):
     if data.study:
-        largest = data.study["largest"]
-        value, ever, speed = (largest[key]["value"] for key in ("thickness_m", "max_thickness_m", "max_speed_m_s"))
+        largest = data.study.largest
+        value, ever, speed = (largest[key].value for key in ("thickness_m", "max_thickness_m", "max_speed_m_s"))
     else:
         about = data.result.summary["largest"]
         value, ever, speed = (about[key] for key in ("thickness", "max_thickness", "max_speed"))
@@ -256,7 +280,7 @@ def basis(data: Data) -> str:
         text += f", which differ in {listed(known)}"
     if data.repeats or any(WORDS.get(name) == CHANCE for name in varied):
         text += f"{' and' if known else ', which differ'}, by chance, in {CHANCE}"
-    method = data.study["study"]["method"]      # of a site's study
+    method = data.study.study.method      # of a site's study
     if method.startswith(known_study.PAPER) and method != known_study.BESIDE:
         why = method.removeprefix(known_study.PAPER).removeprefix("; ")
         text += ". Known events of this size do not count in them" + ("" if method == known_study.ASKED else f": {why}")
@@ -265,34 +289,34 @@ def basis(data: Data) -> str:
 
 def rests_on(data: Data) -> str:
     """A sentence on the runs that the number is of; "" without a number."""
-    number, best = (data.study["headline"], data.study["conservative"]) if data.study else (None, None)
-    if not number or not number["volume_m3"]:
+    number, best = (data.study.headline, data.study.conservative) if data.study else (None, None)
+    if not number or not number.volume_m3:
         return ""
     if not is_own(data):
         return " The number is of the other study of this site."
-    if number["source"] == Source.ENSEMBLE.value:
+    if number.source == Source.ENSEMBLE.value:
         return " Each counts as often as known events of this volume and height end where it does."
     assert best
-    of = values_of(data, best["set"])
-    what = f"the mean of {best['repeats']}" if best["repeats"] > 1 else "that of one"
-    added = [what for what, part in (("chance", best["chance_m3"]), ("smaller balls", best["size_m3"]))
+    of = values_of(data, best.set)
+    what = f"the mean of {best.repeats}" if best.repeats > 1 else "that of one"
+    added = [what for what, part in (("chance", best.chance_m3), ("smaller balls", best.size_m3))
              if part is not None]
     return f" The number is {what} of them{of and f' ({of})'}{f', with what {listed(added)} may add' if added else ''}."
 
 
 def is_own(data: Data) -> bool:
     """Whether the headline is of this study, and not of the other one of a site."""
-    if not data.study or not data.study["headline"]:
+    if not data.study or not data.study.headline:
         return False
-    own = Source.ENSEMBLE if data.study["ensemble"] else Source.PAPER
-    return data.study["headline"]["source"] == own.value
+    own = Source.ENSEMBLE if data.study.ensemble else Source.PAPER
+    return data.study.headline.source == own.value
 
 
 def as_run(data: Data, key: str) -> str:
     """For a caption of numbers of runs, which the effect of size does not raise as it does the headline: what smaller
     balls bring of this column; "" where they bring no more, or nobody knows.
     """
-    effect = fine_run.read_effect(data.study["size"] if data.study else None, key)
+    effect = fine_run.read_effect(data.study.size if data.study else None, key)
     if effect is None or not effect.added(1.0) > 0:
         return ""
     more = f"{rounded(effect.fine / effect.coarse, 3)} times as much" if effect.ratio else \
@@ -306,8 +330,8 @@ def shown_run(data: Data) -> str:
         return ""
     one, row = data.result, data.result.row
     number, of = data.number(one.name), values_of(data, row.set)
-    said = data.study["headline"]
-    rests = said and said["volume_m3"] and is_own(data) and one.name == named_run.governing(data.study)
+    said = data.study.headline
+    rests = said and said.volume_m3 and is_own(data) and one.name == named_run.governing(data.study)
     text = f"The run on which the number rests, {number} of the appendix" if rests else f"Run {number} of the appendix"
     return f" {text}{of and f': {of}'}."
 

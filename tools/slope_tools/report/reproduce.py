@@ -70,7 +70,7 @@ def commands(data, runs: List[Run]) -> List[str]:
     if site:
         place = quote(os.path.relpath(site.parent))
         found += [f"tools/slope site {place}", f"tools/slope study {place}"]
-    elif data.study and not data.study.get("ensemble"):
+    elif data.study and not data.study.ensemble:
         found.append(of_study(data))
     for label, folder, about, _ in runs:
         command = about.get("command") or "by hand: its command is in its log"
@@ -78,14 +78,14 @@ def commands(data, runs: List[Run]) -> List[str]:
     return found
 
 
-def of_study(data) -> str:
+def of_study(data: Data) -> str:
     """The command of a study of a deck; its deck lies in the folder of each run."""
-    about = data.study["study"]
-    words = ["tools/slope", "study", about["deck"]]
-    for option, values in (("--set", about["set"]), ("--repeat", about.get("repeat") or {})):
+    about = data.of_study.study
+    words = ["tools/slope", "study", about.deck]
+    for option, values in (("--set", about.set), ("--repeat", about.repeat)):
         for name, several in values.items():
             words += [option, f"{name}={','.join(map(str, several))}"]
-    road = about.get("road")
+    road = about.road
     if road:
         words += ["--road", str(road["local"]), "--local", "--cut-angle", f"{road['cut_angle']:g}", "--mesh",
                   f"{road['mesh']:g}"]

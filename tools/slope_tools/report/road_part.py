@@ -24,11 +24,11 @@ COLUMNS = (("length", "m", "length"), ("passable", "m", "passable_width"), ("to 
 def section(data: Data, numbers: Numbers, maps) -> Optional[Section]:
     """Of a data.Data; None where no run blocks the road, or of older studies."""
     study = data.study
-    about = study.get("stretches") if study else None
-    if not (study and about and about["stretches"]):
+    about = study.stretches if study else None
+    if not (study and about and about.stretches):
         return None
-    asked, all_ = Asked.of(study["study"]["road"]), about["share_blocked"]
-    columns = [one for one in COLUMNS if one[2] in about["stretches"][0]]
+    asked, all_ = Asked.of(study.study.the_road), about.share_blocked
+    columns = [one for one in COLUMNS if one[2] in about.stretches[0]]
 
     def cells(one, name):
         yield f"{100 * one.get('share', all_):.0f}"
@@ -38,10 +38,10 @@ def section(data: Data, numbers: Numbers, maps) -> Optional[Section]:
             yield f"{middle} ({low} to {high})" if low != high else middle
 
     lines = [[str(number), f"{one['from']:,.1f} to {one['to']:,.1f}", *cells(one, f"stretch {number}")]
-             for number, one in enumerate(about["stretches"], 1)]
+             for number, one in enumerate(about.stretches, 1)]
     if len(lines) > 1:
-        lines.append(["all", "", *cells(about["totals"], "all stretches")])
-    runs = "known events" if about["of_known_events"] else "runs"
+        lines.append(["all", "", *cells(about.totals, "all stretches")])
+    runs = "known events" if about.of_known_events else "runs"
     heads: List[Any] = ["stretch", Cell("chainage", "m"), Cell("blocked in", f"% of {runs}"),
                         *(Cell(head, unit) for head, unit, _ in columns)]
     return Section("road", "Blocked stretches of the road", [
@@ -74,13 +74,13 @@ def others(data: Data) -> List[str]:
 
 def gaps(data: Data, about: study_types.Stretches) -> str:
     """Where known events end and no run does."""
-    known = study_types.weighted(data.of_study["ensemble"]) if about["of_known_events"] else None
-    return "".join(f" {one['text'][0].upper()}{one['text'][1:]}." for one in (known["doubts"] if known else ())
-                   if one["kind"] == "gap")
+    known = study_types.weighted(data.of_study.ensemble) if about.of_known_events else None
+    return "".join(f" {one.text[0].upper()}{one.text[1:]}." for one in (known.doubts if known else ())
+                   if one.kind == "gap")
 
 
 def caption(asked: Asked, about: study_types.Stretches, runs: str) -> str:
-    text = (f"A stretch is a range of chainages each of which is blocked in one of {about['runs']} runs: the deposit "
+    text = (f"A stretch is a range of chainages each of which is blocked in one of {about.runs} runs: the deposit "
             f"is thicker than {asked.blocked:g} m somewhere across the road. Of each number the median, and in "
             f"brackets what 5 and 95 % of the {runs} stay within.")
     if asked.lane:
@@ -98,7 +98,7 @@ def shares(data: Data, asked: Asked, about: study_types.Stretches, runs: str, ma
     raster = data.result.deposit.raster
     axis, _, width = axis_of(data.road_line, data.road.intersection(box_of(raster)), asked)
     parts = [(one.band(Span(low, high), Span(-width / 2, width / 2)), share)
-             for low, high, share in about["shares"] for one in axes_of(axis, asked)]
+             for low, high, share in about.shares for one in axes_of(axis, asked)]
     layers = maps.layers._replace(section=None, reach=known_reach.NOTHING)
     title = "Where the road is blocked"
     return Picture(figure_maps.road_map(layers, parts, ODDS, title, f"share of the {runs}", maps.crs), title,
@@ -108,10 +108,10 @@ def shares(data: Data, asked: Asked, about: study_types.Stretches, runs: str, ma
 def on_first_page(data: Data, numbers: Numbers, withheld: bool) -> List[str]:
     """What lane and hours were asked for: a sentence in a list; none where neither was, or the numbers are withheld."""
     study = data.study
-    about = study.get("stretches") if study else None
+    about = study.stretches if study else None
     if not study or not about or withheld:
         return []
-    asked, totals = Asked.of(study["study"]["road"]), about["totals"]
+    asked, totals = Asked.of(study.study.the_road), about.totals
 
     def span(what: str, unit: str, key: str) -> str:
         low, _, high = (numbers(what, unit, value) for value in totals[key])

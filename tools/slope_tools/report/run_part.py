@@ -91,7 +91,7 @@ def travel_rows(data: Data, numbers: Numbers):
 def deck_of(data: Data):
     """Name and text of the deck of the shown run; texts are empty where it is not known."""
     deck = find_deck(data.result)
-    name = data.study["study"]["deck"] if data.study else deck.name if deck else data.result.prefix.name
+    name = data.study.study.deck if data.study else deck.name if deck else data.result.prefix.name
     return name, deck.read_text(encoding="utf-8", errors="replace") if deck else ""
 
 

@@ -41,7 +41,7 @@ class Runs:
 
     def table(self):
         """For each run its variables, its numbers or why it failed, and whether it is at rest."""
-        data, best, columns = self.data, self.data.of_study["conservative"], self.columns()
+        data, best, columns = self.data, self.data.of_study.conservative, self.columns()
         names = self.varied or list(data.settings)
         rows, marks = [], []
         for row in self.in_table():
@@ -53,7 +53,7 @@ class Runs:
                 name = data.label_of(row)
                 cells += [self.numbers.quantity(one.key, row.value(one.key), name, "-") for one in columns]
                 cells.append(Cell(row.end_short, style="" if row.at_rest else "doubt"))
-                mark = ["bad"] * row.moving + ["best"] * (best is not None and row.set == best["set"])
+                mark = ["bad"] * row.moving + ["best"] * (best is not None and row.set == best.set)
             else:
                 cells.append(Cell(f"failed: {row.error}", style="left", span=len(columns) + 1))
             rows.append(cells)
@@ -117,37 +117,37 @@ class Runs:
 
     def means(self):
         """The table over combinations; None without repeats."""
-        study, best = self.data.of_study, self.data.of_study["conservative"]
-        if not (self.data.repeats and study["combinations"]):
+        study, best = self.data.of_study, self.data.of_study.conservative
+        if not (self.data.repeats and study.combinations):
             return None
         averaged = [quantities.ALL[key] for key in quantities.keys(On.PAGE_MEAN)
-                    if all(key in entry for entry in study["combinations"])]
+                    if all(key in entry for entry in study.combinations)]
         rows = [[*(entry["set"][key] for key in self.varied), entry["repeats"],
                  *(self.numbers.mean(one.name, one.unit, entry[one.key]["mean"], entry[one.key]["scatter"],
                                      str(entry["combination"])) for one in averaged)]
-                for entry in study["combinations"]]
-        marks = ["best" if best and entry["combination"] == best["combination"] else ""
-                 for entry in study["combinations"]]
+                for entry in study.combinations]
+        marks = ["best" if best and entry["combination"] == best.combination else ""
+                 for entry in study.combinations]
         return Table("Means of the repeats \N{PLUS-MINUS SIGN} the standard deviation of a run.",
                      [*self.varied, "runs", *map(self.head, averaged)], rows, (), marks)
 
     def most_elastic(self):
         """The table of reach and area with the largest restitution; None without such runs."""
-        about = self.data.of_study["largest_restitution"]
-        if not about or not about["quantities"]:
+        about = self.data.of_study.largest_restitution
+        if not about or not about.quantities:
             return None
         rows = []
-        for key, one in about["quantities"].items():
+        for key, one in about.quantities.items():
             name, unit = elastic.name_of(key, about)
-            usual, study = one["usual"], one["study"]
-            rows.append([Cell(name, unit), *(self.numbers(f"{end}: {name}, restitution {about['restitution']:g}", unit,
+            usual, study = one.usual, one.study
+            rows.append([Cell(name, unit), *(self.numbers(f"{end}: {name}, restitution {about.restitution:g}", unit,
                                                           value)
-                                             for end, value in (("mean", one["mean"]), ("low", one["low"]),
-                                                                ("high", one["high"]))),
-                         self.numbers(f"mean: {name}", unit, usual["mean"] if usual else None),
-                         self.numbers(f"largest: {name}", unit, study["high"] if study else None)])
+                                             for end, value in (("mean", one.mean), ("low", one.low),
+                                                                ("high", one.high))),
+                         self.numbers(f"mean: {name}", unit, usual.mean if usual else None),
+                         self.numbers(f"largest: {name}", unit, study.high if study else None)])
         return Table(f"Reach and area with the most elastic rock: soil, slip surface and ground with a restitution of "
-                     f"{about['restitution']:g}, rolling resistance {about['rolling']}; {len(about['runs'])} runs, "
+                     f"{about.restitution:g}, rolling resistance {about.rolling}; {len(about.runs)} runs, "
                      "which are none of those that the volume is of.",
                      ["", "mean", "least", "most", "mean of the same runs with the usual restitution",
                       "most of all other runs"], rows)

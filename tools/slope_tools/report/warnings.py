@@ -3,7 +3,7 @@ from typing import List, Sequence, Tuple
 
 from ..deposits.volume import MUCH_BELOW
 from ..finding_words import WORDS, words_of
-from ..findings import LIMIT, OTHER, WARNING, Finding, finding, gathered
+from ..findings import LIMIT, WARNING, Finding, gathered
 from ..statistics import headline
 from ..tables import judged, study_types
 from . import structures_part
@@ -21,15 +21,15 @@ def findings(data: Data, ground) -> List[Finding]:
     found = [*of_runs, *below_ground(data), *judged.limits(data.study, bool(data.repeats)),
              *structures_part.coarse_walls(data, ground)[:1]]
     if data.study:
-        about, ensemble, volume = data.study, data.study["ensemble"], data.study["conservative"]
-        known_events = ensemble["known_events"] if ensemble else None
-        for part, doubts in (("The volume to remove", volume["doubts"] if volume else []),
-                             ("The ensemble", ensemble["doubts"] if ensemble else []),
-                             ("The known events", known_events["doubts"] if known_events else [])):
-            found += [finding(one)._replace(part=part) for one in doubts]
+        about, ensemble, volume = data.study, data.study.ensemble, data.study.conservative
+        known_events = ensemble.known_events if ensemble else None
+        for part, doubts in (("The volume to remove", volume.doubts if volume else []),
+                             ("The ensemble", ensemble.doubts if ensemble else []),
+                             ("The known events", known_events.doubts if known_events else [])):
+            found += [one._replace(part=part) for one in doubts]
         known = {(one.kind, one.text) for one in of_runs}
-        found += [one for said in about["warnings"] if (one := finding(said)).part or
-                  kind_of(said) not in judged.KINDS and (one.kind, one.text) not in known]
+        found += [one for one in about.warnings
+                  if one.part or one.kind not in judged.KINDS and (one.kind, one.text) not in known]
     kinds = {one.kind for one in of_runs}
     covered = [line for line, those in (("removed", ("bulk factor", "body volume", "balls removed")),
                                         ("lost", ("lost", "lost much"))) if kinds.intersection(those)]
@@ -39,12 +39,7 @@ def findings(data: Data, ground) -> List[Finding]:
 
 def weighed(data: Data) -> bool:
     """Whether known events weigh the runs, which makes up for what is known of large masses."""
-    return data.study is not None and study_types.weighted(data.study["ensemble"]) is not None
-
-
-def kind_of(said) -> str:
-    """The kind of an entry, also where its words are of another version."""
-    return str(said.get("kind")) if isinstance(said, dict) else OTHER
+    return data.study is not None and study_types.weighted(data.study.ensemble) is not None
 
 
 def listed(found: Sequence[Finding], names) -> List[Tuple[str, str]]:
@@ -76,4 +71,4 @@ def below_ground(data: Data) -> List[Finding]:
         return []
     known = headline.nearest(below, headline.place_of_digits(below))
     return [Finding("cut below ground", {"percent": 100 * share, "volume": known, "run": data.label(data.result),
-                                         "angle": data.of_study["study"]["road"]["cut_angle"]})]
+                                         "angle": data.of_study.study.the_road["cut_angle"]})]

@@ -52,7 +52,7 @@ def read_body(folder: Path, about: Mapping[str, Any]) -> BodyRuns:
     place = runs.folder_of(folder, about["body"])
     output = place / runs.STUDY
     # runs that `slope study bodies/N` added under a condition do not count as those of the sample
-    rows = [row for row in load_study(output / "study.yaml")["runs"] if not row.batch]
+    rows = [row for row in load_study(output / "study.yaml").runs if not row.batch]
     done = finished_of(rows)
     prefixes = [run_folders.prefix_of(run_folders.summary_of(output, row.summary)) for row in done]
     source = Source(about["body"], prefixes, np.full(len(done), 1 / len(done)), len(rows) - len(done),

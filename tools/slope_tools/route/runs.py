@@ -137,11 +137,11 @@ def is_collected(one: Asked, new) -> bool:
         about = load_study(one.setup.output / "study.yaml")
     except SlopeError:
         return False
-    road = about["study"].get("road") or {}
+    road = about.study.road or {}
     assert one.setup.road
     if any(road.get(key) != value for key, value in one.setup.road.about().items()):
         return False
-    return [row.run for row in finished_of(about["runs"])] == [run.name for run in one.todo]
+    return [row.run for row in finished_of(about.runs)] == [run.name for run in one.todo]
 
 
 def listed(several: Sequence[Asked]):

@@ -92,15 +92,15 @@ def ground_of(name: str, warn) -> Ground:
         return Ground(run.raster, [Source(1, [Path(run.prefix)], np.ones(1), 0, run.raster.offset)], None)
     study = study or folder
     about = load_study(study / answered.STUDY)
-    weighted = study_types.weighted(about["ensemble"])
-    known = weighted["weights"] if weighted else None
-    rows = [row for row in finished_of(about["runs"]) if (row.run in known if known else not row.batch)]
+    weighted = study_types.weighted(about.ensemble)
+    known = weighted.weights if weighted else None
+    rows = [row for row in finished_of(about.runs) if (row.run in known if known else not row.batch)]
     if not rows:
         raise SlopeError(study, "must have finished runs that are counted alike, or have weights")
     prefixes = [run_folders.prefix_of(run_folders.summary_of(study, row.summary)) for row in rows]
     weights = np.array([known[row.run] if known else 1.0 for row in rows])
     run = deposit.read(str(prefixes[0]), None, warn)
-    failed = sum(isinstance(row, Failed) and bool(known or not row.batch) for row in about["runs"])
+    failed = sum(isinstance(row, Failed) and bool(known or not row.batch) for row in about.runs)
     effect = 1.0 if known else len(rows) / len({str(row.set) for row in rows})
     return Ground(run.raster, [Source(1, prefixes, weights / weights.sum(), failed, run.raster.offset, effect)], None)
 

@@ -94,23 +94,23 @@ def numbers(one: One) -> List[str]:
     released = digits.rounded(body.volume, 4) if body else "-"
     if one.about is None:
         return [released, "-", "-", "-", "not studied as it is"]
-    finished = finished_of(one.about["runs"])
-    largest = one.about["largest"].get(travel_shares.DISTANCE)
-    far = largest["value"] if largest else None
+    finished = finished_of(one.about.runs)
+    largest = one.about.largest.get(travel_shares.DISTANCE)
+    far = largest.value if largest else None
     worst = "".join(f", {one.road}" for one in road_numbers.read(one.about)[:1])
     lengths = [row.length_m for row in finished if row.length_m is not None]
     return [released, "unknown" if far is None else digits.three(far), digits.three(max(lengths)) if lengths else "-",
-            to_remove(one.about["headline"]) + worst, f"{len(finished)} of {len(one.about['runs'])}"]
+            to_remove(one.about.headline) + worst, f"{len(finished)} of {len(one.about.runs)}"]
 
 
 def to_remove(headline: Optional[Headline]) -> str:
     """The number of a headline, as page 1 has it."""
     if not headline:
         return "-"
-    kind = Kind(headline["kind"])
+    kind = Kind(headline.kind)
     if kind is Kind.WITHHELD:
         return "not usable"
-    volume = headline["volume_m3"]
+    volume = headline.volume_m3
     if kind is not Kind.FLOOR:
         return digits.three(volume or 0.0)
     return f"at least {digits.three(volume)}" if volume else "more than 0"

@@ -3,6 +3,7 @@
 The mathematics are in chain.py; here are the checks, the tables, the entry of study.yaml and its words.
 """
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
@@ -11,7 +12,7 @@ import numpy as np
 from .. import disk
 from ..digits import percent
 from ..errors import SlopeError
-from ..findings import Finding, entries, finding, texts
+from ..findings import Finding, finding, texts
 from ..sites.site_bodies import VARIABLE
 from ..sites.site_found import SlipBody
 from ..statistics import hazard
@@ -97,7 +98,7 @@ class Evaluated(NamedTuple):
     tables: Dict[str, str]
 
 
-def evaluate(asked: Chain, rows: Sequence[Row], withheld: Sequence[study_types.Reason],
+def evaluate(asked: Chain, rows: Sequence[Row], withheld: Sequence[Finding],
              size: Optional[study_types.Size] = None) -> Evaluated:
     """What the runs say; rows: of study.csv; withheld: why their volumes may not be used; size: of the fine run."""
     effect = fine_run.read_effect(size, QUANTITY)
@@ -112,23 +113,17 @@ def evaluate(asked: Chain, rows: Sequence[Row], withheld: Sequence[study_types.R
         ("peak_gal", "volume_m3", "probability", "low", "high"),
         ((peak, volume, *(side[i, k] for side in family)) for i, peak in enumerate(found.peaks)
          for k, volume in enumerate(volumes)))}
-    about: study_types.Chain = {
-        "fragility": found.folder.name, "quantity": QUANTITY, "confidence": hazard.CONFIDENCE,
-        "bodies": [of_body(asked, name, rows) for name in found.bodies], "more_than_m3": more_than,
-        "peaks_gal": found.peaks.tolist(),
-        "curves": [curve(volume, *(side[:, k].tolist() for side in family)) for volume, k in zip(more_than, at)],
-        "per_year": None, "withheld": list(withheld), "files": [CURVES], "doubts": []}
+    curves = [study_types.ChainCurve(volume, *(side[:, k].tolist() for side in family))
+              for volume, k in zip(more_than, at)]
+    per_year = None
     if found.rate is not None:
         yearly = chain.frequency(found.capacity, found.rate, found.peaks, bodies, volumes)
         tables[PER_YEAR] = table(("volume_m3", "per_year", "low", "high"), zip(volumes, *yearly.total))
-        about["per_year"] = [of_year(yearly, volume, k) for volume, k in zip(more_than, at)]
-        about["files"].append(PER_YEAR)
-    about["doubts"] = entries([*doubts(about, found.warnings), *of_size(size, effect, max(seen))])
-    return Evaluated(about, tables)
-
-
-def curve(volume: float, probability: List[float], low: List[float], high: List[float]) -> study_types.ChainCurve:
-    return {"more_than_m3": volume, "probability": probability, "low": low, "high": high}
+        per_year = [of_year(yearly, volume, k) for volume, k in zip(more_than, at)]
+    about = study_types.Chain(
+        found.folder.name, QUANTITY, hazard.CONFIDENCE, [of_body(asked, name, rows) for name in found.bodies],
+        more_than, found.peaks.tolist(), curves, per_year, list(withheld), list(tables), [])
+    return Evaluated(replace(about, doubts=[*doubts(about, found.warnings), *of_size(size, effect, max(seen))]), tables)
 
 
 def write(found: Evaluated, output: Path) -> None:
@@ -141,25 +136,26 @@ def write(found: Evaluated, output: Path) -> None:
 def of_body(asked: Chain, name: str, rows: Sequence[Row]) -> study_types.ChainBody:
     """What study.yaml says of a body."""
     mine = [row for row in rows if row.set[VARIABLE] == name]
-    return {"body": name, "weight": asked.weights.get(name, 0.0), "volume_m3": asked.volumes.get(name),
-            "runs": len(mine), "finished": len(finished_of(mine))}
+    return study_types.ChainBody(name, asked.weights.get(name, 0.0), asked.volumes.get(name), len(mine),
+                                 len(finished_of(mine)))
 
 
 def of_year(yearly: chain.Frequency, volume: float, k: int) -> study_types.PerYear:
     """What study.yaml says of how often a volume is exceeded, the k-th."""
-    return {"more_than_m3": volume, "value": float(yearly.total.value[k]), "low": float(yearly.total.low[k]),
-            "high": float(yearly.total.high[k]), "more_at_most": float(yearly.beyond[k]),
-            "contributions": [{"from_gal": a, "to_gal": None if math.isinf(b) else b, "per_year": float(part[k])}
-                              for a, b, part in yearly.parts]}
+    total = yearly.total
+    return study_types.PerYear(
+        volume, float(total.value[k]), float(total.low[k]), float(total.high[k]), float(yearly.beyond[k]),
+        [{"from_gal": a, "to_gal": None if math.isinf(b) else b, "per_year": float(part[k])}
+         for a, b, part in yearly.parts])
 
 
 def doubts(about: study_types.Chain, warnings: Sequence[Any]) -> List[Finding]:
     """The caveats; warnings: of the fragility."""
     return [*(finding(one)._replace(part="fragility") for one in warnings),
-            *(Finding("body without run", {"body": one["body"], "volume": one["volume_m3"]})
-              for one in about["bodies"] if one["weight"] > 0 and not one["finished"]),
-            *(Finding("more per year", {"per_year": one["more_at_most"], "volume": one["more_than_m3"]})
-              for one in about["per_year"] or () if one["more_at_most"] > BEYOND * one["value"])]
+            *(Finding("body without run", {"body": one.body, "volume": one.volume_m3})
+              for one in about.bodies if one.weight > 0 and not one.finished),
+            *(Finding("more per year", {"per_year": one.more_at_most, "volume": one.more_than_m3})
+              for one in about.per_year or () if one.more_at_most > BEYOND * one.value)]
 
 
 def of_size(size: Optional[study_types.Size], effect: Optional[Effect], largest: float) -> List[Finding]:
@@ -167,7 +163,7 @@ def of_size(size: Optional[study_types.Size], effect: Optional[Effect], largest:
     found = []
     if effect is not None and effect.added(largest) > 0:
         found.append(Finding("chain raised", {"added": effect.added(largest), "volume": largest}))
-    if effect is None or size and size["open"]:
+    if effect is None or size and size.open:
         found.append(Finding("chain size"))
     return found
 
@@ -180,24 +176,24 @@ def table(head: Sequence[str], rows) -> str:
 
 def sentences(about: study_types.Chain) -> List[str]:
     """How often, or at which peaks, the road is blocked by more than each of the volumes."""
-    sure = f"{100 * about['confidence']:g} %"
-    if about["per_year"]:
-        return [f"the road is blocked by more than {one['more_than_m3']:,.6g} m3 with {one['value']:.2g} per year "
-                f"({sure}: {one['low']:.2g} to {one['high']:.2g})" for one in about["per_year"]]
+    sure = f"{100 * about.confidence:g} %"
+    if about.per_year:
+        return [f"the road is blocked by more than {one.more_than_m3:,.6g} m3 with {one.value:.2g} per year "
+                f"({sure}: {one.low:.2g} to {one.high:.2g})" for one in about.per_year]
     found = []
-    for one in about["curves"]:
-        k = int(np.argmin(np.abs(np.array(one["probability"]) - 0.5)))
-        low, value, high = (percent(side[k]) for side in (one["low"], one["probability"], one["high"]))
-        found.append(f"an earthquake of {about['peaks_gal'][k]:.4g} gal blocks the road by more than "
-                     f"{one['more_than_m3']:,.6g} m3 with {value} ({sure}: {low} to {high})")
+    for one in about.curves:
+        k = int(np.argmin(np.abs(np.array(one.probability) - 0.5)))
+        low, value, high = (percent(side[k]) for side in (one.low, one.probability, one.high))
+        found.append(f"an earthquake of {about.peaks_gal[k]:.4g} gal blocks the road by more than "
+                     f"{one.more_than_m3:,.6g} m3 with {value} ({sure}: {low} to {high})")
     return found
 
 
 def describe(about: study_types.Chain, output: Path) -> List[str]:
     """The lines of the console; ensemble.describe() says why volumes are withheld."""
-    lines = [f"caveat: {text}" for text in texts(about["doubts"])]
-    if about["withheld"]:
+    lines = [f"caveat: {text}" for text in texts(about.doubts)]
+    if about.withheld:
         lines.append("how likely the road is blocked is withheld, as the volumes are")
     else:
         lines = [*sentences(about), *lines]
-    return [*lines, f"{', '.join(str(output / name) for name in about['files'])}: how likely which volume is exceeded"]
+    return [*lines, f"{', '.join(str(output / name) for name in about.files)}: how likely which volume is exceeded"]

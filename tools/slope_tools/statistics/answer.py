@@ -8,6 +8,7 @@ from enum import Enum
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from . import entries
+from .entries import AtRoad
 from .withheld import Kind as Rule
 
 SHARE = 0.95            # of the known events, which stay within the volume
@@ -57,21 +58,6 @@ class Reason(NamedTuple):
         return cls(Code(about["code"]), about["numbers"])
 
 
-class AtRoad(NamedTuple):
-    """Of runs: how many there are, bring a ball to the road, past it; the most that one brings, m3 and balls."""
-    runs: int
-    reach: int
-    passing: int
-    volume: float
-    balls: float
-
-    def and_of(self, other: "AtRoad") -> "AtRoad":
-        """Of the runs of both."""
-        most = max(self, other, key=lambda one: one.balls)
-        return AtRoad(self.runs + other.runs, self.reach + other.reach, self.passing + other.passing, most.volume,
-                      most.balls)
-
-
 class Road(NamedTuple):
     """A road on the fall path: its edges (m), the shares of the known events that reach the near and pass the far one.
 
@@ -94,10 +80,8 @@ class Road(NamedTuple):
         return {"low": min(self.reached), "high": max(self.reached), "near_m": self.near, "longest_m": self.longest}
 
     def about(self) -> entries.HeadlineRoad:
-        return {"near_m": self.near, "far_m": self.far, "reached": sorted(self.reached),
-                "passed": sorted(self.passed), "longest_m": self.longest, "brought": {
-                    "runs": self.brought.runs, "reach": self.brought.reach, "passing": self.brought.passing,
-                    "volume": self.brought.volume, "balls": self.brought.balls}}
+        return entries.HeadlineRoad(self.near, self.far, sorted(self.reached), sorted(self.passed), self.longest,
+                                    self.brought)
 
 
 class Withheld(NamedTuple):
@@ -160,14 +144,12 @@ class Answer(NamedTuple):
     def about(self) -> entries.Headline:
         """What study.yaml says of it."""
         paper, ensemble = self.paper, self.ensemble
-        return {
-            "kind": self.kind.value, "volume_m3": self.volume, "share": self.share, "low_m3": self.low,
-            "high_m3": self.high, "source": self.source.value if self.source else None,
-            "paper": {"volume_m3": paper.volume,
-                      "withheld": [one.rule.value for one in paper.withheld]} if paper else None,
-            "ensemble": {"volume_m3": ensemble.quantiles[SHARE][0], "far": ensemble.far,
-                         "withheld": [one.rule.value for one in ensemble.withheld]} if ensemble else None,
-            "road": self.road.about() if self.road else None, "reasons": [one.about() for one in self.reasons]}
+        return entries.Headline(
+            self.kind.value, self.volume, self.share, self.low, self.high, self.source.value if self.source else None,
+            entries.PaperPart(paper.volume, [one.rule.value for one in paper.withheld]) if paper else None,
+            entries.EnsemblePart(ensemble.quantiles[SHARE][0], [one.rule.value for one in ensemble.withheld],
+                                 ensemble.far) if ensemble else None,
+            self.road.about() if self.road else None, [one.about() for one in self.reasons])
 
 
 class Part(NamedTuple):

@@ -6,15 +6,15 @@ cross-validation: runs of points that the process has not seen. What a bad fit s
 """
 import math
 import warnings
-from dataclasses import dataclass
-from typing import List, NamedTuple, Optional, Sequence
+from typing import List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 from scipy import linalg, stats
 from scipy.stats import qmc
 
 from ..digits import measured
-from . import dependent, entries
+from . import dependent
+from .entries import Analysis, Check, Influence
 
 FOLDS = 8
 GOOD, ROUGH = 0.8, 0.5      # share of the variance of unseen runs that is explained: good, rough from here, bad below
@@ -91,65 +91,6 @@ class Emulator:
         return self.mean + self.scale * mean, self.scale * np.sqrt(variance)
 
 
-@dataclass(frozen=True)
-class Check:
-    """Result of the cross-validation of an emulator.
-
-    explained: share of the variance of the runs left out that it explains (1 is perfect, 0 is the mean of all runs);
-    error: root mean square of what it is wrong by; noise: standard deviation of a run by chance, as the process has it;
-    deviation: of all runs.
-    """
-    explained: float
-    error: float
-    noise: float
-    deviation: float
-
-    @property
-    def unseen(self) -> float:
-        """Share of the variance that the variables make, without chance, that it does not explain: from 0 to 1."""
-        wrong, whole = self.error ** 2 - self.noise ** 2, self.deviation ** 2 - self.noise ** 2
-        return min(max(wrong / whole, 0.0), 1.0) if whole > 0 else 1.0
-
-    @property
-    def verdict(self) -> str:
-        return "good" if self.explained >= GOOD else "rough" if self.explained >= ROUGH else "bad"
-
-
-@dataclass(frozen=True)
-class Influence:
-    """What a variable does to a quantity. rank: rank correlation; first, total: Sobol indices, with their errors.
-
-    The indices are shares of the variance that the variables make; they are None where the emulator is bad. An error is
-    that of the jackknife over the folds and the share of the variance that the emulator does not explain, added as
-    squares: all fits may leave out the same variable, and then differ in nothing.
-    """
-    name: str
-    rank: float
-    rank_clear: bool            # whether it is larger than chance, in one of twenty
-    first: Optional[float]
-    first_error: Optional[float]
-    total: Optional[float]
-    total_error: Optional[float]
-
-
-@dataclass(frozen=True)
-class Analysis:
-    """Which variables a quantity depends on; check is None, and text says why, where no emulator was made."""
-    check: Optional[Check]
-    influences: List[Influence]
-    text: str
-
-    def about(self) -> entries.Analysis:
-        """What study.yaml says of it: what the emulator is worth, and each variable's rank correlation and indices."""
-        check = self.check
-        return {"text": self.text,
-                "emulator": {"verdict": check.verdict, "explained": check.explained, "error": check.error,
-                             "noise": check.noise, "standard_deviation": check.deviation} if check else None,
-                "variables": {one.name: {"rank": one.rank, "rank_clear": one.rank_clear, "first": one.first,
-                                         "first_error": one.first_error, "total": one.total,
-                                         "total_error": one.total_error} for one in self.influences}}
-
-
 def folds(point: np.ndarray) -> List[np.ndarray]:
     """Masks of the runs that are left out together: all of the same point, points dealt out in turn."""
     _, index = np.unique(point, return_inverse=True)
@@ -179,8 +120,9 @@ def validated(points: np.ndarray, values: np.ndarray, point: np.ndarray) -> Vali
         predicted[out] = part.at(points[out])
         parts.append(part)
     error = float(np.sqrt(np.mean((predicted - values) ** 2)))
-    return Validated(whole, parts,
-                     Check(1 - error ** 2 / float(values.var()), error, whole.noise, float(values.std(ddof=1))))
+    explained = 1 - error ** 2 / float(values.var())
+    verdict = "good" if explained >= GOOD else "rough" if explained >= ROUGH else "bad"
+    return Validated(whole, parts, Check(verdict, explained, error, whole.noise, float(values.std(ddof=1))))
 
 
 def analyse(names: Sequence[str], points: np.ndarray, values: np.ndarray, point: Sequence[int],
@@ -196,8 +138,8 @@ def analyse(names: Sequence[str], points: np.ndarray, values: np.ndarray, point:
     ranks = [rank(points[:, i], values, of) for i in range(len(names))]
 
     def without(text: str, check: Optional[Check] = None) -> Analysis:
-        return Analysis(check, [Influence(name, one[0], one[1], None, None, None, None)
-                                for name, one in zip(names, ranks)], text)
+        return Analysis(text, check, {name: Influence(*one, None, None, None, None)
+                                      for name, one in zip(names, ranks)})
 
     if np.ptp(values) <= 1e-9 * max(1e-300, float(np.abs(values).max())):
         return without("it is the same in all runs")
@@ -219,11 +161,11 @@ def analyse(names: Sequence[str], points: np.ndarray, values: np.ndarray, point:
     text = f"the emulator explains {measured(max(check.explained, 0.0))} of the variance of runs that it has not seen"
     if check.verdict == "rough":
         text += ": take the indices as rough"
-    return Analysis(check, [Influence(name, ranks[i][0], ranks[i][1], float(first[i]), float(errors[0][i]),
-                                      float(total[i]), float(errors[1][i])) for i, name in enumerate(names)], text)
+    return Analysis(text, check, {name: Influence(*ranks[i], float(first[i]), float(errors[0][i]), float(total[i]),
+                                                  float(errors[1][i])) for i, name in enumerate(names)})
 
 
-def rank(places: np.ndarray, values: np.ndarray, point: np.ndarray):
+def rank(places: np.ndarray, values: np.ndarray, point: np.ndarray) -> Tuple[float, bool]:
     """Rank correlation (Spearman), and whether it is larger than chance: that of the means of each point's runs."""
     if np.ptp(places) == 0 or np.ptp(values) == 0:
         return 0.0, False

@@ -1,62 +1,113 @@
-"""What study.yaml has of emulators and of the headline: see tables/study_types."""
-from typing import Any, Dict, List, Optional, TypedDict
+"""What study.yaml has of quantiles, of emulators and of the headline: see tables/study_types."""
+from dataclasses import dataclass
+from typing import Any, Dict, List, NamedTuple, Optional, Sequence
 
 
-class Influence(TypedDict):
-    """What a variable does to a quantity (emulator.Influence)."""
+class Quantile(NamedTuple):
+    """The value that a share of the runs stays at or below, with its bounds; None: nothing bounds it."""
+    share: float
+    value: float
+    low: Optional[float]
+    high: Optional[float]
+
+
+class KnownQuantile(NamedTuple):
+    """That of known events, which may have no value at all.
+
+    gap: the values if the events that end where no run does count as the runs on either side, where these differ; the
+    value is the larger of them then.
+    """
+    share: float
+    value: Optional[float]
+    low: Optional[float]
+    high: Optional[float]
+    gap: Optional[Sequence[float]] = None
+
+
+@dataclass(frozen=True)
+class Influence:
+    """What a variable does to a quantity. rank: rank correlation; first, total: Sobol indices, with their errors.
+
+    The indices are shares of the variance that the variables make; they are None where the emulator is bad. An error is
+    that of the jackknife over the folds and the share of the variance that the emulator does not explain, added as
+    squares: all fits may leave out the same variable, and then differ in nothing.
+    """
     rank: float
-    rank_clear: bool
+    rank_clear: bool            # whether it is larger than chance, in one of twenty
     first: Optional[float]
     first_error: Optional[float]
     total: Optional[float]
     total_error: Optional[float]
 
 
-class Check(TypedDict):
-    """What an emulator is worth (emulator.Check)."""
+@dataclass(frozen=True)
+class Check:
+    """What an emulator is worth, by its cross-validation.
+
+    explained: share of the variance of the runs left out that it explains (1 is perfect, 0 is the mean of all runs);
+    error: root mean square of what it is wrong by; noise: standard deviation of a run by chance, as the process has it;
+    standard_deviation: of all runs.
+    """
     verdict: str
     explained: float
     error: float
     noise: float
     standard_deviation: float
 
+    @property
+    def unseen(self) -> float:
+        """Share of the variance that the variables make, without chance, that it does not explain: from 0 to 1."""
+        wrong, whole = self.error ** 2 - self.noise ** 2, self.standard_deviation ** 2 - self.noise ** 2
+        return min(max(wrong / whole, 0.0), 1.0) if whole > 0 else 1.0
 
-class Analysis(TypedDict):
-    """On which variables a quantity depends (emulator.Analysis)."""
+
+@dataclass(frozen=True)
+class Analysis:
+    """On which variables a quantity depends; emulator is None, and text says why, where none was made."""
     text: str
     emulator: Optional[Check]
     variables: Dict[str, Influence]
 
 
-class PaperPart(TypedDict):
-    volume_m3: Optional[float]
-    withheld: List[str]
-
-
-class EnsemblePart(PaperPart):
-    far: float
-
-
-class Brought(TypedDict):
-    """What runs bring to the road (answer.AtRoad)."""
+class AtRoad(NamedTuple):
+    """Of runs: how many there are, bring a ball to the road, past it; the most that one brings, m3 and balls."""
     runs: int
     reach: int
     passing: int
     volume: float
     balls: float
 
+    def and_of(self, other: "AtRoad") -> "AtRoad":
+        """Of the runs of both."""
+        most = max(self, other, key=lambda one: one.balls)
+        return AtRoad(self.runs + other.runs, self.reach + other.reach, self.passing + other.passing, most.volume,
+                      most.balls)
 
-class HeadlineRoad(TypedDict):
+
+@dataclass(frozen=True)
+class PaperPart:
+    volume_m3: Optional[float]
+    withheld: List[str]
+
+
+@dataclass(frozen=True)
+class EnsemblePart(PaperPart):
+    far: float
+
+
+@dataclass(frozen=True)
+class HeadlineRoad:
     """The road on the fall path (answer.Road)."""
     near_m: float
     far_m: float
     reached: List[float]
     passed: List[float]
     longest_m: Optional[float]
-    brought: Brought
+    brought: AtRoad
 
 
-class Headline(TypedDict):
+@dataclass(frozen=True)
+class Headline:
     """The number that counts (answer.Answer): see the page on `slope study`."""
     kind: str
     volume_m3: Optional[float]

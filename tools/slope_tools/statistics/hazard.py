@@ -13,6 +13,7 @@ import numpy as np
 from scipy import stats
 
 from .. import disk
+from .entries import Quantile
 
 Values = Union[Sequence[float], np.ndarray]
 CONFIDENCE = 0.9                # of bounds, two-sided: 5 % beyond either
@@ -21,14 +22,6 @@ SHARES = 0.5, 0.9, 0.95, 0.99   # of the quantiles
 
 class Band(NamedTuple):
     """An estimate and its bounds; None: so many runs do not bound it."""
-    value: float
-    low: Optional[float]
-    high: Optional[float]
-
-
-class Quantile(NamedTuple):
-    """The value that a share of the runs stays at or below."""
-    share: float
     value: float
     low: Optional[float]
     high: Optional[float]

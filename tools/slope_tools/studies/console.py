@@ -16,9 +16,9 @@ def tell(outcome: Outcome, about: study_types.Study, output: Path, say: Callable
          warn: Callable[[Any], Any]) -> None:
     """about: what study.yaml says; say: what gets lines and tables; warn: what gets findings."""
     asked, rows, finished = outcome.questions, outcome.read.rows, outcome.read.finished
-    if about["intensity"]:
-        say(intensity.shown_of(about["intensity"]))
-        say(f"{output / intensity.FILE}: volume on the road against {about['intensity']['variable']}, and how likely "
+    if about.intensity:
+        say(intensity.shown_of(about.intensity))
+        say(f"{output / intensity.FILE}: volume on the road against {about.intensity.variable}, and how likely "
             "more is")
     for table in structures.shown(finished):
         say(table)
@@ -29,41 +29,41 @@ def tell(outcome: Outcome, about: study_types.Study, output: Path, say: Callable
         warn(one)
     if not asked.order or len(rows) <= SHOWN:
         say(study_table.runs_shown(asked.settings, rows, outcome.scatters,
-                                   f"{about['study']['deck']}: {len(rows)} run{'s' * (len(rows) != 1)}, volumes in m3 "
+                                   f"{about.study.deck}: {len(rows)} run{'s' * (len(rows) != 1)}, volumes in m3 "
                                    "of ground"))
     if any(outcome.scatters.values()) and not asked.order:
         say(study_table.combinations_shown(asked.settings, outcome.groups, outcome.scatters))
-    if stretches := about.get("stretches"):
-        say(f"{output / road_runs.FILE}: {len(stretches['stretches'])} stretches of the road that runs block")
+    if stretches := about.stretches:
+        say(f"{output / road_runs.FILE}: {len(stretches.stretches)} stretches of the road that runs block")
     say(f"{output / 'study.yaml'}, {output / 'study.csv'}, {output / 'combinations.csv'}: all numbers")
     tell_numbers(about, output, say)
-    if about["observed"]:
-        say("\n".join(mapped.describe(about["observed"], rows)))
-    if about["chain"]:
-        say("\n".join(chain_files.describe(about["chain"], output)))
-    if about["headline"] and asked.method not in known_study.OF_BOTH:
+    if about.observed:
+        say("\n".join(mapped.describe(about.observed, rows)))
+    if about.chain:
+        say("\n".join(chain_files.describe(about.chain, output)))
+    if about.headline and asked.method not in known_study.OF_BOTH:
         say("\n".join(tell_headline(about)))
-    for entry in [*(about["envelope"] or {}).values(), *(about["exceedance"] or ())]:
+    for entry in [*(about.envelope or {}).values(), *(about.exceedance or ())]:
         say(f"{output / entry['file']}: {entry['what']}")
 
 
 def tell_headline(about: study_types.Study) -> List[str]:
     """The number, why it is no more than that, and the next step, as the first page has them; a line each."""
-    step, number = about.get("next_step"), about["headline"]
-    return [*(answer_words.lines(number) if number else []), *([str(next_step.Step(**step))] if step else [])]
+    step, number = about.next_step, about.headline
+    return [*(answer_words.lines(number) if number else []), *([str(next_step.Step(**vars(step)))] if step else [])]
 
 
 def tell_numbers(about: study_types.Study, output: Path, say: Callable[[Any], Any]) -> None:
     """The conservative volume, the effects of step and size, the ensemble."""
-    if about["conservative"]:
-        say("\n".join(combinations.describe(about["conservative"])))
-        if about["step"]:
-            say(about["step"]["text"])
-    if about["size"]:
-        say(f"size of the balls: {about['size']['text']}")
-    if about["largest_restitution"]:
-        say(about["largest_restitution"]["text"])
-    if about["ensemble"]:
-        say("\n".join(ensemble.describe(about["ensemble"])))
+    if about.conservative:
+        say("\n".join(combinations.describe(about.conservative)))
+        if about.step:
+            say(about.step.text)
+    if about.size:
+        say(f"size of the balls: {about.size.text}")
+    if about.largest_restitution:
+        say(about.largest_restitution.text)
+    if about.ensemble:
+        say("\n".join(ensemble.describe(about.ensemble)))
         say(f"{output / ensemble.HAZARD}, {output / ensemble.INFLUENCE}: all curves and indices; "
-            f"{output / ensemble.MAPS}: {len(about['ensemble']['maps'])} maps of quantiles and exceedance")
+            f"{output / ensemble.MAPS}: {len(about.ensemble.maps)} maps of quantiles and exceedance")

@@ -1,4 +1,5 @@
 """The files of a study: study.yaml, tables and maps over all runs, which are prints of its Outcome."""
+from dataclasses import replace
 from pathlib import Path
 from typing import Mapping, Optional
 
@@ -7,24 +8,23 @@ from ..ensembles import ensemble
 from ..seismic import chain_files
 from ..tables import (answered, combinations, elastic, intensity, road_runs, structures, study_file, study_table,
                       study_types)
-from ..tables.study_maps import OverAll
 from .outcome import Outcome
 
 
-def write(outcome: Outcome, maps: OverAll, output: Path, place) -> study_types.Study:
-    """All of them; what study.yaml says. maps: over all runs, which are there; place: their CRS and offset, None
+def write(outcome: Outcome, about: study_types.Study, output: Path, place) -> study_types.Study:
+    """All of them; what study.yaml says: about, with the maps of an ensemble. place: CRS and offset of maps, None
     without."""
-    asked, read, about = outcome.questions, outcome.read, outcome.about
-    about["envelope"], about["exceedance"] = maps["envelope"], maps["exceedance"]
+    asked, read = outcome.questions, outcome.read
     if outcome.ensemble:
         assert asked.order
-        ensemble.write(outcome.ensemble, asked.order.levels, output, place, read.problem)
-    if stretches := about.get("stretches"):
+        about = replace(about, ensemble=ensemble.write(outcome.ensemble, asked.order.levels, output, place,
+                                                       read.problem))
+    if stretches := about.stretches:
         head, *lines = road_runs.rows(stretches)
         disk.write(output / road_runs.FILE, disk.csv_text(head, lines))
     if outcome.chain:
         chain_files.write(outcome.chain, output)
-    write_or_remove(output / intensity.FILE, intensity.table(about["intensity"]) if about["intensity"] else None)
+    write_or_remove(output / intensity.FILE, intensity.table(about.intensity) if about.intensity else None)
     write_or_remove(output / elastic.FILE, read.elastic and elastic.table(read.elastic))
     structures.write(output, read.finished)
     disk.write(output / "study.csv", study_table.table(asked.settings, asked.repeated, read.rows, read.defaults))

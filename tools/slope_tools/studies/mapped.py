@@ -6,7 +6,7 @@ farthest corner.
 import os
 from dataclasses import replace
 from pathlib import Path
-from typing import Iterable, List, Optional, Sequence, Tuple
+from typing import Any, Dict, Iterable, List, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -44,7 +44,7 @@ def compare(path: Optional[Path], output: Path, rows: Sequence[Row],
     """
     if path is None:
         return list(rows), None
-    about: Optional[study_types.Observed] = None
+    about: Dict[str, Any] = {}
     found: List[Row] = []
     for row, terrain in zip(rows, terrains):
         if isinstance(row, Failed):
@@ -61,12 +61,11 @@ def compare(path: Optional[Path], output: Path, rows: Sequence[Row],
             float(observed.thickness.sum()) * run_.cell ** 2 + observed.volume_outside
         about = about or {"file": os.path.relpath(path.resolve(), output.resolve()), "threshold_m": score.THRESHOLD,
                           "length_m": length, "area_m2": area["observed"], "volume_m3": volume,
-                          "released_m3": row.released_m3, "best": ""}
+                          "released_m3": row.released_m3}
     compared = of_rows(found)
     if not compared or not about:
         return found, None
-    about["best"] = max(compared, key=lambda one: one[1].overlap)[0].run
-    return found, about
+    return found, study_types.Observed(**about, best=max(compared, key=lambda one: one[1].overlap)[0].run)
 
 
 def of_rows(rows: Iterable[Row]) -> List[Tuple[Finished, Mapped]]:
@@ -87,13 +86,13 @@ def length_of(run_: deposit.Deposit, terrain: Optional[Path], observed: score.Ob
 def describe(about: study_types.Observed, rows: Sequence[Row]) -> List[str]:
     """The comparison on the console, a line each."""
     found = of_rows(rows)
-    best, mine = next((row, one) for row, one in found if row.run == about["best"])
+    best, mine = next((row, one) for row, one in found if row.run == about.best)
     low, high = min(one.overlap for _, one in found), mine.overlap
     text = f"mapped deposit: overlap (Jaccard) {low:.2f} to {high:.2f}" if len(found) > 1 else \
         f"mapped deposit: overlap (Jaccard) {high:.2f}"
     if mine.beyond_mapped_m is not None:
-        text += f", best of {best.run}, {mine.beyond_mapped_m:+,.0f} m in run-out ({about['length_m']:,.0f} m mapped)"
-    lacks = mass(about["volume_m3"], about["released_m3"])
+        text += f", best of {best.run}, {mine.beyond_mapped_m:+,.0f} m in run-out ({about.length_m:,.0f} m mapped)"
+    lacks = mass(about.volume_m3, about.released_m3)
     return [text, *([lacks.text] if lacks else [])]
 
 

@@ -2,13 +2,13 @@
 
 Files, console and pages are made of it side by side (files, console, report); results reads the runs.
 """
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from ..deposits import travel_shares
 from ..ensembles import ensemble
-from ..findings import Finding, entries, finding
+from ..findings import Finding, finding
 from ..mobility.exceedance import Mobility
 from ..runs import repeats
 from ..runs.repeats import Repeat
@@ -96,40 +96,36 @@ def evaluate(questions: Questions, read: Read, header: study_types.Header) -> Ou
     keys = ["front_m", "thickness_m", "max_thickness_m", "max_speed_m_s"]
     keys += [key for key in (travel_shares.DISTANCE, "length_m") if key in names]
     warnings = warnings_of(questions, read)
-    about: study_types.Study = {
-        "study": header, "largest": {key: largest(finished, key) for key in keys if finished},
-        "farthest": travel_shares.farthest(finished).run if finished else None,
-        "conservative": None, "size": fine_run.evaluate(read.fine) if read.fine and finished else None,
-        "ensemble": None, "step": None,
-        "largest_restitution": elastic.evaluate(read.elastic) if read.elastic else None,
-        "scatter": {name: {"deviation": one.deviation, "degrees_of_freedom": one.degrees_of_freedom} if one else None
-                    for name, one in scatters.items()},
-        "combinations": combinations.entries(groups, names), "envelope": None, "exceedance": None,
-        "observed": read.observed, "roads": [dict(one) for one in questions.roads],
-        "warnings": entries(warnings), "runs": rows,
-        "headline": None, "stretches": None, "chain": None, "intensity": None}
-    several = None
+    size = fine_run.evaluate(read.fine) if read.fine and finished else None
+    several = best = step = at_intensities = None
     if order:
         assert read.emulated is not None
         several = ensemble.evaluate(order, rows, read.mobility, read.emulated)
         if several:
-            about["ensemble"] = several.about
-            several.about["withheld"] = reasons(read)
+            several = several._replace(about=replace(several.about, withheld=reasons(read)))
     elif read.road and finished:
-        about["conservative"], about["step"] = conservative(questions, read, groups, about["size"])
-    said = answered.of_study(about, read.events and read.events.road(finished))
-    about["headline"] = said.about() if said else None
-    if read.road and finished:
-        about["stretches"] = stretches(finished, known_weights(about))
-    chain = chain_files.evaluate(questions.chain, rows, reasons(read), about["size"]) \
-        if questions.chain and several and finished else None
-    about["chain"] = chain.about if chain else None
+        best, step = conservative(questions, read, groups, size)
     if finished and not order:      # drawn values have one run
-        about["intensity"] = intensity.evaluate(questions.intensity, questions.more_than, questions.settings,
-                                                read.road, groups)
-    if about["intensity"] and about["conservative"]:
-        about["conservative"]["doubts"] += entries(intensity.doubts(about["intensity"]))
-    return Outcome(questions, read, groups, names, scatters, warnings, several, chain, about)
+        at_intensities = intensity.evaluate(questions.intensity, questions.more_than, questions.settings, read.road,
+                                            groups)
+    if at_intensities and best:
+        best = replace(best, doubts=[*best.doubts, *intensity.doubts(at_intensities)])
+    chain = chain_files.evaluate(questions.chain, rows, reasons(read), size) \
+        if questions.chain and several and finished else None
+    weighted = several.about if several else None
+    about = study_types.Study(
+        study=header, largest={key: largest(finished, key) for key in keys if finished},
+        farthest=travel_shares.farthest(finished).run if finished else None, conservative=best, size=size,
+        ensemble=weighted, step=step, largest_restitution=elastic.evaluate(read.elastic) if read.elastic else None,
+        scatter={name: {"deviation": one.deviation, "degrees_of_freedom": one.degrees_of_freedom} if one else None
+                 for name, one in scatters.items()},
+        combinations=combinations.entries(groups, names), envelope=None, exceedance=None, observed=read.observed,
+        roads=[dict(one) for one in questions.roads], warnings=warnings, runs=rows, headline=None,
+        stretches=stretches(finished, known_weights(weighted)) if read.road and finished else None,
+        chain=chain.about if chain else None, intensity=at_intensities, next_step=None)
+    said = answered.of_study(about, read.events and read.events.road(finished))
+    return Outcome(questions, read, groups, names, scatters, warnings, several, chain,
+                   replace(about, headline=said.about() if said else None))
 
 
 def warnings_of(questions: Questions, read: Read) -> List[Finding]:
@@ -150,13 +146,13 @@ def other_thickness(found: Optional[float], here: Optional[float]) -> Optional[F
     return Finding("other thickness", {"found": found, "here": here})
 
 
-def known_weights(about: study_types.Study) -> Optional[Mapping[str, float]]:
-    """{run: share of the known events}, where these weigh the runs of a study."""
-    known = study_types.weighted(about["ensemble"])
-    return known["weights"] if known else None
+def known_weights(about: Optional[study_types.Ensemble]) -> Optional[Mapping[str, float]]:
+    """{run: share of the known events}, where these weigh the runs of an ensemble."""
+    known = study_types.weighted(about)
+    return known.weights if known else None
 
 
-def reasons(read: Read) -> List[study_types.Reason]:
+def reasons(read: Read) -> List[Finding]:
     """Why the numbers of an ensemble are withheld."""
     assert read.case
     return usable.reasons_of_ensemble(read.rows, read.events, read.case._replace(sampled=True)) if read.road else []
@@ -167,14 +163,12 @@ def conservative(questions: Questions, read: Read, groups: Sequence[combinations
     """The entries of the conservative volume and of the run with half the time step; size: of the fine run."""
     best = combinations.conservative(questions.settings, read.rows, groups,
                                      fine_run.read_effect(size, quantities.REMOVE))
-    best["doubts"] += entries(unseen(questions.repeated, read.defaults))
-    step = None
+    doubts, step = [*best.doubts, *unseen(questions.repeated, read.defaults)], None
     if questions.step:
-        step = step_check.compare(questions.step, groups)
-        best["doubts"] += step.pop("doubts")
+        step, more = step_check.compare(questions.step, groups)
+        doubts += more
     assert read.case
-    usable.judge(best, read.rows, read.events, read.case)
-    return best, step
+    return usable.judge(replace(best, doubts=doubts), read.rows, read.events, read.case), step
 
 
 def unseen(repeated: Mapping[str, Sequence[str]], defaults: Mapping[str, str]) -> List[Finding]:
@@ -189,12 +183,11 @@ def stretches(rows: Sequence[Finished], known: Optional[Mapping[str, float]]) ->
     weights = known or {row.run: 1.0 for row in rows if not row.batch}
     found = road_runs.evaluate([road_runs.Run(weights[row.run], row.at_road.stretches, row.at_road.clearing)
                                 for row in rows if row.run in weights])
-    found["of_known_events"] = bool(known)
-    return found
+    return replace(found, of_known_events=bool(known))
 
 
 def largest(rows: Sequence[Finished], key: str) -> study_types.Largest:
     """The largest value of a column and the first run that has it."""
     values = [float(row.value(key)) for row in rows]
     k = values.index(max(values))
-    return {"value": values[k], "run": rows[k].run}
+    return study_types.Largest(values[k], rows[k].run)

@@ -1,8 +1,9 @@
 """The runs of a study: read, evaluated (outcome), and shown in files and on the console, side by side."""
+from dataclasses import replace
 from shlex import quote
 from typing import Any, Dict, Mapping, Optional, Sequence
 
-from .. import kept, provenance
+from .. import kept, provenance, records
 from ..case import run_folders
 from ..ensembles import ensemble, known_events, known_study
 from ..mobility.exceedance import Mobility
@@ -27,19 +28,17 @@ def collect(setup: Setup, questions: Questions, todo, work) -> Optional[study_ty
     place = terrain_place(first) if first else None
     maps = study_maps.write([study_maps.Source(run.name, prefix_of(run), not run.batch) for run in done],
                             questions.thresholds, setup.output, place)
-    found = read(setup, questions, todo, rows, maps["problem"], work.defaults)
-    header: study_types.Header = {
-        "deck": setup.deck.name, "known": questions.among, "set": listed(questions.settings),
-        "repeat": listed(questions.repeated), "runs": len(found.rows), "finished": len(found.finished),
-        "method": questions.method, "ranks": work.ranks, "jobs": work.jobs, "package": work.package,
-        "governs": setup.output.name, "balls_thick": found.balls_thick, "collected": provenance.now(),
-        "machine": provenance.machine()}
-    if setup.road and first:
-        header["road"] = write_road(setup.output, setup.road, first)
+    found = read(setup, questions, todo, rows, maps.problem, work.defaults)
+    header = study_types.Header(
+        deck=setup.deck.name, known=questions.among, set=listed(questions.settings), repeat=listed(questions.repeated),
+        runs=len(found.rows), finished=len(found.finished), method=questions.method, ranks=work.ranks, jobs=work.jobs,
+        package=work.package, governs=setup.output.name, balls_thick=found.balls_thick, collected=provenance.now(),
+        machine=provenance.machine(),
+        road=write_road(setup.output, setup.road, first) if setup.road and first else None)
     outcome = evaluate(questions, found, header)
-    step = next_step.of_studies([next_step.Made(outcome.about, setup.output)], outcome.about["headline"])
-    outcome.about["next_step"] = step.about() if step else None
-    about = files.write(outcome, maps, setup.output, place)
+    step = next_step.of_studies([next_step.Made(outcome.about, setup.output)], outcome.about.headline)
+    about = files.write(outcome, replace(outcome.about, envelope=maps.envelope, exceedance=maps.exceedance,
+                                         next_step=step.about() if step else None), setup.output, place)
     console.tell(outcome, about, setup.output, setup.tell, setup.warn)
     return about
 
@@ -76,7 +75,8 @@ def emulated_of(setup: Setup, order: ensemble.Order, rows: Sequence[Row],
     """What emulators say of the runs of an ensemble, kept with the study."""
     made_of = [order.sample.about, order.of, order.added and order.added.batches, rows,
                mobility and [mobility.outside, mobility.path.length, mobility.curves[mobility.chosen]]]
-    return kept.value(setup.output / ".emulated.json", made_of, lambda: ensemble.emulate(order, rows, mobility))
+    return records.read(ensemble.Emulated, kept.value(setup.output / ".emulated.json", made_of, lambda: records.plain(
+        ensemble.emulate(order, rows, mobility))))
 
 
 def compared(setup: Setup, fine: Repeat, rows: Sequence[Row],

@@ -94,12 +94,12 @@ def of_all(site: Site, several: bool, tell: Callable[[Any], Any],
 def number(road: str, made: Made) -> Number:
     """Of a road, whose study that governs tells it; the largest of the runs of all its studies."""
     about, *_ = made.abouts
-    said, rows = about["headline"], finished_of(about["runs"])
+    said, rows = about.headline, finished_of(about.runs)
     on_road = [row.at_road.remove_on_road_m3 for row in rows]
-    most = max((row.at_road.remove_m3 for each in made.abouts for row in finished_of(each["runs"])), default=0.0)
-    kind, volume, at = (said["kind"], said["volume_m3"], said["road"]) if said else (None, None, None)
+    most = max((row.at_road.remove_m3 for each in made.abouts for row in finished_of(each.runs)), default=0.0)
+    kind, volume, at = (said.kind, said.volume_m3, said.road) if said else (None, None, None)
     return Number(road, kind, volume, most, sum(one > 0 for one in on_road), len(rows),
-                  max(at["reached"] if at else [0.0]), made.page)
+                  max(at.reached if at else [0.0]), made.page)
 
 
 def in_order(numbers: Sequence[Number]) -> List[Number]:
@@ -114,7 +114,7 @@ def entries(numbers: Sequence[Number]) -> List[Dict[str, Any]]:
 
 def read(about: study_types.Study) -> List[Number]:
     """Those of a study; none of a site with one road."""
-    return [Number(**one) for one in about["roads"]]
+    return [Number(**one) for one in about.roads]
 
 
 def shown(numbers: Sequence[Number]) -> Table:
@@ -143,6 +143,6 @@ def write(folder: Path, studies: Mapping[str, Sequence[study_types.Study]]) -> N
     """roads.csv: a line for each road and finished run; studies: {road: what its study.yaml say}."""
     lines = []
     for road, several in studies.items():
-        rows = {row.run: row for about in several for row in finished_of(about["runs"])}
+        rows = {row.run: row for about in several for row in finished_of(about.runs)}
         lines += [[run, road, *(row.value(key) for key in KEYS)] for run, row in rows.items()]
     disk.write(folder / site_roads.TABLE, disk.csv_text(HEAD.split(","), lines))

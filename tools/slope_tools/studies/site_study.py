@@ -210,7 +210,7 @@ def scored(folder: Path, setup: Setup, about: study_types.Study) -> None:
     """Compare the governing run with the mapped deposit; about: what study.yaml says."""
     from ..deposits import score_run
     name = named_run.governing(about)
-    summary = next(run_folders.summary_of(setup.output, row.summary) for row in finished_of(about["runs"])
+    summary = next(run_folders.summary_of(setup.output, row.summary) for row in finished_of(about.runs)
                    if row.run == name)
     outline = folder / f"{OBSERVED}.csv"
     setup.tell(f"{name} against the mapped deposit:")

@@ -3,7 +3,7 @@ import argparse
 import contextlib
 import functools
 from pathlib import Path
-from typing import Any, Callable, Iterator, NamedTuple, Optional, Sequence, Set
+from typing import Callable, Iterator, NamedTuple, Optional, Sequence, Set
 
 from .. import disk
 from ..case import decks
@@ -17,7 +17,7 @@ from ..programs import find_lmp
 from ..runs import dependencies, jobs, launcher, slurm, store
 from ..statistics import designs
 from ..survey import rasters
-from ..tables import intensity
+from ..tables import intensity, study_types
 from .setup import Road, Setup
 
 
@@ -108,7 +108,7 @@ def prepared(setup: Setup, files, number):
 
 class RunsFailed(SlopeError):
     """Runs failed; all others were made and collected: found, what these say."""
-    found: Any = None
+    found: Optional[study_types.Study] = None
 
 
 def failure(output, todo) -> Optional[RunsFailed]:

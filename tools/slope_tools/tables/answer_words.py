@@ -18,12 +18,12 @@ def lines(about: study_types.Headline) -> List[str]:
 
 def number(about: study_types.Headline) -> str:
     """A sentence without its full stop."""
-    if Kind(about["kind"]) is Kind.WITHHELD:
-        return "withheld, neither study gives a number" if about["paper"] and about["ensemble"] else "withheld"
-    source = Source(about["source"])
-    volume = f"{quantities.number(about['volume_m3'] or 0.0)} m3 to remove"
-    share = f", {percent(about['share'])} of them stay within" if about["share"] else ""
-    floor = Kind(about["kind"]) is Kind.FLOOR
+    if Kind(about.kind) is Kind.WITHHELD:
+        return "withheld, neither study gives a number" if about.paper and about.ensemble else "withheld"
+    source = Source(about.source)
+    volume = f"{quantities.number(about.volume_m3 or 0.0)} m3 to remove"
+    share = f", {percent(about.share)} of them stay within" if about.share else ""
+    floor = Kind(about.kind) is Kind.FLOOR
     of = OF[source] if floor or source is Source.ENSEMBLE else CONSERVATIVE
     return f"{'at least ' * floor}{volume}, {of}{share}{beside(about, source)}"
 
@@ -31,8 +31,8 @@ def number(about: study_types.Headline) -> str:
 def beside(about: study_types.Headline, source: Source) -> str:
     """What the other study gives."""
     if source is Source.ENSEMBLE:
-        return of_other("the paper's study", about["paper"]["volume_m3"] if about["paper"] else None)
-    return of_other("95 % of known events", about["ensemble"]["volume_m3"] if about["ensemble"] else None)
+        return of_other("the paper's study", about.paper.volume_m3 if about.paper else None)
+    return of_other("95 % of known events", about.ensemble.volume_m3 if about.ensemble else None)
 
 
 def of_other(what: str, volume: Optional[float]) -> str:
@@ -44,7 +44,7 @@ def of_other(what: str, volume: Optional[float]) -> str:
 def told(about: study_types.Headline) -> List[Reason]:
     """The reasons as they are told, each once: of a rule that both studies break, of the one that decides."""
     found: Dict[Tuple[Code, Any], Reason] = {}
-    for one in map(Reason.read, about["reasons"]):
+    for one in map(Reason.read, about.reasons):
         found.setdefault((one.code, one.numbers.get("rule")), one)
     return list(found.values())
 

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any, List, Mapping, Optional, Sequence
 
 from .. import schemas
+from ..findings import Finding
 from ..schemas import OBJECT, mapping
 from ..statistics import answer, size_family
 from ..statistics.answer import Answer, AtRoad, Code, Ensemble, Paper, Reason, Road, Withheld
@@ -27,23 +28,23 @@ def of_study(about: study_types.Study, road: Optional[Road]) -> Optional[Answer]
 
 def paper_of(about: study_types.Study) -> Optional[Paper]:
     """Its conservative volume, if it has one, rounded up as it is shown."""
-    best = about["conservative"]
-    return Paper(best["rounded"]["volume_m3"], rules(best["withheld"]), size_of(about)) if best else None
+    best = about.conservative
+    return Paper(best.rounded["volume_m3"], rules(best.withheld), size_of(about)) if best else None
 
 
 def ensemble_of(about: study_types.Study) -> Optional[Ensemble]:
     """Its weighted ensemble, if it has one with volumes."""
-    whole, one = about["ensemble"], study_types.weighted(about["ensemble"])
-    if not whole or not one or not one["to_remove"]:
+    whole, one = about.ensemble, study_types.weighted(about.ensemble)
+    if not whole or not one or not one.to_remove:
         return None
-    stopped, effect = one["added"]["stopped"], fine_run.read_effect(about["size"], REMOVE)
+    stopped, effect = one.added.stopped, fine_run.read_effect(about.size, REMOVE)
 
     def raised(value: Optional[float]) -> Optional[float]:
         return value if value is None or effect is None else value + effect.added(value)
 
-    quantiles = {each["share"]: (raised(each["value"]), raised(each["low"]), raised(each["high"]))
-                 for each in one["to_remove"]}
-    return Ensemble(quantiles, one["far"], one["longest_m"], rules(whole.get("withheld", [])),
+    quantiles = {each.share: (raised(each.value), raised(each.low), raised(each.high))
+                 for each in one.to_remove}
+    return Ensemble(quantiles, one.far, one.longest_m, rules(whole.withheld),
                     Reason.read(stopped) if stopped else None, size_of(about))
 
 
@@ -52,12 +53,12 @@ def size_of(about: study_types.Study) -> Optional[Reason]:
 
     enough. run: how the fine run ended, "" where there is none; balls_thick: of it, else of the study; None: unknown.
     """
-    size, balls = about["size"], about["study"]["balls_thick"]
-    done = size is not None and size["run"] is not None
+    size, balls = about.size, about.study.balls_thick
+    done = size is not None and size.run is not None
     if size and done:
-        if not size["open"]:
+        if not size.open:
             return None
-        balls = size["balls_thick"]
+        balls = size.balls_thick
     elif not size and balls is not None and balls >= RESOLVED:
         return None
     grown = None if balls is None else size_family.told(balls)
@@ -65,20 +66,19 @@ def size_of(about: study_types.Study) -> Optional[Reason]:
                               "enough": RESOLVED, "growth": grown and grown._asdict()})
 
 
-def rules(entries: Sequence[study_types.Reason]) -> List[Withheld]:
+def rules(reasons: Sequence[Finding]) -> List[Withheld]:
     """Of withheld_words.with_remedies()."""
-    numbers = ((one, one.get("numbers", {})) for one in entries)
-    return [Withheld(Rule(one["kind"]), of.get("number"), of.get("bound")) for one, of in numbers]
+    return [Withheld(Rule(one.kind), one.numbers.get("number"), one.numbers.get("bound")) for one in reasons]
 
 
 def road_of(about: study_types.Study) -> Optional[Road]:
     """That of a headline."""
-    one = about["headline"]["road"] if about["headline"] else None
+    one = about.headline.road if about.headline else None
     if not one:
         return None
-    (reached, more_reached), (passed, more_passed) = one["reached"], one["passed"]
-    return Road(one["near_m"], one["far_m"], (reached, more_reached), (passed, more_passed), one["longest_m"],
-                AtRoad(**one["brought"]))
+    (reached, more_reached), (passed, more_passed) = one.reached, one.passed
+    return Road(one.near_m, one.far_m, (reached, more_reached), (passed, more_passed), one.longest_m,
+                one.brought)
 
 
 def governing(paper: Path, ensemble: Path) -> Path:

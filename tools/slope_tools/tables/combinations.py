@@ -133,25 +133,21 @@ def conservative(settings, rows, groups: Sequence[Group], effect: Optional[Effec
             continue
         found = headline.difference([group.of("remove_m3") for group in line], best.scatter)
         value = {group.name: group.set[name] for group in line}
-        differences.append({"variable": name, "largest_at": value[found.largest], "smallest_at": value[found.smallest],
-                            "by_m3": found.by, "chance_m3": found.chance, "clear": found.clear})
+        differences.append(study_types.Difference(name, value[found.largest], value[found.smallest], found.by,
+                                                  found.chance, found.clear))
     scatter = best.scatter
-    return {
-        "volume_m3": best.volume, "mean_m3": best.mean, "chance_m3": best.chance, "size_m3": best.size,
-        "rounded": {f"{name}_m3": value for name, value in best.rounded().items()}, "place_m3": best.place,
-        "kind": best.kind, "combination": best.combination, "set": dict(governing.set),
-        "label": label(governing.set, settings), "ground": ground(settings, governing), "repeats": best.repeats,
-        "runs": best.runs,
-        "combinations": len(groups), "scatter_m3": scatter.deviation if scatter else None,
-        "degrees_of_freedom": scatter.degrees_of_freedom if scatter else None,
-        "quantile": scatter.quantile if scatter else None,
-        # what other starts of the same combination gave
-        "starts_m3": [min(volumes), max(volumes)] if len(volumes) > 1 else None,
-        # the run whose maps represent it
-        "run": largest.run, "remove_m3": largest.at_road.remove_m3,
-        "differences": differences,
-        "doubts": [one.entry() for one in doubts(settings, rows, groups, best, differences)],
-        "withheld": [], "zero": None}       # see usable.judge
+    return study_types.Conservative(
+        volume_m3=best.volume, mean_m3=best.mean, chance_m3=best.chance, size_m3=best.size,
+        rounded={f"{name}_m3": value for name, value in best.rounded().items()}, place_m3=best.place,
+        kind=best.kind, combination=best.combination, set=dict(governing.set), label=label(governing.set, settings),
+        ground=ground(settings, governing), repeats=best.repeats, runs=best.runs, combinations=len(groups),
+        scatter_m3=scatter.deviation if scatter else None,
+        degrees_of_freedom=scatter.degrees_of_freedom if scatter else None,
+        quantile=scatter.quantile if scatter else None,
+        starts_m3=[min(volumes), max(volumes)] if len(volumes) > 1 else None,   # of the same combination
+        run=largest.run, remove_m3=largest.at_road.remove_m3,                   # the one whose maps represent it
+        differences=differences, doubts=doubts(settings, rows, groups, best, differences),
+        withheld=[], zero=None)     # see usable.judge
 
 
 def doubts(settings, rows, groups: Sequence[Group], best: headline.Headline,
@@ -165,10 +161,10 @@ def doubts(settings, rows, groups: Sequence[Group], best: headline.Headline,
         found.append(Finding("no chance"))
     chosen = next(group.set for group in groups if group.name == best.combination)
     for entry in differences:
-        name = entry["variable"]
+        name = entry.variable
         numbers = [as_number(value) for value in settings[name]]
         value = as_number(chosen[name])
-        if entry["clear"] is not False and value == as_number(entry["largest_at"]) and value != 0 \
+        if entry.clear is not False and value == as_number(entry.largest_at) and value != 0 \
                 and all(isinstance(one, float) for one in numbers) and value in (min(numbers), max(numbers)):
             found.append(Finding("end of range", {"variable": name, "low": min(numbers), "high": max(numbers)}))
     found += no_effect(groups)
@@ -231,11 +227,11 @@ def stood(few: Sequence[Finished], rows: Sequence[Finished]) -> int:
 
 def starts(best: study_types.Conservative) -> List[str]:
     """What only another start of the balls gives: the range over the repeats of the governing combination, a line."""
-    if not best["starts_m3"]:       # one run
+    if not best.starts_m3:       # one run
         return []
-    low, high = (headline.text(value, best["place_m3"]) for value in best["starts_m3"])
+    low, high = (headline.text(value, best.place_m3) for value in best.starts_m3)
     number = f"{low} to {high}" if low != high else high
-    return [f"another start of the balls gives {number} m3 on the same site ({best['repeats']} runs)"]
+    return [f"another start of the balls gives {number} m3 on the same site ({best.repeats} runs)"]
 
 
 def describe(best: study_types.Conservative) -> List[str]:
@@ -244,30 +240,30 @@ def describe(best: study_types.Conservative) -> List[str]:
     In its place why it is withheld, if it is.
     """
     def number(value):
-        return headline.text(value, best["place_m3"])
+        return headline.text(value, best.place_m3)
 
-    if best["withheld"]:
-        return [*withheld_words.lines(best["withheld"]), *(f"caveat: {text}" for text in texts(best["doubts"]))]
-    parts = {name: best["rounded"][f"{name}_m3"] for name in ("volume", "mean", "chance", "size")}
+    if best.withheld:
+        return [*withheld_words.lines(best.withheld), *(f"caveat: {text}" for text in texts(best.doubts))]
+    parts = {name: best.rounded[f"{name}_m3"] for name in ("volume", "mean", "chance", "size")}
     if parts["chance"] is None:
-        text = f"{best['kind']}: {number(parts['volume'])} m3 to remove"
+        text = f"{best.kind}: {number(parts['volume'])} m3 to remove"
         if parts["size"] is not None:
             text += f", of which {number(parts['size'])} for the size of the balls"
-        text += f"; run {best['run']}"
+        text += f"; run {best.run}"
     else:
         of = "conservative volume to remove" if parts["size"] is not None else "volume to remove, not conservative"
         text = (f"{of}: {number(parts['volume'])} m3 = {number(parts['mean'])}, mean of "
-                f"{best['repeats']} runs ({best['label'] or best['combination']}) + {number(parts['chance'])}, chance "
-                f"(s {number(best['scatter_m3'])}, {best['degrees_of_freedom']:.3g} degrees of freedom)")
+                f"{best.repeats} runs ({best.label or best.combination}) + {number(parts['chance'])}, chance "
+                f"(s {number(best.scatter_m3)}, {best.degrees_of_freedom:.3g} degrees of freedom)")
         text += (f" + {number(parts['size'])}, size of the balls" if parts["size"] is not None
                  else "; what smaller balls would change is not known")
-    lines = [text, *starts(best), *([best["zero"]["text"]] if best["zero"] else []),
-             *([best["ground"]] if best["ground"] else [])]
-    for entry in best["differences"]:
-        if entry["clear"] is not None and entry["chance_m3"] is not None:
-            word = "more than" if entry["clear"] else "no more than"
-            by, chance = (headline.text(value, headline.place_of_digits(entry["chance_m3"]))
-                          for value in (entry["by_m3"], entry["chance_m3"]))
-            lines.append(f"{entry['variable']}: {by} m3 between {entry['smallest_at']} and {entry['largest_at']}, "
+    lines = [text, *starts(best), *([best.zero.text] if best.zero else []),
+             *([best.ground] if best.ground else [])]
+    for entry in best.differences:
+        if entry.clear is not None and entry.chance_m3 is not None:
+            word = "more than" if entry.clear else "no more than"
+            by, chance = (headline.text(value, headline.place_of_digits(entry.chance_m3))
+                          for value in (entry.by_m3, entry.chance_m3))
+            lines.append(f"{entry.variable}: {by} m3 between {entry.smallest_at} and {entry.largest_at}, "
                          f"{word} expected by chance, {chance} m3")
-    return lines + [f"it may be exceeded: {text}" for text in texts(best["doubts"])]
+    return lines + [f"it may be exceeded: {text}" for text in texts(best.doubts)]

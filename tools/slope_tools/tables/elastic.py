@@ -2,8 +2,9 @@
 
 They estimate reach and area on the safe side (Nakase et al., conclusion) and are none of those that the volume is of.
 """
+from dataclasses import replace
 from pathlib import Path
-from typing import List, NamedTuple, Optional, Sequence, Tuple
+from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 from .. import disk
 from ..case import run_folders
@@ -51,12 +52,7 @@ def read(made: Made, rows: Sequence[Row], output: Path) -> Runs:
 def evaluate(runs: Runs) -> study_types.Elastic:
     """The entry of study.yaml."""
     made, elastic, others = runs
-    about: study_types.Elastic = {
-        "restitution": made.restitution, "rolling": made.rolling, "thicker_than_m": THICK,
-        "runs": [one.row.run for one in elastic],
-        "failed": [row.run for row in made.rows if isinstance(row, Failed)],
-        "moving": [one.row.run for one in elastic if not one.row.at_rest], "quantities": {},
-        "text": ""}
+    quantities: Dict[str, study_types.ElasticQuantity] = {}
     if elastic:
         first = elastic[0].row.variables
         same = [one for one in others if all(one.row.variables.get(name) == first.get(name)
@@ -64,10 +60,13 @@ def evaluate(runs: Runs) -> study_types.Elastic:
         for key in COMPARED:
             found = spread(elastic, key)
             if found is not None:
-                about["quantities"][key] = {"mean": found["mean"], "low": found["low"], "high": found["high"],
-                                            "usual": spread(same, key), "study": spread(others, key)}
-    about["text"] = words(about)
-    return about
+                quantities[key] = study_types.ElasticQuantity(found.mean, found.low, found.high, spread(same, key),
+                                                              spread(others, key))
+    about = study_types.Elastic(
+        made.restitution, made.rolling, THICK, [one.row.run for one in elastic],
+        [row.run for row in made.rows if isinstance(row, Failed)],
+        [one.row.run for one in elastic if not one.row.at_rest], quantities, "")
+    return replace(about, text=words(about))
 
 
 def with_area(rows: Sequence[Row], output: Path) -> List[Spread]:
@@ -85,7 +84,7 @@ def spread(runs: Sequence[Spread], key: str) -> Optional[study_types.Span]:
     values = [value for one in runs if (value := one.value(key)) is not None]
     if not values or len(values) < len(runs):
         return None
-    return {"mean": sum(values) / len(values), "low": min(values), "high": max(values)}
+    return study_types.Span(sum(values) / len(values), min(values), max(values))
 
 
 def table(runs: Runs) -> str:
@@ -101,44 +100,44 @@ def table(runs: Runs) -> str:
 
 def words(about: study_types.Elastic) -> str:
     """A sentence without its full stop."""
-    runs = len(about["runs"])
+    runs = len(about.runs)
     if not runs:
-        return f"not known: {', '.join(about['failed'])} failed"
-    text = (f"restitution {about['restitution']:g} of soil, slip surface and ground, rolling {about['rolling']}, "
+        return f"not known: {', '.join(about.failed)} failed"
+    text = (f"restitution {about.restitution:g} of soil, slip surface and ground, rolling {about.rolling}, "
             f"{runs} run{'s' * (runs != 1)}: ")
-    distance, area = (about["quantities"].get(key) for key in (DISTANCE, AREA))
+    distance, area = (about.quantities.get(key) for key in (DISTANCE, AREA))
     if distance is None:
         text += "how far the mass goes is not known, as more than 1 % of it left the terrain"
     else:
         text += f"99 % of the volume stays within {shown(distance, 'm')}{instead(distance, 'm')}"
     if area:
         text += f"; the deposit covers {shown(area, 'm2')}{instead(area, 'm2')}"
-    for which, what in ((about["failed"], "failed"), (about["moving"], "had not come to rest")):
+    for which, what in ((about.failed, "failed"), (about.moving, "had not come to rest")):
         if which:
             text += f"; {len(which)} {what}"
     return text
 
 
 def shown(one: study_types.Span, unit: str) -> str:
-    ends = [rounded(end, 3) for end in (one["low"], one["high"])]
-    return f"{rounded(one['mean'], 3)} {unit}" + (f" ({' to '.join(ends)})" if ends[0] != ends[1] else "")
+    ends = [rounded(end, 3) for end in (one.low, one.high)]
+    return f"{rounded(one.mean, 3)} {unit}" + (f" ({' to '.join(ends)})" if ends[0] != ends[1] else "")
 
 
 def instead(one: study_types.ElasticQuantity, unit: str) -> str:
     """What the study's own runs have: the same ones otherwise, and the largest of all."""
-    if not one["usual"] or not one["study"]:
+    if not one.usual or not one.study:
         return ""
-    return f" instead of {shown(one['usual'], unit)}; all other runs, up to {rounded(one['study']['high'], 3)} {unit}"
+    return f" instead of {shown(one.usual, unit)}; all other runs, up to {rounded(one.study.high, 3)} {unit}"
 
 
 def name_of(key: str, about: study_types.Elastic) -> Tuple[str, str]:
     """What one of COMPARED is called, and its unit."""
     if key == AREA:
-        return f"area under more than {about['thicker_than_m']:g} m", "m2"
+        return f"area under more than {about.thicker_than_m:g} m", "m2"
     return ALL[key].name, ALL[key].unit
 
 
 def far(about: study_types.Elastic) -> Optional[float]:
     """The largest distance that 99 % of the volume stay within, m; None where it is not known. about: the entry."""
-    one = about["quantities"].get(DISTANCE)
-    return one and one["high"]
+    one = about.quantities.get(DISTANCE)
+    return one.high if one else None

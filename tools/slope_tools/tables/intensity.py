@@ -83,12 +83,11 @@ def entry(name: str, groups: Sequence[Group], volumes: Sequence[float]) -> Optio
     lines: Dict[tuple, study_types.Line] = {}
     for group in groups:
         rest = {other: value for other, value in group.set.items() if other != name}
-        line = lines.setdefault(tuple(rest.values()), {"set": rest, "points": []})
-        line["points"].append(point(float(group.set[name]), group, volumes))
+        line = lines.setdefault(tuple(rest.values()), study_types.Line(rest, []))
+        line.points.append(point(float(group.set[name]), group, volumes))
     for line in lines.values():
-        line["points"].sort(key=lambda one: one["at"])
-    return {"variable": name, "quantity": QUANTITY, "more_than_m3": volumes, "confidence": CONFIDENCE,
-            "lines": list(lines.values())}
+        line.points.sort(key=lambda one: one.at)
+    return study_types.Intensity(name, QUANTITY, volumes, CONFIDENCE, list(lines.values()))
 
 
 def point(at: float, group: Group, volumes: Sequence[float]) -> study_types.Point:
@@ -99,24 +98,23 @@ def point(at: float, group: Group, volumes: Sequence[float]) -> study_types.Poin
     for volume in volumes:
         above = sum(value > volume for value in found)
         share, low, high = probability(above, len(found))
-        exceed.append({"more_than_m3": volume, "runs": above, "probability": share, "low": low, "high": high})
+        exceed.append(study_types.Exceeded(volume, above, share, low, high))
     released = sum(row.released_m3 for row in group.rows) / len(group.rows)
     few = [row for row in group.rows if row.at_road.remove_on_road_m3 <= REACHES * released]
-    return {"at": at, "runs": len(found), "mean_m3": one.mean, "scatter_m3": one.scatter, "smallest_m3": min(found),
-            "largest_m3": max(found), "released_m3": released, "share_of_released": one.mean / released,
-            "not_on_road": len(few), "stood": stood(few, group.rows), "exceed": exceed}
+    return study_types.Point(at, len(found), one.mean, one.scatter, min(found), max(found), released,
+                             one.mean / released, len(few), stood(few, group.rows), exceed)
 
 
 def doubts(about: study_types.Intensity) -> List[Finding]:
     """The caveat on a common scatter of all runs: chance decides whether the slope fails, or the mass reaches the road.
     """
-    mixed = [one for line in about["lines"] for one in line["points"] if 0 < one["not_on_road"] < one["runs"]]
+    mixed = [one for line in about.lines for one in line.points if 0 < one.not_on_road < one.runs]
     found = []
-    for kind, points in (("fails at times", [one for one in mixed if one["stood"]]),
-                         ("reaches at times", [one for one in mixed if not one["stood"]])):
-        at = sorted({f"{one['at']:g}" for one in points}, key=float)
+    for kind, points in (("fails at times", [one for one in mixed if one.stood]),
+                         ("reaches at times", [one for one in mixed if not one.stood])):
+        at = sorted({f"{one.at:g}" for one in points}, key=float)
         if at:
-            found.append(Finding(kind, {"variable": about["variable"], "values": ", ".join(at)}))
+            found.append(Finding(kind, {"variable": about.variable, "values": ", ".join(at)}))
     return found
 
 
@@ -125,29 +123,29 @@ def table(about: study_types.Intensity) -> str:
     columns = ("runs", "mean_m3", "scatter_m3", "smallest_m3", "largest_m3", "share_of_released")
 
     def numbers(one: study_types.Point):
-        return (one["runs"], one["mean_m3"], one["scatter_m3"], one["smallest_m3"], one["largest_m3"],
-                one["share_of_released"])
-    volumes = [f"{volume:g}" for volume in about["more_than_m3"]]
+        return (one.runs, one.mean_m3, one.scatter_m3, one.smallest_m3, one.largest_m3,
+                one.share_of_released)
+    volumes = [f"{volume:g}" for volume in about.more_than_m3]
     return disk.csv_text(
-        [*about["lines"][0]["set"], about["variable"], *columns,
+        [*about.lines[0].set, about.variable, *columns,
          *(f"{what}_{volume}_m3" for volume in volumes for what in ("p_more_than", "low", "high"))],
-        ([*line["set"].values(), f"{one['at']:g}", *numbers(one),
-          *(value for each in one["exceed"] for value in (each["probability"], each["low"], each["high"]))]
-         for line in about["lines"] for one in line["points"]))
+        ([*line.set.values(), f"{one.at:g}", *numbers(one),
+          *(value for each in one.exceed for value in (each.probability, each.low, each.high))]
+         for line in about.lines for one in line.points))
 
 
 def shown_of(about: study_types.Intensity) -> Table:
     """The table on the screen."""
-    shown = Table(title=f"volume on the road (m3 of ground) against {about['variable']}, and P(V > v), in brackets the "
-                        f"{100 * about['confidence']:.0f} % interval of so few runs")
-    for head in (*about["lines"][0]["set"], about["variable"], "runs", "mean", "smallest", "largest",
-                 *(f"P(V > {volume:,.6g})" for volume in about["more_than_m3"])):
+    shown = Table(title=f"volume on the road (m3 of ground) against {about.variable}, and P(V > v), in brackets the "
+                        f"{100 * about.confidence:.0f} % interval of so few runs")
+    for head in (*about.lines[0].set, about.variable, "runs", "mean", "smallest", "largest",
+                 *(f"P(V > {volume:,.6g})" for volume in about.more_than_m3)):
         shown.add_column(head, justify="right")
-    for line in about["lines"]:
-        for one in line["points"]:
-            shown.add_row(*line["set"].values(), f"{one['at']:g}", str(one["runs"]),
-                          *(f"{value:,.0f}" for value in (one["mean_m3"], one["smallest_m3"], one["largest_m3"])),
-                          *(chance(each["probability"], each["low"], each["high"]) for each in one["exceed"]))
+    for line in about.lines:
+        for one in line.points:
+            shown.add_row(*line.set.values(), f"{one.at:g}", str(one.runs),
+                          *(f"{value:,.0f}" for value in (one.mean_m3, one.smallest_m3, one.largest_m3)),
+                          *(chance(each.probability, each.low, each.high) for each in one.exceed))
     return shown
 
 

@@ -1,11 +1,12 @@
 """The run that a name on the command line stands for; of a study or a site the one whose maps are on the first page."""
 import re
 from pathlib import Path
-from typing import NamedTuple, Optional, Sequence, Tuple
+from typing import NamedTuple, Optional, Sequence, Tuple, Union
 
 from ..case.run_folders import OF_RUN, RASTERS, prefix_of, summaries, summary_of
 from ..deposits import travel_shares
 from ..errors import SlopeError
+from ..statistics.entries import KnownQuantile, Quantile
 from . import study_types
 from .answered import STUDY, study_in
 from .rows import Finished, finished_of
@@ -27,23 +28,22 @@ def governing(about: study_types.Study) -> str:
     Of an ensemble whose quantile is the headline the one at this quantile; else the one at the 90 % quantile of what
     counts, or the largest where known events go beyond all runs.
     """
-    rows, ensemble, best = finished_of(about["runs"]), about["ensemble"], about["conservative"]
+    rows, ensemble, best = finished_of(about.runs), about.ensemble, about.conservative
     if ensemble and (number := of_headline(about, rows)):
         return number
-    if ensemble and ensemble["of"]:
+    if ensemble and ensemble.of:
         # a quantile is the value of a run
-        of = ensemble["of"]
+        of = ensemble.of
         known = study_types.weighted(ensemble)
-        if known and known["quantities"]:
-            quantiles = known["quantities"][of]["quantiles"] if of in known["quantities"] else []
-        else:
-            quantiles = ensemble["quantities"][of]["quantiles"]
-        at = next((one["value"] for one in quantiles if one["share"] == 0.9), None)
+        quantiles: Sequence[Union[Quantile, KnownQuantile]] = ensemble.quantities[of].quantiles
+        if known and known.quantities:
+            quantiles = known.quantities[of].quantiles if of in known.quantities else []
+        at = next((one.value for one in quantiles if one.share == 0.9), None)
         having = [row for row in rows if row.value(of) is not None]      # others lost it
         if at is None:      # events beyond the runs decide
             return max(having, key=lambda row: row.value(of)).run
         return nearest(having, of, at).run
-    return best["run"] if best else travel_shares.farthest(rows).run
+    return best.run if best else travel_shares.farthest(rows).run
 
 
 def of_headline(about: study_types.Study, rows: Sequence[Finished]) -> Optional[str]:
@@ -51,13 +51,13 @@ def of_headline(about: study_types.Study, rows: Sequence[Finished]) -> Optional[
 
     None where the headline is of another study, of none, or withheld.
     """
-    number, known = about["headline"], study_types.weighted(about["ensemble"])
-    if not number or number["source"] != "ensemble" or number["volume_m3"] is None:
+    number, known = about.headline, study_types.weighted(about.ensemble)
+    if not number or number.source != "ensemble" or number.volume_m3 is None:
         return None
-    if number["volume_m3"] == 0:
+    if number.volume_m3 == 0:
         long = [row for row in rows if row.length_m is not None]
         return max(long, key=lambda row: row.length_m or 0.0).run if long else None
-    at = next((one["value"] for one in known["to_remove"] or () if one["share"] == number["share"]), None) \
+    at = next((one.value for one in known.to_remove or () if one.share == number.share), None) \
         if known else None
     return None if at is None else nearest(rows, "remove_m3", at).run
 
@@ -71,7 +71,7 @@ def governing_run(study: Path) -> Tuple[str, Path]:
     """Name and folder of the governing run of the study in a folder."""
     about = load_study(study / STUDY)
     name = governing(about)
-    return name, next(summary_of(study, row.summary).parent for row in finished_of(about["runs"]) if row.run == name)
+    return name, next(summary_of(study, row.summary).parent for row in finished_of(about.runs) if row.run == name)
 
 
 def read(name: str) -> Named:

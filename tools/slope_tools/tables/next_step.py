@@ -3,6 +3,7 @@ from pathlib import Path
 from shlex import quote
 from typing import Any, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
+from ..findings import Finding
 from ..mobility import events
 from ..sites import site_choices, site_roads
 from ..sites.site_budget import duration_text
@@ -38,7 +39,7 @@ class Step(NamedTuple):
 
     def about(self) -> study_types.NextStep:
         """For study.yaml."""
-        return {"text": self.text, "command": self.command, "seconds": self.seconds}
+        return study_types.NextStep(*self)
 
     def __str__(self):
         return f"next step: {self.text}{self.time}: {self.command}"
@@ -52,7 +53,7 @@ class Made(NamedTuple):
 
     @property
     def source(self) -> Source:
-        return Source.ENSEMBLE if self.study["ensemble"] else Source.PAPER
+        return Source.ENSEMBLE if self.study.ensemble else Source.PAPER
 
     @property
     def whole(self) -> Optional[float]:
@@ -63,9 +64,9 @@ class Made(NamedTuple):
     @property
     def seconds(self) -> Optional[float]:
         """How long all runs took, as many at a time as they were; None: not known."""
-        walls = [row.wall_s for row in finished_of(self.study["runs"])]
+        walls = [row.wall_s for row in finished_of(self.study.runs)]
         known = [wall for wall in walls if wall is not None]
-        jobs = max(1, self.study["study"]["jobs"])
+        jobs = max(1, self.study.study.jobs)
         return None if len(known) < len(walls) or not walls else sum(known) / jobs
 
     @property
@@ -74,10 +75,10 @@ class Made(NamedTuple):
         return site_roads.home(self.folder)
 
     @property
-    def withheld(self) -> List[study_types.Reason]:
-        """Why its numbers are, as study.yaml has it."""
-        paper, ensemble_ = self.study["conservative"], self.study["ensemble"]
-        return [*(paper["withheld"] if paper else ()), *(ensemble_.get("withheld", ()) if ensemble_ else ())]
+    def withheld(self) -> List[Finding]:
+        """Why its numbers are."""
+        paper, ensemble_ = self.study.conservative, self.study.ensemble
+        return [*(paper.withheld if paper else ()), *(ensemble_.withheld if ensemble_ else ())]
 
 
 def of_studies(studies: Sequence[Made], about: Optional[study_types.Headline]) -> Optional[Step]:
@@ -86,13 +87,13 @@ def of_studies(studies: Sequence[Made], about: Optional[study_types.Headline]) -
 
     studies: one, or both of a site: each reason is of one of them.
     """
-    if not about or Kind(about["kind"]) not in (Kind.FLOOR, Kind.WITHHELD):
+    if not about or Kind(about.kind) not in (Kind.FLOOR, Kind.WITHHELD):
         return None
     if len(studies) == 2:
         one, other = studies
         studies = [one._replace(beside=other.study), other._replace(beside=one.study)]
     by_source = {one.source: one for one in studies}
-    ensemble, governs = by_source.get(Source.ENSEMBLE), about["source"]
+    ensemble, governs = by_source.get(Source.ENSEMBLE), about.source
 
     def of(reason: Reason) -> Made:
         source = {Code.RULE: reason.numbers.get("source"), Code.SIZE: governs}.get(reason.code)
@@ -115,19 +116,18 @@ def step_of(made: Made, code: Code, of: Mapping[str, Any]) -> Optional[Step]:
     if code is not Code.RULE:
         return None
     rule = Rule(of["rule"])
-    mine = next((one for one in made.withheld if one["kind"] == rule.value), None)
+    mine = next((one for one in made.withheld if one.kind == rule.value), None)
     if rule is Rule.LEFT:
-        add = mine["numbers"].get("add") if mine and "numbers" in mine else ""
+        add = mine.numbers.get("add") if mine else ""
         return Step(*larger_terrain(made, add or ""), made.whole)
     words = {Rule.BALLS: "smaller balls in the model", Rule.RUNS: "more time for the mass to come to rest",
              Rule.MOBILITY: "runs with less resistance"}
-    return Step(words[rule], mine["remedy"], times(made, rule, of)) if mine else None
+    return Step(words[rule], mine.remedy, times(made, rule, of)) if mine else None
 
 
 def first_remedy(made: Made) -> Optional[Step]:
     """Of a study whose number is withheld: what mends the first of its reasons."""
-    found = [step_of(made, Code.RULE, {**one, **(one.get("numbers") or {}), "rule": one["kind"]})
-             for one in made.withheld]
+    found = [step_of(made, Code.RULE, {**one.numbers, "rule": one.kind}) for one in made.withheld]
     return found[0] if found else None
 
 
@@ -141,7 +141,7 @@ def times(made: Made, rule: Rule, of: Mapping[str, Any]) -> Optional[float]:
 
 
 def more_runs(made: Made) -> Optional[Step]:
-    if not made.study["ensemble"]:
+    if not made.study.ensemble:
         return None
     whole = made.seconds
     return Step("more runs", ensemble(made, MORE), None if whole is None else (MORE - 1) * whole)
@@ -150,7 +150,7 @@ def more_runs(made: Made) -> Optional[Step]:
 def finer_balls(made: Made) -> Optional[Step]:
     """The study once more with balls of half the diameter; None where it is none of a site."""
     site, whole = made.site, made.whole
-    rows = finished_of(made.study["runs"])
+    rows = finished_of(made.study.runs)
     if site is None or not rows:
         return None
     row = rows[0]
@@ -170,7 +170,7 @@ def larger_terrain(made: Made, add: str = "") -> Tuple[str, str]:
     site, larger = made.site, "a larger elevation model" + f", by {add}" * bool(add)
     if site is None:
         return (f"{larger}, and the box of the deck with it",
-                f"tools/slope study {quote(str(made.study['study']['deck']))} ... --anew")
+                f"tools/slope study {quote(str(made.study.study.deck))} ... --anew")
     folder = quote(str(site))
     return larger, (f"terrain.files, terrain.bounds in {folder}/{site_choices.NAME}, then: "
                     f"tools/slope site {folder} && tools/slope study {folder} --anew")
@@ -178,14 +178,14 @@ def larger_terrain(made: Made, add: str = "") -> Tuple[str, str]:
 
 def ensemble(made: Made, factor: int = 1, wider: bool = False) -> str:
     """The command of an ensemble like this one: more points, or wider ranges of what resists."""
-    one = made.study["ensemble"]
-    design, weighted = (one["design"], one["known_events"]) if one else (None, None)
-    known = weighted["set"] if weighted else None
+    one = made.study.ensemble
+    design, weighted = (one.design, one.known_events) if one else (None, None)
+    known = weighted.set if weighted else None
     site = made.site
-    where = quote(str(site)) if site else f"{quote(str(made.study['study']['deck']))} -o {quote(str(made.folder))}"
-    words = [f"tools/slope study {where} --sample {factor * (design['points'] if design else 64)}"]
+    where = quote(str(site)) if site else f"{quote(str(made.study.study.deck))} -o {quote(str(made.folder))}"
+    words = [f"tools/slope study {where} --sample {factor * (design.points if design else 64)}"]
     words += [f"--known {events.OWN.stem if known == events.OWN.name else quote(str(known))}"] if known else []
-    for name, text in (design["variables"] if design else {}).items():
+    for name, text in (design.variables if design else {}).items():
         words.append(f"--vary {quote(f'{name}={widened(text) if wider else text}')}")
     return " ".join(words)
 

@@ -29,11 +29,10 @@ def evaluate(runs: Sequence[Run]) -> study_types.Stretches:
     weights = weights / weights.sum()
     blocked = [np.array([(one["from"], one["to"]) for one in run.stretches]).reshape(-1, 2) for run in runs]
     spans = merged([Span(*one) for ends in blocked for one in ends.tolist()], SAME)
-    return {"runs": len(runs), "share_blocked": float(weights @ [len(ends) > 0 for ends in blocked]),
-            "totals": quantiles([{"length": run.totals["blocked_length"],
-                                  **{name: run.totals[name] for name in SUMS if name in run.totals}} for run in runs],
-                                weights),
-            "stretches": [stretch(span, runs, weights) for span in spans], "shares": shares(blocked, weights)}
+    totals = quantiles([{"length": run.totals["blocked_length"],
+                         **{name: run.totals[name] for name in SUMS if name in run.totals}} for run in runs], weights)
+    return study_types.Stretches(len(runs), float(weights @ [len(ends) > 0 for ends in blocked]), totals,
+                                 [stretch(span, runs, weights) for span in spans], shares(blocked, weights))
 
 
 def stretch(span: Span, runs: Sequence[Run], weights) -> Dict[str, Any]:
@@ -68,11 +67,11 @@ def shares(blocked: Sequence[np.ndarray], weights) -> List[List[float]]:
 
 def rows(about: study_types.Stretches):
     """Names, then a line for each stretch of evaluate(); of the last one, all of them, the range is empty."""
-    names = [name for name in ("length", "passable_width", *SUMS) if name in about["totals"] or
-             name == "passable_width" and about["stretches"]]
+    names = [name for name in ("length", "passable_width", *SUMS) if name in about.totals or
+             name == "passable_width" and about.stretches]
     yield ["stretch", "from", "to", "share", *(f"{name}_{100 * share:g}" for name in names for share in SHARES)]
-    for number, one in enumerate(about["stretches"], 1):
+    for number, one in enumerate(about.stretches, 1):
         yield [number, one["from"], one["to"], one["share"], *(value for name in names for value in one[name])]
     nothing = [None] * len(SHARES)
-    yield ["all", None, None, about["share_blocked"],
-           *(value for name in names for value in about["totals"].get(name, nothing))]
+    yield ["all", None, None, about.share_blocked,
+           *(value for name in names for value in about.totals.get(name, nothing))]

@@ -1,5 +1,5 @@
 """What half the time step changes: one run with it, against the mean of the runs that are otherwise the same."""
-from typing import Any, Dict, Mapping, NamedTuple, Optional, Sequence
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from ..digits import rounded, to_three
 from ..errors import SlopeError
@@ -30,43 +30,37 @@ def half_of(variables: Mapping[str, str]) -> str:
         raise SlopeError("step of the deck", "must be a number", step) from None
 
 
-def compare(step: Step, groups: Sequence[Group]) -> study_types.HalfStep:
-    """The entry of study.yaml; its text is one sentence.
+def compare(step: Step, groups: Sequence[Group]) -> Tuple[study_types.HalfStep, List[Finding]]:
+    """The entry of study.yaml, whose text is one sentence, and its doubt of the volume.
 
     within_chance: None where the scatter of a run is unknown. Chance: a single run differs from the mean of n by less
     than t s sqrt(1 + 1/n) in 95 % of cases (Hahn and Meeker, Statistical Intervals, 1991, section 4.7).
     """
-    entry: study_types.HalfStep = {
-        "step": step.step, "rolling": step.rolling, "volume_m3": step.volume, "mean_m3": None, "chance_m3": None,
-        "within_chance": None, "energy": step.energy, "text": "", "doubts": []}
+    def entry(text: str, mean: Optional[float] = None, chance: Optional[float] = None,
+              within: Optional[bool] = None) -> study_types.HalfStep:
+        return study_types.HalfStep(step.step, step.rolling, step.volume, mean, chance, within, step.energy, text)
+
     same = next((group for group in groups if group.set.get("rolling") == step.rolling
                  and group.set.get("spacing", step.spacing) == step.spacing), None)
     if step.volume is None or same is None:
-        entry["text"] = f"half the time step: not tried: {step.why or 'no run with the same values finished'}"
-        return entry
+        return entry(f"half the time step: not tried: {step.why or 'no run with the same values finished'}"), []
     parts = [group.of(QUANTITY) for group in groups]
     volumes = parts[groups.index(same)]
     difference = step.volume - volumes.mean
-    entry["mean_m3"] = volumes.mean
     text = f"half the time step, rolling {step.rolling}: "
     if not step.volume and not volumes.mean:
-        entry["chance_m3"], entry["within_chance"] = 0.0, True
-        entry["text"] = f"{text}nothing to remove, as with the whole step"
-        return entry
+        return entry(f"{text}nothing to remove, as with the whole step", volumes.mean, 0.0, True), []
     by = f", {100 * difference / volumes.mean:+.1f} %" if volumes.mean > 0 else ""
     text += f"{shown(step.volume)} m3 instead of {shown(volumes.mean)} to remove{by}"
     scatter = headline.scatter_of(parts, volumes) if volumes.mean > 0 else headline.pooled(parts)
     if scatter is None:
-        entry["text"] = f"{text}; chance unknown"
-        return entry
+        return entry(f"{text}; chance unknown", volumes.mean), []
     chance = scatter.chance(volumes.runs)
     within = abs(difference) <= chance
     numbers = {"rolling": step.rolling, "volume": shown(step.volume), "mean": shown(volumes.mean), "by": by,
                "more": "no more" if within else "more", "chance": shown(chance)}
     found = Finding("half step", numbers)
-    entry["chance_m3"], entry["within_chance"], entry["text"] = chance, within, found.text
-    entry["doubts"] = [] if within else [found.entry()]
-    return entry
+    return entry(found.text, volumes.mean, chance, within), [] if within else [found]
 
 
 def shown(volume: float) -> str:

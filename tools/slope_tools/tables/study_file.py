@@ -1,8 +1,9 @@
 """study.yaml, read by those who work on with it."""
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, NamedTuple, Union
 
-from .. import disk, records, schemas
+from .. import records, schemas
 from ..case import run_folders
 from ..errors import SlopeError
 from ..records import NoRecord
@@ -20,20 +21,17 @@ def load_study(path: Path) -> study_types.Study:
     held = schemas.load(path, WHAT, SCHEMA)
     try:
         study = records.read(study_types.Study, {**held, "runs": []})
-        if study["ensemble"] and (weighted := study_types.weighted(study["ensemble"])):
-            records.read(study_types.Weighted, weighted)
     except NoRecord as error:
         raise SlopeError(path, f"must be {WHAT}: {error}") from None
-    rows = study["runs"] = [row_of(path, one) for one in held["runs"]]
-    finished = finished_of(rows)
+    study = replace(study, runs=[row_of(path, one) for one in held["runs"]])
+    rows, finished = study.runs, finished_of(study.runs)
     if not finished:
         raise SlopeError(path, "must have a finished run", f"{len(rows)} that failed")
-    about, best, farthest = study["study"], study["conservative"], study["largest"].get("front_m")
-    if any(row.set.keys() != about["set"].keys() for row in rows) or not (
-            farthest and all(name in [row.run for row in finished]
-                             for name in ((best or farthest)["run"], farthest["run"]))):
+    about, best, farthest = study.study, study.conservative, study.largest.get("front_m")
+    if any(row.set.keys() != about.set.keys() for row in rows) or not (
+            farthest and all(name in [row.run for row in finished] for name in ((best or farthest).run, farthest.run))):
         raise SlopeError(path, f"must be {WHAT}: runs, set, conservative and largest must be of one study")
-    if best and (not about.get("road") or best["volume_m3"] is None and not best["withheld"]
+    if best and (not about.road or best.volume_m3 is None and not best.withheld
                  or not all(row.road for row in finished)):
         raise SlopeError(path, f"must be {WHAT}: conservative must have a volume, or why it is withheld, and a road")
     return study
@@ -46,7 +44,7 @@ def read_study(path: Path) -> Dict[str, Any]:
 
 def plain(study: study_types.Study) -> Dict[str, Any]:
     """What study.yaml has of a study: values that YAML and JSON know."""
-    return disk.plain({**study, "runs": [rows_.plain(row) for row in study["runs"]]})
+    return {**records.plain(study), "runs": [rows_.plain(row) for row in study.runs]}
 
 
 def row_of(path: Path, one: Mapping[str, Any]) -> rows_.Row:

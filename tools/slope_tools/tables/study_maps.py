@@ -1,6 +1,6 @@
 """The maps over all runs of a study: the largest thickness, and how many runs exceed a thickness."""
 from pathlib import Path
-from typing import Dict, List, NamedTuple, Optional, Sequence, Set, Tuple, TypedDict
+from typing import Any, Dict, List, NamedTuple, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
@@ -19,7 +19,7 @@ class Source(NamedTuple):
     counted: bool
 
 
-class OverAll(TypedDict):
+class OverAll(NamedTuple):
     """The maps over all runs as study.yaml has them; problem: why there are none."""
     envelope: Optional[Dict[str, MapEntry]]
     exceedance: Optional[List[MapEntry]]
@@ -34,14 +34,14 @@ def write(runs: Sequence[Source], thresholds: Sequence[float], output: Path, pla
     """
     made_of = [[(run.name, run.counted, run_folders.stamps(run.prefix, RASTERS)) for run in runs], thresholds, place]
 
-    def make() -> OverAll:
+    def make() -> Dict[str, Any]:
         maps = Maps(thresholds)
         for run in rasters.progress(runs, "maps over all runs"):
             thickness, most = (run_folders.load_raster(run.prefix, name) for name in RASTERS)
             maps.add(run.name, thickness, most, run.counted)
         envelope, exceedance = maps.write(output, place)
-        return {"envelope": envelope, "exceedance": exceedance, "problem": maps.problem}
-    return kept.value(output / ".maps.json", made_of, make, lambda: sorted(maps_in(output)))
+        return OverAll(envelope, exceedance, maps.problem)._asdict()
+    return OverAll(**kept.value(output / ".maps.json", made_of, make, lambda: sorted(maps_in(output))))
 
 
 def maps_in(output: Path) -> List[Path]:

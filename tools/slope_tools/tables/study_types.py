@@ -1,19 +1,22 @@
 """What a study says, as study.yaml has it: every entry, its keys and their kinds. Volumes in m3 of ground (bulk).
 
 A study is such a value from where its runs are evaluated (studies/outcome) to console, files and page: one that the
-type checker knows. What makes an entry is named beside it. None: there is none, or it is not known.
+type checker knows. What makes an entry is named beside it. None: there is none, or it is not known; where that is the
+default, study.yaml does not have the key then.
 """
-from typing import Any, Dict, List, Mapping, NotRequired, Optional, Sequence, TypedDict, cast
+from dataclasses import dataclass
+from typing import Any, Dict, List, Mapping, Optional, Union
 
-from ..statistics.entries import Analysis, Headline
+from ..findings import Finding
+from ..statistics.entries import Analysis, Headline, KnownQuantile, Quantile
 from .rows import Row
 
 Settings = Mapping[str, List[str]]
-FindingEntry = Dict[str, Any]       # findings.Finding.entry()
 MapEntry = Dict[str, Any]           # of a map over all runs: file, what it shows, and of which threshold or quantile
 
 
-class Header(TypedDict):
+@dataclass(frozen=True)
+class Header:
     """What was asked, of whom, and by which programs (studies/results)."""
     deck: str
     known: Mapping[str, Any]        # known.Choice.about()
@@ -29,16 +32,24 @@ class Header(TypedDict):
     balls_thick: Optional[float]    # balls over the thickness of the body
     collected: str                  # date and time
     machine: Mapping[str, Any]
-    road: NotRequired[Mapping[str, Any]]        # setup.Road.about(); local: its file in the study's folder
+    road: Optional[Mapping[str, Any]] = None        # setup.Road.about(); local: its file in the study's folder
+
+    @property
+    def the_road(self) -> Mapping[str, Any]:
+        """The same of a study with one."""
+        assert self.road is not None
+        return self.road
 
 
-class Largest(TypedDict):
+@dataclass(frozen=True)
+class Largest:
     """The largest value of a quantity, and whose it is."""
     value: float
     run: str
 
 
-class Difference(TypedDict):
+@dataclass(frozen=True)
+class Difference:
     """What a variable changes in the volume to remove; clear: whether by more than chance, None: nobody knows."""
     variable: str
     largest_at: str
@@ -48,15 +59,8 @@ class Difference(TypedDict):
     clear: Optional[bool]
 
 
-class Reason(TypedDict):
-    """Why a number is withheld (withheld_words)."""
-    kind: str
-    text: str
-    remedy: str
-    numbers: NotRequired[Mapping[str, Any]]
-
-
-class Zero(TypedDict):
+@dataclass(frozen=True)
+class Zero:
     """What a volume of 0 is worth (withheld_words.zero)."""
     runs: int
     exceeded_at_most: float
@@ -64,7 +68,8 @@ class Zero(TypedDict):
     text: str
 
 
-class Conservative(TypedDict):
+@dataclass(frozen=True)
+class Conservative:
     """The conservative volume (combinations.conservative), its parts and what it is based on."""
     volume_m3: Optional[float]      # None: withheld
     mean_m3: float
@@ -87,12 +92,13 @@ class Conservative(TypedDict):
     run: str
     remove_m3: float
     differences: List[Difference]
-    doubts: List[FindingEntry]
-    withheld: List[Reason]
+    doubts: List[Finding]
+    withheld: List[Finding]         # why: withheld_words
     zero: Optional[Zero]
 
 
-class Effect(TypedDict):
+@dataclass(frozen=True)
+class Effect:
     """What smaller balls change in a quantity (size_effect.Effect)."""
     coarse: float
     runs: int
@@ -103,20 +109,27 @@ class Effect(TypedDict):
     clear: Optional[bool]
 
 
-class Size(TypedDict):
-    """What the fine run says (fine_run.evaluate); those that are not required: of one that finished."""
+@dataclass(frozen=True)
+class Size:
+    """What the fine run says (fine_run.evaluate); of one that failed only that it is not known."""
     run: Optional[str]
     effects: Mapping[str, Effect]
     open: bool                      # whether smaller balls still may bring more
     balls_thick: Optional[float]
     text: str
-    d: NotRequired[float]
-    coarse_d: NotRequired[float]
-    coarse_balls_thick: NotRequired[Optional[float]]
-    coarse_runs: NotRequired[List[str]]
 
 
-class HalfStep(TypedDict):
+@dataclass(frozen=True)
+class Compared(Size):
+    """The same of one that finished."""
+    d: float
+    coarse_d: float
+    coarse_balls_thick: Optional[float]
+    coarse_runs: List[str]
+
+
+@dataclass(frozen=True)
+class HalfStep:
     """What half the time step changes (step_check.compare)."""
     step: Optional[float]
     rolling: str
@@ -126,21 +139,23 @@ class HalfStep(TypedDict):
     within_chance: Optional[bool]
     energy: Optional[Mapping[str, Any]]         # energy.read()
     text: str
-    doubts: NotRequired[List[FindingEntry]]     # go to those of the conservative volume
 
 
-class Span(TypedDict):
+@dataclass(frozen=True)
+class Span:
     mean: float
     low: float
     high: float
 
 
+@dataclass(frozen=True)
 class ElasticQuantity(Span):
     usual: Optional[Span]           # of the runs that are otherwise the same
     study: Optional[Span]           # of all runs of the study
 
 
-class Elastic(TypedDict):
+@dataclass(frozen=True)
+class Elastic:
     """Reach and area with the largest restitution (elastic.evaluate)."""
     restitution: float
     rolling: str
@@ -152,7 +167,8 @@ class Elastic(TypedDict):
     text: str
 
 
-class Observed(TypedDict):
+@dataclass(frozen=True)
+class Observed:
     """A mapped deposit (studies/mapped)."""
     file: str
     threshold_m: float
@@ -163,50 +179,50 @@ class Observed(TypedDict):
     best: str
 
 
-class Quantile(TypedDict):
-    """That a share of runs, or of known events, stays within; gap: the two runs between which it lies."""
-    share: float
-    value: Optional[float]
-    low: Optional[float]
-    high: Optional[float]
-    gap: NotRequired[Optional[Sequence[float]]]
-
-
-class OfKnown(TypedDict):
+@dataclass(frozen=True)
+class OfKnown:
     """A quantity as known events weigh it."""
     name: str
     unit: str
-    quantiles: List[Quantile]
+    quantiles: List[KnownQuantile]
 
 
-class OfRuns(OfKnown):
+@dataclass(frozen=True)
+class OfRuns:
     """A quantity as the runs have it."""
+    name: str
+    unit: str
     mean: float
     standard_deviation: Optional[float]
     smallest: float
     largest: float
+    quantiles: List[Quantile]
 
 
-class KnownVariable(TypedDict):
+@dataclass(frozen=True)
+class KnownVariable:
     """A variable in the weighted runs: values that 5, 50 and 95 % of the weight stay within; rank correlations."""
     quantiles: List[str]
     rank: Dict[str, Optional[float]]
 
 
-class Gap(TypedDict):
+@dataclass(frozen=True)
+class Gap:
     low_m: float
     high_m: float
     share: float
 
 
-class Added(TypedDict):
+@dataclass(frozen=True)
+class Added:
     """The runs towards longer ones (farther.Added); stopped: answer.Reason.about()."""
     points: int
     stopped: Optional[Dict[str, Any]]
     batches: List[Dict[str, Any]]
 
 
-class Known(TypedDict):
+@dataclass(frozen=True)
+class Known:
     """Which known events an ensemble was held against; outside: why they weigh nothing, reached is None then."""
     set: str
     events: Optional[int]
@@ -216,9 +232,10 @@ class Known(TypedDict):
     volume_Mm3: float
     outside: List[str]
     reached: Optional[float]
-    doubts: List[FindingEntry]
+    doubts: List[Finding]
 
 
+@dataclass(frozen=True)
 class Weighted(Known):
     """An ensemble that known events weigh (known_events.evaluate): how much of them the runs reach, as how many runs
     these count, and their numbers."""
@@ -237,24 +254,26 @@ class Weighted(Known):
     beyond_path: float
     added: Added
     quantities: Dict[str, OfKnown]
-    to_remove: Optional[List[Quantile]]
+    to_remove: Optional[List[KnownQuantile]]
     variables: Dict[str, KnownVariable]
     influence: Dict[str, Analysis]
     weights: Dict[str, float]
     maps: List[MapEntry]
 
 
-class Design(TypedDict):
+@dataclass(frozen=True)
+class Design:
     """The points of an ensemble (sample.Sample)."""
     kind: str
     seed: int
     points: int
     variables: Dict[str, str]
-    wide: NotRequired[Dict[str, List[float]]]
-    fit: NotRequired[str]           # SHA-256 of the calibration's file whose sets they are
+    wide: Optional[Dict[str, List[float]]] = None
+    fit: Optional[str] = None           # SHA-256 of the calibration's file whose sets they are
 
 
-class Ensemble(TypedDict):
+@dataclass(frozen=True)
+class Ensemble:
     """An ensemble (ensemble.evaluate)."""
     design: Design
     runs: int
@@ -265,19 +284,19 @@ class Ensemble(TypedDict):
     of: Optional[str]               # the quantity that counts
     quantities: Dict[str, OfRuns]
     influence: Dict[str, Analysis]
-    doubts: List[FindingEntry]
+    doubts: List[Finding]
     maps: List[MapEntry]
-    known_events: Optional[Known]
-    withheld: NotRequired[List[Reason]]
+    known_events: Optional[Union[Weighted, Known]]
+    withheld: List[Finding]         # why: withheld_words
 
 
 def weighted(one: Optional[Ensemble]) -> Optional[Weighted]:
     """What known events say of an ensemble, where they weigh its runs."""
-    known = one["known_events"] if one else None
-    return cast(Weighted, known) if known and known["reached"] is not None else None
+    return one.known_events if one and isinstance(one.known_events, Weighted) else None
 
 
-class Exceeded(TypedDict):
+@dataclass(frozen=True)
+class Exceeded:
     """How many runs have more than a volume on the road."""
     more_than_m3: float
     runs: int
@@ -286,7 +305,8 @@ class Exceeded(TypedDict):
     high: float
 
 
-class Point(TypedDict):
+@dataclass(frozen=True)
+class Point:
     """The runs of one intensity."""
     at: float
     runs: int
@@ -301,12 +321,14 @@ class Point(TypedDict):
     exceed: List[Exceeded]
 
 
-class Line(TypedDict):
+@dataclass(frozen=True)
+class Line:
     set: Dict[str, str]
     points: List[Point]
 
 
-class Intensity(TypedDict):
+@dataclass(frozen=True)
+class Intensity:
     """The volume on the road against an intensity (intensity.entry)."""
     variable: str
     quantity: str
@@ -315,7 +337,8 @@ class Intensity(TypedDict):
     lines: List[Line]
 
 
-class ChainBody(TypedDict):
+@dataclass(frozen=True)
+class ChainBody:
     """A body of a chain."""
     body: str
     weight: float
@@ -324,7 +347,8 @@ class ChainBody(TypedDict):
     finished: int
 
 
-class ChainCurve(TypedDict):
+@dataclass(frozen=True)
+class ChainCurve:
     """How likely more than a volume is at each peak acceleration."""
     more_than_m3: float
     probability: List[float]
@@ -332,7 +356,8 @@ class ChainCurve(TypedDict):
     high: List[float]
 
 
-class PerYear(TypedDict):
+@dataclass(frozen=True)
+class PerYear:
     """How often a volume is exceeded; contributions: of ranges of the peak acceleration."""
     more_than_m3: float
     value: float
@@ -342,7 +367,8 @@ class PerYear(TypedDict):
     contributions: List[Dict[str, Any]]
 
 
-class Chain(TypedDict):
+@dataclass(frozen=True)
+class Chain:
     """From the earthquake to the blocked road (chain_files.evaluate)."""
     fragility: str
     quantity: str
@@ -352,35 +378,38 @@ class Chain(TypedDict):
     peaks_gal: List[float]
     curves: List[ChainCurve]
     per_year: Optional[List[PerYear]]
-    withheld: List[Reason]
+    withheld: List[Finding]         # why: withheld_words
     files: List[str]
-    doubts: List[FindingEntry]
+    doubts: List[Finding]
 
 
-class NextStep(TypedDict):
+@dataclass(frozen=True)
+class NextStep:
     """What to do next (next_step.Step)."""
     text: str
     command: str
     seconds: Optional[float]
 
 
-class Stretches(TypedDict):
+@dataclass(frozen=True)
+class Stretches:
     """The stretches of the road that runs block (road_runs.evaluate); of_known_events: whether these weigh the runs."""
     runs: int
     share_blocked: float
     totals: Dict[str, List[float]]
     stretches: List[Dict[str, Any]]
     shares: List[List[float]]
-    of_known_events: NotRequired[bool]
+    of_known_events: Optional[bool] = None
 
 
-class Study(TypedDict):
+@dataclass(frozen=True)
+class Study:
     """study.yaml."""
     study: Header
     largest: Dict[str, Largest]
     farthest: Optional[str]
     conservative: Optional[Conservative]
-    size: Optional[Size]
+    size: Optional[Union[Compared, Size]]
     ensemble: Optional[Ensemble]
     step: Optional[HalfStep]
     largest_restitution: Optional[Elastic]
@@ -390,10 +419,10 @@ class Study(TypedDict):
     exceedance: Optional[List[MapEntry]]
     observed: Optional[Observed]
     roads: List[Dict[str, Any]]     # road_numbers.entries()
-    warnings: List[FindingEntry]
+    warnings: List[Finding]
     runs: List[Row]
     headline: Optional[Headline]
-    stretches: NotRequired[Optional[Stretches]]         # None without a road
+    stretches: Optional[Stretches]              # None without a road
     chain: Optional[Chain]
     intensity: Optional[Intensity]
-    next_step: NotRequired[Optional[NextStep]]
+    next_step: Optional[NextStep]

@@ -1,9 +1,11 @@
 """Whether the number of a study may be used: the Facts that withheld looks at, from its rows."""
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from ..deposits import deposit, left_words, scar
 from ..deposits.road_sides import BEFORE
+from ..findings import Finding
 from ..mobility import known
 from ..mobility.road import at_road
 from ..statistics import answer, withheld
@@ -86,8 +88,8 @@ def facts(rows: Sequence[Row], volume: float, on_road: float, events: Optional[E
                  longest(finished), events and events.median, where, left_words.to_add(left))
 
 
-def reasons_of_ensemble(rows: Sequence[Row], events: Optional[Events], case: Case) -> List[study_types.Reason]:
-    """Why the quantiles of an ensemble with a road are withheld, as study.yaml has it; empty: they may stand.
+def reasons_of_ensemble(rows: Sequence[Row], events: Optional[Events], case: Case) -> List[Finding]:
+    """Why the quantiles of an ensemble with a road are withheld; empty: they may stand.
 
     Of volumes the largest of all runs count: where even those govern nothing, no quantile does.
     """
@@ -97,16 +99,18 @@ def reasons_of_ensemble(rows: Sequence[Row], events: Optional[Events], case: Cas
     return withheld_words.with_remedies(withheld.reasons(facts(rows, largest, on_road, events)), case)
 
 
-def judge(best: study_types.Conservative, rows: Sequence[Row], events: Optional[Events], case: Case) -> None:
-    """Add to the entry of the conservative volume why it is withheld, and if it is 0, what that is worth.
+def judge(best: study_types.Conservative, rows: Sequence[Row], events: Optional[Events],
+          case: Case) -> study_types.Conservative:
+    """The entry of the conservative volume with why it is withheld, and if it is 0, with what that is worth.
 
     A volume that is withheld is None there, so that no reader takes it for one.
     """
-    mine = [row.at_road.remove_on_road_m3 for row in finished_of(rows) if row.set == best["set"]]
-    assert best["volume_m3"] is not None        # until it is judged
-    found = withheld.reasons(facts(rows, best["volume_m3"], sum(mine) / len(mine), events))
-    best["withheld"], best["zero"] = withheld_words.with_remedies(found, case), None
+    mine = [row.at_road.remove_on_road_m3 for row in finished_of(rows) if row.set == best.set]
+    assert best.volume_m3 is not None        # until it is judged
+    found = withheld.reasons(facts(rows, best.volume_m3, sum(mine) / len(mine), events))
     if found:
-        best["volume_m3"] = best["rounded"]["volume_m3"] = None
-    elif best["volume_m3"] == 0:
-        best["zero"] = withheld_words.zero(len(finished_of(rows)), events and max(events.reached))
+        return replace(best, withheld=withheld_words.with_remedies(found, case), volume_m3=None,
+                       rounded={**best.rounded, "volume_m3": None})
+    if best.volume_m3 == 0:
+        return replace(best, zero=withheld_words.zero(len(finished_of(rows)), events and max(events.reached)))
+    return best

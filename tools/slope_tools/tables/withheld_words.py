@@ -2,10 +2,10 @@
 import math
 from pathlib import Path
 from shlex import quote
-from typing import Any, List, Mapping, NamedTuple, Optional, Sequence, cast
+from typing import Any, List, Mapping, NamedTuple, Optional, Sequence
 
 from ..digits import percent
-from ..findings import Finding, entries, texts
+from ..findings import Finding, texts
 from ..statistics.withheld import BALLS, CONFIDENCE, Kind, exceeded_at_most
 from . import study_types
 
@@ -84,12 +84,12 @@ def twice(case: Case) -> str:
         return "SECONDS"
 
 
-def with_remedies(found: Sequence[Finding], case: Case) -> List[study_types.Reason]:
-    """What study.yaml says of reasons: with what mends each."""
-    return cast(List[study_types.Reason], entries(one._replace(remedy=remedy(one, case)) for one in found))
+def with_remedies(found: Sequence[Finding], case: Case) -> List[Finding]:
+    """Reasons with what mends each."""
+    return [one._replace(remedy=remedy(one, case)) for one in found]
 
 
-def lines(withheld: Sequence[study_types.Reason]) -> List[str]:
+def lines(withheld: Sequence[Finding]) -> List[str]:
     """What stands in the place of the number, of with_remedies()."""
     return [f"{UNUSABLE}:", *(f"  {text}" for text in texts(withheld))]
 
@@ -105,4 +105,4 @@ def zero(runs: int, known: Optional[float]) -> study_types.Zero:
              f"{100 * most:.2g} % ({100 * CONFIDENCE:g} % confidence)")
     if known is not None:
         words += f"; {percent(known)} of known events of this volume and height go as far as the road"
-    return {"runs": runs, "exceeded_at_most": most, "known_events": known, "text": words}
+    return study_types.Zero(runs, most, known, words)
