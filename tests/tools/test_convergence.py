@@ -13,7 +13,7 @@ from run_helpers import called
 from tiny_collapse import edit, rows_of
 
 from slope_tools.statistics import convergence
-from slope_tools.studies import body_depth, size_study
+from slope_tools.studies import body_depth, outcome, size_study
 from slope_tools.studies.setup import Setup
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
@@ -225,3 +225,16 @@ def test_calibrated_values_belong_to_the_thickness_in_balls(succeed):
         found = yaml.safe_load(Path("out/study.yaml").read_text())
         assert found["study"]["balls_thick"] == pytest.approx(mine, rel=0.05)
         assert [one["kind"] for one in found["warnings"]].count("other thickness") == warned
+
+
+def test_calibrated_values_belong_to_what_was_set_beside_them(succeed):
+    """A study with another value says so; not of the size of the balls, nor of how long a run takes."""
+    succeed("--vary friction=20:40 --front 25 --runs 5 --set steps=200 --set rolling=0.10 --jobs 2 -o fit", "calibrate")
+    for given, said in (("--set rolling=0.1", []), ("--set rolling=0.3", [("rolling 0.10", "rolling 0.3")]),
+                        ("", [("rolling 0.10", "rolling 0.0")])):
+        succeed(f"--from fit --sample 2 --set steps=200 {given} --exceed 0.1 --jobs 2 -o out", "study")
+        found = yaml.safe_load(Path("out/study.yaml").read_text())["warnings"]
+        assert [(one["numbers"]["found"], one["numbers"]["here"]) for one in found
+                if one["kind"] == "other settings"] == said
+    beside = {"d": "1", "duration": "60", "step": "2", "not in the deck": "5", "friction": "30"}
+    assert outcome.other_settings(beside, {"d": "2", "duration": "90", "step": "1", "friction": "30.0"}) is None

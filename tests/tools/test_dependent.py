@@ -11,6 +11,7 @@ from made_rows import row
 from slope_tools.ensembles import known_events, known_influence
 from slope_tools.ensembles.sample import Sample
 from slope_tools.statistics import dependent, distributions
+from slope_tools.statistics.entries import Analysis
 
 VARIABLES = tuple(distributions.Range(name, "0:1", 0.0, 1.0, stats.uniform(), 1.0) for name in "abc")
 
@@ -59,16 +60,15 @@ def test_weighted_runs_have_the_indices_of_their_response():
     by_length = np.log(many.lengths[order]), many.mass.share[order]
     exact = dependent.indices(speed, lambda u: np.interp(np.log(twins.response(u)[0]), *by_length), 3)
     found = known_influence.evaluate(runs_of(64, 3, np.random.default_rng(3)), "max_speed_m_s")
-    variables = found["variables"]
+    variables = found.variables
     plain = dependent.indices(speed, lambda u: np.ones(len(u)), 3)
     assert plain[0][0] - exact[0][0] > 0.15 and exact[1][1] - plain[1][1] > 0.1   # weights matter
     for k, name in enumerate("abc"):
         one = variables[name]
-        assert one["first"] == pytest.approx(exact[0][k], abs=0.08)
-        assert one["total"] == pytest.approx(exact[1][k], abs=0.08)
+        assert one.first == pytest.approx(exact[0][k], abs=0.08)
+        assert one.total == pytest.approx(exact[1][k], abs=0.08)
 
 
 def test_few_runs_have_none():
     found = known_influence.evaluate(runs_of(6, 3), "max_speed_m_s")
-    assert found == {"text": "no indices: the runs are too few for an emulator of their lengths", "emulator": None,
-                     "variables": {}}
+    assert found == Analysis("no indices: the runs are too few for an emulator of their lengths", None, {})

@@ -9,6 +9,7 @@ import csv
 import json
 import multiprocessing
 import os
+import platform
 import random
 import re
 import resource
@@ -253,7 +254,7 @@ def test_a_tool_that_is_killed(before, here, name):
         found = contents("results")
         assert all(path.endswith(MARKERS) for path in one.keys() - found.keys())
         for path, data in found.items():
-            if path.endswith((".png", ".html", f"{name}.yaml")):    # with times or sizes that differ
+            if path.endswith((".png", ".html", "row.json", f"{name}.yaml")):    # with times or sizes that differ
                 assert data[-8:] in (one[path][-8:], other[path][-8:]), path
             else:
                 assert data in (one.get(path), other[path]), path
@@ -344,7 +345,22 @@ def test_what_a_marker_promises_is_on_the_disk(tmp_path, monkeypatch):
     assert done[3:] == ["set", "to a.csv", "set", "to m.yaml", "set", tmp_path.name]
     done.clear()
     disk.write(tmp_path / "one", "text")
-    assert done == [f".one.{os.getpid()}.new", "to one", tmp_path.name]
+    assert done == [f".one.{platform.node()}.{os.getpid()}.new", "to one", tmp_path.name]
+
+
+def test_what_a_killed_process_left_goes_with_the_next_file(tmp_path):
+    """Not what another process, another machine, or another file has there."""
+    child = os.fork()
+    if child == 0:
+        os._exit(0)
+    os.waitpid(child, 0)
+    left = tmp_path / f".one.{platform.node()}.{child}.new"
+    others = [tmp_path / f".one.{platform.node()}.{os.getppid()}.new", tmp_path / f".one.elsewhere.{child}.new",
+              tmp_path / f".two.{platform.node()}.{child}.new"]
+    for path in (left, *others):
+        path.write_text("half")
+    disk.write(tmp_path / "one", "text")
+    assert sorted(tmp_path.iterdir()) == sorted([*others, tmp_path / "one"])
 
 
 # --- runs ---

@@ -1,5 +1,5 @@
 """Runs that an ensemble adds towards longer ones, on a stand-in: how they count, when they are made, when they end."""
-from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,6 +12,7 @@ from slope_tools.errors import SlopeError
 from slope_tools.mobility import weights
 from slope_tools.statistics import designs, distributions
 from slope_tools.statistics.answer import Code
+from slope_tools.studies import farther_runs
 from slope_tools.tables import answer_words
 
 RUNS, SEEDS, PATH = 64, 4, farther.End(1e5, 0.0)
@@ -34,17 +35,23 @@ def places_of(batch):
     return np.array([[float(value) for value in one.values()] for one in batch.points])
 
 
+def proposed(added, u, lengths, beyond, path=PATH):
+    """What is added next, None where nothing is; and the Added with it, or with the reason."""
+    found = farther.next_runs(added, u, lengths, beyond, path, lambda: farther.longer(u, lengths, added.sample))
+    return found.batches[-1] if len(found.batches) > len(added.batches) else None, found
+
+
 class Ensemble:
     """A design and what is added to it."""
 
-    def __init__(self, folder, seed):
+    def __init__(self, seed):
         rng = np.random.default_rng(seed)
-        self.added = farther.Added(Path(folder), planned(seed=seed))
+        self.added = farther.Added(planned(seed=seed))
         self.u = designs.points(designs.SOBOL, 3, RUNS, seed)
         self.lengths, self.volumes = response(self.u, rng)
         self.batch = np.zeros(RUNS, int)
         while True:
-            new = self.added.propose(self.u, self.lengths, twins.exceedance(self.lengths), PATH)
+            new, self.added = proposed(self.added, self.u, self.lengths, twins.exceedance(self.lengths))
             if new is None:
                 break
             u = places_of(new)
@@ -59,8 +66,8 @@ class Ensemble:
 
 
 @pytest.fixture(scope="module")
-def ensembles(tmp_path_factory):
-    return [Ensemble(tmp_path_factory.mktemp("added"), seed) for seed in range(SEEDS)]
+def ensembles():
+    return [Ensemble(seed) for seed in range(SEEDS)]
 
 
 @pytest.fixture(scope="module")
@@ -119,61 +126,54 @@ def test_ratios_by_hand():
     assert same.weights == pytest.approx(plain.weights, rel=1e-12)
 
 
-def test_nothing_is_added_where_the_runs_reach_far_enough(tmp_path):
-    added = farther.Added(tmp_path, planned())
+def test_nothing_is_added_where_the_runs_reach_far_enough():
+    added = farther.Added(planned())
     u = designs.points(designs.SOBOL, 3, RUNS, 1)
     lengths = np.geomspace(500, 9000, RUNS)
     for far in (0.049, 0.0):        # though many are missing before the shortest
-        assert added.propose(u, lengths, np.linspace(0.7, far, RUNS), PATH) is None
-        assert (added.stopped, added.number, list(tmp_path.iterdir())) == (None, 0, [])
+        assert proposed(added, u, lengths, np.linspace(0.7, far, RUNS)) == (None, added)
     lengths = response(u)[0]
     beyond = np.linspace(0.7, 0.051, RUNS)[np.argsort(np.argsort(lengths))]
-    assert added.propose(u, lengths, beyond, PATH) is not None
+    new, then = proposed(added, u, lengths, beyond)
+    assert new is not None and (added.number, then.number, then.stopped) == (0, len(new.points), None)
 
 
 def test_where_runs_are_longer_is_found_once(tmp_path, monkeypatch):
-    """Of the same runs and distributions."""
-    u, fitted = designs.points(designs.SOBOL, 3, RUNS, 1), []
-    beyond = twins.exceedance(response(u)[0])
-    u[:2] = 0, 0, 1         # no more: the same is asked by each study
-
-    def counted(*given, really=farther.Longer):
-        fitted.append(1)
-        return really(*given)
-
-    monkeypatch.setattr(farther, "Longer", counted)
-    lengths = response(u)[0]
+    """Of the same runs and distributions: it is kept with the study."""
+    fitted, really = [], farther.longer
+    monkeypatch.setattr(farther, "longer", lambda *given: fitted.append(1) or really(*given))
+    u = designs.points(designs.SOBOL, 3, RUNS, 1)
+    setup, order = SimpleNamespace(output=tmp_path), SimpleNamespace(sample=planned())
     for wanted, scale in ((1, 1.0), (1, 1.0), (2, np.linspace(0.99, 1, RUNS)), (2, np.linspace(0.99, 1, RUNS))):
-        added = farther.Added(tmp_path, planned())
-        assert added.propose(u, lengths * scale, beyond, PATH) is None
-        assert added.stopped.code is Code.RANGE and len(fitted) == wanted
+        runs = SimpleNamespace(places=u, lengths=response(u)[0] * scale)
+        assert farther_runs.longer(setup, order, runs) == really(u, runs.lengths, planned()) and len(fitted) == wanted
 
 
-def test_why_no_more_are_added(tmp_path):
+def test_why_no_more_are_added():
     u = designs.points(designs.SOBOL, 3, RUNS, 1)
     lengths = response(u)[0]
     beyond = twins.exceedance(lengths)
-    far = float(beyond.min())
+    far, added = float(beyond.min()), farther.Added(planned())
 
     def stopped(added, runs=RUNS, lengths=lengths, path=PATH):
-        assert added.propose(u[:runs], lengths[:runs], beyond[:runs], path) is None
-        return added.stopped
+        new, then = proposed(added, u[:runs], lengths[:runs], beyond[:runs], path)
+        assert new is None and then.batches == added.batches
+        return then.stopped
 
     for path in (farther.End(float(lengths.max()), 0.0), farther.End(1e5, far - 0.02)):    # or hardly any are left
-        assert stopped(farther.Added(tmp_path, planned()), path=path) == (
-            Code.TERRAIN, {"share": path.share, "path_m": path.length})
-    assert farther.Added(tmp_path, planned()).propose(u, lengths, beyond, farther.End(1e5, far - 0.03)) is not None
-    assert stopped(farther.Added(tmp_path, planned()), runs=7).code is Code.FEW
+        assert stopped(added, path=path) == (Code.TERRAIN, {"share": path.share, "path_m": path.length})
+    assert proposed(added, u, lengths, beyond, farther.End(1e5, far - 0.03))[0] is not None
+    assert stopped(added, runs=7).code is Code.FEW
     u[0] = 0, 0, 1          # the corner where the longest run is: one may be that by chance
-    assert farther.Added(tmp_path, planned()).propose(u, response(u)[0], beyond, PATH) is not None
+    assert proposed(added, u, response(u)[0], beyond)[0] is not None
     u[:2] = 0, 0, 1
-    found = stopped(farther.Added(tmp_path, planned()), lengths=response(u)[0])
+    found = stopped(added, lengths=response(u)[0])
     assert found.code is Code.RANGE and found.numbers["ends"].startswith("a 0.0")
     assert "range" in answer_words.text(found) and "a 0.0" in answer_words.text(found)
     u[:2] = 0.5
-    added = farther.Added(tmp_path, planned())
     for _ in range(8):
-        assert len(added.propose(u, lengths, beyond, PATH).points) == 8
+        new, added = proposed(added, u, lengths, beyond)
+        assert len(new.points) == 8
     assert stopped(added) == (Code.RUNS, {"points": 64})
 
 
@@ -193,24 +193,25 @@ def test_values_beyond_the_bounds():
         "friction": (5, 30), "rolling": (0, 0.15), "spacing": (0.3, 0.95), "field_e": (0.05, 0.5)}
 
 
-def test_runs_are_added_beyond_the_bounds(tmp_path):
+def test_runs_are_added_beyond_the_bounds():
     """Where longer ones are, as far as the wider bounds, which are named where no values are left."""
     wide = planned().widened({"a": (-0.2, 1.0)})
-    added = farther.Added(tmp_path, wide)
+    added = farther.Added(wide)
     u = designs.points(designs.SOBOL, 3, RUNS, 1)
     lengths = 10 ** (3 + 0.2 * (1 - u[:, 0]))
     beyond = np.linspace(0.9, 0.3, RUNS)[np.argsort(np.argsort(lengths))]
-    batch = added.propose(u, lengths, beyond, PATH)
+    batch, added = proposed(added, u, lengths, beyond)
     assert batch.box[0][0] == pytest.approx(-0.2) and batch.box[0][1] <= 0.1
     values = [float(one["a"]) for one in batch.points]
     assert min(values) < 0 and min(values) >= -0.2
     u[:8, 0] = -0.2
     lengths[:8], beyond[:8] = 10 ** (3 + 0.2 * 1.2), 0.2
     lengths[0] *= 1.1
-    assert added.propose(u, lengths, beyond, PATH) is not None      # that one may be by chance
+    new, added = proposed(added, u, lengths, beyond)
+    assert new is not None      # that one may be by chance
     lengths[1] *= 1.1
-    assert added.propose(u, lengths, beyond, PATH) is None
-    assert added.stopped == (Code.RANGE, {"ends": "a -0.20"})
+    new, added = proposed(added, u, lengths, beyond)
+    assert new is None and added.stopped == (Code.RANGE, {"ends": "a -0.20"})
 
 
 def test_the_design_has_no_points_beyond_the_bounds():
@@ -222,16 +223,16 @@ def test_the_design_has_no_points_beyond_the_bounds():
 
 
 def test_a_study_is_continued(tmp_path):
-    added = farther.Added(tmp_path, planned(high=10.0))
+    added = farther.Added(planned(high=10.0))
     u = designs.points(designs.SOBOL, 3, RUNS, 1)
     lengths = response(u)[0]
-    batch = added.propose(u, lengths, twins.exceedance(lengths), PATH)
+    batch, added = proposed(added, u, lengths, twins.exceedance(lengths))
     assert added.line(batch, lengths, twins.exceedance(lengths)).startswith("no run goes beyond ")
     assert "8 more points towards a 0.0 to " in added.line(batch, lengths, twins.exceedance(lengths))
-    added.keep()
-    assert farther.Added(tmp_path, planned(2 * RUNS, high=10.0)).batches == added.batches
-    assert farther.Added(tmp_path, planned(high=9.0)).batches == []
+    farther.keep(tmp_path, added)
+    assert farther.read(tmp_path, planned(2 * RUNS, high=10.0)).batches == added.batches
+    assert farther.read(tmp_path, planned(high=9.0)).batches == []
     text = (tmp_path / farther.FILE).read_text()
     (tmp_path / farther.FILE).write_text(text.replace("box:", "bax:"))
     with pytest.raises(SlopeError, match="must be what `slope study --known` wrote"):
-        farther.Added(tmp_path, planned(high=10.0))
+        farther.read(tmp_path, planned(high=10.0))

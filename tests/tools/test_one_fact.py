@@ -142,6 +142,12 @@ def test_the_middle_is_that_of_the_values(several, expected):
     assert settings.middle(several.split()) == expected
 
 
+def test_too_few_points_are_named_where_they_stand(mine, dry):  # noqa: F811
+    change(mine, "points: 64", "points: 4")
+    status, _, err = dry("mine")
+    assert status == 2 and "mine/site.yaml: study.points: must be more runs than there are parameters, 5, got 4" in err
+
+
 def test_half_step_and_fine_run_are_at_the_middle_resistance(mine, dry):  # noqa: F811
     change(mine, "rolling: [0, 0.05, 0.1]", "rolling: [0.1, 0, 0.05]")
     status, lines, err = dry("mine", "--paper")
@@ -230,7 +236,7 @@ def rows_of(lengths, **equal):
                 length_m=length, **equal) for k, length in enumerate(lengths)]
 
 
-PLAN = SimpleNamespace(names=["x"], places=lambda rows: np.array([[float(one.set["x"])] for one in rows]))
+PLAN = SimpleNamespace(names=["x"], number=8, places=lambda rows: np.array([[float(one.set["x"])] for one in rows]))
 
 
 @pytest.mark.parametrize("lengths, points", [([50.0] * 8, 1), ([50.0, 60.0] * 4, 2), ([50.0] * 4 + [61.0, 62.0], 3),
@@ -242,7 +248,7 @@ def test_runs_that_are_the_same_are_one(lengths, points):
     doubts = ensemble.no_effect(rows)
     assert [one.kind for one in doubts] == ["no effect"] * (points < len(lengths))
     if points == 1:
-        assert all(one["low"] is one["high"] is None and one["value"] == 50 for one in values["quantiles"])
+        assert all(one.low is one.high is None and one.value == 50 for one in values.quantiles)
         assert doubts[0].text == ("what was varied has no effect on 8 of 8 runs, to the last digit: they are one run, "
                                   "which has no bounds")
     found = SimpleNamespace(exceedance=lambda length: np.interp(length, [0, 100], [1, 0]))
@@ -257,7 +263,7 @@ def test_one_run_of_known_events_has_no_bounds():
     runs = known_events.Runs(PLAN, [], rows, found)
     from slope_tools.ensembles import conditioned
     curve = conditioned.curve(runs.column("remove_m3"), runs.mass, None, runs.several, 0.0)
-    assert all(one["low"] is one["high"] is None
+    assert all(one.low is one.high is None
                for one in known_events.quantiles(curve, runs, "remove_m3", (0.5, 0.9)))
 
 
@@ -270,11 +276,10 @@ def test_no_run_is_longer_than_the_way_that_the_terrain_shows():
                                    np.ones(3, bool), [])
     assert mobility.end(166.9) == 166.9 and mobility.end(120.0) == 162.5
     rows = [changed(one, length_by_lobe_m=[one.length_m] * 2) for one in rows_of([100.0, 140.0, 166.9])]
-    reach = known_events.reach({}, known_events.Runs(PLAN, [], rows, mobility), mobility)
-    assert reach["longest_m"] == reach["path_m"] == 166.9 and reach["beyond_path"] == 0.55
+    runs = known_events.Runs(PLAN, [], rows, mobility)
+    assert runs.lengths.max() == mobility.end(float(runs.lengths.max())) == 166.9 and mobility.beyond_path() == 0.55
     text = mobility_part.beyond_the_terrain(mobility_part.Lies([100.0, 166.9], mobility, ""), ["k", "k"], Numbers(), "")
     assert "167 m" in text and "162" not in text and "163" not in text
-    added = farther.Added(Path("nowhere"), SimpleNamespace(about={"variables": {}}, number=8))
-    assert added.propose(np.zeros((3, 1)), np.array([100.0, 140.0, 166.9]), np.array([0.6, 0.57, 0.55]),
-                         farther.End(mobility.end(166.9), 0.55)) is None
-    assert added.stopped.numbers == {"share": 0.55, "path_m": 166.9}
+    added = farther.next_runs(farther.Added(PLAN), np.zeros((3, 1)), np.array([100.0, 140.0, 166.9]),
+                              np.array([0.6, 0.57, 0.55]), farther.End(mobility.end(166.9), 0.55), None)
+    assert added.stopped.numbers == {"share": 0.55, "path_m": 166.9} and not added.batches

@@ -17,11 +17,11 @@ from slope_tools.fitting import calibration
 from slope_tools.report import convergence_part, heading, reference
 from slope_tools.seismic import fragility_files
 from slope_tools.survey import rasters
-from slope_tools.tables import named_run, rows, structures, study_file
+from slope_tools.tables import named_run, rows, structures, study_file, study_types
 
 TOP = Path(__file__).resolve().parents[2]
 TOOLS = TOP / "tools" / "slope_tools"
-LHS = SimpleNamespace(about={"variables": {}}, kind="lhs", number=4, seed=1)
+LHS = SimpleNamespace(about=study_types.Design("lhs", 1, 4, {}), kind="lhs", number=4, seed=1)
 SIDECAR = ("{crs: null, origin: {east: 0, north: 0}, size: {rows: 3, columns: 4}, extent: {xlo: 0, xhi: 4, ylo: 0, "
            "yhi: %s}}")
 
@@ -48,7 +48,7 @@ FILES = {       # file: (its reader, a text, what must be said)
         ("{about: {seed: 1}, points: [{a: '1'}, {b: '1'}]}", "second value: must have a"),
         ("{about: {seed: 1}, points: [{a: 1}]}", "first value: a: must be a text, got 1"),
         ("{about: {seed: 2}, points: []}", "must be of the same observation, variables and seed"))),
-    "added.yaml": (lambda folder: farther.Added(folder, LHS), (
+    "added.yaml": (lambda folder: farther.read(folder, LHS), (
         ("variables: {}", "(remove it): must have batches"),
         ("{variables: {}, batches: [{box: [[0, 1]]}]}", "batches: first value: must have points"),
         ("{variables: {}, batches: [{box: [[0]], points: [{a: '1'}]}]}", "must have at least 2 items"))),

@@ -50,7 +50,7 @@ def beside(*paths):
     The last one is what makes them valid, and is named where they cannot be written.
     """
     places = [Path(path) for path in paths]
-    new = [path.with_name(f".{path.name}.{os.getpid()}.new") for path in places]
+    new = [on_its_way(path.parent, path.name) for path in places]
     try:
         yield new
         for part in new:
@@ -148,18 +148,26 @@ def alone_in(folder, what="study"):
 
 
 def beside_folder(folder: Path) -> Path:
-    """Name of a folder for files on their way to `folder`, on its disk, so that renames do.
+    """Name of a folder for files on their way to `folder`, on its disk, so that renames do."""
+    if not folder.is_dir():
+        return on_its_way(folder.parent, folder.name)
+    on_its_way(folder.parent, folder.name)      # which removes what was left beside it
+    return on_its_way(folder, folder.name)
 
-    Removes what processes of this machine that are gone left under such names.
-    """
-    start = f".{folder.name}.{platform.node()}."
-    for place in (folder, folder.parent):
-        left = place.glob(f"{glob.escape(start)}*.new") if place.is_dir() else ()
-        for path in list(left):
-            number = path.name[len(start):-len(".new")]
-            if number.isdigit() and not is_alive(int(number)):
+
+def on_its_way(place: Path, name: str) -> Path:
+    """Name in a folder for what is to be called `name`. Removes what processes of this machine that are gone left there
+    under such names."""
+    start = f".{name}.{platform.node()}."
+    for path in list(place.glob(f"{glob.escape(start)}*.new")) if place.is_dir() else ():
+        number = path.name[len(start):-len(".new")]
+        if number.isdigit() and not is_alive(int(number)):
+            if path.is_dir():
                 shutil.rmtree(path, ignore_errors=True)
-    return (folder if folder.is_dir() else folder.parent) / f"{start}{os.getpid()}.new"
+            else:
+                with suppress(OSError):
+                    path.unlink()
+    return place / f"{start}{os.getpid()}.new"
 
 
 def is_alive(process: int) -> bool:

@@ -134,6 +134,8 @@ WORDS: Dict[str, Union[str, Words]] = {
     "other thickness": Words("the calibrated values were found with {found:.2g} balls over the thickness of the body, "
                              "these runs have {here:.2g}, and values belong to the size of the balls: calibrate with "
                              "these"),
+    "other settings": Words("the calibrated values were found with {found}, these runs have {here}, and belong to it: "
+                            "give the same (--set), or calibrate with these"),
     "under road": "{file}: the slip surface comes out under the road, up to {depth:.3g} m below {area:,.0f} m2 of it, "
                   "where the ground's friction does not act; is that the body you mean?",
     "shift": "beside the body {file} lies {metres:.3g} m {side} the terrain (median), which counts in the depths: "

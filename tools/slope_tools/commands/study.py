@@ -373,18 +373,19 @@ def run_ensemble(args: Request, settings, repeated, thresholds, defaults, condit
     todo = sample.plan(setup.runs, plan, fixed, repeated, defaults)
     sample.check_growth(setup.output, plan)
     several = sample.settings_of(todo)
-    order = ensemble.Order(plan, of, levels, condition, condition and farther.Added(setup.output, plan))
+    order = ensemble.Order(plan, of, levels, condition, condition and farther.read(setup.output, plan))
     questions = results.Questions(several, repeated, thresholds, order, site=args.site, method=args.method,
                                   chain=chain, known=known_of(args), roads=args.roads, alone=not args.weigh)
 
     def collect(todo, work):
         fine = fine_runs.of_median_length(setup, fine_runs.factor_of(args.fine), todo, defaults)
         work.store.admit(fine)
+        made = order
         if condition:
-            farther_runs.make(setup, order, fixed, repeats.chances_of(repeated, {**defaults, **fixed}), todo, work,
-                              fine)
+            made = replace(order, added=farther_runs.make(
+                setup, order, fixed, repeats.chances_of(repeated, {**defaults, **fixed}), todo, work, fine))
         work.do(fine)
-        return results.collect(setup, questions._replace(settings=sample.settings_of(todo),
+        return results.collect(setup, questions._replace(order=made, settings=sample.settings_of(todo),
                                                          fine=fine[0] if fine else None), todo, work)
 
     return perform(setup, {**sample.all_values(several, plan), **repeated}, todo, collect,

@@ -10,13 +10,14 @@ Boxes may go beyond the bounds of uniform distributions, up to wider ones (distr
 that was given goes on there as it is within: all of the wide box is equally likely, and the design has points in a part
 of it.
 """
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Dict, List, NamedTuple, Optional, Sequence
+from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence
 
 import numpy as np
 import yaml
 
-from .. import disk, kept, schemas
+from .. import disk, schemas
 from ..digits import metres, percent
 from ..schemas import NUMBER, OBJECT, TEXT, listed, mapping, named
 from ..statistics import backanalysis, designs, distributions, emulator
@@ -70,64 +71,20 @@ def ratio(places: np.ndarray, batch: Sequence[int], batches: Sequence[Batch]) ->
     return len(places) / density
 
 
+@dataclass(frozen=True)
 class Added:
-    """The batches of an ensemble in a folder; a file keeps them, so that the study can be continued.
+    """The batches of an ensemble, beside the points of its design (sample).
 
     stopped: why no more are added, though the runs do not reach far enough; None where they do.
     """
-
-    def __init__(self, folder: Path, sample: Sample):
-        self.path, self.sample = folder / FILE, sample
-        self.batches: List[Batch] = []
-        self.stopped: Optional[Reason] = None
-        if self.path.is_file():
-            before = schemas.load(self.path, f"{WHAT} (remove it)", SCHEMA)
-            if before["variables"] == sample.about.variables:
-                self.batches = [Batch(one["box"], one["points"]) for one in before["batches"]]
+    sample: Sample
+    batches: Sequence[Batch] = ()
+    stopped: Optional[Reason] = None
 
     @property
     def number(self) -> int:
         """Points that were added."""
         return sum(len(one.points) for one in self.batches)
-
-    def keep(self) -> None:
-        """Write the batches, before they are run."""
-        disk.write(self.path, f"# {WHAT}: sides of the boxes as shares of the distributions\n" + yaml.safe_dump(
-            {"variables": self.sample.about.variables, "batches": [one._asdict() for one in self.batches]},
-            sort_keys=False))
-
-    def propose(self, places: np.ndarray, lengths: np.ndarray, beyond: np.ndarray, end: End) -> Optional[Batch]:
-        """The next batch, if known events go farther than the runs and parameters can; None where no more is added.
-
-        places, lengths (m): of all runs so far; beyond: share of the known events that go beyond each; end: of the
-        fall path.
-        """
-        far = float(np.min(beyond))
-        self.stopped = None
-        if far < 1 - REACHED:
-            return None
-        left, box = int(MOST * self.sample.number) - self.number, None
-        if max(lengths) >= end.length or far - end.share < NEAR_END:
-            self.stopped = Reason(Code.TERRAIN, {"share": end.share, "path_m": end.length})
-        elif not emulator.enough(len(lengths), places.shape[1]):
-            self.stopped = Reason(Code.FEW, {})
-        elif left <= 0:
-            self.stopped = Reason(Code.RUNS, {"points": self.number})
-        else:
-            found = kept.value(self.path.with_name(".longer.json"), [places, lengths, self.sample.about],
-                               lambda: vars(Longer(places, lengths, self.sample)))
-            box = found["box"] if found["more"] else None
-            if box is None:
-                self.stopped = Reason(Code.RANGE, {"ends": self.ends(found["box"])})
-        if box is None:
-            return None
-        number = min(left, max(LEAST, self.sample.number // PART))
-        low, high = np.array(box).T
-        drawn = designs.points(designs.SOBOL, len(box), number, self.sample.seed + 1 + len(self.batches))
-        batch = Batch(box, [{one.name: one.value(u) for one, u in zip(self.sample.variables, point)}
-                            for point in low + (high - low) * drawn])
-        self.batches.append(batch)
-        return batch
 
     def text(self, batch: Batch) -> str:
         """Where a batch lies, in words."""
@@ -156,28 +113,81 @@ class Added:
                                  [{"points": len(one.points), "ranges": self.text(one)} for one in self.batches])
 
 
-class Longer:
-    """Where runs are expected to be the longest: a box around the places where they are longer than all so far.
+# --- of a folder, in which they are kept, so that the study can be continued ---
 
-    Of CLOUD places; expected is the emulator's mean and a deviation: its own, as it knows little in corners without
-    runs, with chance, as the longest run may owe its length to it. more: whether any place is expected to be longer
-    than all runs but one, as that one may be far longer by chance.
+def read(folder: Path, sample: Sample) -> Added:
+    """Those of a sample, none of another one; SlopeError if the file is none."""
+    if not (folder / FILE).is_file():
+        return Added(sample)
+    before = schemas.load(folder / FILE, f"{WHAT} (remove it)", SCHEMA)
+    same = before["variables"] == sample.about.variables
+    return Added(sample, [Batch(one["box"], one["points"]) for one in before["batches"]] if same else [])
+
+
+def keep(folder: Path, added: Added) -> None:
+    """Write the batches, before they are run."""
+    disk.write(folder / FILE, f"# {WHAT}: sides of the boxes as shares of the distributions\n" + yaml.safe_dump(
+        {"variables": added.sample.about.variables, "batches": [one._asdict() for one in added.batches]},
+        sort_keys=False))
+
+
+# --- which runs come next ---
+
+class Longer(NamedTuple):
+    """A box around the places where runs are expected to be longer than all so far.
+
+    more: whether any place is expected to be longer than all runs but one, as that one may be far longer by chance.
     """
+    box: List[List[float]]
+    more: bool
 
-    def __init__(self, places: np.ndarray, lengths: np.ndarray, sample: Sample):
-        order = np.argsort(-lengths, kind="stable")
-        # the fit takes the cube of their number: the longest, and an even choice of the others
-        taken = np.concatenate([order[:FITTED], order[FITTED::max(1, len(order) // FITTED)]])
-        fitted = emulator.Emulator(places[taken], np.log10(lengths[taken]))
-        least, most = sample.box.T
-        cloud = sample.snap(least + (most - least) * designs.points(designs.SOBOL, len(least), CLOUD, emulator.SEED))
-        mean, deviation = fitted.spread(cloud)
-        expected = mean + np.hypot(deviation, fitted.noise)
-        longest, second = np.log10(lengths[order[:2]])
-        self.more = bool(expected.max() > second)
-        number = int((expected > longest).sum())
-        best = cloud[np.argsort(-expected, kind="stable")[:min(max(number, FEW), MANY)]]
-        low = np.maximum(np.floor(best.min(axis=0) / STEP) * STEP, least)
-        high = np.minimum(np.ceil(best.max(axis=0) / STEP) * STEP, most)
-        self.box = [[0.0, 1.0] if isinstance(one, distributions.Listed) else [round(float(a), 6), round(float(b), 6)]
-                    for one, a, b in zip(sample.variables, low, high)]
+
+def next_runs(added: Added, places: np.ndarray, lengths: np.ndarray, beyond: np.ndarray, end: End,
+              expect: Callable[[], Longer]) -> Added:
+    """The same with one more batch, if known events go farther than the runs and parameters can; else with the reason.
+
+    places, lengths (m): of all runs so far; beyond: share of the known events that go beyond each; end: of the fall
+    path; expect: gives longer() of these places and lengths, which takes long.
+    """
+    def stopped(code: Code, **numbers: Any) -> Added:
+        return replace(added, stopped=Reason(code, numbers))
+
+    sample, far = added.sample, float(np.min(beyond))
+    left = int(MOST * sample.number) - added.number
+    if far < 1 - REACHED:
+        return replace(added, stopped=None)
+    if max(lengths) >= end.length or far - end.share < NEAR_END:
+        return stopped(Code.TERRAIN, share=end.share, path_m=end.length)
+    if not emulator.enough(len(lengths), places.shape[1]):
+        return stopped(Code.FEW)
+    if left <= 0:
+        return stopped(Code.RUNS, points=added.number)
+    box, more = expect()
+    if not more:
+        return stopped(Code.RANGE, ends=added.ends(box))
+    number = min(left, max(LEAST, sample.number // PART))
+    low, high = np.array(box).T
+    drawn = designs.points(designs.SOBOL, len(box), number, sample.seed + 1 + len(added.batches))
+    batch = Batch(box, [{one.name: one.value(u) for one, u in zip(sample.variables, point)}
+                        for point in low + (high - low) * drawn])
+    return Added(sample, [*added.batches, batch])
+
+
+def longer(places: np.ndarray, lengths: np.ndarray, sample: Sample) -> Longer:
+    """Of CLOUD places; expected is the emulator's mean and a deviation: its own, as it knows little in corners without
+    runs, with chance, as the longest run may owe its length to it."""
+    order = np.argsort(-lengths, kind="stable")
+    # the fit takes the cube of their number: the longest, and an even choice of the others
+    taken = np.concatenate([order[:FITTED], order[FITTED::max(1, len(order) // FITTED)]])
+    fitted = emulator.Emulator(places[taken], np.log10(lengths[taken]))
+    least, most = sample.box.T
+    cloud = sample.snap(least + (most - least) * designs.points(designs.SOBOL, len(least), CLOUD, emulator.SEED))
+    mean, deviation = fitted.spread(cloud)
+    expected = mean + np.hypot(deviation, fitted.noise)
+    longest, second = np.log10(lengths[order[:2]])
+    number = int((expected > longest).sum())
+    best = cloud[np.argsort(-expected, kind="stable")[:min(max(number, FEW), MANY)]]
+    low = np.maximum(np.floor(best.min(axis=0) / STEP) * STEP, least)
+    high = np.minimum(np.ceil(best.max(axis=0) / STEP) * STEP, most)
+    return Longer([[0.0, 1.0] if isinstance(one, distributions.Listed) else [round(float(a), 6), round(float(b), 6)]
+                   for one, a, b in zip(sample.variables, low, high)], bool(expected.max() > second))

@@ -1,6 +1,6 @@
 """The plan of an ensemble: how many runs, where they lie in the distributions of --vary, what may be added later."""
 import dataclasses
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
@@ -27,6 +27,7 @@ class Sample:
     seed: int
     variables: Tuple[Any, ...]
     balls_thick: Optional[float] = None     # over the thickness of the body, where its values were found; None: unknown
+    beside: Mapping[str, str] = field(default_factory=dict)     # values of other variables, where they were found
 
     @property
     def names(self) -> List[str]:
@@ -63,8 +64,8 @@ class Sample:
 
 
 def check(number: int, kind: str, seed: int, vary: Sequence[str], deck: Path, fixed: Mapping[str, str],
-          repeated: Mapping[str, Sequence[str]]) -> Sample:
-    """The Sample of the options; SlopeError if they do not go together."""
+          repeated: Mapping[str, Sequence[str]], asked: str = "--sample") -> Sample:
+    """The Sample of the options; SlopeError if they do not go together. asked: where the number stands."""
     if not vary:
         raise SlopeError("--vary", "must give the variables of the ensemble that --sample asks for")
     variables = distributions.parse(vary, deck)
@@ -75,9 +76,9 @@ def check(number: int, kind: str, seed: int, vary: Sequence[str], deck: Path, fi
             if one.name in names:
                 raise SlopeError("--vary", f"must not name a variable of {option}", one.name)
     if number <= len(variables):
-        raise SlopeError("--sample", f"must be more runs than there are parameters, {len(variables)}", number)
+        raise SlopeError(asked, f"must be more runs than there are parameters, {len(variables)}", number)
     if number > MOST_RUNS:
-        raise SlopeError("--sample", f"must make at most {MOST_RUNS} runs", number)
+        raise SlopeError(asked, f"must make at most {MOST_RUNS} runs", number)
     return Sample(number, kind, seed, tuple(variables))
 
 

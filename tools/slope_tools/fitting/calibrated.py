@@ -15,7 +15,8 @@ KIND = "calibrated"
 NUMBER = 32             # of the sets, unless --sample says otherwise
 WHAT = "what `slope calibrate` wrote, with its sets"
 TEXTS = named(TEXT, 1)
-SCHEMA = mapping({"calibration": mapping({"variables": TEXTS}, balls_thick=MAYBE), "sets": listed(TEXTS, 2)})
+SCHEMA = mapping({"calibration": mapping({"variables": TEXTS}, balls_thick=MAYBE, set=named(TEXT)),
+                  "sets": listed(TEXTS, 2)})
 
 
 @dataclass(frozen=True)
@@ -61,5 +62,6 @@ def sample(folder: Path, number: Optional[int], deck: Path, fixed: Mapping[str, 
     if number is not None and not len(variables) < number <= len(different):
         raise SlopeError("--sample", f"must be from {len(variables) + 1} to {len(different)} with --from {folder}, of "
                          "which that many sets differ", number)
-    return Calibrated(number or min(NUMBER, len(different)), KIND, found["calibration"].get("seed", 1),
-                      tuple(variables), found["calibration"].get("balls_thick"), tuple(different), disk.sha256(path))
+    made = found["calibration"]
+    return Calibrated(number or min(NUMBER, len(different)), KIND, made.get("seed", 1), tuple(variables),
+                      made.get("balls_thick"), made.get("set", {}), tuple(different), disk.sha256(path))

@@ -1,4 +1,5 @@
 """What is ahead of the study of a site: which of its runs are there, how many are to be made, how long they take."""
+from pathlib import Path
 from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 from .. import disk
@@ -74,9 +75,11 @@ def points_of(planned: site_study.Planned, points: int):
     chance = site_choices.chance(planned.variables)
     vary = [*known_study.VARY, chance]
     fixed = site_choices.not_varied(planned.choices, {words.partition("=")[0] for words in vary})
-    plan = sample.check(points, designs.SOBOL, SEED, vary, planned.setup.deck, fixed, {}).widened(known_study.WIDE)
+    asked = f"{(planned.setup.site or Path()) / site_choices.NAME}: study.points"
+    plan = sample.check(points, designs.SOBOL, SEED, vary, planned.setup.deck, fixed, {}, asked)
+    plan = plan.widened(known_study.WIDE)
     todo = sample.plan(planned.setup.runs, plan, fixed, {}, planned.variables)
-    added = farther.Added(planned.setup.output.parent / site_study.ENSEMBLE, plan)
+    added = farther.read(planned.setup.output.parent / site_study.ENSEMBLE, plan)
     for batch in added.batches:
         todo += repeats.with_repeats(planned.setup.runs, [{**fixed, **one} for one in batch.points], (), plan.names)
     return todo, int(farther.MOST * points) - added.number

@@ -1,6 +1,8 @@
 """Making the runs that an ensemble adds towards longer ones (farther), batch by batch."""
+import functools
 from typing import Dict, List, Mapping, Sequence
 
+from .. import kept
 from ..case import run_folders
 from ..ensembles import farther, known_events
 from ..ensembles.ensemble import Order
@@ -11,42 +13,48 @@ from .setup import Setup
 
 
 def make(setup: Setup, order: Order, fixed: Mapping[str, str], chances: Sequence[Dict[str, str]],
-         todo: List[repeats.Repeat], work: jobs.Work, beside: Sequence[repeats.Repeat] = ()) -> None:
-    """Add runs to todo, which were made, until they reach far enough or Added.propose has no more.
+         todo: List[repeats.Repeat], work: jobs.Work, beside: Sequence[repeats.Repeat] = ()) -> farther.Added:
+    """Add runs to todo, which were made, until they reach far enough or farther.next_runs has no more; all that were
+    added, and why no more.
 
     fixed, chances: of all runs, see sample.plan; beside: runs that are made with the first ones added.
     """
     added, rows = order.added, rows_of(setup, todo)
     assert added and order.condition
-    for k in range(len(added.batches)):
-        rows += batch(setup, order, fixed, chances, todo, work, k, beside)
-    while True:
-        finished = finished_of(rows)
-        if not finished:
-            return
+    for k, one in enumerate(added.batches, 1):
+        rows += batch(setup, order, fixed, chances, todo, work, one, k, beside)
+    while finished := finished_of(rows):
         summary = run_folders.summary_of(setup.output, finished[0].summary)
         found = known_events.mobility_of(order.condition, summary.parent, summary)
         runs = known_events.Runs(order.sample, added.batches, rows, found)
-        if found.outside or len(runs.rows) < 2:
-            return
+        if not known_events.weighs(found, runs):
+            break
         end = farther.End(found.end(float(runs.lengths.max())), found.beyond_path())
-        new = added.propose(runs.places, runs.lengths, runs.beyond, end)
-        if new is None:
-            return
-        setup.tell(added.line(new, runs.lengths, runs.beyond))
-        added.keep()
-        rows += batch(setup, order, fixed, chances, todo, work, len(added.batches) - 1, beside)
+        more = farther.next_runs(added, runs.places, runs.lengths, runs.beyond, end,
+                                 functools.partial(longer, setup, order, runs))
+        if len(more.batches) == len(added.batches):
+            return more
+        added = more
+        setup.tell(added.line(added.batches[-1], runs.lengths, runs.beyond))
+        farther.keep(setup.output, added)
+        rows += batch(setup, order, fixed, chances, todo, work, added.batches[-1], len(added.batches), beside)
+    return added
+
+
+def longer(setup: Setup, order: Order, runs: known_events.Runs) -> farther.Longer:
+    """farther.longer(), kept with the study."""
+    return farther.Longer(**kept.value(
+        setup.output / ".longer.json", [runs.places, runs.lengths, order.sample.about],
+        lambda: farther.longer(runs.places, runs.lengths, order.sample)._asdict()))
 
 
 def batch(setup: Setup, order: Order, fixed: Mapping[str, str], chances: Sequence[Dict[str, str]],
-          todo: List[repeats.Repeat], work: jobs.Work, k: int,
+          todo: List[repeats.Repeat], work: jobs.Work, which: farther.Batch, k: int,
           beside: Sequence[repeats.Repeat] = ()) -> List[Row]:
-    """Make the runs of a batch and add them to todo; their rows."""
-    assert order.added
-    more = repeats.with_repeats(setup.runs, [{**fixed, **one} for one in order.added.batches[k].points], chances,
-                                order.sample.names)
+    """Make the runs of the k-th batch and add them to todo; their rows."""
+    more = repeats.with_repeats(setup.runs, [{**fixed, **one} for one in which.points], chances, order.sample.names)
     for one in more:
-        one.batch = k + 1
+        one.batch = k
     work.store.admit(more)
     work.do([*beside, *more])
     todo += more

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
+from ..case.settings import as_number
 from ..deposits import travel_shares
 from ..ensembles import ensemble
 from ..findings import Finding, finding
@@ -18,6 +19,7 @@ from ..tables import (answered, combinations, elastic, fine_run, intensity, judg
                       study_types, usable, withheld_words)
 from ..tables.rows import Finished, Row, finished_of
 
+OF_ITS_OWN = "d", "duration", "step"            # variables that calibrated values do not depend on, or see LIKE
 LIKE = 1.5              # times as many balls over the thickness: values found with fewer, or more, are of another model
 
 
@@ -135,8 +137,12 @@ def warnings_of(questions: Questions, read: Read) -> List[Finding]:
     found += [one for one in judged.of_runs(read.rows) if one.kind not in warned]
     if read.problem:
         found.append(finding(read.problem))
-    other = other_thickness(questions.order.sample.balls_thick, read.balls_thick) if questions.order else None
-    return [*found, other] if other else found
+    if questions.order and read.finished:
+        plan = questions.order.sample
+        others = (other_thickness(plan.balls_thick, read.balls_thick),
+                  other_settings(plan.beside, read.finished[0].variables))
+        found += [one for one in others if one]
+    return found
 
 
 def other_thickness(found: Optional[float], here: Optional[float]) -> Optional[Finding]:
@@ -144,6 +150,15 @@ def other_thickness(found: Optional[float], here: Optional[float]) -> Optional[F
     if found is None or here is None or max(found, here) <= LIKE * min(found, here):
         return None
     return Finding("other thickness", {"found": found, "here": here})
+
+
+def other_settings(found: Mapping[str, str], here: Mapping[str, str]) -> Optional[Finding]:
+    """That they were found with such values of other variables of the deck, and are used with others; size and time of
+    the runs have words of their own."""
+    differ = [name for name in found.keys() & here.keys() - {*OF_ITS_OWN}
+              if as_number(found[name]) != as_number(here[name])]
+    said = (", ".join(f"{name} {one[name]}" for name in sorted(differ)) for one in (found, here))
+    return Finding("other settings", dict(zip(("found", "here"), said))) if differ else None
 
 
 def known_weights(about: Optional[study_types.Ensemble]) -> Optional[Mapping[str, float]]:

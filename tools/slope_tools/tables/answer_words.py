@@ -79,7 +79,7 @@ def finding(reason: Reason) -> Finding:
 
 def of_size(of: Mapping[str, Any]) -> Finding:
     """Why smaller balls may bring more, and how much they brought elsewhere."""
-    run, balls = of.get("run", "finished"), of["balls_thick"]       # older files have no run
+    run, balls = of["run"], of["balls_thick"]
     if run == "finished" and balls is not None:
         return Finding(Code.SIZE.value, {"balls": balls, "enough": of["enough"], "grown": grown(of)})
     return Finding("fine run failed" if run else "no fine run", {"grown": grown(of)})
@@ -87,7 +87,7 @@ def of_size(of: Mapping[str, Any]) -> Finding:
 
 def grown(of: Mapping[str, Any]) -> str:
     """By which factors slides of the family grew with smaller balls, "" where none tells."""
-    growth = of.get("growth")       # none in older files
+    growth = of["growth"]
     if not growth:
         return ""
     several = growth["slides"] > 1

@@ -112,7 +112,7 @@ def step_of(made: Made, code: Code, of: Mapping[str, Any]) -> Optional[Step]:
         return Step("runs with less resistance than the least that was tried", ensemble(made, wider=True),
                     made.seconds)
     if code is Code.SIZE:
-        return finer_balls(made) if of.get("run", "finished") == "finished" else fine_run(made)
+        return finer_balls(made) if of["run"] == "finished" else fine_run(made)
     if code is not Code.RULE:
         return None
     rule = Rule(of["rule"])
