@@ -197,7 +197,7 @@ def judge(path: Path) -> None:
 
     The growth is that of the other cases.
     """
-    from slope_tools.statistics import headline, size_effect, size_family
+    from slope_tools.statistics import conservative_volume, size_effect, size_family
     slides = size_family.read(table(path))
     with open(path, newline="", encoding="ascii") as lines:
         rows = list(csv.DictReader(lines))
@@ -207,11 +207,11 @@ def judge(path: Path) -> None:
         of = {finer: [one for one in rows if (one["case"], one["finer"]) == (name, finer)] for finer in "124"}
         if not all(of.values()):
             continue
-        coarse = headline.Combination(name, {one["seed"]: float(one["remove"]) for one in of["1"]})
+        coarse = conservative_volume.Combination(name, {one["seed"]: float(one["remove"]) for one in of["1"]})
         fine, truth = (float(of[finer][0]["remove"]) for finer in "24")
-        scatter = headline.pooled([coarse])
+        scatter = conservative_volume.pooled([coarse])
         ball = float(of["1"][0]["released"]) / int(of["1"][0]["balls"])
-        said = headline.headline([coarse], size_effect.effect(coarse, fine, scatter, ball).added).volume
+        said = conservative_volume.predict([coarse], size_effect.effect(coarse, fine, scatter, ball).added).volume
         balls = float(of["2"][0]["balls_thick"])
         grown = size_family.told(balls, {key: one for key, one in slides.items() if key != name})
         upper = grown.covered(said) if grown else said

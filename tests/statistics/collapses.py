@@ -67,7 +67,7 @@ def direct(seed):
     """What all direct runs say of a truth."""
     study = study_file.load_study(Path("direct/study.yaml"))
     of, points, outputs = observations.Observations(wanted(seed)), [], []
-    for row in finished_of(study["runs"]):
+    for row in finished_of(study.runs):
         points.append([one.unit(row.set[one.name]) for one in VARIABLES])
         outputs.append(of.measure(Path("direct") / row.summary, None, row))
     return backanalysis.posterior(np.array(points), np.array(outputs), of.targets)

@@ -8,7 +8,6 @@ effective number, and of the errors of the weighted mean of log10 L and of the s
 minute on one core. What came out is in doc/src/ensembles.rst, "Runs towards longer ones".
 """
 import sys
-import tempfile
 from pathlib import Path
 
 import numpy as np
@@ -38,8 +37,7 @@ def main(repetitions=40):
     truth = mass.share @ conditioned.above(volumes, stand_in.LEVELS) + mass.far
     held = {True: [], False: []}
     for seed in range(repetitions):
-        with tempfile.TemporaryDirectory() as folder:
-            one = stand_in.Ensemble(folder, seed)
+        one = stand_in.Ensemble(seed)
         for first in held:
             found = one.weights(not first, first)
             curve = conditioned.curve(one.volumes[:len(found.weights)], conditioned.masses(found))

@@ -9,9 +9,9 @@ from types import NoneType
 import yaml
 
 from slope_tools import records
-from slope_tools.findings import Finding
+from slope_tools.findings import Finding, finding
 from slope_tools.statistics import entries as of_statistics
-from slope_tools.tables import study_file, study_types
+from slope_tools.tables import ensemble_types, study_file, study_types
 
 HEADER = {"deck": "in.site", "known": {}, "set": {}, "repeat": {}, "runs": 1, "finished": 1, "method": "", "ranks": 1,
           "jobs": 1, "package": None, "governs": "study", "balls_thick": None, "collected": "", "machine": {}}
@@ -28,6 +28,8 @@ def made(kind, entries):
 
 
 def filled(kind, value):
+    if kind is Finding:
+        return finding(value).entry()
     origin, parts = typing.get_origin(kind), typing.get_args(kind)
     if origin is typing.Union:
         several = [one for one in parts if one is not NoneType]
@@ -76,7 +78,7 @@ def conservative(volume, **entries):
 
 def ensemble(known=None, **entries):
     """known: entries of what known events say of it, which weigh it unless reached is None."""
-    return made(study_types.Ensemble, {
+    return made(ensemble_types.Ensemble, {
         "design": {"kind": "sobol", "seed": 1, "points": 64, "variables": {}}, "runs": 64, "finished": 64,
         "failed": 0, "points": 64, "confidence": 0.9, "of": None, "quantities": {}, "influence": {}, "doubts": [],
         "maps": [], "known_events": None if known is None else weighted(**known), "withheld": [], **entries})
@@ -91,8 +93,8 @@ def weighted(**entries):
               "beyond_path": 0.0, "added": {"points": 0, "stopped": None, "batches": []}, "quantities": {},
               "to_remove": None, "variables": {}, "influence": {}, "weights": {}, "maps": []}
     if entries.get("reached", 1) is None:
-        return made(study_types.Known, {**known, **{name: entries[name] for name in known.keys() & entries.keys()}})
-    return made(study_types.Weighted, {**known, **weighs, **entries})
+        return made(ensemble_types.Known, {**known, **{name: entries[name] for name in known.keys() & entries.keys()}})
+    return made(ensemble_types.Weighted, {**known, **weighs, **entries})
 
 
 def headline(**entries):

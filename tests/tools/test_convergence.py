@@ -236,5 +236,6 @@ def test_calibrated_values_belong_to_what_was_set_beside_them(succeed):
         found = yaml.safe_load(Path("out/study.yaml").read_text())["warnings"]
         assert [(one["numbers"]["found"], one["numbers"]["here"]) for one in found
                 if one["kind"] == "other settings"] == said
-    beside = {"d": "1", "duration": "60", "step": "2", "not in the deck": "5", "friction": "30"}
-    assert outcome.other_settings(beside, {"d": "2", "duration": "90", "step": "1", "friction": "30.0"}) is None
+    beside = {"d": "1", "duration": "60", "step": "2", "packing": "3", "not in the deck": "5", "friction": "30"}
+    here = {"d": "2", "duration": "90", "step": "1", "packing": "1", "friction": "30.0"}
+    assert outcome.other_settings(beside, here) is None

@@ -348,6 +348,15 @@ def test_what_a_marker_promises_is_on_the_disk(tmp_path, monkeypatch):
     assert done == [f".one.{platform.node()}.{os.getpid()}.new", "to one", tmp_path.name]
 
 
+def test_a_folder_that_cannot_be_reached_is_one_line(tmp_path, monkeypatch):
+    def is_dir(_):
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
+
+    monkeypatch.setattr(Path, "is_dir", is_dir)
+    with pytest.raises(SlopeError, match="one: cannot be written: Permission denied"):
+        disk.write(tmp_path / "one", "text")
+
+
 def test_what_a_killed_process_left_goes_with_the_next_file(tmp_path):
     """Not what another process, another machine, or another file has there."""
     child = os.fork()

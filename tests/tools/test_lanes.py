@@ -6,6 +6,7 @@ cell, so that each case states the cell that its accuracy takes.
 """
 import csv
 import math
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -27,11 +28,12 @@ from slope_tools.deposits import lanes, volume_files
 from slope_tools.deposits.axis import Axis, Span, longest_gap, merged
 from slope_tools.report import road_part
 from slope_tools.report.numbers import Numbers
-from slope_tools.statistics import headline
+from slope_tools.statistics import rounding
 from slope_tools.statistics.hazard import weighted
 from slope_tools.survey import rasters, roads
 from slope_tools.survey.rasters import Raster
 from slope_tools.tables import road_runs
+from slope_tools.tables.study_file import load_study
 
 TAN30 = math.tan(math.radians(30))
 WIDTH, LANE = 8.0, 3.5          # m, of the road, of the lane
@@ -459,18 +461,18 @@ def run_of(weight, *stretches):
 def test_stretches_of_a_study_are_unions_with_shares_and_quantiles():
     runs = [run_of(1, (0, 10, 100.0), (30, 40, 50.0)), run_of(1, (5, 20, 300.0)), run_of(1), run_of(1, (6, 8, 10.0))]
     about = road_runs.evaluate(runs)
-    first, second = about["stretches"]
+    first, second = about.stretches
     assert (first["from"], first["to"], first["share"]) == (0, 20, 0.75)
     assert (second["from"], second["to"], second["share"]) == (30, 40, 0.25)
     assert first["remove_lane"] == [0, 10, 300] and first["passable_width"] == [1, 1, 8]
-    assert about["totals"]["remove_lane"] == [0, 10, 300] and about["share_blocked"] == 0.75
-    assert about["shares"] == [[0, 5, 0.25], [5, 6, 0.5], [6, 8, 0.75], [8, 10, 0.5], [10, 20, 0.25], [30, 40, 0.25]]
+    assert about.totals["remove_lane"] == [0, 10, 300] and about.share_blocked == 0.75
+    assert about.shares == [[0, 5, 0.25], [5, 6, 0.5], [6, 8, 0.75], [8, 10, 0.5], [10, 20, 0.25], [30, 40, 0.25]]
     heavy = road_runs.evaluate([runs[0]._replace(weight=9), *runs[1:]])
-    assert heavy["stretches"][1]["share"] == pytest.approx(0.75) and heavy["totals"]["remove_lane"][1] == 150
+    assert heavy.stretches[1]["share"] == pytest.approx(0.75) and heavy.totals["remove_lane"][1] == 150
     head, *lines = road_runs.rows(about)
     assert [len(line) for line in lines] == [len(head)] * 3
     nothing = road_runs.evaluate([run_of(1), run_of(1)])
-    assert nothing["stretches"] == nothing["shares"] == [] and nothing["share_blocked"] == 0
+    assert nothing.stretches == nothing.shares == [] and nothing.share_blocked == 0
 
 
 # --- bad input ---
@@ -549,10 +551,11 @@ def test_a_study_of_a_line_is_that_of_the_polygon_and_is_reported(here, capsys, 
     assert run_command("report", "line", capsys)[0] == 0
     page = Path("line/report.html").read_text(encoding="utf-8")
     assert 'id="road"' in page and "Where the road is blocked" in page
-    low, high = (headline.text(value, headline.place_of_digits(value)) for value in hours)
+    low, high = (rounding.text(value, rounding.place_of_digits(value)) for value in hours)
     assert f"{low} ({low} to {high})" in page       # of the table
-    data, numbers = SimpleNamespace(study=line), Numbers()
-    whole, lane = ([headline.text(one, headline.place_of_digits(one)) for one in found["totals"][key][::2]]
+    study, numbers = load_study(Path("line/study.yaml")), Numbers()
+    data = SimpleNamespace(study=study)
+    whole, lane = ([rounding.text(one, rounding.place_of_digits(one)) for one in found["totals"][key][::2]]
                    for key in ("hours", "remove_lane"))
     assert road_part.on_first_page(data, numbers, False) == [
         f"A lane of 1.5 m is open after {low} to {high} hours, the whole road after {' to '.join(whole)} hours of one "
@@ -561,8 +564,8 @@ def test_a_study_of_a_line_is_that_of_the_polygon_and_is_reported(here, capsys, 
                            f"The road is clear after {' to '.join(whole)} hours of one loader of 20 m3/h."),
                           ({"clearing": None}, f"A lane of 1.5 m is open when {' to '.join(lane)} m3 are removed.")):
         keys = {"lane": ("remove_lane", "hours_lane"), "clearing": ("hours", "hours_lane")}[[*asked][0]]
-        less = {**line, "study": {**line["study"], "road": {**line["study"]["road"], **asked}}, "stretches": {
-            **found, "totals": {key: value for key, value in found["totals"].items() if key not in keys}}}
+        less = replace(study, study=replace(study.study, road={**study.study.road, **asked}), stretches=replace(
+            study.stretches, totals={key: value for key, value in found["totals"].items() if key not in keys}))
         assert road_part.on_first_page(SimpleNamespace(study=less), numbers, False) == [wanted]
     assert road_part.on_first_page(data, numbers, True) == [] and "A lane of 1.5 m" not in page     # not at rest
     reproduced = run_command("report", "line --reproduce", capsys)[1]

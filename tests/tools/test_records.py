@@ -16,7 +16,7 @@ from slope_tools import disk, records
 from slope_tools.errors import SlopeError
 from slope_tools.findings import Finding
 from slope_tools.studies import files
-from slope_tools.tables import quantities, rows, study_file, study_types
+from slope_tools.tables import ensemble_types, quantities, rows, study_file
 from slope_tools.tables.rows import Failed, Finished, Mapped, OnRoad
 
 ROAD = {"remove_m3": 12.5, "lane_hours": 3.0, "stretches": [{"from": 1.0, "to": 2.5}], "clearing": {"hours": 4.0},
@@ -167,20 +167,20 @@ def test_a_record_of_several_kinds_is_the_smallest_that_has_all_keys():
     weighted, known = made_study.weighted(), made_study.weighted(reached=None)
     for one in (weighted, known):
         entry = records.plain(made_study.ensemble(dict(vars(one))))
-        assert records.read(study_types.Ensemble, entry).known_events == one
+        assert records.read(ensemble_types.Ensemble, entry).known_events == one
     entry = records.plain(made_study.ensemble({}))
     for name in vars(weighted).keys() - vars(known).keys():
         lacks = {key: value for key, value in entry["known_events"].items() if key != name}
         with pytest.raises(records.NoRecord, match=f"known_events: must have {name}"):
-            records.read(study_types.Ensemble, {**entry, "known_events": lacks})
+            records.read(ensemble_types.Ensemble, {**entry, "known_events": lacks})
 
 
 def test_what_is_none_by_default_is_not_written():
-    design = study_types.Design("sobol", 1, 64, {})
+    design = ensemble_types.Design("sobol", 1, 64, {})
     assert records.plain(design) == {"kind": "sobol", "seed": 1, "points": 64, "variables": {}}
     assert records.plain(replace(design, fit="a"))["fit"] == "a"
-    assert records.plain(study_types.KnownVariable([], {"a": None})) == {"quantiles": [], "rank": {"a": None}}
-    assert records.read(study_types.Design, records.plain(design)) == design
+    assert records.plain(ensemble_types.KnownVariable([], {"a": None})) == {"quantiles": [], "rank": {"a": None}}
+    assert records.read(ensemble_types.Design, records.plain(design)) == design
 
 
 @pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")

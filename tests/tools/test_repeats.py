@@ -16,7 +16,7 @@ from slope_tools.deposits import rest, travel_shares
 from slope_tools.errors import SlopeError
 from slope_tools.findings import Finding
 from slope_tools.runs import repeats
-from slope_tools.statistics import headline
+from slope_tools.statistics import conservative_volume
 from slope_tools.tables import combinations, quantities, study_file, study_table
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
@@ -261,9 +261,9 @@ def test_runs_of_another_outcome_are_doubted():
 
 @pytest.mark.parametrize("value, scatter, expected", [
     (14757.3, None, "14,800"),                              # a run alone: three digits
-    (14757.3, headline.Scatter(351.0, 4), "14,760"), (0.0, headline.Scatter(0.0, 4), "0"),
-    (48859.2179, headline.Scatter(0.0, 4), "48,859"),       # repeats agree
-    (1.25, headline.Scatter(0.0, 4), "1.25"),
+    (14757.3, conservative_volume.Scatter(351.0, 4), "14,760"), (0.0, conservative_volume.Scatter(0.0, 4), "0"),
+    (48859.2179, conservative_volume.Scatter(0.0, 4), "48,859"),       # repeats agree
+    (1.25, conservative_volume.Scatter(0.0, 4), "1.25"),
 ])
 def test_volumes_are_shown_to_what_is_known(value, scatter, expected):
     assert study_table.volume(value, scatter) == expected

@@ -29,7 +29,7 @@ from slope_tools.findings import Finding
 from slope_tools.drawing import figures
 from slope_tools.plots import (figure_charts, figure_maps, ground as report_ground,
                                section as report_section)
-from slope_tools.report import data as report_data, paper
+from slope_tools.report import data as report_data, printing
 from slope_tools.deposits import travel_shares
 from slope_tools.studies import outcome
 from slope_tools.tables import judged, quantities, rows
@@ -753,7 +753,7 @@ def test_numbers_from_elsewhere_stand_beside(slope, here):
 
 def test_the_paper_s_numbers_ship_with_inputs_20(slope, here):
     shutil.copy(TOP / "inputs" / "20_embankment" / "reference.yaml", "paper.yaml")
-    assert slope("out --reference paper.yaml")[0] == 0
+    assert slope("out --reference printing.yaml")[0] == 0
     tables = [row for table in read("out/report.html")[1].tables for row in table]
     assert ["company J", "24,048", "26,009", "22,340"] in tables
     assert ["company I", "22,114", "18,262", "14,490"] in tables and ["actual damage", "14,225"] in tables
@@ -1023,7 +1023,7 @@ def test_cells_that_reach_beyond_the_terrain(slope, here):
 
 @pytest.mark.parametrize("command", examples("report"))
 def test_every_example_of_the_page_and_the_help_runs(slope, here, command):
-    if "--pdf" in command and not paper.browser():
+    if "--pdf" in command and not printing.browser():
         pytest.skip("no browser that prints")
     Path("thalweg.geojson").write_text('{"type": "LineString", "coordinates": %s}' % BENT)
     Path("sizes").mkdir()

@@ -8,6 +8,7 @@ from affine import Affine
 from matplotlib import colormaps
 from shapely.geometry import box
 
+import made_study
 from run_helpers import TOOLS
 
 from slope_tools.drawing import figures, palettes
@@ -165,7 +166,7 @@ def test_results_of_nothing(drawn):
     assert not any("e-" in text for figure in drawn for text in texts(figure))
     entry = {"variable": "rolling", "smallest_at": "0", "largest_at": "0", "by_m3": 0.0, "chance_m3": 5.0,
              "clear": False}
-    data = SimpleNamespace(study={"conservative": {"differences": [entry]}})
+    data = SimpleNamespace(study=made_study.study(conservative=made_study.conservative(0.0, differences=[entry])))
     assert charts.differences(data, None) == [
         "rolling: the means of all its values are the same, so that there is no trend."]
 

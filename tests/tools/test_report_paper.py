@@ -16,10 +16,10 @@ from slope_tools import cli
 from slope_tools.animation import view
 from slope_tools.drawing import figures
 from slope_tools.errors import SlopeError
-from slope_tools.report import document, paper
+from slope_tools.report import document, printing
 
 pytestmark = [pytest.mark.drawn, pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")]
-looked_at = pytest.mark.skipif(not (paper.browser() and shutil.which("pdftoppm")),
+looked_at = pytest.mark.skipif(not (printing.browser() and shutil.which("pdftoppm")),
                                reason="no browser that prints, or poppler-utils is not installed")
 DUMP = "dump        view soil custom 75 view.*.dump id diameter x y z vx vy vz\ndump_modify view pad 9\n"
 TOP, BOTTOM, TALL = 17, 16, 297     # mm, the margins and the height of a page
@@ -90,7 +90,7 @@ def test_no_title_and_no_row_is_alone(tmp_path):
     page.write_text(f"<html>{style}" + "".join(
         f"<section style='break-before: page'><div style='height: {mm}mm'></div>{table}</section>"
         for mm in range(190, 246)), encoding="utf-8")
-    paper.write(page, tmp_path / "page.pdf")
+    printing.write(page, tmp_path / "page.pdf")
     found = [text.split() for text in words("pdftotext", "-layout", tmp_path / "page.pdf", "-").decode().split("\f")]
     found = [[word for word in text if word in ("TITLE", "CAPTION", "HEAD") or word[:3] == "row"] for text in found]
     assert sum("TITLE" in text for text in found) == 56 and any(text[-1:] == ["row2"] for text in found)
@@ -126,7 +126,7 @@ def test_a_browser_that_fails_leaves_no_pdf(monkeypatch, tmp_path, script, last)
     page = tmp_path / "page.html"
     page.write_text("<html></html>")
     with pytest.raises(Exception, match=f"must print {page}, got {last}"):
-        paper.write(page, tmp_path / "page.pdf")
+        printing.write(page, tmp_path / "page.pdf")
     assert not (tmp_path / "page.pdf").exists()
 
 
@@ -136,11 +136,11 @@ def test_a_browser_that_hangs_is_ended_with_all_that_it_started(monkeypatch, tmp
     program.write_text(f"#!/bin/sh\nsleep 600 &\necho $! > {tmp_path}/child\nwait\n")
     program.chmod(0o755)
     monkeypatch.setenv("PATH", f"{program.parent}:/bin:/usr/bin")
-    monkeypatch.setattr(paper, "PATIENCE", 1)
+    monkeypatch.setattr(printing, "PATIENCE", 1)
     page = tmp_path / "page.html"
     page.write_text("<html></html>")
     with pytest.raises(SlopeError) as error:
-        paper.write(page, tmp_path / "page.pdf")
+        printing.write(page, tmp_path / "page.pdf")
     assert str(error.value) == (f"--pdf: {program} must print {page} within 1 s: try again when less runs on this "
                                 "machine, or print the page from any browser, got nothing by then")
     child, end = int((tmp_path / "child").read_text()), time.monotonic() + 10
@@ -164,9 +164,9 @@ def test_what_a_browser_leaves_running_is_not_waited_for(monkeypatch, tmp_path):
                        "${word#*=};; esac; done\n")
     program.chmod(0o755)
     monkeypatch.setenv("PATH", f"{program.parent}:/bin:/usr/bin")
-    monkeypatch.setattr(paper, "PATIENCE", 60)
+    monkeypatch.setattr(printing, "PATIENCE", 60)
     (tmp_path / "page.html").write_text("<html></html>")
-    paper.write(tmp_path / "page.html", tmp_path / "page.pdf")
+    printing.write(tmp_path / "page.html", tmp_path / "page.pdf")
     assert (tmp_path / "page.pdf").read_text() == "%PDF\n"
 
 

@@ -17,11 +17,11 @@ from slope_tools.fitting import calibration
 from slope_tools.report import convergence_part, heading, reference
 from slope_tools.seismic import fragility_files
 from slope_tools.survey import rasters
-from slope_tools.tables import named_run, rows, structures, study_file, study_types
+from slope_tools.tables import ensemble_types, named_run, rows, structures, study_file
 
 TOP = Path(__file__).resolve().parents[2]
 TOOLS = TOP / "tools" / "slope_tools"
-LHS = SimpleNamespace(about=study_types.Design("lhs", 1, 4, {}), kind="lhs", number=4, seed=1)
+LHS = SimpleNamespace(about=ensemble_types.Design("lhs", 1, 4, {}), kind="lhs", number=4, seed=1)
 SIDECAR = ("{crs: null, origin: {east: 0, north: 0}, size: {rows: 3, columns: 4}, extent: {xlo: 0, xhi: 4, ylo: 0, "
            "yhi: %s}}")
 
@@ -84,6 +84,10 @@ FILES = {       # file: (its reader, a text, what must be said)
         (study(ensemble={**weighted(), "known_events": without(weighted()["known_events"], "weights")}),
          "known_events: must have weights"),
         (study(conservative={"run": 1}), "conservative: must have volume_m3 and"),
+        (study(ensemble={**weighted(), "withheld": ["why"]}),
+         "withheld: first value: must be a section with keys, got 'why'"),
+        (study([rows.plain(row())], ensemble={**weighted(), "withheld": [{"kind": "of another version", "text": "a"}]}),
+         "withheld must have reasons of this version"),
         (study([{"run": "one", "status": "finished", "set": {}}]),
          f"study.yaml: run one: must be {study_file.WHAT}: must have repeat and batch and variables and"),
         (study([{**rows.plain(row()), "front_m": "far"}]),

@@ -23,7 +23,7 @@ from tiny_collapse import LMP, TOP, edit, processes_in, read_asc, serial, write_
 from slope_tools.case import decks, logs, settings
 from slope_tools.releases import release_toe
 from slope_tools.runs import job_display
-from slope_tools.statistics import headline
+from slope_tools.statistics import rounding
 from slope_tools.studies import body_depth, study
 from slope_tools.survey import rasters
 
@@ -207,7 +207,7 @@ def test_table_yaml_and_summaries_have_the_same_numbers(finished):
         assert (row["status"], line["status"], line["error"]) == ("finished", "finished", "")
         assert [line[name] for name in ("rolling", "friction", "steps")] == list(row["set"].values())
         assert row["wall_s"] > 0 and row["variables"]["cell"] == "1.0"
-        assert headline.text(row["remove_m3"], headline.place_of_digits(row["remove_m3"])) in out
+        assert rounding.text(row["remove_m3"], rounding.place_of_digits(row["remove_m3"])) in out
     assert any(row["off_grid_m3"] > 0.1 for row in about["runs"])
 
 

@@ -11,7 +11,7 @@ import platform
 import shutil
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, List
 
 import yaml
 import numpy as np
@@ -50,8 +50,9 @@ def beside(*paths):
     The last one is what makes them valid, and is named where they cannot be written.
     """
     places = [Path(path) for path in paths]
-    new = [on_its_way(path.parent, path.name) for path in places]
+    new: List[Path] = []
     try:
+        new += [on_its_way(path.parent, path.name) for path in places]
         yield new
         for part in new:
             flush(part)

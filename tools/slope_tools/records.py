@@ -24,8 +24,8 @@ class Fields(NamedTuple):
 
 
 def plain(value: Any) -> Any:
-    """What YAML and JSON have of a value: records as mappings, in the order of their fields, without those that
-    are None where that is the default."""
+    """What YAML and JSON have of a value: records as mappings, in the order of their fields, without those of
+    a dataclass that are None where that is the default."""
     if isinstance(value, Finding):
         return value.entry()
     if dataclasses.is_dataclass(value):
@@ -59,6 +59,7 @@ def _read(kind: Any, value: Any) -> Any:
         found = [_inside(nth(k), parts[0], one) for k, one in enumerate(value)]
         return tuple(found) if origin is tuple else found
     if kind is Finding:
+        check(value, Mapping)
         return finding(value)
     if of := _fields(kind):
         check(value, Mapping)

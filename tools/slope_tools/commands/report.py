@@ -14,7 +14,7 @@ from ..case import run_folders
 from ..errors import SlopeError
 from ..options import Overwrite, flag, option, positional
 from ..plots.section import FALL
-from ..report import document, paper
+from ..report import document, printing
 from ..report.heading import Asked
 from ..report.heading import SITE
 from ..sites import site_scenarios
@@ -109,7 +109,7 @@ def run(args: Request) -> None:
         return
     document.check_standing(output, folder, args.overwrite, inside=output.resolve().parent == given.resolve())
     if args.pdf:
-        paper.require_browser()
+        printing.require_browser()
     asked = Asked(folder, args.shown, section, args.local, args.reference, args.converge, args.name,
                   args.client, args.author, None if args.no_film else output.with_suffix(".mp4"))
     first, *notes = document.write(asked, output)
@@ -121,8 +121,8 @@ def run(args: Request) -> None:
         document.write_pictures(output)
     if args.pdf:
         pdf = output.with_suffix(".pdf")
-        paper.write(output, pdf)
-        print(f"{pdf}: the page on A4, by {paper.browser()}")
+        printing.write(output, pdf)
+        print(f"{pdf}: the page on A4, by {printing.browser()}")
     if args.no_paper:
         print("note: --no-paper is the default now; --reference FILE.yaml brings other numbers in")
     for line in notes:

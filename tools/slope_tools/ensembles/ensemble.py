@@ -17,7 +17,7 @@ from ..findings import Finding, texts
 from ..mobility.exceedance import Mobility
 from ..statistics import emulator, hazard
 from ..statistics.entries import Analysis, Check, Influence, Quantile
-from ..tables import combinations, quantities, study_types, withheld_words
+from ..tables import combinations, ensemble_types, quantities, withheld_words
 from ..tables.quantities import On
 from ..tables.rows import Finished, Row, finished_of
 from . import ensemble_maps, farther, known_events
@@ -57,7 +57,7 @@ def check_quantity(of: Optional[str], road: bool) -> str:
 class Evaluated(NamedTuple):
     """about: what study.yaml says of an ensemble; curves: of its quantities; finished: rows of the planned runs that
     did, of so many points, as failed did not; known: weighted by known events."""
-    about: study_types.Ensemble
+    about: ensemble_types.Ensemble
     curves: Mapping[str, hazard.Curve]
     finished: Sequence[Finished]
     points: int
@@ -117,7 +117,7 @@ def evaluate(order: Order, rows: Sequence[Row], mobility: Optional[Mobility],
         assert order.added and mobility and emulated.known_events
         known = known_events.evaluate(order.condition, order.sample, order.added, rows, mobility, of_quantity,
                                       emulated.known_events)
-    about = study_types.Ensemble(
+    about = ensemble_types.Ensemble(
         design=order.sample.about, runs=len(finished) + failed, finished=len(finished), failed=failed,
         points=len(set(point)), confidence=hazard.CONFIDENCE, of=order.of if order.of in curves else None,
         quantities={name: numbers(what, unit, column(finished, name), point, failed)
@@ -128,7 +128,7 @@ def evaluate(order: Order, rows: Sequence[Row], mobility: Optional[Mobility],
 
 
 def write(found: Evaluated, levels: ensemble_maps.Thresholds, output: Path, place,
-          grids: Optional[str]) -> study_types.Ensemble:
+          grids: Optional[str]) -> ensemble_types.Ensemble:
     """Tables and maps; what study.yaml says of the ensemble and of its known events, with the entries of the maps.
 
     place: CRS and offset of the maps; grids: why there can be none.
@@ -154,13 +154,13 @@ def column(finished: Sequence[Finished], name: str) -> np.ndarray:
 
 # --- numbers ---
 
-def numbers(name: str, unit: str, values: np.ndarray, point: Sequence[int], failed: int) -> study_types.OfRuns:
+def numbers(name: str, unit: str, values: np.ndarray, point: Sequence[int], failed: int) -> ensemble_types.OfRuns:
     """Of a quantity: mean, deviation, range and quantiles."""
     quantiles = [one if several(point) else one._replace(low=None, high=None)
                  for one in hazard.quantiles(values, point, failed)]
-    return study_types.OfRuns(name, unit, float(values.mean()), float(values.std(ddof=1)) if len(values) > 1 else None,
-                              float(values.min()), float(values.max()),
-                              quantiles)
+    deviation = float(values.std(ddof=1)) if len(values) > 1 else None
+    return ensemble_types.OfRuns(name, unit, float(values.mean()), deviation, float(values.min()), float(values.max()),
+                                 quantiles)
 
 
 def several(point: Sequence[int]) -> bool:
@@ -180,7 +180,7 @@ def no_effect(finished: Sequence[Finished]) -> List[Finding]:
                                   "then": then}, [finished[k].run for k in same])]
 
 
-def doubts(about: study_types.Ensemble) -> List[Finding]:
+def doubts(about: ensemble_types.Ensemble) -> List[Finding]:
     """The caveats on the numbers."""
     found = []
     if about.failed:
@@ -215,7 +215,7 @@ def influence_table(influence: Mapping[str, Analysis]) -> str:
 
 # --- words ---
 
-def describe(about: study_types.Ensemble) -> List[str]:
+def describe(about: ensemble_types.Ensemble) -> List[str]:
     """The ensemble in a few lines: the quantiles of the main quantity, what it depends on, the caveats."""
     lines = [f"ensemble: {about.finished} runs of {about.points} points; bounds hold with "
              f"{100 * about.confidence:g} %"]
@@ -238,7 +238,7 @@ def quantile_text(one: Quantile, unit: str) -> str:
     return f"{100 * one.share:g} % of the runs stay within {number(one.value)} {unit} ({low} to {high})"
 
 
-def dependence_text(entry: study_types.Analysis) -> str:
+def dependence_text(entry: Analysis) -> str:
     """The variables, the one that matters most first."""
     variables = entry.variables
     if all(one.total is None for one in variables.values()):

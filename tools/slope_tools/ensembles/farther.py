@@ -22,7 +22,7 @@ from ..digits import metres, percent
 from ..schemas import NUMBER, OBJECT, TEXT, listed, mapping, named
 from ..statistics import backanalysis, designs, distributions, emulator
 from ..statistics.answer import Code, Reason
-from ..tables import study_types
+from ..tables import ensemble_types
 from .sample import Sample
 
 FILE = "added.yaml"
@@ -107,10 +107,10 @@ class Added:
         return (f"no run goes beyond {metres(float(max(lengths)))}; {percent(float(min(beyond)))} of known "
                 f"events do; {len(batch.points)} more points towards {self.text(batch)}")
 
-    def about(self) -> study_types.Added:
+    def about(self) -> ensemble_types.Added:
         """What study.yaml says of it."""
-        return study_types.Added(self.number, self.stopped.about() if self.stopped else None,
-                                 [{"points": len(one.points), "ranges": self.text(one)} for one in self.batches])
+        return ensemble_types.Added(self.number, self.stopped.about() if self.stopped else None,
+                                    [{"points": len(one.points), "ranges": self.text(one)} for one in self.batches])
 
 
 # --- of a folder, in which they are kept, so that the study can be continued ---

@@ -20,7 +20,7 @@ from ..findings import Finding, texts
 from ..mobility import body, exceedance, known, run_length, weights
 from ..statistics import answer, emulator, hazard
 from ..statistics.entries import Analysis, KnownQuantile
-from ..tables import answer_words, combinations, quantities, study_types
+from ..tables import answer_words, combinations, ensemble_types, quantities
 from ..tables.rows import Row, finished_of
 from . import conditioned, farther, known_influence, known_maps
 from .sample import Sample
@@ -129,7 +129,7 @@ def weighs(found: exceedance.Mobility, runs: Runs) -> bool:
 
 class Evaluated(NamedTuple):
     """about: what study.yaml says of the weighted runs, but for their maps; runs: None where nothing weighs them."""
-    about: study_types.Known
+    about: ensemble_types.Known
     runs: Optional[Runs]
     curves: Mapping[str, hazard.Curve]
 
@@ -162,7 +162,7 @@ def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: S
     quantities; emulated: of emulate().
     """
     asked = condition.asked
-    known = study_types.Known(
+    known = ensemble_types.Known(
         asked.name(found), asked.number(found), list(asked.left_out), asked.confined, exceedance.WORDS[found.chosen],
         found.volume, found.outside, None, [])
     runs = Runs(sample, added.batches, rows, found)
@@ -172,13 +172,13 @@ def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: S
     curves = {name: conditioned.curve(runs.column(name), runs.mass, emulated.effects.get(name), runs.several,
                                       runs.failed_share) for name in runs.comparable(names)}
     one, longest = runs.weights, float(runs.lengths.max())
-    about = study_types.Weighted(
+    about = ensemble_types.Weighted(
         **vars(replace(known, reached=one.reached)), short=one.short, far=one.far, runs=len(runs.rows),
         failed=runs.failed, effective=one.effective, distance=one.distance, far_by_lobe=far_by_lobe(runs, found),
-        gaps=[study_types.Gap(gap.low, gap.high, gap.share) for gap in one.gaps],
+        gaps=[ensemble_types.Gap(gap.low, gap.high, gap.share) for gap in one.gaps],
         shortest_m=float(runs.lengths.min()), longest_m=longest, half_beyond_m=found.length_at(0.5),
         path_m=found.end(longest), beyond_path=found.beyond_path(), added=added.about(),
-        quantities={name: study_types.OfKnown(*names[name], quantiles(curve, runs, name, hazard.SHARES))
+        quantities={name: ensemble_types.OfKnown(*names[name], quantiles(curve, runs, name, hazard.SHARES))
                     for name, curve in curves.items()},
         to_remove=quantiles(curves[REMOVE], runs, REMOVE, answer.shares(one.far)) if REMOVE in curves else None,
         variables={name: variable(runs, k, emulated.main) for k, name in enumerate(sample.names)},
@@ -186,7 +186,7 @@ def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: S
     return Evaluated(replace(about, doubts=doubts(about, runs)), runs, curves)
 
 
-def write(one: Evaluated, levels, output: Path, place, grids: Optional[str]) -> study_types.Known:
+def write(one: Evaluated, levels, output: Path, place, grids: Optional[str]) -> ensemble_types.Known:
     """Tables and maps; what study.yaml says, with the entries of the maps. levels, place, grids: see ensemble.write."""
     runs = one.runs
     if runs is None:
@@ -214,12 +214,13 @@ def far_by_lobe(runs: Runs, found: exceedance.Mobility) -> List[float]:
             for k in range(len(run_length.OTHERS))]
 
 
-def variable(runs: Runs, k: int, main: Sequence[str]) -> study_types.KnownVariable:
+def variable(runs: Runs, k: int, main: Sequence[str]) -> ensemble_types.KnownVariable:
     """Of a variable of the weighted runs: quantiles, and rank correlations with the main quantities."""
     places = runs.places[:, k]
     one = runs.sample.variables[k]
-    return study_types.KnownVariable([one.value(place) for place in hazard.weighted(places, runs.mass.share, MIDDLE)],
-                                     {name: rank(places, runs.column(name), runs.mass.share) for name in main})
+    return ensemble_types.KnownVariable(
+        [one.value(place) for place in hazard.weighted(places, runs.mass.share, MIDDLE)],
+        {name: rank(places, runs.column(name), runs.mass.share) for name in main})
 
 
 def rank(x: np.ndarray, y: np.ndarray, share: np.ndarray) -> Optional[float]:
@@ -235,7 +236,7 @@ def rank(x: np.ndarray, y: np.ndarray, share: np.ndarray) -> Optional[float]:
     return float(w @ (both[0] * both[1])) / scale ** 0.5 if scale > 1e-18 else None
 
 
-def doubts(about: study_types.Weighted, runs: Runs) -> List[Finding]:
+def doubts(about: ensemble_types.Weighted, runs: Runs) -> List[Finding]:
     """The caveats, in the order of their weight."""
     found, stopped, reached = [], about.added.stopped, about.reached or 0.0
     if about.far >= 1 - farther.REACHED:
@@ -276,9 +277,9 @@ def weights_table(runs: Runs) -> str:
 
 # --- words ---
 
-def describe(one: study_types.Ensemble) -> List[str]:
+def describe(one: ensemble_types.Ensemble) -> List[str]:
     """The weighted ensemble in a few lines: what is reached, by how many runs, the quantiles, the caveats."""
-    lines, about, known, of = [], study_types.weighted(one), one.known_events, one.of
+    lines, about, known, of = [], ensemble_types.weighted(one), one.known_events, one.of
     if about:
         lines = ["known events: " + summary(about)]
         if of and of in about.quantities:
@@ -287,7 +288,7 @@ def describe(one: study_types.Ensemble) -> List[str]:
     return lines + [f"caveat: known events: {text}" for text in texts(known.doubts if known else ())]
 
 
-def summary(about: study_types.Weighted) -> str:
+def summary(about: ensemble_types.Weighted) -> str:
     added = about.added.points
     more = f" (those of {added} points towards longer ones among them)" if added else ""
     reached = percent(about.reached or 0.0)
@@ -297,7 +298,7 @@ def summary(about: study_types.Weighted) -> str:
             f"{about.runs} runs{more} say as much as {about.effective:.0f}")
 
 
-def by_lobe(about: study_types.Weighted) -> str:
+def by_lobe(about: ensemble_types.Weighted) -> str:
     """What share lies beyond if other lobes count, where that is another one."""
     shares = [percent(one) for one in about.far_by_lobe]
     if all(one == percent(about.far) for one in shares):

@@ -12,7 +12,7 @@ from ..errors import SlopeError
 from ..runs import repeats
 from ..schemas import OBJECT
 from ..statistics import designs, distributions
-from ..tables import study_types
+from ..tables import ensemble_types
 from ..tables.rows import Run
 
 FILE = "design.yaml"
@@ -34,11 +34,11 @@ class Sample:
         return [one.name for one in self.variables]
 
     @property
-    def about(self) -> study_types.Design:
+    def about(self) -> ensemble_types.Design:
         """What design.yaml and study.yaml say of it."""
         wide = {one.name: list(one.wide) for one in self.variables if getattr(one, "wide", None)}
-        return study_types.Design(self.kind, self.seed, self.number, {one.name: one.text for one in self.variables},
-                                  wide or None)
+        return ensemble_types.Design(self.kind, self.seed, self.number, {one.name: one.text for one in self.variables},
+                                     wide or None)
 
     def widened(self, bounds: Mapping[str, Tuple[float, float]]) -> "Sample":
         """The same, whose variables of these names may have added runs between wider bounds."""

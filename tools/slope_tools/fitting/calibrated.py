@@ -8,7 +8,7 @@ from ..ensembles.sample import Sample
 from ..errors import SlopeError
 from ..schemas import MAYBE, TEXT, listed, mapping, named
 from ..statistics import distributions
-from ..tables import study_types
+from ..tables import ensemble_types
 from .fit import ABOUT
 
 KIND = "calibrated"
@@ -26,7 +26,7 @@ class Calibrated(Sample):
     fit: str = ""           # SHA-256 of its file
 
     @property
-    def about(self) -> study_types.Design:
+    def about(self) -> ensemble_types.Design:
         return replace(super().about, fit=self.fit)
 
     def combinations(self) -> List[Dict[str, str]]:

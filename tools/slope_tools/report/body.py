@@ -2,7 +2,7 @@
 from typing import Any, Dict, NamedTuple, Optional
 
 from .. import digits
-from ..statistics import headline
+from ..statistics import rounding
 from ..survey.rasters import crs_name
 from .data import Data
 
@@ -68,4 +68,4 @@ def volume(value: float) -> str:
 
 
 def whole(value: float) -> str:
-    return headline.text(value, 1.0)
+    return rounding.text(value, 1.0)

@@ -6,7 +6,7 @@ from ..drawing.figures import FULL, HALF, WIDE
 from ..plots import figure_charts
 from ..plots.figure_charts import Series
 from ..runs.repeats import key_of
-from ..statistics import headline
+from ..statistics import conservative_volume, rounding
 from ..tables.quantities import ALL, REMOVE, name_of
 from .data import Data, is_number
 from .numbers import Numbers
@@ -110,7 +110,7 @@ class Charts:
         volume = best.rounded["volume_m3"]
         if best.withheld or volume is None:
             return (float(best.set[name]), best.mean_m3, "governing mean, not usable"), []
-        number = headline.text(volume, best.place_m3)
+        number = rounding.text(volume, best.place_m3)
         x = float(best.set[name])
         if best.chance_m3 is None and best.size_m3 is None:
             return (x, best.mean_m3, f"{best.kind.split(';')[0]}, {number} m3"), []
@@ -121,26 +121,26 @@ class Charts:
         """The scatter of a run in a column; None without repeats."""
         best = self.data.study.conservative if self.data.study else None
         if key == REMOVE and best and best.scatter_m3 is not None:   # that of the governing combination
-            return headline.Scatter(best.scatter_m3, best.degrees_of_freedom or 0.0)
+            return conservative_volume.Scatter(best.scatter_m3, best.degrees_of_freedom or 0.0)
         found = self.scatter.get(key)
         if found:
-            return headline.Scatter(found["deviation"], found["degrees_of_freedom"])
-        return headline.pooled(list(combinations(self.data.finished, key).values()))
+            return conservative_volume.Scatter(found["deviation"], found["degrees_of_freedom"])
+        return conservative_volume.pooled(list(combinations(self.data.finished, key).values()))
 
     def is_clear(self, key, rows, scatter):
         """Whether the means of rows, which differ in one variable, differ by more than chance; None if unknown."""
         line = list(combinations(rows, key).values())
         if scatter is None or len(line) < 2:
             return None
-        return headline.is_clear(line, scatter)
+        return conservative_volume.is_clear(line, scatter)
 
 
 def combinations(rows, key):
-    """{values of what was chosen: headline.Combination of a column}."""
+    """{values of what was chosen: conservative_volume.Combination of a column}."""
     found: Dict[Any, Any] = {}
     for row in rows:
         found.setdefault(tuple(row.set.items()), {})[key_of(row.repeat)] = row.value(key)
-    return {chosen: headline.Combination(str(chosen), volumes) for chosen, volumes in found.items()}
+    return {chosen: conservative_volume.Combination(str(chosen), volumes) for chosen, volumes in found.items()}
 
 
 def chance_text(clear):

@@ -8,9 +8,9 @@ from .. import digits
 from ..deposits import travel_shares
 from ..digits import percent
 from ..findings import Finding
-from ..statistics import headline, size_family
+from ..statistics import rounding, size_family
 from ..statistics.answer import SHARE, Code, Kind, Source
-from ..tables import answer_words, combinations, elastic, fine_run, next_step, study_types
+from ..tables import answer_words, combinations, elastic, ensemble_types, fine_run, next_step, study_types
 from ..tables.quantities import ALL, DISTANCE, REMOVE as QUANTITY
 from . import body, mobility_part, road_part, structures_part, warnings
 from .data import Data
@@ -198,7 +198,7 @@ def of_answer(data: Data, answer: MainCard) -> First:
         band = "No band: no run was repeated, so that chance is unknown."
     else:
         mean, chance = (best.rounded[key] or 0.0 for key in ("mean_m3", "chance_m3"))
-        low, high = (headline.text(value, best.place_m3) for value in (max(0.0, mean - chance), mean + chance))
+        low, high = (rounding.text(value, best.place_m3) for value in (max(0.0, mean - chance), mean + chance))
         band = f"Another run gives {low} to {high} m3, in 95 % of cases; the mean is {answer.parts[0].number} m3."
         band += "".join(f" {one[0].upper()}{one[1:]}." for one in combinations.starts(best))
     return First(answer.title, answer.number, answer.unit, band)
@@ -260,9 +260,9 @@ def weighted(data: Data, numbers: Numbers, key: str) -> str:
     return "" if at is None else f"{numbers.quantity(key, at)} {ALL[key].unit}"
 
 
-def known_of(data: Data) -> Optional[study_types.Weighted]:
+def known_of(data: Data) -> Optional[ensemble_types.Weighted]:
     """What known events say, where they weigh the runs of the number."""
-    return study_types.weighted(data.study.ensemble) if data.study else None
+    return ensemble_types.weighted(data.study.ensemble) if data.study else None
 
 
 def distance(data: Data, numbers: Numbers, has_road_number: bool) -> str:

@@ -6,7 +6,7 @@ from ..errors import SlopeError
 from ..plots import figure_charts
 from ..plots.figure_charts import Convergence
 from ..schemas import ABOVE_0, FLAG, MAYBE, NUMBER, TEXT, listed, mapping, named
-from ..statistics import headline
+from ..statistics import rounding
 from .charts import AXIS
 from .numbers import Numbers
 from .sections import Cell, Figures, Picture, Section, Table, marked
@@ -66,8 +66,8 @@ class Sizes:
         for entry in self.entries.values():
             texts = []
             for size in entry["sizes"]:
-                text = headline.text(size["mean"], headline.place(size["scatter"]) if size["scatter"] else
-                                     headline.place_of_digits(size["mean"]))
+                text = rounding.text(size["mean"], rounding.place(size["scatter"]) if size["scatter"] else
+                                     rounding.place_of_digits(size["mean"]))
                 numbers.rows.append((f"{entry['name']} at {self.variable} {size['value']:g}", entry["unit"], "", text,
                                      size["mean"]))
                 thick = size["balls_thick"]

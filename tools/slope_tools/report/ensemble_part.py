@@ -11,7 +11,7 @@ from ..errors import SlopeError
 from ..findings import texts
 from ..plots import ensemble_charts, figure_maps
 from ..statistics import entries
-from ..tables import quantities, study_types, withheld_words
+from ..tables import ensemble_types, quantities, study_types, withheld_words
 from .charts import AXIS
 from .data import Data, is_number
 from .numbers import CardPart, MainCard, Numbers, as_run
@@ -45,7 +45,7 @@ def sections(data: Data, numbers: Numbers, maps) -> List[Section]:
 class Ensemble:
     """Of a data.Data whose study is an ensemble, about; numbers writes and keeps them."""
 
-    def __init__(self, data: Data, numbers: Numbers, about: study_types.Ensemble):
+    def __init__(self, data: Data, numbers: Numbers, about: ensemble_types.Ensemble):
         self.data, self.numbers, self.about = data, numbers, about
         self.of = self.about.of
         self.entry = self.about.quantities.get(self.of) if self.of else None
@@ -164,9 +164,9 @@ class Ensemble:
 class KnownEvents:
     """Of a data.Data whose ensemble was made with --known; numbers writes and keeps them."""
 
-    def __init__(self, data: Data, numbers: Numbers, whole: study_types.Ensemble):
+    def __init__(self, data: Data, numbers: Numbers, whole: ensemble_types.Ensemble):
         self.data, self.numbers = data, numbers
-        self.known, self.about = whole.known_events, study_types.weighted(whole)
+        self.known, self.about = whole.known_events, ensemble_types.weighted(whole)
         self.of, self.confidence = whole.of, whole.confidence
         self.entry = self.about.quantities.get(self.of) if self.about and self.of else None
 
@@ -299,7 +299,7 @@ def exceeded(data: Data) -> Optional[figure_maps.Exceeded]:
     """In which share of an ensemble the deposit is thicker than its least threshold; of known events, where these weigh
     it. None of other studies, and of runs too few for the smallest share."""
     about = data.study.ensemble if data.study else None
-    known = study_types.weighted(about)
+    known = ensemble_types.weighted(about)
     maps = known.maps if known else about.maps if about else []
     shown_maps = [one for one in maps if one["raster"] == "thickness" and one.get("threshold")]
     if not shown_maps or len(data.finished) < 1 / min(figure_maps.OUTLINES):

@@ -8,7 +8,7 @@ from ..errors import SlopeError
 from ..sites import site_zones
 from ..sites.site_found import Found
 from ..sites.site_sections import OfMass
-from ..statistics import headline
+from ..statistics import rounding
 from ..studies import site_ground
 from ..tables.quantities import STOP
 from . import mobility_part
@@ -85,14 +85,14 @@ def uncertainty(data: Data, numbers: Numbers) -> CONTENT:
     if best and best.chance_m3 is not None and not best.mean_m3 and not best.chance_m3:
         found.append(f"In none of the {len(data.finished)} runs anything is to be removed.")
     elif best and best.chance_m3 is not None:
-        low, high = (headline.text(value, best.place_m3) for value in
+        low, high = (rounding.text(value, best.place_m3) for value in
                      (max(0.0, best.mean_m3 - best.chance_m3), best.mean_m3 + best.chance_m3))
         found.append(f"Another run with the same values gives {low} to {high} m3 to remove, in 95 % of cases.")
     key = travel_shares.DISTANCE
     scatter = study.scatter.get(key) if study else None
     if scatter:
         deviation = scatter["deviation"]
-        text = headline.text(deviation, 10 * headline.place_of_digits(deviation))       # two digits
+        text = rounding.text(deviation, 10 * rounding.place_of_digits(deviation))       # two digits
         numbers.rows.append(("scatter of a run: 99 % within", "m", "", text, deviation))
         found.append(f"The distance that 99 % of the volume stays within differs by {text} m from run to run "
                      "(standard deviation).")
@@ -139,12 +139,12 @@ def shortly(values) -> str:
 def model(data: Data) -> CONTENT:
     about = data.result.summary
     ball = about["volume"]["released"] / about["balls"]["released"]
-    side = headline.text(ball ** (1 / 3), 10.0 ** (math.floor(math.log10(ball) / 3) - 2))
+    side = rounding.text(ball ** (1 / 3), 10.0 ** (math.floor(math.log10(ball) / 3) - 2))
     return [
         ("The body", "Its slip surface and volume were given, not computed: the report does not say whether, or how "
                      "likely, the slope fails. The body is released at once; no trigger is modelled, except with an "
                      "earthquake."),
-        ("The mass", f"Equal balls, each representing {headline.text(ball, headline.place_of_digits(ball))} m3 of "
+        ("The mass", f"Equal balls, each representing {rounding.text(ball, rounding.place_of_digits(ball))} m3 of "
                      f"ground, a cube of {side} m: a parameter of the model, not the size of blocks. Speeds and "
                      "energies of single balls are those of such a block. Dry: no water, no pore pressure, no "
                      "liquefaction. No cohesion, no breakage, no bulking on the way."),

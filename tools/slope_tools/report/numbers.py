@@ -10,7 +10,7 @@ from ..digits import measured, rounded, three
 from ..ensembles import known_study
 from ..findings import Finding
 from ..mobility.run_length import ON_PATH
-from ..statistics import headline
+from ..statistics import rounding
 from ..statistics.answer import Source
 from ..tables import fine_run, named_run, study_types, withheld_words
 from ..tables.quantities import ALL, KNOWN, LENGTH, REACH, written
@@ -30,7 +30,7 @@ class Numbers:
         """A number as text, with three digits."""
         if value is None:
             return UNKNOWN
-        text = headline.text(value, headline.place_of_digits(value))
+        text = rounding.text(value, rounding.place_of_digits(value))
         self.rows.append((what, unit, of, text, value))
         return text
 
@@ -52,8 +52,8 @@ class Numbers:
         """
         if not scatter:
             return self(f"mean: {what}", unit, value, of)
-        place = max(10 * headline.place_of_digits(scatter), headline.place_of_digits(value) / 10)
-        texts = [headline.text(one, place) for one in (value, scatter)]
+        place = max(10 * rounding.place_of_digits(scatter), rounding.place_of_digits(value) / 10)
+        texts = [rounding.text(one, place) for one in (value, scatter)]
         for name, text, one in zip(("mean", "scatter"), texts, (value, scatter)):
             self.rows.append((f"{name}: {what}", unit, of, text, one))
         return " \N{PLUS-MINUS SIGN} ".join(texts)
@@ -122,7 +122,7 @@ def answer(data: Data, numbers: Numbers) -> Optional[MainCard]:
         value = rounded_[key]
         if value is None:
             return None
-        text = headline.text(value, place)
+        text = rounding.text(value, place)
         numbers.rows.append((f"conservative: {key}", "m3", who, text, exact))
         return text
 
@@ -133,7 +133,7 @@ def answer(data: Data, numbers: Numbers) -> Optional[MainCard]:
         parts.append(CardPart(
             part("chance_m3", best.chance_m3), "chance",
             f"97.5 % of single runs lie below: t {best.quantile:.3g} x standard deviation of a run "
-            f"{headline.text(scatter, headline.place_of_digits(scatter))} m3 x sqrt(1 + 1/{best.repeats}), "
+            f"{rounding.text(scatter, rounding.place_of_digits(scatter))} m3 x sqrt(1 + 1/{best.repeats}), "
             f"{best.degrees_of_freedom:.3g} degrees of freedom", "+"))
     else:
         parts.append(CardPart(UNKNOWN, "chance", "no run was repeated (study --repeat seed=..., xoffset=...)", "+"))

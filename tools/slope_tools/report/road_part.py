@@ -8,7 +8,7 @@ from ..plots import figure_maps, known_reach
 from ..sites.site_roads import FOLDER
 from ..studies import road_numbers
 from ..survey.roads import Asked
-from ..tables import study_types
+from ..tables import ensemble_types, study_types
 from ..tables.quantities import REMOVE
 from .data import Data
 from .ensemble_part import ODDS
@@ -74,7 +74,7 @@ def others(data: Data) -> List[str]:
 
 def gaps(data: Data, about: study_types.Stretches) -> str:
     """Where known events end and no run does."""
-    known = study_types.weighted(data.of_study.ensemble) if about.of_known_events else None
+    known = ensemble_types.weighted(data.of_study.ensemble) if about.of_known_events else None
     return "".join(f" {one.text[0].upper()}{one.text[1:]}." for one in (known.doubts if known else ())
                    if one.kind == "gap")
 

@@ -4,8 +4,8 @@ from typing import List, Sequence, Tuple
 from ..deposits.volume import MUCH_BELOW
 from ..finding_words import WORDS, words_of
 from ..findings import LIMIT, WARNING, Finding, gathered
-from ..statistics import headline
-from ..tables import judged, study_types
+from ..statistics import rounding
+from ..tables import ensemble_types, judged
 from . import structures_part
 from .data import Data
 
@@ -39,7 +39,7 @@ def findings(data: Data, ground) -> List[Finding]:
 
 def weighed(data: Data) -> bool:
     """Whether known events weigh the runs, which makes up for what is known of large masses."""
-    return data.study is not None and study_types.weighted(data.study.ensemble) is not None
+    return data.study is not None and ensemble_types.weighted(data.study.ensemble) is not None
 
 
 def listed(found: Sequence[Finding], names) -> List[Tuple[str, str]]:
@@ -69,6 +69,6 @@ def below_ground(data: Data) -> List[Finding]:
     below, share = data.below_ground() or (0, 0)
     if share <= MUCH_BELOW:
         return []
-    known = headline.nearest(below, headline.place_of_digits(below))
+    known = rounding.nearest(below, rounding.place_of_digits(below))
     return [Finding("cut below ground", {"percent": 100 * share, "volume": known, "run": data.label(data.result),
                                          "angle": data.of_study.study.the_road["cut_angle"]})]

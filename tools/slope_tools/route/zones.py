@@ -18,7 +18,7 @@ from ..deposits import deposit
 from ..errors import SlopeError
 from ..survey.geopackage import Layer
 from ..survey.rasters import Raster, crs_name
-from ..tables import answered, named_run, study_types
+from ..tables import answered, ensemble_types, named_run
 from ..tables.rows import Failed, finished_of
 from ..tables.study_file import load_study
 from . import choices, corridor, reached, results, search
@@ -92,7 +92,7 @@ def ground_of(name: str, warn) -> Ground:
         return Ground(run.raster, [Source(1, [Path(run.prefix)], np.ones(1), 0, run.raster.offset)], None)
     study = study or folder
     about = load_study(study / answered.STUDY)
-    weighted = study_types.weighted(about.ensemble)
+    weighted = ensemble_types.weighted(about.ensemble)
     known = weighted.weights if weighted else None
     rows = [row for row in finished_of(about.runs) if (row.run in known if known else not row.batch)]
     if not rows:

@@ -8,7 +8,7 @@ import math
 from dataclasses import dataclass
 from typing import List, Optional, Sequence, Tuple
 
-from .headline import Combination, Scatter, pooled
+from .conservative_volume import Combination, Scatter, pooled
 
 HALVED = 1.9            # ratio of two sizes from which on one is half of the other, or less
 AGREEING = 2            # halvings in a row that change no more than chance resolve a quantity

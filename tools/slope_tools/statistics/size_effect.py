@@ -6,7 +6,7 @@ number is raised by the difference; where it brings less, nothing is taken off. 
 """
 from typing import NamedTuple, Optional
 
-from .headline import Combination, Scatter
+from .conservative_volume import Combination, Scatter
 
 COUNTED = 10.0          # balls: from so many on a volume has a ratio; of fewer the difference counts
 RESOLVED = 16.0         # balls of thickness from which on smaller ones change nothing that was seen (doc, sensitivity)

@@ -14,12 +14,14 @@ from ..mobility.exceedance import Mobility
 from ..runs import repeats
 from ..runs.repeats import Repeat
 from ..seismic import chain_files
-from ..statistics.headline import Scatter
-from ..tables import (answered, combinations, elastic, fine_run, intensity, judged, quantities, road_runs, step_check,
-                      study_types, usable, withheld_words)
+from ..statistics.conservative_volume import Scatter
+from ..tables import (answered, combinations, elastic, ensemble_types, fine_run, intensity, judged, quantities,
+                      road_runs, step_check, study_types, usable, withheld_words)
 from ..tables.rows import Finished, Row, finished_of
 
-OF_ITS_OWN = "d", "duration", "step"            # variables that calibrated values do not depend on, or see LIKE
+# variables that calibrated values do not depend on: chance, time, what is written; of the size of the balls see LIKE
+OF_ITS_OWN = ("d", "duration", "step", "steps", "packing", "seed", "ground_seed", "xoffset", "yoffset", "film", "out",
+              "ledger", "each", "cell")
 LIKE = 1.5              # times as many balls over the thickness: values found with fewer, or more, are of another model
 
 
@@ -161,9 +163,9 @@ def other_settings(found: Mapping[str, str], here: Mapping[str, str]) -> Optiona
     return Finding("other settings", dict(zip(("found", "here"), said))) if differ else None
 
 
-def known_weights(about: Optional[study_types.Ensemble]) -> Optional[Mapping[str, float]]:
+def known_weights(about: Optional[ensemble_types.Ensemble]) -> Optional[Mapping[str, float]]:
     """{run: share of the known events}, where these weigh the runs of an ensemble."""
-    known = study_types.weighted(about)
+    known = ensemble_types.weighted(about)
     return known.weights if known else None
 
 

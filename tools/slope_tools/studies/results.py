@@ -8,7 +8,7 @@ from ..case import run_folders
 from ..ensembles import ensemble, known_events, known_study
 from ..mobility.exceedance import Mobility
 from ..runs.repeats import Repeat
-from ..statistics import headline
+from ..statistics import conservative_volume
 from ..survey import roads
 from ..tables import combinations, elastic, fine_run, next_step, study_maps, study_types, usable, withheld_words
 from ..tables.rows import Finished, Row, finished_of
@@ -90,13 +90,13 @@ def compared(setup: Setup, fine: Repeat, rows: Sequence[Row],
     same = next((group for group in groups or () if coarse and group.set == coarse[0].set), None)
     coarse = same.rows if same else [one for one in coarse if not one.repeat]
 
-    def scatter(key: str) -> Optional[headline.Scatter]:
+    def scatter(key: str) -> Optional[conservative_volume.Scatter]:
         if same is None:
             return None
         mine = same.of(key)
         parts = [mine, *(group.of(key) for group in groups or () if group is not same
                          and all(row.value(key) is not None for row in group.rows))]
-        return headline.scatter_of(parts, mine) if mine.mean > 0 else headline.pooled(parts)
+        return conservative_volume.scatter_of(parts, mine) if mine.mean > 0 else conservative_volume.pooled(parts)
 
     return fine_run.Fine(row, coarse, body_depth.mean(setup, row), scatter)
 

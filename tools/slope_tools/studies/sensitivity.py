@@ -12,7 +12,7 @@ from ..deposits import travel_shares
 from ..errors import SlopeError
 from ..findings import Finding, entries
 from ..runs import repeats
-from ..statistics.headline import Scatter
+from ..statistics.conservative_volume import Scatter
 from ..tables import judged, study_table
 from ..tables.quantities import ALL, NEED_ROAD, On, keys, number
 from ..tables.rows import Finished, plain

@@ -13,7 +13,7 @@ from ..case.settings import as_number, check_settings
 from ..errors import SlopeError
 from ..findings import entries
 from ..runs import repeats
-from ..statistics import convergence, headline
+from ..statistics import convergence, rounding
 from ..tables import combinations, fine_run, judged, study_table
 from ..tables.quantities import ALL
 from ..tables.rows import finished_of
@@ -107,8 +107,8 @@ def collect(planned: Plan, of, work) -> None:
 def writer(found: convergence.Convergence):
     """A function that writes a value rounded to what is known, by the largest scatter of a run."""
     scatter = max((size.scatter or 0.0 for size in found.sizes), default=0.0)
-    step = headline.place(scatter) if scatter else headline.place_of_digits(found.sizes[0].mean)
-    return lambda value: headline.text(value, step)
+    step = rounding.place(scatter) if scatter else rounding.place_of_digits(found.sizes[0].mean)
+    return lambda value: rounding.text(value, step)
 
 
 def entry(found: convergence.Convergence, name, sentences):

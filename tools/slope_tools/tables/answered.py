@@ -11,7 +11,7 @@ from ..statistics import answer, size_family
 from ..statistics.answer import Answer, AtRoad, Code, Ensemble, Paper, Reason, Road, Withheld
 from ..statistics.size_effect import RESOLVED
 from ..statistics.withheld import Kind as Rule
-from . import fine_run, study_types
+from . import ensemble_types, fine_run, study_types
 from .quantities import REMOVE
 
 STUDY = "study.yaml"
@@ -34,7 +34,7 @@ def paper_of(about: study_types.Study) -> Optional[Paper]:
 
 def ensemble_of(about: study_types.Study) -> Optional[Ensemble]:
     """Its weighted ensemble, if it has one with volumes."""
-    whole, one = about.ensemble, study_types.weighted(about.ensemble)
+    whole, one = about.ensemble, ensemble_types.weighted(about.ensemble)
     if not whole or not one or not one.to_remove:
         return None
     stopped, effect = one.added.stopped, fine_run.read_effect(about.size, REMOVE)

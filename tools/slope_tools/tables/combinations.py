@@ -8,8 +8,8 @@ from ..case.settings import as_number
 from ..findings import Finding, texts
 from ..runs import jobs
 from ..runs.repeats import key_of
-from ..statistics import headline
-from ..statistics.headline import Combination, Scatter
+from ..statistics import conservative_volume, rounding
+from ..statistics.conservative_volume import Combination, Scatter
 from ..statistics.size_effect import Effect
 from . import quantities, study_types, withheld_words
 from .rows import Finished, Row, finished_of
@@ -59,7 +59,7 @@ def averaged(groups: Sequence[Group]) -> List[str]:
 
 def scatters(groups: Sequence[Group]) -> Dict[str, Optional[Scatter]]:
     """The scatter of one run in each column, pooled over the combinations."""
-    return {name: headline.pooled([group.of(name) for group in groups]) for name in averaged(groups)}
+    return {name: conservative_volume.pooled([group.of(name) for group in groups]) for name in averaged(groups)}
 
 
 def entries(groups: Sequence[Group], names: Sequence[str]) -> List[Dict[str, Any]]:
@@ -123,7 +123,7 @@ def conservative(settings, rows, groups: Sequence[Group], effect: Optional[Effec
     effect: of smaller balls on it.
     """
     parts = [group.of("remove_m3") for group in groups]
-    best = headline.headline(parts, effect and effect.added)
+    best = conservative_volume.predict(parts, effect and effect.added)
     governing = next(group for group in groups if group.name == best.combination)
     largest = max(governing.rows, key=lambda row: row.at_road.remove_m3)
     volumes = [row.at_road.remove_m3 for row in governing.rows]
@@ -131,7 +131,7 @@ def conservative(settings, rows, groups: Sequence[Group], effect: Optional[Effec
     for name, line in straight(settings, groups, governing.set):
         if len(line) < 2:
             continue
-        found = headline.difference([group.of("remove_m3") for group in line], best.scatter)
+        found = conservative_volume.difference([group.of("remove_m3") for group in line], best.scatter)
         value = {group.name: group.set[name] for group in line}
         differences.append(study_types.Difference(name, value[found.largest], value[found.smallest], found.by,
                                                   found.chance, found.clear))
@@ -150,7 +150,7 @@ def conservative(settings, rows, groups: Sequence[Group], effect: Optional[Effec
         withheld=[], zero=None)     # see usable.judge
 
 
-def doubts(settings, rows, groups: Sequence[Group], best: headline.Headline,
+def doubts(settings, rows, groups: Sequence[Group], best: conservative_volume.ConservativeVolume,
            differences: Sequence[study_types.Difference]) -> List[Finding]:
     """Reasons why the volume may be larger than the headline."""
     found = []
@@ -170,7 +170,7 @@ def doubts(settings, rows, groups: Sequence[Group], best: headline.Headline,
     found += no_effect(groups)
     released = max(row.released_m3 for row in finished)
     if best.volume > released:
-        found.append(Finding("more than released", {"released": headline.nearest(released, best.place)}))
+        found.append(Finding("more than released", {"released": rounding.nearest(released, best.place)}))
     for group in groups:
         most = max(row.at_road.remove_m3 for row in group.rows)
         few = [row for row in group.rows if row.at_road.remove_m3 < FEW * most]
@@ -178,12 +178,12 @@ def doubts(settings, rows, groups: Sequence[Group], best: headline.Headline,
             found.append(outcome(group, few))
     above = max(finished, key=lambda row: row.at_road.remove_m3)
     if above.at_road.remove_m3 > best.volume:
-        found.append(Finding("more in a run", {"run": above.run, "volume": headline.nearest(above.at_road.remove_m3,
+        found.append(Finding("more in a run", {"run": above.run, "volume": rounding.nearest(above.at_road.remove_m3,
                                                                                             best.place)}))
     parts = [group.of("remove_m3") for group in groups]
-    odd = headline.odd_one(parts, best.combination)
+    odd = conservative_volume.odd_one(parts, best.combination)
     if odd:
-        mine, others = (headline.nearest(one, headline.place(odd[1] or odd[0])) for one in odd)
+        mine, others = (rounding.nearest(one, rounding.place(odd[1] or odd[0])) for one in odd)
         found.append(Finding("scatters more", {"mine": mine, "others": others}))
     return found
 
@@ -229,7 +229,7 @@ def starts(best: study_types.Conservative) -> List[str]:
     """What only another start of the balls gives: the range over the repeats of the governing combination, a line."""
     if not best.starts_m3:       # one run
         return []
-    low, high = (headline.text(value, best.place_m3) for value in best.starts_m3)
+    low, high = (rounding.text(value, best.place_m3) for value in best.starts_m3)
     number = f"{low} to {high}" if low != high else high
     return [f"another start of the balls gives {number} m3 on the same site ({best.repeats} runs)"]
 
@@ -240,7 +240,7 @@ def describe(best: study_types.Conservative) -> List[str]:
     In its place why it is withheld, if it is.
     """
     def number(value):
-        return headline.text(value, best.place_m3)
+        return rounding.text(value, best.place_m3)
 
     if best.withheld:
         return [*withheld_words.lines(best.withheld), *(f"caveat: {text}" for text in texts(best.doubts))]
@@ -262,7 +262,7 @@ def describe(best: study_types.Conservative) -> List[str]:
     for entry in best.differences:
         if entry.clear is not None and entry.chance_m3 is not None:
             word = "more than" if entry.clear else "no more than"
-            by, chance = (headline.text(value, headline.place_of_digits(entry.chance_m3))
+            by, chance = (rounding.text(value, rounding.place_of_digits(entry.chance_m3))
                           for value in (entry.by_m3, entry.chance_m3))
             lines.append(f"{entry.variable}: {by} m3 between {entry.smallest_at} and {entry.largest_at}, "
                          f"{word} expected by chance, {chance} m3")

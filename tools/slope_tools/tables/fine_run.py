@@ -4,7 +4,7 @@ from typing import Callable, Dict, NamedTuple, Optional, Sequence
 
 from ..digits import rounded, to_three
 from ..runs.repeats import key_of
-from ..statistics.headline import Combination, Scatter
+from ..statistics.conservative_volume import Combination, Scatter
 from ..statistics.size_effect import RESOLVED, Effect, effect
 from . import quantities, study_types
 from .quantities import On

@@ -7,7 +7,7 @@ from ..case.run_folders import OF_RUN, RASTERS, prefix_of, summaries, summary_of
 from ..deposits import travel_shares
 from ..errors import SlopeError
 from ..statistics.entries import KnownQuantile, Quantile
-from . import study_types
+from . import ensemble_types, study_types
 from .answered import STUDY, study_in
 from .rows import Finished, finished_of
 from .study_file import load_study
@@ -34,7 +34,7 @@ def governing(about: study_types.Study) -> str:
     if ensemble and ensemble.of:
         # a quantile is the value of a run
         of = ensemble.of
-        known = study_types.weighted(ensemble)
+        known = ensemble_types.weighted(ensemble)
         quantiles: Sequence[Union[Quantile, KnownQuantile]] = ensemble.quantities[of].quantiles
         if known and known.quantities:
             quantiles = known.quantities[of].quantiles if of in known.quantities else []
@@ -51,7 +51,7 @@ def of_headline(about: study_types.Study, rows: Sequence[Finished]) -> Optional[
 
     None where the headline is of another study, of none, or withheld.
     """
-    number, known = about.headline, study_types.weighted(about.ensemble)
+    number, known = about.headline, ensemble_types.weighted(about.ensemble)
     if not number or number.source != "ensemble" or number.volume_m3 is None:
         return None
     if number.volume_m3 == 0:

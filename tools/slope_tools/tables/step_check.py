@@ -4,7 +4,7 @@ from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tup
 from ..digits import rounded, to_three
 from ..errors import SlopeError
 from ..findings import Finding
-from ..statistics import headline
+from ..statistics import conservative_volume
 from . import study_types
 from .combinations import Group
 
@@ -52,7 +52,7 @@ def compare(step: Step, groups: Sequence[Group]) -> Tuple[study_types.HalfStep, 
         return entry(f"{text}nothing to remove, as with the whole step", volumes.mean, 0.0, True), []
     by = f", {100 * difference / volumes.mean:+.1f} %" if volumes.mean > 0 else ""
     text += f"{shown(step.volume)} m3 instead of {shown(volumes.mean)} to remove{by}"
-    scatter = headline.scatter_of(parts, volumes) if volumes.mean > 0 else headline.pooled(parts)
+    scatter = conservative_volume.scatter_of(parts, volumes) if volumes.mean > 0 else conservative_volume.pooled(parts)
     if scatter is None:
         return entry(f"{text}; chance unknown", volumes.mean), []
     chance = scatter.chance(volumes.runs)

@@ -6,6 +6,7 @@ from typing import Any, Dict, List, Mapping, NamedTuple, Union
 from .. import records, schemas
 from ..case import run_folders
 from ..errors import SlopeError
+from ..findings import OTHER
 from ..records import NoRecord
 from ..schemas import TEXT, listed, mapping
 from . import rows as rows_, study_types
@@ -31,6 +32,9 @@ def load_study(path: Path) -> study_types.Study:
     if any(row.set.keys() != about.set.keys() for row in rows) or not (
             farthest and all(name in [row.run for row in finished] for name in ((best or farthest).run, farthest.run))):
         raise SlopeError(path, f"must be {WHAT}: runs, set, conservative and largest must be of one study")
+    of_runs = study.ensemble.withheld if study.ensemble else []
+    if any(one.kind == OTHER for one in (*(best.withheld if best else ()), *of_runs)):
+        raise SlopeError(path, f"must be {WHAT}: withheld must have reasons of this version")
     if best and (not about.road or best.volume_m3 is None and not best.withheld
                  or not all(row.road for row in finished)):
         raise SlopeError(path, f"must be {WHAT}: conservative must have a volume, or why it is withheld, and a road")

@@ -5,7 +5,7 @@ from rich.table import Table
 
 from .. import disk
 from ..mobility.run_length import STRAIGHT
-from ..statistics import headline
+from ..statistics import rounding
 from . import combinations, quantities
 from .quantities import KNOWN, OF_ROAD, OF_RUN, On, shown_on, written
 from .rows import Failed, Finished, Row, finished_of, plain
@@ -43,9 +43,9 @@ def table(settings, repeated, rows: Sequence[Row], defaults):
 def volume(value, scatter):
     """A volume rounded to what is known: by its scatter, else to three digits; if repeats agree, to whole m3."""
     if scatter is not None and scatter.deviation > 0:
-        return headline.text(value, headline.place(scatter.deviation))
-    place = headline.place_of_digits(value)
-    return headline.text(value, min(1.0, place) if scatter else place)
+        return rounding.text(value, rounding.place(scatter.deviation))
+    place = rounding.place_of_digits(value)
+    return rounding.text(value, min(1.0, place) if scatter else place)
 
 
 def varied(settings):

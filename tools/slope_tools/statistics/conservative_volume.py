@@ -14,10 +14,11 @@ from typing import Callable, Dict, List, Optional, Sequence, Tuple
 
 from scipy import stats
 
-CONFIDENCE = 0.975      # of the next single run: it is below the headline in 39 of 40 studies
+from . import rounding
+
+CONFIDENCE = 0.975      # of the next single run: it is below the volume in 39 of 40 studies
 DIFFERENT = 0.95        # a difference is clear if chance gives it in fewer than one of twenty studies
 NEAR = 2.0              # ratio of the means of combinations whose scatter is taken together, at most
-DIGITS = 3              # of a volume whose scatter is unknown
 ROUNDING = 1e-9         # of a volume: smaller differences are rounding
 
 
@@ -68,7 +69,7 @@ class Scatter:
 
 
 @dataclass(frozen=True)
-class Headline:
+class ConservativeVolume:
     """volume = mean + chance + size (m3); chance is None without repeats, size None without smaller balls."""
     volume: float
     mean: float
@@ -89,17 +90,17 @@ class Headline:
     @property
     def place(self) -> float:
         """The power of ten (m3) that the volume is rounded to: what is known of it, but three digits at least."""
-        digits = place_of_digits(self.volume)
+        digits = rounding.place_of_digits(self.volume)
         if self.scatter is None or not self.scatter.deviation > 0:
             return digits
-        return min(place(self.scatter.deviation), digits)
+        return min(rounding.place(self.scatter.deviation), digits)
 
     def rounded(self) -> Dict[str, Optional[float]]:
         """volume, mean, chance and size, each rounded up to what is known, so that the rounded parts add up."""
-        parts = {name: None if value is None else up(value, self.place)
+        parts = {name: None if value is None else rounding.up(value, self.place)
                  for name, value in (("mean", self.mean), ("chance", self.chance), ("size", self.size))}
         total = math.fsum(part for part in parts.values() if part is not None)
-        return {"volume": nearest(total, self.place), **parts}
+        return {"volume": rounding.nearest(total, self.place), **parts}
 
 
 @dataclass(frozen=True)
@@ -201,23 +202,24 @@ def odd_one(combinations: Sequence[Combination], name: str) -> Optional[Tuple[fl
     return (mine.scatter, others) if mine.scatter > most else None
 
 
-# --- the headline ---
+# --- the volume ---
 
-def headline(combinations: Sequence[Combination], added: Optional[Callable[[float], float]] = None) -> Headline:
+def predict(combinations: Sequence[Combination],
+            added: Optional[Callable[[float], float]] = None) -> ConservativeVolume:
     """The volume that the next run stays below, and its parts; added: what smaller balls add to a volume (m3).
 
     The combination with the largest sum of mean and chance governs; with equal numbers of runs that is the one with the
-    largest mean. If several means are about the same, the largest is high by chance, so the headline is conservative
+    largest mean. If several means are about the same, the largest is high by chance, so the volume is conservative
     (see the page on `slope study`).
     """
-    found: List[Headline] = []
+    found: List[ConservativeVolume] = []
     for one in combinations:
         scatter = scatter_of(combinations, one)
         chance = scatter.chance(one.runs) if scatter else None
         volume = one.mean + (chance or 0.0)
         size = added(volume) if added else None
-        found.append(Headline(volume + (size or 0.0), one.mean, chance, size, one.name, one.runs,
-                              sum(other.runs for other in combinations), scatter))
+        found.append(ConservativeVolume(volume + (size or 0.0), one.mean, chance, size, one.name, one.runs,
+                                        sum(other.runs for other in combinations), scatter))
     return max(found, key=lambda each: each.volume)
 
 
@@ -248,31 +250,3 @@ def ends(line: Sequence[Combination]) -> Tuple[Combination, Combination, float]:
     """The combinations of the largest and the smallest mean, and the unit of their range in standard deviations."""
     top, low = max(line, key=lambda one: one.mean), min(line, key=lambda one: one.mean)
     return top, low, math.sqrt((1 / top.runs + 1 / low.runs) / 2)
-
-
-# --- rounding ---
-
-def place(uncertainty: float) -> float:
-    """The power of ten that a number with this standard deviation (> 0) is rounded to: a 5th to a 50th of it."""
-    return 10.0 ** math.floor(math.log10(uncertainty / 5) + 1e-9)
-
-
-def place_of_digits(value: float) -> float:
-    """The power of ten that leaves three digits of a value; 1 of 0."""
-    return 10.0 ** (math.floor(math.log10(abs(value)) + 1e-9) - DIGITS + 1) if value else 1.0
-
-
-def up(value: float, step: float) -> float:
-    """A value rounded up to a multiple of a power of ten; a value within rounding of a multiple stays there."""
-    return nearest(math.ceil(value / step - 1e-9) * step, step)
-
-
-def nearest(value: float, step: float) -> float:
-    """A value rounded to a multiple of a power of ten."""
-    return round(value, -math.floor(math.log10(step) + 0.5))
-
-
-def text(value: float, step: float) -> str:
-    """A value rounded to a power of ten, with commas: 14,760 of 14757.3 and 10."""
-    digits = max(0, -math.floor(math.log10(step) + 0.5))
-    return f"{nearest(value, step):,.{digits}f}"

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from slope_tools.statistics import headline
-from slope_tools.statistics.headline import Combination, Headline, Scatter
+from slope_tools.statistics import rounding
+from slope_tools.statistics.conservative_volume import (Combination, ConservativeVolume, Scatter, difference, is_clear,
+                                                        like, odd_one, pooled, predict, scatter_of, shared)
 from slope_tools.statistics.size_effect import Effect, effect
 
 STUDIES = 400
@@ -32,7 +33,7 @@ def covered(means, common, seed, studies=STUDIES, volume=lambda best: best.volum
     random = np.random.default_rng(seed)
     below = 0
     for _ in range(studies):
-        best = headline.headline(study(random, means, common))
+        best = predict(study(random, means, common))
         truth = means[int(best.combination.split()[1])]
         below += random.normal(truth, DEVIATION) < volume(best)
     return below / studies
@@ -107,7 +108,7 @@ def zeros(random, means, size):
     return np.where(random.random(size) < 0.3, 0, means / 0.7 * (1 + 0.2 * random.normal(size=size)))
 
 
-def stood_in(draw, seed, studies=60, repeats=REPEATS, rule=headline.headline, several=MEANS):
+def stood_in(draw, seed, studies=60, repeats=REPEATS, rule=predict, several=MEANS):
     """The share of 400 further runs of the governing combination below the headline, over studies of several means.
 
     To two digits: such a share is known to 0.003.
@@ -141,9 +142,9 @@ def test_other_scatter_that_the_rule_was_not_chosen_with(draw, repeats):
 def test_scatter_that_grows_with_the_mean_is_not_that_of_small_combinations():
     """Negative control: the same deviation in all combinations, however large they are."""
     def equal(several):
-        scatter = headline.pooled(several)
+        scatter = pooled(several)
         top = max(several, key=lambda one: one.mean)
-        return Headline(top.mean + scatter.chance(top.runs), top.mean, None, None, top.name, 3, 9, scatter)
+        return ConservativeVolume(top.mean + scatter.chance(top.runs), top.mean, None, None, top.name, 3, 9, scatter)
 
     assert stood_in(law(normal, 1, 0.1), 11, rule=equal, several=MEANS[3:]) < 0.95
     assert stood_in(law(normal, 1, 0.1), 11, several=MEANS[3:]) >= 0.97
@@ -153,16 +154,16 @@ def test_scatter_that_grows_with_the_mean_is_not_that_of_small_combinations():
 
 def test_only_combinations_of_about_the_same_mean_are_taken_together():
     small, half, large = combinations((1, 5, 6), (49, 50, 51), (95, 100, 105))
-    assert [one.name for one in headline.like([small, half, large], large)] == ["b", "c"]
-    assert headline.like([small, half, large], large)[0].squares == pytest.approx(2 * half.squares)
-    assert [one.name for one in headline.like([small, half, large], small)] == ["a"]
-    assert headline.scatter_of([small, half, large], large).deviation == pytest.approx(math.sqrt((50 + 4) / 4))
+    assert [one.name for one in like([small, half, large], large)] == ["b", "c"]
+    assert like([small, half, large], large)[0].squares == pytest.approx(2 * half.squares)
+    assert [one.name for one in like([small, half, large], small)] == ["a"]
+    assert scatter_of([small, half, large], large).deviation == pytest.approx(math.sqrt((50 + 4) / 4))
     # a single run has nothing of its own: of all others, in proportion to its mean
     single = Combination("d", {"base": 300.0})
-    assert headline.scatter_of([half, single], single).deviation == pytest.approx(6)
+    assert scatter_of([half, single], single).deviation == pytest.approx(6)
     none = Combination("e", {"base": 0.0, "x": 0.0})
-    assert headline.scatter_of([none, single], single) is None
-    assert headline.scatter_of([none, single], none) == Scatter(0.0, 1.0)
+    assert scatter_of([none, single], single) is None
+    assert scatter_of([none, single], none) == Scatter(0.0, 1.0)
 
 
 # --- by hand ---
@@ -170,7 +171,7 @@ def test_only_combinations_of_about_the_same_mean_are_taken_together():
 def test_parts_by_hand():
     a = Combination("a", {"base": 100.0, "seed 1": 110.0, "seed 2": 105.0})
     b = Combination("b", {"base": 120.0, "seed 1": 118.0, "seed 2": 125.0})
-    best = headline.headline([a, b])
+    best = predict([a, b])
     # variances in proportion to the means, 105 and 121
     scale = 121 / 105
     variances = [statistics.variance(one.volumes.values()) for one in (a, b)]
@@ -191,7 +192,7 @@ def test_parts_by_hand():
 
 
 def test_one_combination_has_its_own_degrees_of_freedom():
-    best = headline.headline([Combination("a", {"base": 10.0, "seed 1": 12.0, "seed 2": 17.0})])
+    best = predict([Combination("a", {"base": 10.0, "seed 1": 12.0, "seed 2": 17.0})])
     assert best.scatter == Scatter(pytest.approx(math.sqrt(13)), 2)
     assert best.volume == pytest.approx(13 + 4.302652729911275 * math.sqrt(13 * 4 / 3))
 
@@ -210,31 +211,31 @@ def combinations(*several):
     (((1, 2, None), (None, 3, 9)), 1),              # one repeat in common: as of the one with the fewest
 ])
 def test_what_repeats_have_in_common_takes_degrees_of_freedom(several, expected):
-    assert headline.pooled(combinations(*several)).degrees_of_freedom == pytest.approx(expected)
+    assert pooled(combinations(*several)).degrees_of_freedom == pytest.approx(expected)
 
 
 def test_repeats_that_failed_are_left_out_of_what_is_in_common():
-    whole = headline.shared(combinations((1, 4, 2), (6, 5, 9)))
-    assert headline.shared(combinations((1, 4, 2, None), (6, 5, 9, 40))) == pytest.approx(whole)
-    assert headline.pooled(combinations((1, 4, 2, None), (6, 5, 9, 40))).degrees_of_freedom == pytest.approx(5 * whole)
+    whole = shared(combinations((1, 4, 2), (6, 5, 9)))
+    assert shared(combinations((1, 4, 2, None), (6, 5, 9, 40))) == pytest.approx(whole)
+    assert pooled(combinations((1, 4, 2, None), (6, 5, 9, 40))).degrees_of_freedom == pytest.approx(5 * whole)
 
 
 def test_what_differs_by_rounding_does_not_differ():
     same = 48859.2179267
-    found = headline.pooled(combinations((same, same + 7e-12, same - 7e-12), (same, 48860)))
+    found = pooled(combinations((same, same + 7e-12, same - 7e-12), (same, 48860)))
     assert found.deviation == pytest.approx(math.sqrt(0.7820733 ** 2 / 2 / 3))
-    assert headline.pooled(combinations((1e5, 1e5 + 3e-11), (1e5 + 1e-11, 1e5))) == Scatter(0.0, 2.0)
+    assert pooled(combinations((1e5, 1e5 + 3e-11), (1e5 + 1e-11, 1e5))) == Scatter(0.0, 2.0)
 
 
 def test_without_repeats_chance_is_unknown():
-    best = headline.headline(combinations((5,), (7,), (6,)))
-    assert best == Headline(7.0, 7.0, None, None, "b", 1, 3, None)
+    best = predict(combinations((5,), (7,), (6,)))
+    assert best == ConservativeVolume(7.0, 7.0, None, None, "b", 1, 3, None)
     assert best.kind == "largest of 3 runs; chance unknown"
-    assert headline.headline(combinations((5,))).kind == "largest of 1 run; chance unknown"
+    assert predict(combinations((5,))).kind == "largest of 1 run; chance unknown"
 
 
 def test_with_unequal_numbers_of_runs_the_least_known_may_govern():
-    best = headline.headline(combinations((100, 104, 96, 103, 97), (99, None, None, None, None)))
+    best = predict(combinations((100, 104, 96, 103, 97), (99, None, None, None, None)))
     assert best.combination == "b" and best.mean == 99
     assert best.chance == pytest.approx(best.scatter.chance(1)) and best.scatter.degrees_of_freedom == 4
 
@@ -244,14 +245,14 @@ def test_with_unequal_numbers_of_runs_the_least_known_may_govern():
 def test_a_fine_run_that_brings_more_than_chance_raises_the_headline():
     """By hand: the fine run may lie t s sqrt(1 + 1/4) above four runs, t 3.182."""
     coarse = Combination("a", {"1": 98.0, "2": 102.0, "3": 98.0, "4": 102.0})
-    scatter = headline.pooled([coarse])
+    scatter = pooled([coarse])
     most = 3.182446 * scatter.deviation * math.sqrt(1.25)
     for fine, added in ((100 + most + 0.01, 0.01 * (most + 0.01)), (100 + most - 0.01, 0.0), (80.0, 0.0)):
         found = effect(coarse, fine, scatter, ball=1.0)
         assert found.ratio and found.chance == pytest.approx(most) and found.clear is (added > 0)
         assert found.added(1.0) == pytest.approx(added)
     found = effect(coarse, 130.0, scatter, ball=1.0)
-    alone, raised = headline.headline([coarse]), headline.headline([coarse], found.added)
+    alone, raised = predict([coarse]), predict([coarse], found.added)
     assert alone.size is None and raised.volume == pytest.approx(1.3 * alone.volume)
     assert raised.size == pytest.approx(0.3 * alone.volume) and raised.mean == alone.mean
 
@@ -274,7 +275,7 @@ def test_equal_runs_are_rarely_raised():
     raised = 0
     for _ in range(1000):
         several = study(random, EQUAL, 0)
-        found = effect(several[1], random.normal(EQUAL[1], DEVIATION), headline.scatter_of(several, several[1]), 1.0)
+        found = effect(several[1], random.normal(EQUAL[1], DEVIATION), scatter_of(several, several[1]), 1.0)
         raised += found.added(1.0) > 0
     assert 0.005 <= raised / 1000 <= 0.045
 
@@ -286,13 +287,13 @@ def test_differences_of_equal_means_are_called_chance():
     clear = 0
     for _ in range(100):
         line = study(random, EQUAL, 0)
-        clear += headline.is_clear(line, headline.pooled(line))
+        clear += is_clear(line, pooled(line))
     assert clear <= 10          # five, and chance
 
     line = study(random, ONE, 0)
-    found = headline.difference(line, headline.pooled(line))
+    found = difference(line, pooled(line))
     assert found.clear and (found.largest, found.smallest) == ("rolling 2", "rolling 0")
-    assert headline.difference(line, None).clear is None
+    assert difference(line, None).clear is None
 
 
 @pytest.mark.parametrize("factor, clear", [(0.98, False), (1.02, True)])
@@ -301,42 +302,42 @@ def test_what_is_clear_is_so_without_the_chance_too(factor, clear):
         return [Combination(str(k), {str(i): 0.0 if k else by for i in range(n)}) for k, n in enumerate(runs)]
     for runs, df in (((3, 3, 3), 6.0), ((1, 4), 3.3), ((2, 5, 3, 2), 1.7)):
         scatter = Scatter(40.0, df)
-        by = factor * headline.difference(line(1.0), scatter).chance
-        assert headline.is_clear(line(by), scatter) == headline.difference(line(by), scatter).clear == clear
-        assert headline.is_clear(line(1.0), Scatter(0.0, df)) and not headline.is_clear(line(0.0), Scatter(0.0, df))
+        by = factor * difference(line(1.0), scatter).chance
+        assert is_clear(line(by), scatter) == difference(line(by), scatter).clear == clear
+        assert is_clear(line(1.0), Scatter(0.0, df)) and not is_clear(line(0.0), Scatter(0.0, df))
 
 
 def test_a_difference_by_hand():
     """Tukey's table: q(0.95; 3 means, 6 degrees of freedom) = 4.339."""
     a, b, c = combinations((1, 2, 3), (1, 4, 4), (8, 9, 10))
-    found = headline.difference([a, b, c], Scatter(2.0, 6.0))
+    found = difference([a, b, c], Scatter(2.0, 6.0))
     assert found.by == 7 and found.chance == pytest.approx(4.339 * 2 / math.sqrt(3), rel=1e-4)
 
 
 def test_a_combination_that_scatters_more_than_the_others():
     quiet, loud = (100, 101, 102), (90, 120, 150)
     parts = combinations(quiet, quiet, loud)
-    assert headline.odd_one(parts, "c") == (pytest.approx(30), pytest.approx(math.sqrt(120 / 101)))
-    assert headline.odd_one(parts, "a") is None and headline.odd_one(combinations(loud), "a") is None
+    assert odd_one(parts, "c") == (pytest.approx(30), pytest.approx(math.sqrt(120 / 101)))
+    assert odd_one(parts, "a") is None and odd_one(combinations(loud), "a") is None
     # s2 ratio against F(0.95; 2, 4) = 6.944
     quiet = (100, 101, 102)
-    assert headline.odd_one(combinations(quiet, quiet, (100, 102.6, 105.2)), "c") is None
-    assert headline.odd_one(combinations(quiet, quiet, (100, 102.7, 105.4)), "c") is not None
-    assert headline.odd_one(combinations((10, 11, 12), (10, 11, 12), loud), "c") is None    # smaller: they tell nothing
+    assert odd_one(combinations(quiet, quiet, (100, 102.6, 105.2)), "c") is None
+    assert odd_one(combinations(quiet, quiet, (100, 102.7, 105.4)), "c") is not None
+    assert odd_one(combinations((10, 11, 12), (10, 11, 12), loud), "c") is None    # smaller: they tell nothing
 
 
 # --- rounding ---
 
 @pytest.mark.parametrize("deviation, expected", [(351, 10), (511, 100), (124, 10), (49.9, 1), (50, 10), (0.3, 0.01)])
 def test_to_what_a_volume_is_known(deviation, expected):
-    assert headline.place(deviation) == pytest.approx(expected)
+    assert rounding.place(deviation) == pytest.approx(expected)
 
 
 def test_rounded_parts_add_up_and_are_never_too_small():
     random = np.random.default_rng(6)
     for _ in range(200):
-        best = headline.headline(study(random, random.uniform(0, 20000, 3), 0.3),
-                                 Effect(100.0, 3, 105.0, 1.0, True).added)
+        best = predict(study(random, random.uniform(0, 20000, 3), 0.3),
+                       Effect(100.0, 3, 105.0, 1.0, True).added)
         parts = best.rounded()
         assert parts["volume"] == pytest.approx(parts["mean"] + parts["chance"] + parts["size"], abs=1e-6)
         assert best.volume - 1e-9 <= parts["volume"] <= best.volume + 3 * best.place + 1e-9
@@ -344,9 +345,9 @@ def test_rounded_parts_add_up_and_are_never_too_small():
 
 
 def test_without_a_scatter_three_digits_are_shown():
-    best = headline.headline(combinations((14758.2,), (14486,)))
+    best = predict(combinations((14758.2,), (14486,)))
     assert best.place == 100 and best.rounded()["volume"] == 14800
-    assert headline.headline(combinations((0,))).rounded()["volume"] == 0
-    assert headline.headline(combinations((1000,))).rounded()["volume"] == 1000
-    assert (headline.text(14758.2, 10), headline.text(14758.2, 0.1), headline.text(0.0149, 0.01)) == (
+    assert predict(combinations((0,))).rounded()["volume"] == 0
+    assert predict(combinations((1000,))).rounded()["volume"] == 1000
+    assert (rounding.text(14758.2, 10), rounding.text(14758.2, 0.1), rounding.text(0.0149, 0.01)) == (
         "14,760", "14,758.2", "0.01")

@@ -1,0 +1,30 @@
+"""Numbers rounded to what is known of them: to a power of ten, by their uncertainty or to three digits."""
+import math
+
+DIGITS = 3              # of a value whose scatter is unknown
+
+
+def place(uncertainty: float) -> float:
+    """The power of ten that a number with this standard deviation (> 0) is rounded to: a 5th to a 50th of it."""
+    return 10.0 ** math.floor(math.log10(uncertainty / 5) + 1e-9)
+
+
+def place_of_digits(value: float) -> float:
+    """The power of ten that leaves three digits of a value; 1 of 0."""
+    return 10.0 ** (math.floor(math.log10(abs(value)) + 1e-9) - DIGITS + 1) if value else 1.0
+
+
+def up(value: float, step: float) -> float:
+    """A value rounded up to a multiple of a power of ten; a value within rounding of a multiple stays there."""
+    return nearest(math.ceil(value / step - 1e-9) * step, step)
+
+
+def nearest(value: float, step: float) -> float:
+    """A value rounded to a multiple of a power of ten."""
+    return round(value, -math.floor(math.log10(step) + 0.5))
+
+
+def text(value: float, step: float) -> str:
+    """A value rounded to a power of ten, with commas: 14,760 of 14757.3 and 10."""
+    digits = max(0, -math.floor(math.log10(step) + 0.5))
+    return f"{nearest(value, step):,.{digits}f}"
