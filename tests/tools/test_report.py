@@ -753,7 +753,7 @@ def test_numbers_from_elsewhere_stand_beside(slope, here):
 
 def test_the_paper_s_numbers_ship_with_inputs_20(slope, here):
     shutil.copy(TOP / "inputs" / "20_embankment" / "reference.yaml", "paper.yaml")
-    assert slope("out --reference printing.yaml")[0] == 0
+    assert slope("out --reference paper.yaml")[0] == 0
     tables = [row for table in read("out/report.html")[1].tables for row in table]
     assert ["company J", "24,048", "26,009", "22,340"] in tables
     assert ["company I", "22,114", "18,262", "14,490"] in tables and ["actual damage", "14,225"] in tables

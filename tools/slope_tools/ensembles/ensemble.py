@@ -17,6 +17,7 @@ from ..findings import Finding, texts
 from ..mobility.exceedance import Mobility
 from ..statistics import emulator, hazard
 from ..statistics.entries import Analysis, Check, Influence, Quantile
+from ..survey.rasters import Place
 from ..tables import combinations, ensemble_types, quantities, withheld_words
 from ..tables.quantities import On
 from ..tables.rows import Finished, Row, finished_of
@@ -127,7 +128,7 @@ def evaluate(order: Order, rows: Sequence[Row], mobility: Optional[Mobility],
                      failed, known)
 
 
-def write(found: Evaluated, levels: ensemble_maps.Thresholds, output: Path, place,
+def write(found: Evaluated, levels: ensemble_maps.Thresholds, output: Path, place: Optional[Place],
           grids: Optional[str]) -> ensemble_types.Ensemble:
     """Tables and maps; what study.yaml says of the ensemble and of its known events, with the entries of the maps.
 

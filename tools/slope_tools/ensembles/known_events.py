@@ -20,9 +20,11 @@ from ..findings import Finding, texts
 from ..mobility import body, exceedance, known, run_length, weights
 from ..statistics import answer, emulator, hazard
 from ..statistics.entries import Analysis, KnownQuantile
+from ..survey.rasters import Place
 from ..tables import answer_words, combinations, ensemble_types, quantities
 from ..tables.rows import Row, finished_of
 from . import conditioned, farther, known_influence, known_maps
+from .ensemble_maps import Thresholds
 from .sample import Sample
 
 FOLDER, HAZARD, WEIGHTS = "known_events", "hazard_known_events.csv", "weights.csv"
@@ -186,7 +188,8 @@ def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: S
     return Evaluated(replace(about, doubts=doubts(about, runs)), runs, curves)
 
 
-def write(one: Evaluated, levels, output: Path, place, grids: Optional[str]) -> ensemble_types.Known:
+def write(one: Evaluated, levels: Thresholds, output: Path, place: Optional[Place],
+          grids: Optional[str]) -> ensemble_types.Known:
     """Tables and maps; what study.yaml says, with the entries of the maps. levels, place, grids: see ensemble.write."""
     runs = one.runs
     if runs is None:

@@ -15,7 +15,7 @@ KIND = "calibrated"
 NUMBER = 32             # of the sets, unless --sample says otherwise
 WHAT = "what `slope calibrate` wrote, with its sets"
 TEXTS = named(TEXT, 1)
-SCHEMA = mapping({"calibration": mapping({"variables": TEXTS}, balls_thick=MAYBE, set=named(TEXT)),
+SCHEMA = mapping({"calibration": mapping({"variables": TEXTS}, balls_thick=MAYBE, set=named(TEXT), model=named(TEXT)),
                   "sets": listed(TEXTS, 2)})
 
 
@@ -63,5 +63,6 @@ def sample(folder: Path, number: Optional[int], deck: Path, fixed: Mapping[str, 
         raise SlopeError("--sample", f"must be from {len(variables) + 1} to {len(different)} with --from {folder}, of "
                          "which that many sets differ", number)
     made = found["calibration"]
+    beside = {**made.get("model", {}), **made.get("set", {})}
     return Calibrated(number or min(NUMBER, len(different)), KIND, made.get("seed", 1), tuple(variables),
-                      made.get("balls_thick"), made.get("set", {}), tuple(different), disk.sha256(path))
+                      made.get("balls_thick"), beside, tuple(different), disk.sha256(path))

@@ -18,6 +18,8 @@ from ..tables import judged, quantities
 from ..tables.rows import Finished, Row, finished_of
 from . import calibration, fit_words, observations
 
+# variables of the package's decks that are of the law of contact or of the ground
+MODEL = "friction", "rolling", "restitution", "e", "field_e", "spacing", "pattern", "angle"
 SETS = 64               # sets of values that stand for the region
 DURATION = "duration"   # variable of a deck, its time limit
 DOUBLED = 3             # times, at most, where a run is not at rest then
@@ -111,7 +113,7 @@ class Fit:
         thick = body_depth.in_balls(self.setup, self.finished)
         about: Dict[str, Any] = {
             "calibration": {**plan.ledger.about, "runs": plan.number, "failed": len(failed), "balls_thick": thick,
-                            "package": self.work.package, "collected": provenance.now(),
+                            "model": self.model(), "package": self.work.package, "collected": provenance.now(),
                             "machine": provenance.machine()},
             "best": {"set": plan.ledger.points[plan.number - 1], "run": best.name,
                      "score": None if predicted is None else float(backanalysis.misfits(
@@ -177,6 +179,12 @@ class Fit:
     def gone(self) -> List[Finished]:
         """The runs that lost so much that they are left out."""
         return [row for row in self.finished if not self.observed.told_by(row)]
+
+    def model(self) -> Dict[str, str]:
+        """What else of the law of contact and of the ground the values were found with."""
+        values = self.finished[0].variables
+        return {name: values[name] for name in MODEL
+                if name in values and name not in {one.name for one in self.variables}}
 
     def known(self, found: backanalysis.Posterior, i: int) -> Dict[str, Any]:
         """What is known of a variable."""

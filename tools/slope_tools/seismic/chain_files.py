@@ -5,7 +5,7 @@ The mathematics are in chain.py; here are the checks, the tables, the entry of s
 import math
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import Any, Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -168,7 +168,7 @@ def of_size(size: Optional[study_types.Size], effect: Optional[Effect], largest:
     return found
 
 
-def table(head: Sequence[str], rows) -> str:
+def table(head: Sequence[str], rows: Iterable[Sequence[float]]) -> str:
     return disk.csv_text(head, ([f"{value:.6g}" for value in row] for row in rows))
 
 

@@ -6,12 +6,14 @@ from typing import Mapping, Optional
 from .. import disk
 from ..ensembles import ensemble
 from ..seismic import chain_files
+from ..survey.rasters import Place
 from ..tables import (answered, combinations, elastic, intensity, road_runs, structures, study_file, study_table,
                       study_types)
 from .outcome import Outcome
 
 
-def write(outcome: Outcome, about: study_types.Study, output: Path, place) -> study_types.Study:
+def write(outcome: Outcome, about: study_types.Study, output: Path,
+          place: Optional[Place]) -> study_types.Study:
     """All of them; what study.yaml says: about, with the maps of an ensemble. place: CRS and offset of maps, None
     without."""
     asked, read = outcome.questions, outcome.read

@@ -1,5 +1,6 @@
 """The runs of a study: read, evaluated (outcome), and shown in files and on the console, side by side."""
 from dataclasses import replace
+from pathlib import Path
 from shlex import quote
 from typing import Any, Dict, Mapping, Optional, Sequence
 
@@ -7,6 +8,7 @@ from .. import kept, provenance, records
 from ..case import run_folders
 from ..ensembles import ensemble, known_events, known_study
 from ..mobility.exceedance import Mobility
+from ..runs import jobs
 from ..runs.repeats import Repeat
 from ..statistics import conservative_volume
 from ..survey import roads
@@ -18,7 +20,7 @@ from .run_rows import placed, prefix_of, rows_of, terrain_of, terrain_place
 from .setup import Road, Setup
 
 
-def collect(setup: Setup, questions: Questions, todo, work) -> Optional[study_types.Study]:
+def collect(setup: Setup, questions: Questions, todo: Sequence[Repeat], work: jobs.Work) -> Optional[study_types.Study]:
     """Read the runs, evaluate them, write and tell what they say; what study.yaml says, None where no run of an
     ensemble finished."""
     if questions.order and all(run.error for run in todo):
@@ -48,7 +50,7 @@ def listed(several: Mapping[str, Sequence[str]]) -> study_types.Settings:
     return {name: list(values) for name, values in several.items()}
 
 
-def read(setup: Setup, questions: Questions, todo, rows: Sequence[Row], problem: Optional[str],
+def read(setup: Setup, questions: Questions, todo: Sequence[Repeat], rows: Sequence[Row], problem: Optional[str],
          defaults: Mapping[str, str]) -> Read:
     """What an Outcome is evaluated from; problem: why there are no maps over all runs."""
     rows, observed = mapped.compare(mapped.of_site(questions.site), setup.output, rows,
@@ -56,7 +58,7 @@ def read(setup: Setup, questions: Questions, todo, rows: Sequence[Row], problem:
     first, finished = next((run for run in todo if not run.error), None), finished_of(rows)
     row = finished[0] if finished else None
     events = mobility = fine = None
-    if row and setup.road:
+    if first and row and setup.road:
         events = events_of(setup, first, row, questions.among)
     if row and questions.order and questions.order.condition:
         summary = run_folders.summary_of(setup.output, row.summary)
@@ -101,7 +103,7 @@ def compared(setup: Setup, fine: Repeat, rows: Sequence[Row],
     return fine_run.Fine(row, coarse, body_depth.mean(setup, row), scatter)
 
 
-def events_of(setup: Setup, run, row: Finished, among: Mapping[str, Any]) -> Optional[usable.Events]:
+def events_of(setup: Setup, run: Repeat, row: Finished, among: Mapping[str, Any]) -> Optional[usable.Events]:
     """What known events did of the mass of a run, of its row."""
     summary = run_folders.summary_of(setup.output, row.summary)
     raster = placed(run_folders.load_raster(run_folders.prefix_of(summary), "thickness"), run)
@@ -116,7 +118,7 @@ def case_of(setup: Setup, questions: Questions, row: Finished) -> withheld_words
                                command=command)
 
 
-def write_road(output, road: Road, run) -> Dict[str, Any]:
+def write_road(output: Path, road: Road, run: Repeat) -> Dict[str, Any]:
     """Keep the road, in local metres, with the study; what study.yaml says of it."""
     raster = placed(run_folders.load_raster(prefix_of(run), "thickness"), run)
     roads.write(output / "road.csv", road.read(raster), raster)

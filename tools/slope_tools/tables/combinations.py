@@ -1,7 +1,7 @@
 """The runs of a study by combinations of choices: mean and scatter of each, and the conservative volume over all."""
 import itertools
 from dataclasses import dataclass, field
-from typing import Any, Dict, List, Mapping, Optional, Sequence
+from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from .. import disk
 from ..case.settings import as_number
@@ -14,6 +14,7 @@ from ..statistics.size_effect import Effect
 from . import quantities, study_types, withheld_words
 from .rows import Finished, Row, finished_of
 
+Settings = Mapping[str, Sequence[str]]          # values of what was chosen
 GROUND = ("pattern", "spacing", "angle")        # variables of decks that make another ground
 # runs that are the same in all of these are one run: two of chance never are
 SAME = ("released_m3", "centroid_m", "front_m", "max_speed_m_s", "remove_m3")
@@ -92,7 +93,8 @@ def label(chosen: Mapping[str, str], settings: Mapping[str, Sequence[str]]) -> s
 
 # --- the conservative volume ---
 
-def straight(settings: Mapping[str, Sequence[str]], groups: Sequence[Group], chosen: Mapping[str, str]):
+def straight(settings: Settings, groups: Sequence[Group],
+             chosen: Mapping[str, str]) -> Iterator[Tuple[str, List[Group]]]:
     """For each variable with several values: the groups that differ from a combination in this variable only."""
     for name, several in settings.items():
         if len(several) > 1:
@@ -101,7 +103,7 @@ def straight(settings: Mapping[str, Sequence[str]], groups: Sequence[Group], cho
                          if all(group.set[other] == value for other, value in rest.items())]
 
 
-def ground(settings: Mapping[str, Sequence[str]], group: Group) -> Optional[str]:
+def ground(settings: Settings, group: Group) -> Optional[str]:
     """Which of the grounds that were tried is that of a combination; None where there was one."""
     names = [name for name in GROUND if len(settings.get(name, ())) > 1]
     if not names:
@@ -117,7 +119,8 @@ FEW = 0.05      # of the largest volume of runs that differ by chance alone: les
 STANDS = 0.1    # of the largest travel of the centroid among them: less, and the slope did not fail
 
 
-def conservative(settings, rows, groups: Sequence[Group], effect: Optional[Effect] = None) -> study_types.Conservative:
+def conservative(settings: Settings, rows: Sequence[Row], groups: Sequence[Group],
+                 effect: Optional[Effect] = None) -> study_types.Conservative:
     """The entry of the conservative volume in study.yaml: its parts, what it is based on, its caveats (doubts).
 
     effect: of smaller balls on it.
@@ -150,7 +153,8 @@ def conservative(settings, rows, groups: Sequence[Group], effect: Optional[Effec
         withheld=[], zero=None)     # see usable.judge
 
 
-def doubts(settings, rows, groups: Sequence[Group], best: conservative_volume.ConservativeVolume,
+def doubts(settings: Settings, rows: Sequence[Row], groups: Sequence[Group],
+           best: conservative_volume.ConservativeVolume,
            differences: Sequence[study_types.Difference]) -> List[Finding]:
     """Reasons why the volume may be larger than the headline."""
     found = []
@@ -239,7 +243,7 @@ def describe(best: study_types.Conservative) -> List[str]:
 
     In its place why it is withheld, if it is.
     """
-    def number(value):
+    def number(value: Any) -> str:
         return rounding.text(value, best.place_m3)
 
     if best.withheld:

@@ -122,9 +122,8 @@ def table(about: study_types.Intensity) -> str:
     """The CSV: a row for each point."""
     columns = ("runs", "mean_m3", "scatter_m3", "smallest_m3", "largest_m3", "share_of_released")
 
-    def numbers(one: study_types.Point):
-        return (one.runs, one.mean_m3, one.scatter_m3, one.smallest_m3, one.largest_m3,
-                one.share_of_released)
+    def numbers(one: study_types.Point) -> Tuple[Optional[float], ...]:
+        return (one.runs, one.mean_m3, one.scatter_m3, one.smallest_m3, one.largest_m3, one.share_of_released)
     volumes = [f"{volume:g}" for volume in about.more_than_m3]
     return disk.csv_text(
         [*about.lines[0].set, about.variable, *columns,

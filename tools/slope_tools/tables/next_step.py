@@ -41,7 +41,7 @@ class Step(NamedTuple):
         """For study.yaml."""
         return study_types.NextStep(*self)
 
-    def __str__(self):
+    def __str__(self) -> str:
         return f"next step: {self.text}{self.time}: {self.command}"
 
 

@@ -3,7 +3,7 @@
 A stretch of a study is a largest range of chainages each of which a run blocks. A run that does not block it takes
 nothing there. Quantiles are of the runs, by their weights: the value that 5, 50 or 95 % of them stay within.
 """
-from typing import Any, Dict, List, Mapping, NamedTuple, Sequence
+from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Sequence
 
 import numpy as np
 
@@ -35,7 +35,7 @@ def evaluate(runs: Sequence[Run]) -> study_types.Stretches:
                                  [stretch(span, runs, weights) for span in spans], shares(blocked, weights))
 
 
-def stretch(span: Span, runs: Sequence[Run], weights) -> Dict[str, Any]:
+def stretch(span: Span, runs: Sequence[Run], weights: np.ndarray) -> Dict[str, Any]:
     """Of a range of chainages (m): the share of the runs that block any of it, and the quantiles of what it takes."""
     inside = [[one for one in run.stretches if span.low - SAME <= one["from"] <= span.high + SAME] for run in runs]
     numbers = [{"length": sum(one["to"] - one["from"] for one in several),
@@ -46,12 +46,12 @@ def stretch(span: Span, runs: Sequence[Run], weights) -> Dict[str, Any]:
             **quantiles(numbers, weights)}
 
 
-def quantiles(numbers: Sequence[Mapping[str, float]], weights) -> Dict[str, List[float]]:
+def quantiles(numbers: Sequence[Mapping[str, float]], weights: np.ndarray) -> Dict[str, List[float]]:
     """Of each number of the runs, in the order of SHARES."""
     return {name: weighted(np.array([one[name] for one in numbers]), weights, SHARES) for name in numbers[0]}
 
 
-def shares(blocked: Sequence[np.ndarray], weights) -> List[List[float]]:
+def shares(blocked: Sequence[np.ndarray], weights: np.ndarray) -> List[List[float]]:
     """From, to (m) and the share of the runs that block the road there, where any does; of neighbours it differs."""
     ends = np.unique(np.concatenate([one.ravel() for one in blocked]))
     found: List[List[float]] = []
@@ -65,7 +65,7 @@ def shares(blocked: Sequence[np.ndarray], weights) -> List[List[float]]:
     return found
 
 
-def rows(about: study_types.Stretches):
+def rows(about: study_types.Stretches) -> Iterator[List[Any]]:
     """Names, then a line for each stretch of evaluate(); of the last one, all of them, the range is empty."""
     names = [name for name in ("length", "passable_width", *SUMS) if name in about.totals or
              name == "passable_width" and about.stretches]

@@ -83,7 +83,7 @@ class Study(NamedTuple):
                 return run_folders.prefix_of(run_folders.summary_of(self.folder, row["summary"]))
         raise SlopeError(self.folder, "must have a finished run of that name", run)
 
-    def frame(self):
+    def frame(self) -> Any:
         """study.csv as a pandas.DataFrame: a row for each run, by its name."""
         try:
             import pandas

@@ -33,7 +33,7 @@ class Events(NamedTuple):
         return answer.Road(self.near, self.far, self.reached, self.passed, longest(rows), at_the_road(rows))
 
 
-def known_events(prefix: Path, terrain: Optional[Path], road, about: Mapping[str, Any]) -> Optional[Events]:
+def known_events(prefix: Path, terrain: Optional[Path], road: Any, about: Mapping[str, Any]) -> Optional[Events]:
     """Those of a run; None where it has no fall path.
 
     prefix: of its deposit; terrain: the ground before it; road: polygons in local metres; about: of the events, see
