@@ -29,7 +29,7 @@ def shake(tmp_path, deck=DECK, **variables):
 
 
 def lost(log):
-    """(time, way of the centroid) at which strength is lost."""
+    """(time, travel of the centroid) at which strength is lost."""
     return [tuple(map(float, pair)) for pair in
             re.findall(r"^Strength is lost after (\S+) s, the centroid has moved (\S+) m", log, re.MULTILINE)]
 

@@ -168,7 +168,7 @@ def test_contact_time_and_largest_overlap(tmp_path):
 
 
 def test_limit_damping(tmp_path):
-    """A force that never pulls lets go where it is zero (Schwager & Poeschel 2007): e above the formula's."""
+    """A force that never pulls ends where it is zero (Schwager & Poeschel 2007): e above the formula's."""
     zeta = -math.log(0.3) / math.hypot(math.pi, math.log(0.3))
     root = math.sqrt(1 - zeta ** 2)
     limited = math.exp(-zeta / root * (math.pi - math.atan2(2 * zeta * root, 1 - 2 * zeta ** 2)))

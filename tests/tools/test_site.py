@@ -253,8 +253,9 @@ def test_both_studies_give_one_number(done, tmp_path, monkeypatch, capsys, fitte
             patch.setattr(study_command, "run_deck", how)
             assert cli.main(["study", "mine"]) == 2
         assert says in capsys.readouterr().err
-        assert cli.main(["report", "mine"]) == 2
-        assert "must hold the study of this site" in capsys.readouterr().err
+        for command in (["report", "mine"], ["export", "mine", "-o", "gis"]):
+            assert cli.main(command) == 2
+            assert "must hold the study of this site" in capsys.readouterr().err
         assert not list(mine.glob("*/study.yaml"))
 
 

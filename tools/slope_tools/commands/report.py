@@ -8,7 +8,6 @@ import argparse
 from dataclasses import dataclass
 from pathlib import Path
 from typing import List, Optional
-from shlex import quote
 
 from ..case import run_folders
 from ..errors import SlopeError
@@ -82,8 +81,7 @@ def study_of(folder: Path) -> Path:
     if not (folder / SITE).is_file():
         return folder
     if not run_folders.summaries(folder):
-        raise SlopeError(folder, f"must hold the study of this site: `slope study {quote(str(folder))}` makes it and "
-                         "the report", f"no {folder / answered.INSIDE[0] / answered.STUDY}")
+        raise answered.without_study(folder)
     return folder
 
 

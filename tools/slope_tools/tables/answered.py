@@ -2,9 +2,11 @@
 import datetime
 import functools
 from pathlib import Path
+from shlex import quote
 from typing import Any, List, Mapping, Optional, Sequence
 
 from .. import schemas
+from ..errors import SlopeError
 from ..findings import Finding
 from ..schemas import OBJECT, mapping
 from ..statistics import answer, size_family
@@ -105,6 +107,12 @@ def study_in(folder: Path) -> Optional[Path]:
         return folder
     found = governing(*(folder / name for name in INSIDE))
     return found if (found / STUDY).is_file() else None
+
+
+def without_study(site: Path) -> SlopeError:
+    """Of the folder of a site whose study is asked for and not made yet."""
+    return SlopeError(site, f"must hold the study of this site: `slope study {quote(str(site))}` makes it and the "
+                      "report", f"no {site / INSIDE[0] / STUDY}")
 
 
 def made(about: Mapping[str, Any]) -> datetime.datetime:

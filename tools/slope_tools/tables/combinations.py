@@ -156,7 +156,7 @@ def conservative(settings: Settings, rows: Sequence[Row], groups: Sequence[Group
 def doubts(settings: Settings, rows: Sequence[Row], groups: Sequence[Group],
            best: conservative_volume.ConservativeVolume,
            differences: Sequence[study_types.Difference]) -> List[Finding]:
-    """Reasons why the volume may be larger than the headline."""
+    """Reasons why the volume may be larger than the conservative one."""
     found = []
     finished = finished_of(rows)
     if len(rows) == 1:

@@ -6,9 +6,10 @@ from typing import NamedTuple, Optional, Sequence, Tuple, Union
 from ..case.run_folders import OF_RUN, RASTERS, prefix_of, summaries, summary_of
 from ..deposits import travel_shares
 from ..errors import SlopeError
+from ..sites import site_choices
 from ..statistics.entries import KnownQuantile, Quantile
 from . import ensemble_types, study_types
-from .answered import STUDY, study_in
+from .answered import STUDY, study_in, without_study
 from .rows import Finished, finished_of
 from .study_file import load_study
 
@@ -97,6 +98,8 @@ def read(name: str) -> Named:
     if len(here) > 1:
         raise SlopeError(path, "must hold one run, or name one of them by its prefix",
                          ", ".join(str(prefix_of(one)) for one in here[:3]) + ", ..." * (len(here) > 3))
+    if not here and (path / site_choices.NAME).is_file():
+        raise without_study(path)
     if not here:
         raise SlopeError(path, f"must be {OF_RUN}: it holds neither a PREFIX.summary.yaml nor a study.yaml")
     return Named(str(prefix_of(here[0])), path)
