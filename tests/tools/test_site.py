@@ -248,7 +248,7 @@ def test_both_studies_give_one_number(done, tmp_path, monkeypatch, capsys, fitte
     # a first study, too: the paper's number alone is never the site's
     for name in ("study", "ensemble"):
         (mine / name / "study.yaml").unlink()
-    for how, says in ((fails, "x: must fail"), (no_run_finishes, "mine: has no number without its ensemble")):
+    for how, says in ((fails, "x: must fail"), (no_run_finishes, "mine: must have an ensemble for its number")):
         with monkeypatch.context() as patch:
             patch.setattr(study_command, "run_deck", how)
             assert cli.main(["study", "mine"]) == 2

@@ -164,8 +164,8 @@ def run_both(args: Request, asked: Site, points: int) -> Made:
                                         known_study.WEIGHTED))
     except RunsFailed as error:     # the others count
         if error.found is None:
-            raise SlopeError(asked.folder, "has no number without its ensemble, but by the paper's method alone "
-                             f"(--paper): {error}") from None
+            raise SlopeError(asked.folder, "must have an ensemble for its number, --paper makes that of the paper's "
+                             f"method alone: {error}") from None
         failed, weighted = failed or error, error.found
     if paper.about is None or weighted is None:         # of a dry run
         return Made((), None)

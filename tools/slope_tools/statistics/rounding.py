@@ -1,7 +1,7 @@
 """Numbers rounded to what is known of them: to a power of ten, by their uncertainty or to three digits."""
 import math
 
-DIGITS = 3              # of a value whose scatter is unknown
+from ..digits import SIGNIFICANT
 
 
 def place(uncertainty: float) -> float:
@@ -11,7 +11,7 @@ def place(uncertainty: float) -> float:
 
 def place_of_digits(value: float) -> float:
     """The power of ten that leaves three digits of a value; 1 of 0."""
-    return 10.0 ** (math.floor(math.log10(abs(value)) + 1e-9) - DIGITS + 1) if value else 1.0
+    return 10.0 ** (math.floor(math.log10(abs(value)) + 1e-9) - SIGNIFICANT + 1) if value else 1.0
 
 
 def up(value: float, step: float) -> float:

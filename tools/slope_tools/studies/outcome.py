@@ -20,7 +20,7 @@ from ..tables import (answered, combinations, elastic, ensemble_types, fine_run,
 from ..tables.rows import Finished, Row, finished_of
 
 # variables that calibrated values do not depend on: chance, time, what is written; of the size of the balls see LIKE
-OF_ITS_OWN = ("d", "duration", "step", "steps", "packing", "seed", "ground_seed", "xoffset", "yoffset", "film", "out",
+OF_ITS_OWN = ("d", "duration", "step", "packing", "seed", "ground_seed", "xoffset", "yoffset", "film", "out",
               "ledger", "each", "cell")
 LIKE = 1.5              # times as many balls over the thickness: values found with fewer, or more, are of another model
 

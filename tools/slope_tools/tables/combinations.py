@@ -7,14 +7,13 @@ from .. import disk
 from ..case.settings import as_number
 from ..findings import Finding, texts
 from ..runs import jobs
-from ..runs.repeats import key_of
+from ..runs.repeats import Settings, key_of
 from ..statistics import conservative_volume, rounding
 from ..statistics.conservative_volume import Combination, Scatter
 from ..statistics.size_effect import Effect
 from . import quantities, study_types, withheld_words
 from .rows import Finished, Row, finished_of
 
-Settings = Mapping[str, Sequence[str]]          # values of what was chosen
 GROUND = ("pattern", "spacing", "angle")        # variables of decks that make another ground
 # runs that are the same in all of these are one run: two of chance never are
 SAME = ("released_m3", "centroid_m", "front_m", "max_speed_m_s", "remove_m3")

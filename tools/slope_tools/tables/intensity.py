@@ -6,7 +6,7 @@ than a volume v: P(V > v) is k/n, with the interval of Clopper and Pearson (Biom
 """
 import math
 import re
-from typing import Dict, List, Mapping, Optional, Sequence, Tuple
+from typing import Dict, List, Optional, Sequence, Tuple
 
 from rich.table import Table
 
@@ -15,6 +15,7 @@ from ..digits import chance
 from ..case.settings import as_number
 from ..errors import SlopeError
 from ..findings import Finding
+from ..runs.repeats import Settings
 from ..statistics import hazard
 from . import study_types
 from .combinations import Group, stood
@@ -25,8 +26,6 @@ CONFIDENCE = 0.95       # of the interval of a probability
 DEFAULTS = 3            # volumes, if none are given
 FILE = "intensity.csv"
 REACHES = 0.01          # of the released volume: less on the road, and the mass has not reached it
-
-Settings = Mapping[str, Sequence[str]]
 
 
 def check(named: Optional[str], settings: Settings, road: bool) -> Optional[str]:
