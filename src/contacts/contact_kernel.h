@@ -44,6 +44,13 @@ struct ContactBits {
   std::uint64_t solved;      // has a row: see ContactView
 };
 
+// some contacts of a list: their numbers, and a copy of each; room for all, and three more
+struct NearContacts {
+  int *numbers;
+  ContactEntry *entries;
+  size_t size;
+};
+
 // a contact list as the kernels see it: pointers, so that no template of the standard library is compiled for an
 // instruction set that the processor may not have, and then chosen by the linker for all
 struct ContactView : ContactSizes {
@@ -55,6 +62,11 @@ struct ContactView : ContactSizes {
   double *const *histories;    // HISTORY values of each
   size_t size, blocks;
   ContactBits *bits;
+
+  // what a first pass looks at: all; all, and notes those with a smaller gap than the room (m); these alone
+  enum Look { ALL, NOTE, NOTED } look;
+  double room;
+  NearContacts *near;
 
   // if not equal, the numbers of the row of each contact that has a force (contact_rows.h), and the contacts whose
   // row is still to be solved for
@@ -86,6 +98,10 @@ struct ContactKernel {
   Find<FixedPartners> find_fixed;
   Apply<MovingPartners> apply_moving;
   Apply<FixedPartners> apply_fixed;
+
+  // whether one of n numbers differs from what it was by more than that
+  bool (*moved)(const double *now, const double *was, size_t n, double most);
+
   // First pass: which contacts touch, as bits, and the balls' numbers of contacts. repeat: what touched in
   // the step that has just ended.
   void find(const ContactView &v, bool repeat, const MovingBalls &b, const MovingPartners &p) const

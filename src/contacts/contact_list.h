@@ -15,6 +15,7 @@
 #include "contact_geometry.h"
 #include "contact_kernel.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <vector>
@@ -42,6 +43,8 @@ class ContactList : public ContactSizes {
     equal = true;
     varying = false;
     forget_rows();
+    watched = 0;
+    seen.clear();
   }
 
   // has_history: the contact touched a step ago, or ended in it; then its history is there
@@ -68,6 +71,10 @@ class ContactList : public ContactSizes {
     varying = true;
   }
 
+  // The partners stand still, and most are out of reach: all are looked at again when one of so many balls, the
+  // first ones, has moved. Until the next neighbor list.
+  void watch(int balls) { watched = balls; }
+
   // contact k has a history
   void set_history(size_t k)
   {
@@ -92,8 +99,9 @@ class ContactList : public ContactSizes {
   {
     return entries.capacity() * sizeof(Entry) + histories.capacity() * sizeof(double *) +
         bits.capacity() * sizeof(ContactBits) + flags.capacity() * sizeof(int *) +
-        (row_numbers.capacity() + unsolved.capacity()) * sizeof(int) +
-        rows.capacity() * sizeof(double);
+        (row_numbers.capacity() + unsolved.capacity() + near_numbers.capacity()) * sizeof(int) +
+        rows.capacity() * sizeof(double) + near_entries.capacity() * sizeof(Entry) +
+        seen.capacity() * sizeof(Vector);
   }
 
   // Contacts that overlap although they did not touch a step ago, before the first step:
@@ -117,7 +125,10 @@ class ContactList : public ContactSizes {
   template <class Partners>
   void find(bool repeat, const MovingBalls &balls, const Partners &partners)
   {
-    if (!entries.empty()) ContactKernels::current().find(view(), repeat, balls, partners);
+    if (entries.empty()) return;
+    ContactView v = view();
+    if (!Partners::MOVE && watched > 0 && !repeat) look_near(v, balls.x);
+    ContactKernels::current().find(v, repeat, balls, partners);
   }
 
   void store_flags() const
@@ -139,6 +150,44 @@ class ContactList : public ContactSizes {
   static constexpr int BLOCK = ContactView::BLOCK;
 
   std::vector<ContactBits> bits;
+
+  // Of a watched list: how many of the balls are watched; where they were when all contacts were looked at, how many
+  // steps ago, and the contacts whose gaps were smaller than the room (m), which alone are looked at until a ball has
+  // moved by that. The room follows how fast the balls are.
+  int watched, steps = 0;
+  std::vector<Vector> seen;
+  double room = 0.0;
+  NearContacts near = {nullptr, nullptr, 0};
+  std::vector<int> near_numbers;
+  std::vector<Entry> near_entries;
+  static constexpr double LEAST_ROOM = 0.01, MOST_ROOM = 0.15;    // of the distance of the centres
+  static constexpr int OFTEN = 8, SELDOM = 32;                    // steps
+
+  void look_near(ContactView &v, const Vector *x)
+  {
+    static constexpr double COORDINATE = 0.57;    // of a way, < 1/sqrt(3)
+    const size_t numbers = 3 * static_cast<size_t>(watched);
+    const bool noted = !seen.empty() &&
+        !ContactKernels::current().moved(&x->x, &seen[0].x, numbers, COORDINATE * room);
+    if (!noted) note_anew(x);
+    steps++;
+    v.look = noted ? ContactView::NOTED : ContactView::NOTE;
+    v.room = room;
+    v.near = &near;
+  }
+
+  void note_anew(const Vector *x)
+  {
+    const double reach = radius_i + radius_j;
+    if (!seen.empty() && steps < OFTEN) room *= 1.5;
+    if (steps > SELDOM) room /= 1.5;
+    room = std::max(LEAST_ROOM * reach, std::min(room, MOST_ROOM * reach));
+    steps = 0;
+    seen.assign(x, x + watched);
+    near_numbers.resize(entries.size() + 3);
+    near_entries.resize(entries.size() + 3);
+    near = {near_numbers.data(), near_entries.data(), 0};
+  }
 
   // where the balls are unequal: see ContactView
   bool varying;

@@ -31,11 +31,19 @@ class ContactPasses : ContactView {
   template <class Partners>
   void find(bool repeat, const MovingBalls &balls, const Partners &partners)
   {
+    const bool noted = !Partners::MOVE && look == NOTED && !repeat;
+    if (noted) {
+      if (equal)
+        look_at_noted<double>(balls, partners);
+      else
+        look_at_noted<Four>(balls, partners);
+    }
+    if (look == NOTE) near->size = 0;
     for (size_t block = 0; block < blocks; block++) {
-      if (!repeat) {
+      if (!repeat && !noted) {
         bits[block].before = bits[block].touching;
-        bits[block].touching = equal ? touching_bits<double>(block, balls, partners)
-                                     : touching_bits<Four>(block, balls, partners);
+        bits[block].touching = equal ? look_at<double>(block, balls, partners)
+                                     : look_at<Four>(block, balls, partners);
       }
       count(block, bits[block].touching, balls, partners);
     }
@@ -212,15 +220,50 @@ class ContactPasses : ContactView {
       std::memset(histories[block * BLOCK + __builtin_ctzll(left)], 0, HISTORY * sizeof(double));
   }
 
-  // a bit of each contact of a block that touches
   template <class N, class Partners>
+  SLOPE_INLINE std::uint64_t look_at(size_t block, const MovingBalls &balls,
+                                     const Partners &partners) const
+  {
+    if (!Partners::MOVE && look == NOTE) return touching_bits<N, true>(block, balls, partners);
+    return touching_bits<N, false>(block, balls, partners);
+  }
+
+  // of the contacts that were near, sets the bits of those that touch
+  template <class N, class Partners>
+  SLOPE_INLINE void look_at_noted(const MovingBalls &balls, const Partners &partners)
+  {
+    for (size_t block = 0; block < blocks; block++) {
+      bits[block].before = bits[block].touching;
+      bits[block].touching = 0;
+    }
+    const double same = touching(radius_i, radius_j);
+    const size_t size = near->size;
+    for (size_t k = size; k < size + 3; k++) near->entries[k] = near->entries[size ? size - 1 : 0];
+    for (size_t start = 0; start < size; start += 4) {
+      const Entry *e = near->entries + start;
+      N reach = all<N>(same);
+      find_reach(e, balls, partners, reach);
+      Four d[3];
+      find_distances(e, balls, partners, d);
+      const Four rsq = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+      unsigned found = static_cast<unsigned>(Slope::bits(rsq < reach * reach));
+      if (start + 4 > size) found &= (1u << (size - start)) - 1;
+      for (; found; found &= found - 1) {
+        const int k = near->numbers[start + __builtin_ctz(found)];
+        bits[k / BLOCK].touching |= std::uint64_t(1) << (k % BLOCK);
+      }
+    }
+  }
+
+  // a bit of each contact of a block that touches; those that are near are noted
+  template <class N, bool NOTED_TOO, class Partners>
   SLOPE_INLINE std::uint64_t touching_bits(size_t block, const MovingBalls &balls,
                                            const Partners &partners) const
   {
     const size_t start = block * BLOCK;
     const int listed = static_cast<int>(std::min<size_t>(BLOCK, size - start));
     const double same = touching(radius_i, radius_j);
-    std::uint64_t now = 0;
+    std::uint64_t now = 0, close = 0;
     const Entry *e = &entries[start];
     Entry padded[BLOCK];
     if (listed < BLOCK) {    // the last one stands for those that are missing
@@ -236,9 +279,18 @@ class ContactPasses : ContactView {
       find_distances(&e[k], balls, partners, d);
       const Four rsq = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
       now |= static_cast<std::uint64_t>(Slope::bits(rsq < reach * reach)) << k;
+      if (!NOTED_TOO) continue;
+      const N wide = reach + room;
+      close |= static_cast<std::uint64_t>(Slope::bits(rsq < wide * wide)) << k;
     }
-    if (listed < BLOCK) now &= (std::uint64_t(1) << listed) - 1;
-    return now;
+    const std::uint64_t there = listed < BLOCK ? (std::uint64_t(1) << listed) - 1
+                                               : ~std::uint64_t(0);
+    for (std::uint64_t left = close & there; left; left &= left - 1) {
+      const int k = __builtin_ctzll(left);
+      near->numbers[near->size] = static_cast<int>(start) + k;
+      near->entries[near->size++] = e[k];
+    }
+    return now & there;
   }
 
   template <class Partners> SLOPE_INLINE void prefetch(int k, const Partners &partners) const
@@ -545,6 +597,21 @@ class ContactPasses : ContactView {
   }
 };
 
+// see ContactKernel
+inline bool any_moved(const double *now, const double *was, size_t n, double most)
+{
+  size_t k = 0;
+  Four farthest = Four();
+  for (; k + 4 <= n; k += 4) {
+    const Four d = four(now + k) - four(was + k);
+    farthest = larger(farthest, larger(d, Four(-d)));
+  }
+  double all = 0.0;
+  for (int m = 0; m < 4; m++) all = larger(all, farthest[m]);
+  for (; k < n; k++) all = larger(all, std::fabs(now[k] - was[k]));
+  return !(all <= most);
+}
+
 template <class Partners>
 void find_contacts(const ContactView &view, bool repeat, const MovingBalls &balls,
                    const Partners &partners)
@@ -569,7 +636,7 @@ void apply_contacts(const ContactView &view, const ContactLaw &law, double dt, b
 #define SLOPE_CONTACT_KERNEL                                                                     \
   {                                                                                              \
     find_contacts<MovingPartners>, find_contacts<FixedPartners>, apply_contacts<MovingPartners>, \
-        apply_contacts<FixedPartners>                                                            \
+        apply_contacts<FixedPartners>, any_moved                                                 \
   }
 
 #endif

@@ -29,6 +29,8 @@ using namespace FixConst;
 using namespace Slope;
 
 static constexpr double SAME_SIZE = 1.0e-9;
+static constexpr int MANY =
+    4;    // fixed balls listed for each moving one: most of them out of its reach
 
 /* ----------------------------------------------------------------------
    fix ID group wall/gran/balls TYPE DIAMETER surface|file ...
@@ -218,8 +220,11 @@ void FixWallGranBalls::post_neighbor()
     error->one(FLERR, "{}: must be fewer than {}: larger fixed balls, or more ranks", caller,
                e.what());
   }
-  if (pair->sizes_vary)
-    for (ContactList &l : lists) l.let_vary();
+  for (ContactList &l : lists)
+    if (pair->sizes_vary)
+      l.let_vary();
+    else if (l.entries.size() > static_cast<size_t>(MANY) * atom->nlocal)
+      l.watch(atom->nlocal);
 }
 
 /* ---------------------------------------------------------------------- */

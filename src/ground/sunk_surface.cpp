@@ -356,10 +356,20 @@ bool SunkSurface::height(double x, double y, double &lowest) const
     cy = py_;
   };
 
-  // the column below is close to the best, and leaves few that may be better
+  // the ball touches the plane of the columns below it close to the best column, and then few others may be better
 
-  const int inear = static_cast<int>((x - xlo) / px), jnear = static_cast<int>((y - ylo) / py);
-  if (has(inear, jnear)) touch(column_x(inear), column_y(jnear), z.get(inear, jnear));
+  auto try_column = [&](double i, double j) {
+    const int at_i = std::min(std::max(static_cast<int>(i), 0), nx - 1);
+    const int at_j = std::min(std::max(static_cast<int>(j), 0), ny - 1);
+    if (has(at_i, at_j)) touch(column_x(at_i), column_y(at_j), z.get(at_i, at_j));
+  };
+  double below, east, north;    // height, and slopes towards these
+  if (patch(x, y, below, east, north)) {
+    const double length = std::sqrt(1.0 + east * east + north * north);
+    try_column((x - sink * east / length - xlo) / px + 0.5,
+               (y - sink * north / length - ylo) / py + 0.5);
+  }
+  try_column((x - xlo) / px, (y - ylo) / py);
 
   const int jlo = std::max(0, static_cast<int>(std::ceil((y - sink - ylo) / py)));
   const int jhi = std::min(ny - 1, static_cast<int>((y + sink - ylo) / py));
@@ -370,8 +380,12 @@ bool SunkSurface::height(double x, double y, double &lowest) const
     for (int i = ilo, next; i <= ihi; i = next) {
       const double *height = z.run(i, j, ihi + 1, next);
       if (!height) continue;
-      for (int k = i; k < next; k++)
-        if (height[k - i] - half < lowest) touch(column_x(k), column_y(j), height[k - i]);
+      double least = lowest + half;
+      for (int k = i; k < next; k++) {
+        if (!(height[k - i] < least)) continue;
+        touch(column_x(k), column_y(j), height[k - i]);
+        least = lowest + half;
+      }
     }
   }
   const int bx = static_cast<int>((x - xlo) / sink), by = static_cast<int>((y - ylo) / sink);

@@ -53,7 +53,7 @@ template <typename Value> class SparsePlane {
   // rest. next: where they end.
   const Value *run(int i, int j, int end, int &next) const
   {
-    next = std::min(end, (i / SIDE + 1) * SIDE);
+    next = std::min(end, static_cast<int>((i / SIDE + 1) * SIDE));
     const Square *square = squares[number(i, j)].get();
     return square ? &(*square)[inner(i, j)] : nullptr;
   }
@@ -70,14 +70,15 @@ template <typename Value> class SparsePlane {
   }
 
  private:
-  static constexpr int SIDE = 64;
+  static constexpr unsigned SIDE = 64;
   typedef std::vector<Value> Square;
   int nx = 0, ny = 0, wide = 0;
   Value rest = Value();
   std::vector<std::unique_ptr<Square>> squares;
 
-  size_t number(int i, int j) const { return static_cast<size_t>(j / SIDE) * wide + i / SIDE; }
-  static size_t inner(int i, int j) { return static_cast<size_t>(j % SIDE) * SIDE + i % SIDE; }
+  // i, j >= 0: without a sign a division by SIDE is a shift
+  size_t number(unsigned i, unsigned j) const { return size_t(j / SIDE) * wide + i / SIDE; }
+  static size_t inner(unsigned i, unsigned j) { return size_t(j % SIDE) * SIDE + i % SIDE; }
 };
 
 // the surface that is sunk, column by column; called only while the sunk one is made

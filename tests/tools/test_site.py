@@ -672,17 +672,18 @@ def test_the_time_step_is_the_decks(done):
 @pytest.mark.parametrize("per_step, skin", [(1e-5, 0.2), (0.0016, 0.2), (0.0036, 0.3), (0.0100, 0.5), (0.0144, 0.6),
                                             (1, 0.6)])
 def test_the_skin_of_neighbor_lists_follows_speed_and_step(tmp_path, per_step, skin):
-    """By the diameters that the fastest ball moves in a step, as the deck reckons."""
-    template = (Path(site_deck.__file__).parent / site_deck.TEMPLATE).read_text()
-    rule = re.findall(r"^variable +(?:thicker|skin) .*", template, re.MULTILINE)
+    """By the diameters that the fastest ball moves in a step, as the deck reckons; bins hold what the list reaches."""
+    template = (Path(site_deck.__file__).parent / site_deck.TEMPLATE).read_text().replace("{{ bins }}", "1.25")
+    rule = re.findall(r"^variable +(?:thicker|skin|reach|wide|bin) .*", template, re.MULTILINE)
     d, speed = 2.5, 40.0
     (tmp_path / "in.skin").write_text("\n".join([
         f"variable d index {d}", f"variable speed index {speed}",
         f"variable dt equal {per_step * d / speed:.17g}", *rule,
-        'print "skin $(v_skin:%.10g)" file skin.txt']) + "\n")
+        'print "$(v_skin:%.10g) $(v_bin:%.10g)" file skin.txt']) + "\n")
     subprocess.run([LMP, "-in", "in.skin", "-log", "none"], cwd=tmp_path, check=True, stdin=subprocess.DEVNULL,
                    stdout=subprocess.DEVNULL)
-    assert float((tmp_path / "skin.txt").read_text().split()[1]) == pytest.approx(skin * d, rel=1e-6)
+    found = [float(word) for word in (tmp_path / "skin.txt").read_text().split()]
+    assert found == pytest.approx([skin * d, max(1.25, 1 + skin) * d], rel=1e-6)
 
 
 # --- bad input: one line that names file, item, rule and value; no folder ---

@@ -373,6 +373,61 @@ TEST_P(ContactLists, FixedContactsOfABall)
   EXPECT_NEAR(up[1], up[2], 1e-9 * up[2]);
 }
 
+// A watched list looks at few of its contacts, and sees the same: of balls that creep, fly and jump over dense ground
+TEST_P(ContactLists, WatchedSeesWhatAllSee)
+{
+  for (bool different : {false, true}) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> u(-1.0, 1.0);
+    std::vector<Vector> ground, x;
+    std::vector<double> radius, on_ground;
+    for (int k = 0; k < 900; k++) {
+      ground.push_back({0.04 * (k % 30) + 0.01 * u(random), 0.04 * (k / 30) + 0.01 * u(random), 0.01 * u(random)});
+      on_ground.push_back(different ? 0.1 + 0.01 * u(random) : 0.1);
+    }
+    for (int b = 0; b < 41; b++) {
+      x.push_back({0.6 + 0.5 * u(random), 0.6 + 0.5 * u(random), 0.2 + 0.01 * u(random)});
+      radius.push_back(different ? 0.1 + 0.01 * u(random) : 0.1);
+    }
+    const std::vector<Vector> still(x.size(), {0.0, 0.0, 0.0});
+    const std::vector<double> mass(x.size(), MASS);
+    std::vector<unsigned char> count(x.size()), watched_count(x.size());
+    std::vector<FixedContacts> fixed(x.size()), watched_fixed(x.size());
+    const MovingBalls balls = {x.data(), still.data(), still.data(), radius.data(), mass.data(), nullptr, nullptr,
+                               still.data(), count.data(), fixed.data()};
+    MovingBalls same = balls;
+    same.count = watched_count.data();
+    same.fixed = watched_fixed.data();
+    ContactList list, watched;
+    for (int b = 0; b < 41; b++)
+      for (int k = 0; k < 900; k++)
+        for (ContactList *l : {&list, &watched})
+          l->add(b, k, nullptr, false, radius[b], on_ground[k], MASS, 1.0);
+    watched.watch(41);
+
+    const FixedPartners wall(ground.data(), on_ground.data(), FixedPartners::EACH);
+    int began = 0, ended = 0;
+    for (int step = 0; step < 400; step++) {
+      const double way = step < 200 ? 2e-5 : 2e-3;    // m, of a step
+      for (Vector &at : x) at = {at.x + way * u(random), at.y + way * u(random), at.z + way * u(random)};
+      if (step % 50 == 49) x[step % 41].z = 0.2 + 0.02 * u(random);
+      std::vector<bool> before;
+      for (size_t k = 0; k < list.entries.size(); k++) before.push_back(list.touches(k));
+      list.find(false, balls, wall);
+      watched.find(false, same, wall);
+      for (size_t k = 0; k < list.entries.size(); k++) {
+        ASSERT_EQ(watched.touches(k), list.touches(k)) << "contact " << k << " in step " << step;
+        began += list.touches(k) && !before[k];
+        ended += before[k] && !list.touches(k);
+      }
+      ASSERT_EQ(watched_count, count);
+    }
+    EXPECT_GT(began, 1000);
+    EXPECT_GT(ended, 1000);
+    EXPECT_GT(watched.memory_usage(), list.memory_usage());    // it has noted some
+  }
+}
+
 // two balls of the paper, and a third that may touch the first
 struct Trio {
   Vector x[3], v[3], omega[3], ahead[3], before[3], f[3], torque[3];

@@ -21,7 +21,7 @@ ROLLING = 0.05          # of a run by hand; a deck has no value of a list, so th
 REST = 0.02             # share of the mass that may be faster than 0.1 m/s in a deposit at rest
 FRAMES = 40             # snapshots of a run, about
 BINS = 1000             # of the neighbor list for a ball, at most: each is cleared whenever the list is built
-REACH, WIDEST = 1.2, 5.0        # diameters: of the neighbor list; wider bins gain no more, and cost in a dense mass
+LEAST, WIDEST = 1.2, 5.0        # diameters: of these bins; wider ones gain no more, and cost in a dense mass
 STEEPER = 7.0           # degrees: default of a strength that holds a body, above the slope of its slip surface
 LEAST_PEAK, MOST_PEAK = 33.0, 80.0
 # what the variables of a zone are
@@ -137,7 +137,7 @@ def limited(name: str, low: str, high: str) -> str:
 def bins(room: float, volume: float) -> str:
     """Side of the neighbor list's bins (diameters) in a box around the ground (m3); "": the list's reach, as usual."""
     side = (room / (BINS * volume)) ** (1 / 3)
-    return f"{min(side, WIDEST):.3g}" if side > REACH else ""
+    return f"{min(side, WIDEST):.3g}" if side > LEAST else ""
 
 
 def plain(value: float) -> str:
