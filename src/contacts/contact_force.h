@@ -303,6 +303,18 @@ template <class T, class N> SLOPE_INLINE T acting_together(const ContactStepOf<N
   return choose(free, up, most) / choose(free, down, sum);
 }
 
+// What other contacts of its balls make of the dashpots of one: factors of those along the normal, of sliding and of
+// rolling; contacts as for held_back()
+template <class T> struct CompanyOf {
+  T normal, sliding, rolling;
+};
+template <class T, class N>
+SLOPE_INLINE CompanyOf<T> company_of(const ContactStepOf<N> &step, T along, T contacts)
+{
+  return {acting_together(step, along), held_back(step.taken_t, contacts, MOST_SLIDING),
+          held_back(step.taken_r, contacts, MOST_ROLLING)};
+}
+
 // In a step in which crowded contacts begin or end they take at most all of the motion: the weights of up to 3/2 would
 // make them turn it around.
 template <class T, class N>
@@ -316,30 +328,30 @@ SLOPE_INLINE void hold_beginning(const ContactStepOf<N> &step, ContactOf<T, N> &
 // Rolling: the same construction as sliding on Rr (wi - wj) in the tangent plane, torque arm Rr.
 // The dashpots of sliding and of rolling act on the same spin: one more than those of sliding.
 template <class T, class N>
-SLOPE_INLINE void add_rolling(const ContactStepOf<N> &step, const ContactOf<T, N> &c, T contacts,
+SLOPE_INLINE void add_rolling(const ContactStepOf<N> &step, const ContactOf<T, N> &c, T held,
                               T pressing, T *spring, ContactForceOf<T> &out)
 {
   const T *n = c.n;
   const N rr = c.rolling_radius;
   const T wn = c.w[0] * n[0] + c.w[1] * n[1] + c.w[2] * n[2];
   const T vr[3] = {rr * (c.w[0] - wn * n[0]), rr * (c.w[1] - wn * n[1]), rr * (c.w[2] - wn * n[2])};
-  const T cr = c.touches * step.cr * held_back(step.taken_r, contacts, MOST_ROLLING);
+  const T cr = c.touches * step.cr * held;
   T fr[3];
   limited_spring(step.kr, cr, T(cr * step.per_kr), T(step.rolling * pressing), n, vr,
                  T(step.grow * c.grown), spring, fr);
   for (int d = 0; d < 3; d++) out.m[d] = rr * fr[d];
 }
 
-// Force of one contact. contacts: see mean_contacts(). history: the springs, updated.
+// Force of one contact. history: the springs, updated.
 // ROLLING = false leaves out the rolling resistance, for laws that have none.
 template <bool ROLLING = true, class T, class N>
-SLOPE_INLINE void contact_force(const ContactStepOf<N> &step, const ContactOf<T, N> &c, T contacts,
-                                T *history, ContactForceOf<T> &out)
+SLOPE_INLINE void contact_force(const ContactStepOf<N> &step, const ContactOf<T, N> &c,
+                                const CompanyOf<T> &company, T *history, ContactForceOf<T> &out)
 {
   const T *n = c.n;
   const T vn = normal_velocity(c), zero = T();
   const T elastic = spring_force(step, T(larger(c.overlap, zero) + c.beyond));
-  const T cn = step.cn * acting_together(step, c.along);
+  const T cn = step.cn * company.normal;
   const T ahead = choose(crowded(step, c.along), vn, c.ahead);
   const T own =
       1.0 + AHEAD * c.first * c.weight * step.taken_n;    // its force is not in c.ahead yet
@@ -351,13 +363,20 @@ SLOPE_INLINE void contact_force(const ContactStepOf<N> &step, const ContactOf<T,
   const T pressing = c.touches * larger(T(elastic - cn * ahead / own), zero);
   T vt[3], ft[3];
   sliding_velocity(c, vn, vt);
-  const T ct =
-      c.touches * step.ct * held_back(step.taken_t, contacts, MOST_SLIDING) + step.kt * c.early;
+  const T ct = c.touches * step.ct * company.sliding + step.kt * c.early;
   limited_spring(step.kt, ct, T(ct * step.per_kt), T(step.friction * pressing), n, vt,
                  T(step.grow * c.grown), history, ft);
 
   set_force(c, fn, ft, out);
-  if (ROLLING) add_rolling(step, c, contacts, pressing, history + 3, out);
+  if (ROLLING) add_rolling(step, c, company.rolling, pressing, history + 3, out);
+}
+
+// contacts: see mean_contacts()
+template <bool ROLLING = true, class T, class N>
+SLOPE_INLINE void contact_force(const ContactStepOf<N> &step, const ContactOf<T, N> &c, T contacts,
+                                T *history, ContactForceOf<T> &out)
+{
+  contact_force<ROLLING>(step, c, company_of(step, c.along, contacts), history, out);
 }
 
 // v without its part along n

@@ -68,6 +68,12 @@ struct ContactView : ContactSizes {
   double room;
   NearContacts *near;
 
+  // Of equal balls that both move: what so many contacts of the two make of their dashpots, along and the numbers of
+  // CompanyOf, for the step that it is of
+  static constexpr int COMPANIES = 2 * 255 + 1;
+  double *companies;
+  ContactStep *of_step;
+
   // if not equal, the numbers of the row of each contact that has a force (contact_rows.h), and the contacts whose
   // row is still to be solved for
   const int *row_numbers;

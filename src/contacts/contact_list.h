@@ -100,8 +100,8 @@ class ContactList : public ContactSizes {
     return entries.capacity() * sizeof(Entry) + histories.capacity() * sizeof(double *) +
         bits.capacity() * sizeof(ContactBits) + flags.capacity() * sizeof(int *) +
         (row_numbers.capacity() + unsolved.capacity() + near_numbers.capacity()) * sizeof(int) +
-        rows.capacity() * sizeof(double) + near_entries.capacity() * sizeof(Entry) +
-        seen.capacity() * sizeof(Vector);
+        (rows.capacity() + companies.capacity()) * sizeof(double) +
+        near_entries.capacity() * sizeof(Entry) + seen.capacity() * sizeof(Vector);
   }
 
   // Contacts that overlap although they did not touch a step ago, before the first step:
@@ -189,6 +189,9 @@ class ContactList : public ContactSizes {
     near = {near_numbers.data(), near_entries.data(), 0};
   }
 
+  std::vector<double> companies;    // see ContactView
+  ContactStep of_step = ContactStep();
+
   // where the balls are unequal: see ContactView
   bool varying;
   std::vector<int> row_numbers, unsolved;
@@ -233,6 +236,10 @@ class ContactList : public ContactSizes {
     v.size = entries.size();
     v.blocks = bits.size();
     v.bits = bits.data();
+    if (companies.empty() && equal && moves.i * moves.j > 0.0)
+      companies.resize(4 * ContactView::COMPANIES);
+    v.companies = companies.data();
+    v.of_step = &of_step;
     v.row_numbers = row_numbers.data();
     v.rows = rows.data();
     v.unsolved = unsolved.data();

@@ -84,18 +84,21 @@ class ContactPasses : ContactView {
   SLOPE_INLINE static void increase(unsigned char &n) { n += n < 255; }
 
   template <class Partners>
-  SLOPE_INLINE void count(size_t block, std::uint64_t left, const MovingBalls &balls,
+  SLOPE_INLINE void count(size_t block, std::uint64_t left, const MovingBalls &balls_in,
                           const Partners &partners) const
   {
-    const Entry *e = entries + block * BLOCK;
+    const MovingBalls balls =
+        balls_in;    // a copy: counts are bytes, which might be parts of anything
+    const bool i_fixed = moves.i == 0.0, j_fixed = moves.j == 0.0;
+    const Entry *const e = entries + block * BLOCK;
     for (; left; left &= left - 1) {
-      const Entry &contact = e[__builtin_ctzll(left)];
+      const Entry contact = e[__builtin_ctzll(left)];
       increase(balls.count[contact.i]);
       const bool both = Partners::MOVE && partners.gets_force(contact.j);
       if (both) increase(balls.count[contact.j]);
-      if (moves.j == 0.0)
+      if (j_fixed)
         add_normal(1.0, contact.i, contact, balls, partners);
-      else if (moves.i == 0.0 && both)
+      else if (i_fixed && both)
         add_normal(-1.0, contact.j, contact, balls, partners);
     }
   }
@@ -144,6 +147,7 @@ class ContactPasses : ContactView {
     const Partners partners = partners_in;
     const Sizes<double> same = {
         radius_i, radius_j, step_of(moves, law, dt, repeat, radius_i, radius_j, mass_i, mass_j)};
+    fill_companies(same.step);
     Batch lasting, changing;    // the second: those that begin or end in the step
     auto evaluate_four = [&](bool changes, const int *k, int count) {
       if (changes)
@@ -368,8 +372,14 @@ class ContactPasses : ContactView {
     for (int d = 0; d < 3; d++) c.n[d] = delta[d] * rinv;
     find_velocities(e, ri, rj, balls, partners, c);
     c.follow_whole_step();
-    const T many = contacts<T>(e, sizes.step, balls, partners);
-    c.along = moves.i * moves.j > 0.0 ? along_moving(many) : beside_fixed(e, balls, c.n, many);
+    CompanyOf<T> company;
+    if (!Partners::MOVE || sizeof(N) != sizeof(double) || !tabled(same.step)) {
+      const T many = contacts<T>(e, sizes.step, balls, partners);
+      c.along = moves.i * moves.j > 0.0 ? along_moving(many) : beside_fixed(e, balls, c.n, many);
+      company = company_of(sizes.step, c.along, many);
+    } else {
+      look_up(e, balls, c.along, company);
+    }
     if (CHANGES) {
       find_times(k, repeat, delta, rinv, T(reach + T()), same.step.dt, c);
       hold_beginning(sizes.step, c);
@@ -378,7 +388,7 @@ class ContactPasses : ContactView {
     T history[6];
     load(h, history);
     ContactForceOf<T> out;
-    contact_force<ROLLING>(sizes.step, c, many, history, out);
+    contact_force<ROLLING>(sizes.step, c, company, history, out);
     if (!repeat) store<ROLLING>(h, history);    // otherwise it is what the step has left
 
     T ti[3], tj[3];
@@ -441,6 +451,46 @@ class ContactPasses : ContactView {
         },
         ahead);
     c.ahead = ahead[0] * c.n[0] + ahead[1] * c.n[1] + ahead[2] * c.n[2];
+  }
+
+  // of two balls that move, and of one mass, the sum of their contacts tells
+  SLOPE_INLINE bool tabled(const ContactStep &step) const
+  {
+    return equal && moves.i * moves.j > 0.0 && step.share_i == 0.5;
+  }
+
+  void fill_companies(const ContactStep &step) const
+  {
+    if (!tabled(step) || std::memcmp(of_step, &step, sizeof(step)) == 0) return;
+    for (int sum = 0; sum < COMPANIES; sum++) {
+      const double many = 0.5 * sum, along = along_moving(many);
+      const CompanyOf<double> company = company_of(step, along, many);
+      four(companies + 4 * sum) = Four{along, company.normal, company.sliding, company.rolling};
+    }
+    *of_step = step;
+  }
+
+  template <class T>
+  SLOPE_INLINE void look_up(const Entry *e, const MovingBalls &balls, T &along,
+                            CompanyOf<T> &company) const
+  {
+    Four parts[4][lanes<T>() / 4];
+    for (int h = 0; h < lanes<T>() / 4; h++) {
+      const double *row[4];
+      for (int m = 0; m < 4; m++) {
+        const Entry &contact = e[4 * h + m];
+        row[m] = companies + 4 * (balls.count[contact.i] + balls.count[contact.j]);
+      }
+      const Columns c(four(row[0]), four(row[1]), four(row[2]), four(row[3]));
+      parts[0][h] = c.x;
+      parts[1][h] = c.y;
+      parts[2][h] = c.z;
+      parts[3][h] = c.w;
+    }
+    join(parts[0], along);
+    join(parts[1], company.normal);
+    join(parts[2], company.sliding);
+    join(parts[3], company.rolling);
   }
 
   template <class T, class N, class Partners>
