@@ -313,6 +313,14 @@ void SunkSurface::sort_rims()
   rims.swap(sorted);
 }
 
+// the least whole number from a number > -2^31 on; std::ceil takes five times as long where it is no instruction
+
+static int first_from(double number)
+{
+  const int whole = static_cast<int>(number);
+  return whole + (whole < number);
+}
+
 /* ----------------------------------------------------------------------
    the surface between four columns: height and slope
 ------------------------------------------------------------------------- */
@@ -371,20 +379,24 @@ bool SunkSurface::height(double x, double y, double &lowest) const
   }
   try_column((x - xlo) / px, (y - ylo) / py);
 
-  const int jlo = std::max(0, static_cast<int>(std::ceil((y - sink - ylo) / py)));
+  const int jlo = std::max(0, first_from((y - sink - ylo) / py));
   const int jhi = std::min(ny - 1, static_cast<int>((y + sink - ylo) / py));
   for (int j = jlo; j <= jhi; j++) {
-    const double dy = column_y(j) - y, half = std::sqrt(std::max(0.0, sink2 - dy * dy));
-    const int ilo = std::max(0, static_cast<int>(std::ceil((x - half - xlo) / px)));
+    const double dy = column_y(j) - y, half2 = std::max(0.0, sink2 - dy * dy),
+                 half = std::sqrt(half2);
+    const int ilo = std::max(0, first_from((x - half - xlo) / px));
     const int ihi = std::min(nx - 1, static_cast<int>((x + half - xlo) / px));
     for (int i = ilo, next; i <= ihi; i = next) {
       const double *height = z.run(i, j, ihi + 1, next);
       if (!height) continue;
-      double least = lowest + half;
+      double best = lowest, least = best + half;
       for (int k = i; k < next; k++) {
         if (!(height[k - i] < least)) continue;
+        const double dx = column_x(k) - x, above = height[k - i] - best;
+        if (above >= 0.0 && above * above >= half2 - dx * dx) continue;
         touch(column_x(k), column_y(j), height[k - i]);
-        least = lowest + half;
+        best = lowest;
+        least = best + half;
       }
     }
   }
