@@ -57,19 +57,9 @@ void BallGround::find_bodies()
 {
   const PlacementArguments &a = arguments;
   const auto others = compat::fixes_of_style(lmp, "wall/gran/balls");
-  if (a.sink > 0.0) {
-    const bool ends = a.rim == PlacementArguments::ENDED;
-    for (Fix *fix : others) {    // of two fixes within the rim and beyond it one looks
-      const Sunk its = dynamic_cast<BallBody &>(*fix).body();
-      std::string changed;
-      if (its && its->region == a.region && its->side == a.side && its->sink == a.sink &&
-          its->diameter == a.diameter && its->ends == ends && its->stands(changed))
-        sunk = its;
-    }
-    if (!sunk)
-      sunk =
-          std::make_shared<SunkRegion>(lmp, a.caller, a.region, a.side, a.sink, a.diameter, ends);
-  }
+  if (a.sink > 0.0)
+    sunk = std::make_shared<SunkRegion>(lmp, a.caller, a.region, a.side, a.sink, a.diameter,
+                                        a.rim == PlacementArguments::ENDED);
   if (sunk && a.side == RegionSurface::LOWER)
     for (Fix *fix : others) {
       const std::string &left_out = dynamic_cast<BallBody &>(*fix).left_out();

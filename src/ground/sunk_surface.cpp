@@ -26,6 +26,7 @@ static constexpr int AROUND = 4;       // columns around a rim that tell the slo
 static constexpr int RIM_STEPS = 8;    // halvings between two columns
 static constexpr int CHAIN_STEPS = 8;
 static constexpr int CONTACT_STEPS = 4;
+static constexpr double ROUNDING = 1.0e-9;    // in sinks
 static constexpr double MAX_COLUMNS = 2147483647.0;
 
 /* ---------------------------------------------------------------------- */
@@ -343,6 +344,20 @@ bool SunkSurface::patch(double x, double y, double &height, double &gx, double &
   return true;
 }
 
+// Height of a ball over the column where it would touch the plane of the columns below; infinite where that is unknown
+
+double SunkSurface::of_plane(double x, double y) const
+{
+  double below, east, north;    // height, and slopes towards these
+  if (!patch(x, y, below, east, north)) return INFINITE;
+  const double length = std::sqrt(1.0 + east * east + north * north);
+  const int i = static_cast<int>((x - sink * east / length - xlo) / px + 0.5);
+  const int j = static_cast<int>((y - sink * north / length - ylo) / py + 0.5);
+  if (!has(i, j)) return INFINITE;
+  const double dx = column_x(i) - x, dy = column_y(j) - y, d2 = sink * sink - dx * dx - dy * dy;
+  return d2 < 0.0 ? INFINITE : z.get(i, j) - std::sqrt(d2);
+}
+
 /* ----------------------------------------------------------------------
    Lowest z of a ball that touches a point of the surface. First over the columns within reach, then
    from the best of them by steps to the point c of the patches between them where the ball around
@@ -364,39 +379,27 @@ bool SunkSurface::height(double x, double y, double &lowest) const
     cy = py_;
   };
 
-  // the ball touches the plane of the columns below it close to the best column, and then few others may be better
+  // the column below is close to the best; closer is where the ball touches the plane of the columns there, so that few
+  // may be better. Of columns that are as good the first one counts, whatever is tried before.
 
-  auto try_column = [&](double i, double j) {
-    const int at_i = std::min(std::max(static_cast<int>(i), 0), nx - 1);
-    const int at_j = std::min(std::max(static_cast<int>(j), 0), ny - 1);
-    if (has(at_i, at_j)) touch(column_x(at_i), column_y(at_j), z.get(at_i, at_j));
-  };
-  double below, east, north;    // height, and slopes towards these
-  if (patch(x, y, below, east, north)) {
-    const double length = std::sqrt(1.0 + east * east + north * north);
-    try_column((x - sink * east / length - xlo) / px + 0.5,
-               (y - sink * north / length - ylo) / py + 0.5);
-  }
-  try_column((x - xlo) / px, (y - ylo) / py);
+  const int inear = static_cast<int>((x - xlo) / px), jnear = static_cast<int>((y - ylo) / py);
+  if (has(inear, jnear)) touch(column_x(inear), column_y(jnear), z.get(inear, jnear));
+  const double most = std::min(lowest, of_plane(x, y)) + ROUNDING * sink;
 
   const int jlo = std::max(0, first_from((y - sink - ylo) / py));
   const int jhi = std::min(ny - 1, static_cast<int>((y + sink - ylo) / py));
   for (int j = jlo; j <= jhi; j++) {
-    const double dy = column_y(j) - y, half2 = std::max(0.0, sink2 - dy * dy),
-                 half = std::sqrt(half2);
+    const double dy = column_y(j) - y, half = std::sqrt(std::max(0.0, sink2 - dy * dy));
     const int ilo = std::max(0, first_from((x - half - xlo) / px));
     const int ihi = std::min(nx - 1, static_cast<int>((x + half - xlo) / px));
     for (int i = ilo, next; i <= ihi; i = next) {
       const double *height = z.run(i, j, ihi + 1, next);
       if (!height) continue;
-      double best = lowest, least = best + half;
+      double limit = std::min(lowest, most);
       for (int k = i; k < next; k++) {
-        if (!(height[k - i] < least)) continue;
-        const double dx = column_x(k) - x, above = height[k - i] - best;
-        if (above >= 0.0 && above * above >= half2 - dx * dx) continue;
+        if (!(height[k - i] - half < limit)) continue;
         touch(column_x(k), column_y(j), height[k - i]);
-        best = lowest;
-        least = best + half;
+        limit = std::min(lowest, most);
       }
     }
   }
