@@ -84,21 +84,18 @@ class ContactPasses : ContactView {
   SLOPE_INLINE static void increase(unsigned char &n) { n += n < 255; }
 
   template <class Partners>
-  SLOPE_INLINE void count(size_t block, std::uint64_t left, const MovingBalls &balls_in,
+  SLOPE_INLINE void count(size_t block, std::uint64_t left, const MovingBalls &balls,
                           const Partners &partners) const
   {
-    const MovingBalls balls =
-        balls_in;    // a copy: counts are bytes, which might be parts of anything
-    const bool i_fixed = moves.i == 0.0, j_fixed = moves.j == 0.0;
-    const Entry *const e = entries + block * BLOCK;
+    const Entry *e = entries + block * BLOCK;
     for (; left; left &= left - 1) {
-      const Entry contact = e[__builtin_ctzll(left)];
+      const Entry &contact = e[__builtin_ctzll(left)];
       increase(balls.count[contact.i]);
       const bool both = Partners::MOVE && partners.gets_force(contact.j);
       if (both) increase(balls.count[contact.j]);
-      if (j_fixed)
+      if (moves.j == 0.0)
         add_normal(1.0, contact.i, contact, balls, partners);
-      else if (i_fixed && both)
+      else if (moves.i == 0.0 && both)
         add_normal(-1.0, contact.j, contact, balls, partners);
     }
   }

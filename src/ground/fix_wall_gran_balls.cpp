@@ -29,8 +29,7 @@ using namespace FixConst;
 using namespace Slope;
 
 static constexpr double SAME_SIZE = 1.0e-9;
-static constexpr int MANY =
-    4;    // fixed balls listed for each moving one: most of them out of its reach
+static constexpr int MANY = 4;    // listed for each moving ball: most are out of its reach
 
 /* ----------------------------------------------------------------------
    fix ID group wall/gran/balls TYPE DIAMETER surface|file ...

@@ -26,7 +26,6 @@ static constexpr int AROUND = 4;       // columns around a rim that tell the slo
 static constexpr int RIM_STEPS = 8;    // halvings between two columns
 static constexpr int CHAIN_STEPS = 8;
 static constexpr int CONTACT_STEPS = 4;
-static constexpr double ROUNDING = 1.0e-9;    // in sinks
 static constexpr double MAX_COLUMNS = 2147483647.0;
 
 /* ---------------------------------------------------------------------- */
@@ -314,14 +313,6 @@ void SunkSurface::sort_rims()
   rims.swap(sorted);
 }
 
-// the least whole number from a number > -2^31 on; std::ceil takes five times as long where it is no instruction
-
-static int first_from(double number)
-{
-  const int whole = static_cast<int>(number);
-  return whole + (whole < number);
-}
-
 /* ----------------------------------------------------------------------
    the surface between four columns: height and slope
 ------------------------------------------------------------------------- */
@@ -342,20 +333,6 @@ bool SunkSurface::patch(double x, double y, double &height, double &gx, double &
   gx = (east + v * both) / px;
   gy = (north + u * both) / py;
   return true;
-}
-
-// Height of a ball over the column where it would touch the plane of the columns below; infinite where that is unknown
-
-double SunkSurface::of_plane(double x, double y) const
-{
-  double below, east, north;    // height, and slopes towards these
-  if (!patch(x, y, below, east, north)) return INFINITE;
-  const double length = std::sqrt(1.0 + east * east + north * north);
-  const int i = static_cast<int>((x - sink * east / length - xlo) / px + 0.5);
-  const int j = static_cast<int>((y - sink * north / length - ylo) / py + 0.5);
-  if (!has(i, j)) return INFINITE;
-  const double dx = column_x(i) - x, dy = column_y(j) - y, d2 = sink * sink - dx * dx - dy * dy;
-  return d2 < 0.0 ? INFINITE : z.get(i, j) - std::sqrt(d2);
 }
 
 /* ----------------------------------------------------------------------
@@ -379,28 +356,22 @@ bool SunkSurface::height(double x, double y, double &lowest) const
     cy = py_;
   };
 
-  // the column below is close to the best; closer is where the ball touches the plane of the columns there, so that few
-  // may be better. Of columns that are as good the first one counts, whatever is tried before.
+  // the column below is close to the best, and leaves few that may be better
 
   const int inear = static_cast<int>((x - xlo) / px), jnear = static_cast<int>((y - ylo) / py);
   if (has(inear, jnear)) touch(column_x(inear), column_y(jnear), z.get(inear, jnear));
-  const double most = std::min(lowest, of_plane(x, y)) + ROUNDING * sink;
 
-  const int jlo = std::max(0, first_from((y - sink - ylo) / py));
+  const int jlo = std::max(0, static_cast<int>(std::ceil((y - sink - ylo) / py)));
   const int jhi = std::min(ny - 1, static_cast<int>((y + sink - ylo) / py));
   for (int j = jlo; j <= jhi; j++) {
     const double dy = column_y(j) - y, half = std::sqrt(std::max(0.0, sink2 - dy * dy));
-    const int ilo = std::max(0, first_from((x - half - xlo) / px));
+    const int ilo = std::max(0, static_cast<int>(std::ceil((x - half - xlo) / px)));
     const int ihi = std::min(nx - 1, static_cast<int>((x + half - xlo) / px));
     for (int i = ilo, next; i <= ihi; i = next) {
       const double *height = z.run(i, j, ihi + 1, next);
       if (!height) continue;
-      double limit = std::min(lowest, most);
-      for (int k = i; k < next; k++) {
-        if (!(height[k - i] - half < limit)) continue;
-        touch(column_x(k), column_y(j), height[k - i]);
-        limit = std::min(lowest, most);
-      }
+      for (int k = i; k < next; k++)
+        if (height[k - i] - half < lowest) touch(column_x(k), column_y(j), height[k - i]);
     }
   }
   const int bx = static_cast<int>((x - xlo) / sink), by = static_cast<int>((y - ylo) / sink);

@@ -144,7 +144,6 @@ class SunkSurface {
   void add_rim(const Bed &, const Point &, const Point &);
   void go_on(const Bed &, const std::vector<Edge> &);
   void sort_rims();
-  double of_plane(double x, double y) const;
   bool patch(double x, double y, double &height, double &gx, double &gy) const;
 };
 
