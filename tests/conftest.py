@@ -1,17 +1,51 @@
-"""Of all tests in Python: the tools are on the path of modules, the mark long is known, and cases are made once."""
+"""Of all tests in Python: the tools are on the path of modules, cases are made once, the longest files begin first."""
+import csv
 import fcntl
 import os
 import shutil
 import sys
+import time
 from pathlib import Path
 
 import pytest
 
-sys.path.insert(0, os.environ.get("SLOPE_TOOLS", str(Path(__file__).resolve().parents[1] / "tools")))
+from times import read_seconds
+
+TESTS = Path(__file__).resolve().parent
+
+sys.path.insert(0, os.environ.get("SLOPE_TOOLS", str(TESTS.parent / "tools")))
 
 
 def pytest_configure(config):
-    config.addinivalue_line("markers", "long: not part of the short run of tests/run.sh; an entry of ctest of its own")
+    config.addinivalue_line("markers", "long: not part of the short run of tests/run.sh")
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items):
+    """The longest files first, as workers take whole files: one that came last would keep one processor."""
+    seconds = read_seconds()
+    items.sort(key=lambda item: -seconds.get(relative(item.path), 1.0))      # keeps the order within a file
+
+
+def relative(path):
+    return Path(path).relative_to(TESTS).as_posix() if TESTS in Path(path).parents else str(path)
+
+
+def processor_seconds():
+    """Of this process and of those that it started and waited for."""
+    now = os.times()
+    return now.user + now.system + now.children_user + now.children_system
+
+
+@pytest.hookimpl(hookwrapper=True)
+def pytest_runtest_protocol(item):
+    """A row of the file SLOPE_TIMES, if that is given: file, test, wall and processor seconds, fixtures included."""
+    wall, processor = time.perf_counter(), processor_seconds()
+    yield
+    if os.environ.get("SLOPE_TIMES"):
+        with open(os.environ["SLOPE_TIMES"], "a", encoding="utf-8", newline="") as file:        # one write a row
+            csv.writer(file).writerow([relative(item.path), item.name, f"{time.perf_counter() - wall:.3f}",
+                                       f"{processor_seconds() - processor:.3f}"])
 
 
 @pytest.fixture(scope="session")

@@ -1,23 +1,28 @@
 #!/bin/bash
 # Layout of the C++ (clang-format), style and types of the Python (flake8, mypy), static analysis of the C++ (cppcheck).
-# Prints what is wrong, and ends with status 1 if anything is. JOBS=<n>: processes at a time (default 2).
+# Arguments: which of these programs, default all. Prints what is wrong, and ends with status 1 if anything is, with 77 if all
+# was skipped. JOBS=<n>: processes at a time (default 2).
 set -euo pipefail
 export LC_ALL=C
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-failed=0
+programs=("$@")
+(($#)) || programs=(clang-format flake8 mypy cppcheck)
+failed=0 ran=0
 
-# usable PROGRAM WHAT: whether it is there, in the version that the sources are clean with (Debian 12's; another one finds
-# other things, and has another layout)
+# usable PROGRAM WHAT: whether it is asked for and there, in the version that the sources are clean with (Debian 12's; another
+# one finds other things, and has another layout)
 declare -A versions=([clang-format]=14 [mypy]=1.0 [cppcheck]=2.10)
 skipped=0
 usable() {
   local version wanted=${versions[$1]:-}
+  [[ " ${programs[*]} " == *" $1 "* ]] || return 1
   if ! command -v "$1" >/dev/null; then
     echo "lint: $1 is not installed, skipped: $2"
   elif version=$("$1" --version | sed -nE '1s/^[^0-9]*([0-9.]+).*/\1/p') && [[ -n $wanted && $version. != "$wanted."* ]]; then
     echo "lint: $1 is version $version, the sources are clean with $wanted, skipped: $2"
   else
+    ran=1
     return 0
   fi
   skipped=1
@@ -26,15 +31,16 @@ usable() {
 
 # --- layout: src/.clang-format ---
 
-files=()
-usable clang-format "layout of the C++" && mapfile -t files < <(find src tools/dump2vtk -name "*.h" -o -name "*.cpp" | sort)
-for file in "${files[@]}"; do
-  if ! clang-format --style=file:src/.clang-format --dry-run -Werror "$file" >/dev/null 2>&1; then
+if usable clang-format "layout of the C++"; then
+  mapfile -t files < <(find src tools/dump2vtk -name "*.h" -o -name "*.cpp" | sort)
+  layout=(clang-format --style=file:src/.clang-format)
+  mapfile -t wrong < <("${layout[@]}" --dry-run "${files[@]}" 2>&1 | sed -n 's/^\([^: ]*\):.*-Wclang-format-violations.*/\1/p' | sort -u)
+  for file in "${wrong[@]}"; do
     echo "lint: $file: run clang-format -i --style=file:src/.clang-format on it; it would change"
-    clang-format --style=file:src/.clang-format "$file" | diff "$file" - | head -n 20 || true
+    "${layout[@]}" "$file" | diff "$file" - | head -n 20 || true
     failed=1
-  fi
-done
+  done
+fi
 
 # --- Python: .flake8 ---
 
@@ -56,4 +62,5 @@ if usable cppcheck "static analysis of the C++"; then
 fi
 
 ((failed)) || { ((skipped)) && echo "lint: clean, but for what was skipped" || echo "lint: clean"; }
+((failed || ran)) || exit 77
 exit "$failed"

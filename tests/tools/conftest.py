@@ -1,9 +1,12 @@
 """Fixtures of several tests of the tools."""
 import base64
+import os
 import shlex
 import sys
+from pathlib import Path
 
 import pytest
+import yaml
 
 import tiny_collapse
 
@@ -51,6 +54,43 @@ def tiny_case(tmp_path, monkeypatch):
     return tmp_path
 
 
+# --- what takes time and is not looked at ---
+
+# large files are read by libyaml, as the tools do
+yaml.SafeLoader, yaml.SafeDumper = yaml.CSafeLoader, yaml.CSafeDumper
+
+
+@pytest.fixture(scope="session", autouse=True)
+def no_power_cut():
+    """No file has to outlast one: files are not flushed to the disk, nor are runs looked at ten times a second only."""
+    from slope_tools.runs import jobs
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(os, "fsync", lambda handle: None)
+        patch.setattr(jobs, "POLL", 0.01)
+        yield
+
+
+# --- runs ---
+
+@pytest.fixture(scope="session")
+def run_cache(tmp_path_factory):
+    from run_cache import RunCache
+    top = Path(os.environ.get("SLOPE_SHARED") or tmp_path_factory.mktemp("shared")) / "runs"
+    top.mkdir(exist_ok=True)
+    return RunCache(top, tiny_collapse.LMP)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def runs_in_fixtures(request, run_cache):
+    """What the fixtures of a module make, unless the module has the mark runs_anew."""
+    run_cache.install(not request.node.get_closest_marker("runs_anew"))
+
+
+@pytest.fixture(autouse=True)
+def runs_in_tests(request, run_cache):
+    run_cache.install(not request.node.get_closest_marker("runs_anew"))
+
+
 # --- pictures ---
 
 BLANK = {"png": base64.b64decode("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGP4DwABAQEAsTj2FAAAAABJRU5E"
@@ -61,6 +101,7 @@ rendered = False        # whether the test that runs looks at its pictures
 
 def pytest_configure(config):
     config.addinivalue_line("markers", "drawn: the pictures of this test or file are rendered, as it looks at them")
+    config.addinivalue_line("markers", "runs_anew: no run of this test or file is a copy, as it looks at how they are made")
 
 
 def save_blank():
@@ -99,20 +140,6 @@ def blank_in_fixtures(request):
 @pytest.fixture(autouse=True)
 def blank_in_tests(request):
     save_blank_unless_drawn(request.node)
-
-
-@pytest.fixture
-def fitted_once(monkeypatch):
-    """Emulators of the same runs are fitted once in a test: by the ensemble, by its known events, by a second study."""
-    from slope_tools.statistics import emulator
-    fitted, fit = {}, emulator.validated
-
-    def validated(*arrays):
-        key = tuple(array.tobytes() for array in arrays)
-        if key not in fitted:
-            fitted[key] = fit(*arrays)
-        return fitted[key]
-    monkeypatch.setattr(emulator, "validated", validated)
 
 
 @pytest.fixture

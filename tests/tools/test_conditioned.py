@@ -204,7 +204,7 @@ def here(tiny_case):
     return tiny_case
 
 
-def test_an_ensemble_is_weighted(slope, succeed, capsys, monkeypatch, fitted_once):
+def test_an_ensemble_is_weighted(slope, succeed, capsys, monkeypatch):
     words = ("--sample 8 --vary friction=2:40 --vary rolling=0:0.3 --set steps=900 --mobility small.csv --unconfined "
              "--except 'event 3' --road case/road.csv --local --exceed 0.1 -o out")
     out, _ = succeed(words)

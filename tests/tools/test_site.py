@@ -191,7 +191,7 @@ def test_two_commands_lead_from_gis_files_to_a_report(done):
     assert f"{round(site_choices.found(mine).balls)}" in first.replace(",", "")
 
 
-def test_both_studies_give_one_number(done, tmp_path, monkeypatch, capsys, fitted_once):
+def test_both_studies_give_one_number(done, tmp_path, monkeypatch, capsys):
     """The paper's runs are taken over; an ensemble of a few runs beside them; the larger number, in both study.yaml."""
     mine = tmp_path / "mine"
     shutil.copytree(done[0] / "mine", mine)

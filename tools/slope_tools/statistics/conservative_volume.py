@@ -8,6 +8,7 @@ mean, as that of counts does: between scatter that is equal and scatter that is 
 knows beforehand. Combinations whose means differ by more than a factor NEAR tell nothing of each other. All volumes are
 in m3 of ground (bulk); every function is pure.
 """
+import functools
 import math
 from dataclasses import dataclass
 from typing import Callable, Dict, List, Optional, Sequence, Tuple
@@ -231,9 +232,14 @@ def difference(line: Sequence[Combination], scatter: Optional[Scatter]) -> Diffe
     top, low, unit = ends(line)
     chance = None
     if scatter is not None:
-        quantile = float(stats.studentized_range.ppf(DIFFERENT, len(line), scatter.degrees_of_freedom))
-        chance = quantile * scatter.deviation * unit
+        chance = range_quantile(len(line), scatter.degrees_of_freedom) * scatter.deviation * unit
     return Difference(top.name, low.name, top.mean - low.mean, chance)
+
+
+@functools.lru_cache(maxsize=None)
+def range_quantile(means: int, degrees_of_freedom: float) -> float:
+    """What the studentized range of so many means exceeds by chance in 5 of 100 cases: 0.2 s, the same for many lines."""
+    return float(stats.studentized_range.ppf(DIFFERENT, means, degrees_of_freedom))
 
 
 def is_clear(line: Sequence[Combination], scatter: Scatter) -> bool:

@@ -4,6 +4,7 @@ Points lie in the unit cube (designs). The process has a smooth part with a leng
 or a Gaussian kernel, whichever the runs make likelier, and the noise of chance. Its error is that of a
 cross-validation: runs of points that the process has not seen. What a bad fit says is withheld.
 """
+import functools
 import math
 import warnings
 from typing import List, NamedTuple, Optional, Sequence, Tuple
@@ -112,7 +113,19 @@ def enough(points: int, variables: int) -> bool:
 
 
 def validated(points: np.ndarray, values: np.ndarray, point: np.ndarray) -> Validated:
-    """The emulator of values, which differ, of runs at points (n, d), cross-validated; point: see analyse."""
+    """The emulator of values, which differ, of runs at points (n, d), cross-validated; point: see analyse.
+
+    An ensemble and its known events ask for that of the same lengths: fitted once.
+    """
+    arrays = np.asarray(points, float), np.asarray(values, float), np.asarray(point, int)
+    return _validated(arrays[0].shape, *(array.tobytes() for array in arrays))
+
+
+@functools.lru_cache(maxsize=32)
+def _validated(shape: Tuple[int, int], *arrays: bytes) -> Validated:
+    """validated() of arrays as bytes, by which they are told apart."""
+    points, values, point = (np.frombuffer(array, kind) for array, kind in zip(arrays, (float, float, int)))
+    points = points.reshape(shape)
     whole = Emulator(points, values)
     parts, predicted = [], np.empty(len(values))
     for out in folds(point):

@@ -1,0 +1,27 @@
+"""Layout of the C++, style and types of the Python, static analysis of the C++, the pages as HTML: programs that read sources."""
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+TOP = Path(__file__).resolve().parents[2]
+BUILD = Path(os.environ.get("SLOPE_BUILD", TOP / "build"))
+
+
+@pytest.mark.parametrize("program", ["clang-format", "flake8", "mypy", "cppcheck"])
+def test_sources_are_clean(program):
+    done = subprocess.run([TOP / "tests" / "lint.sh", program], env={**os.environ, "JOBS": "1"}, text=True, check=False,
+                          stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    if done.returncode == 77:
+        pytest.skip(done.stdout.strip())
+    assert done.returncode == 0, done.stdout
+
+
+@pytest.mark.skipif(not shutil.which("sphinx-build"), reason="Sphinx is not installed")
+def test_every_reference_resolves_and_every_formula_renders():
+    done = subprocess.run(["sphinx-build", "-W", "--keep-going", "-q", "-E", "-d", BUILD / "tests" / "doctrees",
+                           TOP / "doc" / "src", BUILD / "tests" / "html"], text=True, check=False,
+                          stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    assert done.returncode == 0, done.stdout
