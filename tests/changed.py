@@ -3,8 +3,8 @@
 
     changed.py COMMIT UNITS     prints the files for pytest; writes into the file UNITS a regular expression of ctest's
 
-Nearest: a test's imports of the changed module, or of a module that imports it, and so on. Of C++, the unit tests that
-include a header of the changed pair, and the decks that use a style of its room.
+Nearest: a test that imports the changed module, then one that imports a module which imports it, and so on. Of C++, the
+unit tests that include the header, and the decks that use a style of its room.
 """
 import ast
 import collections
@@ -24,14 +24,13 @@ PAGES = ["tools/test_pages.py", "tools/test_lint.py"]
 
 
 def changed_files(commit):
-    listed = ["git", "diff", "--name-only", commit], ["git", "ls-files", "--others", "--exclude-standard"]
-    return sorted({line for words in listed
-                   for line in subprocess.run(words, cwd=TOP, check=True, text=True, capture_output=True).stdout.split("\n")
-                   if line})
+    def listed(*words):
+        return subprocess.run(["git", *words], cwd=TOP, check=True, text=True, capture_output=True).stdout.splitlines()
+    return sorted({*listed("diff", "--name-only", commit), *listed("ls-files", "--others", "--exclude-standard")})
 
 
 def imports_of(path, package=()):
-    """Names of modules of the tools, and of tests beside it, that a file imports; package: its own, for relative imports."""
+    """Names of modules that a file imports; package: its own, for relative imports."""
     names = set()
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
@@ -86,7 +85,8 @@ def touched_by(path):
         sources = [test.read_text() for test in TESTS.glob("unit/test_*.cpp")]
         units = [name for text in sources if f'"{Path(path).stem}.h"' in text for name in SUITE.findall(text)]
         styles = [name for header in room.glob("*.h") for name in STYLE.findall(header.read_text())]
-        own = STYLE.findall((TOP / path).with_suffix(".h").read_text()) if (TOP / path).with_suffix(".h").exists() else []
+        header = (TOP / path).with_suffix(".h")
+        own = STYLE.findall(header.read_text()) if header.exists() else []
         decks = {}
         for test in TESTS.glob("decks/test_*.py"):
             text = test.read_text()

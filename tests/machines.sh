@@ -152,11 +152,11 @@ status_of() { awk -v step="$1" '$1 == step { s = $2 } END { print s == "" ? "-" 
 seconds_of() { awk -v step="$1" '$1 == step { s = $3 } END { print s == "" ? "-" : s }' "$results/steps"; }
 word() { case $1 in -) echo - ;; 0) echo ok ;; *) echo FAILED ;; esac; }
 
-# the counts of ctest's tests: of those that failed, the names
+# the counts of tests/run.sh's last line, or of ctest's
 counts() {
   [[ -e $results/tests.log ]] || { echo -; return; }
-  awk '/tests passed, [0-9]+ tests failed out of/ { n = $0 } END { if (n == "") exit 1; print n }' "$results/tests.log" |
-    sed -E 's/.*, ([0-9]+) tests failed out of ([0-9]+)/\2 tests, \1 failed/' || echo "no count"
+  sed -nE 's/.*, ([0-9]+) tests failed out of ([0-9]+)/\2 tests, \1 failed/p; s/^([0-9]+) passed, ([0-9]+) failed.*/\1 passed, \2 failed/p' \
+    "$results/tests.log" | tail -n 1 | grep . || echo "no count"
 }
 
 # one RELEASE WAY

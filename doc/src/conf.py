@@ -91,8 +91,10 @@ def drawing(node, display=False):
         return ""
     steps = "".join(STEPS[code] + ("" if code == 79 else " ".join(f"{v:.0f}" for v in points))
                     for points, code in path.iter_segments())
-    box = path.get_extents()
-    low, high, wide = min(box.y0, 0) - 2, box.y1 + 2, box.x1 + 4
+    # control points included: the extremes of the fonts' curves are points of theirs
+    drawn = path.vertices[path.codes != 79]
+    (_, bottom), (right, top) = drawn.min(axis=0), drawn.max(axis=0)
+    low, high, wide = min(bottom, 0) - 2, top + 2, right + 4
     return (f'<svg role="img" aria-label="{html.escape(tex)}" viewBox="-2 {-high:.0f} {wide:.0f} {high - low:.0f}" '
             f'style="width:{wide / SIZE:.3f}em;height:{(high - low) / SIZE:.3f}em;vertical-align:{low / SIZE:.3f}em">'
             f'<path transform="scale(1 -1)" d="{steps}"/></svg>')

@@ -9,12 +9,18 @@ from slope_tools.validation import verification, verify
 CLAIMS = [claim for claim in verification.all_claims() if claim.quick]
 # beginnings of the names of claims that take long; controls of collapses say what a claim is worth, and find no fault
 LONG = ("dense_gas",)
-LONG_CONTROLS = (*LONG, "dam_break", "glass", "heap", "ground_direction_travel", "runout")
+LONG_CONTROLS = (*LONG, "dam_break", "glass", "heap", "ground_direction", "runout")
+# of claims on a mean, the runs that are made here
+RUNS = {"dam_break_08": 3, "glass_front": 2, "glass_height": 2}
 
 
 def each_claim(long=LONG):
     return pytest.mark.parametrize("claim", [pytest.param(claim, id=claim.name, marks=[
         pytest.mark.long] * claim.name.startswith(long)) for claim in CLAIMS])
+
+
+def runs_of(claim):
+    return claim.runs[:RUNS.get(claim.name)]
 
 
 @pytest.fixture(scope="module")
@@ -25,7 +31,7 @@ def runner(tmp_path_factory):
 
 @each_claim()
 def test_claim(runner, claim):
-    got = verify.value(claim, claim.runs, runner)
+    got = verify.value(claim, runs_of(claim), runner)
     assert claim.bound.holds(got), f"{claim.text}: got {got}, expected {claim.bound.texts()}"
 
 
@@ -38,7 +44,7 @@ def test_control_fails(runner, claim):
 @each_claim()
 def test_no_false_alarm(runner, claim):
     """The guard warns where the energy rises, and nowhere else: dense elastic gases heat by 6 % (limits.rst)."""
-    for run in claim.runs:
+    for run in runs_of(claim):
         assert bool(alarms(runner.result(run).log)) == claim.name.startswith("dense_gas")
 
 

@@ -101,7 +101,7 @@ rendered = False        # whether the test that runs looks at its pictures
 
 def pytest_configure(config):
     config.addinivalue_line("markers", "drawn: the pictures of this test or file are rendered, as it looks at them")
-    config.addinivalue_line("markers", "runs_anew: no run of this test or file is a copy, as it looks at how they are made")
+    config.addinivalue_line("markers", "runs_anew: no run of this test or file is a copy: it tests how they are made")
 
 
 def save_blank():

@@ -1,7 +1,7 @@
 """Runs of LAMMPS that several tests make are made once in a run of the tests, and copied for the others.
 
-A run is known by its program, its words and all files of its folder. Only one that a study starts in the test's own process,
-and that ends well, is kept.
+A run is known by its program, its words and all files of its folder. Only one that a study starts in the test's own
+process, and that ends well, is kept.
 """
 import fcntl
 import hashlib

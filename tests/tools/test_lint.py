@@ -1,4 +1,4 @@
-"""Layout of the C++, style and types of the Python, static analysis of the C++, the pages as HTML: programs that read sources."""
+"""Programs that read sources: layout and static analysis of the C++, style and types of the Python, pages as HTML."""
 import os
 import shutil
 import subprocess

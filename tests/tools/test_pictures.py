@@ -67,7 +67,8 @@ def draw(words, **environment):
 
 
 @pytest.mark.drawn
-@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize("command", [pytest.param(name, marks=[pytest.mark.long] * (name != "release"))
+                                     for name in COMMANDS])
 def test_pictures_are_those_without_a_matplotlibrc(site, command):
     expected = draw(COMMANDS[command])
     Path("matplotlibrc").write_text(OTHERS)

@@ -40,7 +40,7 @@ DATA = Path(os.environ.get("SLOPE_DATA", TOP.parent.parent / "shared" / "data"))
 EAST, NORTH, CELL, COLUMNS, ROWS = -12000.0, 34000.0, 2.0, 60, 40      # of the survey, m, zone IX of Japan
 RELEASE = [(52, 20), (86, 20), (90, 40), (86, 60), (52, 60), (48, 40)]  # local m
 ROAD = [(20, 0), (36, 0), (36, 80), (20, 80)]
-BALLS = 150
+BALLS = 90
 
 
 def height(x):
