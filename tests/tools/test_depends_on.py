@@ -4,9 +4,11 @@ The lists below are compared with what the sources read: one that is new must be
 made of one thing is then held against another one, by the digests alone; nothing is run.
 """
 import argparse
+import contextlib
 import importlib
 import os
 import re
+import sqlite3
 from pathlib import Path
 
 import pytest
@@ -20,6 +22,7 @@ from slope_tools.options import declare
 from slope_tools.runs import dependencies, jobs
 from slope_tools.sites import site_choices
 from slope_tools.sites.site_sections import KINDS, OfMass, sections
+from slope_tools.survey import file_parts
 
 # --- options of the commands that make runs ---
 
@@ -96,7 +99,8 @@ def test_a_choice_of_a_site_counts(tmp_path, kind, section, key):
 
 
 @pytest.mark.parametrize("section, key", site_choices.FILES)
-@pytest.mark.parametrize("end", ["", ".prj", ".shx", ".dbf", ".cpg", ".tfw", ".hdr", ".yaml", ".x.aux.xml"])
+@pytest.mark.parametrize("end", ["", ".prj", ".shx", ".dbf", ".cpg", ".tfw", ".hdr", ".yaml", ".x.aux.xml", ".gfs",
+                                 ".x.msk", ".x-wal", ".x-journal", ".PRJ"])
 def test_a_file_of_a_site_counts_by_what_is_in_it(tmp_path, section, key, end):
     source = tmp_path / "source.x"
     changed = source.with_suffix(end) if end else source
@@ -107,6 +111,43 @@ def test_a_file_of_a_site_counts_by_what_is_in_it(tmp_path, section, key, end):
     before = site_choices.unread(choices, tmp_path).sources()
     changed.write_text("2")
     assert len(before) == 1 and site_choices.unread(choices, tmp_path).sources() != before
+
+
+VIRTUAL = "<VRTDataset><X><SourceFilename shared='0' relativeToVRT=\"1\">{}</SourceFilename></X></VRTDataset>"
+DRAWN = "<OGRVRTDataSource><OGRVRTLayer name='x'><SrcDataSource>{}</SrcDataSource></OGRVRTLayer></OGRVRTDataSource>"
+
+
+@pytest.mark.parametrize("text, source, end, counts", [
+    (VIRTUAL, "tiles/a &amp; b.tif", "", True), (VIRTUAL, "/vsizip/tiles/a.zip/b.tif", "", True),
+    (DRAWN, "tiles/a.shp", ".dbf", True), (VIRTUAL, "tiles/a.tif", ".tif.aux.xml", True),
+    (VIRTUAL, "tiles/a.tif", ".tif.ovr", False)])
+def test_the_sources_of_a_virtual_file_count(here, text, source, end, counts):
+    """Those of a virtual file of virtual files, too; overviews change no value."""
+    (here / "tiles").mkdir()
+    name = source.replace("&amp;", "&").replace("/vsizip/", "").replace("/b.tif", "")
+    (here / name).write_text("1")
+    changed = (here / name).with_suffix(end) if end else here / name
+    (here / "inner.vrt").write_text(text.format(source))
+    (here / "outer.vrt").write_text(VIRTUAL.format("inner.vrt"))
+    before = file_parts.content("outer.vrt")
+    changed.write_text("2")
+    assert (file_parts.content("outer.vrt") != before) == counts
+
+
+def test_an_edit_in_the_log_of_a_database_counts_once(here):
+    """It is in road.gpkg-wal while QGIS is open, and goes to the file when that closes."""
+    def edit(word):
+        with contextlib.closing(sqlite3.connect("road.gpkg")) as other:
+            other.execute(word)
+            other.commit()
+            return file_parts.content("road.gpkg")
+    edit("PRAGMA journal_mode=WAL")
+    with contextlib.closing(sqlite3.connect("road.gpkg")) as one:
+        one.execute("SELECT count(*) FROM sqlite_master").fetchall()
+        before = edit("CREATE TABLE road (x)")
+        after = edit("INSERT INTO road VALUES (1)")
+        assert (here / "road.gpkg-wal").stat().st_size > 0 and before != after
+    assert not (here / "road.gpkg-wal").exists() and file_parts.content("road.gpkg") == after
 
 
 # --- results that are computed each time: their yaml says of what ---

@@ -16,7 +16,7 @@ import yaml
 from .. import disk, schemas, written_yaml
 from ..errors import SlopeError
 from ..releases import packing
-from ..survey import vectors
+from ..survey import file_parts, vectors
 from ..survey.crs import as_crs
 from . import site_found
 from .site_found import Found
@@ -33,9 +33,6 @@ FILES = (("terrain", "files"), ("release", "polygon"), ("release", "scar"), ("re
          ("lines", "files"), ("motion", "file"), ("observed", "file"))
 
 WITHOUT_CRS = (("ground", "table"), ("structures", "files"), ("motion", "file"))
-
-# beside a raster, a shapefile or a table: CRS, place, attributes
-BESIDE = (".prj", ".shx", ".dbf", ".cpg", ".tfw", ".hdr", ".yaml")
 
 # keys that slope site fills in with what it finds
 DERIVED = (("balls", "diameter"), ("balls", "number"), ("model", "speed"), ("model", "duration"), ("model", "film"),
@@ -117,13 +114,6 @@ def check_text(where: str, text: object) -> None:
         raise SlopeError(where, f"must be one line of at most {LONGEST_TEXT} letters", repr(text))
 
 
-def content(path: str) -> str:
-    """Digest of a file, with the files beside it that say what it means."""
-    beside = [str(Path(path).with_suffix(suffix)) for suffix in BESIDE] + [f"{path}.aux.xml"]
-    parts = [os.path.basename(one) + disk.sha256(one) for one in (path, *beside) if os.path.isfile(one)]
-    return hashlib.sha256("\n".join(parts).encode("utf-8")).hexdigest()
-
-
 @dataclass(frozen=True)
 class Folder(Generic[K]):
     """A site's folder, and its site.yaml: a command reads it once, and passes it on."""
@@ -155,7 +145,7 @@ class Folder(Generic[K]):
         for place, name in zip(source_files(self.choices), source_files(self.written)):
             path = vectors.source(place).path
             if os.path.isfile(path):
-                digests[os.path.normpath(vectors.source(name).path)] = content(path)
+                digests[os.path.normpath(vectors.source(name).path)] = file_parts.content(path)
         return digests
 
 

@@ -12,8 +12,7 @@ from ..case import logs, run_folders
 from ..findings import Finding, entries
 from ..releases import release_toe
 from ..runs.repeats import Repeat
-from ..sites import site_choices
-from ..survey import rasters
+from ..survey import file_parts, rasters
 from ..tables import judged, quantities, structures
 from ..tables.rows import Failed, Finished, OnRoad, Row
 from . import body_depth, site_ground
@@ -84,7 +83,7 @@ def with_road(run: Repeat, road: Road, row: Finished) -> Finished:
     """With what `slope volume` says of it, which goes to the folder volume of the run, without the picture, and is kept
     there; and with what lies beyond."""
     made_of = {"run": run_folders.state(run.folder), "road": road._replace(file=Path(road.file.name))._asdict(),
-               "file": site_choices.content(str(road.file))}
+               "file": file_parts.content(str(road.file))}
     folder = run.folder / quantities.volume_folder(road.name)
     found = kept.value(folder / "row.json", made_of, functools.partial(measured_on, road, run, row),
                        lambda: [folder / name for name in ("volume.yaml", "volume.tif", "volume_mesh.tif")])
