@@ -348,7 +348,7 @@ def test_a_stretched_crs_is_warned_of(slope):
 # --- values ---
 
 @pytest.mark.parametrize("units, option, factor", [
-    ("ft", "", 0.3048), ("US survey foot", "", 1200 / 3937), ("", "--z-unit ft", 0.3048),
+    ("ft", "--z-unit ft", 0.3048), ("US survey foot", "--z-unit us-ft", 1200 / 3937), ("", "--z-unit ft", 0.3048),
     ("m", "--z-unit us-ft", 1200 / 3937), ("ft", "--z-unit m", 1), ("", "--z-unit m", 1), ("unspecified", "", 1),
     ("Unknown", "", 1), (" ", "--z-unit ft", 0.3048), ("unspecified", "--z-unit ft", 0.3048)])
 def test_heights_in_feet_become_metres(written, units, option, factor):
@@ -357,7 +357,7 @@ def test_heights_in_feet_become_metres(written, units, option, factor):
     *found, _, out = written(f"feet.tif {option}")
     assert_plane(*found)
     assert ("brought to metres" in out) == (factor != 1)
-    assert ("taken as" in out) == bool(units in ("m", "ft") and option)
+    assert ("taken as" in out) == (bool(option) and {"m": "m", "ft": "ft"}.get(units, option[9:]) != option[9:])
 
 
 def test_a_crs_in_feet_with_the_unit_of_its_heights(written):
@@ -397,6 +397,11 @@ def with_hole(path, value, dtype="float32", unit=None, factor=1.0, **tags):
     return write_tif(path, z, transform, nodata=None, dtype=dtype, tags={"units": (unit or "",), **tags})
 
 
+def confirmed(unit):
+    """The option without which a plan in metres has no heights in feet."""
+    return {None: "", "ft": " --z-unit ft", "US survey foot": " --z-unit us-ft"}[unit]
+
+
 def proposed(err):
     """The options that a message proposes."""
     return " ".join(re.findall(r"--nodata [^ ]+", err))
@@ -413,7 +418,7 @@ def test_the_nodata_that_an_error_proposes_works(slope, written, value, dtype, u
     status, _, err = slope("dem.tif -o out.asc")
     assert status == 2 and "row 7 column 6: must be a height in " in err and err.count("\n") == 1
     assert float(proposed(err).split()[1]) == pytest.approx(value, rel=1e-7)
-    z, *_ = written(f"dem.tif {proposed(err)}")
+    z, *_ = written(f"dem.tif {proposed(err)}{confirmed(unit)}")
     assert np.isnan(z[HOLE]).all() and np.isnan(z).sum() == 6
 
 
@@ -425,11 +430,11 @@ def test_the_nodata_that_an_error_proposes_works(slope, written, value, dtype, u
     (9999, "float32", "ft", 0.3048, "6 cells of 3047.7 m (9999 in the file) lie at least 2561 m above")])
 def test_the_nodata_that_a_warning_of_pits_proposes_works(slope, written, value, dtype, unit, factor, words):
     with_hole("dem.tif", value, dtype, unit, factor)
-    status, _, err = slope("dem.tif -o out.asc")
+    status, _, err = slope(f"dem.tif -o out.asc{confirmed(unit)}")
     assert status == 0 and words in err and f"{proposed(err)} makes them NODATA, with --fill 6 they are filled" in err
-    z, *_ = written(f"dem.tif {proposed(err)}")
+    z, *_ = written(f"dem.tif {proposed(err)}{confirmed(unit)}")
     assert np.isnan(z[HOLE]).all() and np.isnan(z).sum() == 6
-    assert slope(f"dem.tif {proposed(err)} --fill 6 -o out.asc")[2] == ""
+    assert slope(f"dem.tif {proposed(err)} --fill 6 -o out.asc{confirmed(unit)}")[2] == ""
 
 
 def test_the_largest_number_of_a_type_is_a_mark(slope, written):
@@ -511,7 +516,7 @@ def test_a_pit_is_deeper_than_10_m_and_than_two_cells(cell, least):
 def test_mountains_in_feet_are_no_marks(slope):
     z, transform = survey()
     write_tif("dem.tif", z / 0.3048 + 15000, transform, tags={"units": ("ft",)})
-    assert slope("dem.tif -o out.asc")[::2] == (0, "")
+    assert slope("dem.tif -o out.asc --z-unit ft")[::2] == (0, "")
 
 
 def test_level_ground_at_the_sea_is_no_pit(slope):

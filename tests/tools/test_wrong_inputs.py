@@ -175,7 +175,7 @@ CASES = [
          [*TERRAIN, "--z-unit", "us-ft"],
          "dem.tif: CRS must be in metres; give --crs EPSG:n of a projected one, got EPSG:2225"),
     Case("heights in feet", "a file that says so", lambda: tif("dem.tif", ground() / 0.3048, units="ft"), TERRAIN,
-         "right: dem.tif: heights in ft brought to metres"),
+         "dem.tif: heights in feet over a plan in metres must be confirmed, as many such tags are wrong: --z-unit m if"),
     Case("heights in feet", "a file that does not", lambda: tif("dem.tif", 8 * ground()), TERRAIN,
          "asked: the ground falls by 51 degrees on average: are the heights in feet? Then --z-unit ft, which makes "
          "it 21"),
@@ -306,7 +306,7 @@ CASES = [
     Case("truncated file", "ASCII grid", lambda: cut("t.asc", 3000), ["terrain", "t.asc", "-o", "new.asc"],
          "t.asc: values: must be 30 rows of 40, 1200 values, got"),
     Case("picture", "three bands", lambda: tif("dem.tif", np.dstack([ground()] * 3)), TERRAIN,
-         "dem.tif: must have one band, the heights, got 3 bands"),
+         "dem.tif: must have one band, the heights; gdal_translate -b N takes one of"),
     Case("picture", "an image without a place",
          lambda: rasterio.open("dem.png", "w", driver="PNG", width=9, height=9, count=1, dtype="uint8").close(),
          ["terrain", "dem.png", "-o", "new.asc"],
@@ -429,7 +429,7 @@ def test_a_site_with_pits_ends_before_the_trial_run(files, tmp_path, monkeypatch
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(site_budget, "trial_diameter", lambda *_: pytest.fail("a trial run"))
     tif("dem.tif", spoilt(ground() / (0.3048 if units else 1), HOLE, value), units=units, kind=kind)
-    status, _, err = called(capsys, SITE)
+    status, _, err = called(capsys, SITE + ["--z-unit", units] * bool(units))
     assert status == 2 and err.startswith(f"slope site: {rule}") and f"--nodata {value:g} " in err
 
 

@@ -98,6 +98,10 @@ WORDS: Dict[str, Union[str, Words]] = {
     "no ground's slope": "the ground falls by {degrees:.0f} degrees on average, {in_feet:.0f} if it is in feet: are "
                          "these heights, and the cells in metres?",
     "stretched": "a metre in {crs} is {metres:.3f} m on the ground: choose a local CRS",
+    "grid north": "north of {crs} is {degrees:.0f} degrees {side} of north here: bearings are from the grid's north; "
+                  "choose a local CRS, such as a UTM zone, where they shall be from north",
+    "tiles differ": "{file}: its heights differ by up to {largest:.1f} m from those of the files before it, which "
+                    "count, at east {east:.10g}, north {north:.10g}; by {median:.2g} m at the median of {cells} cells",
     "CRS of terrain": "{file} has no CRS: taken to be in that of the terrain{remedy}",
     "local raster": "{file} has neither origin nor CRS: taken to be in the terrain's local metres",
     "survey raster": "{file} has neither origin nor CRS: taken to be in coordinates of the survey; --local if it is in "

@@ -30,7 +30,7 @@ from . import known_arguments, road_arguments
 # option -> section and key of site.yaml
 OPTIONS = {"terrain": ("terrain", "files"), "crs": ("terrain", "crs"),
            "assign_crs": ("terrain", "assign_crs"), "assigned": ("crs", "assigned"), "bounds": ("terrain", "bounds"),
-           "z_unit": ("terrain", "z_unit"), "nodata": ("terrain", "nodata"),
+           "z_unit": ("terrain", "z_unit"), "nodata": ("terrain", "nodata"), "differ": ("terrain", "differ"),
            "cell": ("terrain", "cell"), "fill": ("terrain", "fill"), "release": ("release", "polygon"),
            "shape": ("release", "shape"), "depth": ("release", "depth"), "volume": ("release", "volume"),
            "curvature": ("release", "curvature"), "dip": ("release", "dip"), "direction": ("release", "direction"),
@@ -111,6 +111,9 @@ class Ground:
     nodata: Optional[List[float]] = option(
         "a value of the elevation model, in its own unit, that stands for no height, beside the one that it declares; "
         "may be given several times", metavar="V", action="append")
+    differ: Optional[float] = option(
+        "accept a median difference of two elevation models of up to M m where both have heights (default 5)",
+        metavar="M")
     bounds: Optional[List[float]] = option("take this part, m", nargs=4, metavar=("W", "S", "E", "N"))
     cell: Optional[float] = option("wanted cell size, m", metavar="S")
     fill: Optional[int] = option("fill NODATA holes of at most N cells", type=whole, metavar="N")

@@ -11,7 +11,7 @@ from ..findings import printer
 from ..options import Overwrite, number, option, positional, several, whole
 from ..survey import local_terrain, rasters
 
-DESCRIPTION = "Survey rasters (GeoTIFF, ESRI ASCII grid, FG-GML) to the plain terrain.asc that decks read."
+DESCRIPTION = "Survey rasters (GeoTIFF, ASCII grids, XYZ, FG-GML) to the plain terrain.asc that decks read."
 EPILOG = """\
 units: metres for heights, --cell, and coordinates; N of --fill is a number of cells of the input.
 
@@ -30,8 +30,8 @@ Writes terrain.asc and terrain.yaml (CRS, origin, sources, what was done).
 @dataclass(frozen=True, kw_only=True)
 class Request(Overwrite):
     inputs: List[str] = positional(
-        "raster of heights, or FG-GML (.xml, or .zip of them); several are merged, which needs one CRS and "
-        "one grid", metavar="IN", nargs="+")
+        "raster of heights, points on a grid (x y z in lines), FG-GML (.xml), or a .zip of them; several are merged, "
+        "which needs one CRS, and one grid or a --cell", metavar="IN", nargs="+")
     output: Path = option("the terrain; OUT.yaml beside it is its sidecar", "-o", metavar="OUT.asc")
     crs: Optional[str] = option(
         "wanted CRS, in metres: an input in another CRS is reprojected to it (bilinear); the coordinates of an input "
@@ -40,13 +40,17 @@ class Request(Overwrite):
         "the coordinates of the inputs are in this CRS, whatever their tags say (not of FG-GML); --crs may then "
         "reproject them", metavar="EPSG:n")
     z_unit: Optional[str] = option(
-        "of the heights, whatever the tags of the inputs say: m, ft (0.3048 m) or us-ft (1200/3937 m); default: what "
-        "a tag says, else m", choices=rasters.UNITS)
+        "of the heights, whatever the tags of the inputs say: m, ft (0.3048 m) or us-ft (1200/3937 m); default: m; "
+        "must be given where a tag says feet over a plan in metres", choices=rasters.UNITS)
     nodata: List[float] = several(
         "a value of the inputs, in their own unit, that stands for no height, beside the one that they declare; may "
         "be given several times", metavar="V")
+    differ: Optional[float] = option(
+        "accept a median difference of two inputs of up to M m where both have heights (default 5), as of surveys "
+        "before and after a landslide", metavar="M")
     bounds: Optional[List[float]] = option(
-        "crop to this box, in the output's CRS, m", nargs=4, metavar=("W", "S", "E", "N"))
+        "crop to this box, in the output's CRS, m; of an input that is larger, no more is read", nargs=4,
+        metavar=("W", "S", "E", "N"))
     cell: Optional[float] = option(
         "wanted cell size, m (bilinear; larger cells get the mean of several points)", metavar="S")
     origin: List[str] = option(
@@ -78,6 +82,6 @@ def check(args: Request) -> local_terrain.Wanted:
             raise SlopeError("--origin", "must be auto or two numbers, E N", " ".join(args.origin)) from None
         origin = east, north
     wanted = local_terrain.Wanted(args.crs, origin, args.cell, args.bounds, args.fill, args.assign_crs,
-                                  z_unit=args.z_unit, nodata=args.nodata)
+                                  z_unit=args.z_unit, nodata=args.nodata, differ=args.differ)
     local_terrain.checked_crs(wanted)
     return wanted

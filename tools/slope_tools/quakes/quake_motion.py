@@ -44,6 +44,11 @@ def combine(components, azimuth):
         if other.sensor != first.sensor:
             raise SlopeError(other.source, f"must be of the sensor of {first.source}, {first.sensor or 'of K-NET'}",
                              other.sensor or "of K-NET")
+    named = [c for c in components if c.of]
+    for other in named[1:]:
+        if other.of != named[0].of:
+            raise SlopeError(other.source, f"must be of the earthquake and station of {named[0].source}, "
+                             f"{named[0].of}", other.of)
     timed = [c for c in components if c.first_time is not None]
     for other in timed[1:]:
         if abs(other.first_time - timed[0].first_time) > 1e-3 * first.dt:

@@ -37,6 +37,7 @@ class Component:
     unit_in_head: bool = False      # as its format has it: --unit is not for it
     first_time: Optional[float] = None      # s, of a CSV
     sensor: str = ""       # of KiK-net, which has two
+    of: str = ""           # earthquake and station, as the file has them
 
     @property
     def name(self):
@@ -118,7 +119,8 @@ def knet(path, lines):
         raise SlopeError(path, f"the largest acceleration must be the head's Max. Acc., {largest[1]} gal",
                          f"{most:.5g} gal")
     return Component(str(path), KNET[code], 1 / rate, values, head.get("record time", ""), True,
-                     sensor=SENSORS.get(code, ""))
+                     sensor=SENSORS.get(code, ""), of=" at ".join(
+                         head[key] for key in ("origin time", "station code") if key in head))
 
 
 # --- PEER ---
@@ -151,7 +153,8 @@ def at2(path, lines):
     else:
         raise SlopeError(f"{path}, line 2", "must end in the direction, an azimuth or UP", repr(lines[1].strip()))
     values = values_of(path, lines, 4, int(size[1])) * (sign * factor)
-    return Component(str(path), direction, heads.number(size[2]), values, unit_in_head=True)
+    of = " ".join(lines[1].upper().split()).removesuffix(word).rstrip(", ")
+    return Component(str(path), direction, heads.number(size[2]), values, unit_in_head=True, of=of)
 
 
 # --- CSV ---

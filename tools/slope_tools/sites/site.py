@@ -20,6 +20,7 @@ from ..errors import SlopeError
 from ..findings import Finding, finding
 from ..releases import release, release_files, release_toe
 from ..survey import local_terrain, polygons, rasters
+from ..survey.crs import as_crs
 from ..survey.rasters import Raster, crs_name
 from . import site_bodies, site_budget, site_choices, site_deck, site_folder, site_trial, site_warnings
 from .site_budget import Size, Trial
@@ -148,7 +149,7 @@ def build(given: OfMass, known: Derived, new: Path, folder: Path, machine: Machi
     for one in (*site_warnings.of_resistance(choices), *site_warnings.of_zones(layers.zones),
                 *site_warnings.site_warnings(found.measures, size, trial),
                 *site_warnings.of_cells(found.area.z - found.slip, found.area.cell, max(
-                    map(rasters.surveyed_cell, choices.terrain.files))),
+                    rasters.surveyed_cell(name, crs_of(choices, name)) for name in choices.terrain.files)),
                 *(one for name, road in layers.roads.items() for one in site_warnings.of_road(
                     road, choices.road.width, size.diameter, max(found.area.cell, choices.model.cell or 0.0),
                     name))):
@@ -206,13 +207,19 @@ def wanted_body(choices: OfMass, new: Path) -> release.Wanted:
         one.scar, one.scar_is, one.least, crs, scar_crs, advice=advice(choices, where)))
 
 
+def crs_of(choices: Choices, path: str):
+    """The CRS that the choices assign to an elevation model, None if they assign none."""
+    name = site_choices.assigned(choices, path) or choices.terrain.assign_crs
+    return as_crs("--assign-crs", name) if name else None
+
+
 def terrain(choices: Choices, new: Path, tell, warn) -> Tuple[Raster, Dict[str, Any]]:
     """Write the terrain and read it back, as the deck will; what its sidecar says."""
     given = choices.terrain
     own = {path: crs for path in given.files if (crs := site_choices.assigned(choices, path))}
     nodata = given.nodata if isinstance(given.nodata, tuple) else () if given.nodata is None else (given.nodata,)
     wanted = local_terrain.Wanted(given.crs, None, given.cell, given.bounds, given.fill, given.assign_crs, own,
-                                  given.z_unit, nodata, pits=False)
+                                  given.z_unit, nodata, pits=False, differ=given.differ)
     about = local_terrain.make(given.files, new / TERRAIN, wanted, tell, warn)
     tell(local_terrain.summary(TERRAIN, about))
     return rasters.read_asc_local(new / TERRAIN), about

@@ -40,7 +40,8 @@ DERIVED = (("balls", "diameter"), ("balls", "number"), ("model", "speed"), ("mod
 
 # keys that came later: those who made a folder before did not count them
 LATER = (("ground", "file"), ("ground", "table"), ("model", "film"), ("structures", "walls"), ("structures", "height"),
-         ("structures", "width"), ("model", "least_speed"), ("model", "least_thick"), ("road", "others"))
+         ("structures", "width"), ("model", "least_speed"), ("model", "least_thick"), ("road", "others"),
+         ("terrain", "differ"))
 
 # keys of section model, and of others, that make the model's balls, cells and stiffness; not what is asked for
 OF_MODEL = (*DERIVED, ("model", "least_speed"), ("model", "least_thick"))

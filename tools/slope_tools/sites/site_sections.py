@@ -39,6 +39,7 @@ class Terrain:
     assign_crs: Optional[str]
     z_unit: Optional[str]
     nodata: Union[float, Numbers, None]
+    differ: Optional[float]
     bounds: Optional[Numbers]
     cell: Optional[float]
     fill: int

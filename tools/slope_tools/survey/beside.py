@@ -35,7 +35,7 @@ def read(path: Union[str, Path], terrain: Raster, heights: bool = True, crs: Opt
     for granted, remedy: of that, where the raster has no CRS. Raises SlopeError where the file is no raster, or has no
     value.
     """
-    found = rasters.read_asc_local(path, heights)
+    found = rasters.read_asc_local(path, heights, ask=False)
     if not np.isfinite(found.z).any():
         raise SlopeError(path, "must hold a value, all cells are NODATA")
     bare = rasters.read_sidecar(path) is None
@@ -105,7 +105,14 @@ def on_cells(path: Union[str, Path], found: Raster, terrain: Raster) -> np.ndarr
 def heights_on(path: Union[str, Path], terrain: Raster, local: bool = False,
                warn: Optional[Callable[[Finding], Any]] = None) -> np.ndarray:
     """Heights (m) of a raster file at the cells of a terrain; local: those that no file places are in local metres."""
-    return on_cells(path, read(path, terrain, local=Local(local, True), warn=warn), terrain)
+    z = on_cells(path, read(path, terrain, local=Local(local, True), warn=warn), terrain)
+    factor = rasters.UNITS[rasters.opened(path).unit or "m"]
+    as_tagged, as_metres = (float(np.nanmedian(np.abs(one - terrain.z))) for one in (z, z / factor))
+    if as_metres < as_tagged:
+        raise SlopeError(path, "must have the unit that its tag says, and as metres its heights are nearer to the "
+                         f"terrain's, {as_metres:.3g} m at the median: slope terrain --z-unit m makes such a raster",
+                         f"{as_tagged:.3g} m")
+    return z
 
 
 def has_cells(found: Raster, terrain: Raster) -> bool:

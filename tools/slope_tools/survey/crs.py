@@ -1,6 +1,8 @@
-"""Coordinate reference systems: are two the same, is a metre a metre."""
+"""Coordinate reference systems: names, are two the same, is a metre a metre, do the axes point east and north."""
 import math
-from typing import Any
+import re
+import warnings
+from typing import Any, Optional
 
 import numpy as np
 import rasterio
@@ -11,9 +13,31 @@ from rasterio.errors import CRSError
 from ..errors import SlopeError
 from ..findings import Finding
 from ..geometry import numbers
-from .rasters import crs_name, epsg
 
+OTHER = "give one whose axes do, such as a UTM zone"
+NORTH = 5.0            # degrees between grid north and north from which on the user is warned
 STRETCH = 0.01         # relative error of lengths in a CRS from which on the user is warned
+
+
+def epsg(crs):
+    """EPSG number of a CRS, None if not known.
+
+    The confidence of 50 covers ESRI's spelling in .prj files, where the axes of many systems (all of Japan's plane
+    ones) are in another order than EPSG's, which does not matter here: rasters are always east, north. It covers a
+    system in another unit of length too, which matters.
+    """
+    number = crs.to_epsg(confidence_threshold=50)
+    if number and crs.is_projected and not math.isclose(crs.linear_units_factor[1],
+                                                        CRS.from_epsg(number).linear_units_factor[1], rel_tol=1e-9):
+        return None
+    return number
+
+
+def crs_name(crs):
+    """EPSG:n if known, else the name that the WKT carries; `none` without a CRS."""
+    if crs is None:
+        return "none"
+    return f"EPSG:{epsg(crs)}" if epsg(crs) else crs.to_wkt().split('"')[1]
 
 
 def as_crs(option: str, name: Any) -> CRS:
@@ -47,15 +71,76 @@ def require_metres(crs, where):
                          f"{crs_name(crs)} in {unit}")
 
 
+def require_axes(crs, where):
+    """Raise SlopeError if the axes of a CRS point elsewhere than to the east and the north.
+
+    The ground would be turned or mirrored. Those of polar systems both point to the south, or both to the north.
+    """
+    if crs is None or not crs.is_projected:
+        return
+    axes = [one for one in re.findall(r'AXIS\["[^"]*",(\w+)', crs.to_wkt()) if one not in ("UP", "DOWN")][-2:]
+    if {*axes} & {"WEST", "SOUTH"} and len({*axes}) == 2:
+        raise SlopeError(where, f"the axes of its CRS must point east and north; {sister_remedy(crs)}",
+                         f"{crs_name(crs)}, {' and '.join(axes).lower()}")
+
+
+def sister_remedy(crs) -> str:
+    """What can be done about a CRS (of rasterio) with such axes."""
+    name = sister(crs)
+    return f"its sister is {name}: --crs {name}, or --assign-crs {name} where the tag is wrong" if name else OTHER
+
+
+def sister(crs) -> Optional[str]:
+    """The system of EPSG or ESRI with the same projection whose axes point east and north, None if there is none."""
+    from pyproj import CRS
+    from pyproj.aoi import AreaOfInterest
+    from pyproj.database import query_crs_info
+    from pyproj.enums import PJType
+    wanted = CRS.from_wkt(crs.to_wkt())
+    area = CRS.from_epsg(crs.to_epsg()).area_of_use if crs.to_epsg() else None
+    around = AreaOfInterest(area.west, area.south, area.east, area.north) if area else None
+    for authority in ("EPSG", "ESRI"):
+        for one in query_crs_info(authority, PJType.PROJECTED_CRS, around, contains=True):
+            if area and one.area_of_use and one.area_of_use.east - one.area_of_use.west > 3 * (area.east - area.west):
+                continue        # of the world or a continent; there are many
+            found = CRS.from_authority(one.auth_name, one.code)
+            if {axis.direction for axis in found.axis_info} == {"east", "north"} and same(found, wanted):
+                return f"{one.auth_name}:{one.code}"
+    return None
+
+
+def same(found, wanted) -> bool:
+    """Whether two systems (of pyproj) have one datum and one projection, but for their axes."""
+    if found.geodetic_crs.datum.name != wanted.geodetic_crs.datum.name:
+        return False
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")     # that words of PROJ say less than others, which are equal here
+        one, other = ({key: value for key, value in crs.to_dict().items() if key != "axis"} for crs in (found, wanted))
+    return bool(one) and one == other
+
+
 def warn_of_stretch(raster, warn):
     """Warn where a metre of the CRS is not a metre on the ground (Web Mercator at 37 N: 0.8 m), by more than 1 %."""
-    from pyproj import Proj
-    x, y = raster.transform * (raster.z.shape[1] / 2, raster.z.shape[0] / 2)
-    projection = Proj(raster.crs.to_wkt())
-    factors = projection.get_factors(*projection(x, y, inverse=True))
+    factors = factors_of(raster)
     for scale in (factors.parallel_scale, factors.meridional_scale):
         if not abs(1 / scale - 1) < STRETCH:
             return warn(Finding("stretched", {"crs": crs_name(raster.crs), "metres": 1 / scale}))
+
+
+def warn_of_north(raster, warn):
+    """Warn where the north of the grid is far off north, as in polar systems: bearings are from grid north."""
+    angle = factors_of(raster).meridian_convergence
+    if abs(angle) > NORTH:
+        warn(Finding("grid north", {"crs": crs_name(raster.crs), "degrees": abs(angle),
+                                    "side": "east" if angle > 0 else "west"}))
+
+
+def factors_of(raster):
+    """Of the projection, at the middle of a raster."""
+    from pyproj import Proj
+    x, y = raster.transform * (raster.z.shape[1] / 2, raster.z.shape[0] / 2)
+    projection = Proj(raster.crs.to_wkt())
+    return projection.get_factors(*projection(x, y, inverse=True))
 
 
 def transform(source, target, x, y):

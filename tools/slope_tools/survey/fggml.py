@@ -22,10 +22,11 @@ from rasterio.crs import CRS
 
 from ..errors import SlopeError
 from ..findings import Finding
-from . import rasters, zips
+from . import zips
+from .grids import Raster, check_memory, progress
 from .japan import DATUMS
 from .marks import Scale
-from .rasters import HIGHEST, NODATA, Raster
+from .rasters import HIGHEST, NODATA
 
 SCHEMA = "http://fgd.gsi.go.jp/spec/"
 GML = "http://www.opengis.net/gml/3.2"
@@ -77,7 +78,8 @@ def read(path):
             source.seek(0)
             return _tiles(source, str(path))
     except NotTiles as error:
-        raise SlopeError(path, "must be a raster or FG-GML elevation data (Dataset with a DEM)", error) from None
+        raise SlopeError(path, "must be a raster or FG-GML elevation data (Dataset with a DEM)"
+                         + zips.remedy(str(path)), error) from None
     except OSError as error:
         raise SlopeError(path, f"cannot be read: {error.strerror or error}") from error
 
@@ -103,7 +105,7 @@ def _read_zip(source, where, room=None):
         raise SlopeError(where, f"must have at most {LARGEST_ZIP / 1e6:g} MB unpacked, and {DEFLATE} times its size",
                          f"{total / 1e6:.0f} MB in {size / 1e6:.3g} MB")
     tiles = []
-    for member in rasters.progress(members, f"reading {where}"):
+    for member in progress(members, f"reading {where}"):
         kind = member.filename[-4:].lower()
         name = f"{where}: {''.join(c if c.isprintable() else '?' for c in member.filename[:LONGEST])}"
         if member.file_size > LARGEST_XML:
@@ -126,7 +128,9 @@ def _read_zip(source, where, room=None):
                 OSError) as error:     # ValueError: a member that begins before the file does
             raise SlopeError(name, f"is damaged ({str(error)[:LONGEST]})") from error
     if outer and not tiles:
-        raise SlopeError(where, "must hold FG-GML elevation tiles (.xml), it has none",
+        inside = [member.filename for member in archive.infolist() if not zips.is_of_macos(member.filename)]
+        other = next((way for name in inside if (way := zips.remedy(name))), "")
+        raise SlopeError(where, f"must hold FG-GML elevation tiles (.xml), it has none{other}",
                          f"{len(archive.infolist())} files")
     return tiles
 
@@ -258,7 +262,7 @@ def _tile(dem, where):
         raise SlopeError(f"{where}: line {dem['high'][0]}", "high must be 0 to 99999", dem["high"][1].strip()[:60])
     if dem.get("order", (0, "+x-y"))[1] != "+x-y":
         raise SlopeError(f"{where}: line {dem['order'][0]}", "order must be +x-y", dem["order"][1][:60])
-    rasters.check_memory(rows, columns, where)
+    check_memory(rows, columns, where)
     x, y = pair("startPoint", int, "whole numbers, x and y") if "startPoint" in dem else (0, 0)  # GML: the first cell
     if not (0 <= x < columns and 0 <= y < rows):
         raise SlopeError(f"{where}: line {dem['startPoint'][0]}", f"startPoint must be in the grid, 0 0 to "

@@ -13,13 +13,13 @@ from rasterio.crs import CRS
 from ..errors import SlopeError
 from ..findings import Finding
 from ..geometry import numbers
-from . import fggml, plausible, rasters
-from .crs import as_crs, require_metres, warn_of_stretch
+from . import fggml, plausible, rasters, zips
+from .crs import as_crs, require_axes, require_metres, warn_of_north, warn_of_stretch
 from .holes import fill, small_holes
 from .marks import Marks, text
 from .rasters import Raster
-from .resampling import regrid
-from .terrain import declare, merge, read_fggml
+from .resampling import needed, regrid
+from .terrain import DIFFER, Tile, declare, merge, read_fggml
 
 
 class Wanted(NamedTuple):
@@ -34,12 +34,15 @@ class Wanted(NamedTuple):
     z_unit: Optional[str] = None        # of the heights in the files, of rasters.UNITS, whatever they say
     nodata: Sequence[float] = ()        # values of the files that stand for none, beside the declared one
     pits: bool = True                   # are warned of; else refused
+    differ: Optional[float] = None      # m, at the median, by which the heights of two files may differ
 
 
 def checked_crs(wanted: Wanted) -> Tuple[Optional[CRS], Optional[CRS]]:
     """The wanted CRS and that of the files, None if not given; SlopeError, which names the option, if one is wrong."""
     if wanted.cell is not None and wanted.cell <= 0:
         raise SlopeError("--cell", "must be > 0", f"{wanted.cell:g}")
+    if wanted.differ is not None and wanted.differ <= 0:
+        raise SlopeError("--differ", "must be > 0", f"{wanted.differ:g}")
     if wanted.fill < 0:
         raise SlopeError("--fill", "must be >= 0", wanted.fill)
     if wanted.bounds and not (wanted.bounds[0] < wanted.bounds[2] and wanted.bounds[1] < wanted.bounds[3]):
@@ -48,6 +51,7 @@ def checked_crs(wanted: Wanted) -> Tuple[Optional[CRS], Optional[CRS]]:
     if wanted.crs:
         crs = as_crs("--crs", wanted.crs)
         require_metres(crs, "--crs")
+        require_axes(crs, "--crs")
     if wanted.assigned:
         assigned = as_crs("--assign-crs", wanted.assigned)
     return crs, assigned
@@ -71,19 +75,28 @@ def make(inputs: Sequence[str], output: Path, wanted: Wanted, tell: Callable[[st
         steps.append(step)
         tell(step)
 
-    cell, marks = wanted.cell, Marks(wanted.nodata)
-    if any(map(fggml.is_one, inputs)):
+    cell, marks, differ = wanted.cell, Marks(wanted.nodata), wanted.differ or DIFFER
+    files = [(path, name) for path in inputs for name in zips.rasters_in(path) or [path]]
+    if any(fggml.is_one(name) for _, name in files):
         for option, value in (("--assign-crs", wanted.assigned or "".join(wanted.own.values()) or None),
                               ("--z-unit", wanted.z_unit)):
             if value is not None:
                 raise SlopeError(option, "must not be given for FG-GML, which has its CRS and heights in metres", value)
-        raster, crs, cell = read_fggml(inputs, crs, cell, keep, warn, marks)
+        raster, crs, cell = read_fggml(inputs, crs, cell, keep, warn, marks, differ)
+        tile = Tile(inputs[0], raster, raster)
     else:
-        raster = merge([declare(path, crs, keep, warn, own_crs(path, wanted, assigned), wanted.z_unit, marks)
-                        for path in inputs], inputs, keep)
-        crs = crs or raster.crs
+        def part(whole: Raster) -> Tuple[int, int, int, int]:
+            return needed(whole, crs or whole.crs, wanted.cell, wanted.bounds, wanted.fill + 2)
+        tiles = [declare(name, crs, keep, warn, own_crs(path, wanted, assigned), wanted.z_unit, marks,
+                         part if wanted.bounds else None) for path, name in files]
+        tile = merge(tiles, keep, warn, wanted.cell, differ)
+        crs = crs or tile.whole.crs
+    raster = tile.raster
     require_metres(crs, inputs[0])
+    require_axes(crs, inputs[0])
     if not np.isfinite(raster.z).any():
+        if wanted.bounds:
+            regrid(raster, crs, cell, wanted.bounds, keep, warn, tile.whole)        # says what is wrong with them
         raise SlopeError(", ".join(inputs), "must have a height, all cells are NODATA")
     for absent in marks.not_found:
         warn(Finding("no such cell", {"value": text(absent), "low": float(np.nanmin(raster.z)),
@@ -96,9 +109,10 @@ def make(inputs: Sequence[str], output: Path, wanted: Wanted, tell: Callable[[st
         filled = int(holes.sum())
         raster = raster._replace(z=fill(raster.z, holes))
         keep(f"filled {count} NODATA holes of at most {wanted.fill} cells, {filled} cells")
-    raster = regrid(raster, crs, cell, wanted.bounds, keep, warn)
+    raster = regrid(raster, crs, cell, wanted.bounds, keep, warn, tile.whole)
     if crs is not None:
         warn_of_stretch(raster, warn)
+        warn_of_north(raster, warn)
     if wanted.z_unit is None:
         plausible.warn_of_slope(raster, warn)
     z = np.round(raster.z, 3) + 0.0  # as they are written; + 0.0 because of -0.0

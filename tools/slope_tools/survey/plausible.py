@@ -4,17 +4,18 @@ from typing import Any, Callable, NamedTuple, Optional
 
 import numpy as np
 
+from ..errors import SlopeError
 from ..findings import Finding
+from .grids import Raster
 from .marks import Marks, text
-from .rasters import UNITS, Raster
 
 DEEP = 10.0         # m; a pit is deeper than this and than STEEP_SIDES cells, on all sides
 STEEP_SIDES = 2.0
 FEW = 100           # cells; fewer do not show what a ground spans
 STEEPEST = 50.0     # degrees, mean of a terrain; steeper ones may be in feet
-BRIGHT, MOST = 240.0, 255.0     # of a picture: its brightest cell is between these
 ROWS = 1000         # of a terrain that are looked at for its slope
-FOOT = UNITS["ft"]
+FOOT = 0.3048
+BRIGHT, MOST = 240.0, 255.0     # of a picture: its brightest cell is between these
 
 
 class Pits(NamedTuple):
@@ -109,7 +110,7 @@ def warn_of_picture(raster: Raster, warn: Callable[[Finding], Any]) -> None:
         warn(Finding("picture", {"low": float(known.min()), "high": float(known.max())}))
 
 
-def mean_slope(raster: Raster) -> float:
+def mean_slope(raster) -> float:
     """Of a terrain in metres, degrees, by differences in some of its rows; NaN where there are none."""
     rows = len(raster.z)
     if min(raster.z.shape) < 2:
@@ -125,6 +126,22 @@ def mean_slope(raster: Raster) -> float:
 def in_feet(slope: float) -> float:
     """The slope (degrees) of a ground whose heights are not metres but feet."""
     return math.degrees(math.atan(math.tan(math.radians(slope)) * FOOT))
+
+
+def ask(path, raster, crs, unit: str, metres: float) -> None:
+    """Raise SlopeError where a plan in metres has heights (of a Raster) that the file says are feet: many such tags are
+    wrong.
+
+    crs: of the plan; None: metres.
+    """
+    if not np.isfinite(raster.z).any() or crs is not None and (
+            not crs.is_projected or not math.isclose(crs.linear_units_factor[1], 1)):
+        return
+    feet = raster._replace(z=raster.z * metres)
+    raise SlopeError(path, "heights in feet over a plan in metres must be confirmed, as many such tags are wrong: "
+                     f"--z-unit m if they are metres, and the ground falls by {mean_slope(raster):.3g} degrees on "
+                     f"average, --z-unit ft or us-ft if they are feet, {mean_slope(feet):.3g} degrees (slope terrain, "
+                     "slope site)", unit)
 
 
 def warn_of_slope(raster: Raster, warn: Callable[[Finding], Any]) -> None:

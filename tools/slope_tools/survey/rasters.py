@@ -5,11 +5,10 @@ Heights are metres above the vertical datum of the survey, NaN where there is no
 counted from the outer corner of the first cell, to (x, y).
 """
 import math
-import os
-import sys
 import warnings
+from contextlib import suppress
 from pathlib import Path
-from typing import Dict, NamedTuple, Optional, Tuple, Union
+from typing import NamedTuple, Optional, Tuple, Union
 
 import numpy as np
 import rasterio
@@ -18,115 +17,118 @@ from affine import Affine
 from rasterio.crs import CRS
 from rasterio.enums import MaskFlags
 from rasterio.errors import CRSError, NotGeoreferencedWarning, RasterioError
-from rich.console import Console
-from rich.progress import track
+from rasterio.windows import Window
 
-from .. import disk, schemas, streams
+from .. import disk, schemas
 from ..errors import SlopeError
 from ..schemas import COUNT, TEXT, mapping, numbers
+from . import plausible, text_grids, xyz, zips
+from .crs import crs_name, epsg, require_axes
+from .grids import Raster, check_memory, progress
 from .marks import Scale, cells_of, text
 
 WHAT_SIDECAR = "a sidecar that `slope terrain` wrote"
 ORIGIN, EXTENT = ("east", "north"), ("xlo", "ylo", "xhi", "yhi")
 SIDECAR = mapping({"crs": mapping({"wkt": TEXT}, null=True), "origin": mapping(numbers(*ORIGIN)),
                    "size": mapping({"rows": COUNT, "columns": COUNT}), "extent": mapping(numbers(*EXTENT))})
-ENDINGS = {".tif", ".tiff", ".asc", ".vrt", ".img", ".bil"}       # of files that are rasters and not layers of shapes
+# of files that are rasters and not layers of shapes
+ENDINGS = {".tif", ".tiff", ".asc", ".vrt", ".img", ".bil", ".xyz"}
 NODATA = -9999             # in written files
 HIGHEST = 9000.0           # m; beyond +-HIGHEST a value is a NODATA mark that the file does not declare (-9999, -32768)
-BYTES_PER_CELL = 40        # peak memory of `slope terrain` per cell, measured 22 to 33 for 16 million cells
-HEADER = {"ncols", "nrows", "xllcorner", "yllcorner", "xllcenter", "yllcenter", "cellsize", "dx", "dy", "nodata_value"}
-# keys that say the same
-AGAIN = {"xllcorner": {"xllcenter"}, "xllcenter": {"xllcorner"}, "yllcorner": {"yllcenter"}, "yllcenter": {"yllcorner"},
-         "cellsize": {"dx", "dy"}, "dx": {"cellsize"}, "dy": {"cellsize"}}
 UNITS = {"m": 1.0, "ft": 0.3048, "us-ft": 1200 / 3937}      # m, of heights
 TAGS = {"m": "m", "metre": "m", "meter": "m", "metres": "m", "meters": "m", "ft": "ft", "foot": "ft", "feet": "ft",
         "international foot": "ft", "us survey foot": "us-ft", "us survey feet": "us-ft", "ftus": "us-ft",
         "us-ft": "us-ft", "foot_us": "us-ft"}      # how files spell them, in lower case
 NO_UNIT = {"", "unspecified", "unknown", "undefined", "none"}       # how files spell that they do not say one
+CACHE = 64              # MB, of GDAL, of parts of large files
 DEGREE = 111_195.0      # m along a meridian
 
 
-class Raster(NamedTuple):
-    """Heights on a grid; CRS coordinates are transform * (column, row) + offset."""
-    z: np.ndarray
+class File(NamedTuple):
+    """A raster file, or a part of it, with its values as they are stored."""
+    stored: np.ndarray
+    none: np.ndarray            # mask of those that the file says are none
     transform: Affine
     crs: Optional[CRS]
-    offset: Tuple[float, float] = (0.0, 0.0)
+    scale: float = 1.0
+    shift: float = 0.0
+    unit: Optional[str] = None          # of UNITS, where the file says one
+    first: Tuple[int, int] = (0, 0)     # row and column of the file where the part begins
+    is_picture: bool = False            # values of 8 bits as they are, as a hillshade has
 
 
-def progress(steps, what, total=None):
-    """Iterate over steps behind a progress bar on stderr, which shows only on a terminal."""
-    if not streams.is_terminal(sys.stderr):
-        return steps
-    return track(steps, what, total, console=Console(stderr=True), transient=True)
-
-
-def check_memory(rows, columns, where):
-    """Raise SlopeError if rows x columns cells do not fit in this machine's memory."""
-    need = rows * columns * BYTES_PER_CELL / 1e9
-    have = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 1e9
-    if need > have:
-        raise SlopeError(where, f"must fit in the {have:.3g} GB of memory of this machine",
-                         f"{columns} x {rows} cells, which need {need:.3g} GB")
-
-
-def epsg(crs):
-    """EPSG number of a CRS, None if not known.
-
-    The confidence of 50 covers ESRI's spelling in .prj files, where the axes of many systems (all of Japan's plane
-    ones) are in another order than EPSG's, which does not matter here: rasters are always east, north. It covers a
-    system in another unit of length too, which matters.
-    """
-    number = crs.to_epsg(confidence_threshold=50)
-    if number and crs.is_projected and not math.isclose(crs.linear_units_factor[1],
-                                                        CRS.from_epsg(number).linear_units_factor[1], rel_tol=1e-9):
-        return None
-    return number
-
-
-def crs_name(crs):
-    """EPSG:n if known, else the name that the WKT carries; `none` without a CRS."""
-    if crs is None:
-        return "none"
-    return f"EPSG:{epsg(crs)}" if epsg(crs) else crs.to_wkt().split('"')[1]
-
-
-def read(path, heights=True, unit=None, marks=None):
-    """Read a single-band raster (GeoTIFF, ESRI ASCII grid, or another format of GDAL) into a Raster.
+def read(path, heights=True, unit=None, marks=None, ask=True):
+    """Read a single-band raster (GeoTIFF, ESRI ASCII grid, list of points on a grid, or another format of GDAL), also
+    in a .zip that holds one, into a Raster.
 
     The CRS is None where the file has none; it may be in degrees, the heights may not: they become metres, from what
     the file says, or from the unit (of UNITS) that is given. heights=False: other values than heights, such as the
     energies of fix deposit/grid; their size is not checked. marks: of the values, in the file's own unit, that stand
-    for none, too; what the file has of them is noted there. Raises SlopeError on anything that is not such a raster.
+    for none, too; what the file has of them is noted there. ask: end where heights in feet lie over a plan in metres.
+    Raises SlopeError on anything that is not such a raster.
     """
-    if not Path(path).is_file():
-        raise SlopeError(path, "must be an existing file")
-    try:
-        with warnings.catch_warnings(), rasterio.Env():  # Env: GDAL's own messages are not for stderr
-            warnings.simplefilter("ignore", NotGeoreferencedWarning)  # an error of our own, below
-            with rasterio.open(path) as source:
-                stored, none = _read(path, source)
-                own = unit or unit_of(path, source, heights) or "m"
-                scale = Scale(source.scales[0], source.offsets[0], UNITS[own])
-                transform, crs = source.transform, source.crs
-    except (RasterioError, OSError) as error:  # RasterioIOError is an OSError only
-        raise SlopeError(path, f"must be a raster that GDAL can read ({error})") from error
+    return in_metres(path, opened(path, heights, unit), heights, unit, marks, ask=ask)
+
+
+def in_metres(path, found, heights=True, unit=None, marks=None, assigned=None, ask=True):
+    """The Raster of a File, see read() and opened()."""
+    own = unit or found.unit or "m"
+    scale = Scale(found.scale, found.shift, UNITS[own])
     if marks:
-        marks.take(stored, none)
-    z = scale.in_unit(stored)
-    z[none] = np.nan
+        marks.take(found.stored, found.none)
+    z = scale.in_unit(found.stored)
+    z[found.none] = np.nan
     if heights:
-        check_heights(path, z, stored, own, unit is None, marks)
+        check_heights(path, z, found, own, unit is None, marks)
         if marks:
-            marks.note(stored, none, scale)
-    return Raster(scale.metres(z), transform, crs)
+            marks.note(found.stored, found.none, scale)
+    raster = Raster(scale.metres(z), found.transform, found.crs)
+    if heights and ask and unit is None and own != "m":
+        plausible.ask(path, raster._replace(z=z), assigned or found.crs, own, UNITS[own])
+    return raster
 
 
-def check_heights(path, z, stored, unit, may_be_feet, marks):
+def opened(path, heights=True, unit=None, part=None, assigned=None):
+    """The File of a path, see read().
+
+    part: which of its cells, (top, bottom, left, right), of a Raster without heights; text is read as a whole.
+    assigned: the CRS of its coordinates, whatever it says.
+    """
+    name = only(path)
+    form = xyz.form_of(name)
+    if form:
+        grid = xyz.read(name, form)
+        if grid.degrees and not (assigned is not None and assigned.is_geographic):
+            raise SlopeError(path, "columns in degrees must have a CRS in degrees; --assign-crs EPSG:n gives one",
+                             crs_name(assigned))
+        said = unit_of(path, grid.unit, None, heights, unit)
+        return File(grid.z, np.isnan(grid.z), grid.transform, None, unit=said)
+    try:
+        # Env: GDAL's own messages are not for stderr
+        with warnings.catch_warnings(), rasterio.Env(GDAL_CACHEMAX=CACHE):
+            warnings.simplefilter("ignore", NotGeoreferencedWarning)  # an error of our own, below
+            with rasterio.open(zips.gdal_name(name)) as source:
+                return _read(path, name, source, unit_of(path, source.units[0], source.crs, heights, unit), part)
+    except (RasterioError, OSError) as error:  # RasterioIOError is an OSError only
+        raise SlopeError(path, f"must be a raster that GDAL can read ({error}){zips.remedy(name)}") from error
+
+
+def only(path):
+    """The name of the one raster in a .zip; of any other file, its own."""
+    if not Path(zips.split(str(path))[0]).is_file():
+        raise SlopeError(path, "must be an existing file")
+    found = zips.rasters_in(path) if Path(path).is_file() else []
+    if len(found) > 1:
+        raise SlopeError(path, "must hold one raster; unpack it, it holds "
+                         + zips.some([name[len(str(path)) + 1:] for name in found]), f"{len(found)} rasters")
+    return found[0] if found else str(path)
+
+
+def check_heights(path, z, found, unit, may_be_feet, marks):
     """Raise SlopeError if heights (in a unit of UNITS) cannot be those of a ground.
 
     None is higher than HIGHEST m, and none lower than -HIGHEST in its own unit: -9999 ft is a mark, 9999 ft a mountain.
-    stored: what the file has for them; may_be_feet: the unit was not given; marks: None where there is no --nodata.
+    found: their File; may_be_feet: the unit was not given; marks: None where there is no --nodata.
     """
     top = HIGHEST / UNITS[unit]
     with np.errstate(invalid="ignore"):
@@ -134,149 +136,89 @@ def check_heights(path, z, stored, unit, may_be_feet, marks):
     if not len(wrong):
         return
     row, column = wrong[0]
-    value, shown = z[row, column], text(stored[row, column])
+    value, stored = z[row, column], found.stored[row, column]
+    shown = text(stored)
+    row, column = row + found.first[0], column + found.first[1]
     remedy = f"{marks.options(shown)} if it means none" if marks else f"gdal_translate -a_nodata {shown} declares it"
     name = "metres" if unit == "m" else unit
     feet = "; --z-unit ft (slope terrain, slope site) if these are feet" if (
         may_be_feet and HIGHEST < value < HIGHEST / UNITS["ft"]) else ""
-    scaled = "" if float(stored[row, column]) == value else f", which stands for {value:g} {unit}"
+    scaled = "" if float(stored) == value else f", which stands for {value:g} {unit}"
     raise SlopeError(f"{path}: row {row + 1} column {column + 1}", f"must be a height in {name} between -9000 and "
                      f"{math.floor(top)}, or the NODATA value that the file declares; {remedy}{feet}",
                      f"{shown}{scaled}")
 
 
-def unit_of(path, source, heights=True):
-    """The unit (of UNITS) that an open raster says its heights have, None if it does not say.
+def unit_of(path, tag, crs, heights=True, given=None):
+    """The unit (of UNITS) that a raster says its heights have by a tag, None if it does not say, or one is given.
 
     SlopeError where it is another one, or cannot be metres as a matter of course: the CRS is in feet, too.
     """
-    tag = (source.units[0] or "").strip()
+    tag = (tag or "").strip()
     unit = TAGS.get(tag.lower())
+    if given:
+        return unit
     if tag.lower() not in NO_UNIT and (unit is None or not heights and unit != "m"):
         raise SlopeError(path, "heights must be in metres or feet; --z-unit m, ft or us-ft overrides a wrong tag"
                          if heights else "must be in metres", tag)
-    if unit is None and heights and source.crs is not None and source.crs.is_projected:
-        name, factor = source.crs.linear_units_factor
+    if unit is None and heights and crs is not None and crs.is_projected:
+        name, factor = crs.linear_units_factor
         if any(abs(factor / UNITS[foot] - 1) < 1e-7 for foot in ("ft", "us-ft")):
-            raise SlopeError(path, f"must say the unit of its heights, as its CRS, {crs_name(source.crs)}, is in {name}"
+            raise SlopeError(path, f"must say the unit of its heights, as its CRS, {crs_name(crs)}, is in {name}"
                              ": give --z-unit us-ft, ft or m (slope terrain, slope site)", "none")
     return unit
 
 
-def height_unit(path):
-    """The unit that a raster file says its heights have, None if it does not say."""
-    with warnings.catch_warnings(), rasterio.Env():
-        warnings.simplefilter("ignore", NotGeoreferencedWarning)
-        with rasterio.open(path) as source:
-            return TAGS.get((source.units[0] or "").lower())
-
-
-def is_picture(path):
-    """Whether a raster file has 8-bit values as they are, as a hillshade has."""
-    with warnings.catch_warnings(), rasterio.Env():
-        warnings.simplefilter("ignore", NotGeoreferencedWarning)
-        with rasterio.open(path) as source:
-            return source.dtypes[0] in ("uint8", "int8") and source.scales[0] == 1 and source.offsets[0] == 0
-
-
-def _read(path, source):
-    """The values as they are stored, and the mask of those that the file says are none."""
+def _read(path, name, source, unit, part):
+    """The File of an open raster, or of a part of it."""
     if source.count != 1:
-        raise SlopeError(path, "must have one band, the heights", f"{source.count} bands")
+        bands = ", ".join(f"{band} {said}".rstrip() for band, said in enumerate((one or "" for one in
+                          source.descriptions), 1))
+        raise SlopeError(path, f"must have one band, the heights; gdal_translate -b N takes one of {bands}",
+                         f"{source.count} bands")
     if source.dtypes[0].startswith("complex"):
         raise SlopeError(path, "must hold real numbers", source.dtypes[0])
     rows, columns = source.shape
-    check_memory(rows, columns, path)
-    if source.driver == "AAIGrid":
-        stored, declared = _read_ascii_heights(path, rows, columns)
-        none = np.zeros(stored.shape, bool)
-    else:
-        read = source.read(1, masked=True)
-        stored, none = read.data, np.ma.getmaskarray(read)
-        declared = source.nodata if MaskFlags.nodata in source.mask_flag_enums[0] else None
+    is_text = source.driver in text_grids.DRIVERS
+    top, bottom, left, right = 0, rows, 0, columns
+    if part and not is_text and not source.transform.is_degenerate:
+        top, bottom, left, right = part(Raster(np.broadcast_to(np.nan, source.shape), source.transform, source.crs))
+    check_memory(bottom - top, right - left, path, "" if part else "; --bounds of slope terrain and site reads a part")
+    declared = source.nodata if MaskFlags.nodata in source.mask_flag_enums[0] else None
+    text_values = text_grids.heights(name, source.driver, rows, columns) if is_text else None
     if source.transform.is_identity or source.transform.is_degenerate:
         raise SlopeError(path, "must be georeferenced: place and size of the cells are missing")
+    if text_values:
+        stored, declared = text_values
+        none = np.zeros(stored.shape, bool)
+    elif bottom == top or left == right:
+        stored, none = np.empty((0, 0), source.dtypes[0]), np.zeros((0, 0), bool)
+    else:
+        values = source.read(1, masked=True, window=Window(left, top, right - left, bottom - top))
+        stored, none = values.data, np.ma.getmaskarray(values)
     none |= ~np.isfinite(stored)
     if declared is not None:
         none |= cells_of(stored, declared)    # GDAL's mask misses marks with few digits
-    return stored, none
+    is_picture = source.dtypes[0] in ("uint8", "int8") and (source.scales[0], source.offsets[0]) == (1, 0)
+    return File(stored, none, source.transform * Affine.translation(left, top), source.crs, source.scales[0],
+                source.offsets[0], unit, (top, left), is_picture)
 
 
-def _read_ascii_heights(path, rows, columns):
-    """Heights of an ESRI ASCII grid of that shape, and its mark of NODATA.
-
-    GDAL gives shape and place of the grid and its CRS (.prj), but not the values: it takes words for 0, fills up a
-    short last row with 0 and ignores values after the last. Here each of these is an error with its line.
-    """
-    with open(path, encoding="ascii", errors="replace") as lines:
-        header, header_lines = _check_ascii_header(path, lines)
-        lines.seek(0)
-        z = np.empty(rows * columns)
-        count, line_count, odd_line = 0, 0, None
-        for number, line in enumerate(progress(lines, f"reading {path}", total=rows), 1):
-            words = line.split()
-            if number <= header_lines or not words:
-                continue
-            try:
-                if "_" in line:     # Python's float takes 1_5 for 15
-                    raise ValueError(f"no number: {next(word for word in words if '_' in word)!r}")
-                values = [float(word) for word in words]
-            except ValueError as error:
-                raise SlopeError(f"{path}: line {number}", "must hold numbers with a decimal point",
-                                 str(error).rsplit(":", 1)[1].strip()) from None
-            if len(values) != columns and odd_line is None:
-                odd_line = f"line {number}, which has {len(values)}"
-            room = z[count:count + len(values)]
-            room[:] = values[:len(room)]
-            count += len(values)
-            line_count += 1
-    # Rows may be wrapped, as ESRI allows; but as many lines as rows, of different lengths, are broken rows.
-    if count != z.size or (odd_line and line_count == rows):
-        where = f"first at {odd_line}" if odd_line else f"in {line_count} rows"
-        raise SlopeError(f"{path}: values", f"must be {rows} rows of {columns}, {z.size} values", f"{count}, {where}")
-    return z.reshape(rows, columns), header.get("nodata_value", NODATA)     # ESRI's default
-
-
-def _check_ascii_header(path, lines):
-    """Read the header of an ESRI ASCII grid from its lines; return it as a dict and its number of lines.
-
-    GDAL takes words for 0 here too, and puts a grid with xllcorner and yllcenter, or without one of them, at 0 0.
-    """
-    header: Dict[str, float] = {}
-    number = 0
-    for line in lines:
-        words = line.split()
-        if words and words[0].lower() not in HEADER:
-            break
-        number += 1
-        if not words:
-            continue
-        try:
-            key, word = words
-            value = float(word.replace("_", "?"))       # Python takes 1_5 for 15
-        except ValueError:
-            raise SlopeError(f"{path}: line {number}", "must be a name and a number", line) from None
-        if key.lower() in header:
-            raise SlopeError(f"{path}: line {number}", f"header key {key} is given twice")
-        if other := AGAIN.get(key.lower(), set()) & header.keys():
-            raise SlopeError(f"{path}: line {number}", f"{min(other)} and {key} are both given")
-        header[key.lower()] = value
-    if not ({"xllcorner", "yllcorner"} <= header.keys() or {"xllcenter", "yllcenter"} <= header.keys()):
-        raise SlopeError(f"{path}: header", "must have xllcorner and yllcorner, or xllcenter and yllcenter")
-    for key in ("cellsize", "dx", "dy"):
-        if not 0 < header.get(key, 1) < math.inf:
-            raise SlopeError(f"{path}: header: {key}", "must be > 0", f"{header[key]:g}")
-    return header, number
-
-
-def read_asc_local(path, heights=True, unit=None, marks=None):
+def read_asc_local(path, heights=True, unit=None, marks=None, ask=True):
     """Read an .asc that write_asc_local wrote, and its sidecar, into a Raster: (z, transform, crs, offset).
 
     The transform gives local x, y; adding the offset (east, north) gives coordinates in crs. A raster without a
-    sidecar is read as by read(); heights, unit and marks as there. Raises SlopeError if either file is broken or they
+    sidecar is read as by read(); the others as there. Raises SlopeError if either file is broken or they
     do not belong together.
     """
-    raster = read(path, heights, unit, marks)
+    raster = placed(path, read(path, heights, unit, marks, ask))
+    if heights and ask:
+        require_axes(raster.crs, path)
+    return raster
+
+
+def placed(path, raster):
+    """A raster that was read from a file, at the place that the sidecar says, if there is one."""
     place = read_sidecar(path)
     if place is None:
         return raster
@@ -285,18 +227,20 @@ def read_asc_local(path, heights=True, unit=None, marks=None):
     return raster._replace(crs=place.crs, offset=place.offset)
 
 
-def surveyed_cell(path) -> float:
-    """The size (m) of the cells of a raster as it was surveyed, about; 0 where it has none, such as FG-GML."""
-    try:
-        with warnings.catch_warnings(), rasterio.Env():
-            warnings.simplefilter("ignore", NotGeoreferencedWarning)
-            with rasterio.open(path) as source:
-                _, side = source.res
-                if source.crs is None:
-                    return side
-                return side * (DEGREE if source.crs.is_geographic else source.crs.linear_units_factor[1])
-    except (RasterioError, OSError):
-        return 0.0
+def surveyed_cell(path, assigned=None) -> float:
+    """The size (m) of the cells of a raster as it was surveyed, about; 0 where it has none, such as FG-GML.
+
+    assigned: the CRS of its coordinates, whatever it says.
+    """
+    sides = []
+    for name in zips.rasters_in(path) or [path]:
+        with suppress(RasterioError, OSError, SlopeError):
+            place = read_place(name)
+            xlo, ylo, xhi, yhi = place.extent
+            crs = assigned or place.crs
+            unit = 1.0 if crs is None else DEGREE if crs.is_geographic else crs.linear_units_factor[1]
+            sides.append((yhi - ylo) / place.size[0] * unit)
+    return max(sides, default=0.0)
 
 
 class Place(NamedTuple):
@@ -325,19 +269,24 @@ def read_sidecar(path: Union[str, Path]) -> Optional[Place]:
 
 def read_place(path):
     """The Place of a terrain: of its sidecar, else of the raster's own header; heights are not read."""
-    if not Path(path).is_file():
-        raise SlopeError(path, "must be an existing file")
+    name = only(path)
     place = read_sidecar(path)
     if place is not None:
         return place
+    form = xyz.form_of(name)
+    if form:
+        grid = xyz.read(name, form)
+        rows, columns = grid.z.shape
+        (xlo, ylo), (xhi, yhi) = grid.transform * (0, rows), grid.transform * (columns, 0)
+        return Place(None, (0.0, 0.0), (rows, columns), (xlo, ylo, xhi, yhi))
     try:
         with warnings.catch_warnings(), rasterio.Env():
             warnings.simplefilter("ignore", NotGeoreferencedWarning)
-            with rasterio.open(path) as source:
+            with rasterio.open(zips.gdal_name(name)) as source:
                 return Place(source.crs, (0.0, 0.0), source.shape,
                              (source.bounds.left, source.bounds.bottom, source.bounds.right, source.bounds.top))
     except (RasterioError, OSError) as error:
-        raise SlopeError(path, f"must be a raster that GDAL can read ({error})") from error
+        raise SlopeError(path, f"must be a raster that GDAL can read ({error}){zips.remedy(name)}") from error
 
 
 def write_asc_local(path, raster, about, exact=False):

@@ -9,8 +9,8 @@ from affine import Affine
 from ..errors import SlopeError
 from ..findings import Finding
 from ..geometry import numbers
-from . import rasters
 from .crs import not_covered, same_crs, transform
+from .grids import check_memory, progress
 from .rasters import Raster, crs_name
 
 SAME_CELL = 1e-6       # relative; a smaller difference of cell sizes is noise of the header's digits
@@ -18,13 +18,15 @@ FINEST = 100           # a wanted cell may be this many times smaller than the i
 STRIP = 250_000        # points resampled at a time
 
 
-def regrid(raster, crs, cell, bounds, tell, warn):
+def regrid(raster, crs, cell, bounds, tell, warn, whole=None):
     """The raster in crs, on square cells, inside bounds: the input's own cells where that suffices, else resampled.
 
+    whole: the input, of which the raster has the cells that this needs, see needed().
     cell and bounds may be None: then the input's, or in a new CRS its cell at the middle of the raster to three digits.
     """
     moved = not same_crs(raster.crs, crs)
-    extent, native = footprint(raster, crs)
+    whole = whole or raster
+    extent, native = footprint(whole, crs)
     if cell is None:
         cell = min(native)
         if moved:
@@ -39,13 +41,15 @@ def regrid(raster, crs, cell, bounds, tell, warn):
         if not np.allclose(wanted, bounds, rtol=0, atol=cell * SAME_CELL):
             warn(Finding("cut to input", {"extent": numbers(extent)}))
 
+    if not np.isfinite(raster.z).any():
+        raise SlopeError("--bounds", "must hold a height, all cells are NODATA")
     t = raster.transform
     square = t.b == t.d == 0 and t.a > 0 and abs(t.a + t.e) <= SAME_CELL * t.a
     if square and not moved and abs(cell - t.a) <= SAME_CELL * t.a:
         out, done = raster, None
         if bounds:
             out = crop(raster, wanted)
-            done = (f"cropped to {out.z.shape[1]} x {out.z.shape[0]} of {raster.z.shape[1]} x {raster.z.shape[0]} "
+            done = (f"cropped to {out.z.shape[1]} x {out.z.shape[0]} of {whole.z.shape[1]} x {whole.z.shape[0]} "
                     "cells, whole cells")
     else:
         if moved and not bounds:
@@ -61,6 +65,23 @@ def regrid(raster, crs, cell, bounds, tell, warn):
     if done:
         tell(done)
     return out
+
+
+def needed(whole, crs, cell, bounds, more):
+    """Top, bottom, left, right of the cells of a raster that regrid() needs, and `more` cells around them."""
+    rows, columns = whole.z.shape
+    _, native = footprint(whole, crs)
+    side = max(cell or 0.0, *native)
+    west, south, east, north = bounds[0] - side, bounds[1] - side, bounds[2] + side, bounds[3] + side
+    if not same_crs(whole.crs, crs):
+        west, south, east, north = rasterio.warp.transform_bounds(crs, whole.crs, west, south, east, north)
+        if not np.isfinite([west, south, east, north]).all():
+            raise not_covered(whole.crs, crs)
+    across, down = ~whole.transform * (np.array([west, east, west, east]), np.array([south, south, north, north]))
+    top, bottom, left, right = (int(np.clip(edge, 0, limit)) for edge, limit in (
+        (math.floor(down.min()) - more, rows), (math.ceil(down.max()) + more, rows),
+        (math.floor(across.min()) - more, columns), (math.ceil(across.max()) + more, columns)))
+    return top, bottom, left, right
 
 
 def check_size(rows, columns):
@@ -103,13 +124,13 @@ def resample(raster, crs, cell, bounds, points):
     west, south, east, north = bounds
     columns, rows = (max(1, math.ceil(side / cell - SAME_CELL)) for side in (east - west, north - south))
     check_size(rows, columns)
-    rasters.check_memory(rows, columns, "output")
+    check_memory(rows, columns, "output")
     out_transform = Affine(cell, 0, west, 0, -cell, south + rows * cell)
     fine = out_transform * Affine.scale(1 / points)
     moved = not same_crs(raster.crs, crs)
     z = np.empty((rows, columns))
     strip = max(1, STRIP // (columns * points * points))
-    for first in rasters.progress(range(0, rows, strip), "resampling"):
+    for first in progress(range(0, rows, strip), "resampling"):
         count = min(strip, rows - first)
         x, y = fine * np.meshgrid(np.arange(columns * points) + 0.5,
                                   np.arange(first * points, (first + count) * points) + 0.5)
@@ -133,6 +154,14 @@ def sample(raster, x, y):
     heights = ((z[top, left] * (1 - east) + z[top, right] * east) * (1 - south)
                + (z[bottom, left] * (1 - east) + z[bottom, right] * east) * south)
     return np.where(inside, heights, np.nan)
+
+
+def padded(raster):
+    """The raster with one more cell on each side, linear beyond its outermost centres, of which half may count."""
+    if min(raster.z.shape) < 2:
+        return raster
+    return raster._replace(z=np.pad(raster.z, 1, mode="reflect", reflect_type="odd"),
+                           transform=raster.transform * Affine.translation(-1, -1))
 
 
 def snap(index):

@@ -1,5 +1,6 @@
 """Rasters of several files and formats as one."""
 import math
+from typing import NamedTuple
 
 import numpy as np
 from affine import Affine
@@ -8,45 +9,67 @@ from ..errors import SlopeError
 from ..findings import Finding
 from . import fggml, japan, rasters
 from .crs import require_degrees, same_crs
+from .grids import check_memory, progress
 from .marks import Marks
 from .rasters import Raster, crs_name
-from .resampling import STRIP, footprint, sample
+from .resampling import STRIP, footprint, padded, sample
 
 ON_GRID = 0.01         # cells; grids of two files that differ by less than this are the same grid
+DIFFER = 5.0           # m, at the median, by which heights of two files may differ where both have them
+SAID = 1.0             # m; a larger difference of two heights is said
 
 
-def declare(path, crs, tell, warn, assigned=None, unit=None, marks=None):
-    """Read a raster, in coordinates of its CRS; one without is taken to be in crs, or warned of if that is None.
+class Tile(NamedTuple):
+    """A raster in coordinates of its CRS, the file that it is of, and its place."""
+    name: str
+    raster: Raster          # the part that is wanted
+    whole: Raster           # without heights
+
+
+def declare(path, crs, tell, warn, assigned=None, unit=None, marks=None, part=None):
+    """Read a raster into a Tile, in coordinates of its CRS; one without is taken to be in crs, or warned of if that is
+    None.
 
     assigned: the CRS of its coordinates, unit: that of its heights, whatever the file says; marks: see
-    rasters.read().
+    rasters.read(); part: which of its cells are wanted, see there.
     """
-    local = rasters.read_asc_local(path, unit=unit, marks=marks)
-    if rasters.is_picture(path):
+    place = []      # of a file that is not read as a whole
+
+    def wanted(whole):
+        place.append(whole)
+        return part(whole._replace(crs=assigned or whole.crs or crs))
+    found = rasters.opened(path, True, unit, wanted if part else None, assigned)
+    local = rasters.placed(path, rasters.in_metres(path, found, True, unit, marks, assigned))
+    if found.is_picture:
         raise SlopeError(path, "must be heights, not a picture such as a hillshade; if they are heights, "
                          "gdal_translate -ot Float32 stores them as such", "values of 8 bits")
-    said = rasters.height_unit(path)
-    if unit and said and said != unit:
-        tell(f"{path} says heights in {said}: taken as {unit}")
-    if (unit or said or "m") != "m":
-        tell(f"{path}: heights in {unit or said} brought to metres")
+    if unit and found.unit and found.unit != unit:
+        tell(f"{path} says heights in {found.unit}: taken as {unit}")
+    if (unit or found.unit or "m") != "m":
+        tell(f"{path}: heights in {unit or found.unit} brought to metres")
     raster = Raster(local.z, Affine.translation(*local.offset) * local.transform, local.crs)
     if assigned is not None:
         if raster.crs is not None and not same_crs(raster.crs, assigned):
             tell(f"{path} says {crs_name(raster.crs)}: taken as {crs_name(assigned)}")
         raster = raster._replace(crs=assigned)
-    rows, columns = raster.z.shape
-    corners = [raster.transform * corner for corner in ((0, rows), (columns, 0))]
+    whole = raster._replace(z=np.broadcast_to(np.nan, raster.z.shape))
+    whole = place[0]._replace(crs=raster.crs) if place else whole
+    rows, columns = whole.z.shape
+    corners = [whole.transform * corner for corner in ((0, rows), (columns, 0))]
     require_degrees(raster.crs, [*corners[0], *corners[1]], path)
     if raster.crs is None and crs is not None:
         tell(f"{path} has no CRS: taken as {crs_name(crs)}")
-        return raster._replace(crs=crs)
+        raster, whole = raster._replace(crs=crs), whole._replace(crs=crs)
     if raster.crs is None:
         warn(Finding("no CRS", {"file": str(path), "coordinates": "taken as metres; --crs declares one"}))
-    return raster
+    if part and not place:
+        top, bottom, left, right = part(whole)
+        raster = raster._replace(z=raster.z[top:bottom, left:right],
+                                 transform=raster.transform * Affine.translation(left, top))
+    return Tile(str(path), raster, whole)
 
 
-def read_fggml(paths, crs, cell, tell, warn, marks=None):
+def read_fggml(paths, crs, cell, tell, warn, marks=None, differ=DIFFER):
     """One raster in degrees of all FG-GML tiles in the files, and the wanted CRS and cell, found if they are None.
 
     marks: of heights that are none, too.
@@ -65,7 +88,8 @@ def read_fggml(paths, crs, cell, tell, warn, marks=None):
     if len(groups) > 1 and cell is None:
         raise SlopeError(groups[1][0].name, f"must have the resolution of {groups[0][0].name}, "
                          f"{seconds(groups[0][0])}, unless a --cell is given", seconds(groups[1][0]))
-    merged = [merge([tile.raster for tile in group], [tile.name for tile in group], tell) for group in groups]
+    merged = [merge([Tile(tile.name, tile.raster, tile.raster) for tile in group], tell, warn, differ=differ).raster
+              for group in groups]
     raster = merged[0]
     for group, coarse in zip(groups[1:], merged[1:]):
         raster = enlarge(raster, coarse)
@@ -87,50 +111,126 @@ def enlarge(fine, coarse):
                                     for corner in ((0, 0), coarse.z.shape[::-1]))
     left, top = (min(0, math.floor(value + ON_GRID)) for value in (left, top))
     right, bottom = max(columns, math.ceil(right - ON_GRID)), max(rows, math.ceil(bottom - ON_GRID))
-    rasters.check_memory(bottom - top, right - left, "merged raster")
+    check_memory(bottom - top, right - left, "merged raster")
     z = np.full((bottom - top, right - left), np.nan)
     z[-top:rows - top, -left:columns - left] = fine.z
     transform = fine.transform * Affine.translation(left, top)
     strip = max(1, STRIP // z.shape[1])
-    for first in rasters.progress(range(0, len(z), strip), "merging"):
+    for first in progress(range(0, len(z), strip), "merging"):
         part = z[first:first + strip]
         row, column = np.nonzero(np.isnan(part))
         part[row, column] = sample(coarse, *(transform * (column + 0.5, row + first + 0.5)))
     return Raster(z, transform, fine.crs)
 
 
-def merge(inputs, paths, tell):
-    """One raster over all inputs, which must share CRS and grid. In an overlap the first one with a height counts."""
-    first = inputs[0]
-    if len(inputs) == 1:
-        return first
-    places = []  # row and column of each input's first cell, in cells of the first input
-    for path, raster in zip(paths, inputs):
-        if not same_crs(raster.crs, first.crs):
-            raise SlopeError(f"{path}: CRS", f"must be that of {paths[0]}, {crs_name(first.crs)}", crs_name(raster.crs))
-        across, down = (~first.transform * corner for corner in
-                        (raster.transform * (0, 0), raster.transform * raster.z.shape[::-1]))
-        column, row = (round(value) for value in across)
-        expected = (column, row, column + raster.z.shape[1], row + raster.z.shape[0])
-        if np.abs(np.subtract(across + down, expected)).max() > ON_GRID:
-            raise SlopeError(f"{path}: grid", f"must share the grid of {paths[0]}, {grid(first)}", grid(raster))
-        places.append((row, column))
-    top, left = np.min(places, axis=0)
-    bottom, right = np.max([np.add(place, raster.z.shape) for place, raster in zip(places, inputs)], axis=0)
-    rasters.check_memory(int(bottom - top), int(right - left), "merged raster")
+def merge(tiles, tell, warn, cell=None, differ=DIFFER):
+    """One Tile of all, which must share the CRS. In an overlap the first one with a height counts.
 
-    z = np.full((bottom - top, right - left), np.nan)
-    twice, largest = 0, 0.0
-    for (row, column), raster in zip(places, inputs):
-        part = z[row - top:row - top + raster.z.shape[0], column - left:column - left + raster.z.shape[1]]
-        difference = np.abs(part - raster.z)[np.isfinite(part) & np.isfinite(raster.z)]
-        if difference.size:
-            twice += difference.size
-            largest = max(largest, difference.max())
-        np.copyto(part, raster.z, where=np.isnan(part))
-    tell(f"merged {len(inputs)} rasters; {twice} cells in more than one, the first file counts"
+    They must share the grid, too, unless a cell is wanted: then all are brought to the grid of the finest one,
+    bilinearly. differ: the median difference (m) of two files that is an error.
+    """
+    first = tiles[0]
+    if len(tiles) == 1:
+        return first
+    for tile in tiles:
+        if not same_crs(tile.whole.crs, first.whole.crs):
+            raise SlopeError(f"{tile.name}: CRS", f"must be that of {first.name}, {crs_name(first.whole.crs)}",
+                             crs_name(tile.whole.crs))
+    others = [tile for tile in tiles if not on_grid(tile.whole, first.whole)]
+    if others and cell is None:
+        raise SlopeError(f"{others[0].name}: grid", f"must share the grid of {first.name}, {grid(first.whole)}, unless "
+                         f"a --cell is given, to which all are resampled, such as --cell "
+                         f"{max(abs(one.whole.transform.a) for one in (first, others[0])):.3g}", grid(others[0].whole))
+    base = min(tiles, key=lambda tile: abs(tile.whole.transform.determinant)).whole if others else first.whole
+    if others:
+        tell(f"{len(others)} of {len(tiles)} rasters resampled to the grid of the finest, {grid(base)}, bilinear")
+    whole = around(base, [tile.whole for tile in tiles])
+    used = [tile for tile in tiles if tile.raster.z.size]
+    if not used:
+        return Tile(first.name, first.raster, whole)
+    merged = around(base, [tile.raster for tile in used])
+    check_memory(len(merged.z), merged.z.shape[1], "merged raster")
+    z, twice, largest = np.full(merged.z.shape, np.nan), 0, 0.0
+    beyond = []         # by up to half a cell, of tiles on another grid: they may leave a gap where they meet
+    for tile in used:
+        top, left, heights, more = on_cells(tile.raster, merged, base)
+        beyond += more
+        part = z[top:top + heights.shape[0], left:left + heights.shape[1]]
+        difference = np.abs(part - heights)
+        cells = int(np.isfinite(difference).sum())
+        if cells:
+            twice, largest = twice + cells, max(largest, float(np.nanmax(difference)))
+            judge(tile, difference, merged.transform * Affine.translation(left, top), cells, differ, warn)
+        np.copyto(part, heights, where=np.isnan(part))
+    for top, left, heights in beyond:
+        part = z[top:top + heights.shape[0], left:left + heights.shape[1]]
+        np.copyto(part, heights, where=np.isnan(part))
+    tell(f"merged {len(tiles)} rasters; {twice} cells in more than one, the first file counts"
          + (f", heights differ by up to {largest:.3f} m" if twice else ""))
-    return Raster(z, first.transform * Affine.translation(int(left), int(top)), first.crs)
+    return Tile(first.name, merged._replace(z=z), whole)
+
+
+def judge(tile, difference, transform, cells, differ, warn):
+    """Say how far the heights (m) of a tile differ from those of others; SlopeError if that is too much."""
+    median = float(np.nanmedian(difference))
+    row, column = np.unravel_index(np.nanargmax(difference), difference.shape)
+    east, north = transform * (column + 0.5, row + 0.5)
+    place = {"largest": float(difference[row, column]), "east": float(east), "north": float(north), "cells": cells,
+             "median": median}
+    if median > differ:
+        raise SlopeError(tile.name, f"must have the heights of the files before it, to {differ:g} m at the median of "
+                         "the cells of both: are all in one unit and one datum? --differ M accepts M m, as of surveys "
+                         "before and after a landslide",
+                         "{median:.1f} m in {cells} cells, up to {largest:.1f} m at east {east:.10g}, north "
+                         "{north:.10g}".format(**place))
+    if place["largest"] > SAID:
+        warn(Finding("tiles differ", {"file": tile.name, **place}))
+
+
+def on_grid(raster, base):
+    """Whether the cells of a raster are cells of another one's grid."""
+    (left, top), (right, bottom) = (~base.transform * corner for corner in
+                                    (raster.transform * (0, 0), raster.transform * raster.z.shape[::-1]))
+    expected = round(left), round(top), round(left) + raster.z.shape[1], round(top) + raster.z.shape[0]
+    return bool(np.abs(np.subtract((left, top, right, bottom), expected)).max() <= ON_GRID)
+
+
+def box(raster, base):
+    """Top, bottom, left, right of a raster in cells of a grid: those whose centres are in it."""
+    rows, columns = raster.z.shape
+    across, down = np.transpose([~base.transform * (raster.transform * corner) for corner in
+                                 ((0, 0), (columns, 0), (0, rows), (columns, rows))])
+    return tuple(int(math.ceil(edge - 0.5 - ON_GRID)) if low else int(math.floor(edge - 0.5 + ON_GRID)) + 1
+                 for edge, low in ((down.min(), True), (down.max(), False), (across.min(), True),
+                                   (across.max(), False)))
+
+
+def around(base, parts):
+    """A Raster on a grid around others, without heights."""
+    boxes = np.array([box(part, base) for part in parts])
+    (top, left), (bottom, right) = boxes[:, ::2].min(axis=0), boxes[:, 1::2].max(axis=0)
+    return Raster(np.broadcast_to(np.nan, (int(bottom - top), int(right - left))),
+                  base.transform * Affine.translation(int(left), int(top)), base.crs)
+
+
+def on_cells(raster, merged, base):
+    """First row and column of a raster in a grid that is around it, its heights on that; and a list of the same with
+    those beyond its edge, by up to half a cell, of one on another grid.
+    """
+    top, bottom, left, right = box(raster, merged)
+    if on_grid(raster, base):
+        return top, left, raster.z, []
+    rows, columns = merged.z.shape
+    first, start = max(0, top - 1), max(0, left - 1)
+    heights = np.empty((min(rows, bottom + 1) - first, min(columns, right + 1) - start))
+    more = padded(raster)
+    strip = max(1, STRIP // max(1, heights.shape[1]))
+    for row in range(0, len(heights), strip):
+        count = min(strip, len(heights) - row)
+        x, y = np.meshgrid(np.arange(heights.shape[1]) + start + 0.5, np.arange(row, row + count) + first + 0.5)
+        heights[row:row + count] = sample(more, *(merged.transform * (x, y)))
+    inner = heights[top - first:bottom - first, left - start:right - start]
+    return top, left, inner, [(first, start, heights)]
 
 
 def grid(raster):

@@ -5,11 +5,15 @@ from typing import Callable, List, NamedTuple, NoReturn, Optional, Sequence, Tup
 from ..heads import DEGREES, LENGTHS, column
 
 FARTHEST = 1e12    # m or degrees: larger coordinates are mistakes, region polygon refuses them, too
-EAST = {"x", "e", "east", "easting", "eastings"}
-NORTH = {"y", "n", "north", "northing", "northings"}
-LONGITUDE, LATITUDE = {"lon", "long", "lng", "longitude"}, {"lat", "latitude"}
-HEIGHT = {"z", "h", "height", "elevation", "elev", "altitude", "alt"}
-WORDS = re.compile(r"points?|coord(inate)?s?|[ _-]")      # of POINT_X, xcoord: what is left counts
+# how columns begin: pairs of east and north, with the units that they may have; heights
+PAIRS = ((re.compile(r"x(?![^\W\d_])"), re.compile(r"y(?![^\W\d_])"), (*LENGTHS, *DEGREES)),
+         (re.compile(r"e(?![^\W\d_])|east|oo?st|este?$"), re.compile(r"n(?![^\W\d_])|north|nord|norte$"),
+          (*LENGTHS, *DEGREES)),
+         (re.compile(r"rechts|rw$"), re.compile(r"hochw|hw$"), tuple(LENGTHS)),
+         (re.compile(r"lon|lng"), re.compile(r"lat"), DEGREES))
+HEIGHT = re.compile(r"[zh](?![^\W\d_])|heig|elev|alt|h(oe|o\u0308|\xf6|\ufffd)he|cota|quota|d[egst]m$|ele$")
+WORDS = re.compile(r"points?|coord(inate)?s?")      # of POINT_X, xcoord: what is left counts
+SEPARATORS = re.compile(r"[,;\s]+(?![(\[])")        # between the names of a comment
 RULE = "columns must be x,y or east,north (m), or lon,lat (degrees), in either order, and perhaps z"
 Fail = Callable[[int, str, str], NoReturn]      # number of a line, rule, value
 
@@ -20,6 +24,8 @@ class Head(NamedTuple):
     y: int = 1
     width: int = 2
     unit: Optional[str] = None      # m or degrees, where the head says it
+    z: Optional[int] = None
+    z_unit: Optional[str] = None
 
 
 class Points(NamedTuple):
@@ -43,7 +49,7 @@ def read(text: str, fail: Fail) -> Points:
             if not line.strip():
                 blocks.append([])
             elif not begun:
-                words = re.split(r"[,;\s]+(?![(\[])", comment.strip())
+                words = SEPARATORS.split(comment.strip())
                 found = head_of(words, lambda: fail(place, RULE, comment.strip()[:60]))
                 if found and found.x > found.y:     # region polygon reads no comments: there it would be x,y
                     fail(place, "a comment that names columns must name x before y", comment.strip()[:60])
@@ -70,20 +76,26 @@ def cell(word: str) -> Optional[float]:
         return None
 
 
-def head_of(words: Sequence[str], wrong_unit: Callable[[], object]) -> Optional[Head]:
-    """The Head with these columns, None if they are no coordinates; wrong_unit() is called if their unit is wrong."""
+def head_of(words: Sequence[str], wrong_unit: Callable[[], object], others: bool = False) -> Optional[Head]:
+    """The Head with these columns, None if they are no coordinates; wrong_unit() is called if their unit is wrong.
+
+    others: any other columns may stand beside them.
+    """
     columns = [column(word) for word in words]
-    names = [WORDS.sub("", one.name) for one in columns]
-    for east, north, allowed in ((EAST, NORTH, (*LENGTHS, *DEGREES)), (LONGITUDE, LATITUDE, DEGREES)):
-        x, y = ([k for k, name in enumerate(names) if name in wanted] for wanted in (east, north))
-        rest = {name for k, name in enumerate(names) if k not in (*x, *y)}
-        if len(x) != 1 or len(y) != 1 or len(names) > 3 or not rest <= HEIGHT:
+    names = [WORDS.sub("", one.name).strip(" _-") for one in columns]
+    for east, north, allowed in PAIRS:
+        x, y = ([k for k, name in enumerate(names) if pattern.match(name)] for pattern in (east, north))
+        rest = [k for k in range(len(names)) if k not in (*x, *y)]
+        z = [k for k in rest if HEIGHT.match(names[k])] or (rest if others and len(rest) == 1 else [])
+        if len(x) != 1 or len(y) != 1 or not others and (len(rest) > 1 or z != rest):
             continue
         units = {columns[k].unit for k in (*x, *y)} - {None}
         in_degrees = allowed is DEGREES or bool(units & set(DEGREES))
         if units - set(DEGREES if in_degrees else LENGTHS):
             wrong_unit()
-        return Head(x[0], y[0], len(names), "degrees" if in_degrees else "m" if units else None)
+        height = z[0] if len(z) == 1 else None
+        return Head(x[0], y[0], len(names), "degrees" if in_degrees else "m" if units else None, height,
+                    columns[height].unit if height is not None else None)
     return None
 
 

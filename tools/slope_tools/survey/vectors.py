@@ -24,7 +24,6 @@ from . import zips
 MARK = "layername="         # QGIS: FILE|layername=NAME|geometrytype=...
 MAGIC = bytes([0, 0, 0x27, 0x0a])       # begins a shapefile
 LONGITUDE_LATITUDE = 4326   # EPSG
-SHOWN = 6                   # names of layers in a message
 fiona.drvsupport.supported_drivers.update(KML="r", LIBKML="r")      # GDAL reads them, fiona leaves them out
 
 
@@ -95,7 +94,7 @@ def read(name: object, kind: str, warn: Callable[[Finding], Any] = ignore) -> Fo
         with contextlib.redirect_stderr(io.StringIO()), fiona.Env():
             layers = fiona.listlayers(opened)
             if where.layer is not None and where.layer not in layers:
-                raise SlopeError(where.path, f"must have the named layer, one of {some(layers)}", where.layer)
+                raise SlopeError(where.path, f"must have the named layer, one of {zips.some(layers)}", where.layer)
             layer = where.layer if where.layer is not None else only_layer(opened, layers, kind, where.path)
             with fiona.open(opened, layer=layer) as data:
                 is_drawing = data.driver == "DXF"
@@ -170,12 +169,8 @@ def only_layer(opened: str, layers: List[str], kind: str, path: str) -> str:
                 fit.append(layer)
     if len(fit) != 1:
         raise SlopeError(path, f"must name one of its layers, {path}|{MARK}NAME (or --layer, where there is that "
-                         f"option): {some(fit or layers)}", f"{len(layers)} layers")
+                         f"option): {zips.some(fit or layers)}", f"{len(layers)} layers")
     return fit[0]
-
-
-def some(names: Sequence[str]) -> str:
-    return ", ".join(names[:SHOWN]) + ", ..." * (len(names) > SHOWN)
 
 
 def check_shapefile(path: Path) -> None:

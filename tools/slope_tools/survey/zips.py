@@ -1,11 +1,28 @@
-"""Layers of a GIS in a .zip, as they are downloaded: GDAL reads them without unpacking."""
+"""Files as they are downloaded: layers of a GIS and rasters in a .zip, which GDAL reads without unpacking."""
+import gzip
+import io
+import os
+import re
 import zipfile
+import zlib
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path, PurePosixPath
-from typing import Optional
+from typing import Iterator, List, Optional, Sequence, TextIO, Tuple
 
 from ..errors import SlopeError
 
 LAYERS = (".shp", ".geojson", ".json", ".gpkg", ".kml", ".gml")
+RASTERS = (".tif", ".tiff", ".asc", ".xyz", ".img", ".hgt", ".bil", ".flt", ".dem", ".dt0", ".dt1", ".dt2", ".grd",
+           ".bt", ".jp2", "w001001.adf")
+TEXTS = (".txt", ".csv")        # which may be points, or say something about the data
+POINT = re.compile(rb"^[-+.\d]+([ \t;,]+[-+.\d]+){2,}", re.MULTILINE)
+# other data of a survey, and what makes a raster of them
+CLOUDS = (".las", ".laz", ".e57", ".pcd", ".pts", ".ptx", ".xyz", ".txt", ".csv")
+MESHES = (".xml", ".ply", ".obj", ".stl", ".dxf", ".dwg", ".tin", ".gltf", ".glb", ".dae", ".3ds", ".off", ".2dm")
+SHAPES = (".shp", ".geojson", ".json", ".gpkg", ".kml", ".kmz", ".gml", ".tab")
+OF_POINTS = "points: make a raster of them with pdal (writers.gdal), gdal_grid -a linear, or TIN interpolation of QGIS"
+OF_MESH = "a mesh or TIN: rasterize its heights with QGIS (Rasterize mesh dataset) or CloudCompare"
+OF_LAYER = "points or contours: gdal_grid -a linear, or TIN interpolation of QGIS, makes a raster of them"
 SHOWN = 6           # names of members in a message
 
 
@@ -13,6 +30,10 @@ def is_of_macos(member: str) -> bool:
     """Whether a member is what Finder adds beside each file."""
     place = PurePosixPath(member)
     return "__MACOSX" in place.parts or place.name.startswith("._")
+
+
+def some(names: Sequence[str]) -> str:
+    return ", ".join(names[:SHOWN]) + ", ..." * (len(names) > SHOWN)
 
 
 def layer_in(path: str, layer: Optional[str] = None) -> Optional[str]:
@@ -31,8 +52,8 @@ def layer_in(path: str, layer: Optional[str] = None) -> Optional[str]:
     if len(found) > 1 and layer is not None:
         found = [name for name in found if PurePosixPath(name).stem == layer] or found
     if len(found) > 1:
-        shown = ", ".join(PurePosixPath(name).stem for name in found[:SHOWN]) + ", ..." * (len(found) > SHOWN)
-        raise SlopeError(path, f"must hold one layer, or one must be named (--layer, FILE|layername=NAME): {shown}",
+        raise SlopeError(path, "must hold one layer, or one must be named (--layer, FILE|layername=NAME): "
+                         + some([PurePosixPath(name).stem for name in found]),
                          f"{len(found)} files of layers")
     if found and found[0].lower().endswith(".shp"):
         beside = {name.lower() for name in names}
@@ -40,3 +61,60 @@ def layer_in(path: str, layer: Optional[str] = None) -> Optional[str]:
         if index not in beside:
             raise SlopeError(path, f"must have all files of the shapefile, {PurePosixPath(index).name} is missing")
     return found[0] if found else None
+
+
+# --- rasters ---
+
+def remedy(name: str) -> str:
+    """What can be done about a file of this name that is no raster, after a semicolon; nothing of others."""
+    ending = Path(name).suffix.lower()
+    for endings, way in ((CLOUDS, OF_POINTS), (MESHES, OF_MESH), (SHAPES, OF_LAYER)):
+        if ending in endings:
+            return f"; {way}"
+    return ""
+
+
+def rasters_in(path: str) -> List[str]:
+    """The rasters in a .zip, each as ZIP/MEMBER; none of any other file, or of a damaged one."""
+    if not zipfile.is_zipfile(path):
+        return []
+    with suppress(zipfile.BadZipFile, OSError, ValueError, NotImplementedError), zipfile.ZipFile(path) as archive:
+        names = [name for name in archive.namelist() if not is_of_macos(name)]
+        found = [name for name in names if name.lower().endswith(RASTERS)]
+        texts = [name for name in names if name.lower().endswith(TEXTS)]
+        found = found or [name for name in texts if POINT.search(archive.open(name).read(2000))]
+        return [f"{path}/{name}" for name in found]
+    return []
+
+
+def split(name: str) -> Tuple[str, str]:
+    """ZIP and MEMBER of a name ZIP/MEMBER; the member is empty of any other name."""
+    if not os.path.exists(name):
+        for place in Path(name).parents:
+            if place.is_file():
+                return str(place), name[len(str(place)) + 1:]
+    return name, ""
+
+
+def gdal_name(name: str) -> str:
+    """What GDAL calls a file, one in a .zip, or one that is packed by gzip."""
+    path, member = split(name)
+    if member:
+        return f"/vsizip/{{{os.path.abspath(path)}}}/{member}"
+    return f"/vsigzip/{os.path.abspath(path)}" if path.lower().endswith(".gz") else path
+
+
+@contextmanager
+def open_text(name: str) -> Iterator[TextIO]:
+    """A file, one in a .zip, or one that is packed by gzip, as text; what is no UTF-8 becomes U+FFFD."""
+    path, member = split(name)
+    with ExitStack() as opened:
+        try:
+            if member:
+                data = opened.enter_context(opened.enter_context(zipfile.ZipFile(path)).open(member))
+            else:
+                packed = path.lower().endswith(".gz")
+                data = opened.enter_context(gzip.open(path) if packed else open(path, "rb"))    # type: ignore[arg-type]
+            yield io.TextIOWrapper(data, encoding="utf-8-sig", errors="replace")
+        except (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, NotImplementedError) as error:
+            raise SlopeError(name, f"is damaged ({error})") from error

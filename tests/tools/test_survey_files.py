@@ -1,0 +1,391 @@
+"""What elevation models come as: lists of points in any order, zips, tiles of another phase, windows of large files.
+
+The ground is a plane with a hill, so that a cell at another place has another height.
+"""
+import gzip
+import itertools
+import os
+import shutil
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+import rasterio
+import yaml
+from affine import Affine
+from rasterio.crs import CRS
+from rasterio.windows import Window
+
+from messages import is_one
+
+from slope_tools.sites import site
+from slope_tools.sites.site_sections import OfMass
+from slope_tools.survey import crs, rasters
+
+COMMAND = "terrain"
+EAST, NORTH = 460000.0, 101000.0        # of the first centre in the south-west
+COLUMNS, ROWS = 11, 8
+CRS_M = "EPSG:6677"
+TOOLS = Path(os.environ.get("SLOPE_TOOLS", Path(__file__).resolve().parents[2] / "tools"))
+
+
+def ground(east, north):
+    x, y = east - EAST, north - NORTH
+    return 300 + 0.31 * x - 0.17 * y + 3 * np.exp(-((x - 3) ** 2 + (y - 5) ** 2) / 6)
+
+
+def points(step=1.0, columns=COLUMNS, rows=ROWS, east=EAST, north=NORTH):
+    """Rows x, y, z from north to south, as GDAL likes them."""
+    x, y = np.meshgrid(east + step * np.arange(columns), north + step * np.arange(rows)[::-1])
+    return np.column_stack([x.ravel(), y.ravel(), ground(x, y).ravel()])
+
+
+def write(path, values, columns=(0, 1, 2), between=",", head="", form="{:.3f}", decimal="."):
+    lines = [between.join(form.format(value).replace(".", decimal) for value in row) for row in values[:, columns]]
+    Path(path).write_text("\n".join([*head.splitlines(), *lines]) + "\n", encoding="utf-8")
+
+
+def tif(path, step=1.0, columns=COLUMNS, rows=ROWS, east=EAST, north=NORTH, z=None, unit=None, crs_=CRS_M, **more):
+    """A GeoTIFF with these centres."""
+    if z is None:
+        z = points(step, columns, rows, east, north)[:, 2].reshape(rows, columns)
+    transform = Affine(step, 0, east - step / 2, 0, -step, north + (rows - 0.5) * step)
+    with rasterio.open(path, "w", driver="GTiff", height=len(z), width=z.shape[1], count=1, dtype="float64", crs=crs_,
+                       transform=transform, nodata=-9999.0, **more) as out:
+        out.write(z, 1)
+        if unit:
+            out.units = (unit,)
+
+
+@pytest.fixture
+def made(slope, here):
+    """Run it, which must succeed: heights, east and north of their cells, stdout, stderr."""
+    def run(arguments):
+        status, out, err = slope(f"{arguments} --overwrite -o out.asc")
+        assert status == 0, err
+        z, transform, _, offset = rasters.read_asc_local("out.asc")
+        x, y = transform * np.meshgrid(np.arange(z.shape[1]) + 0.5, np.arange(len(z)) + 0.5)
+        return z, x + offset[0], y + offset[1], out, err
+    return run
+
+
+def in_place(found, missing=0, tolerance=0.0011):
+    """Whether all heights are at their places, to the cell."""
+    z, east, north = found[:3]
+    known = np.isfinite(z)
+    assert np.count_nonzero(~known) == missing
+    assert np.abs(z - ground(east, north))[known].max() <= tolerance
+    return True
+
+
+def refused(slope, arguments, message):
+    status, _, err = slope(f"{arguments} -o out.asc")
+    lines = "".join(line for line in err.splitlines(True) if "warning:" not in line)
+    assert status == 2 and is_one(lines, f"slope terrain: {message}"), err
+    assert not os.path.exists("out.asc")
+    return err
+
+
+# --- lists of points ---
+
+def by_columns(values):
+    return values[np.lexsort([values[:, 1], values[:, 0]])]
+
+
+def there_and_back(values):
+    rows = values.reshape(ROWS, COLUMNS, 3)
+    return np.concatenate([row[::-1] if k % 2 else row for k, row in enumerate(rows)])
+
+
+ORDERS = {"rows": lambda values: values, "columns": by_columns, "there and back": there_and_back,
+          "rows from the south": lambda values: values[::-1],
+          "shuffled": lambda values: np.random.default_rng(3).permutation(values)}
+HEADS = [("x,y,z", (0, 1, 2)), ("Northing,Easting,Elevation", (1, 0, 2)),
+         ("Hochwert;Rechtswert;H\u00f6he", (1, 0, 2)),
+         ("P,N,E,Z", (0, 1, 0, 2)), ("N E Z", (1, 0, 2)), ("z\tnorth\teast", (2, 1, 0)),
+         ("east north height", (0, 1, 2)),
+         ("X [m]  Y [m]  Z [m]", (0, 1, 2)), ("Nr;Rechtswert;Hochwert;DGM;Klasse", (2, 0, 1, 2, 0)),
+         ("# y x z", (1, 0, 2)), ("POINT_Y,POINT_X,alti", (1, 0, 2)), ("", (0, 1, 2))]
+
+
+@pytest.mark.parametrize("order", ORDERS)
+@pytest.mark.parametrize("gaps", [0, 9])
+def test_points_of_a_grid_may_come_in_any_order(made, order, gaps):
+    values = ORDERS[order](points())
+    values = np.delete(values, np.random.default_rng(5).choice(len(values), gaps, replace=False), axis=0)
+    write("a.xyz", values, between=" ")
+    assert in_place(made("a.xyz"), gaps)
+
+
+@pytest.mark.parametrize("head, columns", HEADS)
+@pytest.mark.parametrize("order", ["rows", "columns"])
+def test_a_head_may_name_the_columns_in_any_order(made, head, columns, order):
+    between = next((one for one in ";\t," if one in head), " ")
+    write("a.csv", ORDERS[order](points()), columns, between, head)
+    assert in_place(made("a.csv"))
+
+
+@pytest.mark.parametrize("between, decimal", [(" ", "."), (";", ","), ("\t", ","), (" ", ","), (", ", "."), (";", ".")])
+def test_what_stands_between_numbers(made, between, decimal):
+    write("a.txt", by_columns(points()), between=between, decimal=decimal)
+    assert in_place(made("a.txt"))
+
+
+def test_a_number_or_a_name_may_come_first(made):
+    values = ORDERS["shuffled"](points())
+    write("a.csv", np.column_stack([np.arange(len(values)), values]), (0, 1, 2, 3))
+    assert in_place(made("a.csv"))
+    lines = Path("a.csv").read_text().splitlines()
+    Path("a.csv").write_text("\n".join(f"P{line}" for line in lines))
+    assert in_place(made("a.csv"))
+
+
+def test_irregular_points_are_no_grid(slope, here):
+    places = np.random.default_rng(2).uniform(0, 40, (300, 2)).round(2)
+    write("a.xyz", np.column_stack([places + [EAST, NORTH], 300 + places[:, 0]]), between=" ")
+    assert "gdal_grid" in refused(slope, "a.xyz", "a.xyz: must be heights in rows and columns, at equal distances, "
+                                  "got 300 points on no grid")
+
+
+@pytest.mark.parametrize("head, change, message", [
+    ("a b c d", lambda line: line + " 1", "a.xyz: line 1: the head must name the columns"),
+    ("", lambda line: line.replace(" 300.", " *300."), "a.xyz: line 3: must hold numbers"),
+    ("", lambda line: line.replace(" 101004.000 ", " 101004.000 - "), "a.xyz: line 34: must hold numbers"),
+    ("lon lat z", str, "a.xyz: columns in degrees must have a CRS in degrees; --assign-crs")])
+def test_a_wrong_list_of_points(slope, here, head, change, message):
+    write("a.xyz", points(), between=" ", head=head)
+    lines = Path("a.xyz").read_text().splitlines()
+    Path("a.xyz").write_text("\n".join([*lines[:bool(head)], *map(change, lines[bool(head):])]))
+    assert slope("a.xyz -o out.asc")[2].startswith(f"slope terrain: {message}")
+
+
+def test_two_heights_at_one_place(slope, here, made):
+    values = points()
+    write("a.xyz", np.concatenate([values, values[5:6]]), between=" ")
+    assert in_place(made("a.xyz"))
+    os.remove("out.asc")
+    values[5:6, 2] += 1
+    write("a.xyz", np.concatenate([points(), values[5:6]]), between=" ")
+    refused(slope, "a.xyz", f"a.xyz: must have one height at {EAST + 5:.10g} {NORTH + 7:.10g}, got ")
+
+
+# --- words in grids of text ---
+
+GRASS = "north: 30\nsouth: 0\neast: 40\nwest: 0\nrows: 3\ncols: 4\n{}1 2 3 *\n5 6 7 8\n9 10 11 12\n"
+ZMAP = ("! made up\n@A, GRID, 3\n10, -9999, , 3, 1\n3, 4, 0.0, 40.0, 0.0, 30.0\n0.0, 0.0, 0.0\n@\n" + "".join(
+    "".join(f"{10 * k + j:10.3f}" for j in range(3)) + "\n" for k in range(4)))
+ISG = (f"begin_of_head {48 * '='}\nmodel name : made up\nlat min = 40.0\nlat max = 43.0\nlon min = 120.0\nlon max = 124.0\n"
+       f"delta lat = 1.0\ndelta lon = 1.0\nnrows = 3\nncols = 4\nnodata = -9999.0\nISG format = 1.0\nend_of_head {50 * '='}\n"
+       "1 2 3 4\n5 6 7 8\n9 10 11 12\n")
+SURFER = "DSAA\n4 3\n5 35\n5 25\n1 12\n9 10 11 12\n5 6 7 8\n1 2 3 4\n"
+
+
+@pytest.mark.parametrize("more, heights", [
+    ("", [[1, 2, 3, None], [5, 6, 7, 8]]), ("null: 5\n", [[1, 2, 3, None], [None, 6]]),
+    ("multiplier: 2\n", [[2, 4, 6, None]]), ("type: float\n", [[1, 2, 3, None]])])
+def test_the_null_of_grass_is_no_height(made, here, more, heights):
+    (here / "grass.txt").write_text(GRASS.format(more))
+    z = made("grass.txt")[0]
+    for row, wanted in zip(z, heights):
+        assert [None if np.isnan(one) else one for one in row[:len(wanted)]] == wanted
+
+
+@pytest.mark.parametrize("text, old, line", [
+    (GRASS.format(""), "6", 8), (GRASS.format(""), "10 ", 9), (ZMAP, "    11.000", 8), (ISG, "6 ", 15),
+    (SURFER, "6 ", 7)])
+def test_a_word_in_a_grid_of_text_is_no_height(slope, here, made, text, old, line):
+    """GDAL takes it for 0."""
+    extra = "--assign-crs EPSG:4326 --crs EPSG:32651 " if text is ISG else ""
+    (here / "a.grd").write_text(text)
+    made(f"a.grd {extra}")
+    os.remove("out.asc")
+    for word in ("N/A", "12abc", "1_5") if text is not SURFER else ("12abc",):
+        (here / "a.grd").write_text(text.replace(old, f"{word:>{len(old)}}" + " " * old.endswith(" ")))
+        refused(slope, f"a.grd {extra}", f"a.grd: line {line}: must hold numbers with a decimal point, got '{word}'")
+
+
+# --- zips ---
+
+@pytest.mark.parametrize("name", ["a.tif", "a.asc", "a.xyz", "folder/a.txt"])
+def test_a_raster_in_the_zip_in_which_it_is_downloaded(made, here, name):
+    tif("a.tif")
+    write("a.xyz", by_columns(points()), between=" ")
+    shutil.copy("a.xyz", "a.txt")
+    made("a.tif --origin 0 0")
+    shutil.move("out.asc", "a.asc")
+    os.remove("out.yaml")
+    with zipfile.ZipFile("a.zip", "w") as archive:
+        archive.write(Path(name).name, name)
+        archive.writestr("readme.txt", "see 1 2 3 of the leaflet\n")
+        archive.writestr("__MACOSX/._a.tif", "x")
+        archive.writestr(f"{name}.aux.xml", "<PAMDataset/>")
+    assert in_place(made("a.zip"))
+    assert rasters.surveyed_cell("a.zip") == 1
+
+
+def test_several_rasters_in_a_zip_are_merged(made, slope, here):
+    tif("a.tif", columns=6)
+    tif("b.tif", columns=6, east=EAST + 5)
+    with zipfile.ZipFile("both.zip", "w") as archive:
+        archive.write("a.tif")
+        archive.write("b.tif")
+    assert in_place(made("both.zip"))
+    assert yaml.safe_load(Path("out.yaml").read_text())["sources"] == ["both.zip"]
+    with pytest.raises(Exception, match="both.zip: must hold one raster; unpack it, it holds a.tif, b.tif, got 2 "):
+        rasters.read("both.zip")
+    write("a.xyz", points())
+    Path("a.xyz.gz").write_bytes(gzip.compress(Path("a.xyz").read_bytes()))
+    assert in_place(made("a.xyz.gz"))
+    with zipfile.ZipFile("points.zip", "w") as archive:
+        archive.writestr("a.las", "LASF")
+    assert "pdal" in slope("points.zip -o x.asc")[2]
+
+
+# --- tiles ---
+
+@pytest.mark.parametrize("shift", [0.36, 0.9675, -0.2, 0.0675])
+def test_tiles_of_another_phase_come_to_one_grid(made, slope, here, shift):
+    """A plane, so that what is between two centres is known; the second tile begins where the first one ends."""
+    plane = [300 + 0.31 * (x - EAST) - 0.17 * (y - NORTH) for x, y in
+             (points().T[:2], points(east=EAST + 11 + shift, north=NORTH - shift).T[:2])]
+    tif("a.tif", z=plane[0].reshape(ROWS, COLUMNS))
+    tif("b.tif", z=plane[1].reshape(ROWS, COLUMNS), east=EAST + 11 + shift, north=NORTH - shift)
+    refused(slope, "a.tif b.tif", "b.tif: grid: must share the grid of a.tif, cells of 1 x 1 from 459999.5 101007.5, "
+            "unless a --cell is given, to which all are resampled, such as --cell 1, got cells of 1 x 1 from ")
+    for order in ("a.tif b.tif", "b.tif a.tif"):
+        z, east, north, out, _ = made(f"{order} --cell 1")
+        known = np.isfinite(z)
+        assert "1 of 2 rasters resampled to the grid of the finest" in out
+        assert np.abs(z - (300 + 0.31 * (east - EAST) - 0.17 * (north - NORTH)))[known].max() < 0.0011
+        assert known[2:-2].all()        # nothing is missing where they meet
+
+
+def test_the_finest_tile_gives_the_grid(made, here):
+    tif("coarse.tif", step=2.0, columns=6, rows=5)
+    tif("fine.tif", step=0.9993671653521061, columns=20, rows=12, east=EAST + 12, north=NORTH)
+    z, east, north, *_ = made("coarse.tif fine.tif --cell 1")
+    fine = east > EAST + 13.5
+    assert np.nanmax(np.abs(z - ground(east, north))[fine]) < 0.011
+    assert np.isfinite(z[fine & (north > NORTH + 0.5)]).all()
+
+
+def test_tiles_that_differ_are_refused_or_said(made, slope, here):
+    """5 m at the median is an error, which --differ accepts; else the largest difference is said, with its place."""
+    tif("a.tif")
+    high = points()[:, 2].reshape(ROWS, COLUMNS) + 5.1
+    tif("b.tif", z=high)
+    refused(slope, "a.tif b.tif", "b.tif: must have the heights of the files before it, to 5 m at the median, got 5.1 "
+            "m in 88 cells, up to 5.1 m at east 460000, north 101007")
+    *found, out, err = made("a.tif b.tif --differ 6")
+    assert in_place(found) and "differ by up to 5.1 m" in err and "heights differ by up to 5.100 m" in out
+    spot = high - 5.1
+    spot[2, 3] += 30
+    tif("b.tif", z=spot)
+    err = made("a.tif b.tif")[4]
+    assert "b.tif: its heights differ by up to 30.0 m" in err and "at east 460003, north 101005" in err
+    tif("b.tif", z=high - 4.3)
+    assert made("a.tif b.tif")[4] == ""
+
+
+# --- windows ---
+
+BLOCKS = {"tiled": True, "blockxsize": 256, "blockysize": 256, "compress": "lzw", "SPARSE_OK": True}
+
+
+def test_of_a_large_file_only_the_window_is_read(here):
+    """50,000 x 50,000 cells of 1 m, which would need 100 GB, in less than 0.5 GB."""
+    with rasterio.open("large.tif", "w", driver="GTiff", height=50_000, width=50_000, count=1, dtype="float32",
+                       crs="EPSG:3035", transform=Affine(1, 0, EAST - 30_000, 0, -1, NORTH + 30_000), nodata=-9999,
+                       BIGTIFF="YES", **BLOCKS) as out:
+        x, y = out.transform * np.meshgrid(np.arange(29_900, 30_100) + 0.5, np.arange(29_900, 30_100) + 0.5)
+        out.write(ground(x, y).astype("float32"), 1, window=Window(29_900, 29_900, 200, 200))
+    code = ("import resource, sys; sys.path[:0] = [sys.argv[1]]; from slope_tools import cli; sys.argv = ['slope', "
+            "'terrain', 'large.tif', '--bounds', *sys.argv[2:], '-o', 'out.asc']; status = cli.main(); "
+            "assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss < 5e5; sys.exit(status)")
+    done = subprocess.run([sys.executable, "-c", code, str(TOOLS), *map(str, (EAST, NORTH, EAST + 60, NORTH + 40))],
+                          capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert "cropped to 60 x 40 of 50000 x 50000 cells" in done.stdout
+    z, transform, _, offset = rasters.read_asc_local("out.asc")
+    x, y = transform * np.meshgrid(np.arange(z.shape[1]) + 0.5, np.arange(len(z)) + 0.5)
+    assert in_place((z, x + offset[0], y + offset[1]))
+
+
+@pytest.mark.parametrize("options", ["", "--cell 0.7", "--cell 3", "--crs EPSG:6676 --cell 1", "--fill 6"])
+def test_a_window_is_a_part_of_the_whole(made, here, monkeypatch, options):
+    """To the digit, holes at its side included."""
+    z = points(columns=60, rows=50)[:, 2].reshape(50, 60)
+    z[20:22, 29:32] = np.nan
+    z = np.where(np.isnan(z), -9999.0, z)
+    tif("dem.tif", columns=60, rows=50, z=z)
+    box = [EAST + 20, NORTH + 15, EAST + 31, NORTH + 31]
+    if "crs" in options:
+        x, y = crs.transform(CRS.from_string(CRS_M), CRS.from_string("EPSG:6676"), *np.array(box).reshape(2, 2).T)
+        box = [round(one) for one in (x[0], y[0], x[1], y[1])]
+    bounds = " ".join(map(str, box))
+    part = made(f"dem.tif {options} --bounds {bounds}")[0]
+    monkeypatch.setattr("slope_tools.survey.local_terrain.needed",
+                        lambda whole, *_: (0, len(whole.z), 0, whole.z.shape[1]))
+    assert np.array_equal(part, made(f"dem.tif {options} --bounds {bounds}")[0], equal_nan=True)
+
+
+def test_tiles_beside_the_window_are_not_read(made, here, monkeypatch):
+    for k, j in itertools.product(range(3), range(2)):
+        tif(f"t{k}{j}.tif", east=EAST + COLUMNS * k, north=NORTH + ROWS * j)
+    names = " ".join(sorted(path.name for path in here.glob("t*.tif")))
+    read = []
+    inner = rasters.in_metres
+    monkeypatch.setattr(rasters, "in_metres", lambda path, found, *more, **words: (
+        read.append(found.stored.size), inner(path, found, *more, **words))[1])
+    assert in_place(made(f"{names} --bounds {EAST + 8} {NORTH + 2} {EAST + 14} {NORTH + 4}"))
+    assert 0 < sum(read[:6]) < 2 * COLUMNS * ROWS and read[:6].count(0) == 4
+
+
+# --- feet ---
+
+@pytest.mark.parametrize("unit, crs_", [("ft", CRS_M), ("US survey foot", CRS_M), ("ft", None),
+                                        (None, f"{CRS_M}+6360")])
+def test_heights_in_feet_over_a_plan_in_metres_are_asked_about(slope, made, here, unit, crs_):
+    tif("dem.tif", z=3300 + 3.1 * np.arange(COLUMNS) + 1.7 * np.arange(ROWS)[:, None], unit=unit, crs_=crs_)
+    status, _, err = slope("dem.tif -o out.asc")
+    assert status == 2 and "--z-unit m if" in err and "--z-unit ft or us-ft" in err and err.count("got ") == 1
+    slopes = [float(word) for word in err.replace(",", "").split() if word.replace(".", "").isdigit()]
+    rise = np.tan(np.radians(slopes))
+    assert len(slopes) == 2 and rise[1] / rise[0] == pytest.approx(0.3048, abs=0.01)
+    assert made("dem.tif --z-unit m")[0].max() > 3000 > 1100 > made("dem.tif --z-unit us-ft")[0].max()
+
+
+# --- axes and north ---
+
+@pytest.mark.parametrize("code, sister", [(2048, "ESRI:102562"), (2053, "ESRI:102567"), (5513, "EPSG:5514"),
+                                          (2065, "EPSG:5221"), (3052, "a UTM zone"), (2218, "a UTM zone")])
+def test_axes_that_point_west_or_south_are_refused_with_the_sister(slope, here, code, sister):
+    tif("dem.tif", crs_="EPSG:32633")
+    for arguments in (f"dem.tif --crs EPSG:{code}", f"dem.tif --assign-crs EPSG:{code}"):
+        status, _, err = slope(f"{arguments} -o out.asc")
+        assert status == 2 and sister in err and f"got EPSG:{code}, " in err and "must point east and north" in err
+    tif("dem.tif", crs_=f"EPSG:{code}")
+    with pytest.raises(Exception, match="must point east and north"):
+        rasters.read_asc_local("dem.tif")
+
+
+@pytest.mark.parametrize("code, east, north, angle", [
+    (3413, -2656540.0, 711220.0, "105 degrees west"), (3031, 1e6, 1e6, "45 degrees west"),
+    (5514, -743100.0, -1045380.0, "8 degrees west"), (32654, 400000.0, 4000000.0, None)])
+def test_a_grid_whose_north_is_not_north_is_said(made, code, east, north, angle):
+    tif("dem.tif", east=east, north=north, z=300 + points()[:, 2].reshape(ROWS, COLUMNS), crs_=f"EPSG:{code}")
+    err = made("dem.tif")[4]
+    assert f"north of EPSG:{code} is {angle} of north here" in err if angle else "of north here" not in err
+
+
+# --- the size of the survey's cells ---
+
+def test_the_cells_of_a_survey_are_in_the_crs_that_is_assigned(here):
+    tif("dem.tif", step=10.0, east=50.0, north=50.0, crs_="EPSG:4326")
+    of = OfMass.of({"terrain": {"files": ["dem.tif"], "assign_crs": "EPSG:31254"}})
+    assert rasters.surveyed_cell("dem.tif", site.crs_of(of, "dem.tif")) == 10
+    of = OfMass.of({"terrain": {"files": ["dem.tif"]}, "crs": {"assigned": {"dem.tif": "EPSG:2225"}}})
+    assert rasters.surveyed_cell("dem.tif", site.crs_of(of, "dem.tif")) == pytest.approx(3.048, abs=1e-3)
