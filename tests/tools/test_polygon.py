@@ -213,6 +213,49 @@ def test_layers_of_a_file(slope):
         assert slope(f"{arguments} -o none.csv")[2] == f"slope polygon: {rule}\n"
 
 
+def layer(path, name, kind, *geometries):
+    with fiona.open(path, "w", "GPKG", {"geometry": kind, "properties": {}}, layer=name, crs_wkt=moved.crs) as out:
+        out.writerecords({"type": "Feature", "geometry": geometry and mapping(geometry), "properties": {}}
+                         for geometry in geometries)
+
+
+moved.crs = CRS.from_string(CRS_M).to_wkt()
+OF_QGIS = ("layer_styles", "None", None)
+
+
+@pytest.mark.parametrize("others, fits", [
+    ([OF_QGIS], True), ([OF_QGIS, ("qgis_projects", "None", None)], True),
+    ([("line", "LineString", MultiLineString([[(0, 0), (1, 1)]]).geoms[0])], True),
+    ([OF_QGIS, ("points", "Unknown", Point(EAST, NORTH))], True), ([("later", "Polygon")], True),
+    ([OF_QGIS, ("more", "Polygon", moved(ROAD))], False), ([("more", "Unknown", moved(ROAD))], False)])
+@pytest.mark.parametrize("kind", ["Unknown", "Polygon", "MultiPolygon"])
+def test_tables_without_geometry_are_no_layers(written, slope, others, fits, kind):
+    """Of the rest, the one whose features are polygons; in some of them the type is not declared."""
+    layer("a.gpkg", "scar", kind, MultiPolygon([moved(ROAD)]) if kind == "MultiPolygon" else moved(ROAD))
+    for name, of, *geometries in others:
+        layer("a.gpkg", name, of, *geometries)
+    if fits:
+        assert_is(written("a.gpkg")[0], ROAD)
+    else:
+        assert slope("a.gpkg -o new.csv")[2].endswith(": scar, more, got 2 layers\n")
+
+
+@pytest.mark.parametrize("end, keep", [(".shp", 300), (".shp", 110), (".shx", 110), (".dbf", 100)])
+def test_a_shapefile_that_is_cut_short_is_refused(slope, here, end, keep):
+    """An interrupted copy, also of one of its other files: GDAL leaves out what it cannot read."""
+    shapefile("a.shp", *(translate(moved(ROAD), 40 * k) for k in range(4)), crs=CRS_M)
+    assert slope("a.shp -o new.csv")[0] == 0
+    zipped("whole.zip", "a")
+    assert slope("whole.zip -o new.csv --overwrite")[0] == 0
+    whole = Path(f"a{end}").read_bytes()
+    Path(f"a{end}").write_bytes(whole[:keep])
+    zipped("cut.zip", "a")
+    for name in ("a.shp", "cut.zip"):
+        status, _, err = slope(f"{name} -o other.csv")
+        assert status == 2 and f"a{end}: must have the {len(whole) - (end == '.dbf')} bytes that its head says" in err
+        assert err.endswith(f"got {keep}\n") and not (here / "other.csv").exists()
+
+
 def test_three_dimensions_are_two(written):
     Path("a.wkt").write_text("POLYGON Z ((10 10 5, 20 10 5, 20 20 7, 10 10 5))")
     assert_is(written("a.wkt --local")[0], Polygon([(10, 10), (20, 10), (20, 20)]))

@@ -177,9 +177,9 @@ def test_two_heights_at_one_place(slope, here, made):
 GRASS = "north: 30\nsouth: 0\neast: 40\nwest: 0\nrows: 3\ncols: 4\n{}1 2 3 *\n5 6 7 8\n9 10 11 12\n"
 ZMAP = ("! made up\n@A, GRID, 3\n10, -9999, , 3, 1\n3, 4, 0.0, 40.0, 0.0, 30.0\n0.0, 0.0, 0.0\n@\n" + "".join(
     "".join(f"{10 * k + j:10.3f}" for j in range(3)) + "\n" for k in range(4)))
-ISG = (f"begin_of_head {48 * '='}\nmodel name : made up\nlat min = 40.0\nlat max = 43.0\nlon min = 120.0\nlon max = 124.0\n"
-       f"delta lat = 1.0\ndelta lon = 1.0\nnrows = 3\nncols = 4\nnodata = -9999.0\nISG format = 1.0\nend_of_head {50 * '='}\n"
-       "1 2 3 4\n5 6 7 8\n9 10 11 12\n")
+ISG = (f"begin_of_head {48 * '='}\nmodel name : made up\nlat min = 40.0\nlat max = 43.0\nlon min = 120.0\n"
+       "lon max = 124.0\ndelta lat = 1.0\ndelta lon = 1.0\nnrows = 3\nncols = 4\nnodata = -9999.0\n"
+       f"ISG format = 1.0\nend_of_head {50 * '='}\n1 2 3 4\n5 6 7 8\n9 10 11 12\n")
 SURFER = "DSAA\n4 3\n5 35\n5 25\n1 12\n9 10 11 12\n5 6 7 8\n1 2 3 4\n"
 
 

@@ -23,6 +23,7 @@ from . import zips
 
 MARK = "layername="         # QGIS: FILE|layername=NAME|geometrytype=...
 MAGIC = bytes([0, 0, 0x27, 0x0a])       # begins a shapefile
+ANY = "any"                 # type of the geometries of a layer that may have several
 LONGITUDE_LATITUDE = 4326   # EPSG
 fiona.drvsupport.supported_drivers.update(KML="r", LIBKML="r")      # GDAL reads them, fiona leaves them out
 
@@ -159,26 +160,57 @@ def closed(geometry: Any):
 
 
 def only_layer(opened: str, layers: List[str], kind: str, path: str) -> str:
-    """The layer of a file, the one with geometries of a kind if it has several; SlopeError if that is not clear."""
+    """The layer of a file, the one with geometries of a kind if it has several; SlopeError if that is not clear.
+
+    Tables without geometry, such as QGIS' layer_styles, do not count.
+    """
     if len(layers) == 1:
         return layers[0]
-    fit = []
+    types = {}
     for layer in layers:
         with fiona.open(opened, layer=layer) as data:
-            if kind in str(data.schema["geometry"]):
-                fit.append(layer)
+            types[layer] = type_of(data)
+    mapped = [layer for layer in layers if types[layer] != "None"]
+    fit = [layer for layer in mapped if kind in types[layer] or types[layer] == ANY]
+    if len(mapped) == 1:
+        return mapped[0]
+    if len(fit) > 1:
+        filled = [layer for layer in fit if holds(opened, layer, kind)]
+        fit = filled or fit
     if len(fit) != 1:
         raise SlopeError(path, f"must name one of its layers, {path}|{MARK}NAME (or --layer, where there is that "
-                         f"option): {zips.some(fit or layers)}", f"{len(layers)} layers")
+                         f"option): {zips.some(fit or mapped or layers)}", f"{len(mapped or layers)} layers")
     return fit[0]
 
 
+def type_of(data: Any) -> str:
+    """The type of the geometries of an open layer, ANY if it may have several; "None" if it has none."""
+    try:
+        name = str(data.schema["geometry"])
+    except KeyError:        # one that fiona does not name, such as MULTISURFACE
+        return ANY
+    return ANY if "Unknown" in name or "Collection" in name or name.startswith("3D Geometry") else name
+
+
+def holds(opened: str, layer: str, kind: str) -> bool:
+    """Whether a layer has a feature with a geometry of a kind."""
+    with fiona.open(opened, layer=layer) as data:
+        return any(feature["geometry"] is not None and kind in str(feature["geometry"]["type"]) for feature in data)
+
+
 def check_shapefile(path: Path) -> None:
-    """Raise SlopeError if a shapefile lacks the index that GDAL needs."""
-    if path.suffix.lower() != ".shp" or any(path.with_suffix(suffix).is_file() for suffix in (".shx", ".SHX")):
+    """Raise SlopeError if a shapefile lacks the index that GDAL needs, or one of its files is cut short: features would
+    be lost.
+    """
+    if path.suffix.lower() != ".shp":
         return
     with open(path, "rb") as data:
-        is_one = data.read(4) == MAGIC
-    if is_one:
+        if data.read(4) != MAGIC:
+            return
+    beside = [one for suffix in (".shx", ".SHX", ".dbf", ".DBF") if (one := path.with_suffix(suffix)).is_file()]
+    if not any(one.suffix.lower() == ".shx" for one in beside):
         raise SlopeError(path, f"must have its other files beside it, {path.with_suffix('.shx').name} is missing: copy "
                          "all of the shapefile (.shp, .shx, .dbf, .prj), or save it as GeoJSON")
+    for one in (path, *beside):
+        with open(one, "rb") as file:
+            zips.check_length(str(one), one.stat().st_size, file.read(32))

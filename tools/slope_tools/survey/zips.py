@@ -32,6 +32,18 @@ def is_of_macos(member: str) -> bool:
     return "__MACOSX" in place.parts or place.name.startswith("._")
 
 
+def check_length(name: str, size: int, head: bytes) -> None:
+    """Raise SlopeError if a .shp, .shx or .dbf has less bytes than its head (32 bytes) says: features would be lost."""
+    if PurePosixPath(name).suffix.lower() == ".dbf":
+        records, first, each = (int.from_bytes(head[k:k + n], "little") for k, n in ((4, 4), (8, 2), (10, 2)))
+        wanted = first + records * each
+    else:
+        wanted = 2 * int.from_bytes(head[24:28], "big")
+    if size < wanted:
+        raise SlopeError(name, f"must have the {wanted} bytes that its head says, it is cut short: copy all of the "
+                         "shapefile again", size)
+
+
 def some(names: Sequence[str]) -> str:
     return ", ".join(names[:SHOWN]) + ", ..." * (len(names) > SHOWN)
 
@@ -60,6 +72,11 @@ def layer_in(path: str, layer: Optional[str] = None) -> Optional[str]:
         index = found[0].lower()[:-4] + ".shx"
         if index not in beside:
             raise SlopeError(path, f"must have all files of the shapefile, {PurePosixPath(index).name} is missing")
+        with zipfile.ZipFile(path) as archive:
+            for name in names:
+                if name.lower()[:-4] == index[:-4] and name.lower().endswith((".shp", ".shx", ".dbf")):
+                    with archive.open(name) as member:
+                        check_length(f"{path}/{name}", archive.getinfo(name).file_size, member.read(32))
     return found[0] if found else None
 
 
