@@ -4,6 +4,7 @@ import re
 import resource
 import subprocess
 import sys
+import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -776,6 +777,11 @@ def test_every_example_of_the_page_and_the_help_runs(slope, here, command):
     z, transform = survey(200, 200)
     write_tif("survey.tif", z, transform)
     (here / "survey.asc").write_text(asc_text(z, EAST, NORTH, 5.0))
+    x, y = centres(transform, z.shape)
+    np.savetxt("points.xyz", np.column_stack([x[:9].ravel(), y[:9].ravel(), z[:9].ravel()]), fmt="%.3f")
+    with zipfile.ZipFile("tiles.zip", "w") as archive:
+        archive.write("north.tif")
+        archive.write("south.tif")
     status, out, err = slope(command)
     assert (status, err) == (0, "")
     if "--help" not in command:
