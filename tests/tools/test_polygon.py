@@ -463,7 +463,7 @@ def points_of(names, values, mark=","):
     ("x,y", (0, 1), ""), ('"X","Y"', (0, 1), ""), ("y,x", (1, 0), ""), ("north,east", (1, 0), ""),
     ("N (m),E (m)", (1, 0), ""),
     ("Easting,Northing", (0, 1), ""), ("POINT_X,POINT_Y", (0, 1), ""), ("y_m,x_m", (1, 0), ""),
-    ("x,y,z", (0, 1, 0), ""),
+    ("x,y,z", (0, 1, 0), ""), ("Hochwert,Rechtswert", (1, 0), ""), ("N,E,H\u00f6he", (1, 0, 1), ""),
     ("z,y,x", (0, 1, 0), ""), ("lat,lon", (1, 0), "--assign-crs EPSG:4326"),
     ("lon,lat", (0, 1), "--assign-crs EPSG:4326"),
     ("Longitude (deg),Latitude (deg),alt", (0, 1, 0), "--assign-crs EPSG:6668")])

@@ -135,7 +135,7 @@ def ask(path, raster, crs, unit: str, metres: float) -> None:
     crs: of the plan; None: metres.
     """
     if not np.isfinite(raster.z).any() or crs is not None and (
-            not crs.is_projected or not math.isclose(crs.linear_units_factor[1], 1)):
+            crs.is_geographic or not math.isclose(crs.linear_units_factor[1], 1)):
         return
     feet = raster._replace(z=raster.z * metres)
     raise SlopeError(path, "heights in feet over a plan in metres must be confirmed, as many such tags are wrong: "
