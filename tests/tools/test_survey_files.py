@@ -314,8 +314,9 @@ def test_of_a_large_file_only_the_window_is_read(here):
     assert in_place((z, x + offset[0], y + offset[1]))
 
 
+@pytest.mark.parametrize("name", ["dem.tif", "dem.asc", "dem.xyz"])
 @pytest.mark.parametrize("options", ["", "--cell 0.7", "--cell 3", "--crs EPSG:6676 --cell 1", "--fill 6"])
-def test_a_window_is_a_part_of_the_whole(made, here, monkeypatch, options):
+def test_a_window_is_a_part_of_the_whole(made, here, monkeypatch, options, name):
     """To the digit, holes at its side included."""
     z = points(columns=60, rows=50)[:, 2].reshape(50, 60)
     z[20:22, 29:32] = np.nan
@@ -326,10 +327,20 @@ def test_a_window_is_a_part_of_the_whole(made, here, monkeypatch, options):
         x, y = crs.transform(CRS.from_string(CRS_M), CRS.from_string("EPSG:6676"), *np.array(box).reshape(2, 2).T)
         box = [round(one) for one in (x[0], y[0], x[1], y[1])]
     bounds = " ".join(map(str, box))
-    part = made(f"dem.tif {options} --bounds {bounds}")[0]
+    whole, transform = rasters.read("dem.tif")[:2]
+    if name == "dem.asc":
+        made("dem.tif --origin 0 0")
+        shutil.move("out.asc", name)
+        os.remove("out.yaml")
+    elif name == "dem.xyz":
+        x, y = transform * np.meshgrid(np.arange(60) + 0.5, np.arange(50) + 0.5)
+        known = np.isfinite(whole)
+        write(name, np.column_stack([x[known], y[known], whole[known]]))
+    options += f" --assign-crs {CRS_M}"
+    part = made(f"{name} {options} --bounds {bounds}")[0]
     monkeypatch.setattr("slope_tools.survey.local_terrain.needed",
                         lambda whole, *_: (0, len(whole.z), 0, whole.z.shape[1]))
-    assert np.array_equal(part, made(f"dem.tif {options} --bounds {bounds}")[0], equal_nan=True)
+    assert np.array_equal(part, made(f"{name} {options} --bounds {bounds}")[0], equal_nan=True)
 
 
 def test_tiles_beside_the_window_are_not_read(made, here, monkeypatch):

@@ -91,7 +91,7 @@ def in_metres(path, found, heights=True, unit=None, marks=None, assigned=None, a
 def opened(path, heights=True, unit=None, part=None, assigned=None):
     """The File of a path, see read().
 
-    part: which of its cells, (top, bottom, left, right), of a Raster without heights; text is read as a whole.
+    part: which of its cells, (top, bottom, left, right), of a Raster without heights; points are read as a whole.
     assigned: the CRS of its coordinates, whatever it says.
     """
     name = only(path)
@@ -179,17 +179,16 @@ def _read(path, name, source, unit, part):
     if source.dtypes[0].startswith("complex"):
         raise SlopeError(path, "must hold real numbers", source.dtypes[0])
     rows, columns = source.shape
-    is_text = source.driver in text_grids.DRIVERS
     top, bottom, left, right = 0, rows, 0, columns
-    if part and not is_text and not source.transform.is_degenerate:
+    if part and not source.transform.is_degenerate:
         top, bottom, left, right = part(Raster(np.broadcast_to(np.nan, source.shape), source.transform, source.crs))
     check_memory(bottom - top, right - left, path, "" if part else "; --bounds of slope terrain and site reads a part")
     declared = source.nodata if MaskFlags.nodata in source.mask_flag_enums[0] else None
-    text_values = text_grids.heights(name, source.driver, rows, columns) if is_text else None
+    text_values = text_grids.heights(name, source.driver, rows, columns, top, bottom)
     if source.transform.is_identity or source.transform.is_degenerate:
         raise SlopeError(path, "must be georeferenced: place and size of the cells are missing")
     if text_values:
-        stored, declared = text_values
+        stored, declared = text_values[0][:, left:right], text_values[1]
         none = np.zeros(stored.shape, bool)
     elif bottom == top or left == right:
         stored, none = np.empty((0, 0), source.dtypes[0]), np.zeros((0, 0), bool)

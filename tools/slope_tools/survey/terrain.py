@@ -38,7 +38,8 @@ def declare(path, crs, tell, warn, assigned=None, unit=None, marks=None, part=No
     def wanted(whole):
         place.append(whole)
         return part(whole._replace(crs=assigned or whole.crs or crs))
-    found = rasters.opened(path, True, unit, wanted if part else None, assigned)
+    whole_file = not part or rasters.read_sidecar(path) is not None
+    found = rasters.opened(path, True, unit, None if whole_file else wanted, assigned)
     local = rasters.placed(path, rasters.in_metres(path, found, True, unit, marks, assigned))
     if found.is_picture:
         raise SlopeError(path, "must be heights, not a picture such as a hillshade; if they are heights, "

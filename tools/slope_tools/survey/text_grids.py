@@ -21,8 +21,6 @@ NULL = "*"              # GRASS' mark of no value
 # the last line of the head of others, in lower case, and how many of these there are; those without have no head
 HEADS = {"GSAG": ("dsaa", 1), "ISG": ("end_of_head", 1), "ZMap": ("@", 2), "GXF": ("#grid", 1)}
 
-DRIVERS = ("AAIGrid", "GRASSASCIIGrid", *HEADS)     # of GDAL
-
 
 class Head(NamedTuple):
     """Of a grid whose values are read here."""
@@ -32,8 +30,11 @@ class Head(NamedTuple):
     null: str = ""                  # a word that stands for no value
 
 
-def heights(path: str, driver: str, rows: int, columns: int) -> Optional[Tuple[np.ndarray, Optional[float]]]:
+def heights(path: str, driver: str, rows: int, columns: int, top: int = 0,
+            bottom: int = -1) -> Optional[Tuple[np.ndarray, Optional[float]]]:
     """Heights of an ESRI or GRASS grid of that shape, NaN where there is none, and its mark of NODATA.
+
+    top, bottom: of the rows from one to before another one.
 
     None of another format, whose words are looked for.
     """
@@ -44,7 +45,8 @@ def heights(path: str, driver: str, rows: int, columns: int) -> Optional[Tuple[n
     with open_text(path) as lines:
         head = (esri_head if driver == "AAIGrid" else grass_head)(path, lines)
         lines.seek(0)
-        z = np.empty(rows * columns)
+        first, last = top * columns, (rows if bottom < 0 else bottom) * columns
+        z = np.empty(last - first)
         count, line_count, odd_line = 0, 0, None
         for number, line in enumerate(progress(lines, f"reading {path}", total=rows), 1):
             words = line.split()
@@ -53,15 +55,17 @@ def heights(path: str, driver: str, rows: int, columns: int) -> Optional[Tuple[n
             values = numbers(path, number, words, head.null)
             if len(values) != columns and odd_line is None:
                 odd_line = f"line {number}, which has {len(values)}"
-            room = z[count:count + len(values)]
-            room[:] = values[:len(room)]
+            begin, end = max(count, first), min(count + len(values), last)
+            if begin < end:
+                z[begin - first:end - first] = values[begin - count:end - count]
             count += len(values)
             line_count += 1
     # Rows may be wrapped, as ESRI allows; but as many lines as rows, of different lengths, are broken rows.
-    if count != z.size or (odd_line and line_count == rows):
+    if count != rows * columns or (odd_line and line_count == rows):
         where = f"first at {odd_line}" if odd_line else f"in {line_count} rows"
-        raise SlopeError(f"{path}: values", f"must be {rows} rows of {columns}, {z.size} values", f"{count}, {where}")
-    return z.reshape(rows, columns) * head.factor, head.nodata
+        raise SlopeError(f"{path}: values", f"must be {rows} rows of {columns}, {rows * columns} values",
+                         f"{count}, {where}")
+    return z.reshape(-1, columns) * head.factor, head.nodata
 
 
 def numbers(path: str, line: int, words: List[str], null: str = "") -> List[float]:
