@@ -223,7 +223,7 @@ def test_a_raster_in_the_zip_in_which_it_is_downloaded(made, here, name):
         archive.writestr("__MACOSX/._a.tif", "x")
         archive.writestr(f"{name}.aux.xml", "<PAMDataset/>")
     assert in_place(made("a.zip"))
-    assert rasters.surveyed_cell("a.zip") == 1
+    assert rasters.surveyed_cell("a.zip") == 1 and rasters.is_raster("a.zip")
 
 
 def test_several_rasters_in_a_zip_are_merged(made, slope, here):
@@ -241,6 +241,7 @@ def test_several_rasters_in_a_zip_are_merged(made, slope, here):
     assert in_place(made("a.xyz.gz"))
     with zipfile.ZipFile("points.zip", "w") as archive:
         archive.writestr("a.las", "LASF")
+    assert not rasters.is_raster("points.zip")
     assert "pdal" in slope("points.zip -o x.asc")[2]
 
 

@@ -9,7 +9,7 @@ from ..errors import SlopeError
 from ..geometry import coverage, extent
 from ..survey import beside, polygons
 from ..survey.crs import same_crs
-from ..survey.rasters import ENDINGS, Raster, crs_name
+from ..survey.rasters import Raster, crs_name, is_raster
 from . import reach
 from .connected import connected, top
 from .volume_files import text
@@ -32,7 +32,7 @@ class Observed(NamedTuple):
 
 def read_observed(path, raster, threshold, local, warn=None):
     """The Observed of a file, on the grid of a run's thickness raster; warn: called with what was taken for granted."""
-    if path.suffix.lower() not in ENDINGS:
+    if not is_raster(path):
         polygon = polygons.read_local(path, raster, local)
         return from_polygon(polygon, raster)
     mapped = beside.read(path, raster, local=beside.Local(local), warn=warn,

@@ -6,7 +6,7 @@ from .. import disk
 from ..errors import SlopeError
 from ..releases import release_files
 from ..survey import vectors
-from ..survey.rasters import ENDINGS
+from ..survey.rasters import is_raster
 from . import site_bodies, site_choices, site_deck, site_inputs, site_trial, site_warnings, site_zones
 from .site_layers import OBSERVED
 from .site_roads import ROAD, file_name, listed, named
@@ -25,7 +25,7 @@ def planned(choices: Choices) -> Set[str]:
              *(path.name for path in release_files.paths(Path(BODY)))} - {BODY_DECK}
     names |= site_bodies.planned(choices, BODY)
     for observed in choices.files("observed", "file"):
-        names.add(OBSERVED + (".tif" if Path(observed).suffix.lower() in ENDINGS else ".csv"))
+        names.add(OBSERVED + (".tif" if is_raster(observed) else ".csv"))
     if several := listed(choices):
         taken_: Set[str] = set()
         names |= {ROAD, *(file_name(named(site_inputs.stem(file), taken_)) for file in several

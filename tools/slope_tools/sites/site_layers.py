@@ -182,7 +182,7 @@ def observed_layer(choices: OfMass, raster: Raster, folder: Path, tell, warn):
     path = choices.observed.file
     if not path:
         return None
-    if Path(path).suffix.lower() not in rasters.ENDINGS:
+    if not rasters.is_raster(path):
         return polygon_layer(choices, path, raster, folder / f"{OBSERVED}.csv", tell, warn)
     mapped = beside.read(path, raster, False, assigned(choices, path), warn=warn)
     if not same_crs(mapped.crs, raster.crs):

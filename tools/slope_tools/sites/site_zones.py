@@ -22,7 +22,7 @@ from ..errors import SlopeError
 from ..findings import Finding
 from ..geometry import box_of, extent, polygons_of
 from ..survey import beside, geopackage, polygons, vectors
-from ..survey.rasters import ENDINGS, Raster
+from ..survey.rasters import Raster, is_raster
 from . import site_inputs
 from .site_found import Zone as Known
 from .site_sections import Model, schema, widest
@@ -71,11 +71,11 @@ def read(source: Source, raster: Raster, warn) -> List[Zone]:
 
     Raises SlopeError, which names file and feature, where attributes are missing, unknown or out of range.
     """
-    is_raster = Path(vectors.source(source.path).path).suffix.lower() in ENDINGS
-    if is_raster != bool(source.table):
+    has_classes = is_raster(vectors.source(source.path).path)
+    if has_classes != bool(source.table):
         raise SlopeError("--ground-table", "must be given with a raster of classes, and with nothing else",
                          source.table or "none")
-    parts = list(of_raster(source, raster, warn) if is_raster else of_features(source, raster, warn))
+    parts = list(of_raster(source, raster, warn) if has_classes else of_features(source, raster, warn))
     if not parts:
         raise SlopeError(source.path, "must overlap the terrain, none of its zones does")
     zones = together(source.path, parts, warn)

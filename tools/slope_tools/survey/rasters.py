@@ -113,6 +113,11 @@ def opened(path, heights=True, unit=None, part=None, assigned=None):
         raise SlopeError(path, f"must be a raster that GDAL can read ({error}){zips.remedy(name)}") from error
 
 
+def is_raster(path):
+    """Whether a file is a raster and no layer of shapes, by its name, or what a .zip holds."""
+    return Path(path).suffix.lower() in ENDINGS or bool(zips.rasters_in(path))
+
+
 def only(path):
     """The name of the one raster in a .zip; of any other file, its own."""
     if not Path(zips.split(str(path))[0]).is_file():
