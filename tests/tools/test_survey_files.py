@@ -112,7 +112,7 @@ HEADS = [("x,y,z", (0, 1, 2)), ("Northing,Easting,Elevation", (1, 0, 2)),
 
 
 @pytest.mark.parametrize("order", ORDERS)
-@pytest.mark.parametrize("gaps", [0, 9])
+@pytest.mark.parametrize("gaps", [0, 9, 60])
 def test_points_of_a_grid_may_come_in_any_order(made, order, gaps):
     values = ORDERS[order](points())
     values = np.delete(values, np.random.default_rng(5).choice(len(values), gaps, replace=False), axis=0)
@@ -141,6 +141,14 @@ def test_a_number_or_a_name_may_come_first(made):
     lines = Path("a.csv").read_text().splitlines()
     Path("a.csv").write_text("\n".join(f"P{line}" for line in lines))
     assert in_place(made("a.csv"))
+
+
+def test_steps_that_are_rounded_are_one(made):
+    """0.3333 m, written in cm: cells are square, and none is resampled."""
+    values = points(step=0.3333)
+    write("a.xyz", values, between=" ", form="{:.2f}")
+    z, _, _, out, _ = made("a.xyz")
+    assert "resampled" not in out and z.ravel() == pytest.approx(values[:, 2], abs=0.006)
 
 
 def test_irregular_points_are_no_grid(slope, here):
@@ -256,8 +264,11 @@ def test_tiles_of_another_phase_come_to_one_grid(made, slope, here, shift):
     tif("b.tif", z=plane[1].reshape(ROWS, COLUMNS), east=EAST + 11 + shift, north=NORTH - shift)
     refused(slope, "a.tif b.tif", "b.tif: grid: must share the grid of a.tif, cells of 1 x 1 from 459999.5 101007.5, "
             "unless a --cell is given, to which all are resampled, such as --cell 1, got cells of 1 x 1 from ")
-    for order in ("a.tif b.tif", "b.tif a.tif"):
-        z, east, north, out, _ = made(f"{order} --cell 1")
+    box = f" --bounds {EAST + 7} {NORTH + 1} {EAST + 15} {NORTH + 5}"
+    for order in ("a.tif b.tif", "b.tif a.tif", f"a.tif b.tif{box}", "b.tif a.tif --crs EPSG:6676 --cell 2"):
+        z, east, north, out, _ = made(f"{order} --cell 1" if "--cell" not in order else order)
+        if "6676" in order:
+            east, north = crs.transform(CRS.from_string("EPSG:6676"), CRS.from_string(CRS_M), east, north)
         known = np.isfinite(z)
         assert "1 of 2 rasters resampled to the grid of the finest" in out
         assert np.abs(z - (300 + 0.31 * (east - EAST) - 0.17 * (north - NORTH)))[known].max() < 0.0011

@@ -19,7 +19,8 @@ SNIFFED = 20            # lines that show whether it is such a list
 LINES = 100_000         # read at a time
 NOISE = 1e-6            # of a side, by which equal coordinates may differ
 ON_GRID = 0.1           # of a step, by which rounded coordinates may be off their grid
-BESIDE = 0.5            # of the points of a grid, at least, have the next point of their row or column in it, too
+FULL = 0.2              # of a grid's cells have a point, at least, or
+BESIDE = 0.5            # of its points have the next one of their row or column, too
 NUMBER = r"[-+]?(\d+([.,]\d+)?|[.,]\d+)(e[-+]?\d+)?"
 DECIMAL_COMMAS = re.compile(rf"\s*{NUMBER}(\s+{NUMBER}){{2,}}\s*", re.IGNORECASE)
 RULE = ("the head must name the columns: x, y, z; east, north, height; Rechtswert, Hochwert; lon, lat; in any order, "
@@ -168,13 +169,16 @@ def on_grid(points: np.ndarray) -> Optional[Tuple[np.ndarray, np.ndarray, Affine
     if len(points) < 4 or None in sides:
         return None
     (west, dx, columns), (south, dy, rows) = sides      # type: ignore[misc]
+    if abs(dx - dy) * max(columns, rows) < ON_GRID * dx:        # the same but for rounding: the longer side knows best
+        dx = dy = dx if columns > rows else dy
     column, row = (points[:, 0] - west) / dx, rows - 1 - (points[:, 1] - south) / dy
     near = np.round(column), np.round(row)
     if max(np.abs(column - near[0]).max(), np.abs(row - near[1]).max()) > ON_GRID:
         return None
     column, row = (one.astype(np.int64) for one in near)
     there = [np.unique(row * (columns + 1) + column), np.unique(column * (rows + 1) + row)]
-    if max((np.diff(one) == 1).mean() for one in there) < BESIDE * (1 - 1 / min(columns, rows)):
+    is_full = len(there[0]) >= FULL * columns * rows
+    if not is_full and max((np.diff(one) == 1).mean() for one in there) < BESIDE * (1 - 1 / min(columns, rows)):
         return None     # irregular points are on the grid of their last digit
     return column, row, Affine(dx, 0, west - dx / 2, 0, -dy, south + (rows - 0.5) * dy), points[:, 2]
 
