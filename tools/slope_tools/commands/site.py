@@ -101,7 +101,7 @@ class Ground:
     """The ground and the body."""
     GROUP = "ground and body"
     terrain: Optional[List[str]] = option(
-        "elevation model, as slope terrain takes it: GeoTIFF, ESRI ASCII grid, FG-GML; several are merged",
+        "elevation model, as slope terrain takes it: GeoTIFF, ASCII grid, XYZ, FG-GML, also zipped; several are merged",
         metavar="DEM", nargs="+")
     crs: Optional[str] = option("wanted CRS, in metres; an elevation model without one is in it", metavar="EPSG:n")
     assign_crs: Optional[List[str]] = option(

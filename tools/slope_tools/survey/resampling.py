@@ -70,9 +70,12 @@ def regrid(raster, crs, cell, bounds, tell, warn, whole=None):
 def needed(whole, crs, cell, bounds, more):
     """Top, bottom, left, right of the cells of a raster that regrid() needs, and `more` cells around them."""
     rows, columns = whole.z.shape
-    _, native = footprint(whole, crs)
+    extent, native = footprint(whole, crs)
     side = max(cell or 0.0, *native)
-    west, south, east, north = bounds[0] - side, bounds[1] - side, bounds[2] + side, bounds[3] + side
+    west, south = np.maximum(bounds[:2], extent[:2]) - side
+    east, north = np.minimum(bounds[2:], extent[2:]) + side
+    if west >= east or south >= north:
+        return 0, 0, 0, 0
     if not same_crs(whole.crs, crs):
         west, south, east, north = rasterio.warp.transform_bounds(crs, whole.crs, west, south, east, north)
         if not np.isfinite([west, south, east, north]).all():
