@@ -128,6 +128,16 @@ def test_a_head_may_name_the_columns_in_any_order(made, head, columns, order):
     assert in_place(made("a.csv"))
 
 
+@pytest.mark.parametrize("head, columns", [("lon,lat,height", (0, 1, 2)), ("Latitude,Longitude,elev", (1, 0, 2))])
+def test_points_in_degrees(made, head, columns):
+    lon, lat = np.meshgrid(139.8 + 1e-4 * np.arange(30), 36 + 1e-4 * np.arange(20))
+    write("a.csv", np.column_stack([lon.ravel(), lat.ravel(), 300 + 1e4 * (lon - 139.8).ravel()]), columns, head=head,
+          form="{:.7f}")
+    z, east, north, *_ = made("a.csv --assign-crs EPSG:6668 --crs EPSG:6677")
+    there = crs.transform(CRS.from_string(CRS_M), CRS.from_string("EPSG:6668"), east, north)[0]
+    assert np.nanmax(np.abs(z - (300 + 1e4 * (there - 139.8)))) < 0.0011 and np.isfinite(z).mean() > 0.9
+
+
 @pytest.mark.parametrize("between, decimal", [(" ", "."), (";", ","), ("\t", ","), (" ", ","), (", ", "."), (";", ".")])
 def test_what_stands_between_numbers(made, between, decimal):
     write("a.txt", by_columns(points()), between=between, decimal=decimal)

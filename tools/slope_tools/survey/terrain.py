@@ -151,41 +151,42 @@ def merge(tiles, tell, warn, cell=None, differ=DIFFER):
         return Tile(first.name, first.raster, whole)
     merged = around(base, [tile.raster for tile in used])
     check_memory(len(merged.z), merged.z.shape[1], "merged raster")
-    z, twice, largest = np.full(merged.z.shape, np.nan), 0, 0.0
+    z, found = np.full(merged.z.shape, np.nan), []
     beyond = []         # by up to half a cell, of tiles on another grid: they may leave a gap where they meet
     for tile in used:
         top, left, heights, more = on_cells(tile.raster, merged, base)
         beyond += more
         part = z[top:top + heights.shape[0], left:left + heights.shape[1]]
         difference = np.abs(part - heights)
-        cells = int(np.isfinite(difference).sum())
-        if cells:
-            twice, largest = twice + cells, max(largest, float(np.nanmax(difference)))
-            judge(tile, difference, merged.transform * Affine.translation(left, top), cells, differ, warn)
+        if np.isfinite(difference).any():
+            found.append(differing(tile.name, difference, merged.transform * Affine.translation(left, top), differ))
         np.copyto(part, heights, where=np.isnan(part))
     for top, left, heights in beyond:
         part = z[top:top + heights.shape[0], left:left + heights.shape[1]]
         np.copyto(part, heights, where=np.isnan(part))
+    twice = sum(one["cells"] for one in found)
+    most = max(found, key=lambda one: one["largest"], default={"largest": 0.0})
     tell(f"merged {len(tiles)} rasters; {twice} cells in more than one, the first file counts"
-         + (f", heights differ by up to {largest:.3f} m" if twice else ""))
+         + (f", heights differ by up to {most['largest']:.3f} m" if twice else ""))
+    if most["largest"] > SAID:
+        warn(Finding("tiles differ", most))
     return Tile(first.name, merged._replace(z=z), whole)
 
 
-def judge(tile, difference, transform, cells, differ, warn):
-    """Say how far the heights (m) of a tile differ from those of others; SlopeError if that is too much."""
+def differing(name, difference, transform, differ):
+    """How far the heights (m) of a file differ from those before it, and where; SlopeError if that is too much."""
     median = float(np.nanmedian(difference))
     row, column = np.unravel_index(np.nanargmax(difference), difference.shape)
     east, north = transform * (column + 0.5, row + 0.5)
-    place = {"largest": float(difference[row, column]), "east": float(east), "north": float(north), "cells": cells,
-             "median": median}
+    found = {"file": name, "largest": float(difference[row, column]), "east": float(east), "north": float(north),
+             "cells": int(np.isfinite(difference).sum()), "median": median}
     if median > differ:
-        raise SlopeError(tile.name, f"must have the heights of the files before it, to {differ:g} m at the median of "
-                         "the cells of both: are all in one unit and one datum? --differ M accepts M m, as of surveys "
+        raise SlopeError(name, f"must have the heights of the files before it, to {differ:g} m at the median of the "
+                         "cells of both: are all in one unit and one datum? --differ M accepts M m, as of surveys "
                          "before and after a landslide",
                          "{median:.1f} m in {cells} cells, up to {largest:.1f} m at east {east:.10g}, north "
-                         "{north:.10g}".format(**place))
-    if place["largest"] > SAID:
-        warn(Finding("tiles differ", {"file": tile.name, **place}))
+                         "{north:.10g}".format(**found))
+    return found
 
 
 def on_grid(raster, base):
