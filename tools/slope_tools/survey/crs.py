@@ -74,11 +74,15 @@ def require_metres(crs, where):
 def require_axes(crs, where):
     """Raise SlopeError if the axes of a CRS point elsewhere than to the east and the north.
 
-    The ground would be turned or mirrored. Those of polar systems both point to the south, or both to the north.
+    The ground would be turned or mirrored. Those of polar systems both point to the south, or both to the north. ESRI
+    turns axes by a negative scale, which PROJ does not know.
     """
     if crs is None or not crs.is_projected:
         return
-    axes = [one for one in re.findall(r'AXIS\["[^"]*",(\w+)', crs.to_wkt()) if one not in ("UP", "DOWN")][-2:]
+    text = crs.to_wkt()
+    axes = [one for one in re.findall(r'AXIS\["[^"]*",(\w+)', text) if one not in ("UP", "DOWN")][-2:]
+    if re.search(r'"scale_factor",-', text):
+        axes = ["WEST", "SOUTH"]
     if {*axes} & {"WEST", "SOUTH"} and len({*axes}) == 2:
         raise SlopeError(where, f"the axes of its CRS must point east and north; {sister_remedy(crs)}",
                          f"{crs_name(crs)}, {' and '.join(axes).lower()}")
@@ -97,10 +101,11 @@ def sister(crs) -> Optional[str]:
     from pyproj.database import query_crs_info
     from pyproj.enums import PJType
     wanted = CRS.from_wkt(crs.to_wkt())
-    area = CRS.from_epsg(crs.to_epsg()).area_of_use if crs.to_epsg() else None
+    authority = wanted.to_authority()
+    area = CRS.from_authority(*authority).area_of_use if authority else None
     around = AreaOfInterest(area.west, area.south, area.east, area.north) if area else None
-    for authority in ("EPSG", "ESRI"):
-        for one in query_crs_info(authority, PJType.PROJECTED_CRS, around, contains=True):
+    for source in ("EPSG", "ESRI"):
+        for one in query_crs_info(source, PJType.PROJECTED_CRS, around, contains=True):
             if area and one.area_of_use and one.area_of_use.east - one.area_of_use.west > 3 * (area.east - area.west):
                 continue        # of the world or a continent; there are many
             found = CRS.from_authority(one.auth_name, one.code)
@@ -115,8 +120,10 @@ def same(found, wanted) -> bool:
         return False
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")     # that words of PROJ say less than others, which are equal here
-        one, other = ({key: value for key, value in crs.to_dict().items() if key != "axis"} for crs in (found, wanted))
-    return bool(one) and one == other
+        one, other = ({key: abs(value) if key == "k" else value for key, value in crs.to_dict().items()
+                       if key != "axis"} for crs in (found, wanted))
+        turned = found.to_dict().get("k", 1) < 0
+    return bool(one) and one == other and not turned
 
 
 def warn_of_stretch(raster, warn):
