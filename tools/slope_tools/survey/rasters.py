@@ -110,7 +110,13 @@ def opened(path, heights=True, unit=None, part=None, assigned=None):
             with rasterio.open(zips.gdal_name(name)) as source:
                 return _read(path, name, source, unit_of(path, source.units[0], source.crs, heights, unit), part)
     except (RasterioError, OSError) as error:  # RasterioIOError is an OSError only
-        raise SlopeError(path, f"must be a raster that GDAL can read ({error}){zips.remedy(name)}") from error
+        raise unreadable(path, name, error) from error
+
+
+def unreadable(path, name, error):
+    """The SlopeError on what GDAL cannot read, with what can be done."""
+    reason = str(error).replace(zips.gdal_name(name), name)
+    return SlopeError(path, f"must be a raster that GDAL can read ({reason}){zips.remedy(name)}")
 
 
 def is_raster(path):
@@ -290,7 +296,7 @@ def read_place(path):
                 return Place(source.crs, (0.0, 0.0), source.shape,
                              (source.bounds.left, source.bounds.bottom, source.bounds.right, source.bounds.top))
     except (RasterioError, OSError) as error:
-        raise SlopeError(path, f"must be a raster that GDAL can read ({error}){zips.remedy(name)}") from error
+        raise unreadable(path, name, error) from error
 
 
 def write_asc_local(path, raster, about, exact=False):
