@@ -238,7 +238,7 @@ def difference(line: Sequence[Combination], scatter: Optional[Scatter]) -> Diffe
 
 @functools.lru_cache(maxsize=None)
 def range_quantile(means: int, degrees_of_freedom: float) -> float:
-    """What the studentized range of so many means exceeds by chance in 5 of 100 cases: 0.2 s, the same for many lines."""
+    """What the studentized range of so many means exceeds by chance in 5 of 100 cases: 0.2 s, the same for many."""
     return float(stats.studentized_range.ppf(DIFFERENT, means, degrees_of_freedom))
 
 

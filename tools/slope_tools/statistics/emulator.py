@@ -117,15 +117,15 @@ def validated(points: np.ndarray, values: np.ndarray, point: np.ndarray) -> Vali
 
     An ensemble and its known events ask for that of the same lengths: fitted once.
     """
-    arrays = np.asarray(points, float), np.asarray(values, float), np.asarray(point, int)
-    return _validated(arrays[0].shape, *(array.tobytes() for array in arrays))
+    kinds = ((points, float), (values, float), (point, int))
+    return _validated(np.shape(points), *(np.asarray(array, kind).tobytes() for array, kind in kinds))
 
 
 @functools.lru_cache(maxsize=32)
-def _validated(shape: Tuple[int, int], *arrays: bytes) -> Validated:
+def _validated(shape: Tuple[int, ...], of_points: bytes, of_values: bytes, of_point: bytes) -> Validated:
     """validated() of arrays as bytes, by which they are told apart."""
-    points, values, point = (np.frombuffer(array, kind) for array, kind in zip(arrays, (float, float, int)))
-    points = points.reshape(shape)
+    points = np.frombuffer(of_points, float).reshape(shape)
+    values, point = np.frombuffer(of_values, float), np.frombuffer(of_point, int)
     whole = Emulator(points, values)
     parts, predicted = [], np.empty(len(values))
     for out in folds(point):
