@@ -20,6 +20,7 @@
 #include "requirements.h"
 #include "restart_archive.h"
 #include "slope_version.h"
+#include "style_argument.h"
 #include "yaml_text.h"
 
 #include "atom.h"
@@ -41,16 +42,16 @@ using Slope::CrossingLog;
 using Slope::PlanLine;
 
 static const std::string CALLER = "Fix control/line ";
-static constexpr int VERSION = 3;    // of what restart files hold
+static constexpr int VERSION = 4;    // of what restart files hold
 
 enum { X, Y, Z };
 
 /* ----------------------------------------------------------------------
-   fix ID group control/line FILE deposit ID output PREFIX
+   fix ID group control/line FILE deposit ID output PREFIX lower L
 ------------------------------------------------------------------------- */
 
 FixControlLine::FixControlLine(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), deposit(nullptr)
+    Fix(lmp, narg, arg), lower(0.0), deposit(nullptr)
 {
   if (narg < 4) error->all(FLERR, "Fix control/line needs FILE deposit ID output PREFIX");
   if (!atom->radius_flag || !atom->rmass_flag || !atom->omega_flag)
@@ -84,10 +85,14 @@ void FixControlLine::read_keywords(int narg, char **arg)
 {
   for (int iarg = 4; iarg < narg; iarg += 2) {
     const std::string keyword = arg[iarg];
-    if (keyword != "deposit" && keyword != "output")
-      error->all(FLERR, "Fix control/line: unknown keyword {}, must be deposit or output", keyword);
+    if (keyword != "deposit" && keyword != "output" && keyword != "lower")
+      error->all(FLERR, "Fix control/line: unknown keyword {}, must be deposit, lower or output",
+                 keyword);
     if (iarg + 1 == narg) error->all(FLERR, "Fix control/line {}: value is missing", keyword);
-    (keyword == "deposit" ? deposit_id : prefix) = arg[iarg + 1];
+    if (keyword == "lower")
+      lower = number_argument(lmp, "Fix control/line lower", arg[iarg + 1]);
+    else
+      (keyword == "deposit" ? deposit_id : prefix) = arg[iarg + 1];
   }
   if (prefix.empty()) error->all(FLERR, "Fix control/line keyword output is missing");
 }
@@ -321,7 +326,8 @@ void FixControlLine::note(int i, const double *from, const double *to, const Pla
     error->one(FLERR, "Fix control/line {}: region {} must not change before the run ends", id,
                changed);
   double z;
-  e.height = ground->height(c.x, c.y, z) ? e.x[Z] - z : std::numeric_limits<double>::quiet_NaN();
+  e.height = ground->height(c.x, c.y, z) ? e.x[Z] - z + lower
+                                         : std::numeric_limits<double>::quiet_NaN();
   std::copy(v, v + 3, e.v);
   e.speed = sqrt(square);
   e.energy = 0.5 * atom->rmass[i] * (square + 0.4 * r * r * spin) * force->mvv2e;
@@ -416,9 +422,11 @@ void FixControlLine::archive(Slope::Archive &archive, std::vector<CrossingLog::E
       {{"numbers_of_the_line", (double) line.xy.size()},
        {"length", line.length()},
        {"xlo", line.xlo},
-       {"checksum", line.checksum()}},
+       {"checksum", line.checksum()},
+       {"lower", lower}},
       [](const double *k) {
-        return fmt::format("{:.0f} points, length {:.8g} (sum {:.10g})", 0.5 * k[0], k[1], k[3]);
+        return fmt::format("{:.0f} points, length {:.8g} (sum {:.10g}), lower {:g}", 0.5 * k[0], k[1],
+                           k[3], k[4]);
       },
       ": another line, or another direction, needs another fix ID");
   clock.archive(archive);

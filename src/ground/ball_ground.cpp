@@ -58,8 +58,7 @@ void BallGround::find_bodies()
   const PlacementArguments &a = arguments;
   const auto others = compat::fixes_of_style(lmp, "wall/gran/balls");
   if (a.sink > 0.0)
-    sunk = std::make_shared<SunkRegion>(lmp, a.caller, a.region, a.side, a.sink, a.diameter,
-                                        a.rim == PlacementArguments::ENDED);
+    sunk = std::make_shared<SunkRegion>(lmp, a.caller, a.region, a.side, a.sink, a.diameter);
   if (sunk && a.side == RegionSurface::LOWER)
     for (Fix *fix : others) {
       const std::string &left_out = dynamic_cast<BallBody &>(*fix).left_out();
@@ -146,18 +145,11 @@ bool BallGround::height(double x, double y, double &z) const
 bool BallGround::keep(double x, double y) const
 {
   double z, bottom;
-  if (of_rim() && boundary->height(x, y, z) != (arguments.rim == PlacementArguments::WITHIN))
-    return false;
   if (within && !within->height(x, y, z)) return false;
   for (const Sunk &body : bodies)
     if (body->centre(x, y, bottom) && height(x, y, z) && bottom < z) return false;
   if (!columns || (bodies.size() == 1 && bodies[0]->region == arguments.outside)) return true;
   return !columns->height(x, y, z);
-}
-
-bool BallGround::of_rim() const
-{
-  return arguments.rim == PlacementArguments::WITHIN || arguments.rim == PlacementArguments::BEYOND;
 }
 
 bool BallGround::scar(double x, double y, double &z) const
@@ -170,8 +162,10 @@ bool BallGround::scar(double x, double y, double &z) const
 
   // a prism without a bottom leaves no scar, it only selects
 
-  if (columns->has_boundary() && columns->height(x, y, bottom)) z = std::min(z, bottom);
-  return z < HUGE_VAL;
+  const bool upper = sunk && arguments.side == RegionSurface::UPPER;
+  if (columns->has_boundary() && columns->height(x, y, bottom))
+    z = std::min(z, upper ? bottom - arguments.sink : bottom);
+  return z < HUGE_VAL && !(upper && z > top);    // a ball above its own surface would be a lip
 }
 
 /* ----------------------------------------------------------------------
@@ -219,7 +213,7 @@ Slope::Surface BallGround::surface() const
   s.height = [=](double x, double y, double &z) {
     return in_plan(x, y) && height(x, y, z);
   };
-  if (!columns && !within && !of_rim()) return s;
+  if (!columns && !within) return s;
   s.keep = [=](double x, double y) {
     return in_plan(x, y) && keep(x, y);
   };
@@ -229,6 +223,17 @@ Slope::Surface BallGround::surface() const
   if (columns && (columns->has_boundary() || !bodies.empty()))
     s.scar = [=](double x, double y, double &z) {
       return in_plan(x, y) && scar(x, y, z);
+    };
+  return s;
+}
+
+Slope::Surface BallGround::looked_at() const
+{
+  Slope::Surface s = surface();
+  if (sunk && arguments.side == RegionSurface::UPPER)
+    s.height = [this](double x, double y, double &z) {
+      turn(x, y);
+      return boundary->height(x, y, z);
     };
   return s;
 }

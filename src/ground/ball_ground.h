@@ -41,6 +41,7 @@ class BallGround : protected Pointers {
   bool keep(double x, double y) const;
   int zone(double x, double y) const;    // from 1, 0: in none
   Slope::Surface surface() const;
+  Slope::Surface looked_at() const;    // the same for marks: an upper boundary before it is sunk
 
   // spacings of the balls, first that of what is in no zone; the surface where it is one of these
   std::vector<double> spacings() const;
@@ -64,7 +65,6 @@ class BallGround : protected Pointers {
 
   void find_bodies();
   bool height(double x, double y, double &z) const;
-  bool of_rim() const;
   bool scar(double x, double y, double &z) const;
   void check_floor() const;
 };

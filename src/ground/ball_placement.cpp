@@ -76,7 +76,7 @@ BallPlacement::~BallPlacement() = default;
 
 std::shared_ptr<SunkRegion> BallPlacement::sunk() const
 {
-  return arguments.rim == PlacementArguments::BEYOND ? nullptr : ground->sunk;
+  return ground->sunk;
 }
 
 std::vector<int> BallPlacement::zone_types() const
@@ -412,13 +412,8 @@ void BallPlacement::report(const SurfaceCounts &counts, bool known) const
   }
   if (ground->sunk) {
     text += fmt::format(", sunk by {}", a.sink);
-    if (a.rim == PlacementArguments::ENDED)
-      text += " and ended at the rim";
-    else if (!ground->sunk->ground.empty())
+    if (!ground->sunk->ground.empty())
       text += " and continued up to region " + ground->sunk->ground;
-    if (a.rim == PlacementArguments::WITHIN || a.rim == PlacementArguments::BEYOND)
-      text += fmt::format(", {} the rim of region {}",
-                          a.rim == PlacementArguments::WITHIN ? "within" : "beyond", a.region);
   }
   if (a.smallest > 0.0 && a.smallest < a.diameter)
     text += fmt::format(", tight for balls of diameter {}", a.smallest);
@@ -439,7 +434,7 @@ const std::vector<double> &BallPlacement::fingerprint()
     marks.insert(marks.end(), sums, sums + 3);
     return marks;
   }
-  const Slope::PlanNodes plan(ground->grid(), ground->surface());
+  const Slope::PlanNodes plan(ground->grid(), ground->looked_at());
   const double nodes = static_cast<double>(plan.nx) * plan.ny;
   for (const double value :
        {plan.grid.spacing, plan.xfirst, plan.yfirst, plan.nx + 0.0, plan.ny + 0.0})
@@ -453,6 +448,7 @@ const std::vector<double> &BallPlacement::fingerprint()
     if (several) marks.push_back(spacing_around(plan.x(i), plan.y(j)));
   }
   if (arguments.scattered) marks.push_back(arguments.seed);
+  if (arguments.sink > 0.0) marks.push_back(arguments.sink);
   if (arguments.angle != 0.0) marks.insert(marks.end(), {arguments.angle, 0.0});
   return marks;
 }

@@ -47,7 +47,7 @@ class BallPlacement : protected Pointers {
   void check_regions() const;
 
   // what others need to know of a placement: the body that these balls lie below, nullptr if they are
-  // not sunk, or only beyond its rim; the region outside of which they are, empty if sunk says that it is sunk; the diameter
+  // not sunk; the region outside of which they are, empty if sunk says that it is sunk; the diameter
   // of the smallest ball that finds no way through, 0 if that is not known
   std::shared_ptr<class SunkRegion> sunk() const;
   const std::string &outside() const;

@@ -26,8 +26,8 @@ PlacementArguments::PlacementArguments(LAMMPS *lmp, const std::string &caller_in
                                        bool of_wall) :
     Pointers(lmp),
     caller(caller_in), diameter(diameter_in), side(RegionSurface::UPPER),
-    spacing(0.0), origin{0.0, 0.0}, scattered(false), seed(1), angle(0.0), rim(CONTINUED),
-    sink(0.0), outside_sink(-1.0), smallest(smallest_in)
+    spacing(0.0), origin{0.0, 0.0}, scattered(false), seed(1), angle(0.0), sink(0.0),
+    outside_sink(-1.0), smallest(smallest_in)
 {
   if (!(diameter > 0.0) || !std::isfinite(diameter))
     error->all(FLERR, "{} diameter must be > 0, got {}", caller, diameter);
@@ -84,15 +84,12 @@ void PlacementArguments::parse(int narg, char **arg, bool of_wall)
     if (n == 0)
       error->all(FLERR, "{} keyword must be {}inside{}, got {}", caller,
                  region.empty() ? ""
-                                : "spacing, origin, pattern, angle, sink, sunk, smallest, rim, ",
+                                : "spacing, origin, pattern, angle, sink, sunk, smallest, ",
                  of_wall ? ", outside, zone or write" : " or outside", arg[iarg]);
     iarg += n;
   }
   if (!region.empty() && spacing == 0.0)
     error->all(FLERR, "{} surface needs a spacing, got none", caller);
-  if (rim != CONTINUED && !(sink > 0.0 && side == RegionSurface::LOWER))
-    error->all(FLERR, "{} rim must be that of a lower surface with a sink > 0, got {}", caller,
-               side == RegionSurface::LOWER ? "sink 0" : "upper");
   if (outside_sink >= 0.0 && outside.empty())
     error->all(FLERR, "{} sunk needs outside REGION, got none", caller);
 }
@@ -111,7 +108,8 @@ int PlacementArguments::parse_surface(int narg, char **arg)
     outside_sink = number("H", narg, arg);
     check_sink(outside_sink, arg);
   } else if (strcmp(arg[0], "rim") == 0) {
-    parse_rim(narg, arg);
+    error->all(FLERR, "{} rim is no keyword any more, got {}: {}", caller, narg > 1 ? arg[1] : "rim",
+               "ground and slip surface are one surface now; make the site anew, slope site FOLDER");
   } else if (strcmp(arg[0], "smallest") == 0) {
     smallest = number("D", narg, arg);
     if (smallest <= 0.0) error->all(FLERR, "{} smallest must be > 0, got {}", caller, arg[1]);
@@ -135,18 +133,6 @@ int PlacementArguments::parse_surface(int narg, char **arg)
     return 0;
   }
   return 2;
-}
-
-void PlacementArguments::parse_rim(int narg, char **arg)
-{
-  need(1, "continued, ended, within or beyond", narg, arg);
-  const char *const names[] = {"continued", "ended", "within", "beyond"};
-  for (Rim one : {CONTINUED, ENDED, WITHIN, BEYOND})
-    if (strcmp(arg[1], names[one]) == 0) {
-      rim = one;
-      return;
-    }
-  error->all(FLERR, "{} rim must be continued, ended, within or beyond, got {}", caller, arg[1]);
 }
 
 int PlacementArguments::parse_pattern(int narg, char **arg)

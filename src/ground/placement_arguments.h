@@ -16,8 +16,7 @@ namespace LAMMPS_NS {
 // The arguments that say where fixed balls go, which fix wall/gran/balls and create_balls share:
 //
 //   surface REGION upper|lower spacing S [inside REGION] [outside REGION [sunk H]] [origin x y]
-//     [sink H [rim continued|ended|within|beyond]] [smallest D] [pattern grid | pattern scattered [SEED]]
-//     [angle DEG]
+//     [sink H] [smallest D] [pattern grid | pattern scattered [SEED]] [angle DEG]
 //   file FILE [inside REGION] [outside REGION]
 //   write FILE, zone REGION TYPE [S] ...     in addition, of a wall
 //
@@ -37,9 +36,6 @@ class PlacementArguments : protected Pointers {
   int seed;                       // of the scattered pattern
   double angle;                   // of the plan grid, counterclockwise, radians
   std::string inside, outside;    // regions, or empty
-  // where a sunk body ends: continued up to the ground, or not; all of that, or only what is within the
-  // body's plan or beyond it
-  enum Rim { CONTINUED, ENDED, WITHIN, BEYOND } rim;
   double sink,
       outside_sink;    // < 0: the sink of the fix that has sunk the region outside of which they are
 
@@ -60,7 +56,6 @@ class PlacementArguments : protected Pointers {
   void parse(int, char **, bool);
   int parse_surface(int, char **);
   int parse_pattern(int, char **);
-  void parse_rim(int, char **);
   int parse_zone(int, char **);
   void check_zones();
   void check_pattern() const;

@@ -45,7 +45,7 @@ class ScatteredLattice {
   // the number of the next lattice's first cell
   int64_t end() const { return before + n[0] * n[1]; }
 
-  int glance;    // cells between places at which a block is looked for a rim
+  int glance;    // cells between places at which a block is looked for a rim; 1: it is one of several zones
   bool kept(double x, double y) const { return !surface.keep || surface.keep(x, y); }
 
   // whether a ball may be in any of the cells, asked at each spacing
@@ -83,6 +83,7 @@ class ScatteredLattice {
     uint64_t hash;
     bool on;
   };
+  bool of_zones() const { return glance == 1; }
   static int64_t whole(double x) { return static_cast<int64_t>(std::floor(x)); }
   bool on_surface(double x, double y, double &z) const;
   Place place(int64_t i, int64_t j) const;

@@ -24,10 +24,9 @@ static constexpr double SAME = 1.0e-6;    // heights, in diameters
 /* ---------------------------------------------------------------------- */
 
 SunkRegion::SunkRegion(LAMMPS *lmp, const std::string &caller, const std::string &region_in,
-                       int side_in, double sink_in, double diameter_in, bool ends_in) :
+                       int side_in, double sink_in, double diameter_in) :
     Pointers(lmp),
-    region(region_in), side(side_in), sink(sink_in), diameter(diameter_in), ends(ends_in),
-    flush(false)
+    region(region_in), side(side_in), sink(sink_in), diameter(diameter_in), flush(false)
 {
   boundary.reset(new RegionSurface(lmp, caller, region.c_str(), side, PITCH * diameter));
   if (side == RegionSurface::UPPER || !boundary->has_boundary()) return;
@@ -116,9 +115,19 @@ bool SunkRegion::lies_in(const RegionSurface &others) const
 
 /* ---------------------------------------------------------------------- */
 
+// an upper boundary is not looked at everywhere
+
 double SunkRegion::lowest() const
 {
-  return surface->lowest();
+  if (side == RegionSurface::LOWER) return surface->lowest();
+  const double dx = (boundary->xhi - boundary->xlo) / LOOKS;
+  const double dy = (boundary->yhi - boundary->ylo) / LOOKS;
+  double found = HUGE_VAL, z;
+  for (int j = 0; j < LOOKS; j++)
+    for (int i = 0; i < LOOKS; i++)
+      if (boundary->height(boundary->xlo + (i + 0.5) * dx, boundary->ylo + (j + 0.5) * dy, z))
+        found = std::min(found, z);
+  return found - sink;
 }
 
 double SunkRegion::floor() const
@@ -139,8 +148,7 @@ void SunkRegion::build()
                     boundary->yhi,
                     nullptr,
                     nullptr,
-                    side == RegionSurface::LOWER,
-                    ends};
+                    side == RegionSurface::LOWER};
   bed.height = [this](double x, double y, double near, double &z) {
     double end;    // a search of the column from its bottom takes long
     if (flush && std::isnan(near) && top->height(x, y, end))
@@ -151,7 +159,8 @@ void SunkRegion::build()
     bed.ground = [this](double x, double y, double near, double &z) {
       return top->height_near(x, y, near, z);
     };
-  const double pitch = std::min(PITCH * std::max(sink, diameter), 0.5 * sink);
+  const double size = side == RegionSurface::LOWER ? diameter : 0.5 * diameter;
+  const double pitch = std::min(PITCH * std::max(sink, size), 0.5 * sink);
   surface.reset(new Slope::SunkSurface(bed, sink, pitch));
 }
 

@@ -20,20 +20,19 @@ class SunkSurface;
 namespace LAMMPS_NS {
 
 // The boundary of a region sunk along its normal, doc/src/surface_sampling.rst. The lower boundary is
-// that of a body: unless it ends there, it continues beyond the body's rim, up to the ground, which is the region whose upper
+// that of a body: it continues beyond the body's rim, up to the ground, which is the region whose upper
 // boundary is that of the body, too, the widest of these in plan.
 class SunkRegion : protected Pointers {
  public:
   // diameter: of the balls, which tells how closely the boundary is looked at. All ranks; errors end
   // the run and start with caller.
   SunkRegion(class LAMMPS *, const std::string &caller, const std::string &region, int side,
-             double sink, double diameter, bool ends = false);
+             double sink, double diameter);
   ~SunkRegion() override;
 
   const std::string region;
   const int side;
   const double sink, diameter;
-  const bool ends;
   std::string ground;    // ID, empty: none
 
   // Look at the boundary, once; may throw. Needs the region; the others need this.
@@ -42,7 +41,7 @@ class SunkRegion : protected Pointers {
   bool height(double x, double y, double &z) const;    // of ball centres, below the ground only
   bool centre(double x, double y, double &z) const;    // of a body: above it, too
 
-  double lowest() const;    // of the centres
+  double lowest() const;    // of the centres, about
   double floor() const;     // what they must lie above
 
   // whether the regions are those of the constructor; if not, which one is not

@@ -27,10 +27,11 @@ static constexpr int RIM_STEPS = 8;    // halvings between two columns
 static constexpr int CHAIN_STEPS = 8;
 static constexpr int CONTACT_STEPS = 4;
 static constexpr double MAX_COLUMNS = 2147483647.0;
+static constexpr double MAX_OF_GROUND = 1.0e14;    // few of which are looked at
 
 /* ---------------------------------------------------------------------- */
 
-SunkSurface::SunkSurface(const Bed &bed, double sink_in, double pitch) : sink(sink_in)
+SunkSurface::SunkSurface(const Bed &bed_in, double sink_in, double pitch) : sink(sink_in), bed(bed_in)
 {
   if (!(pitch > 0.0) || !(pitch <= 0.5 * sink))
     throw std::invalid_argument("the pitch must be > 0 and at most half the sink");
@@ -38,10 +39,11 @@ SunkSurface::SunkSurface(const Bed &bed, double sink_in, double pitch) : sink(si
     throw std::invalid_argument("the plan rectangle must not be empty");
 
   const double margin =
-      bed.body ? (bed.ground && !bed.ends ? REACH + 1.0 : 1.0) * sink + 2.0 * pitch : 0.0;
-  const double columns = std::ceil((bed.xhi - bed.xlo + 2.0 * margin) / pitch + 4.0) *
-      std::ceil((bed.yhi - bed.ylo + 2.0 * margin) / pitch + 4.0);
-  if (!(columns < MAX_COLUMNS)) throw std::length_error("2^31 columns");
+      bed.body ? (bed.ground ? REACH + 1.0 : 1.0) * sink + 2.0 * pitch : 0.0;
+  const double wide = std::ceil((bed.xhi - bed.xlo + 2.0 * margin) / pitch + 4.0);
+  const double high = std::ceil((bed.yhi - bed.ylo + 2.0 * margin) / pitch + 4.0);
+  if (!(std::max(wide, high) < MAX_COLUMNS && wide * high < (bed.body ? MAX_COLUMNS : MAX_OF_GROUND)))
+    throw std::length_error(bed.body ? "2^31 columns" : "2^31 columns along a side, 1e14 in all");
 
   // columns on all edges of the rectangle
 
@@ -57,14 +59,41 @@ SunkSurface::SunkSurface(const Bed &bed, double sink_in, double pitch) : sink(si
   ylo = bed.ylo - my * py;
   xhi = bed.xhi + mx * px;
   yhi = bed.yhi + my * py;
-  z.reset(nx, ny, INFINITE);
+  z.reset(INFINITE);
 
-  measure(bed);
   if (bed.body) {
+    measure(bed);
     if (bed.ground) trim(bed);
     go_on(bed, edges());
+    bed = Bed();
   }
   sort_rims();
+}
+
+/* ----------------------------------------------------------------------
+   the squares of columns that a ball around x,y may touch, of a surface that is no body
+------------------------------------------------------------------------- */
+
+void SunkSurface::look_around(double x, double y) const
+{
+  const int side = z.SIDE;
+  const auto square = [side](double from, double pitch, int n) {
+    return std::min(std::max(static_cast<int>(from / pitch), 0), n - 1) / side;
+  };
+  const int ihi = square(x + sink - xlo + px, px, nx), jhi = square(y + sink - ylo + py, py, ny);
+  for (int b = square(y - sink - ylo, py, ny); b <= jhi; b++)
+    for (int a = square(x - sink - xlo, px, nx); a <= ihi; a++) {
+      if (z.has_square(a * side, b * side)) continue;
+      z.at(a * side, b * side) = INFINITE;
+      for (int j = b * side; j < std::min((b + 1) * side, ny); j++)
+        for (int i = a * side; i < std::min((a + 1) * side, nx); i++) {
+          double height;
+          if (bed.height(std::min(column_x(i), bed.xhi), std::min(column_y(j), bed.yhi), UNKNOWN,
+                         height) &&
+              std::isfinite(height))
+            z.at(i, j) = height;
+        }
+    }
 }
 
 double SunkSurface::lowest() const
@@ -253,15 +282,15 @@ void SunkSurface::go_on(const Bed &bed, const std::vector<Edge> &found)
     float distance2;
   };
   SparsePlane<Nearest> nearest;
-  nearest.reset(nx, ny, {-1, HUGE_VALF});
-  const double pitch = std::max(px, py), reach = bed.ground && !bed.ends ? REACH * sink : 0.0;
+  nearest.reset({-1, HUGE_VALF});
+  const double pitch = std::max(px, py), reach = bed.ground ? REACH * sink : 0.0;
   const int wide = static_cast<int>(reach / px), high = static_cast<int>(reach / py);
 
   for (size_t e = 0, next; e < found.size(); e = next) {
     const int i = found[e].i, j = found[e].j;
     Ramp ramp = {i, j, 0.0, 0.0, 0.0};
     double top;
-    const bool sloped = bed.ground && !bed.ends && plane(i, j, ramp.gx, ramp.gy) &&
+    const bool sloped = bed.ground && plane(i, j, ramp.gx, ramp.gy) &&
         bed.ground(column_x(i), column_y(j), UNKNOWN, top);
     if (sloped) ramp.under = top - z.get(i, j);
     bool rises = false;
@@ -298,6 +327,8 @@ void SunkSurface::go_on(const Bed &bed, const std::vector<Edge> &found)
 
 void SunkSurface::sort_rims()
 {
+  bins_x = bins_y = 0;
+  if (rims.empty()) return;
   bins_x = static_cast<int>((xhi - xlo) / sink) + 1;
   bins_y = static_cast<int>((yhi - ylo) / sink) + 1;
   auto bin = [this](const Point &p) {
@@ -344,6 +375,7 @@ bool SunkSurface::patch(double x, double y, double &height, double &gx, double &
 bool SunkSurface::height(double x, double y, double &lowest) const
 {
   if (!(x >= xlo && x <= xhi && y >= ylo && y <= yhi)) return false;
+  if (bed.height) look_around(x, y);
   const double sink2 = sink * sink;
   lowest = INFINITE;
   double cx = x, cy = y;

@@ -79,7 +79,8 @@ std::string SurfaceLoads::triangles(const TouchedSurface &surface, double step) 
     const Triangle t = surface.triangle(entry.first);
     const Values v = values_of(entry.second, t, step);
     const Vector m = t.middle();
-    const double line[8] = {entry.first + 1.0, m.x, m.y, m.z, v.area, v.last, v.largest, v.impulse};
+    const double line[8] = {
+        entry.first + 1.0, m.x, m.y, m.z + surface.lower, v.area, v.last, v.largest, v.impulse};
     append(s, line, 8, ',', '\n');
   }
   return s;
@@ -102,10 +103,11 @@ std::string SurfaceLoads::polydata(const TouchedSurface &surface, double step) c
   std::string corners, links, ends, last, largest, impulse;
   int n = 0;
   auto add = [&](int number) {
-    const Triangle t = surface.triangle(number);
+    Triangle t = surface.triangle(number);
     const auto found = loads.find(number);
     const Values v = found == loads.end() ? Values{0.0, 0.0, 0.0, 0.0}
                                           : values_of(found->second, t, step);
+    for (Vector *corner : {&t.a, &t.b, &t.c}) corner->z += surface.lower;
     append(corners, &t.a.x, 9, ' ', '\n');
     for (int c = 0; c < 3; c++) links += std::to_string(3 * n + c) + (c < 2 ? ' ' : '\n');
     ends += std::to_string(3 * ++n) + '\n';

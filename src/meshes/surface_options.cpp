@@ -33,7 +33,7 @@ static constexpr double DOUBTED = 10.0;
 
 SurfaceOptions::SurfaceOptions(LAMMPS *lmp, const std::string &_caller, int narg, char **arg) :
     Pointers(lmp), point{0.0, 0.0, 0.0}, every(0), caller(_caller), terrain(false),
-    scale(1.0), move{0.0, 0.0, 0.0}
+    scale(1.0), lower(0.0), move{0.0, 0.0, 0.0}
 {
   if (narg < 2)
     error->all(FLERR, "{}: needs TYPE and FILE.stl or terrain FILE.asc, got {} arguments", caller,
@@ -48,6 +48,7 @@ SurfaceOptions::SurfaceOptions(LAMMPS *lmp, const std::string &_caller, int narg
   if (terrain && ++iarg == narg) error->all(FLERR, "{} terrain: FILE.asc is missing", caller);
   file = arg[iarg++];
   while (iarg < narg) iarg += read_keyword(narg - iarg, &arg[iarg]);
+  point.z -= lower;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -55,17 +56,17 @@ SurfaceOptions::SurfaceOptions(LAMMPS *lmp, const std::string &_caller, int narg
 int SurfaceOptions::read_keyword(int narg, char **arg)
 {
   const std::string keyword = arg[0];
-  const int n = keyword == "scale"              ? 1
+  const int n = keyword == "scale" || keyword == "lower" ? 1
       : keyword == "move" || keyword == "point" ? 3
       : keyword == "output"                     ? 2
                                                 : 0;
   if (n == 0)
-    error->all(FLERR, "{}: unknown keyword {}, must be scale, move, point or output", caller,
+    error->all(FLERR, "{}: unknown keyword {}, must be scale, move, lower, point or output", caller,
                keyword);
   if (narg <= n)
     error->all(FLERR, "{} {} must be followed by {} value{}, got {}", caller, keyword, n,
                n > 1 ? "s" : "", narg - 1);
-  if (terrain && (keyword == "scale" || keyword == "move"))
+  if (terrain && (keyword == "scale" || keyword == "move" || keyword == "lower"))
     error->all(FLERR, "{}: {} is for STL files, a terrain stays where its file has it", caller,
                keyword);
 
@@ -73,6 +74,8 @@ int SurfaceOptions::read_keyword(int narg, char **arg)
   if (keyword == "scale") {
     scale = number_argument(lmp, what, arg[1]);
     if (!(scale > 0.0)) error->all(FLERR, "{} must be > 0, got {}", what, arg[1]);
+  } else if (keyword == "lower") {
+    lower = number_argument(lmp, what, arg[1]);
   } else if (keyword == "output") {
     output = arg[1];
     every = whole_number_argument(lmp, what + " Nevery", arg[2]);
@@ -100,7 +103,7 @@ std::unique_ptr<TouchedSurface> SurfaceOptions::read_stl() const
 {
   StlFile stl;
   on_rank_zero(lmp, caller, [&]() {
-    stl = StlFile::read(file, scale, move);
+    stl = StlFile::read(file, scale, moved(move, -lower, {0.0, 0.0, 1.0}));
   });
   broadcast(world, stl.triangles);
   MPI_Bcast(&stl.rounding, 1, MPI_DOUBLE, 0, world);
@@ -110,6 +113,7 @@ std::unique_ptr<TouchedSurface> SurfaceOptions::read_stl() const
     made.reset(new TriangleMesh(stl.triangles));
   });
   made->rounding = stl.rounding;
+  made->lower = lower;
 
   double area = 0.0;
   for (const Triangle &t : stl.triangles) area += t.area();
@@ -118,8 +122,8 @@ std::unique_ptr<TouchedSurface> SurfaceOptions::read_stl() const
     utils::logmesg(lmp,
                    "{}: {}, area {:.6g}, x {:.8g} to {:.8g}, y {:.8g} to {:.8g}, z {:.8g} to "
                    "{:.8g}\n",
-                   caller, counted(n, "triangle"), area, low.x, high.x, low.y, high.y, low.z,
-                   high.z);
+                   caller, counted(n, "triangle"), area, low.x, high.x, low.y, high.y, low.z + lower,
+                   high.z + lower);
     if (stl.skipped)
       error->warning(FLERR, "{}: {} of the {:.0f} triangles of {} have no area and are skipped",
                      caller, stl.skipped, n + stl.skipped, file);

@@ -28,14 +28,14 @@ class SurfaceOptions : protected Pointers {
   std::unique_ptr<Slope::TouchedSurface> surface() const;    // collective: reads the file
 
   int type;
-  Slope::Vector point;    // of the moments
+  Slope::Vector point;    // of the moments, as low as the surface
   std::string output;     // prefix; empty: none
   int every;              // steps between two rows of the output
 
  private:
   std::string caller, file;
   bool terrain;
-  double scale;
+  double scale, lower;
   Slope::Vector move;
 
   int read_keyword(int narg, char **arg);

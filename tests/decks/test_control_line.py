@@ -37,9 +37,13 @@ def volume(d):
 
 
 def test_one_flight_in_closed_form(tmp_path):
-    """The line runs to the south: forward is to the west."""
-    fly(tmp_path, [[4, -1, 8]], [[-3, 2, -0.5]], "1 5\n1 -5\n", "run 2000\n", d=0.8, omega=[[1, -2, 3]])
+    """The line runs to the south: forward is to the west. Balls that lie lower than their ground are so much higher."""
+    fly(tmp_path, [[4, -1, 8]], [[-3, 2, -0.5]], "1 5\n1 -5\n", "run 2000\n", d=0.8, omega=[[1, -2, 3]],
+        fixes=LINE.replace("line all", "sunk all").replace("output out", "lower 0.4 output sunk"))
     row, = crossings(tmp_path)
+    other, = crossings(tmp_path, "sunk")
+    assert other == {**row, "height": pytest.approx(row["height"] + 0.4)}
+    assert summary(tmp_path, "sunk")["largest"]["height"] == pytest.approx(4.9)
     mass = 1000 * np.pi * 0.8 ** 3 / 6
     expected = dict(time=1.0, step=1000, ball=1, direction=1, along=4.0, x=1, y=1, z=7.5, height=4.5,
                     vx=-3, vy=2, vz=-0.5, speed=13.25 ** 0.5, energy=0.5 * mass * (13.25 + 0.4 * 0.4 ** 2 * 14),

@@ -67,6 +67,22 @@ def test_step_numbers_that_recur_neither_lose_a_row_nor_bring_an_old_load(tmp_pa
         assert (triangles["largest_pressure"] > 0) and (triangles["last_pressure"] == 0)
 
 
+def test_what_is_written_of_a_lower_surface_is_that_of_its_file(tmp_path):
+    """Balls on a ground that is sunk lie lower, and what stands on it, too: loads, moments and places are the same."""
+    found = []
+    for lower in (0.0, 0.7):
+        write_case(tmp_path, plane(1), (3.0, -1.0, 0.5 - lower), (0, 0, -1))
+        rows = run_case(tmp_path, "run 60", keywords=f"lower {lower} point 0.5 1 7 output out 10")[0]
+        texts = [(tmp_path / f"out.{name}").read_text() for name in ("triangles.csv", "vtp")]
+        piece = ElementTree.fromstring(texts[1]).find("PolyData/Piece")
+        found.append((rows, np.genfromtxt(texts[0].splitlines(), delimiter=",", names=True)["z"],
+                      [np.array(one.text.split(), float) for one in piece.iter("DataArray")]))
+    assert (found[0][0][:, 2] > 0).any()
+    for one, other in zip(*found):
+        for a, b in zip(np.atleast_1d(one), np.atleast_1d(other)) if not isinstance(one, list) else zip(one, other):
+            assert a == pytest.approx(b, rel=1e-6, abs=1e-6 * STIFFNESS * 1e-3)
+
+
 def test_moment_about_a_point_is_that_of_the_weight(tmp_path):
     write_case(tmp_path, plane(10), (2.0, -1.0, 0.5 - MASS * 9.81 / STIFFNESS), (0, 0, 0))
     rows = run_case(tmp_path, "run 200", g=9.81, keywords="point 0.5 1.0 7.0")[0]
@@ -187,7 +203,7 @@ WRONG = {
     "no name": (dict(wall=f"{START} 2 terrain"), "terrain: FILE.asc is missing"),
     "type": (dict(wall=f"{START} 3 mesh.stl"), "type must be 1 to 2 (the atom types of the box), got 3"),
     "type word": (dict(wall=f"{START} x mesh.stl"), "type must be a whole number"),
-    "keyword": (dict(keywords="size 3"), "unknown keyword size, must be scale, move, point or output"),
+    "keyword": (dict(keywords="size 3"), "unknown keyword size, must be scale, move, lower, point or output"),
     "few values": (dict(keywords="move 1 2"), "move must be followed by 3 values, got 2"),
     "scale": (dict(keywords="scale 0"), "scale must be > 0, got 0"),
     "point": (dict(keywords="point 1 inf 2"), "point must be a finite number, got inf"),

@@ -22,7 +22,7 @@ fix balls soil wall/gran/balls 2 1.0 surface ground upper spacing 1.0 origin 0 0
 fix loose soil wall/gran/balls 2 1.0 surface ground upper spacing 0.9 pattern scattered 3
 region cap sphere 8 8 3 4
 region body intersect 2 ground cap
-fix slip soil wall/gran/balls 2 1.0 surface body lower spacing 0.5 sink 0.5 rim ended
+fix slip soil wall/gran/balls 2 1.0 surface body lower spacing 0.5 sink 0.5
 fix places soil wall/gran/balls 2 1.0 file places.txt
 fix house soil wall/gran/mesh 3 house.stl scale 1 move 0 0 0
 fix floor soil wall/gran/mesh 3 terrain floor.asc
@@ -30,7 +30,7 @@ fix move soil nve/sphere
 fix weight soil gravity 9.81 vector 0 0 -1
 fix quake soil ground/motion motion.txt scale 1 start 0
 fix dep soil deposit/grid 10 0 cell 1 terrain ground output out bulk 1.5 extent 0 16 0 16
-fix line soil control/line line.csv deposit dep output out
+fix line soil control/line line.csv deposit dep output out lower 0
 timestep 1e-3
 """
 NEW = """region all block 0 16 0 16 -2 6
@@ -43,19 +43,18 @@ CHANGES = [("2 1.0 surface", "2 0.9 surface", "balls"), ("spacing 1.0", "spacing
            ("origin 0 0", "origin 0.3 0", "balls"), ("sink 0.2", "sink 0.1", "balls"),
            ("angle 0", "angle 10", "balls"), ("pattern scattered 3", "pattern scattered 4", "loose"),
            ("pattern scattered 3", "pattern grid", "loose"), ("outside road", "inside road", "balls"),
-           ("outside road", "", "balls"), ("rim ended", "rim within", "slip"),
-           ("rim ended", "rim continued", "slip"),
+           ("outside road", "", "balls"), ("sink 0.5", "sink 0.4", "slip"),
            ("file places.txt", "file other.txt", "places"), ("scale 1 move", "scale 1.1 move", "house"),
            ("move 0 0 0", "move 0 0 0.1", "house"), ("house.stl", "other.stl", "house"),
            ("terrain floor.asc", "terrain higher.asc", "floor"), ("terrain ground.asc", "terrain higher.asc", "balls"),
            ("scale 1 start", "scale 1.1 start", "quake"), ("start 0", "start 0.1", "quake"),
            ("motion.txt", "other_motion.txt", "quake"), ("cell 1 ", "cell 2 ", "dep"), ("bulk 1.5", "bulk 1.6", "dep"),
-           ("extent 0 16", "extent 0 15", "dep"), ("line.csv", "other.csv", "line")]
+           ("extent 0 16", "extent 0 15", "dep"), ("line.csv", "other.csv", "line"), ("lower 0", "lower 0.1", "line")]
 # words of these parsers that a restart file does not guard, as decks may change them, or that another one stands for
 PARSERS = ("ground/placement_arguments", "meshes/surface_options", "deposit/deposit_options",
            "motion/fix_ground_motion", "deposit/fix_control_line")
 OUTPUTS = {"output", "write", "series", "point", "motion", "window", "deposit", "rest"}
-LIKE = {"inside": "outside", "upper": "surface", "lower": "surface", "sunk": "sink", "smallest": "file",
+LIKE = {"inside": "outside", "upper": "surface", "sunk": "sink", "rim": "sink", "smallest": "file",
         "grid": "pattern", "zone": "outside"}       # zone: test_ground_zones
 
 

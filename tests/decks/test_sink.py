@@ -6,6 +6,8 @@ import re
 
 import numpy
 import pytest
+from matplotlib.path import Path
+from scipy.interpolate import RegularGridInterpolator
 from scipy.spatial import cKDTree
 
 from deck_helpers import run_deck, write_asc
@@ -131,34 +133,72 @@ def test_nothing_is_left_out_of_a_body_on_sunk_balls(tmp_path, d):
     assert (ground(slip[:, 0]) - slip[:, 2]).min() < 0.25 * d
 
 
-def of_rim(tmp_path, rim, d=2.0):
-    """Log, slip and field balls with a rim, and how far beyond the plan of the body each slip ball is."""
-    (tmp_path / rim).mkdir()
-    log, slip, field = place(tmp_path / rim, fixes=SLIP.replace("write", f"rim {rim} write") + FIELD + DELETE, d=d)
-    # the plan of the body: where the sphere's lower half is below the ground
-    x, y = numpy.meshgrid(numpy.arange(10, 45, 0.1), numpy.arange(5, 35, 0.1))
+# --- one surface: the ground without the body ---
+
+ONE = ("region base terrain base.asc depth 12 headroom 10\nregion strip polygon strip.csv\n"
+       "fix slip soil wall/gran/balls 2 {field} surface base upper spacing {half} sink {sunk} inside both &\n"
+       "pattern scattered 7 write slip.xyz\n"
+       "fix field soil wall/gran/balls 3 {field} surface base upper spacing {apart} sink {sunk} outside both &\n"
+       "pattern scattered 7 zone strip 3 {close} write field.xyz\n")
+# as sites once were: the slip surface sunk, the field not
+STEP = ("fix slip soil wall/gran/balls 2 {d} surface both lower spacing {half} sink {d} pattern scattered 7 &\n"
+        "write slip.xyz\n"
+        "fix field soil wall/gran/balls 3 {field} surface ground upper spacing {apart} pattern scattered 7 &\n"
+        "outside both write field.xyz\n")
+PIT = numpy.array([(30.3, 42.2), (40, 40.1), (41.2, 48), (33, 49.2)])     # release.csv, 3 m deep
+
+
+def base(x, y):
+    """Height of the ground without two bodies: the sphere's, whose rim has all directions, and a pit with walls."""
     low = CENTRE[2] - numpy.sqrt(numpy.maximum(RADIUS ** 2 - (x - CENTRE[0]) ** 2 - (y - CENTRE[1]) ** 2, 0))
-    inside = (low < ground(x)) & (numpy.hypot(x - CENTRE[0], y - CENTRE[1]) < RADIUS)
-    plan = numpy.column_stack([x[inside], y[inside]])
-    return log, slip, field, cKDTree(plan).query(slip[:, :2])[0]
+    z = numpy.where(numpy.hypot(x - CENTRE[0], y - CENTRE[1]) < RADIUS, numpy.minimum(low, ground(x)), ground(x))
+    in_pit = Path(PIT).contains_points(numpy.column_stack([x.ravel(), y.ravel()])).reshape(x.shape)
+    return numpy.where(in_pit, z - 3, z)
 
 
-def test_the_rim_is_divided_or_ends(tmp_path):
-    d = 2.0
-    whole = of_rim(tmp_path, "continued")
-    within, beyond, ended = (of_rim(tmp_path, rim) for rim in ("within", "beyond", "ended"))
-    assert within[3].max() < 0.2 and whole[3].max() == beyond[3].max() > 1.15 * d
-    assert "within the rim of region slip" in within[0] and "beyond the rim of region slip" in beyond[0]
-    # the nodes of the plan grid are divided; where the surface is cut, extra balls may be added to both
-    places = [{tuple(p) for p in on_nodes(log, slip).round(9)} for log, slip, _, _ in (whole, within, beyond)]
-    assert places[0] == places[1] | places[2] and not places[1] & places[2]
-    # the field knows of the body from the balls within, and leaves out the same columns
-    assert numpy.array_equal(within[2], whole[2])
+def seam(tmp_path, d, field_d, fixes=ONE):
+    """Of the balls: the nearest that one is to the surface, over the distance of contact: of all, at the sphere's rim.
+    Of the sunk surface: how far a point is from a ball at most, over the spacing: near the rims, and everywhere."""
+    cell, contact, apart = 0.25, (d + field_d) / 2, 0.7 * field_d
+    x, y = numpy.meshgrid((numpy.arange(200) + 0.5) * cell, (numpy.arange(240) + 0.5) * cell)
+    prepare(tmp_path)
+    write_asc(tmp_path / "base.asc", base(x, y), cell=cell)
+    (tmp_path / "strip.csv").write_text("0,15\n50,22\n50,28\n0,21\n")      # meets the sphere's rim on both sides
+    values = {"d": d, "field": field_d, "sunk": contact, "apart": apart, "close": 0.8 * apart, "half": d / 2}
+    run_deck(DECK.format(fixes=fixes.format(**values), body="both", **values), tmp_path)
+    balls = numpy.concatenate([read(tmp_path / "slip.xyz"), read(tmp_path / "field.xyz")])
+    surface = RegularGridInterpolator((y[:, 0], x[0]), base(x, y))
+    u, v = numpy.meshgrid(numpy.arange(1, 49, 0.1), numpy.arange(1, 59, 0.1))
+    points = numpy.column_stack([u.ravel(), v.ravel(), surface((v, u)).ravel()])
+    top = cKDTree(points)
+    # places of centres that touch it: along its normal, where nothing else is nearer
+    gy, gx = numpy.gradient(points[:, 2].reshape(u.shape), 0.1)
+    normal = numpy.column_stack([-gx.ravel(), -gy.ravel(), numpy.ones(gx.size)])
+    sunk = points - contact * normal / numpy.linalg.norm(normal, axis=1)[:, None]
+    sunk = sunk[top.query(sunk)[0] > 0.98 * contact]
+    within = (sunk[:, :2] > (4, 4)).all(axis=1) & (sunk[:, :2] < (46, 56)).all(axis=1)
+    sunk = sunk[within]
+    gap = cKDTree(balls).query(sunk)[0] / apart
+    depth = ground(sunk[:, 0]) - base(sunk[:, 0], sunk[:, 1])
+    lies = cKDTree(points[(ground(points[:, 0]) - points[:, 2] > 0.05), :2]).query(sunk[:, :2])[0]
+    near = (lies < contact) & (depth < contact)
+    middle = balls[(balls[:, :2] > (4, 4)).all(axis=1) & (balls[:, :2] < (46, 56)).all(axis=1)]
+    assert near.sum() > 1000
+    lip = top.query(middle)[0] / contact
+    at_rim = (middle[:, 1] < 36) & (abs(ground(middle[:, 0]) - middle[:, 2] - contact) < contact)
+    return lip.min(), lip[at_rim].min(), gap[near].max(), gap.max()
 
-    log, slip, field, far = ended
-    assert "sunk by 2 and ended at the rim)" in log and removed(log) == 0
-    assert 0.5 * d < far.max() < 1.05 * d
-    assert closest(field) > 0.99 * d and len(field) > len(whole[2])
+
+@pytest.mark.parametrize("d, field_d", [(2.0, 2.0), (1.3, 1.3), (2.0, 1.4), (1.5, 2.4)])
+def test_slip_balls_and_field_balls_meet_without_a_step(tmp_path, d, field_d):
+    """Rims in all directions, walls, two bodies, a zone across the rim, other field balls: no lip, no gap."""
+    nearest, at_rim, gap_at_rims, gap = seam(tmp_path, d, field_d)
+    assert at_rim > 0.95 and nearest > 0.85     # at the foot of a corner of walls columns see half a pitch
+    assert gap_at_rims <= gap < 1.05            # 0.795 + sqrt(2)/6 on level ground
+
+
+def test_a_field_that_is_not_sunk_has_a_step(tmp_path):
+    assert seam(tmp_path, 2.0, 2.0, STEP)[1] < 0.1
 
 
 def test_on_the_surface_itself_many_are(tmp_path):

@@ -161,10 +161,8 @@ TABLE = {
         2 1.0 surface ground upper spacing 1 sunk 1 -> sunk needs outside REGION, got none
         2 1.0 surface ground upper spacing 1 inside block sunk 1 -> sunk needs outside REGION, got none
         2 1.0 surface ground upper spacing 1 outside road sunk 1 -> sunk region road must have a lower boundary, got INF
-        2 1.0 surface ground lower spacing 1 sink 0.5 rim -> rim must be followed by continued, ended, within or beyond
-        2 1.0 surface ground lower spacing 1 sink 0.5 rim up -> rim must be continued, ended, within or beyond, got up
-        2 1.0 surface ground lower spacing 1 rim ended -> rim must be that of a lower surface with a sink > 0, got
-        2 1.0 surface ground upper spacing 1 sink 0.5 rim ended -> rim must be that of a lower surface with a sink > 0
+        2 1.0 surface ground lower spacing 1 sink 0.5 rim within -> rim is no keyword any more, got within: ground and
+        2 1.0 surface ground lower spacing 1 sink 0.5 rim -> rim is no keyword any more, got rim: ground and slip
         2 1.0 surface ground upper spacing 1 smallest -> smallest must be followed by D, got 0 of 1 values
         2 1.0 surface ground upper spacing 1 smallest 0 -> smallest must be > 0, got 0
         2 1.0 surface ground upper spacing 1 smallest x -> smallest must be a finite number, got x
@@ -340,7 +338,8 @@ TABLE = {
         -> needs FILE deposit ID output PREFIX
         fence.csv deposit deposit -> keyword output is missing
         fence.csv output -> output: value is missing
-        fence.csv output out color red -> : unknown keyword color, must be deposit or output
+        fence.csv output out color red -> : unknown keyword color, must be deposit, lower or output
+        fence.csv output out lower x -> lower must be a finite number, got x
         no.csv output out -> : cannot read no.csv: No such file or directory
         word.csv output out -> : word.csv, line 2: must be 2 numbers, x y or x,y, got x
         far.csv output out -> : far.csv, line 2: x and y must be within +-1e+12, got 1e+13 0

@@ -28,9 +28,7 @@ ERRORS = 3.5                    # standard errors of a mean, as of tests/ground_
 LATTICE = {"create_balls 1 ${d} ${density} fill body seed $(floor(v_packing))\n":
            "variable off equal v_packing/7\nlattice sc ${d} origin ${off} ${off} ${off}\ncreate_atoms 1 region body\n",
            "group       soil type 1\n": "group soil type 1\nset group soil diameter ${d} density 3411.4\n",
-           "sink ${sink} rim within &\n            pattern scattered ${which}\n": "sink ${sink}\n",
-           "fix         beyond soil wall/gran/balls 3 ${d} surface body lower spacing ${half} sink ${sink} rim beyond "
-           "&\n            pattern scattered ${which}\n": ""}
+           "inside body &\n            pattern scattered ${which}\n": "inside body\n"}
 
 
 def along(turn, x, y):

@@ -290,6 +290,37 @@ TEST(SunkSurface, a_body_with_walls_is_enlarged_by_H)
   EXPECT_NEAR(z, bottom(0.0, 0.0) - H * std::sqrt(1.0 + slope * slope), 1e-9);
 }
 
+TEST(SunkSurface, a_ground_is_looked_at_where_heights_are_asked_for)
+{
+  // a ground of 3.7e11 columns; the order in which heights are asked for does not matter
+
+  int looks = 0;
+  const Height hills = [](double x, double y) {
+    return 3.0 * std::sin(x / 7.0) + 2.0 * std::cos(y / 5.0);
+  };
+  Bed wide = open_bed(hills, 5.0e4 * H);
+  const auto height = wide.height;
+  wide.height = [&](double x, double y, double near, double &z) {
+    looks++;
+    return height(x, y, near, z);
+  };
+  const SunkSurface sunk(wide, H, PITCH), again(wide, H, PITCH);
+  EXPECT_EQ(looks, 0);
+  std::vector<double> first;
+  for (int k = 0; k < 40; k++) {
+    double z;
+    ASSERT_TRUE(sunk.height(3.0 * k, 900.0 - k, z));
+    EXPECT_NEAR(distance_to(hills, 3.0 * k, 900.0 - k, z), H, 0.02 * H);
+    first.push_back(z);
+  }
+  EXPECT_LT(looks, 1e6);
+  for (int k = 39; k >= 0; k--) {
+    double z;
+    ASSERT_TRUE(again.height(3.0 * k, 900.0 - k, z));
+    EXPECT_EQ(z, first[k]);
+  }
+}
+
 TEST(SunkSurface, refuses_what_has_no_columns)
 {
   const Bed bed = open_bed(

@@ -99,8 +99,9 @@ def tables(known) -> Iterator[Section]:
                               for one in results], (), marks) for name in results[0].travel)])
     for place in results[0].at:
         yield Section(f"at_{place}", "At the road's near edge" if place == AT_ROAD else f"At the line {place}", [
-            Text("Of the blocks that come there, each with its largest value. The ground's balls stand half a diameter "
-                 "above the terrain: the lower edge of a block at rest is 0.1 to 0.5 of it above the terrain.", "soft"),
+            Text("Of the blocks that come there, each with its largest value. Heights count from the tops of the "
+                 "ground's balls, which stand for the terrain: a block at rest is up to 0.4 of the smallest one lower.",
+                 "soft"),
             *(Table(TITLES[name], heads, [[one.rolling, *cells(one.at[place][name], unit)] for one in results], (),
                     marks) for name, unit in QUANTITIES.items())])
 
