@@ -132,6 +132,9 @@ def check(site: Folder[Choices]) -> None:
     for name in (site_deck.NAME, *found.files):
         if not (folder / name).is_file():
             raise SlopeError(folder / name, f"must exist; `slope site {quote(str(folder))}` rebuilds it")
+    if " rim " in (folder / site_deck.NAME).read_text(encoding="utf-8"):
+        raise SlopeError(folder / site_deck.NAME, f"must be made anew, `slope site {quote(str(folder))}`: ground and "
+                         "slip surface are one surface now", "rim, of an older version")
     if found.choices_sha256 not in ("", site.fingerprint()):
         raise SlopeError(folder / site_choices.NAME, f"must not have been changed since {site_deck.NAME} was made from "
                          f"it: `slope site {quote(str(folder))}` rebuilds the deck (project, road, study and "
