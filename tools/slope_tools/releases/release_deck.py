@@ -50,8 +50,9 @@ group       soil type 1
 # --- contact model: pair_style gran/restitution, pair_coeff 1 1, 1 2 and 1 3 come here ---
 
 variable    half equal v_d/2
-fix         slip soil wall/gran/balls 2 ${{d}} surface slip lower spacing ${{half}} sink ${{d}}
-fix         field soil wall/gran/balls 3 ${{d}} surface ground upper spacing ${{d}} outside slip
+# one surface, the ground without the body
+fix         slip soil wall/gran/balls 2 ${{d}} surface base upper spacing ${{half}} sink ${{d}} inside slip
+fix         field soil wall/gran/balls 3 ${{d}} surface base upper spacing ${{d}} sink ${{d}} outside slip
 delete_balls soil overlap 0.0
 
 # --- output; loading and time step of the deck ---
