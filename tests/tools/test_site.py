@@ -403,6 +403,7 @@ def test_what_is_released_is_the_body(done):
     study = yaml.safe_load((folder / "mine" / "study" / "study.yaml").read_text())
     for row in study["runs"]:
         assert row["released_m3"] == pytest.approx(told, rel=2e-3)
+        assert row["lost_m3"] == 0      # no ball falls through the seam of slip balls and field balls
 
 
 def made_of(folder, names):
