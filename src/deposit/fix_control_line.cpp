@@ -425,8 +425,8 @@ void FixControlLine::archive(Slope::Archive &archive, std::vector<CrossingLog::E
        {"checksum", line.checksum()},
        {"lower", lower}},
       [](const double *k) {
-        return fmt::format("{:.0f} points, length {:.8g} (sum {:.10g}), lower {:g}", 0.5 * k[0], k[1],
-                           k[3], k[4]);
+        return fmt::format("{:.0f} points, length {:.8g} (sum {:.10g}), lower {:g}", 0.5 * k[0],
+                           k[1], k[3], k[4]);
       },
       ": another line, or another direction, needs another fix ID");
   clock.archive(archive);

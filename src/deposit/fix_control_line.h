@@ -46,7 +46,7 @@ class FixControlLine : public Fix {
   static constexpr int NRESULT = 5;
 
   std::string file, prefix, deposit_id;
-  double lower;    // the balls lie so much lower than their ground
+  double lower;              // the balls lie so much lower than their ground
   Slope::PrefixLock lock;    // on rank 0
   Slope::PlanLine line;
   Slope::RunClock clock;

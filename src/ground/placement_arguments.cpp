@@ -83,8 +83,7 @@ void PlacementArguments::parse(int narg, char **arg, bool of_wall)
     if (n == 0) n = parse_any(narg - iarg, &arg[iarg], of_wall);
     if (n == 0)
       error->all(FLERR, "{} keyword must be {}inside{}, got {}", caller,
-                 region.empty() ? ""
-                                : "spacing, origin, pattern, angle, sink, sunk, smallest, ",
+                 region.empty() ? "" : "spacing, origin, pattern, angle, sink, sunk, smallest, ",
                  of_wall ? ", outside, zone or write" : " or outside", arg[iarg]);
     iarg += n;
   }
@@ -108,8 +107,9 @@ int PlacementArguments::parse_surface(int narg, char **arg)
     outside_sink = number("H", narg, arg);
     check_sink(outside_sink, arg);
   } else if (strcmp(arg[0], "rim") == 0) {
-    error->all(FLERR, "{} rim is no keyword any more, got {}: {}", caller, narg > 1 ? arg[1] : "rim",
-               "ground and slip surface are one surface now; make the site anew, slope site FOLDER");
+    error->all(
+        FLERR, "{} rim is no keyword any more, got {}: {}", caller, narg > 1 ? arg[1] : "rim",
+        "ground and slip surface are one surface now; make the site anew, slope site FOLDER");
   } else if (strcmp(arg[0], "smallest") == 0) {
     smallest = number("D", narg, arg);
     if (smallest <= 0.0) error->all(FLERR, "{} smallest must be > 0, got {}", caller, arg[1]);

@@ -31,18 +31,19 @@ static constexpr double MAX_OF_GROUND = 1.0e14;    // few of which are looked at
 
 /* ---------------------------------------------------------------------- */
 
-SunkSurface::SunkSurface(const Bed &bed_in, double sink_in, double pitch) : sink(sink_in), bed(bed_in)
+SunkSurface::SunkSurface(const Bed &bed_in, double sink_in, double pitch) :
+    sink(sink_in), bed(bed_in)
 {
   if (!(pitch > 0.0) || !(pitch <= 0.5 * sink))
     throw std::invalid_argument("the pitch must be > 0 and at most half the sink");
   if (!(bed.xlo <= bed.xhi) || !(bed.ylo <= bed.yhi))
     throw std::invalid_argument("the plan rectangle must not be empty");
 
-  const double margin =
-      bed.body ? (bed.ground ? REACH + 1.0 : 1.0) * sink + 2.0 * pitch : 0.0;
+  const double margin = bed.body ? (bed.ground ? REACH + 1.0 : 1.0) * sink + 2.0 * pitch : 0.0;
   const double wide = std::ceil((bed.xhi - bed.xlo + 2.0 * margin) / pitch + 4.0);
   const double high = std::ceil((bed.yhi - bed.ylo + 2.0 * margin) / pitch + 4.0);
-  if (!(std::max(wide, high) < MAX_COLUMNS && wide * high < (bed.body ? MAX_COLUMNS : MAX_OF_GROUND)))
+  if (!(std::max(wide, high) < MAX_COLUMNS &&
+        wide * high < (bed.body ? MAX_COLUMNS : MAX_OF_GROUND)))
     throw std::length_error(bed.body ? "2^31 columns" : "2^31 columns along a side, 1e14 in all");
 
   // columns on all edges of the rectangle

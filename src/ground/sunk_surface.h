@@ -156,9 +156,9 @@ class SunkSurface {
   };
 
   const double sink;
-  Bed bed;                    // of a surface that is no body
-  double px, py;              // between columns
-  int nx, ny, mx, my;         // columns, and how many of them are margin on each side
+  Bed bed;               // of a surface that is no body
+  double px, py;         // between columns
+  int nx, ny, mx, my;    // columns, and how many of them are margin on each side
   // of the columns; infinite: the surface is not there; square by square as heights are asked for, unless it is a body's
   mutable SparsePlane<double> z;
   std::vector<Point> rims;    // where it ends between columns, by bins of size sink

@@ -79,8 +79,8 @@ std::string SurfaceLoads::triangles(const TouchedSurface &surface, double step) 
     const Triangle t = surface.triangle(entry.first);
     const Values v = values_of(entry.second, t, step);
     const Vector m = t.middle();
-    const double line[8] = {
-        entry.first + 1.0, m.x, m.y, m.z + surface.lower, v.area, v.last, v.largest, v.impulse};
+    const double line[8] = {entry.first + 1.0, m.x,      m.y, m.z + surface.lower, v.area, v.last,
+                            v.largest,         v.impulse};
     append(s, line, 8, ',', '\n');
   }
   return s;

@@ -32,8 +32,8 @@ static constexpr double DOUBTED = 10.0;
 /* ---------------------------------------------------------------------- */
 
 SurfaceOptions::SurfaceOptions(LAMMPS *lmp, const std::string &_caller, int narg, char **arg) :
-    Pointers(lmp), point{0.0, 0.0, 0.0}, every(0), caller(_caller), terrain(false),
-    scale(1.0), lower(0.0), move{0.0, 0.0, 0.0}
+    Pointers(lmp), point{0.0, 0.0, 0.0}, every(0), caller(_caller), terrain(false), scale(1.0),
+    lower(0.0), move{0.0, 0.0, 0.0}
 {
   if (narg < 2)
     error->all(FLERR, "{}: needs TYPE and FILE.stl or terrain FILE.asc, got {} arguments", caller,
@@ -57,9 +57,9 @@ int SurfaceOptions::read_keyword(int narg, char **arg)
 {
   const std::string keyword = arg[0];
   const int n = keyword == "scale" || keyword == "lower" ? 1
-      : keyword == "move" || keyword == "point" ? 3
-      : keyword == "output"                     ? 2
-                                                : 0;
+      : keyword == "move" || keyword == "point"          ? 3
+      : keyword == "output"                              ? 2
+                                                         : 0;
   if (n == 0)
     error->all(FLERR, "{}: unknown keyword {}, must be scale, move, lower, point or output", caller,
                keyword);
@@ -122,8 +122,8 @@ std::unique_ptr<TouchedSurface> SurfaceOptions::read_stl() const
     utils::logmesg(lmp,
                    "{}: {}, area {:.6g}, x {:.8g} to {:.8g}, y {:.8g} to {:.8g}, z {:.8g} to "
                    "{:.8g}\n",
-                   caller, counted(n, "triangle"), area, low.x, high.x, low.y, high.y, low.z + lower,
-                   high.z + lower);
+                   caller, counted(n, "triangle"), area, low.x, high.x, low.y, high.y,
+                   low.z + lower, high.z + lower);
     if (stl.skipped)
       error->warning(FLERR, "{}: {} of the {:.0f} triangles of {} have no area and are skipped",
                      caller, stl.skipped, n + stl.skipped, file);

@@ -33,7 +33,7 @@ class TouchedSurface {
   virtual double memory_usage() const = 0;    // bytes
 
   double rounding = 0.0;    // by how much its file may have rounded coordinates, m
-  double lower = 0.0;    // it lies so much lower than what it stands for
+  double lower = 0.0;       // it lies so much lower than what it stands for
 };
 
 // A contact of a ball with a surface
