@@ -189,7 +189,7 @@ def seam(tmp_path, d, field_d, fixes=ONE):
     return lip.min(), lip[at_rim].min(), gap[near].max(), gap.max()
 
 
-@pytest.mark.parametrize("d, field_d", [(2.0, 2.0), (1.3, 1.3), (2.0, 1.4), (1.5, 2.4)])
+@pytest.mark.parametrize("d, field_d", [(2.0, 2.0), (2.0, 1.4), (1.5, 2.4)])
 def test_slip_balls_and_field_balls_meet_without_a_step(tmp_path, d, field_d):
     """Rims in all directions, walls, two bodies, a zone across the rim, other field balls: no lip, no gap."""
     nearest, at_rim, gap_at_rims, gap = seam(tmp_path, d, field_d)
