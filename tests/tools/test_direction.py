@@ -1,7 +1,7 @@
 """A site has no direction: turned in plan and mirrored, its body brings the same volumes, and does not drift aside.
 
 Small sites of a few hundred balls; each packing of the body, with its ground, is a repeat. With the cubic lattice and
-the plan grid of slip balls that sites once had, the thin body drifts.
+plan grids of fixed balls, as sites once had, the thin body drifts.
 """
 import os
 import subprocess
@@ -24,11 +24,12 @@ SLOPE = np.tan(np.radians(33))
 TURNS = {"0": (0.0, 1), "22.5": (22.5, 1), "45": (45.0, 1), "mirrored": (22.5, -1)}
 SEEDS = (1, 2, 3, 4, 5, 6)
 ERRORS = 3.5                    # standard errors of a mean, as of tests/ground_direction.py
-# once: a lattice, and a plan grid below it
+# once: a lattice, and plan grids below it
 LATTICE = {"create_balls 1 ${d} ${density} fill body seed $(floor(v_packing))\n":
            "variable off equal v_packing/7\nlattice sc ${d} origin ${off} ${off} ${off}\ncreate_atoms 1 region body\n",
            "group       soil type 1\n": "group soil type 1\nset group soil diameter ${d} density 3411.4\n",
-           "inside body &\n            pattern scattered ${which}\n": "inside body\n"}
+           "inside body &\n            pattern scattered ${which}\n": "inside body\n",
+           "outside body &\n            pattern scattered ${which}\n": "outside body\n"}
 
 
 def along(turn, x, y):
