@@ -1,13 +1,19 @@
 """tools/slope quake: formats round-trip fixtures with their traps; what is written integrates back to what is said."""
+import glob
+import gzip
 import math
 import re
+import shlex
+import subprocess
+import tarfile
+import zipfile
 from pathlib import Path
 
 import numpy as np
 import pytest
 import yaml
 
-from run_helpers import examples
+from run_helpers import TOP, examples
 
 from slope_tools.errors import SlopeError
 from slope_tools.quakes import motion_file, quake_motion, quake_records
@@ -180,6 +186,7 @@ def test_at2_turned(slope):
     (lambda text: text.replace("NPTS=", "POINTS="), ["a.AT2, line 4: must be NPTS= n, DT= s SEC"]),
     (lambda text: text.replace("DT= 0.01", "DT= 0.00.01"), ["a.AT2, line 4: must be NPTS= n, DT= s SEC"]),
     (lambda text: text.replace(", 090", ", somewhere"), ["a.AT2, line 2: must end in the direction, an azimuth or UP"]),
+    (lambda text: text.replace(", 090", ", BH100"), ["a.AT2, line 2: must end in the direction", "metadata", "BH100'"]),
     (lambda text: text.replace(", 090", ", 400"), ["a.AT2, line 2: must end in the direction"]),
     (lambda text: "\n".join(text.splitlines()[:4]), ["must have four lines of head and values (cut short), got 4"]),
 ])
@@ -196,6 +203,242 @@ def test_not_at_right_angles(slope):
     at2("b.AT2", NS, "030")
     refused(slope, "a.AT2 b.AT2 -o motion.txt", "b.AT2: two horizontal components must be at right angles",
             "got 90 degrees and 30 degrees")
+
+
+# --- networks, as tool_quake.rst lists them ---
+
+
+DAT = "20260101_000000"
+HNE = f"XX.STA..HNE.D.{DAT}.C.ACC.ASC"
+
+
+def rows_of(*columns, form="{:.6f}", mark=" ", end="\n"):
+    return "".join(mark.join(form.format(value / GAL) for value in row) + end for row in zip(*columns))
+
+
+def dyna(path, values, stream, unit="cm/s^2", **change):
+    head = {"EVENT_NAME": "X", "EVENT_ID": "E-1", "MAGNITUDE_W": "", "NETWORK": "XX", "STATION_CODE": "STA",
+            "DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS": f"{DAT}.870", "SAMPLING_INTERVAL_S": "0.010000",
+            "NDATA": len(values), "STREAM": stream, "UNITS": unit, "DATA_TYPE": "ACCELERATION", "USER5": "", **change}
+    Path(path).write_text("".join(f"{key}: {value}\n" for key, value in head.items()) + rows_of(values))
+
+
+def three_dyna():
+    for stream, values in zip(("HNE", "HNN", "HNZ"), (EW, NS, UD)):
+        dyna(f"XX.STA..{stream}.D.{DAT}.C.ACC.ASC", values, stream)
+        dyna(f"XX.STA..{stream}.D.{DAT}.C.VEL.ASC", values, stream, "cm/s", DATA_TYPE="VELOCITY")
+
+
+def afad(path="20260101_0001.txt"):
+    Path(path).write_text(
+        "STRONG GROUND MOTION RECORDS OF TURKIYE\nPLACE                   : X\n"
+        "EARTHQUAKE DATE         : 2026/01/01 00:00:00 (GMT)\nSTATION ID              : 4304\n"
+        f"NUMBER OF DATA          : {len(T)}\nSAMPLING INTERVAL (sec) : 0.01\n"
+        "RAW PGA VALUES (gal)    : (N-S) 1.2 (E-W) 1.2 (U-D) 0.6\nCopyright EARTHQUAKE DEPARTMENT\n"
+        "       N-S          E-W          U-D\n" + rows_of(NS, EW, UD, form="{:12.6f}"), encoding="latin-1")
+
+
+def cwa(path="2-STA.dat", order=("U(+)", "N(+)", "E(+)")):
+    columns = {"U": UD, "N": NS, "E": EW}
+    values = [columns[one[0]] * (-1 if "-" in one else 1) for one in order]
+    Path(path).write_text(
+        "#Earthquake Information\n#Origin Time(GMT+08): 2026/01/01-00:00:00\n\n#StationCode: STA\n"
+        "#StartTime(GMT+08): 2026/01/01-00:00:09.000\n#SampleRate(Hz): 100\n"
+        "#AmplitudeUnit:  gal. DCoffset(corr)\n"
+        f"#DataSequence: Time {'; '.join(order)}\n#Data: 4F10.3 \n" + rows_of(T * GAL, *values, form="{:9.3f}"))
+
+
+def jma(path="acc123.csv", names="NS,EW,UD"):
+    head = ["SITE CODE= 123\u76ca\u57ce,37.5,137.2,16,7.6,,,", " LAT.= 37.0,,,,,,,", " SAMPLING RATE= 100Hz,,,,,,,",
+            " UNIT  = gal(cm/s/s),,,,,,,", "INITIAL TIME = 2026 01 01 00 00 00,,,,,,,", f"{names},,,,,"]
+    text = "".join(line + "\r\n" for line in head) + rows_of(NS, EW, UD, form="{:.3f}", mark=",", end=",,,,,\r\n")
+    Path(path).write_bytes(text.encode("shift_jis"))
+
+
+def geonet(path, processed=False):
+    """N28W, S62W, Up; processed: velocities and displacements follow."""
+    blocks = []
+    for bearing, azimuth in (("N28W", 332), ("S62W", 242), ("Up", None)):
+        turned = np.radians(azimuth or 0.0)
+        values = UD if azimuth is None else EW * np.sin(turned) + NS * np.cos(turned)
+        series = [values * 1000, values * 300, values * 5] if processed else [values * 1000]
+        lines = [f"{'C' if processed else 'Unc'}orrected accelerogram {DAT}_STA_20 GNS Science",
+                 "Site STA       42 37 10S  173 03 13E", f"Accelerogram {DAT}_STA_20     Processed 2026 January 09",
+                 "2026 January 01          00:00:09 UT", f"Number of points  {len(values)}    Duration 20.00 s",
+                 "Instrument corrected data at 0.010 sec intervals" if processed else
+                 "Raw readings in units of 1.00 mm/s/s  at intervals of 0.010 s", f"Component {bearing}",
+                 "Acceleration:  peak  -9733.1 mm/s/s at  44.88 sec     rms    719.0 mm/s/s"]
+        lines += ["    2026       1       1       0       0     560       0       0    2026       1"] * 10
+        for one in series:
+            lines += ["".join(f"{value:8.1f}" for value in one[k:k + 10]) for k in range(0, len(one), 10)]
+        blocks += lines
+    Path(path).write_text("\n".join(blocks) + "\n")
+
+
+def csmip(path="CE89146.V2"):
+    """Three channels with nothing between numbers, of which awk makes AT2."""
+    lines = []
+    for name, values in (("90 Deg", EW), ("360 Deg", NS), ("Up", UD)):
+        lines += ["Corrected accelerogram   89146-L2500    Chan", f"Chan  1: {name}", "    1  100    1    3",
+                  f"{len(T):6d} points of accel data equally spaced at  .010 sec, in cm/sec2. (8f10.5)"]
+        for kind in ("veloc", "displ", ""):
+            lines += ["".join(f"{value / GAL:10.5f}" for value in values[k:k + 8]) for k in range(0, len(T), 8)]
+            lines += [f"{len(T):6d} points of {kind} data equally spaced"] if kind else ["/&"]
+    Path(path).write_text("\n".join(lines) + "\n")
+
+
+def archive(path, *names):
+    """A zip or tar.gz of files, which are taken away."""
+    if path.endswith(".zip"):
+        with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as made:
+            [made.write(name) for name in names]
+    else:
+        with tarfile.open(path, "w:gz") as made:
+            [made.add(name) for name in names]
+    [Path(name).unlink() for name in names]
+
+
+def knet_archive():
+    three_knet()
+    archive("FKS0051103111446.tar.gz", "a.EW", "a.NS", "a.UD")
+
+
+def kiknet(station="FKSH10"):
+    for code, (end, values) in enumerate((("NS1", NS), ("EW1", EW), ("UD1", UD)), 1):
+        knet(f"{station}.{end}", 0.3 * values, str(code), **{"Station Code": station})
+        knet(f"{station}.{end[:2]}2", values, str(code + 3), **{"Station Code": station})
+    return [f"{station}.{end}{sensor}" for sensor in "12" for end in ("NS", "EW", "UD")]
+
+
+def peer():
+    at2("RSN1_A090.AT2", EW, "090")
+    at2("RSN1_A000.AT2", NS, "000")
+    at2("RSN1_A-UP.AT2", UD, "UP")
+    for name in ("VT2", "DT2"):
+        at2(f"RSN1_A090.{name}", EW, "090")
+        Path(f"RSN1_A090.{name}").write_text(Path(f"RSN1_A090.{name}").read_text().replace(
+            "ACCELERATION", "VELOCITY" if name == "VT2" else "DISPLACEMENT").replace("OF G", "OF CM"))
+    Path("_SearchResults.csv").write_text("Record Sequence Number,EQID\n1,2\n")
+    archive("PEERNGARecords_Unscaled.zip", *glob.glob("RSN1*"), "_SearchResults.csv")
+
+
+MAKERS = {"NIED K-NET": knet_archive, "NIED KiK-net": lambda: archive("FKSH101103111446.tar.gz", *kiknet()),
+          "PEER": peer, "ESM, ITACA, AFAD": three_dyna, "AFAD, before": afad, "CWA": cwa, "JMA": jma,
+          "GeoNet": lambda: geonet(f"{DAT}_STA_20.V2A", True), "CSMIP": csmip}
+
+
+def listed():
+    """Rows of the page's table: network, and what is typed."""
+    text = (TOP / "doc" / "src" / "tool_quake.rst").read_text(encoding="utf-8")
+    part = text.partition(".. list-table::")[2].partition("\nFewer values")[0]
+    rows = re.findall(r"^   \* - (.*?)\n     - .*?\n     - (.*?)(?=\n   \* - |\Z)", part, re.M | re.S)
+    return {" ".join(network.split()): re.findall("``(.*?)``", typed, re.S) for network, typed in rows[1:]}
+
+
+@pytest.mark.parametrize("network", MAKERS)
+def test_what_is_typed_for_a_network(slope, network):
+    """The page's row, on a file of that form as it is downloaded."""
+    assert list(listed()) == list(MAKERS)
+    MAKERS[network]()
+    for command in listed()[network]:
+        if command.startswith("tools/slope quake "):
+            words = [found for word in shlex.split(command)[2:] for found in glob.glob(word) or [word]]
+            status, out, err = slope(shlex.join([*words, "--baseline", "none"]))
+            assert status == 0 and err == "", err
+        else:
+            subprocess.run(" ".join(command.split("\n")), shell=True, check=True)
+    motion = read_motion()
+    assert motion[:, 0] == pytest.approx(T, abs=1e-9)
+    less = motion[:, 1:].mean(axis=0) if "NIED" in network else 0.0       # its counts have an offset
+    assert motion[:, 1:] - less == pytest.approx(np.column_stack([EW, NS, UD]), abs=2e-4)
+
+
+def test_uncorrected_records_of_geonet(slope):
+    geonet("a.V1A")
+    assert slope("a.V1A --azimuth 242 --baseline none -o motion.txt")[0] == 0
+    turned = np.radians(242)
+    assert read_motion()[:, 1] == pytest.approx(EW * np.sin(turned) + NS * np.cos(turned), abs=1e-4)
+
+
+def test_the_columns_are_those_that_the_head_names(slope):
+    cwa(order=("E(+)", "N(-)", "U(+)"))
+    assert slope("2-STA.dat --baseline none -o motion.txt")[0] == 0
+    assert read_motion()[:, 1:] == pytest.approx(np.column_stack([EW, NS, UD]), abs=1e-5)
+
+
+@pytest.mark.parametrize("make, name, old, new, said", [
+    (three_dyna, HNE, "cm/s^2", "cm/s", "must be of an acceleration, got cm/s"),
+    (three_dyna, HNE, "TYPE: ACC", "TYPE: PSEUDO ACC", "must be of an acceleration, got cm"),
+    (three_dyna, HNE, "HNE", "HN1", "the head must name the directions"),
+    (three_dyna, HNE, "NDATA: 2000", "NDATA: 2001", "must hold the 2001 values"),
+    (three_dyna, HNE, "SAMPLING_I", "I", "must have a line with SAMPLING_INTERVAL_S: 0.005"),
+    (three_dyna, HNE, "0.010000", "10", "the time step must be > 0 and <= 1 s"),
+    (afad, "20260101_0001.txt", "    -0.000", "", "20260101_0001.txt, line 210: must hold 3 numbers"),
+    (cwa, "2-STA.dat", "(Hz): 100", "(Hz): 200", "times must be evenly spaced, by the 0.005 s of the head"),
+    (jma, "acc123.csv", "NS,EW,UD", "X,Y,Z", "the head must name the directions"),
+    (jma, "acc123.csv", "gal(cm/s/s)", "count", "must be of an acceleration, got count"),
+    (lambda: geonet("a.V1A"), "a.V1A", "Component S62W", "Component X", "a.V1A, line 219: the head must name"),
+    (lambda: geonet("a.V2A", True), "a.V2A", "  2000 ", "  2005 ", "must hold the 6015 values"),
+])
+def test_a_record_of_a_network_that_is_wrong(slope, make, name, old, new, said):
+    make()
+    text = Path(name).read_bytes()
+    assert old.encode() in text
+    Path(name).write_bytes(text.replace(old.encode(), new.encode(), 1))
+    refused(slope, f"{name} -o motion.txt", name, said)
+
+
+@pytest.mark.parametrize("content, said", [
+    (b"1.  NOMBRE DEL ARCHIVO DEL REGISTRO : ACAC1709.191\n", "got '1. NOMBRE"),
+    (b"Corrected accelerogram   89146-L2500    Chan  1: 360 Deg\n", "got 'Corrected"),
+    (b"000001D \x00\xff\x80" + bytes(600), "got a file that is no text")], ids=("UNAM", "CSMIP", "miniSEED"))
+def test_a_record_that_is_not_read(slope, content, said):
+    """It says what is read, and what can be done."""
+    Path("a.v2").write_bytes(content)
+    refused(slope, "a.v2 -o motion.txt", "a.v2: must be", "K-NET", "PEER AT2", "GeoNet", "CSV", "tool_quake", said)
+
+
+def test_archives_of_several_records(slope):
+    """One of them must be named; the line has names that can be typed."""
+    archive("a.tar.gz", *kiknet(), *kiknet("FKSH11"))
+    refused(slope, "a.tar.gz -o m.txt", "a.tar.gz/FKSH10.NS1", "got 12 components of 4 records", "FKSH11", "borehole")
+    names = "a.tar.gz/FKSH10.NS1 a.tar.gz/FKSH10.EW1 a.tar.gz/FKSH10.UD1"
+    assert slope(f"{names} --baseline none -o one.txt")[0] == 0
+    assert slope("'a.tar.gz/FKSH10*2' --baseline none -o motion.txt")[0] == 0
+    size = [np.abs(read_motion(one)[:, 1:] - read_motion(one)[:, 1:].mean(axis=0)).max() for one in
+            ("one.txt", "motion.txt")]
+    assert size[0] == pytest.approx(0.3 * size[1], rel=1e-3)
+    refused(slope, "'a.tar.gz/*.AT2' -o m.txt", "a.tar.gz/*.AT2: must be files of the archive, got FKSH10.NS1")
+
+
+def test_archives_in_archives(slope):
+    three_knet()
+    Path("a.EW.gz").write_bytes(gzip.compress(Path("a.EW").read_bytes()))
+    assert slope("a.EW.gz -o one.txt")[0] == 0
+    archive("a.tar.gz", "a.EW", "a.NS", "a.UD")
+    archive("a.zip", "a.tar.gz")
+    assert slope("a.zip -o motion.txt")[0] == 0 and len(read_motion()) == len(T)
+
+
+@pytest.mark.parametrize("name, content", [
+    ("a.tar.gz", lambda data: data[:-400]), ("a.zip", lambda data: data[:400]), ("a.zip", lambda data: data[:-30]),
+    ("a.zip", lambda data: data[:200] + b"x" + data[201:])])
+def test_damaged_archives(slope, name, content):
+    three_knet()
+    archive(name, "a.EW", "a.NS", "a.UD")
+    Path(name).write_bytes(content(Path(name).read_bytes()))
+    refused(slope, f"{name} -o motion.txt", f"{name}: must be a whole archive")
+
+
+def test_archives_without_a_record(slope):
+    with zipfile.ZipFile("a.zip", "w") as made:
+        made.writestr("read.me", "text\n")
+        made.writestr("b.csv", "time,EW (gal)\n" + "\n".join(LINES) + "\n")
+    refused(slope, "a.zip -o m.txt", "a.zip: an archive must hold the components of one record", "got 0 components")
+    assert slope("a.zip/b.csv -o motion.txt")[0] == 0
+    with zipfile.ZipFile("b.zip", "w") as made:
+        made.writestr("empty/", "")
+    refused(slope, "b.zip -o m.txt", "b.zip: an archive must hold files, got none")
 
 
 # --- CSV ---

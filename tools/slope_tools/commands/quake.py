@@ -12,9 +12,8 @@ from ..quakes.quake import Processing, processed, write
 
 DESCRIPTION = "Strong-motion records to the acceleration of the ground that fix ground/motion reads."
 EPILOG = """\
-RECORD: one file for each component, or one with all of them
-  K-NET, KiK-net ASCII (.EW .NS .UD, .EW2 .NS2 .UD2, ...): direction, factor to gal and length are in the header
-  PEER AT2: direction (azimuth or UP), unit and length are in the header
+RECORD: one file for each component, or one with all of them; ARCHIVE (.zip, .tar.gz) or ARCHIVE/PATTERN
+  K-NET, KiK-net, PEER AT2, ESM, ITACA, AFAD, CWA, JMA, GeoNet: direction, unit and length are in the head
   CSV: a first line such as "time,EW (gal),NS (gal),UD (gal)"; units gal, g, m/s2; times (s) evenly spaced
 OUT.txt has lines "t ax ay az" (s, m/s2) along the deck's axes: x towards --azimuth, y 90 degrees to the left, z up.
 
@@ -49,8 +48,8 @@ def run(args: Request) -> None:
     check(args)
     components = [component for path in args.records for component in records.read(path, args.unit)]
     if args.unit and all(component.unit_in_head for component in components):
-        raise SlopeError("--unit", "must be given for a CSV that names no unit: K-NET, KiK-net and PEER files have "
-                         "theirs in their heads", args.unit)
+        raise SlopeError("--unit", "must be given for a CSV that names no unit: files of networks have theirs in "
+                         "their heads", args.unit)
     wanted = Processing(args.azimuth, args.baseline, args.window, args.band, args.peak, args.scale)
     motion, steps = processed(components, wanted)
     about = {"records": [c.source for c in components], "processing": steps, **motions.measures(motion)}

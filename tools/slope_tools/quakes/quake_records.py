@@ -1,68 +1,89 @@
-"""Strong-motion records: K-NET and KiK-net ASCII, PEER AT2, CSV, each as components in m/s2."""
+"""Strong-motion records: K-NET and KiK-net ASCII, PEER AT2, CSV, formats of networks, each as components in m/s2."""
 import math
 import re
-from dataclasses import dataclass
 from decimal import Decimal
 from pathlib import Path
-from typing import Any, Optional
+from typing import List, Optional, Sequence
 
 import numpy as np
 
 from .. import heads
 from ..errors import SlopeError
+from . import archives, networks
+from .components import (G, GAL, SLOWEST, UNITS, UP, Component, NoAcceleration, check_count, direction_of, numbers_of,
+                         unit_of, values_of)
 
-GAL, G = 0.01, 9.80665      # m/s2
-UNITS = {"gal": GAL, "cm/s2": GAL, "cm/s/s": GAL, "g": G, "m/s2": 1.0, "m/s/s": 1.0}
-UP = "up"
+__all__ = ["Component", "G", "GAL", "MOST", "UNITS", "UP", "read", "unit_of"]
 MOST = 50.0                 # m/s2; no ground has moved with more
-SLOWEST = 1.0               # s, time step; records have 0.02 s or less
 EVEN = 1e-3                 # of a time step, that steps of a CSV may differ, beside the rounding of its times
-NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?")
 KIK_NET = {"1": 0.0, "2": 90.0, "3": UP, "4": 0.0, "5": 90.0, "6": UP}    # 1 to 3: in the borehole
 KNET = {"N-S": 0.0, "E-W": 90.0, "U-D": UP, **KIK_NET}
 SENSORS = {**dict.fromkeys("123", "in the borehole"), **dict.fromkeys("456", "at the surface")}
 COLUMNS = {"ew": 90.0, "e-w": 90.0, "e": 90.0, "east": 90.0, "ns": 0.0, "n-s": 0.0, "n": 0.0, "north": 0.0,
            "ud": UP, "u-d": UP, "u": UP, "up": UP, "vertical": UP}
+FORMATS = ", ".join(["K-NET", "KiK-net", "PEER AT2", *(form.networks for form in networks.FORMS)])
+NAMED = "first line must name the columns, such as time,EW (gal),NS (gal)"
 
 
-@dataclass
-class Component:
-    """One direction of a record: where it is from, azimuth in degrees or UP, time step (s), values (m/s2)."""
+def read(path, unit: Optional[str] = None) -> List[Component]:
+    """The components of a file, or of the one record in an archive; unit: of a CSV that names none.
 
-    source: str
-    direction: object
-    dt: float
-    values: np.ndarray
-    begin: str = ""        # date and time as the file has them
-    unit_in_head: bool = False      # as its format has it: --unit is not for it
-    first_time: Optional[float] = None      # s, of a CSV
-    sensor: str = ""       # of KiK-net, which has two
-    of: str = ""           # earthquake and station, as the file has them
+    ARCHIVE/PATTERN takes these of its files.  Raises SlopeError with file, line, rule, value.
+    """
+    files = archives.files(path)
+    if len(files) == 1:
+        (name, data), = files
+        return read_text(name, text_of(data), unit)
+    found: List[Component] = []
+    for name, data in files:
+        text = text_of(data)
+        if text.strip() and (not Path(path).is_file() or is_record(name, text.splitlines())):
+            try:
+                found += read_text(name, text, unit)
+            except NoAcceleration:
+                pass
+    records = {(one.of, one.sensor): one for one in reversed(found)}
+    if len(records) != 1 or len(found) > 3:
+        raise SlopeError(path, "an archive must hold the components of one record, or these must be named, such as "
+                         f"{' '.join(beside(found)) or 'ARCHIVE/FILE'}; {FORMATS} are read", about(found))
+    return found
 
-    @property
-    def name(self):
-        return UP if self.direction == UP else f"{self.direction:g} degrees"
+
+def beside(found: Sequence[Component]) -> List[str]:
+    """The files of the first record of an archive."""
+    return [one.source for one in found if (one.of, one.sensor) == (found[0].of, found[0].sensor)][:3]
 
 
-def unit_of(text):
-    """m/s2 of a unit as it is written, such as cm/sec**2; None of another."""
-    plain = re.sub(r"\*\*|\^", "", text.lower().replace("\u00b2", "2").replace("sec", "s"))
-    return UNITS.get(plain.rstrip(".,"))
+def about(found: Sequence[Component]) -> str:
+    records = dict.fromkeys(", ".join(filter(None, (one.of, one.sensor))) for one in found)
+    return f"{len(found)} components" + (f" of {len(records)} records: {'; '.join(records)}" if found else "")
 
 
-def read(path, unit=None):
-    """The components of one file; unit: of a CSV that names none. Raises SlopeError with file, line, rule, value."""
-    try:
-        text = Path(path).read_bytes().decode("utf-8-sig", "replace")
-    except OSError as error:
-        raise SlopeError(path, f"cannot be read: {error.strerror}") from None
+def text_of(data: bytes) -> str:
+    return data.decode("utf-8-sig", "replace")
+
+
+def is_record(name: str, lines: Sequence[str]) -> bool:
+    """Whether a file is of a format that is known by its first line: not a CSV, of which archives have others."""
+    return lines[0].startswith("Origin Time") or is_at2(name, lines) or networks.form_of(lines) is not None
+
+
+def is_at2(name, lines: Sequence[str]) -> bool:
+    return "PEER" in lines[0].upper() or Path(name).suffix.lower() == ".at2"
+
+
+def read_text(path, text: str, unit: Optional[str]) -> List[Component]:
+    """The components of the text of a file."""
     lines = text.splitlines()
     if not text.strip():
         raise SlopeError(path, "must hold a record, it is empty")
+    form = networks.form_of(lines)
     if lines[0].startswith("Origin Time"):
         found = [knet(path, lines)]
-    elif "PEER" in lines[0].upper() or Path(path).suffix.lower() == ".at2":
+    elif is_at2(path, lines):
         found = [at2(path, lines)]
+    elif form:
+        found = networks.read(path, lines, form)
     else:
         found = table(path, lines, unit)
     for component in found:
@@ -71,20 +92,6 @@ def read(path, unit=None):
             raise SlopeError(path, f"the largest acceleration must be at most {MOST:g} m/s2: the unit (--unit) or "
                              "scale factor is wrong", f"{most:.6g} m/s2 ({component.name})")
     return found
-
-
-def values_of(path, lines, first, count):
-    """All numbers from line `first` (from 0) on, of which there must be `count`; any number of them in a line."""
-    values = []
-    for number, line in enumerate(lines[first:], first + 1):
-        words = NUMBER.findall(line)
-        if NUMBER.sub("", line).strip():
-            raise SlopeError(f"{path}, line {number}", "must hold numbers only", repr(line.strip()[:60]))
-        values += [float(word.translate(str.maketrans("dD", "ee"))) for word in words]
-    if len(values) != count:
-        short = "it is cut short" if len(values) < count else "it has too many"
-        raise SlopeError(path, f"must hold the {count} values that its head promises, {short}", len(values))
-    return np.array(values)
 
 
 # --- K-NET, KiK-net ---
@@ -111,7 +118,8 @@ def knet(path, lines):
     if not (rate > 0 and seconds > 0 and float(factor[2]) > 0):
         raise SlopeError(path, "sampling frequency, duration and scale factor must be > 0",
                          f"{rate:g}, {seconds:g}, {factor[0]}")
-    counts = values_of(path, lines, 17, round(rate * seconds))
+    counts = values_of(path, lines, 17)
+    check_count(path, counts, round(rate * seconds))
     values = counts * (float(factor[1]) / float(factor[2]) * GAL)
     largest = re.fullmatch(r"(\d+(?:\.\d+)?)", head.get("max. acc. (gal)", ""))
     most = np.abs(values - values.mean()).max() / GAL
@@ -119,8 +127,8 @@ def knet(path, lines):
         raise SlopeError(path, f"the largest acceleration must be the head's Max. Acc., {largest[1]} gal",
                          f"{most:.5g} gal")
     return Component(str(path), KNET[code], 1 / rate, values, head.get("record time", ""), True,
-                     sensor=SENSORS.get(code, ""), of=" at ".join(
-                         head[key] for key in ("origin time", "station code") if key in head))
+                     sensor=SENSORS.get(code, ""),
+                     of=" at ".join(head[key] for key in ("origin time", "station code") if head.get(key)))
 
 
 # --- PEER ---
@@ -129,12 +137,12 @@ def at2(path, lines):
     """A component of PEER's AT2: four lines of head, direction at the end of the second, unit in the third."""
     if len(lines) < 5:
         raise SlopeError(path, "must have four lines of head and values (cut short)", f"{len(lines)} lines")
+    if re.search("VELOCITY|DISPLACEMENT", lines[2].upper()):
+        raise NoAcceleration(f"{path}, line 3", "must be of an acceleration", repr(lines[2].strip()))
     unit = re.search(r"UNITS? +OF +(\S+)", lines[2].upper())
     factor = unit_of(unit[1]) if unit else None
     if factor is None:
         raise SlopeError(f"{path}, line 3", "must end in UNITS OF G (or GAL, CM/S2, M/S2)", repr(lines[2].strip()))
-    if re.search("VELOCITY|DISPLACEMENT", lines[2].upper()):
-        raise SlopeError(f"{path}, line 3", "must be of an acceleration", repr(lines[2].strip()))
     size = (re.search(r"NPTS *= *(\d+)(?: *, *| +)DT *= *([\d.eE+-]+)", lines[3].upper()) or
             re.match(r" *(\d+) +([\d.eE+-]+) +NPTS", lines[3].upper()))
     after = re.findall("[A-Z]+", lines[3].upper()[size.end():]) if size else []
@@ -142,19 +150,15 @@ def at2(path, lines):
     in_seconds = {*unit_of_time} <= {"S", "SEC", "SECS", "SECONDS"}
     if not size or not in_seconds or not 0 < heads.number(size[2]) <= SLOWEST:
         raise SlopeError(f"{path}, line 4", "must be NPTS= n, DT= s SEC", repr(lines[3].strip()))
-    word = re.split(r"[,\s]+", lines[1].strip().upper())[-1]
-    if word in ("UP", "DWN", "DOWN", "VER", "VERT", "V", "UD"):
-        direction: Any = UP
-        sign = -1.0 if word in ("DWN", "DOWN") else 1.0
-    elif re.fullmatch(r"\d{1,3}", word) and int(word) <= 360:
-        direction, sign = float(int(word) % 360), 1.0
-    elif word in ("N", "NS", "N-S", "E", "EW", "E-W"):
-        direction, sign = (0.0 if word[0] == "N" else 90.0), 1.0
-    else:
-        raise SlopeError(f"{path}, line 2", "must end in the direction, an azimuth or UP", repr(lines[1].strip()))
-    values = values_of(path, lines, 4, int(size[1])) * (sign * factor)
-    of = " ".join(lines[1].upper().split()).removesuffix(word).rstrip(", ")
-    return Component(str(path), direction, heads.number(size[2]), values, unit_in_head=True, of=of)
+    place, word = re.fullmatch(r"(.*?)[,\s]*([^,\s]*)", lines[1].strip()).groups()    # type: ignore
+    direction = direction_of(word)
+    if direction is None:
+        raise SlopeError(f"{path}, line 2", "must end in the direction, an azimuth or UP (where it is the code of a "
+                         "sensor, write the azimuth from the station's metadata in its place)", repr(lines[1].strip()))
+    values = values_of(path, lines, 4)
+    check_count(path, values, int(size[1]))
+    return Component(str(path), direction[0], heads.number(size[2]), values * (direction[1] * factor),
+                     unit_in_head=True, of=" ".join(place.upper().split()))
 
 
 # --- CSV ---
@@ -168,10 +172,11 @@ def table(path, lines, unit):
     mark = next((mark for mark in ";,\t" if mark in head), None)
     names = [name.strip().lower() for name in (head.split(mark) if mark else head.split())]
     columns = dict(enumerate(map(heads.column, names)))
+    if columns[0][0] not in ("t", "time") and not numbers_of(" ".join(names)):
+        raise SlopeError(path, f"must be a record that is read ({FORMATS}), or a CSV whose {NAMED} (page tool_quake)",
+                         shown(head))
     if columns[0][0] not in ("t", "time") or len(columns) < 2:
-        raise SlopeError(f"{path}, line {place}",
-                         "the first line must name the columns, such as time,EW (gal),NS (gal)",
-                         repr(head.strip()[:60]))
+        raise SlopeError(f"{path}, line {place}", f"the {NAMED}", shown(head))
     for k in list(columns)[1:]:
         name, own = columns[k]
         if name not in COLUMNS:
@@ -192,6 +197,11 @@ def table(path, lines, unit):
                          "head must say time (ms)", f"{dt:g} s")
     return [Component(str(path), COLUMNS[columns[k][0]], dt, values[:, k] * unit_of(columns[k][1] or unit),
                       first_time=factor * float(values[0, 0])) for k in list(columns)[1:]]
+
+
+def shown(head: str) -> str:
+    """The first line of a file, as far as it is text."""
+    return repr(head.strip()[:60]) if head.isprintable() and "\ufffd" not in head[:60] else "a file that is no text"
 
 
 def time_step(path, rows, times, mark):

@@ -1,0 +1,71 @@
+"""Files in the archives in which records are downloaded (.zip, .tar, .tar.gz, .gz), and in these; nothing is unpacked
+to the disk."""
+import fnmatch
+import gzip
+import io
+import lzma
+import tarfile
+import zipfile
+import zlib
+from pathlib import Path, PurePosixPath
+from typing import Iterator, List, Tuple
+
+from ..errors import SlopeError
+from ..survey.zips import is_of_macos
+
+LARGEST = 300_000_000       # bytes of a file; a record of ten minutes has some 3 million
+DEEPEST = 3                 # archives in archives
+FAULTS = (zipfile.BadZipFile, tarfile.TarError, lzma.LZMAError, zlib.error, OSError, EOFError, RuntimeError,
+          NotImplementedError, ValueError)
+
+
+def files(path) -> List[Tuple[str, bytes]]:
+    """Name and content of a file, or of those of an archive; ARCHIVE/PATTERN: of those that it names."""
+    archive = next((one for one in (Path(path), *Path(path).parents) if one.is_file()), Path(path))
+    pattern = str(path)[len(str(archive)):].lstrip("/")
+    try:
+        data = archive.read_bytes()
+    except OSError as error:
+        raise SlopeError(path, f"cannot be read: {error.strerror}") from None
+    found = list(unpacked(str(archive), data))
+    names = [name[len(str(archive)) + 1:] for name, _ in found]
+    if pattern:
+        found = [one for one, name in zip(found, names) if any(fnmatch.fnmatch(part, pattern) for part in
+                                                               (name, PurePosixPath(name).name))]
+    if not found:
+        raise SlopeError(path, "must be files of the archive" if pattern else "an archive must hold files",
+                         ", ".join(names) or "none")
+    return found
+
+
+def unpacked(name: str, data: bytes, depth: int = 0) -> Iterator[Tuple[str, bytes]]:
+    """A file, or those of an archive; SlopeError if it is damaged, or too large."""
+    if depth > DEEPEST:
+        raise SlopeError(name, f"archives must be in at most {DEEPEST} others")
+    opened = io.BytesIO(data)
+    try:
+        if data[:4] == b"PK\3\4":
+            with zipfile.ZipFile(opened) as archive:
+                for one in archive.infolist():
+                    if not one.is_dir() and not is_of_macos(one.filename):
+                        with archive.open(one) as member:
+                            yield from unpacked(f"{name}/{one.filename}", read(name, member), depth + 1)
+        elif data[:2] == b"\x1f\x8b":
+            with gzip.open(opened) as member:
+                yield from unpacked(name, read(name, member), depth + 1)
+        elif data[257:262] == b"ustar":
+            with tarfile.open(fileobj=opened) as tar:
+                for entry in tar:
+                    if entry.isfile() and not is_of_macos(entry.name):
+                        yield from unpacked(f"{name}/{entry.name}", read(name, tar.extractfile(entry)), depth + 1)
+        else:
+            yield name, data
+    except FAULTS as error:
+        raise SlopeError(name, f"must be a whole archive without a password ({error})") from error
+
+
+def read(name: str, member) -> bytes:
+    data = member.read(LARGEST + 1)
+    if len(data) > LARGEST:
+        raise SlopeError(name, f"must hold files of at most {LARGEST / 1e6:g} MB")
+    return data
