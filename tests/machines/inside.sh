@@ -48,7 +48,7 @@ installed_commands() {
   step demo "$slope" study in.embankment --set d=2.5 --set rolling=0,0.05,0.10 --road road.csv --local -o out &&
     step report "$slope" report out --reference reference.yaml --pictures &&
     step ranks env OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
-      mpirun -np 2 "$lmp" -in in.embankment -var d 4 -var duration 1 -var rolling 0.05 &&
+      mpirun -np 2 --bind-to none "$lmp" -in in.embankment -var d 4 -var duration 1 -var rolling 0.05 &&
     step film "$dump2vtk" embankment.*.dump --deposit embankment -o film && [[ -s out/report.html && -s film.pvd ]]
 }
 

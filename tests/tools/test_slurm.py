@@ -17,11 +17,12 @@ import tiny_collapse
 
 from messages import is_one
 
-from slope_tools import cli
+from slope_tools import cli, processes
 from slope_tools.errors import SlopeError
 from slope_tools.runs import job_display, jobs, launcher, slurm as engine
 
-TOOLS = Path(os.environ.get("SLOPE_TOOLS", tiny_collapse.TOP / "tools"))
+TOP = tiny_collapse.TOP
+TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 PROGRAM = [sys.executable, str(TOOLS / "slope")]
 PATH = f"{os.environ['PATH']}:/usr/sbin:/sbin"
 CONF = """\
@@ -389,6 +390,27 @@ def test_cancelling_does_not_hide_the_first_error(queue, monkeypatch):
 ])
 def test_words_of_a_launcher(start, ranks, expected):
     assert launcher.words(start, ranks, 2) == expected
+
+
+def test_more_ranks_than_tasks_of_slurm(tmp_path, monkeypatch):
+    """In `sbatch -n 1 -c 2`, of whose variables Open MPI makes one slot."""
+    host = socket.gethostname()
+    for name, value in (("JOB_ID", "1"), ("JOBID", "1"), ("NODELIST", host), ("JOB_NODELIST", host), ("NNODES", "1"),
+                        ("NTASKS", "1"), ("TASKS_PER_NODE", "1"), ("CPUS_PER_TASK", "2")):
+        monkeypatch.setenv(f"SLURM_{name}", value)
+    monkeypatch.delenv("OMPI_MCA_rmaps_base_oversubscribe", raising=False)
+    with open(tmp_path / "screen", "w", encoding="ascii") as screen:
+        started = processes.start([*launcher.words(None, 2, jobs.slots()), "true"], tmp_path, screen)
+    assert started.wait(60) == 0, (tmp_path / "screen").read_text()
+    monkeypatch.setenv("SLURM_TASKS_PER_NODE", "16(x2),3")
+    assert jobs.slots() == 16
+
+
+def test_pages_bind_no_run_to_cores():
+    """Open MPI binds the ranks of each run to the same cores."""
+    pages = (TOP / "README.md", *(TOP / "doc" / "src").glob("*.rst"), *(TOP / "inputs").glob("*/README.md"))
+    lines = [line for path in pages for line in path.read_text(encoding="utf-8").splitlines() if "mpirun -np" in line]
+    assert len(lines) > 3 and [line for line in lines if "--bind-to none" not in line] == []
 
 
 def test_a_run_is_started_by_the_launcher(here):

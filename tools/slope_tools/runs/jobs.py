@@ -28,8 +28,11 @@ def cores():
     return len(os.sched_getaffinity(0))
 
 
-def physical_cores():
-    """What mpirun takes as its number of slots."""
+def slots():
+    """What mpirun takes as its number of slots: in a job of Slurm its tasks on this node, else physical cores."""
+    tasks = re.match(r"\d+", os.environ.get("SLURM_TASKS_PER_NODE", ""))
+    if tasks:
+        return int(tasks[0])
     siblings = {path.read_text(encoding="ascii") for path in
                 Path("/sys/devices/system/cpu").glob("cpu[0-9]*/topology/thread_siblings_list")}
     return min(len(siblings) or 1, cores())
@@ -234,7 +237,7 @@ class Work:
 
     def _line(self, run):
         """The whole command of a run."""
-        return [*launcher.words(self.start, self.ranks, physical_cores()), str(self.lmp), *self.command(run)]
+        return [*launcher.words(self.start, self.ranks, slots()), str(self.lmp), *self.command(run)]
 
     def _last_restart(self, run):
         """Step and path of the restart file from which an unfinished run can continue, or None; and why it cannot."""
