@@ -90,6 +90,21 @@ def test_a_ball_goes_as_deep_as_with_hertz(tmp_path):
     assert r - lowest == pytest.approx(hertz, rel=1e-4)
 
 
+def test_words_of_a_mesh_in_another_order():
+    """LIGGGHTS 3.8.0 puts the corner at -5 of `move 0.3 0 0 scale 2` at -9.4; here move comes last."""
+    words = re.search(r"\*move\* (\S+) 0 0 \*scale\* (\S+) of LIGGGHTS is \*scale\* (\S+) \*move\*\s+(\S+) 0 0 here",
+                      PAGE)
+    move, scale, same, moved = map(float, words.groups())
+    assert scale == same and (-5 + move) * scale == pytest.approx(-5 * same + moved)
+
+
+def test_what_yade_makes_of_its_materials():
+    """Each material of YADE that has a contact in SLOPE is named, and epsd2 on meshes (test_mesh_impact.py)."""
+    rows = dict(re.findall(r"^   \* - (.*?)\n     - (.*?)(?=\n   \* - |\n\n)", PAGE, re.M | re.S))
+    assert "FrictMat, CohFrictMat: young, poisson" in rows and "0" in rows["CohFrictMat: etaRoll, alphaKr"]
+    assert "meshes" in rows["epsd2: coefficientRollingFriction"] and "after" in rows["fix freeze"]
+
+
 # --- large boxes ---
 
 LARGE = """
