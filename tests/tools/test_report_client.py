@@ -140,7 +140,7 @@ def test_what_stands_first(slope, here, case):
     kind = HEADLINES[case]["kind"]
     assert f'<div class="main{" " + kind if kind != "number" else ""}">' in page
     if case in ("floor", "not reached"):
-        assert "<code>tools/slope study in.tiny ... --anew</code>" in page
+        assert "the same command with --anew" in page and "tools/slope study in.tiny" not in page
     if case == "withheld":
         remedy, = (one["remedy"] for one in yaml.safe_load(path.read_text())["conservative"]["withheld"])
         assert f"<code>{html.escape(remedy)}</code>" in page

@@ -7,20 +7,25 @@ from pathlib import Path
 
 import pytest
 
+import made_study
 from made_rows import changed, row
 
-from slope_tools import cli
-from slope_tools.statistics import withheld
+from slope_tools import cli, options
+from slope_tools.commands.study import Request
+from slope_tools.case.settings import check_settings, one_value_each
+from slope_tools.ensembles import sample
+from slope_tools.statistics import distributions, withheld
+from slope_tools.statistics.answer import Code
 from slope_tools.statistics.withheld import Facts, Kind
-from slope_tools.tables import combinations, usable, withheld_words
+from slope_tools.tables import combinations, next_step, usable, withheld_words
 from slope_tools.tables.usable import Events
 from slope_tools.tables.withheld_words import Case
 
 GOOD = Facts(volume=5000.0, on_road=3000.0, ball=10.0, runs=20, failed=0, moving=0, left=0.0, length=900.0,
              median=800.0)
-SITE = Case(Path("site/in.site"), Path("my site"), {"friction": "30", "rolling": "0.1", "d": "2"}, 1000,
-            command="tools/slope study 'my site'")
-PAPER, SAMPLED = SITE._replace(command=f"{SITE.command} --paper"), SITE._replace(sampled=True, command="")
+STUDY = Request(deck=Path("my site"))
+SITE = Case(Path("site/in.site"), Path("my site"), {"friction": "30", "rolling": "0.1", "d": "2"}, 1000, given=STUDY)
+PAPER, SAMPLED = SITE._replace(given=replace(STUDY, paper=True)), SITE._replace(sampled=True, given=None)
 DECK = Case(Path("in.slope"), None, {"d": "2", "duration": "60"}, 1000)
 
 
@@ -49,23 +54,23 @@ ANEW = "tools/slope site 'my site'{} && tools/slope study 'my site' --anew"
     ({"on_road": 50.0}, DECK, "5 balls", "the same command with --set d=1.54"),
     ({"length": 700.0}, SITE, "no run reaches 800 m, as half of known events of this volume and height do; the longest "
      "one ends at 700 m", "tools/slope study 'my site' --sample 64 --known rock_avalanches"),
-    ({"length": 700.0}, DECK, "no run reaches", "tools/slope calibrate in.slope, with a past event"),
+    ({"length": 700.0}, DECK, "no run reaches", "a calibration with a past event: tools/slope calibrate --help"),
     ({"length": None}, DECK, "no run reaches 800 m, as half of known events of this volume and height do; there is no "
-     "deposit", "tools/slope calibrate in.slope, with a past event"),
-    ({"length": 700.0}, DECK._replace(variables={"friction": "30"}), "no run reaches", "tools/slope study in.slope "
-     "--sample 64 --known rock_avalanches --vary friction=10:30 --road ROAD -o DIR"),
+     "deposit", "a calibration with a past event: tools/slope calibrate --help"),
+    ({"length": 700.0}, DECK._replace(variables={"friction": "30"}), "no run reaches", "the same command with "
+     "--sample 64 --known rock_avalanches --vary friction=10:30 instead of --set"),
     ({"left": 0.3}, SITE, "30 % of the released volume left the terrain before or beside the road, more than 1 %",
      "a larger elevation model (terrain.files, terrain.bounds) in 'my site'/site.yaml, then: " + ANEW.format("")),
     ({"on_road": 10.0}, PAPER, "the volume of 1 ball, fewer than 10",
-     ANEW.format(" --balls 11000").replace("--anew", "--paper --anew")),
+     ANEW.format(" --balls 11000").replace("--anew", "--anew --paper")),
     ({"left": 0.3}, SAMPLED, "30 %", "a larger elevation model (terrain.files, terrain.bounds) in "
      "'my site'/site.yaml, then: tools/slope site 'my site'; the same command with --anew"),
     # of the ensemble that `slope study SITE` makes
     ({"moving": 5}, SITE._replace(sampled=True), "5 of 20 runs failed or are not at rest",
      "more time (model.duration) in 'my site'/site.yaml, then: " + ANEW.format("")),
     ({"moving": 5}, DECK, "5 of 20 runs failed or are not at rest at the end, more than 10 %",
-     "the same command with more time, --set duration=120"),
-    ({"failed": 5}, DECK, "5 of 20 runs", "the same command again, once the cause of the failures is removed")])
+     "the same command with --set duration=120"),
+    ({"failed": 5}, DECK, "5 of 20 runs", "once the cause of the failures is removed: the same command again")])
 def test_the_reason_and_the_command_that_mends_it(changed, case, text, remedy):
     [entry] = withheld_words.with_remedies(withheld.reasons(GOOD._replace(**changed)), case)
     assert text in entry.text and entry.remedy == remedy
@@ -83,9 +88,102 @@ def test_the_commands_are_ones_that_the_tools_take(case, changed):
         cli.add_command(parser.add_subparsers(), words[1], cli.module_of(words[1], parser))
         try:
             parser.parse_args(words[1:])
-        except SystemExit:
-            # the user has to add the observation and the ranges
-            assert words == ["tools/slope", "calibrate", "in.slope"]
+        except SystemExit as error:
+            assert error.code == 0 and words[2:] == ["--help"]
+
+
+# --- every command that is proposed, on every kind of answer ---
+
+REASONS = [("terrain ends", {"share": 0.1, "path_m": 100.0}), ("no more runs", {"points": 8}), ("too few runs", {}),
+           ("range ends", {"ends": "friction 20, packing 1"}), ("range ends", {"ends": ""}),
+           *(("size of balls", {"run": run, "balls_thick": 2.0, "enough": 16.0, "growth": None})
+             for run in ("", "failed", "finished")),
+           *(("rule", {"source": source, "rule": rule.value, "number": 5, "bound": 10}) for rule in Kind
+             for source in ("paper", "ensemble"))]
+DECK_OF_ALL = ("variable  rolling  index 0.1  # 0 <= rolling\nvariable  friction index 30  # 0 <= friction < 90\n"
+               "variable  packing  index 1  # 1 <= packing <= 1000000\nvariable  d index 2\n"
+               "variable  duration index 60\n"
+               "variable  spacing  index 0.8\nfix a all deposit/grid 1 1 cell 1 terrain a output a\n")
+ASKED = ["in.all --set rolling=0:0.2:0.1 --repeat packing=5,6 -o out --equally-good packing --road road.csv",
+         "in.all --set rolling=0,0.1 --set d=1,2 --road road.csv --road-width 7.5 --fine 2 --more-than 5,10 -o out",
+         "in.all --sample 8 --vary friction=20:40 --vary packing=1:1000000 --set rolling=0 --road 'a road.csv' -o out",
+         "in.all --sample 8 --vary friction=triangular:10:20:30 --vary rolling=0:0.2 --known rock_avalanches "
+         "-o 'my out' --slurm=--time=1 --engine slurm --road road.csv", "'my site'", "'my site' --paper --np 2",
+         "'my site' --sample 8 --vary friction=5:30 --vary packing=1:1000000 --known own --fine no"]
+
+
+def typed_in(text):
+    """The commands in a line, as a shell would split them."""
+    return [shlex.split(one) for one in re.findall(r"tools/slope (?:'[^']*'|[^&;'])*", text)]
+
+
+def parsed(words):
+    parser = argparse.ArgumentParser()
+    cli.add_command(parser.add_subparsers(), words[1], cli.module_of(words[1], parser))
+    return options.request(cli.module_of(words[1], parser).Request, parser.parse_args(words[1:]))
+
+
+def check_proposed(text):
+    """Each command is taken by its parser, and a study's settings by the checks of the deck; no placeholder is left."""
+    assert not re.search(r"tools/slope.*(\.\.\.|\b(ROAD|DIR|DECK|SITE)\b)", text), text
+    for words in typed_in(text):
+        if words[2:] == ["--help"]:
+            continue
+        asked = parsed(words)
+        if words[1] != "study" or asked.deck.suffix != ".all":
+            assert words[2] == "my site"
+            if words[1] == "study":
+                [distributions.distribution(*one.split("=", 1), "--vary", one) for one in asked.vary]
+            continue
+        fixed, repeated = (check_settings(getattr(asked, name), asked.deck, f"--{name}") for name in ("set", "repeat"))
+        if asked.sample or asked.vary:
+            sample.check(asked.sample, "sobol", 1, asked.vary, asked.deck, one_value_each(fixed, "--set", "--vary"),
+                         repeated)
+        else:
+            assert fixed and not asked.known
+
+
+@pytest.mark.parametrize("given", ASKED)
+def test_what_is_proposed_can_be_run(here, given):
+    Path("in.all").write_text(DECK_OF_ALL)
+    asked = parsed(["tools/slope", "study", *shlex.split(given)])
+    assert parsed(["tools/slope", "study", *options.words_of(asked)]) == asked
+    site = asked.deck if asked.deck.name == "my site" else None
+    if site:
+        site.mkdir()
+        (site / "site.yaml").touch()
+    variables = {"friction": "30", "rolling": "0.1", "d": "2", "duration": "60"}
+    case = Case(Path("in.all"), site, variables, 1000, given=asked, sampled=bool(asked.sample))
+    found = [one for facts in ({"on_road": 50.0}, {"length": 700.0}, {"left": 0.3}, {"moving": 5}, {"failed": 15})
+             for one in withheld_words.with_remedies(withheld.reasons(GOOD._replace(**facts)), case)]
+    ranges = dict(one.split("=", 1) for one in asked.vary) or {
+        "friction": "uniform:20:40", "rolling": "0:0.2", "spacing": "0.3:0.95", "packing": "uniform:1:1000000"}
+    whole = made_study.ensemble({"set": "rock_avalanches.csv"}, withheld=found, design={
+        "points": 8, "variables": ranges}) if site or asked.sample else None
+    made = next_step.Made(made_study.study({"deck": "in.all"}, runs=[row(variables=variables)], ensemble=whole,
+                                           conservative=made_study.conservative(1.0, withheld=found)),
+                          (site or Path()) / "out", given=asked)
+    for one in found:
+        check_proposed(one.remedy)
+    for code, numbers in REASONS:
+        step = next_step.of_studies([made], made_study.headline(
+            kind="floor", source="ensemble", reasons=[{"code": code, "numbers": numbers}]))
+        check_proposed(str(step or ""))
+        if step is None:
+            assert whole is None or code == "range ends"
+        else:
+            assert step.line or "--vary of more mobile" in step.command, step
+
+
+def test_a_range_is_made_wider_where_it_ends(here):
+    """Not the seed of a packing, which has no resistance: 0.5 is none."""
+    whole = made_study.ensemble({"set": "rock_avalanches.csv"}, design={"points": 8, "variables": {
+        "friction": "uniform:5:30", "rolling": "uniform:0:0.15", "packing": "uniform:1:1000000"}})
+    made = next_step.Made(made_study.study({"deck": "in.all"}, ensemble=whole), Path("out"))
+    for ends, friction in (("", "2.5:30"), ("friction 5", "2.5:30"), ("rolling 0", "uniform:5:30"),
+                           ("friction 5, packing 1", "2.5:30")):
+        command = next_step.step_of(made, Code.RANGE, {"ends": ends}).command
+        assert f"--vary friction={friction} " in command and command.endswith("--vary packing=uniform:1:1000000")
 
 
 # --- of the rows of a study ---

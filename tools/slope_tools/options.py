@@ -17,7 +17,7 @@ import re
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Callable, Dict, Mapping, Optional, Tuple, Type, TypeVar, Union, get_args, get_origin
+from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple, Type, TypeVar, Union, get_args, get_origin
 from typing import get_type_hints
 
 MOST = 10 ** 9      # of anything counted; more exceeds any memory or time
@@ -131,6 +131,33 @@ def request(kind: Type[R], found: argparse.Namespace) -> R:
     names = {field.name for field in dataclasses.fields(kind)}
     return kind(**{name: list(value) if isinstance(value, list) else value
                    for name, value in vars(found).items() if name in names})
+
+
+def words_of(asked: Any) -> List[str]:
+    """The words of a command line that give a request: what is as it is by default is left out."""
+    found: List[str] = []
+    for field in dataclasses.fields(asked):
+        value, about = getattr(asked, field.name), field.metadata
+        if not about or value == about["words"]["default"]:
+            continue
+        name = next(iter(about["names"]), f"--{field.name.replace('_', '-')}")
+        if about["words"].get("action") == "store_true":
+            found.append(name)
+        elif about["words"].get("action") == "append":
+            found += [word for one in value for word in (name, worded(one))]
+        elif isinstance(value, list) and "nargs" in about["words"]:
+            found += [name, *map(worded, value)]
+        else:
+            text = ",".join(map(worded, value)) if isinstance(value, list) else worded(value)
+            if name == "":
+                found.insert(0, text)
+            else:
+                found += [f"{name}={text}"] if text.startswith("-") else [name, text]
+    return found
+
+
+def worded(value: Any) -> str:
+    return f"{value:.10g}" if isinstance(value, float) else str(value)
 
 
 def bare(asked: Any) -> bool:

@@ -54,6 +54,7 @@ class Runs(road_arguments.Clearing, Engine):
     """How the runs of a deck are made and what is measured. Defaults: see Road."""
     GROUP = "runs"
     deck: Path
+    given: Optional["Runs"] = None  # the request as it was given
     site: Optional[Path] = None     # whose deck it is
     road_name: str = ""             # of one of its several roads
     quiet: bool = False             # says nothing but the progress of the runs
@@ -130,7 +131,8 @@ def setup_of(args: Runs) -> Setup:
     given = {name: value for name in ("cut_angle", "mesh") if (value := getattr(args, name)) is not None}
     road = Road(args.road, **given, local=args.local, asked=road_arguments.asked(args),
                 name=args.road_name) if args.road else None
-    found = engine_of(args)._replace(deck=args.deck, output=args.output or args.deck, road=road, site=args.site)
+    found = engine_of(args)._replace(deck=args.deck, output=args.output or args.deck, road=road, site=args.site,
+                                     given=args.given)
     return found if args.quiet else found._replace(tell=teller(args.all_columns), warn=printer(args.command))
 
 

@@ -98,6 +98,7 @@ class Request(Sample, known_arguments.Known, Repeats, Intensity, Runs):
 
 def run(args: Request) -> None:
     """Do the command; raises SlopeError on bad input, and after all other runs when one failed."""
+    args = replace(args, given=args)
     if args.deck.is_dir() and (args.output is None or (args.deck / site_choices.NAME).exists()):
         with study.alone(args.deck, args.dry_run or not (args.deck / site_choices.NAME).is_file()):
             return run_folder(args)
@@ -173,7 +174,8 @@ def run_both(args: Request, asked: Site, points: int) -> Made:
     found = answered.of_both(paper.about, weighted)
     governs = site_study.STUDY if found and found.source is Source.PAPER else site_study.ENSEMBLE
     number = found.about() if found else weighted.headline
-    step = next_step.of_studies([next_step.Made(about, site / name) for name, about in made.items()], number)
+    step = next_step.of_studies([next_step.Made(about, site / name, given=args.given) for name, about in made.items()],
+                                number)
     made = {name: replace(about, study=replace(about.study, governs=governs), headline=number,
                           next_step=step.about() if step else None,
                           largest_restitution=paper.about.largest_restitution) for name, about in made.items()}

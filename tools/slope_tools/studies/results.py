@@ -1,12 +1,11 @@
 """The runs of a study: read, evaluated (outcome), and shown in files and on the console, side by side."""
 from dataclasses import replace
 from pathlib import Path
-from shlex import quote
 from typing import Any, Dict, Mapping, Optional, Sequence
 
 from .. import kept, provenance, records
 from ..case import run_folders
-from ..ensembles import ensemble, known_events, known_study
+from ..ensembles import ensemble, known_events
 from ..mobility.exceedance import Mobility
 from ..runs import jobs
 from ..runs.repeats import Repeat
@@ -38,7 +37,8 @@ def collect(setup: Setup, questions: Questions, todo: Sequence[Repeat], work: jo
         machine=provenance.machine(),
         road=write_road(setup.output, setup.road, first) if setup.road and first else None)
     outcome = evaluate(questions, found, header)
-    step = next_step.of_studies([next_step.Made(outcome.about, setup.output)], outcome.about.headline)
+    made = next_step.Made(outcome.about, setup.output, given=setup.given)
+    step = next_step.of_studies([made], outcome.about.headline)
     about = files.write(outcome, replace(outcome.about, envelope=maps.envelope, exceedance=maps.exceedance,
                                          next_step=step.about() if step else None), setup.output, place)
     console.tell(outcome, about, setup.output, setup.tell, setup.warn)
@@ -112,10 +112,8 @@ def events_of(setup: Setup, run: Repeat, row: Finished, among: Mapping[str, Any]
 
 
 def case_of(setup: Setup, questions: Questions, row: Finished) -> withheld_words.Case:
-    paper = " --paper" if questions.method == known_study.ASKED else ""
-    command = f"tools/slope study {quote(str(questions.site))}{paper}" if questions.site and questions.method else ""
     return withheld_words.Case(setup.deck, questions.site, row.variables, round(row.released_m3 / row.ball_m3),
-                               command=command)
+                               given=setup.given)
 
 
 def write_road(output: Path, road: Road, run: Repeat) -> Dict[str, Any]:

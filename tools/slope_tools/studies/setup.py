@@ -43,6 +43,7 @@ class Setup(NamedTuple):
     dry_run: bool = False               # only list the runs
     anew: bool = False                  # make finished runs of another program, deck or data again
     site: Optional[Path] = None         # folder of the site whose runs they are
+    given: Any = None                   # the request of the command, which it can be given once more with
     tell: Callable[[Any], None] = lambda line: None     # what gets lines for the user, and tables (rich.table.Table)
     warn: Callable[[Any], None] = lambda said: None     # what gets warnings, Finding or text
 

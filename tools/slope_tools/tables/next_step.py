@@ -1,19 +1,23 @@
 """What makes a number of a floor, or of one that is withheld: the next step, its command, and how long it takes."""
+import math
 from pathlib import Path
 from shlex import quote
-from typing import Any, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
+from .. import heads
 from ..findings import Finding
 from ..mobility import events
 from ..sites import site_choices, site_roads
 from ..sites.site_budget import duration_text
 from ..statistics.answer import Code, Kind, Reason, Source
 from ..statistics.withheld import Kind as Rule
-from . import answer_words, study_types
+from . import again, answer_words, study_types
+from .fine_run import VARIABLE
 from .rows import finished_of
 
 MORE = 2            # times the runs, where more are needed
 PROGRAM = "tools/slope "
+LESS = {"friction": 0.0, "rolling": 0.0, "spacing": 0.2}      # what resists less with a smaller value, and its least
 
 
 class Step(NamedTuple):
@@ -50,6 +54,7 @@ class Made(NamedTuple):
     study: study_types.Study
     folder: Path
     beside: Optional[study_types.Study] = None
+    given: Any = None       # the request of the command that made it; None: not known
 
     @property
     def source(self) -> Source:
@@ -109,8 +114,7 @@ def step_of(made: Made, code: Code, of: Mapping[str, Any]) -> Optional[Step]:
     if code in (Code.RUNS, Code.FEW):
         return more_runs(made)
     if code is Code.RANGE:
-        return Step("runs with less resistance than the least that was tried", ensemble(made, wider=True),
-                    made.seconds)
+        return wider_ranges(made, str(of.get("ends", "")))
     if code is Code.SIZE:
         return finer_balls(made) if of["run"] == "finished" else fine_run(made)
     if code is not Code.RULE:
@@ -143,8 +147,26 @@ def times(made: Made, rule: Rule, of: Mapping[str, Any]) -> Optional[float]:
 def more_runs(made: Made) -> Optional[Step]:
     if not made.study.ensemble:
         return None
-    whole = made.seconds
-    return Step("more runs", ensemble(made, MORE), None if whole is None else (MORE - 1) * whole)
+    whole, points = made.seconds, MORE * made.study.ensemble.design.points
+    seconds = None if whole is None else (MORE - 1) * whole
+    if made.site and made.given and of_both(made.given):
+        place = quote(str(made.site))
+        return Step("more runs", f"study.points: {points} in {place}/{site_choices.NAME}, then: "
+                    f"{again.command(made.given)}", seconds)
+    return Step("more runs", ensemble(made, points), seconds)
+
+
+def wider_ranges(made: Made, ends: str) -> Optional[Step]:
+    """Runs with less resistance; ends: where the ranges end in the way, as answer_words has it."""
+    if not made.study.ensemble or made.given and made.given.fit:
+        return None
+    ranges = ranges_of(made)
+    asked = [name for name in LESS if name in ranges and (name in ends.replace(",", " ").split() or not ends)]
+    wider = {**ranges, **{name: widened(ranges[name], LESS[name]) for name in asked}}
+    if made.given and all(wider[name] == ranges[name].removeprefix("uniform:") for name in asked):
+        return None
+    return Step("runs with less resistance than the least that was tried",
+                ensemble(made, made.study.ensemble.design.points, wider), made.seconds)
 
 
 def finer_balls(made: Made) -> Optional[Step]:
@@ -156,44 +178,73 @@ def finer_balls(made: Made) -> Optional[Step]:
     row = rows[0]
     number = round(8 * row.released_m3 / row.ball_m3, -2)
     return Step("smaller balls in the model", f"tools/slope site {quote(str(site))} --balls {number:.0f} && "
-                f"tools/slope study {quote(str(site))} --anew", None if whole is None else 16 * whole)
+                f"{study_anew(made)}", None if whole is None else 16 * whole)
 
 
 def fine_run(made: Made) -> Step:
     """The same study with a run whose balls are smaller."""
-    command = f"tools/slope study {quote(str(made.site))}" if made.site else "the same command with"
-    return Step("a run with smaller balls in the model", f"{command} --fine 2", None)
+    rows = finished_of(made.study.runs)
+    if made.site is None and rows and not is_number(rows[0].variables.get(VARIABLE, "")):
+        command = f"a deck whose variable {VARIABLE} is the diameter of the balls, and the same command with --fine 2"
+    elif made.given:
+        command = again.command(made.given, fine="2")
+    else:
+        command = (f"tools/slope study {quote(str(made.site))}" if made.site else "the same command with") + " --fine 2"
+    return Step("a run with smaller balls in the model", command, None)
 
 
 def larger_terrain(made: Made, add: str = "") -> Tuple[str, str]:
     """add: how much on which side, in words."""
     site, larger = made.site, "a larger elevation model" + f", by {add}" * bool(add)
     if site is None:
-        return (f"{larger}, and the box of the deck with it",
-                f"tools/slope study {quote(str(made.study.study.deck))} ... --anew")
-    folder = quote(str(site))
-    return larger, (f"terrain.files, terrain.bounds in {folder}/{site_choices.NAME}, then: "
-                    f"tools/slope site {folder} && tools/slope study {folder} --anew")
+        return f"{larger}, and the box of the deck with it", study_anew(made)
+    return larger, (f"terrain.files, terrain.bounds in {quote(str(site))}/{site_choices.NAME}, then: "
+                    f"tools/slope site {quote(str(site))} && {study_anew(made)}")
 
 
-def ensemble(made: Made, factor: int = 1, wider: bool = False) -> str:
-    """The command of an ensemble like this one: more points, or wider ranges of what resists."""
+def study_anew(made: Made) -> str:
+    """The command of a study once more, for another deck or other data."""
+    if made.given:
+        return again.command(made.given, anew=True)
+    return f"tools/slope study {quote(str(made.site))} --anew" if made.site else "the same command with --anew"
+
+
+def ensemble(made: Made, points: int, ranges: Optional[Mapping[str, str]] = None) -> str:
+    """The command of an ensemble like this one with so many points; ranges: other ones, of all its variables."""
     one = made.study.ensemble
-    design, weighted = (one.design, one.known_events) if one else (None, None)
+    ranges = ranges or ranges_of(made)
+    vary = [f"{name}={text}" for name, text in ranges.items()]
+    weighted = one.known_events if one else None
     known = weighted.set if weighted else None
+    known = events.OWN.stem if known == events.OWN.name else known
+    if made.given:
+        changes: Dict[str, Any] = {"known": made.given.known or known, "paper": False} if of_both(made.given) else {}
+        if not made.given.fit:
+            changes["vary"] = vary
+        return again.command(made.given, **{"sample": points, **changes})
     site = made.site
     where = quote(str(site)) if site else f"{quote(str(made.study.study.deck))} -o {quote(str(made.folder))}"
-    words = [f"tools/slope study {where} --sample {factor * (design.points if design else 64)}"]
-    words += [f"--known {events.OWN.stem if known == events.OWN.name else quote(str(known))}"] if known else []
-    for name, text in (design.variables if design else {}).items():
-        words.append(f"--vary {quote(f'{name}={widened(text) if wider else text}')}")
-    return " ".join(words)
+    words = [f"tools/slope study {where} --sample {points}", *([f"--known {quote(str(known))}"] if known else [])]
+    return " ".join([*words, *(f"--vary {quote(text)}" for text in vary)])
 
 
-def widened(text: str) -> str:
-    """A range with half its least value."""
+def of_both(given: Any) -> bool:
+    """Whether a request asks for all of a site, not for an ensemble."""
+    return given.sample is None and given.fit is None
+
+
+def ranges_of(made: Made) -> Mapping[str, str]:
+    """The variables of an ensemble, and their distributions."""
+    return made.study.ensemble.design.variables if made.study.ensemble else {}
+
+
+def widened(text: str, least: float) -> str:
+    """A range with half its least value, or down to a least one."""
     low, colon, high = text.removeprefix("uniform:").partition(":")
-    try:
-        return f"{float(low) / 2:g}:{float(high):g}" if colon else text
-    except ValueError:
+    if not (colon and is_number(low) and is_number(high)):
         return text
+    return f"{max(float(low) / 2, min(least, float(low))):.10g}:{float(high):.10g}"
+
+
+def is_number(text: str) -> bool:
+    return math.isfinite(heads.number(text))

@@ -7,7 +7,7 @@ from typing import Any, List, Mapping, NamedTuple, Optional, Sequence
 from ..digits import percent
 from ..findings import Finding, texts
 from ..statistics.withheld import BALLS, CONFIDENCE, Kind, exceeded_at_most
-from . import study_types
+from . import again, study_types
 
 UNUSABLE = "not usable as a conservative volume"
 MARGIN = 1.1            # of the balls: chance
@@ -20,7 +20,7 @@ class Case(NamedTuple):
     variables: Mapping[str, Any]    # of a run: name and value
     balls: int                      # in the body
     sampled: bool = False           # an ensemble
-    command: str = ""               # that makes the study of the site once more; "": it has more options
+    given: Any = None               # the request of the study; None: not known
 
 
 def remedy(reason: Finding, case: Case) -> str:
@@ -34,9 +34,10 @@ def remedy(reason: Finding, case: Case) -> str:
         return changed(case, f"a larger elevation model{more} (terrain.files, terrain.bounds)",
                        f"a larger terrain and box in the deck{more}")
     if 2 * reason.numbers["failed"] > reason.numbers["number"]:
-        return "the same command again, once the cause of the failures is removed"
-    return changed(case, "more time (model.duration)", "the same command with more time"
-                   + ("" if "duration" not in case.variables else f", --set duration={twice(case)}"))
+        return f"once the cause of the failures is removed: {same(case, 'the same command again')}"
+    if case.site is None and "duration" in case.variables:
+        return with_value(case, "duration", twice(case))
+    return changed(case, "more time (model.duration)", "more time in the deck")
 
 
 def finer(case: Case, factor: float) -> str:
@@ -45,7 +46,7 @@ def finer(case: Case, factor: float) -> str:
     if case.site:
         return anew(case, f" --balls {number:.0f}")
     try:
-        return f"the same command with --set d={float(case.variables['d']) / (MARGIN * factor) ** (1 / 3):.3g}"
+        return with_value(case, "d", f"{float(case.variables['d']) / (MARGIN * factor) ** (1 / 3):.3g}")
     except (KeyError, ValueError):
         return f"the same with smaller balls, about {number:,.0f} of them"
 
@@ -54,27 +55,42 @@ def mobile(case: Case) -> str:
     """An ensemble that has mobile masses too, weighted by the known events."""
     if case.sampled:
         return "the same command with --vary of more mobile masses: less friction and rolling, a denser field"
-    sample = "--sample 64 --known rock_avalanches"
+    known = {"sample": 64, "known": "rock_avalanches"}
+    ranges = {name: span for name, span in (("friction", "10:30"), ("rolling", "0:0.1")) if name in case.variables}
     if case.site:
-        return f"tools/slope study {quote(str(case.site))} {sample}"
-    words = " ".join(f"--vary {name}={span}" for name, span in (("friction", "10:30"), ("rolling", "0:0.1"))
-                     if name in case.variables)
-    if not words:
-        return f"tools/slope calibrate {quote(str(case.deck))}, with a past event"
-    return f"tools/slope study {quote(str(case.deck))} {sample} {words} --road ROAD -o DIR"
+        place = quote(str(case.site))
+        return again.command(case.given, paper=False, fine=None, **known) if case.given else (
+            f"tools/slope study {place} --sample 64 --known rock_avalanches")
+    if not ranges:
+        return "a calibration with a past event: tools/slope calibrate --help"
+    if case.given:
+        return again.command(case.given, **again.as_ensemble(case.given, ranges, **known))
+    return ("the same command with --sample 64 --known rock_avalanches " +
+            " ".join(f"--vary {name}={span}" for name, span in ranges.items()) + " instead of --set")
 
 
 def changed(case: Case, in_site: str, in_deck: str) -> str:
     """What must be changed, and what is run then."""
     if not case.site:
-        return in_deck
+        return f"{in_deck}, then: {same(case, 'the same command with --anew', anew=True)}"
     return f"{in_site} in {quote(str(case.site))}/site.yaml, then: {anew(case)}"
 
 
 def anew(case: Case, options: str = "") -> str:
     """A site and its study, or ensemble, once more; runs of the deck before are not mixed with new ones."""
-    again = f" && {case.command}" if case.command else "; the same command with"
-    return f"tools/slope site {quote(str(case.site))}{options}{again} --anew"
+    study = f" && {again.command(case.given, anew=True)}" if case.given else "; the same command with --anew"
+    return f"tools/slope site {quote(str(case.site))}{options}{study}"
+
+
+def same(case: Case, words: str, **changes: Any) -> str:
+    """The command once more; words: for it, where it is not known."""
+    return again.command(case.given, **changes) if case.given else words
+
+
+def with_value(case: Case, name: str, value: str) -> str:
+    """The same with another value of a variable."""
+    words = f"the same command with --set {name}={value}"
+    return again.command(case.given, **again.with_value(case.given, name, value)) if case.given else words
 
 
 def twice(case: Case) -> str:
