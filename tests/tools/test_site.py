@@ -5,6 +5,7 @@ import io
 import json
 import os
 import re
+import shlex
 import shutil
 import struct
 import subprocess
@@ -868,8 +869,11 @@ def test_folders_that_are_no_sites(gis, done):
     refused(inside(gis, "site", "--terrain", "dem.tif", *BODY, "-o", "mine"), "--release: must be given")
     refused(inside(done[0], "site", "--terrain", "dem.tif", "--release", "release.geojson", *BODY, "-o", "mine"),
             "-o: must be a new folder; `slope site mine`")
-    refused(inside(done[0], "study", "mine", "--set", "rolling=0"),
-            "--set: must not be given with the folder of a site")
+    line = refused(inside(done[0], "study", "mine", "--set", "rolling=0,0.1"),
+                   "--set: must not be given with the folder of a site")
+    way = shlex.split(line.partition("otherwise: tools/slope ")[2].partition(", got")[0])
+    listed = inside(done[0], *way, "--dry-run")
+    assert listed.returncode == 0 and "2 runs" in listed.stdout and "--road" in way, listed.stderr
     refused(inside(done[0], "study", "mine/in.site", "--set", "rolling=0"), "-o: must be given")
 
 

@@ -31,6 +31,16 @@ def at_least(value: float, digits: int = DIGITS) -> str:
     return f"{math.ceil(value * power) / power:.15g}"
 
 
+def plain(text: str) -> str:
+    """A number as text, never as a power of ten above 1: 100 of 1e+02."""
+    return f"{float(text):.0f}" if re.fullmatch(r"-?[\d.]+e\+\d+", text) else text
+
+
+def cents(share: float, digits: int = 2) -> str:
+    """A share with so many digits, as it is: 0.02 %, 100 %."""
+    return f"{plain(f'{100 * share:.{digits}g}')} %"
+
+
 def percent(share: float, exact: bool = False) -> str:
     """A share with two digits, from 10 % on in whole per cents, near 100 % in tenths.
 

@@ -16,7 +16,7 @@ class _Shown(float):
     def __format__(self, spec):
         if spec == "cubic":
             return digits.cubic(float(self))
-        return format(float(self), spec) if spec else digits.rounded(self, 3)
+        return digits.plain(format(float(self), spec)) if spec else digits.rounded(self, 3)
 
 
 class Finding(NamedTuple):
@@ -140,9 +140,14 @@ def say_json(level: str, **values) -> None:
 
 
 def printer(command: str) -> Callable[[Said], None]:
-    """A function that prints a finding of a command."""
+    """A function that prints a finding of a command, once."""
+    told = set()
+
     def tell(said):
         one = finding(said)
+        if str(one) in told:
+            return
+        told.add(str(one))
         if as_json:
             say_json(**{"command": command, **one.entry()})
         else:
@@ -155,6 +160,8 @@ def warner(command: str) -> Tuple[Callable[[Said], None], List[Dict[str, Any]]]:
     tell, kept = printer(command), []
 
     def warn(said):
-        kept.append(finding(said).entry())
-        tell(said)
+        entry = finding(said).entry()
+        if entry not in kept:
+            kept.append(entry)
+            tell(said)
     return warn, kept

@@ -7,6 +7,7 @@ from typing import Any, List, Optional
 import numpy as np
 
 from .. import disk, findings
+from ..digits import cents
 from ..errors import SlopeError
 from ..options import Overwrite, flag, option, positional, several, whole
 
@@ -195,7 +196,7 @@ def warnings_of(curves, peaks, found, pseudo_static, records, hazard):
         standing = one.at_rest * hazard.rates[0] / one.frequency.total.value \
             if one.frequency and one.frequency.total.value > 0 else 0.0
         if one.at_rest > 0.01 or standing > 0.05:
-            makes = f", which makes {100 * standing:.2g} % of the frequency" if standing > 0.05 else ""
+            makes = f", which makes {cents(standing)} of the frequency" if standing > 0.05 else ""
             yield findings.Finding("at rest", {"which": one.title, "percent": 100 * one.at_rest, "makes": makes})
         for k, outside, end, remedy in ((-1, peaks[-1] < one.half < math.inf, "largest", "larger"),
                                         (0, 0 < one.half < peaks[0], "smallest", "smaller")):

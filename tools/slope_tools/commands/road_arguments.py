@@ -1,9 +1,13 @@
 """Arguments on a road: how wide it is, what blocks it, the lane that is opened first, and the hours."""
 from dataclasses import dataclass
-from typing import Optional
+from typing import Any, Dict, Optional
 
+from ..errors import SlopeError
 from ..options import option
+from ..sites import site_choices, site_deck, site_roads
+from ..sites.site_choices import Site
 from ..survey import roads
+from ..tables import again
 
 OPTIONS = {name[2:].replace("-", "_"): field for field, name in roads.OPTIONS.items()}      # fields of a request
 ROAD = "the road: polygons, or a line with --road-width: GeoJSON, shapefile, CSV or WKT"
@@ -35,3 +39,27 @@ def asked(args: Width) -> roads.Asked:
     """What these arguments ask for."""
     return roads.Asked(**{field: value for name, field in OPTIONS.items()
                           if (value := getattr(args, name, None)) is not None})
+
+
+def of_site(asked: Site) -> Dict[str, Any]:
+    """The options of the road that is asked of a site, as far as they are not by default; none without one."""
+    about = asked.choices.road
+    if not about.file:
+        return {}
+    given = {name: getattr(about.asked, field) for name, field in OPTIONS.items()
+             if getattr(about.asked, field) != getattr(roads.NOTHING, field)}
+    return {**given, "road": site_roads.file_of(asked), "road_name": asked.road, "cut_angle": about.cut_angle,
+            "mesh": about.mesh}
+
+
+def otherwise(args: Any) -> str:
+    """What is to be typed where --set or --vary is given with a site, for a message: a study of its deck with its road,
+    or an ensemble; "" of anything else."""
+    if not args.set:
+        return f"; otherwise: {again.command(args, sample=64)}" if args.vary else ""
+    try:
+        road = of_site(site_choices.load(args.deck))
+    except SlopeError:
+        return ""
+    beside = args.output or args.deck.with_name(f"{args.deck.absolute().name}_set")
+    return f"; otherwise: {again.command(args, deck=args.deck / site_deck.NAME, output=beside, paper=False, **road)}"

@@ -18,7 +18,7 @@ from ..releases import packing
 from ..releases.release import SHAPES
 from ..releases.release_scar import KINDS
 from ..runs import jobs
-from ..sites import site, site_choices, site_deck, site_older, site_scenarios
+from ..sites import site, site_budget, site_choices, site_deck, site_older, site_scenarios
 from ..sites.site_sections import Choices, Key, OfMass, sections
 from ..slips import bodies
 from ..studies import ahead, outlook, site_ground
@@ -197,7 +197,7 @@ class Model:
 @dataclass(frozen=True, kw_only=True)
 class Size:
     """Of the balls."""
-    GROUP = "size of the balls: one of these (default: --balls 4000)"
+    GROUP = f"size of the balls: one of these (default: --balls {site_budget.DEFAULT})"
     balls: Optional[int] = option("number of balls in the body", metavar="N", one_of="size")
     minutes: Optional[float] = option(
         "choose the size so that the study takes M minutes on this machine", metavar="M", one_of="size")

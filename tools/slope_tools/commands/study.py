@@ -290,7 +290,8 @@ def refuse(args: Request, names) -> None:
         if value is not None and value is not False and value not in ("", []):
             first = value[0] if isinstance(value, list) else value
             raise SlopeError(OPTIONS.get(name, f"--{name.replace('_', '-')}"), "must not be given with "
-                             f"the folder of a site: {args.deck / 'site.yaml'} says what is run",
+                             f"the folder of a site: {args.deck / 'site.yaml'} says what is run"
+                             + road_arguments.otherwise(args),
                              None if first is True else f"{first:g}" if isinstance(first, float) else first)
 
 
@@ -323,10 +324,7 @@ def of_ensemble(args: Request, asked: Site, method="") -> Request:
         raise SlopeError("-o", "must not be given with a site of several roads, each of which has its folder",
                          args.output)
     site, choices = asked.folder, asked.choices
-    about = choices.road
     chance = site_choices.chance(decks.index_variables(site / site_deck.NAME))
-    road = {name: getattr(about.asked, field) for name, field in road_arguments.OPTIONS.items()}
-    road.update(road=site_roads.file_of(asked), road_name=asked.road, cut_angle=about.cut_angle, mesh=about.mesh)
     vary = args.vary or ([] if args.fit else [*of_fragility(choices), chance] if args.fragility
                          else [*known_study.VARY, chance])
     return replace(args, deck=site / site_deck.NAME, site=site, around=asked, method=method,
@@ -334,7 +332,7 @@ def of_ensemble(args: Request, asked: Site, method="") -> Request:
                    fine=args.fine or str(choices.study.fine or "no"),
                    output=args.output or site_roads.results(asked) / site_study.ENSEMBLE,
                    wide={} if args.vary or args.fit or args.fragility else known_study.WIDE,
-                   vary=vary, **(road if about.file else {}))
+                   vary=vary, **road_arguments.of_site(asked))
 
 
 def not_varied(args: Request, choices: OfMass, vary) -> List[str]:

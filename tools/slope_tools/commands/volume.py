@@ -9,6 +9,7 @@ from typing import Optional
 from .. import disk, findings
 from ..deposits import left_words, volume
 from ..deposits.volume import CUT_ANGLE, MUCH_BELOW, SAMPLES
+from ..digits import cents
 from ..options import Overwrite, flag, option, positional, whole
 from ..studies import outdated
 from ..tables import named_run
@@ -82,7 +83,7 @@ def summary(about, folder):
              f"{about['cut_angle']:g} degrees"]
     if below > 0:
         share = below / volume["remove"]
-        lines.append(f"{below:.1f} m3 of that ({100 * share:.3g} %) where the cut surface lies below the ground before "
+        lines.append(f"{below:.1f} m3 of that ({cents(share, 3)}) where the cut surface lies below the ground before "
                      f"the collapse, which is steeper than {about['cut_angle']:g} degrees there"
                      + (": is the cut angle right?" if share > MUCH_BELOW else ""))
     lines.append(f"bulk factor {about['bulk_factor']:.6g}, the run's")

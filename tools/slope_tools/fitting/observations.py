@@ -16,7 +16,7 @@ from ..case import run_folders
 from ..deposits import connected, deposit, reach, score, travel_shares
 from ..errors import SlopeError
 from ..statistics.backanalysis import Target
-from ..survey import rasters
+from ..survey import rasters, vectors
 from ..tables.rows import Finished
 
 ZONES = 6
@@ -58,7 +58,7 @@ class Wanted:
                 raise SlopeError(option, "must be > 0", f"{value:g}")
         if self.volume is not None and not road:
             raise SlopeError("--road-volume", "needs --road: it is the volume on it")
-        if self.observed is not None and not self.observed.is_file():
+        if self.observed is not None and not vectors.is_there(self.observed):
             raise SlopeError("--observed", "must be an existing file", self.observed)
         for value in (self.tolerance, *self.own.values()):
             if not 0 <= value < 1:

@@ -157,7 +157,7 @@ def lengths(one: Mobility, kind: str) -> str:
     for share in SHARES:
         length, most = one.length_at(share, kind), one.at_most(share, kind)
         if most is not None:
-            parts.append(f"{percent(share)} beyond at most {metres(most)}")
+            parts.append(f"{percent(share)} beyond {metres(most)} or less")
         elif length is not None:
             parts.append(f"{percent(share)} beyond {metres(length)}")
     return (f"{', '.join(parts) or 'nearly all beyond the path'}; beyond the "

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..drawing import figures, pictures
 from ..drawing.figures import COLOURS
+from ..digits import cents
 from ..errors import SlopeError
 from ..findings import texts
 from ..plots.ensemble_charts import THOUSANDS
@@ -48,7 +49,7 @@ def bodies(about: study_types.Chain, numbers: Numbers) -> List[List[Any]]:
     """Rows of the table of bodies."""
     return [[one.body, "" if one.volume_m3 is None else
              numbers("volume", "m3", one.volume_m3, f"body {one.body}"),
-             f"{100 * one.weight:.2g} %", one.runs, one.finished] for one in about.bodies]
+             cents(one.weight), one.runs, one.finished] for one in about.bodies]
 
 
 def parts(about: study_types.Chain) -> Optional[Table]:

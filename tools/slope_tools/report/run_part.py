@@ -39,12 +39,12 @@ def balance(data: Data, numbers: Numbers):
     status = "rest" if state.at_rest else "moving" if summary["moving"] else "doubt"
     deposit = marked(state.text, f"status {status}")
     if "change_rate" in summary:
-        deposit += f"; {100 * summary['change_rate']:.2g} % of the volume moves to another cell per second"
+        deposit += f"; {digits.cents(summary['change_rate'])} of the volume moves to another cell per second"
     end = [("end of the run", f"{stop['time']:.2f} s, step {stop['step']:d}, {stop['reason']}"), ("deposit", deposit),
            ("largest energy of a ball", digits.si(summary["largest"]["max_energy"], "J"))]
     if guards := summary.get("guards"):
-        growth = f"{100 * guards['energy_growth']:.1g} %"
-        end += [("largest overlap, of the radius", f"{100 * guards['largest_overlap']:.2g} %"),
+        growth = digits.cents(guards["energy_growth"], 1)
+        end += [("largest overlap, of the radius", digits.cents(guards["largest_overlap"])),
                 ("growth of energy, of the largest kinetic and spring energy", growth),
                 ("contacts deeper than 10 %, late neighbor lists",
                  f"{guards['deep_contacts']:d}, {guards['dangerous_builds']:d}")]

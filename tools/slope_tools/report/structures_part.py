@@ -54,7 +54,7 @@ class Structures:
         if not walls and not lines:
             return None
         scatter = structures.scatter_at_rest(self.data.finished) if self.data.study else {}
-        shares = "; ".join(f"{name}: {100 * share:.2g} % over {runs} runs" for name, (share, runs) in scatter.items())
+        shares = "; ".join(f"{name}: {digits.cents(share)} over {runs} runs" for name, (share, runs) in scatter.items())
         points, coarse = "; ".join(self.points()), "; ".join(one.text for one in coarse_walls(self.data, self.ground))
         more = f" Moments are about (local x y z, m): {points}." * bool(points) + f" {coarse}." * bool(coarse)
         return Section("structures", "Structures and control lines", [

@@ -15,6 +15,7 @@ import numpy as np
 from .. import disk, schemas
 from ..case import slip_deck
 from ..case.slip_deck import PREFIX, Strength
+from ..digits import cents
 from ..errors import SlopeError
 from ..findings import Finding
 from ..mobility import body as falling
@@ -272,7 +273,7 @@ def reaches(choices: Choices, mass: falling.Body, lane) -> Dict[str, Any]:
     if not met.met and met.beside > mass.volume ** (1 / 3):
         why = f"its fall path stays {met.beside:.0f} m away from the road"
     elif share < choices.reach:
-        why = (f"{100 * share:.2g} % of known events of its volume and height go as far as the road, {met.length:.0f} "
+        why = (f"{cents(share)} of known events of its volume and height go as far as the road, {met.length:.0f} "
                f"m, {met.fall:.0f} m down (--reach {choices.reach:g})")
     return {"known_share": share, "known_law": found.law.name, "why_not": why}
 

@@ -89,7 +89,7 @@ class Display:
             if time.monotonic() - self.printed[job.run.name] > TELL:
                 self.printed[job.run.name] = time.monotonic()
                 _, text, end = self._progress(job)
-                self.say(f"{self.label(job.run)}: {text}" + (f", ends by {end}" if end else ""))
+                self.say(f"{self.label(job.run)}: {text}" + (f", {end} at the latest" if end else ""))
         return None
 
     def _say_share(self, active=()):
@@ -104,7 +104,7 @@ class Display:
 
     @staticmethod
     def _progress(job):
-        """Share done (None if unknown), a text for the user, and the latest time of its end."""
+        """Share done (None if unknown), a text for the user, and when its last step is due: it may rest before."""
         log = job.run.log
         if log.thermo == 0:
             return None, "setting up", ""
@@ -121,7 +121,7 @@ class Display:
         table = Table(box=None, padding=(0, 2, 0, 0))
         table.add_column("run", no_wrap=True)
         table.add_column("", no_wrap=True)
-        for head in ("step", "ends by"):
+        for head in ("step", "at the latest"):
             table.add_column(head, no_wrap=True, min_width=8)
         for job in active:
             share, text, end = self._progress(job)

@@ -22,7 +22,7 @@ from ..releases import release, release_files, release_toe
 from ..survey import local_terrain, polygons, rasters
 from ..survey.crs import as_crs
 from ..survey.rasters import Raster, crs_name
-from . import site_bodies, site_budget, site_choices, site_deck, site_folder, site_trial, site_warnings
+from . import site_bodies, site_budget, site_choices, site_deck, site_folder, site_layers, site_trial, site_warnings
 from .site_budget import Size, Trial
 from .site_choices import Derived
 from .site_folder import BODY, BODY_DECK, MAP, TERRAIN
@@ -118,7 +118,7 @@ def build(given: OfMass, known: Derived, new: Path, folder: Path, machine: Machi
     def keep(said) -> None:
         warnings.append(finding(said))
         warn(said)
-    wanted = wanted_body(given, new)
+    wanted = site_layers.with_missing(given, lambda: wanted_body(given, new))
     raster, about = terrain(given, new, tell, keep)
     found = body_of(given, wanted, raster, keep)
     if found.choices.get("scar_is") == "height":

@@ -19,6 +19,7 @@ from ..survey.rasters import Raster, crs_name
 from . import site_walls
 
 # names of the deck's own fixes and groups, and of files that a run writes beside them
+WITHOUT_HEIGHT = "must be given with --wall: of the wall above the ground, m"
 TAKEN = {"all", "soil", "slip", "beyond", "field", "spread", "move", "weight", "deposit", "rest", "shake", "drag",
          "stands", "fails", "balls", "road", "release", "observed", "terrain", "body", "ground", "base", "summary",
          "calm"}
@@ -134,7 +135,7 @@ def walls(drawn: Iterable["Drawn"], raster: Raster, height: Optional[float], wid
     found = []
     for path, crs, advice in drawn:
         if height is None:
-            raise SlopeError("--height", "must be given with --wall: of the wall above the ground, m")
+            raise SlopeError("--height", WITHOUT_HEIGHT)
         line = one_line(lines.read_local(path, raster, False, advice=advice, crs=crs, warn=warn), path)
         wall = np.round(site_walls.triangles(path, line, raster, height, width or site_walls.WIDTH), 4)
         name = unused(stem(path), taken)

@@ -1,7 +1,7 @@
 """What lies on a site's terrain: road, structures, control lines, a mapped deposit, and the motion of the ground."""
 import shlex
 from pathlib import Path
-from typing import Dict, List, NamedTuple, Optional, Sequence, Set
+from typing import Callable, Dict, List, NamedTuple, Optional, Sequence, Set, TypeVar
 
 import numpy as np
 from rasterio.crs import CRS
@@ -21,6 +21,7 @@ from .site_inputs import Line, Motion, Structure
 from .site_sections import Choices, OfMass
 from .site_zones import Zone
 
+T = TypeVar("T")
 OBSERVED = "observed"       # .csv of an outline, .tif of a raster
 
 
@@ -50,6 +51,23 @@ class Shown(NamedTuple):
     lines: Sequence[Line]
     reached: Optional[Raster]           # largest thickness of the trial run, m
     zones: Sequence[Zone] = ()          # of the ground
+
+
+def with_missing(choices: OfMass, check: Callable[[], T]) -> T:
+    """What a check gives; SlopeError before anything is computed, with all that is missing of road and walls, too."""
+    road, along, missing, checked = choices.road, choices.structures, [], []
+    try:
+        checked.append(check())
+    except SlopeError as error:
+        missing.append(error)
+    if road.file and road.width is None and roads.is_line(road.file):
+        missing.append(SlopeError(road.file, roads.WITHOUT_WIDTH))
+    if along.walls and along.height is None:
+        missing.append(SlopeError("--height", site_inputs.WITHOUT_HEIGHT))
+    if missing:
+        missing[0].args = ("; ".join(map(str, missing)),)
+        raise missing[0]
+    return checked[0]
 
 
 def read_layers(choices: Choices, raster: Raster, folder: Path, tell, warn) -> Layers:

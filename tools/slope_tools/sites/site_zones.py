@@ -18,6 +18,7 @@ from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
 from .. import schemas
+from ..digits import cents
 from ..errors import SlopeError
 from ..findings import Finding
 from ..geometry import box_of, extent, polygons_of
@@ -279,6 +280,6 @@ def of_choices(source: Source, raster: Raster, folder: Path, tell, warn) -> List
     write(zones, raster, folder)
     for zone in zones:
         about = zone.about(raster)
-        tell(f"{zone.file}: zone {zone.name}, {100 * about['share']:.3g} % of the terrain, {about['area_m2']:,.0f} m2: "
+        tell(f"{zone.file}: zone {zone.name}, {cents(about['share'], 3)} of the terrain, {about['area_m2']:,.0f} m2: "
              + ", ".join(f"{name} {value:g}" for name, value in zone.values.items()))
     return zones

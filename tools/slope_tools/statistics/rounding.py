@@ -3,6 +3,8 @@ import math
 
 from ..digits import SIGNIFICANT
 
+NOTHING = 1e-6      # m3, m, m/s
+
 
 def place(uncertainty: float) -> float:
     """The power of ten that a number with this standard deviation (> 0) is rounded to: a 5th to a 50th of it."""
@@ -10,8 +12,8 @@ def place(uncertainty: float) -> float:
 
 
 def place_of_digits(value: float) -> float:
-    """The power of ten that leaves three digits of a value; 1 of 0."""
-    return 10.0 ** (math.floor(math.log10(abs(value)) + 1e-9) - SIGNIFICANT + 1) if value else 1.0
+    """The power of ten that leaves three digits of a value; 1 of 0, and of what sums of volumes and lengths leave."""
+    return 10.0 ** (math.floor(math.log10(abs(value)) + 1e-9) - SIGNIFICANT + 1) if abs(value) >= NOTHING else 1.0
 
 
 def up(value: float, step: float) -> float:

@@ -181,9 +181,9 @@ def check_thresholds(text, option="--exceed", what="thicknesses"):
 
 def check_road(road: Road, deck: Path, settings) -> None:
     """Raise SlopeError now if the road cannot be used after the runs, as far as the deck names its terrain."""
-    from ..survey import roads
+    from ..survey import roads, vectors
     roads.check(road.asked)
-    if not road.file.is_file():
+    if not vectors.is_there(road.file):
         raise SlopeError("--road", "must be an existing file", road.file)
     if not 0 < road.cut_angle < 90:
         raise SlopeError("--cut-angle", "must be > 0 and < 90 degrees", f"{road.cut_angle:g}")

@@ -5,6 +5,7 @@ rings, # starts a comment. A point is inside if it is inside an odd number of ri
 """
 import logging
 import re
+from contextlib import suppress
 from pathlib import Path
 from typing import List, NamedTuple, Tuple
 
@@ -28,6 +29,7 @@ from .rasters import crs_name
 AT_180 = 1e-6      # degrees, from 180, at which a geometry is cut there
 CUT = 1e-3         # m, between the halves of a cut geometry in another CRS
 DIGITS = 6     # decimals of a written coordinate, m: beyond them is the noise of origins and projections
+EXCHANGED = " (with x and y exchanged it would)"
 HEAD = "local metres:"       # in the first line of what write() wrote
 PLACE = re.compile(rf"^# {HEAD} .+", re.MULTILINE)
 WKT = re.compile(well_known.KINDS, re.IGNORECASE)
@@ -101,25 +103,22 @@ def _placed(path, polygons, raster, local, plain, crs, advice, anywhere=False):
     """Polygons as one geometry in the local metres of a terrain, which it overlaps, unless it may be anywhere."""
     geometry = polygons[0] if len(polygons) == 1 else unary_union(polygons)
     as_it_stands = geometry.envelope
+    turned = map_points(as_it_stands, lambda points: points[:, ::-1])
     if not local:
         geometry = _to_local(path, geometry, crs, raster, plain, advice)
     geometry = _checked(path, geometry)
     bounds = getattr(raster, "extent", None) or extent(raster)
     if not anywhere and geometry.intersection(box(*bounds)).area == 0:
         hint = " (with --local it would)" if plain and as_it_stands.intersection(box(*bounds)).area > 0 else ""
-        if exchanged(geometry, raster, local).intersection(box(*bounds)).area > 0:
-            hint = " (with x and y exchanged it would)"
+        with suppress(SlopeError, ShapelyError):
+            turned = turned if local else _to_local(path, turned, crs, raster, plain, advice)
+            if turned.intersection(box(*bounds)).area > 0:
+                hint = EXCHANGED
         read_as = "" if local or plain else (f", read as {crs_name(crs)}: is that right? The terrain is in "
                                              f"{crs_name(raster.crs)}; {advice.wrong_crs}")
         raise SlopeError(path, f"must overlap the terrain{hint}, local x y {decimetres(bounds)}",
                          decimetres(geometry.bounds) + read_as)
     return geometry
-
-
-def exchanged(geometry, raster, local):
-    """A box in local metres with the east and north of its place exchanged, as in a file with northings first."""
-    offset = np.array([0.0, 0.0] if local else raster.offset)
-    return map_points(geometry.envelope, lambda points: (points + offset)[:, ::-1] - offset)
 
 
 def decimetres(values):

@@ -57,6 +57,7 @@ KEYS = {"width": "width", "start": "from", "blocked": "blocked", "lane": "lane",
         "loosening": "loosening"}       # in site.yaml and study.yaml
 OPTIONS = {"width": "--road-width", "start": "--road-from", "blocked": "--blocked", "lane": "--lane",
            "clearing": "--clearing", "loosening": "--loosening"}
+WITHOUT_WIDTH = "is a line, whose width must be given: --road-width"
 MARK = "# the line of a road, whose width is given apart"
 
 
@@ -98,7 +99,7 @@ def read_local(path, raster, asked: Asked = NOTHING, local=False, crs=None, advi
         except SlopeError:
             if not is_line(path):
                 raise
-        raise SlopeError(path, "is a line, whose width must be given: --road-width")
+        raise SlopeError(path, WITHOUT_WIDTH)
     found = lines_in(path, raster, local, crs, advice, warn)
     if len(found) != 1:
         raise SlopeError(path, "must hold one line, for --road-width", f"{len(found)} that do not meet")

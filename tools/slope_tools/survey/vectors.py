@@ -72,10 +72,15 @@ def named(name: object, layer: Optional[str], option: str = "--layer") -> str:
     return f"{name}|{MARK}{layer}"
 
 
+def is_there(name: object) -> bool:
+    """Whether the file of FILE or FILE|layername=NAME is there."""
+    return Path(source(name).path).is_file()
+
+
 def require_file(name: object) -> Source:
     """The Source of a name; SlopeError unless its file is there."""
     found = source(name)
-    if not Path(found.path).is_file():
+    if not is_there(name):
         raise SlopeError(found.path, "must be an existing file")
     return found
 

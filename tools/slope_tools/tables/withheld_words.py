@@ -4,7 +4,7 @@ from pathlib import Path
 from shlex import quote
 from typing import Any, List, Mapping, NamedTuple, Optional, Sequence
 
-from ..digits import percent
+from ..digits import cents, percent
 from ..findings import Finding, texts
 from ..statistics.withheld import BALLS, CONFIDENCE, Kind, exceeded_at_most
 from . import again, study_types
@@ -118,7 +118,7 @@ def zero(runs: int, known: Optional[float]) -> study_types.Zero:
     most = exceeded_at_most(runs)
     which = f"any of {runs} runs" if runs > 1 else "the only run"
     words = (f"nothing is to be removed in {which}: in another one something is with a probability of at most "
-             f"{100 * most:.2g} % ({100 * CONFIDENCE:g} % confidence)")
+             f"{cents(most)} ({100 * CONFIDENCE:g} % confidence)")
     if known is not None:
         words += f"; {percent(known)} of known events of this volume and height go as far as the road"
     return study_types.Zero(runs, most, known, words)
