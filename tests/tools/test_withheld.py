@@ -10,6 +10,8 @@ import pytest
 import made_study
 from made_rows import changed, row
 
+from run_helpers import TOP
+
 from slope_tools import cli, options
 from slope_tools.commands.study import Request
 from slope_tools.case.settings import check_settings, one_value_each
@@ -267,3 +269,20 @@ def test_a_run_reaches_the_road_by_what_lies_there_however_small_the_lobe():
     assert not road.missed and road.longest == 200 < road.near
     several = [changed(one, on_road_m3=0.4, beyond_road_m3=0.5, length_m=900.0) for one in several]
     assert events(400.0, 0.6).road(several).missed
+
+
+# --- what the sources name ---
+
+def test_commands_and_options_that_messages_name_are_there():
+    """Of all commands that a text of the tools proposes: `slope NAME --option`, tools/slope NAME --option."""
+    found = {}
+    for path in (TOP / "tools" / "slope_tools").rglob("*.py"):
+        text = re.sub(r'"\s*\n\s*f?"', "", path.read_text(encoding="utf-8"))
+        for name, words in re.findall(r"(?:`slope|tools/slope) (\w+)((?:\{[^{}]*\}|[^`\"'\\\n;&{}])*)", text):
+            if name in cli.COMMANDS:
+                found.setdefault(name, set()).update(re.findall(r"(?<![\w-])--[a-z][\w-]*", words))
+    assert len(found) > 5 and {"--anew"} <= found["study"]
+    for name, named in found.items():
+        parser = argparse.ArgumentParser()
+        known = cli.add_command(parser.add_subparsers(), name, cli.module_of(name, parser))._option_string_actions
+        assert named <= {*known, "--help"}, (name, named - {*known})
