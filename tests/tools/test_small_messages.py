@@ -137,6 +137,19 @@ def test_all_that_is_missing_is_said_at_once(here, capsys):
         assert item in err, err
 
 
+@pytest.mark.parametrize("names, keys", [
+    (("ncols", "nrows", "xllcorner", "yllcorner", "cellsize", "NODATA_value"), "ncols 3, nrows 2, xllcorner 0"),
+    (("mx", "my", "xlower", "ylower", "dx", "nodata_value"), "ncols 3, nrows 2, xllcenter 0"),
+    (("columns", "rows", "west", "south", "cell", "none"), None)])
+def test_a_grid_with_its_head_turned(here, capsys, names, keys):
+    """As GeoClaw and D-Claw write it."""
+    head = "".join(f"{value} {name}\n" for value, name in zip((3, 2, 0, 0, 10, -9999), names))
+    Path("topo.asc").write_text(head + "1 2 3\n4 5 6\n")
+    status, _, err = called(capsys, ["terrain", "topo.asc", "-o", "out.asc"])
+    assert status == 2 and err.count("\n") == 1 and ("values before the keys" in err) == bool(keys), err
+    assert not keys or f"write {keys}" in err
+
+
 def test_the_words_of_a_request_are_those_that_were_typed():
     """Of every kind of option."""
     asked = site_command.Request(terrain=["a.tif", "b c.tif"], bounds=[1.5, -2.0, 3.0, 4.0], rolling=[0.1], balls=300)
