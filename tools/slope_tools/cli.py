@@ -27,7 +27,7 @@ COMMANDS = {
     "polygon": "convert polygons (GeoJSON, shapefile, CSV, WKT) to the .csv in local metres that decks read",
     "release": "define the body that is released, by a polygon and a depth or a volume, or by a scar",
     "site": "make a folder with terrain, body, deck and map from GIS files, ready for study",
-    "quake": "convert strong-motion records (K-NET, KiK-net, PEER AT2, CSV) to the ground motion that decks read",
+    "quake": "convert strong-motion records of networks, or as CSV, to the ground motion that decks read",
     "volume": "compute the volume to remove from a road, in total and for each mesh cell",
     "export": "write the rasters of a run as GeoTIFFs in the survey's coordinates",
     "score": "compare a run's deposit with a mapped one: overlap, run-out, volume",
