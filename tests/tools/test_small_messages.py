@@ -66,14 +66,16 @@ def test_the_number_of_balls_is_one_number():
 
 
 def test_a_time_limit_is_no_estimate(monkeypatch):
-    """The last step is that of the time limit: most runs come to rest before."""
+    """Where fix halt ends most runs before their last step."""
     job = SimpleNamespace(began=0.0, run=SimpleNamespace(name="a", varied="a", log=SimpleNamespace(
         thermo=1, step=6000, last=2_418_249, first=0, time=3.0)))
     said = []
-    display = SimpleNamespace(live=None, printed={"a": -1e9}, label=lambda run: run.name, say=said.append,
-                              _say_share=lambda active: None, _progress=job_display.Display._progress)
-    job_display.Display.update(display, [job], 0)
-    assert "6000 of 2418249" in said[0] and said[0].endswith("at the latest") and "ends by" not in said[0]
+    monkeypatch.setattr(job_display.Display, "say", lambda self, line: said.append(line))
+    for halts in (False, True):
+        display = job_display.Display([job.run], [job.run], lambda: 1, halts)
+        display.printed["a"], display.live = -1e9, None
+        display.update([job], 0)
+    assert "6000 of 2418249" in said[1] and "at the latest" in said[1] and "ends by" in said[0]
 
 
 # --- lines and roads ---

@@ -4,10 +4,10 @@ from typing import Any, Dict, Optional
 
 from ..errors import SlopeError
 from ..options import option
+from ..runs import again
 from ..sites import site_choices, site_deck, site_roads
 from ..sites.site_choices import Site
 from ..survey import roads
-from ..tables import again
 
 OPTIONS = {name[2:].replace("-", "_"): field for field, name in roads.OPTIONS.items()}      # fields of a request
 ROAD = "the road: polygons, or a line with --road-width: GeoJSON, shapefile, CSV or WKT"

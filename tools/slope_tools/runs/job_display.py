@@ -16,12 +16,13 @@ TELL = 30.0             # s between two lines about a run, where there is no ter
 class Display:
     """Shows how far the runs are: a table that renews itself on a terminal, else a line now and then."""
 
-    def __init__(self, todo, waiting, at_a_time):
-        """at_a_time(): how many runs may be active at a time."""
+    def __init__(self, todo, waiting, at_a_time, halts=False):
+        """at_a_time(): how many runs may be active at a time; halts: most end before their last step, a time limit."""
         self.total, self.waiting, self.at_a_time = len(todo), len(waiting), at_a_time
         self.numbers = {one.name: i for i, one in enumerate(todo, 1)}
         self.ended_runs = self.failed = 0
         self.walls = []
+        self.by = "at the latest by" if halts else "ends by"
         self.printed = {}      # name -> when the last line about it was printed
         self.live = None
         self.share = 0.0       # done, as it was said last
@@ -89,7 +90,7 @@ class Display:
             if time.monotonic() - self.printed[job.run.name] > TELL:
                 self.printed[job.run.name] = time.monotonic()
                 _, text, end = self._progress(job)
-                self.say(f"{self.label(job.run)}: {text}" + (f", {end} at the latest" if end else ""))
+                self.say(f"{self.label(job.run)}: {text}" + (f", {self.by} {end}" if end else ""))
         return None
 
     def _say_share(self, active=()):
@@ -121,7 +122,7 @@ class Display:
         table = Table(box=None, padding=(0, 2, 0, 0))
         table.add_column("run", no_wrap=True)
         table.add_column("", no_wrap=True)
-        for head in ("step", "at the latest"):
+        for head in ("step", self.by):
             table.add_column(head, no_wrap=True, min_width=8)
         for job in active:
             share, text, end = self._progress(job)

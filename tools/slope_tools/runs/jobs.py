@@ -143,6 +143,7 @@ class Work:
         self.defaults = self.store.defaults
         self.continues = any(CONTINUES in word for words in decks.commands(inputs / deck.name)
                              for word in (*words, " ".join(words)))
+        self.halts = any(words[0] == "fix" and words[3:4] == ["halt"] for words in decks.commands(inputs / deck.name))
         self.active: List[Active] = []
         self.parts: Dict[Path, "Work"] = {}     # of several decks in one queue: {folder of runs: what makes these}
 
@@ -156,7 +157,7 @@ class Work:
         """
         once = store.once(todo)
         waiting = [run for run in once if not run.finished]
-        with Display(once, waiting, self.at_a_time) as display:
+        with Display(once, waiting, self.at_a_time, self.halts) as display:
             try:
                 while waiting or self.active:
                     for run, said in self._begin(waiting):

@@ -7,11 +7,12 @@ from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tup
 from .. import heads
 from ..findings import Finding
 from ..mobility import events
+from ..runs import again
 from ..sites import site_choices, site_roads
 from ..sites.site_budget import duration_text
 from ..statistics.answer import Code, Kind, Reason, Source
 from ..statistics.withheld import Kind as Rule
-from . import again, answer_words, study_types
+from . import answer_words, study_types
 from .fine_run import VARIABLE
 from .rows import finished_of
 

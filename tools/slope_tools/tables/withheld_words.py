@@ -6,8 +6,9 @@ from typing import Any, List, Mapping, NamedTuple, Optional, Sequence
 
 from ..digits import cents, percent
 from ..findings import Finding, texts
+from ..runs import again
 from ..statistics.withheld import BALLS, CONFIDENCE, Kind, exceeded_at_most
-from . import again, study_types
+from . import study_types
 
 UNUSABLE = "not usable as a conservative volume"
 MARGIN = 1.1            # of the balls: chance
