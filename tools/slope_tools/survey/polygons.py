@@ -103,7 +103,6 @@ def _placed(path, polygons, raster, local, plain, crs, advice, anywhere=False):
     """Polygons as one geometry in the local metres of a terrain, which it overlaps, unless it may be anywhere."""
     geometry = polygons[0] if len(polygons) == 1 else unary_union(polygons)
     as_it_stands = geometry.envelope
-    turned = map_points(as_it_stands, lambda points: points[:, ::-1])
     if not local:
         geometry = _to_local(path, geometry, crs, raster, plain, advice)
     geometry = _checked(path, geometry)
@@ -111,6 +110,7 @@ def _placed(path, polygons, raster, local, plain, crs, advice, anywhere=False):
     if not anywhere and geometry.intersection(box(*bounds)).area == 0:
         hint = " (with --local it would)" if plain and as_it_stands.intersection(box(*bounds)).area > 0 else ""
         with suppress(SlopeError, ShapelyError):
+            turned = map_points(as_it_stands, lambda points: points[:, ::-1])
             turned = turned if local else _to_local(path, turned, crs, raster, plain, advice)
             if turned.intersection(box(*bounds)).area > 0:
                 hint = EXCHANGED
