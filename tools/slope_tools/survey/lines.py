@@ -95,42 +95,44 @@ def read_local(path, raster, local, what="line", advice=None, crs=None, warn=vec
     crs = crs or own
     if not (local or plain or crs is None):
         require_degrees(crs, lines.bounds, path, (advice or polygons.ADVICE).wrong_crs)
+    check_order(path, lines, raster, local, None if plain else crs)
     points = [np.asarray(line.coords)[:, :2] for line in lines.geoms]
-    if not local and not plain and (crs is None or raster.crs is None):
+    if local:
+        return MultiLineString(points)
+    if not plain and (crs is None or raster.crs is None):
         where, remedy = "--terrain", f"--local if the {what} is in the run's local metres"
         if advice:
             where, remedy = advice.terrain, advice.polygon_crs if crs is None else advice.terrain_crs
         raise SlopeError(path if crs is None else where, f"must have a CRS, so that {what} and deposit can be brought "
                          f"together ({remedy})", "none")
-
-    def placed(points):
-        return MultiLineString(points) if local else in_terrain(path, points, crs, raster, polygons.is_cut(lines, crs))
-
-    there, bounds = placed(points), getattr(raster, "extent", None) or extent(raster)
-    if not there.intersects(box(*bounds)) and meets(bounds, lambda: placed([one[:, ::-1] for one in points])):
-        raise SlopeError(path, f"must overlap the terrain{polygons.EXCHANGED}, local x y {polygons.decimetres(bounds)}",
-                         polygons.decimetres(there.bounds))
-    return there
-
-
-def meets(bounds, place):
-    """Whether lines, as they are placed, meet a terrain; not where they cannot be."""
-    try:
-        return place().intersects(box(*bounds))
-    except (SlopeError, ShapelyError):
-        return False
-
-
-def in_terrain(path, points, crs, raster, cut):
-    """Lines (arrays of points in a CRS) in the local metres of a terrain; cut: they are, at 180 degrees."""
     if not same_crs(crs, raster.crs):
         points = [np.transpose(transform(crs, raster.crs, *line.T)) for line in points]
         if not all(np.isfinite(line).all() for line in points):
             raise SlopeError(path, f"must lie where {crs_name(raster.crs)}, the CRS of the terrain, covers it")
-        if cut:
+        if polygons.is_cut(lines, crs):
             whole = lines_of(GeometryCollection(polygons.snapped(map(LineString, points))))
             points = [np.asarray(line.coords) for line in whole.geoms]
     return MultiLineString([line - raster.offset for line in points])
+
+
+def check_order(path, lines, raster, local, crs):
+    """Raise SlopeError if lines miss the terrain, and would not with x and y exchanged; crs: None of the terrain's."""
+    bounds = getattr(raster, "extent", None) or extent(raster)
+
+    def placed(order):
+        points = [np.asarray(line.coords)[:, order] for line in lines.geoms]
+        if not (local or crs is None or same_crs(crs, raster.crs)):
+            points = [np.transpose(transform(crs, raster.crs, *line.T)) for line in points]
+        return MultiLineString([line - (0.0 if local else raster.offset) for line in points])
+
+    try:
+        there, turned = placed([0, 1]), placed([1, 0])
+        misses = not there.intersects(box(*bounds)) and turned.intersects(box(*bounds))
+    except (SlopeError, ShapelyError, ValueError):       # one of both has no place
+        return
+    if misses:
+        raise SlopeError(path, f"must overlap the terrain{polygons.EXCHANGED}, local x y {polygons.decimetres(bounds)}",
+                         polygons.decimetres(there.bounds))
 
 
 def text_geometry(path, text):
