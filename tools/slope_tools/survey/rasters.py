@@ -116,7 +116,8 @@ def opened(path, heights=True, unit=None, part=None, assigned=None):
 def unreadable(path, name, error):
     """The SlopeError on what GDAL cannot read, with what can be done."""
     reason = str(error).replace(zips.gdal_name(name), name)
-    return SlopeError(path, f"must be a raster that GDAL can read ({reason}){zips.remedy(name) or turned_heads.remedy(name)}")
+    way = zips.remedy(name) or turned_heads.remedy(name)
+    return SlopeError(path, f"must be a raster that GDAL can read ({reason}){way}")
 
 
 def is_raster(path):
