@@ -22,7 +22,7 @@ from rasterio.windows import Window
 from .. import disk, schemas
 from ..errors import SlopeError
 from ..schemas import COUNT, TEXT, mapping, numbers
-from . import plausible, text_grids, turned_heads, xyz, zips
+from . import plausible, text_grids, xyz, zips
 from .crs import crs_name, epsg, require_axes
 from .grids import Raster, check_memory, progress
 from .marks import Scale, cells_of, text
@@ -116,7 +116,7 @@ def opened(path, heights=True, unit=None, part=None, assigned=None):
 def unreadable(path, name, error):
     """The SlopeError on what GDAL cannot read, with what can be done."""
     reason = str(error).replace(zips.gdal_name(name), name)
-    way = zips.remedy(name) or turned_heads.remedy(name)
+    way = zips.remedy(name) or text_grids.remedy(name)
     return SlopeError(path, f"must be a raster that GDAL can read ({reason}){way}")
 
 

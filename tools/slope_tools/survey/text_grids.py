@@ -8,6 +8,7 @@ from typing import Any, Dict, List, NamedTuple, Optional, Tuple
 
 import numpy as np
 
+from .. import heads
 from ..errors import SlopeError
 from .grids import progress
 from .zips import open_text
@@ -20,6 +21,11 @@ AGAIN = {"xllcorner": {"xllcenter"}, "xllcenter": {"xllcorner"}, "yllcorner": {"
 NULL = "*"              # GRASS' mark of no value
 # the last line of the head of others, in lower case, and how many of these there are; those without have no head
 HEADS = {"GSAG": ("dsaa", 1), "ISG": ("end_of_head", 1), "ZMap": ("@", 2), "GXF": ("#grid", 1)}
+
+# keys of heads that have the value first, as a grid that GDAL reads has them
+TURNED = {"ncols": "ncols", "mx": "ncols", "nrows": "nrows", "my": "nrows", "xllcorner": "xllcorner",
+          "yllcorner": "yllcorner", "xllcenter": "xllcenter", "yllcenter": "yllcenter", "xlower": "xllcenter",
+          "ylower": "yllcenter", "cellsize": "cellsize", "dx": "dx", "dy": "dy", "nodata_value": "NODATA_value"}
 
 
 class Head(NamedTuple):
@@ -141,3 +147,17 @@ def check_numbers(path: str, driver: str) -> None:
             else:
                 words = [line[k:k + width] for k in range(0, len(line), width)] if width else line.split()
                 numbers(path, number, [word.strip() for word in words if word.strip()])
+
+
+def remedy(path: str) -> str:
+    """What can be done about a grid whose head has each value before its key, as GeoClaw and D-Claw write it, for a
+    message; "" of any other."""
+    try:
+        with open(path, encoding="ascii") as lines:
+            head = [line.split()[:2] for _, line in zip(range(6), lines)]
+    except (OSError, UnicodeDecodeError):
+        return ""
+    turned = [f"{TURNED[words[1].lower()]} {words[0]}" for words in head
+              if len(words) == 2 and words[1].lower() in TURNED and math.isfinite(heads.number(words[0]))]
+    return f"; its head has the values before the keys, as GeoClaw: write {', '.join(turned)}, a line each" * (
+        len(turned) >= 4)
