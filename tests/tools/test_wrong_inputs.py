@@ -281,7 +281,7 @@ CASES = [
     Case("several polygons", "two for a sphere",
          lambda: layer("release.geojson", box(80, 40, 110, 70), box(80, 80, 110, 110)),
          ["sphere" if word == "slbl" else word for word in RELEASED],
-         "release.geojson: must be one polygon for --shape sphere; slbl takes several, got 2"),
+         "release.geojson: must be one polygon for --shape sphere; slbl and slab take several, got 2"),
     Case("several polygons", "two that overlap", lambda: layer("p.geojson", ROAD, box(30, 10, 50, 140)), POLYGON,
          "right: new.csv: 1 polygon, 1 ring (0 holes)"),
     # --- files ---
