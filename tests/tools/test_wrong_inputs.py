@@ -260,7 +260,7 @@ CASES = [
          "Polygon"),
     Case("no line", "two lines that do not meet",
          lambda: layer("l.geojson", MultiLineString([[(50, 20), (50, 40)], [(50, 60), (50, 90)]])),
-         [*SITE, "--line", "l.geojson"], "l.geojson: must hold one line, got 2 that do not meet"),
+         [*SITE, "--line", "l.geojson"], "l.geojson: must hold one line, got 2, which are not joined end to end"),
     Case("crossing outline", "a bow tie", lambda: layer("p.geojson", Polygon([(20, 10), (40, 90), (40, 10), (20, 90)])),
          POLYGON, "p.geojson: feature 0: must be polygons that do not cross or touch themselves"),
     Case("crossing outline", "a ring of two points", lambda: text("p.csv", "1,1\n2,2\n"), OF_CSV,
