@@ -240,6 +240,8 @@ WORDS: Dict[str, Union[str, Words]] = {
         "{longest}.")),
     "road not reached": Words("no run reaches the road, {near} along the fall path ({ends}), but {shares} of known "
                               "events do", client="The road begins after {near} along the fall path, and {ends}."),
+    "some runs reach": Words("{reach} runs bring balls to the road{left}", client=(
+        "{reach} runs bring something to the road{left}.")),
     "one scatter reaches": Words("no run reaches the road, {near} along the fall path ({ends}), but {shares} of known "
                                  "events do, by one of the two scatters that are known of them", client=(
                                      "{shares} of them reach the road, as their scatter is taken: only the larger of "

@@ -22,7 +22,7 @@ class Kind(Enum):
     NUMBER = "number"
     FLOOR = "floor"             # at least so much
     WITHHELD = "withheld"
-    NOTHING = "nothing"         # 0, and no more than MANY of the known events reach the road
+    NOTHING = "nothing"         # 0: no run of any study reaches the road, and no more than MANY of the known events
 
 
 class Source(Enum):
@@ -35,6 +35,7 @@ class Code(Enum):
     """Of a reason: why a number is a floor, why no more runs were added, what a rule says."""
     BEYOND = "known beyond runs"
     NOT_REACHED = "road not reached"
+    SOME = "some runs reach"
     ONE_SCATTER = "one scatter reaches"
     TERRAIN = "terrain ends"
     RANGE = "range ends"
@@ -75,6 +76,10 @@ class Road(NamedTuple):
     def missed(self) -> bool:
         """Whether no run reaches it."""
         return self.brought.reach == 0
+
+    def some(self) -> Reason:
+        """That runs reach it, where nothing governs."""
+        return Reason(Code.SOME, {key: getattr(self.brought, key) for key in ("runs", "reach", "least_m3", "most_m3")})
 
     def numbers(self) -> Dict[str, Any]:
         return {"low": min(self.reached), "high": max(self.reached), "near_m": self.near, "longest_m": self.longest}
@@ -202,7 +207,8 @@ def number(part: Part, size: Optional[Reason]) -> Part:
 def of(paper: Optional[Paper], ensemble: Optional[Ensemble], road: Optional[Road]) -> Optional[Answer]:
     """The larger of both; None without either.
 
-    Where one of them is withheld for a reason that the other does not make up for, the other is a floor.
+    Where one of them is withheld for a reason that the other does not make up for, the other is a floor; so is 0 where
+    a run reaches the road.
     """
     parts: List[Tuple[Source, Part]] = []
     if paper and (mine := of_paper(paper, ensemble is not None)):
@@ -216,10 +222,12 @@ def of(paper: Optional[Paper], ensemble: Optional[Ensemble], road: Optional[Road
     if not known:
         return Answer(Kind.WITHHELD, None, None, None, None, None, paper, ensemble, road, reasons)
     source, best = max(known, key=lambda one: one[1].volume or 0.0)
-    open_ = any(part.kind is Kind.FLOOR or part.kind is Kind.WITHHELD and not few(part) for _, part in parts)
+    some = [road.some()] if road and not (best.volume or road.missed) else []
+    open_ = bool(some) or any(
+        part.kind is Kind.FLOOR or part.kind is Kind.WITHHELD and not few(part) for _, part in parts)
     kind = Kind.FLOOR if open_ else Kind.NUMBER if best.volume else Kind.NOTHING
     return Answer(kind, best.volume, best.share, best.low, None if open_ else best.high, source, paper, ensemble, road,
-                  reasons)
+                  [*some, *reasons])
 
 
 def few(part: Part) -> bool:

@@ -63,8 +63,10 @@ def at_the_road(rows: Sequence[Finished]) -> answer.AtRoad:
     past = [row.at_road.beyond_road_m3 or 0.0 for row in rows]
     brought = [(row.at_road.on_road_m3 or 0.0) + one for row, one in zip(rows, past)]
     balls, most = max((one / size, one) for one, size in zip(brought, ball))
+    left = [row.at_road.remove_m3 for row in rows if row.at_road.remove_m3]
     return answer.AtRoad(len(rows), sum(one >= size for one, size in zip(brought, ball)),
-                         sum(one >= size for one, size in zip(past, ball)), most, balls)
+                         sum(one >= size for one, size in zip(past, ball)), most, balls, min(left, default=0.0),
+                         max(left, default=0.0))
 
 
 def left_before(row: Finished) -> float:
