@@ -262,10 +262,8 @@ def doubts(about: ensemble_types.Weighted, runs: Runs) -> List[Finding]:
 
 
 def whole_weights(runs: Runs) -> Dict[str, float]:
-    """The share of known events that each run stands for; the longest stands for those beyond it, too, as in maps."""
-    share = runs.mass.share.copy()
-    share[runs.mass.order[-1]] += runs.mass.far
-    return {row.run: float(one) for row, one in zip(runs.rows, share)}
+    """The share of known events that each run stands for, those beyond the longest among them."""
+    return {row.run: float(one) for row, one in zip(runs.rows, conditioned.whole(runs.mass))}
 
 
 # --- tables ---

@@ -222,7 +222,12 @@ def of(paper: Optional[Paper], ensemble: Optional[Ensemble], road: Optional[Road
     if not known:
         return Answer(Kind.WITHHELD, None, None, None, None, None, paper, ensemble, road, reasons)
     source, best = max(known, key=lambda one: one[1].volume or 0.0)
-    some = [road.some()] if road and not (best.volume or road.missed) else []
+    some = []
+    if road and not best.volume:
+        if not road.missed:
+            some = [road.some()]
+        elif not ensemble and min(road.reached) > MANY:
+            some = [Reason(Code.NOT_REACHED, road.numbers())]
     open_ = bool(some) or any(
         part.kind is Kind.FLOOR or part.kind is Kind.WITHHELD and not few(part) for _, part in parts)
     kind = Kind.FLOOR if open_ else Kind.NUMBER if best.volume else Kind.NOTHING
