@@ -80,9 +80,9 @@ def either_side(share: np.ndarray, found: weights.Weights) -> Optional[Tuple[np.
 def whole(mass: Masses) -> np.ndarray:
     """The share of all known events that each run stands for.
 
-    Those beyond the longest run go at least as far as it does: it stands for them wherever a place is asked for, in maps,
-    stretches and zones, so that no less of them reach its end than go beyond it. What they leave is not known: as numbers
-    they exceed every value, see curve().
+    Those beyond the longest run go at least as far as it does: it stands for them wherever a place is asked for, in
+    maps, stretches and zones, so that no fewer of them reach its end than go beyond it. What they leave is not known:
+    as numbers they exceed every value, see curve().
     """
     share = mass.share.copy()
     share[mass.order[-1]] += mass.far

@@ -109,6 +109,14 @@ def study_in(folder: Path) -> Optional[Path]:
     return found if (found / STUDY).is_file() else None
 
 
+def weighted_in(folder: Path) -> Optional[Path]:
+    """The study of a site, or of one of its roads, whose runs known events weigh; None where there is none."""
+    found = folder / INSIDE[1]
+    told = (folder / STUDY).is_file() or not (found / STUDY).is_file()
+    ensemble = None if told else schemas.load(found / STUDY, "what `slope study` wrote", SCHEMA).get("ensemble")
+    return found if ensemble and (ensemble.get("known_events") or {}).get("weights") else None
+
+
 def without_study(site: Path) -> SlopeError:
     """Of the folder of a site whose study is asked for and not made yet."""
     return SlopeError(site, f"must hold the study of this site: `slope study {quote(str(site))}` makes it and the "
