@@ -134,6 +134,9 @@ def test_a_floor_where_known_events_lie_beyond_the_runs():
     assert codes(found) == [Code.BEYOND, Code.TERRAIN] and found.reasons[0].numbers == {"far": 0.08, "longest_m": 800.0}
     found = answer.of(Paper(0.0), ensemble(0.7), road(0.5, 0.6))
     assert (found.volume, found.share) == (300.0, 0.3)
+    [reason] = answer.of(Paper(0.0), ensemble(0.3, path_end=161.2)._replace(longest=165.9), road(0.5, 0.6)).reasons
+    assert all("30 %" in words(reason) and "161 m" in words(reason) and "166 m" in words(reason)
+               for words in (answer_words.text, answer_words.client))
     # as files of earlier versions have it
     found = answer.of_ensemble(Ensemble({0.95: (None, 9.0, None), 0.9: (7.0, 5.0, None), 0.75: (3.0, 2.0, 4.0)}, 0.08,
                                         800.0), None)

@@ -184,7 +184,8 @@ def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: S
                     for name, curve in curves.items()},
         to_remove=quantiles(curves[REMOVE], runs, REMOVE, answer.shares(one.far)) if REMOVE in curves else None,
         variables={name: variable(runs, k, emulated.main) for k, name in enumerate(sample.names)},
-        influence=emulated.influence, weights=whole_weights(runs), maps=[])
+        influence=emulated.influence, weights=whole_weights(runs), maps=[],
+        path_end_m=end if (end := float(found.path.length[-1])) < longest else None)
     return Evaluated(replace(about, doubts=doubts(about, runs)), runs, curves)
 
 
@@ -244,8 +245,9 @@ def doubts(about: ensemble_types.Weighted, runs: Runs) -> List[Finding]:
     found, stopped, reached = [], about.added.stopped, about.reached or 0.0
     if about.far >= 1 - farther.REACHED:
         remedy = answer_words.text(answer.Reason.read(stopped)) if stopped else "vary towards more mobile masses"
-        found.append(Finding("events beyond", {"length": metres(about.longest_m), "share": percent(about.far),
-                                               "remedy": remedy}))
+        found.append(Finding("events beyond", {
+            "length": metres(about.longest_m), "share": answer_words.beyond(about.far, about.path_end_m),
+            "remedy": remedy}))
     if reached < farther.REACHED and about.short > (1 - farther.REACHED) / 2:
         found.append(Finding("events before", {"length": metres(about.shortest_m),
                                                "share": percent(about.short)}))
@@ -295,8 +297,8 @@ def summary(about: ensemble_types.Weighted) -> str:
     reached = percent(about.reached or 0.0)
     return (f"the runs reach from {three_at_least(about.shortest_m)} to {metres(about.longest_m)}, where "
             f"{reached} of {about.events} events of {about.set} end ({percent(about.short)} "
-            f"before, {percent(about.far)} beyond{by_lobe(about)}; {about.path}); weighted by them the "
-            f"{about.runs} runs{more} say as much as {about.effective:.0f}")
+            f"before, {answer_words.beyond(about.far, about.path_end_m)} beyond{by_lobe(about)}; {about.path}); weighted "
+            f"by them the {about.runs} runs{more} say as much as {about.effective:.0f}")
 
 
 def by_lobe(about: ensemble_types.Weighted) -> str:

@@ -114,7 +114,7 @@ class Ensemble(NamedTuple):
     """A weighted ensemble: (value, low, high) of its quantiles (m3) by share, of shares().
 
     far: share of the known events beyond all runs; longest: m; stopped: why no more runs were added, None: enough were.
-    size: as of Paper.
+    size: as of Paper; path_end: m, of a fall path that ends before the longest run: far is the share beyond it.
     """
     quantiles: Mapping[float, Tuple[Optional[float], Optional[float], Optional[float]]]
     far: float
@@ -122,6 +122,7 @@ class Ensemble(NamedTuple):
     withheld: Sequence[Withheld] = ()
     stopped: Optional[Reason] = None
     size: Optional[Reason] = None
+    path_end: Optional[float] = None
 
 
 def shares(far: float) -> List[float]:
@@ -194,7 +195,8 @@ def of_ensemble(one: Ensemble, road: Optional[Road]) -> Part:
     if share == SHARE:
         return number(Part(Kind.NUMBER, value, share, low_m3, high_m3), one.size)
     return Part(Kind.FLOOR, value, share, low_m3, None,
-                [Reason(Code.BEYOND, {"far": one.far, "longest_m": one.longest}), *stopped])
+                [Reason(Code.BEYOND, {"far": one.far, "longest_m": one.longest, **(
+                    {} if one.path_end is None else {"path_end_m": one.path_end})}), *stopped])
 
 
 def number(part: Part, size: Optional[Reason]) -> Part:

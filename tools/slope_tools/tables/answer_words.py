@@ -70,7 +70,7 @@ def finding(reason: Reason) -> Finding:
         return Finding("rule", {"study": STUDY[of["source"]], "rule": of["rule"]})
     if code is Code.SIZE:
         return of_size(of)
-    words = {"longest": lambda: metres(of["longest_m"]), "far": lambda: percent(of["far"]),
+    words = {"longest": lambda: metres(of["longest_m"]), "far": lambda: beyond(of["far"], of.get("path_end_m")),
              "near": lambda: metres(of["near_m"]), "path": lambda: metres(of["path_m"]),
              "share": lambda: percent(of["share"]), "shares": lambda: shares((of["low"], of["high"])),
              "reach": lambda: f"{of['reach']} of {of['runs']}", "left": lambda: left(of),
@@ -101,6 +101,11 @@ def grown(of: Mapping[str, Any]) -> str:
 TAKES = {Code.BEYOND: ("longest", "far"), Code.NOT_REACHED: ("near", "shares", "ends"),
          Code.ONE_SCATTER: ("near", "shares", "ends"), Code.TERRAIN: ("path", "share"), Code.RANGE: ("ends",),
          Code.RUNS: ("points",), Code.SOME: ("reach", "left")}
+
+
+def beyond(far: float, path_end: Optional[float]) -> str:
+    """The share of known events beyond all runs, and where it is counted if that is not where the longest ends."""
+    return percent(far) + ("" if path_end is None else f" (beyond {metres(path_end)}, where the fall path ends)")
 
 
 def left(of: Mapping[str, Any]) -> str:

@@ -47,7 +47,7 @@ def ensemble_of(about: study_types.Study) -> Optional[Ensemble]:
     quantiles = {each.share: (raised(each.value), raised(each.low), raised(each.high))
                  for each in one.to_remove}
     return Ensemble(quantiles, one.far, one.longest_m, rules(whole.withheld),
-                    Reason.read(stopped) if stopped else None, size_of(about))
+                    Reason.read(stopped) if stopped else None, size_of(about), one.path_end_m)
 
 
 def size_of(about: study_types.Study) -> Optional[Reason]:
