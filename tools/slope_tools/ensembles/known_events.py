@@ -294,11 +294,11 @@ def describe(one: ensemble_types.Ensemble) -> List[str]:
 def summary(about: ensemble_types.Weighted) -> str:
     added = about.added.points
     more = f" (those of {added} points towards longer ones among them)" if added else ""
-    reached = percent(about.reached or 0.0)
+    reached, far = percent(about.reached or 0.0), answer_words.beyond(about.far, about.path_end_m)
     return (f"the runs reach from {three_at_least(about.shortest_m)} to {metres(about.longest_m)}, where "
             f"{reached} of {about.events} events of {about.set} end ({percent(about.short)} "
-            f"before, {answer_words.beyond(about.far, about.path_end_m)} beyond{by_lobe(about)}; {about.path}); weighted "
-            f"by them the {about.runs} runs{more} say as much as {about.effective:.0f}")
+            f"before, {far} beyond{by_lobe(about)}; {about.path}); weighted by them the {about.runs} runs{more} say as "
+            f"much as {about.effective:.0f}")
 
 
 def by_lobe(about: ensemble_types.Weighted) -> str:
