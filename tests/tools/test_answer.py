@@ -10,6 +10,8 @@ import made_study
 from slope_tools import disk, records
 from slope_tools.commands import study
 from slope_tools.errors import SlopeError
+from slope_tools.report import client_part
+from slope_tools.report.numbers import Numbers
 from slope_tools.sites import site_choices
 from slope_tools.sites.site_sections import OfMass
 from slope_tools.statistics import answer, size_family
@@ -132,6 +134,9 @@ def test_a_floor_where_known_events_lie_beyond_the_runs():
     assert codes(found) == [Code.BEYOND, Code.TERRAIN] and found.reasons[0].numbers == {"far": 0.08, "longest_m": 800.0}
     found = answer.of(Paper(0.0), ensemble(0.7), road(0.5, 0.6))
     assert (found.volume, found.share) == (300.0, 0.3)
+    [reason] = answer.of(Paper(0.0), ensemble(0.3, path_end=161.2)._replace(longest=165.9), road(0.5, 0.6)).reasons
+    assert all("30 %" in words(reason) and "161 m" in words(reason) and "166 m" in words(reason)
+               for words in (answer_words.text, answer_words.client))
     # as files of earlier versions have it
     found = answer.of_ensemble(Ensemble({0.95: (None, 9.0, None), 0.9: (7.0, 5.0, None), 0.75: (3.0, 2.0, 4.0)}, 0.08,
                                         800.0), None)
@@ -159,8 +164,27 @@ def test_a_road_that_no_run_reaches(low, high, kind, said):
     found = answer.of(Paper(0.0), ensemble(values=0.0), road(low, high, 399.0))
     assert (found.kind, found.volume, codes(found)) == (kind, 0.0, said)
     assert all(one.numbers == {"low": low, "high": high, "near_m": 400.0, "longest_m": 399.0} for one in found.reasons)
-    assert answer.of(Paper(0.0), ensemble(values=0.0), road(low, high, 400.0)).kind is Kind.NOTHING     # one reaches it
     assert answer.of(Paper(0.0), ensemble(values=0.0), road(low, high, None)).kind is kind
+
+
+@pytest.mark.parametrize("rules", [[], [Rule.BALLS], [Rule.LEFT]])
+@pytest.mark.parametrize("reached", [(0.02, 0.05), (0.11, 0.33), (0.9, 0.95)])
+def test_nothing_is_said_only_where_no_run_brings_a_ball(rules, reached):
+    """Of either study, whatever governs: 2 of 26 runs leave 530 and 614 m3."""
+    beside = AtRoad(26, 2, 1, 1621.0, 5.8, 530.0, 614.0).and_of(AtRoad(6, 0, 0, 9.0, 0.1))
+    for mass in (ensemble(values=0.0, rules=rules), ensemble(0.7, rules, 0.0), None):
+        found = answer.of(Paper(0.0), mass, Road(151.0, 158.0, reached, reached, 165.0, beside))
+        assert (found.kind, found.volume, found.high) == (Kind.FLOOR, 0.0, None)
+        assert found.reasons[0] == (Code.SOME, {"runs": 32, "reach": 2, "least_m3": 530.0, "most_m3": 614.0})
+        said = found.about()
+        assert answer_words.number(said).startswith("more than 0 m3") and all(
+            "2 of 32" in words(found.reasons[0]) and "530 to 614" in words(found.reasons[0])
+            for words in (answer_words.text, answer_words.client))
+        first = client_part.of_floor(said, Numbers())
+        assert first.number == "more than 0" and "No run" not in first.title + first.band
+    found = answer.of(Paper(0.0), ensemble(values=0.0), Road(151.0, 158.0, (0.0, 0.05), (0.0, 0.0), 120.0, AtRoad(
+        26, 0, 0, 3.0, 0.4)))
+    assert found.kind is Kind.NOTHING
 
 
 def test_rules_that_withhold_one_of_both():

@@ -1,13 +1,19 @@
 """tools/slope export: every raster of a run, with its values, place and CRS; and the base of a run that has one."""
+import contextlib
 import os
 import shutil
+import sqlite3
 import subprocess
 from pathlib import Path
 
+import fiona
 import numpy as np
 import pytest
 import rasterio
 import yaml
+from affine import Affine
+from rasterio.crs import CRS
+from shapely.geometry import Point
 
 import made_study
 from made_rows import row
@@ -17,6 +23,7 @@ from tiny_collapse import LMP, read_asc, write_case
 from slope_tools.case import run_folders
 from slope_tools.deposits import deposit
 from slope_tools.errors import SlopeError
+from slope_tools.survey import geopackage, rasters
 
 COMMAND = "export"
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
@@ -146,6 +153,18 @@ def test_without_a_terrain_in_local_metres(slope):
     assert err.count("\n") == 1 and "no --terrain and no terrain.asc: no CRS" in err
     with rasterio.open("run.export/run.base.tif") as tif:
         assert tif.crs is None and tuple(tif.bounds) == (0, 0, 150, 100)
+
+
+@pytest.mark.parametrize("crs, number", [(None, -1), ("EPSG:6677", 6677)])
+def test_a_geopackage_without_a_crs_is_in_metres(tmp_path, crs, number):
+    """Not in degrees, for which GDAL takes it, and QGIS with it."""
+    raster = rasters.Raster(np.ones((2, 2)), Affine(1, 0, 0, 0, -1, 2), crs and CRS.from_string(crs))
+    geopackage.write(tmp_path / "a.gpkg", {"a": geopackage.Layer("Point", {}, [(Point(1, 2), {})])}, raster)
+    with contextlib.closing(sqlite3.connect(tmp_path / "a.gpkg")) as base:
+        for table in ("gpkg_contents", "gpkg_geometry_columns"):
+            assert base.execute(f"SELECT srs_id FROM {table}").fetchone() == (number,)
+    with fiona.open(tmp_path / "a.gpkg") as data:
+        assert [one["geometry"]["coordinates"] for one in data] == [(1 + raster.offset[0], 2 + raster.offset[1])]
 
 
 def test_an_older_run_has_no_base(slope):

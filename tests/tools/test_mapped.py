@@ -7,12 +7,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
+from rasterio.features import shapes
+from shapely.geometry import shape
+from shapely.ops import unary_union
 
 import test_report
 from made_rows import row
 from tiny_collapse import read_asc
 
 from slope_tools import disk, records
+from slope_tools.deposits import deposit, score
+from slope_tools.mobility import run_length
 from slope_tools.plots import figure_maps
 from slope_tools.studies import mapped
 from slope_tools.survey import rasters
@@ -60,8 +65,14 @@ def test_overlap_and_run_out_by_hand(here):
         assert one.mapped.overlap == pytest.approx((mine & inside).sum() / (mine | inside).sum())
         assert one.mapped.beyond_mapped_m == pytest.approx(one.length_m - entry["length_m"])
     assert entry["best"] == max(rows, key=lambda one: one.mapped.overlap).run
-    # the farthest corner: the mass comes down from the right
     assert min(one.length_m for one in rows) < entry["length_m"] + 10
+    run = deposit.read(str(here / "repeated" / rows[0].run / "tiny"), None, lambda text: None)     # by its own outline
+    mask, _ = run_length.lobes(run)
+    own = unary_union([shape(one) for one, _ in shapes(mask.astype("uint8"), mask, transform=run.raster.transform)])
+    length = mapped.length_of(run, None, score.from_polygon(own, run.raster))
+    assert length == pytest.approx(run_length.of_run(run, None).distance, abs=1e-3)
+    beyond = mapped.length_of(run, None, score.from_polygon(own.union(own.buffer(1000)), run.raster))
+    assert beyond > length + 900        # what lies beside the grid counts
     text, = mapped.describe(about.observed, rows)
     assert re.search(rf"overlap \(Jaccard\) \d\.\d\d to \d\.\d\d, best of {entry['best']}, [+-]\d+ m in run-out", text)
     assert "overlap,beyond_mapped_m" in study_table.table({"rolling": ["0", "0.3"], "steps": ["1200"]}, {}, rows, {

@@ -245,7 +245,7 @@ def test_a_depth_that_no_sphere_on_bulging_ground_has(refused):
     terrain(lambda x, y: ramp(30)(x, y) + 60 * np.exp(-((x - 120) ** 2 + (y - 100) ** 2) / 100))
     polygon(box(100, 80, 140, 120))
     refused("t.asc --polygon p.csv --depth 1", "--depth: must be at least ", "bulges above the line from toe to "
-            "shoulder", "take --shape slbl or a smaller polygon, got 1")
+            "shoulder", "--shape slab", "got 1")
 
 
 @pytest.mark.parametrize("shape", ["sphere", "ellipsoid"])
@@ -290,6 +290,117 @@ def test_a_base_level_below_a_part_of_the_polygon_is_warned_of(body):
     assert numbers["percent"] == pytest.approx(100 * found["cells"] / (80 * 40))     # cells of 2 m
     _, about = body("t.asc --polygon p.csv --shape slbl --depth 20")
     assert about["curvature_per_m"] > 0 and "little" not in warned(about)
+
+
+GULLY = (lambda x, y: 20 + 0.6 * x - 15 * np.maximum(0, 1 - ((y - 40) / 30) ** 2))
+OPEN, DEEP = box(60, 120, 160, 190), box(80, 25, 140, 55)     # on the open slope, and in the gully
+
+
+def areas(*features, path="p.geojson"):
+    """Polygons (local metres) with attributes, as a GIS has them."""
+    schema = {"geometry": "Polygon", "properties": {key: "str" if key.lower() == "name" else "float" for _, about in
+                                                    features for key in about}}
+    with fiona.open(path, "w", "GPKG" if path.endswith("gpkg") else "GeoJSON", schema, CRS_M) as out:
+        for shape, about in features:
+            out.write({"geometry": mapping(Polygon([(x + EAST, y + NORTH) for x, y in shape.exterior.coords])),
+                       "properties": {**dict.fromkeys(schema["properties"]), **about}})
+
+
+def test_each_polygon_has_a_base_level_of_its_own(body, refused):
+    """One curvature for both left the gully without a body: its ground is more concave."""
+    terrain(GULLY)
+    areas((OPEN, {"NAME": "open"}), (DEEP, {"NAME": "deep"}))
+    found, about = body("t.asc --polygon p.geojson --shape slbl --depth 6")
+    both = {one["name"]: one for one in about["polygons"]}
+    for name, shape in (("open", OPEN), ("deep", DEEP)):
+        polygon(shape)
+        alone, mine = body("t.asc --polygon p.csv --shape slbl --depth 6")
+        assert both[name]["volume_m3"] == pytest.approx(alone["volume"], rel=1e-5)
+        assert both[name]["curvature_per_m"] == mine["curvature_per_m"] and both[name]["area_m2"] == alone["area"]
+        assert both[name]["largest_depth_m"] == pytest.approx(6)
+    assert found["volume"] == pytest.approx(sum(one["volume_m3"] for one in both.values()), rel=1e-5)
+    assert warned(about) == {}
+    found, about = body("t.asc --polygon p.geojson --shape slbl --volume 30000")
+    shares = [one["volume_m3"] / one["polygon_m2"] for one in about["polygons"]]
+    assert shares[0] == pytest.approx(shares[1]) and found["volume"] == pytest.approx(30000, rel=1e-5)
+    refused("t.asc --polygon p.geojson --shape slbl --depth 600", "--depth in deep: must be at most", "got 600")
+    polygon(OPEN.union(DEEP))
+    _, about = body("t.asc --polygon p.csv --shape slbl --curvature 0.008")      # of all: the gully gets nothing
+    assert "no body" in warned(about)
+    assert warned(about)["no body"]["polygon"].startswith(f"p.csv: the polygon at east {EAST + 110:.1f}")
+
+
+@pytest.mark.parametrize("shape", ["slbl", "slab"])
+def test_features_with_depths_of_their_own(body, refused, shape):
+    """Six, as AvaFrame has them: text or number, in whatever case; the option is for those without."""
+    terrain(GULLY)
+    each = [box(20 + 36 * k, 100, 44 + 36 * k, 130) for k in range(5)]
+    areas(*((one, {"Name": f"r{k}", "Thickness": 2.0 + k} if k < 4 else {"Name": "r4"}) for k, one in enumerate(each)),
+          (box(100, 160, 100.5, 160.5), {"Name": "tiny", "Thickness": 1.0}), path="p.gpkg")
+    _, about = body(f"t.asc --polygon p.gpkg --shape {shape} --depth 1.5")
+    found = {one["name"]: one for one in about["polygons"]}
+    assert [found[f"r{k}"]["largest_depth_m"] for k in range(5)] == pytest.approx([2, 3, 4, 5, 1.5])
+    assert [found[f"r{k}"].get("depth_from") for k in range(5)] == ["Thickness".lower()] * 4 + [None]
+    assert warned(about)["no body"]["polygon"] == "p.gpkg: tiny" and warned(about)["own depth"]["depth"] == 1.5
+    if shape == "slab":
+        assert found["r3"]["volume_m3"] == pytest.approx(5 * each[3].area)
+    refused(f"t.asc --polygon p.gpkg --shape {shape}", "--depth: must be given", "thickness", "got none of r4")
+    areas((OPEN, {"depth": 3.0}), (OPEN.intersection(box(100, 0, 200, 300)), {"depth": 5.0}))
+    found, about = body(f"t.asc --polygon p.geojson --shape {shape}")       # of ground that both have: the deepest
+    assert [one["largest_depth_m"] for one in about["polygons"]] == pytest.approx([3, 5])
+    assert sum(one["polygon_m2"] for one in about["polygons"]) == pytest.approx(OPEN.area)
+    areas((OPEN, {"depth": -1.0}))
+    refused(f"t.asc --polygon p.geojson --shape {shape}", "p.geojson: feature 1: attribute depth must be", "> 0", "-1")
+
+
+def test_a_slab_is_the_ground_lowered(body, refused):
+    """On ribs no curved surface is as shallow, and each names the slab."""
+    _, _, z = terrain(lambda x, y: 0.7 * x + 18 * np.exp(-((x - 155) / 25) ** 2) * (
+        np.exp(-((y - 80) / 10) ** 2) + np.exp(-((y - 120) / 12) ** 2)), size=(50, 60), cell=4.0)
+    polygon(box(110, 50, 200, 150))
+    for shape in ("slbl", "sphere", "ellipsoid"):
+        refused(f"t.asc --polygon p.csv --shape {shape} --depth 1.5", "--depth: must be at least", "--shape slab")
+    found, about = body("t.asc --polygon p.csv --shape slab --depth 1.5")
+    assert found["volume"] == pytest.approx(1.5 * 88 * 100, rel=0.05) and found["mean_depth"] == pytest.approx(1.5)
+    assert warned(about) == {}
+    slip = rasters.read_asc_local("r.slip.asc").z
+    assert set(np.round(z - slip, 3).ravel()) == {0.0, 1.5}
+    found, _ = body("t.asc --polygon p.csv --shape slab --volume 4000")
+    assert found["largest_depth"] == pytest.approx(4000 / found["area"], abs=1e-4)
+
+
+def test_a_lost_polygon_does_not_hide_a_body_in_parts(body):
+    """Parts are counted in each polygon; those that are too small to count are told, so that all add up."""
+    terrain(lambda x, y: 0.5 * x + 12 * np.sin(y / 15))
+    areas((box(60, 20, 120, 180), {"name": "ribs"}), (box(180, 90, 180.5, 90.5), {"name": "lost"}))
+    found, about = body("t.asc --polygon p.geojson --shape slbl --curvature 0")
+    parts = warned(about)["parts"]
+    assert next(one["part"] for one in about["warnings"] if one["kind"] == "parts") == "ribs"
+    volumes = [float(text.replace(",", "")) for text in parts["volumes"].split(" and ")]
+    rest = re.search(r"and (\S+) m3 in \d+ smaller", parts["rest"])
+    assert sum(volumes) + (float(rest[1].replace(",", "")) if rest else 0) == pytest.approx(found["volume"], rel=1e-4)
+    assert parts["parts"] >= len(volumes) >= 2 and warned(about)["no body"]["polygon"] == "p.geojson: lost"
+
+
+def test_a_polygon_of_a_scar_without_any_is_named(body):
+    terrain(hill)
+    terrain(lambda x, y: 6.0 * (np.hypot(x - 120, y - 100) < 20), "depth.asc")
+    areas((box(90, 70, 150, 130), {"name": "with"}), (box(20, 20, 40, 40), {"name": "without"}))
+    _, about = body("t.asc --polygon p.geojson --scar depth.asc --scar-is depth")
+    assert warned(about)["no body"]["polygon"] == "p.geojson: without"
+
+
+def test_the_picture_has_all_polygons_and_the_bearing_is_the_bodys(slope, monkeypatch, here):
+    shown, draw_map = [], release_chart.draw_map
+    monkeypatch.setattr(release_chart, "draw_map", lambda *of: (shown.append(of[4]), draw_map(*of)))
+    terrain(lambda x, y: np.where(y > 100, 0.6 * x + 60, 0.6 * x + 0.6 * y))
+    areas((box(60, 20, 120, 80), {"name": "lost"}), (box(60, 120, 160, 190), {"name": "body"}))
+    terrain(lambda x, y: 3.0 * (y > 130) * (y < 180) * (x > 80) * (x < 140), "depth.asc")
+    status, out, err = slope("t.asc --polygon p.geojson --scar depth.asc --scar-is depth -o r")
+    assert status == 0, err
+    xlo, ylo, xhi, yhi = shown[0]
+    assert xlo < 60 and ylo < 20 and xhi > 160 and yhi > 190
+    assert "towards 270 degrees" in out
 
 
 def test_a_target_out_of_reach(refused):

@@ -569,7 +569,7 @@ def given_bodies(**more):
     ({"depth": 0}, "got 0"), ({"depth": "inf"}, "got inf"), ({"depth": True}, "got True"), ({"depth": [5]}, "depth"),
     ({"volume": "1.200,5"}, "volume must be a number of m3 > 0"), ({"depth": "2026-11-27"}, "got 2026-11-27"),
     ({"depth": 3.0, "volume": 900.0}, "must have one attribute, depth (m) or volume (m3)"),
-    ({"depth": None}, "must have one attribute, depth (m) or volume (m3)"), ({"Depth": 3.0}, "must have one attribute"),
+    ({"depth": None}, "must have one attribute, depth (m) or volume (m3)"), ({"Depth": "six"}, "got six"),
     ({"depth": ""}, "must have one attribute"),
     ({"depth": 1e6}, "depth: must be at most"), ({"volume": 1e9}, "volume: must be at most"),
     ({"volume": 0.1}, "must hold a body"), ({"volume": 4.0}, "below the ground somewhere")])
@@ -882,6 +882,15 @@ def test_zones_of_a_study(two, capsys):
     worth = 1 / sum(one ** 2 for one in weights.values())
     low, high = (float(side) for side in hazard.share_bounds(worth, worth))
     assert (low < 0.4) and entry["at_least_m2"] == 0 and entry["cannot_tell_m2"] == 80 * 25
+    # of a site whose number is of the paper's study: the weighted runs all the same
+    site, paper = folder.parent, folder.parent / "study"
+    paper.mkdir()
+    about["study"]["governs"] = "study"
+    (folder / "study.yaml").write_text(yaml.safe_dump(about))
+    (paper / "study.yaml").write_text(yaml.safe_dump({**about, "ensemble": None}))
+    status, out, _ = zones_of(site, capsys, "--zones", "0.4", "--overwrite")
+    assert status == 0 and f"of the runs of {folder}" in out
+    assert yaml.safe_load((site / "zones/zones.yaml").read_text())["zones"] == [entry]
 
 
 def test_repeats_of_a_point_are_worth_one_run(two, capsys):

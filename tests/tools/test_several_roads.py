@@ -1,10 +1,13 @@
 """Several roads of a site: each is studied as if it were alone, over the same runs; the worst stands for the site."""
 import csv
 import json
+import math
 import shutil
 
 import pytest
 import yaml
+from shapely.geometry import LineString
+from shapely.ops import substring
 
 from test_site import BALLS, EAST, NORTH, ROAD, gis, inside, make, told, write_files, write_layer  # noqa: F401
 from tiny_collapse import LMP
@@ -16,7 +19,7 @@ from slope_tools.sites import site_choices, site_roads
 from slope_tools.statistics.answer import Kind
 from slope_tools.studies import road_numbers
 from slope_tools.studies.road_numbers import Number
-from slope_tools.survey import rasters, roads
+from slope_tools.survey import network, rasters, roads
 from slope_tools.tables import named_run
 from slope_tools.tables.study_file import load_study
 
@@ -199,8 +202,8 @@ def test_the_worst_is_the_largest(several, order, words):
 
 
 @pytest.mark.parametrize("names, found", [
-    (("Old road", "Route 4"), ["Old road", "Route 4"]), (("A", "A"), ["two_1", "two_2"]),
-    ((None, None), ["two_1", "two_2"]), (("A", None), ["two_1", "two_2"])])
+    (("Old road", "Route 4"), ["Old road", "Route 4"]), (("A", "A"), ["A", "A_2", "A both carriageways"]),
+    ((None, None), ["two_1", "two_2"]), (("A", None), ["A", "two_2"])])
 def test_lines_that_do_not_meet_are_each_a_road(tmp_path, gis, names, found):  # noqa: F811
     points = [(10, 5), (10, 70)], [(30, 5), (30, 40), (34, 70)]
     write_lines(tmp_path / "two.geojson", *zip(names, points))
@@ -209,12 +212,90 @@ def test_lines_that_do_not_meet_are_each_a_road(tmp_path, gis, names, found):  #
                              offset=(EAST, NORTH))
     each = roads.read_each(tmp_path / "two.geojson", raster, roads.Asked(width=6.0))
     assert list(each) == found
-    assert [one.line.coords[0][0] for one in each.values()] == pytest.approx([10, 30])
+    assert [one.line.coords[0][0] for one in each.values()][:2] == pytest.approx([10, 30])
     one = tmp_path / "one.geojson"
     write_lines(one, ("A", points[0]), ("B", [(10, 70), (12, 76)]))
     assert list(roads.read_each(one, raster, roads.Asked(width=6.0))) == ["one"]       # they meet
     with pytest.raises(SlopeError, match="must hold one line, for --road-width"):
         roads.read_local(tmp_path / "two.geojson", raster, roads.Asked(width=6.0))
+
+
+def drawn(*lines, **about):
+    return [network.Drawn(LineString(points), {**about, **more}) for points, more in (
+        one if isinstance(one[-1], dict) else (one, {}) for one in lines)]
+
+
+def lengths(*lines):
+    return [round(one.line.length, 2) for one in network.roads_of(drawn(*lines))]
+
+
+A, B = {"NAME": "A"}, {"name": "B"}
+SOUTH, NORTH_, SIDE = [(70, 0), (70, 80)], [(70, 80), (70, 160)], [(70, 80), (20, 80)]
+RING = [(10 * math.sin(k * math.pi / 8), 10 * math.cos(k * math.pi / 8)) for k in range(17)]
+ROUND = math.dist(*RING[:2]) * 16      # m
+
+
+@pytest.mark.parametrize("lines, found", [
+    ((SOUTH, NORTH_, SIDE), [160, 50]), ((SIDE, NORTH_[::-1], SOUTH), [50, 160]),       # T
+    (([(70, 0), (70, 160)], SIDE), [160, 50]), (([(70, 0), (70, 160)], SIDE[::-1]), [160, 50]),
+    (([(0, 0), (0, 100)], [(0, 100), (-60, 180)], [(0, 100), (30, 200)]), [204.4, 100]),      # Y
+    ((([(0, 0), (0, 100)], A), ([(0, 100), (-60, 180)], A), ([(0, 100), (0, 200)], B)), [200, 100]),
+    ((([(0, 0), (0, 100)], {"ref": "4"}), ([(0, 100), (-60, 180)], {"Ref": "4", **A}), [(0, 100), (0, 200)]),
+     [200, 100]),
+    (([(0, -50), (0, 0)], [(0, 0), (0, 50)], [(-50, 0), (0, 0)], [(0, 0), (50, 0)]), [100, 100]),     # crossing
+    (([(0, -50), (0, 50)], [(-50, 0), (0, 0)], [(0, 0), (50, 0)]), [100, 100]),
+    (([(0, -50), (0, 50)], [(-50, 0), (50, 0)]), [100, 100]),
+    (([(0, -50), (0, 50)], [(-50, -50), (0, 0)], [(0, 0), (-50, 50)]), [100, 70.71, 70.71]),     # two side roads
+    (([(0, -80), RING[8]], RING, [RING[0], (0, 80)]), [140 + ROUND / 2, ROUND / 2]),     # roundabout
+    (([(0, -80), RING[8]], RING[3:9], RING[8:], RING[:4], [RING[0], (0, 80)]), [140 + ROUND / 2, ROUND / 2]),
+    (([(0, -80), RING[8]], RING, [RING[0], (0, 80)], [RING[4], (80, 0)]), [140 + ROUND / 2, ROUND / 2, 70]),
+    (([(0, -80), RING[8]], RING, [RING[0], (0, 80)], [RING[4], (80, 0)], [RING[12], (-80, 0)]),
+     [140 + ROUND / 2, ROUND / 2, 140 + ROUND / 2]),
+    (([(0, 0), (0, 100)], [(0, 100), (60, 110), (60, 190), (0, 200)], [(0, 100), (0, 200)], [(0, 200), (0, 300)]),
+     [300, 201.66]),    # an old loop of a road
+    (([(0, 0), (0, 99)], [(0, 99), (40, 150), (-40, 150), (0, 99)]), [99, 209.63]),
+    (([(0, 0), (9, 0)], [(9, 0), (9, 9)], [(9, 9), (0, 9)], [(0, 9), (0, 0)]), [36])])
+def test_ways_that_meet_are_roads(lines, found):
+    assert lengths(*lines) == pytest.approx(found, abs=0.05)
+
+
+@pytest.mark.parametrize("cut", [(40,), (10, 80, 130), (80,)])
+@pytest.mark.parametrize("turned", [False, True])
+def test_where_the_ways_of_a_road_are_cut_does_not_matter(cut, turned):
+    """A bend at a side road, carriageways that part and come together: the same lines, whoever drew them."""
+    road = LineString([(0, 0), (0, 80), (40, 140), (40, 200)])
+    for other in ([(0, 80), (-50, 80)], [(0, 80), (-20, 110), (-20, 190), (40, 170)], [
+            (0, 80), (-20, 110), (-20, 190), (40, 200)]):
+        ends = (0, *cut, road.length)
+        parts = [substring(road, *pair).coords[::-1 if turned else 1] for pair in zip(ends[:-1], ends[1:])]
+        found = [one for one in network.roads_of(drawn(*map(list, parts), name="A") + drawn(other)) if one.names]
+        assert len(found) == 1 and found[0].line.hausdorff_distance(road) < 1e-6
+        assert found[0].line.coords[0][1] == (200 if turned else 0)       # chainage runs as it was drawn
+
+
+def test_carriageways_have_a_number_together(tmp_path, gis):  # noqa: F811
+    """Of one name, or without any and next to each other; a service road beside is none, nor is a side road."""
+    raster = rasters.read(gis / "dem.tif")
+    raster = raster._replace(transform=type(raster.transform).translation(-EAST, -NORTH) * raster.transform,
+                             offset=(EAST, NORTH))
+    north, south, lane = [(10, 5), (10, 70)], [(18, 70), (18, 5)], [(14, 20), (14, 60)]
+    for names, number in ((("M1", "M1"), 3), ((None, None), 3), (("M1", None), 2), (("M1", "M2"), 2)):
+        write_lines(tmp_path / "m.geojson", *zip(names, (north, south)))
+        each = roads.read_each(tmp_path / "m.geojson", raster, roads.Asked(width=6.0))
+        assert len(each) == number
+    write_lines(tmp_path / "m.geojson", ("M1", north), ("M1", south), (None, lane), (None, [(18, 40), (38, 40)]))
+    said = []
+    each = roads.read_each(tmp_path / "m.geojson", raster, roads.Asked(width=6.0), warn=said.append)
+    assert list(each) == ["M1", "M1_2", "m_3", "m_4", "M1 both carriageways"]
+    assert [one.kind for one in said] == ["roads meet"] and said[0].numbers["places"] == (
+        f"M1_2 and m_4 at east {EAST + 18:.1f} north {NORTH + 40:.1f}")
+    both = each["M1 both carriageways"]
+    assert both.polygon.equals(each["M1"].polygon.union(each["M1_2"].polygon)) and len(both.lines) == 2
+    roads.write(tmp_path / "both.csv", both, raster)
+    again = roads.read_local(tmp_path / "both.csv", raster, roads.Asked(width=6.0), local=True)
+    assert again.polygon.symmetric_difference(both.polygon).area < 1e-6 and len(again.lines) == 2
+    with pytest.raises(SlopeError, match=f"got 4 that meet at east {EAST + 18:.1f} north {NORTH + 40:.1f}"):
+        roads.read_local(tmp_path / "m.geojson", raster, roads.Asked(width=6.0))
 
 
 def test_roads_of_one_name_and_of_a_layer(told, gis):  # noqa: F811

@@ -25,7 +25,7 @@ from run_helpers import (BULK, CRS_M, EAST, NORTH, TOP, centres, examples, warne
 
 from slope_tools import disk, geometry
 from slope_tools.deposits import cut, deposit, volume, volume_files
-from slope_tools.survey import rasters
+from slope_tools.survey import rasters, roads
 
 COMMAND = "volume"
 LMP = os.environ.get("LMP", str(TOP / "build" / "lmp"))
@@ -68,6 +68,27 @@ def wedge(thickness, length, rise):
     if length * rise >= thickness:
         return thickness ** 2 / (2 * rise)
     return thickness * length - rise * length ** 2 / 2
+
+
+@pytest.mark.parametrize("apart", [8.0, 30.0])
+def test_a_cut_through_two_carriageways(slope, no_map, apart):
+    """That of the union of both: less than the sum of two cuts, which overlap; each has its stretches."""
+    write_run(strip(), 7.0, 2.5)
+    found = {}
+    for name, several in (("one", [100]), ("other", [100 + apart]), ("both", [100, 100 + apart])):
+        Path(f"{name}.csv").write_text(f"{roads.MARK}\n" + "\n".join(f"{x},5\n{x},195\n" for x in several))
+        status, _, err = slope(f"run --road {name}.csv --road-width 6 --local -o {name} --mesh 10 --lane 3")
+        assert status == 0, err
+        found[name] = yaml.safe_load(Path(name, "volume.yaml").read_text())
+    write_geojson("area.geojson", *(box(x - 3, 5, x + 3, 195) for x in (100, 100 + apart)))
+    status, _, err = slope("run --road area.geojson --local -o area --mesh 10")
+    assert status == 0, err
+    one, other, both = (found[name]["volume"]["remove"] for name in ("one", "other", "both"))
+    area = yaml.safe_load(Path("area", "volume.yaml").read_text())
+    assert both == pytest.approx(area["volume"]["remove"], rel=1e-6) and max(one, other) < both
+    assert both < one + other if apart < 20 else both == pytest.approx(one + other)
+    assert found["both"]["axis"]["blocked_length"] == pytest.approx(80) == 2 * found["one"]["axis"]["blocked_length"]
+    assert sum(row["remove"] for row in found["both"]["stretches"]) == pytest.approx(both, abs=0.01)
 
 
 # --- by hand ---

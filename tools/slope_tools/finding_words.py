@@ -113,6 +113,8 @@ WORDS: Dict[str, Union[str, Words]] = {
     "zone covered": "{file}: zone {zone} lies below later features and counts nowhere",
     "no geometry": "{feature} has no geometry ({without} of {features} have none): left out",
     "no line": "{file}: {kinds} in it, where a line is asked for: left out",
+    "roads meet": "{file}: roads that meet are studied each by itself, a cut through both takes more than the larger "
+                  "number: {places}",
     "drawn twice": "{file}: {percent:.3g} % of the length of its lines is drawn more than once, or there and back: "
                    "taken once",
     "file name": "{file}: LAMMPS cannot read {characters} in the name of a file: rename it before it goes into a deck",
@@ -125,6 +127,9 @@ WORDS: Dict[str, Union[str, Words]] = {
                   "another --direction?",
     "little": "the base level {form}takes {percent:.0f} % of the polygon, {depth:.3g} m deep on average: is this the "
               "intended body? A larger depth or a smaller polygon gives another one",
+    "no body": "{polygon} gets no body, {why}: nothing is released there",
+    "own depth": "{file}: the attribute {attribute} says how deep its features are ({depths}): --depth {depth:g} is "
+                 "that of {which}",
     "cliff": "the ground of the body falls by {degrees:.0f} degrees on average: a cliff, or heights in feet "
              "({in_feet:.0f} degrees)? slope terrain and site have --z-unit",
     "few cells": "the body covers {cells} cells of {cell:g} m: use a finer terrain",
@@ -144,7 +149,7 @@ WORDS: Dict[str, Union[str, Words]] = {
                   "where the ground's friction does not act; is that the body you mean?",
     "shift": "beside the body {file} lies {metres:.3g} m {side} the terrain (median), which counts in the depths: "
              "vertical datums are not compared, are they the same?",
-    "parts": "the body is in {parts} parts that do not touch, of {volumes} m3: is that the body you mean?",
+    "parts": "the body is in {parts} parts that do not touch, of {volumes} m3{rest}: is that the body you mean?",
     # of a body and its balls
     "no program": "no LAMMPS program (LMP, --lmp, build/lmp): no trial run, time and speeds are unknown",
     "left terrain": "{percent:.2g} % of the mass left the terrain in the trial run: use a larger elevation model",
@@ -235,6 +240,8 @@ WORDS: Dict[str, Union[str, Words]] = {
         "{longest}.")),
     "road not reached": Words("no run reaches the road, {near} along the fall path ({ends}), but {shares} of known "
                               "events do", client="The road begins after {near} along the fall path, and {ends}."),
+    "some runs reach": Words("{reach} runs bring balls to the road{left}", client=(
+        "{reach} runs bring something to the road{left}.")),
     "one scatter reaches": Words("no run reaches the road, {near} along the fall path ({ends}), but {shares} of known "
                                  "events do, by one of the two scatters that are known of them", client=(
                                      "{shares} of them reach the road, as their scatter is taken: only the larger of "

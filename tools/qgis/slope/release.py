@@ -7,7 +7,7 @@ from .options import Option, of
 from .results import load
 from .terrain import DEM, with_terrain
 
-SHAPES = ("sphere", "ellipsoid", "plane", "slbl")
+SHAPES = ("sphere", "ellipsoid", "plane", "slbl", "slab")
 POLYGON = of("release", "polygon", "Polygon where the mass is released", kind="polygons")
 SHAPE = (
     Option("SHAPE", "--shape", "choice", "Shape of the slip surface (default: sphere; plane with a dip)",
@@ -36,7 +36,9 @@ class Release(Algorithm):
     the scar of a past event.
 
     Shapes: sphere through toe and shoulder of the polygon; ellipsoid, as wide as the polygon; plane by its dip
-    and the bearing to which it dips (degrees); slbl, the sloping local base level.
+    and the bearing to which it dips (degrees); slbl, the sloping local base
+    level, and slab, the ground lowered by the depth, which take several polygons and an attribute depth or thickness
+    (m) of each.
 
     Layers: the depth of the body (m), and the ground without it (m, shaded relief). Also a picture with a
     section, the numbers (release.yaml), and the lines of the deck (release.deck.txt). The terrain is made first

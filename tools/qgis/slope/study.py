@@ -42,7 +42,8 @@ class Study(Algorithm):
         of("study", "output", "Folder of the study", kind="new folder"))
     outputs = (("raster", "THICKNESS", "Largest final thickness over all runs (m)"),
                ("raster", "MAX_THICKNESS", "Largest thickness over all runs and times (m)"),
-               ("number", "CONSERVATIVE", "Conservative volume to remove (m3)"), ("file", "TABLE", "Table of all runs"),
+               ("number", "CONSERVATIVE", "Conservative volume to remove (m3)"),
+               ("number", "AT_LEAST", "Volume to remove, at least (m3)"), ("file", "TABLE", "Table of all runs"),
                ("file", "REPORT", "Report of a site"))
 
     def site(self, asked):
@@ -91,8 +92,10 @@ def show(folder, results):
         results.layer(None, place(folder, one), "exceedance", f"share of runs above {one['threshold_m']:g} m")
     for kind, one in (about["envelope"] or {}).items():
         results.layer(kind.upper(), place(folder, one), "thickness", one["what"])
+    number = about.get("headline") or about.get("conservative") or {}
+    floor = number.get("kind") == "floor"       # which is not conservative
     results.put(OUTPUT=str(folder), TABLE=str(folder / "study.csv"),
-                CONSERVATIVE=(about.get("headline") or about.get("conservative") or {}).get("volume_m3"))
+                **{"AT_LEAST" if floor else "CONSERVATIVE": number.get("volume_m3")})
 
 
 def place(folder, one):

@@ -11,7 +11,7 @@ from ..options import Overwrite, option, positional
 from ..studies import outdated
 from ..survey import rasters
 from ..survey.rasters import crs_name
-from ..tables import named_run
+from ..tables import answered, named_run
 
 DESCRIPTION = "Every raster of a run as a GeoTIFF in the coordinates of the survey."
 EPILOG = """\
@@ -72,7 +72,7 @@ def run_zones(args: Request, zones_: str) -> None:
     own = Path(args.prefix, "zones") if Path(args.prefix).is_dir() else Path(f"{args.prefix}.zones")
     folder = args.output or own
     disk.check_folder(folder)
-    if (study := named_run.study_in(Path(args.prefix))):
+    if (study := answered.weighted_in(Path(args.prefix)) or named_run.study_in(Path(args.prefix))):
         outdated.check(Path(args.prefix), study)
     ground = zones.ground_of(args.prefix, findings.printer("export"))
     zones.check(ground, wanted, args.prefix, zones_)
@@ -91,6 +91,8 @@ def run_zones(args: Request, zones_: str) -> None:
     if about["unreached_at_most"] >= wanted[-1]:
         print(f"where no run comes it may be up to {about['unreached_at_most']:.2g}: beside the zones {about['runs']} "
               "runs do not show less than they ask for")
+    if study:
+        print(f"of the runs of {study}")
     print(f"written to {folder}: zones.gpkg zones.yaml")
 
 

@@ -15,13 +15,15 @@ EPILOG = """\
 P: polygons as slope polygon takes them (GeoJSON, shapefile, FILE|layername=NAME, CSV, WKT)
 shapes: sphere (default) through the ends of the fall line in the polygon; ellipsoid, the same, but as wide as the
   polygon; plane (default with --dip), through the toe unless a depth or volume is given; slbl, the sloping local base
-  level. --depth or --volume finds their free number.
+  level. --depth or --volume finds their free number. slab: the ground lowered by the depth. slbl and slab take several
+  polygons, and their attribute depth or thickness (m).
 Writes NAME.slip.asc (the ground without the body) and NAME.depth.asc with sidecars, NAME.png (map, section), NAME.yaml
 (choices, numbers) and NAME.deck.txt (lines of the deck); with --scar-is height also NAME.ground.asc, the ground before.
 
 examples:
   tools/slope release terrain.asc --polygon release.geojson --depth 12 -o release
   tools/slope release terrain.asc --polygon release.shp --shape slbl --volume 50000 -o release
+  tools/slope release terrain.asc --polygon release.shp --shape slab --depth 1.5 -o release
   tools/slope release terrain.asc --polygon release.csv --dip 35 --direction 110 -o release
   tools/slope release before.asc --scar after.asc --polygon release.csv --least 0.5 -o release
 """

@@ -18,7 +18,9 @@ class Body:
         "of the layers of P this one (default: the only one, or the only one of polygons)", metavar="NAME")
     shape: Optional[str] = option(
         "of the slip surface (default: sphere; plane with --dip, slbl with --curvature)", choices=release.SHAPES)
-    depth: Optional[float] = option("largest depth below the ground, vertical, m", metavar="D", one_of="size")
+    depth: Optional[float] = option(
+        "largest depth below the ground, vertical, m; of slbl and slab in each polygon that has no attribute depth or "
+        "thickness", metavar="D", one_of="size")
     volume: Optional[float] = option("volume of the body, m3", metavar="V", one_of="size")
     curvature: Optional[float] = option(
         "of slbl: sum of the slip surface's second derivatives, 1/m; 8 D / L^2 for a depth D on a length L",

@@ -60,9 +60,10 @@ def polygons_along(level):
             for part in merged([span for span, _ in each], SAME)]
 
 
-def axis_of(line, polygon, asked):
-    """The lines of a road's axis, how it was found, and the road's width (m); line: None of a road of polygons."""
-    axis, source = (MultiLineString([line]), "the road's line") if line is not None else middle(polygon)
+def axis_of(lines, polygon, asked):
+    """The lines of a road's axis, how it was found, and the road's width (m); lines: none of a road of polygons."""
+    source = "the road's line" if len(lines) == 1 else "the lines of its carriageways, one after the other"
+    axis, source = (MultiLineString(list(lines)), source) if lines else middle(polygon)
     return axis, source, asked.width or width_of(axis, polygon)
 
 

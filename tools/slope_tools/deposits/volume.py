@@ -78,7 +78,7 @@ def of_run(prefix, wanted: Wanted, terrain=None, tell: Callable[[str], None] = l
         axis = in_grid_of(read_local(wanted.axis, run.raster, wanted.local, "axis"), run.raster, wanted.axis)
         source, width = str(wanted.axis), width_of(axis, road)
     else:
-        axis, source, width = axis_of(given.line, road, asked)
+        axis, source, width = axis_of(given.lines, road, asked)
     roads.check_lane(asked.lane, width)
     try:
         result = evaluate(run, road, wanted.cut_angle, mesh, wanted.samples)

@@ -12,7 +12,7 @@ as the ensemble is. Where the emulator knows little, chance (its residuals) prev
 
 Known events before the shortest run count as the runs of the shortest window; what they did is not known (on a road
 near the source they may leave more), so that in an upper bound they exceed every value and in a lower one none. Those
-beyond the longest exceed every value, in a lower bound none.
+beyond the longest exceed every value, in a lower bound none; in places the longest run stands for them, see whole().
 """
 from dataclasses import dataclass
 from typing import Callable, List, Optional, Sequence, Tuple
@@ -75,6 +75,18 @@ def either_side(share: np.ndarray, found: weights.Weights) -> Optional[Tuple[np.
         one[found.order[np.array(found.before) + after]] += starts[1:] - ends[:-1]
         both.append(one)
     return both[0], both[1]
+
+
+def whole(mass: Masses) -> np.ndarray:
+    """The share of all known events that each run stands for.
+
+    Those beyond the longest run go at least as far as it does: it stands for them wherever a place is asked for, in
+    maps, stretches and zones, so that no fewer of them reach its end than go beyond it. What they leave is not known:
+    as numbers they exceed every value, see curve().
+    """
+    share = mass.share.copy()
+    share[mass.order[-1]] += mass.far
+    return share
 
 
 def above(values: np.ndarray, levels: np.ndarray) -> np.ndarray:

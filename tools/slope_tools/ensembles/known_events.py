@@ -184,7 +184,8 @@ def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: S
                     for name, curve in curves.items()},
         to_remove=quantiles(curves[REMOVE], runs, REMOVE, answer.shares(one.far)) if REMOVE in curves else None,
         variables={name: variable(runs, k, emulated.main) for k, name in enumerate(sample.names)},
-        influence=emulated.influence, weights=whole_weights(runs), maps=[])
+        influence=emulated.influence, weights=whole_weights(runs), maps=[],
+        path_end_m=end if (end := float(found.path.length[-1])) < longest else None)
     return Evaluated(replace(about, doubts=doubts(about, runs)), runs, curves)
 
 
@@ -244,8 +245,9 @@ def doubts(about: ensemble_types.Weighted, runs: Runs) -> List[Finding]:
     found, stopped, reached = [], about.added.stopped, about.reached or 0.0
     if about.far >= 1 - farther.REACHED:
         remedy = answer_words.text(answer.Reason.read(stopped)) if stopped else "vary towards more mobile masses"
-        found.append(Finding("events beyond", {"length": metres(about.longest_m), "share": percent(about.far),
-                                               "remedy": remedy}))
+        found.append(Finding("events beyond", {
+            "length": metres(about.longest_m), "share": answer_words.beyond(about.far, about.path_end_m),
+            "remedy": remedy}))
     if reached < farther.REACHED and about.short > (1 - farther.REACHED) / 2:
         found.append(Finding("events before", {"length": metres(about.shortest_m),
                                                "share": percent(about.short)}))
@@ -262,10 +264,8 @@ def doubts(about: ensemble_types.Weighted, runs: Runs) -> List[Finding]:
 
 
 def whole_weights(runs: Runs) -> Dict[str, float]:
-    """The share of known events that each run stands for; the longest stands for those beyond it, too, as in maps."""
-    share = runs.mass.share.copy()
-    share[runs.mass.order[-1]] += runs.mass.far
-    return {row.run: float(one) for row, one in zip(runs.rows, share)}
+    """The share of known events that each run stands for, those beyond the longest among them."""
+    return {row.run: float(one) for row, one in zip(runs.rows, conditioned.whole(runs.mass))}
 
 
 # --- tables ---
@@ -294,11 +294,11 @@ def describe(one: ensemble_types.Ensemble) -> List[str]:
 def summary(about: ensemble_types.Weighted) -> str:
     added = about.added.points
     more = f" (those of {added} points towards longer ones among them)" if added else ""
-    reached = percent(about.reached or 0.0)
+    reached, far = percent(about.reached or 0.0), answer_words.beyond(about.far, about.path_end_m)
     return (f"the runs reach from {three_at_least(about.shortest_m)} to {metres(about.longest_m)}, where "
             f"{reached} of {about.events} events of {about.set} end ({percent(about.short)} "
-            f"before, {percent(about.far)} beyond{by_lobe(about)}; {about.path}); weighted by them the "
-            f"{about.runs} runs{more} say as much as {about.effective:.0f}")
+            f"before, {far} beyond{by_lobe(about)}; {about.path}); weighted by them the {about.runs} runs{more} say as "
+            f"much as {about.effective:.0f}")
 
 
 def by_lobe(about: ensemble_types.Weighted) -> str:

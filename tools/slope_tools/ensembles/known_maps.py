@@ -1,6 +1,6 @@
 """The maps over the runs of an ensemble that is weighted by known events: exceedance with bounds, and quantiles.
 
-Known events beyond the longest run count as the longest ones; in an upper bound they are everywhere.
+Known events beyond the longest run: see conditioned.whole(); in an upper bound they are everywhere.
 """
 import math
 from pathlib import Path
@@ -39,7 +39,7 @@ def write(folder: Path, prefixes: Sequence[Path], mass: Masses, several: float, 
 def of_kind(folder: Path, kind: Kind, stack: Stack, grid, mass: Masses, several: float, failed: float,
             thresholds: Sequence[float]) -> List[Dict[str, Any]]:
     """The maps of one raster: .asc of each, all of them with bounds of the exceedance as bands of a GeoTIFF."""
-    cells, full = math.prod(stack.shape), with_far(mass)
+    cells, full = math.prod(stack.shape), conditioned.whole(mass)
     levels = [0.0, *(threshold for threshold in thresholds if threshold > 0)]
     exceeded = {(level, side): np.zeros(cells) for level in levels for side in SIDES}
     within = {share: np.full(cells, np.nan) for share in hazard.SHARES}
@@ -74,14 +74,6 @@ def of_kind(folder: Path, kind: Kind, stack: Stack, grid, mass: Masses, several:
         found.append({"file": f"{folder.name}/{path.name}", "raster": kind.name, "what": what, "unit": kind.unit,
                       **about, "bounds": f"{folder.name}/{kind.name}.tif" if "threshold" in about else None})
     return found
-
-
-def with_far(mass: Masses) -> np.ndarray:
-    """The share of each run with the events beyond the longest run in the longest ones."""
-    share = mass.share.copy()
-    last = mass.order[-mass.window:]
-    share[last] += mass.far / len(last)
-    return share
 
 
 def quantiles(block: np.ndarray, share: np.ndarray, wanted: Sequence[float]) -> List[np.ndarray]:

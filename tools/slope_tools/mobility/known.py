@@ -100,13 +100,15 @@ def of_about(about: Mapping[str, Any]) -> Choice:
     return choice(about.get("set"), about.get("left_out") or (), about.get("confined", "unknown"))
 
 
-def of_mass(raster: Raster, before: np.ndarray, depth: np.ndarray, about: Mapping[str, Any]) -> Known:
+def of_mass(raster: Raster, before: np.ndarray, depth: np.ndarray, about: Mapping[str, Any],
+            site: Optional[Path] = None) -> Known:
     """A mass among the known events of what was kept of a Choice.
 
-    raster: the grid; before: the ground with the body, m; depth: of the body, m, 0 beside it.
+    raster: the grid; before: the ground with the body, m; depth: of the body, m, 0 beside it; site: whose body it is,
+    which is finer than what a run's grid has of it, and the same for all.
     """
     try:
-        mass = body.of_arrays(raster._replace(z=before), depth, "the run")
+        mass = body.of_site(site) if site else body.of_arrays(raster._replace(z=before), depth, "the run")
         return Known(of_body(mass, of_about(about)), "")
     except SlopeError as error:
         return Known(None, f"The runs cannot be compared with known events: {error}")

@@ -10,6 +10,7 @@ from ..deposits import scar
 from ..drawing import maps
 from ..errors import SlopeError
 from ..mobility import body, known, steeper
+from ..sites import site_folder, site_roads
 from ..survey.resampling import sample
 from . import known_reach, obstacles
 
@@ -40,7 +41,7 @@ class Ground:
         for other in data.drawn:
             self.touched = self.touched | (other.thickness > 0)
         self.obstacles = obstacles.of_run(one)
-        self.mapped = data.mapped
+        self.mapped, self.site = data.mapped, site_folder.only_one(site_roads.home(data.folder))
         self.volume = data.largest_release()
         self.events = {"confined": "unknown", **(data.study.study.known if data.study else {})}
         if not self.touched.any():
@@ -49,7 +50,7 @@ class Ground:
     @functools.cached_property
     def known(self) -> known.Known:
         """The mass among known events."""
-        return known.of_mass(self.raster, self.before, self.slip_depth, self.events)
+        return known.of_mass(self.raster, self.before, self.slip_depth, self.events, self.site)
 
     @functools.cached_property
     def below(self) -> steeper.Below:

@@ -9,16 +9,17 @@ from scipy.ndimage import label
 from ..digits import rounded
 from ..errors import SlopeError
 from ..findings import Finding
-from ..survey import marks, plausible, polygons, rasters
+from ..survey import features, marks, plausible, polygons, rasters
 from ..survey.crs import as_crs
-from . import release_area, release_bodies, release_scar, release_solve, release_toe
+from . import release_area, release_bodies, release_parts, release_scar, release_solve, release_toe
 
-SHAPES = ("sphere", "ellipsoid", "plane", "slbl")
+SHAPES = ("sphere", "ellipsoid", "plane", "slbl", "slab")
+OF_EACH = ("slbl", "slab")      # of SHAPES, which take several polygons: a body in each
 ABOVE = "above_ground"      # of a body's choices: where its slip surface is, in the polygon
-LITTLE = 0.75   # share of the polygon; a base level that takes less of it is a doubtful body
 SCAR_REMEDY = ": --polygon takes a part of the scar, --least D leaves out the noise of two surveys"
 CLIFF = 60.0    # degrees, mean of a body's ground; it may be in feet
-TINY = 0.02     # of the volume; a smaller part of a body is none
+TINY = 0.02     # of the volume in a polygon; a smaller part of a body is none
+LISTED = 3      # parts of a body whose volumes are told
 HOLLOW = 0.05   # of a scar's largest depth; a shallower hollow in its slip surface may be the survey's
 SHIFT = 0.25    # m between two surveys, beside the body
 COARSE = 50     # cells; a body of fewer is drawn with a coarse brush
@@ -62,6 +63,7 @@ class Body(NamedTuple):
     choices: Dict[str, Any]             # shape and its numbers
     measures: release_solve.Measures
     warnings: List[Finding]
+    made: List[release_parts.Made] = []     # in each of several polygons
 
 
 def body_of(wanted: Wanted) -> Body:
@@ -74,16 +76,40 @@ def body_of(wanted: Wanted) -> Body:
         geometry = polygons.read_local(wanted.polygon, raster, local=wanted.local, crs=crs,
                                        advice=wanted.advice or polygons.OF_ASSIGN_CRS._replace(terrain=wanted.terrain),
                                        warn=doubts.append)
+    several: List[features.Polygon] = []
     if wanted.polygon:
         check_pits(raster, geometry, wanted)
+        several = polygons_in(wanted, raster, geometry)
     scar = scar_of(wanted, raster) if wanted.scar else None
     if scar:
         raster = scar.ground
-    area, surface, choices = from_scar(wanted, scar, geometry) if scar else from_shape(wanted, raster, geometry)
+    numbers, made = release_parts.numbered(raster, several), []
+    if scar:
+        area, surface, choices = from_scar(wanted, scar, geometry)
+    elif wanted.shape in OF_EACH:
+        area, surface, choices, made = from_each(wanted, raster, several, numbers)
+        doubts += [*release_parts.own_depths(made, wanted.depth, wanted.where),
+                   *release_parts.warnings(made, choices["shape"], wanted.where)]
+    else:
+        area, surface, choices = from_shape(wanted, raster, geometry)
     slip = release_solve.slip_surface(area, release_solve.depths(area, surface), wanted.where)
     found = release_solve.measures(area, slip)
-    doubts += [*warnings(choices, found, area, slip), *in_parts(area, slip, geometry)]
-    return Body(raster, geometry, area, slip, choices, found, doubts)
+    names = [one.name for one in several]
+    depth, numbers = release_toe.depth_of(area, slip), release_parts.within(numbers, area)
+    if scar:
+        doubts += release_parts.empty(depth, numbers, names, wanted.where)
+    doubts += [*warnings(choices, found, area, slip), *in_parts(depth, area.cell, numbers, names)]
+    return Body(raster, geometry, area, slip, choices, found, doubts, made)
+
+
+def polygons_in(wanted: Wanted, raster, geometry) -> List[features.Polygon]:
+    """The polygons of a body, with what their features say."""
+    if wanted.read:
+        return [features.Polygon("", one) for one in polygons.polygons_of(geometry)]
+    assert wanted.polygon
+    sized = wanted.shape in OF_EACH and wanted.volume is None and wanted.curvature is None
+    return features.read(wanted.polygon, geometry, raster, wanted.local,
+                         as_crs("--assign-crs", wanted.crs) if wanted.crs else None, sized)
 
 
 def check(wanted: Wanted) -> Wanted:
@@ -125,9 +151,17 @@ def check_shape(wanted: Wanted) -> None:
                          f"--shape {wanted.shape}")
     if wanted.curvature is not None and wanted.shape != "slbl":
         raise SlopeError("--curvature", "must be given for slbl only", f"--shape {wanted.shape}")
-    if wanted.shape != "plane" and wanted.depth is None and wanted.volume is None and wanted.curvature is None:
-        raise SlopeError("--depth", f"must be given for --shape {wanted.shape}, or --volume"
-                         + (", or --curvature" * (wanted.shape == "slbl")))
+    if wanted.shape == "plane" or any(one is not None for one in (wanted.depth, wanted.volume, wanted.curvature)):
+        return
+    must, without = f"must be given for --shape {wanted.shape}, or --volume", None
+    if wanted.shape in OF_EACH:
+        each = {} if wanted.read else features.depths(str(wanted.polygon))
+        if each and None not in each.values():
+            return
+        must += ", or --curvature" * (wanted.shape == "slbl") + \
+            f", or an attribute {' or '.join(features.DEPTHS)} of each feature, m"
+        without = f"none of {next(name for name, depth in each.items() if depth is None)}" if each else None
+    raise SlopeError("--depth", must, without)
 
 
 def read_terrain(path):
@@ -186,37 +220,47 @@ def from_shape(wanted: Wanted, raster, geometry):
     area = release_area.area_of(raster, release_area.nodes_inside(raster, geometry), wanted.where, wanted.terrain)
     release_area.require_slope(area, wanted.where)
     parts = len(polygons.polygons_of(geometry))
-    if wanted.shape != "slbl" and parts > 1:
+    if parts > 1:
         raise SlopeError(wanted.polygon, "must be one polygon: make a feature of each part" if wanted.read else
-                         f"must be one polygon for --shape {wanted.shape}; slbl takes several", parts)
+                         f"must be one polygon for --shape {wanted.shape}; {' and '.join(OF_EACH)} take several", parts)
     if wanted.shape == "sphere":
         shape = release_bodies.sphere_shape(area, geometry, wanted.where)
     elif wanted.shape == "ellipsoid":
         shape = release_bodies.ellipsoid_shape(area, geometry, wanted.where)
-    elif wanted.shape == "plane":
+    else:
         assert wanted.dip is not None       # check() has seen to it
         direction = release_bodies.bearing(area.downhill) if wanted.direction is None else wanted.direction
         shape = release_bodies.plane_shape(area, wanted.dip, direction)
-    else:
-        shape = release_bodies.slbl_shape(area)
     if wanted.depth is not None:
         free, depth = release_solve.to_depth(area, shape, wanted.depth, wanted.called("depth"), not wanted.read)
     elif wanted.volume is not None:
         free, depth = release_solve.to_volume(area, shape, wanted.volume, wanted.called("volume"), not wanted.read)
     else:
-        free = shape.most if wanted.curvature is None else wanted.curvature
-        if not shape.least <= free <= shape.most:
-            raise SlopeError("--curvature", f"must be >= {shape.least:.3g} and <= {shape.most:.3g} /m for "
-                             f"{shape.about['length_m']:.4g} m of slope in the release polygon", f"{free:g}")
+        free = shape.most
         depth = release_solve.depths(area, shape.surface(free))
-    choices = {"shape": shape.name, "given": {"depth_m": wanted.depth, "volume_m3": wanted.volume,
-                                              "curvature_per_m": wanted.curvature},
-               shape.number: free, **shape.about}
+    choices = {"shape": shape.name, "given": given(wanted), shape.number: free, **shape.about}
     above = release_toe.above_ground(area.z, shape.surface(free), area.inside, area.cell)
     choices[ABOVE] = above and above._asdict()
-    if wanted.shape == "slbl":
-        choices["tolerance_m"] = free * area.cell ** 2 / 4
     return area, area.z - depth, choices
+
+
+def given(wanted: Wanted) -> Dict[str, Optional[float]]:
+    """The numbers that were asked for."""
+    return {"depth_m": wanted.depth, "volume_m3": wanted.volume, "curvature_per_m": wanted.curvature}
+
+
+def from_each(wanted: Wanted, raster, several: List[features.Polygon], numbers: np.ndarray):
+    """The same of bodies in several polygons, and what became of each."""
+    assert wanted.shape
+    area = release_area.area_of(raster, numbers > 0, wanted.where, wanted.terrain)
+    size = release_parts.Size(wanted.depth, wanted.volume, wanted.curvature, wanted.called, not wanted.read)
+    depth, made = release_parts.depths(area, release_parts.within(numbers, area), several, wanted.shape, size,
+                                       wanted.where)
+    choices: Dict[str, Any] = {"shape": wanted.shape, "given": given(wanted)}
+    if len(made) == 1 and wanted.shape == "slbl":
+        choices.update(curvature_per_m=made[0].curvature, tolerance_m=made[0].curvature * area.cell ** 2 / 4)
+    choices["polygons"] = [one.about(area.cell) for one in made]
+    return area, area.z - depth, choices, made
 
 
 def warnings(choices, found, area, slip) -> List[Finding]:
@@ -224,14 +268,9 @@ def warnings(choices, found, area, slip) -> List[Finding]:
     doubts = []
     if choices.get("sagitta_m", 1) < 0:
         doubts.append(Finding("bulges", {"shape": choices["shape"]}))
-    share = found.cells / int(area.inside.sum())
-    curvature = choices.get("curvature_per_m", 0)
     if choices["shape"] == "plane" and (steep := no_way_out(choices, area)) is not None:
         doubts.append(Finding("no way out", {"dip": choices["dip_degrees"], "direction": choices["direction_degrees"],
                                              "ground": steep}))
-    if choices["shape"] == "slbl" and (curvature < 0 or share < LITTLE):
-        doubts.append(Finding("little", {"form": f"bulges (curvature {curvature:.3g} /m) and " * (curvature < 0),
-                                         "percent": 100 * share, "depth": found.mean_depth}))
     if choices["shape"] == "scar":
         hollow = release_solve.hollow(area, slip)
         if hollow > HOLLOW * found.largest_depth:
@@ -246,7 +285,7 @@ def warnings(choices, found, area, slip) -> List[Finding]:
         doubts.append(Finding("cliff", {"degrees": found.mean_slope, "in_feet": plausible.in_feet(found.mean_slope)}))
     if found.cells < COARSE:
         doubts.append(Finding("few cells", {"cells": found.cells, "cell": area.cell}))
-    if found.wall > 0.5 * found.largest_depth:
+    if found.wall > 0.5 * found.largest_depth and choices["shape"] != "slab":
         doubts.append(Finding("rim", {"depth": found.wall, "remedy": {
             "sphere": "a wider polygon, or --shape ellipsoid?",
             "scar": "does the raster, or the polygon, end in the middle of the scar?"}.get(
@@ -257,18 +296,25 @@ def warnings(choices, found, area, slip) -> List[Finding]:
     return doubts
 
 
-def in_parts(area, slip, geometry) -> List[Finding]:
-    """A warning of a body in more parts than the polygon, None for a scar, has; tiny ones do not count."""
-    if geometry is None:
-        return []
-    depth = np.where(np.isnan(area.z), 0.0, area.z - slip)
-    numbers, count = label(depth > 0, np.ones((3, 3)))
-    volumes = np.sort(np.bincount(numbers.ravel(), depth.ravel(), count + 1)[1:])[::-1] * area.cell ** 2
-    volumes = volumes[volumes > TINY * volumes.sum()]
-    if len(volumes) <= len(polygons.polygons_of(geometry)):
-        return []
-    return [Finding("parts", {"parts": len(volumes), "volumes": " and ".join(map(rounded, volumes[:3]))
-                              + " and less" * (len(volumes) > 3)})]
+def in_parts(depth: np.ndarray, cell: float, numbers: np.ndarray, names: List[str]) -> List[Finding]:
+    """A warning of each polygon in which the body, of a depth (m) on nodes, is in parts; tiny ones do not count.
+
+    numbers: of each node its polygon, from 1.
+    """
+    said = []
+    for number, name in enumerate(names, 1):
+        body = np.where(numbers == number, depth, 0.0)
+        parts, count = label(body > 0, np.ones((3, 3)))
+        volumes = np.sort(np.bincount(parts.ravel(), body.ravel(), count + 1)[1:])[::-1] * cell ** 2
+        large = volumes[volumes > TINY * volumes.sum()]
+        if len(large) < 2:
+            continue
+        shown, rest = large[:LISTED], volumes[len(large[:LISTED]):]
+        said.append(Finding("parts", {
+            "parts": len(large), "volumes": " and ".join(map(rounded, shown)),
+            "rest": f", and {rounded(rest.sum())} m3 in {len(rest)} smaller ones" * bool(len(rest))},
+            part=name if len(names) > 1 else ""))
+    return said
 
 
 def no_way_out(choices, area) -> Optional[float]:
@@ -291,9 +337,13 @@ def text(body: Body) -> str:
     elif shape == "plane":
         what = (f"plane that dips {choices['dip_degrees']:.4g} degrees towards {choices['direction_degrees']:.4g}, "
                 f"{choices['drop_m']:.4g} m below the plane that touches the highest ground")
-    elif shape == "slbl":
-        what = (f"sloping local base level, curvature {choices['curvature_per_m']:.4g} /m (tolerance "
-                f"{choices['tolerance_m']:.4g} m for cells of {cell:g} m)")
+    elif shape in OF_EACH:
+        what = "sloping local base level" if shape == "slbl" else "the ground lowered vertically"
+        if "curvature_per_m" in choices:
+            what += (f", curvature {choices['curvature_per_m']:.4g} /m (tolerance {choices['tolerance_m']:.4g} m for "
+                     f"cells of {cell:g} m)")
+        if len(body.made) > 1:
+            what += f" in each of {len(body.made)} polygons\n{release_parts.text(body.made, cell)}"
     else:
         toe, shoulder = (" ".join(f"{value:.1f}" for value in choices[end]) for end in ("toe", "shoulder"))
         wide = f", {choices['width_m']:.4g} m wide" if shape == "ellipsoid" else ""

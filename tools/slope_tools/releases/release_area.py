@@ -103,6 +103,15 @@ def area_of(raster: Raster, inside: np.ndarray, where: str, terrain: str, remedy
     return Area(z, x, y, cell, mask, (part[0].start, part[1].start), downhill, slope)
 
 
+def part_of(area: Area, inside: np.ndarray) -> Tuple[Area, Tuple[slice, slice]]:
+    """The Area of some of the nodes inside, with its own fall line, and where in the arrays of the whole one it is."""
+    row, column = np.nonzero(inside)
+    rows, columns = (slice(one.min() - RIM, one.max() + RIM + 1) for one in (row, column))
+    x, y, z, mask = area.x[columns], area.y[rows], area.z[rows, columns], inside[rows, columns]
+    corner = area.corner[0] + rows.start, area.corner[1] + columns.start
+    return Area(z, x, y, area.cell, mask, corner, *fall(x, y, z, mask)), (rows, columns)
+
+
 def fill_remedy(z: np.ndarray, row: int, column: int) -> str:
     """What can be done about NODATA (NaN) at a row and column."""
     groups, _ = label(np.isnan(z), np.ones((3, 3)))

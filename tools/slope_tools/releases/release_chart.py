@@ -1,12 +1,14 @@
 """The picture of a body that is released: map with its depths, and a section along the fall line."""
 import numpy as np
+from scipy.ndimage import label
 
 from ..drawing import figures, palettes, pictures
 from ..drawing.figures import FULL, RELEASE, SECTION, STYLE
 from ..drawing.maps import RELIEF, contours, outline, part, scheme, shade, window
 from ..survey.rasters import Raster
 from ..survey.resampling import sample
-from .release_area import Area
+from .release_area import Area, fall
+from .release_toe import depth_of
 
 ROOM = 0.35         # of the body's length, beyond each end of the section
 POINTS = 600        # of the section
@@ -22,9 +24,9 @@ def draw(path, raster: Raster, area: Area, slip: np.ndarray, geometry, title: st
     half = area.cell / 2
     body = (area.x[column.min()] - half, area.y[row.max()] - half, area.x[column.max()] + half,
             area.y[row.min()] + half)
-    ends, length = section_line(area, row, column)
+    ends, length = section_line(area, largest_part(depth_of(area, slip)))
     line = ends[0] + np.linspace(0, 1, POINTS)[:, None] * (ends[1] - ends[0])
-    shown = window(raster, body, (*ends.min(axis=0), *ends.max(axis=0)))
+    shown = window(raster, body, (*ends.min(axis=0), *ends.max(axis=0)), geometry and geometry.bounds)
 
     along = np.linspace(0, length, POINTS)
     ground, base = (sample(raster._replace(z=z), *line.T) for z in (raster.z, whole))
@@ -49,14 +51,22 @@ def draw(path, raster: Raster, area: Area, slip: np.ndarray, geometry, title: st
         pictures.save(figure, path, bbox_inches="tight")
 
 
-def section_line(area: Area, row: np.ndarray, column: np.ndarray):
-    """Ends of the line down the fall line through the middle of the body, an array of two points, and its length."""
+def largest_part(depth: np.ndarray) -> np.ndarray:
+    """Mask of the part of a body, whose depth (m) is > 0, that has the largest volume."""
+    parts, count = label(depth > 0, np.ones((3, 3)))
+    return parts == 1 + np.argmax(np.bincount(parts.ravel(), depth.ravel(), count + 1)[1:])
+
+
+def section_line(area: Area, body: np.ndarray):
+    """Ends of the line down the fall line through the middle of a mask, an array of two points, and its length."""
+    row, column = np.nonzero(body)
     points = np.column_stack([area.x[column], area.y[row]])
+    downhill, _ = fall(area.x, area.y, area.z, body)
     middle = points.mean(axis=0)
-    place = (points - middle) @ area.downhill
+    place = (points - middle) @ downhill
     room = ROOM * np.ptp(place) + 2 * area.cell
     first, last = place.min() - room, place.max() + room
-    return middle + np.array([[first], [last]]) * area.downhill, float(last - first)
+    return middle + np.array([[first], [last]]) * downhill, float(last - first)
 
 
 def draw_map(figure, axes, raster: Raster, depth: np.ndarray, shown, geometry) -> None:

@@ -9,13 +9,14 @@ from scipy.optimize import brentq
 
 from ..digits import at_least, at_most
 from ..errors import SlopeError
-from .release_area import Area
+from .release_area import Area, fall
 from .release_bodies import Shape
 
 THINNEST = 1e-3     # m; what is thinner is not in the body
 DECIMALS = 4        # of a written height of the slip surface, m
 LOOKS = 41          # numbers that are tried of a shape whose body does not always grow with it
 EXACT = 1e-12       # relative, of the free number
+SHALLOW = "--shape slab, a layer of one depth, or "     # what is to be taken where a shape cannot be as shallow
 MET = 1e-6          # relative: a depth or volume that differs by more is jumped over
 
 
@@ -69,11 +70,11 @@ def solved(area: Area, shape: Shape, wanted: float, measure: Callable[[np.ndarra
         raise SlopeError(called, f"must be at most {at_most(found.max() + wanted)} {unit}, that of {what} within the "
                          f"release polygon: take a larger polygon{' or another shape' * another}", f"{wanted:.10g}")
     if not len(rises):
-        why = (f"that of the smallest {shape.name} within the release polygon: take a smaller polygon"
-               f"{' or another shape' * another}")
+        why = (f"that of the smallest {shape.name} within the release polygon: take "
+               f"{SHALLOW * another}a smaller polygon")
         if "toe" in shape.about and "shoulder" in shape.about:
             why = ("as the ground in the release polygon bulges above the line from toe to shoulder, so that no "
-                   f"smaller {shape.name} goes through both: take {'--shape slbl or ' * another}a smaller polygon")
+                   f"smaller {shape.name} goes through both: take {SHALLOW * another}a smaller polygon")
         raise SlopeError(called, f"must be at least {at_least(found.min() + wanted)} {unit}, {why}", f"{wanted:.10g}")
     low, high = tried[rises[-1]], tried[rises[-1] + 1]
     close = EXACT * max(abs(low), abs(high))
@@ -119,7 +120,7 @@ def measures(area: Area, slip: np.ndarray) -> Measures:
     """The numbers of the body between the ground and a slip surface."""
     depth = np.where(np.isnan(area.z), 0.0, area.z - slip)      # NODATA beside the body
     body = depth > 0
-    east = area.downhill
+    east, _ = fall(area.x, area.y, area.z, body)
     return Measures(volume(depth, area.cell), float(depth.max()), float(depth[body].mean()),
                     float(body.sum()) * area.cell ** 2, int(body.sum()), slope_of(area.z, area.cell, body),
                     slope_of(slip, area.cell, body), math.degrees(math.atan2(east[0], east[1])) % 360,

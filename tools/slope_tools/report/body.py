@@ -7,7 +7,8 @@ from ..survey.rasters import crs_name
 from .data import Data
 
 SHAPES = {"sphere": "a spherical slip surface", "ellipsoid": "an ellipsoidal slip surface",
-          "plane": "a plane slip surface", "slbl": "a slip surface by the sloping local base level"}
+          "plane": "a plane slip surface", "slbl": "a slip surface by the sloping local base level",
+          "slab": "a slip surface at one depth below the ground"}
 LEAST = 0.01        # m of depth that belong to the body
 
 

@@ -156,8 +156,9 @@ def by_family(about: study_types.Headline, numbers: Numbers) -> str:
 
 def not_reached(about: study_types.Headline) -> First:
     road = about.road
-    if not road:
-        return First(REMOVE, "more than 0")
+    if not road or road.brought.reach:
+        reached = f"{answer_words.shares(road.reached)} of {WHO} reach the road." if road else ""
+        return First(REMOVE, "more than 0", "m3", reached)
     return First("No run reaches the road, but known events do", answer_words.shares(road.reached),
                  "of known events reach it", "More than 0 m3 is to be removed then; how much, these runs do not show.")
 

@@ -94,7 +94,7 @@ class Data:
         self.settings: study_types.Settings = {}
         self.repeats: study_types.Settings = {}
         self.road: Any = None
-        self.road_line: Any = None
+        self.road_lines: Any = ()
         self.removed: Any = None
         self.mapped: Optional[score.Observed] = None
         self.over_all: Dict[str, np.ndarray] = {}
@@ -124,7 +124,7 @@ class Data:
             from ..survey import roads
             given = roads.read_local(self.folder / str(road["local"]), self.result.deposit.raster, roads.Asked.of(road),
                                      True)
-            self.road, self.road_line = given
+            self.road, self.road_lines = given
         if self.study.observed:
             self.mapped = score.read_observed(self.folder / str(self.study.observed.file),
                                               self.result.deposit.raster, score.THRESHOLD, False)

@@ -96,7 +96,7 @@ def rate(asked: Asked) -> str:
 def shares(data: Data, asked: Asked, about: study_types.Stretches, runs: str, maps):
     """The map of the road, coloured by the share of the runs that block it."""
     raster = data.result.deposit.raster
-    axis, _, width = axis_of(data.road_line, data.road.intersection(box_of(raster)), asked)
+    axis, _, width = axis_of(data.road_lines, data.road.intersection(box_of(raster)), asked)
     parts = [(one.band(Span(low, high), Span(-width / 2, width / 2)), share)
              for low, high, share in about.shares for one in axes_of(axis, asked)]
     layers = maps.layers._replace(section=None, reach=known_reach.NOTHING)

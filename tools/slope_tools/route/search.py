@@ -5,7 +5,6 @@ it; body.slips.csv and body.N.columns.csv, its row and its columns of find_slip;
 --slips` and `slope fragility` take it.
 """
 import csv
-import math
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Tuple
@@ -24,6 +23,7 @@ from ..releases import release, release_files
 from ..runs import slip_run
 from ..slips import bishop, bodies, failed
 from ..survey import polygons, rasters, vectors
+from ..survey.features import attribute, size_of
 from .choices import TABLE, Choices
 from .corridor import TERRAIN, Corridor, Window, around, searches, write_line
 
@@ -197,23 +197,11 @@ def features(path: Optional[str], warn):
     crs = found.known_crs(path, ADVICE.wrong_crs)
     for number, (_, geometry), about in zip(found.numbers, found.features, found.attributes):
         where = f"{path}: feature {number}"
-        size = {key: size_of(where, key, value) for key in ("depth", "volume")
-                if (value := about.get(key)) not in (None, "")}
+        size = {key: size_of(where, key, value, unit) for key, unit in SIZES.items()
+                if (value := attribute(about, key)) is not None}
         if len(size) != 1:
             raise SlopeError(where, "must have one attribute, depth (m) or volume (m3), > 0", size or None)
         yield f"feature {number}", geometry, crs, size
-
-
-def size_of(where: str, name: str, value: Any) -> float:
-    """An attribute as a number, which may be stored as text."""
-    try:
-        size = math.nan if isinstance(value, bool) else float(value)
-    except (TypeError, ValueError):
-        size = math.nan
-    if not 0 < size < math.inf:
-        raise SlopeError(where, f"attribute {name} must be a number of {SIZES[name]} > 0, with a decimal point and "
-                         "without a unit", value)
-    return size
 
 
 def bishop_factor(choices: Choices, raster, path: Path, without: np.ndarray) -> Optional[float]:

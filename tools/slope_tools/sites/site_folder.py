@@ -1,6 +1,6 @@
 """The files of a site's folder: which ones slope site makes, and how new ones take the place of old ones."""
 from pathlib import Path
-from typing import List, Set
+from typing import List, Optional, Set
 
 from .. import disk
 from ..errors import SlopeError
@@ -102,3 +102,10 @@ def exchange(new: Path, folder: Path, old: Set[str]) -> None:
     (new / order[-1]).replace(folder / order[-1])
     disk.flush(folder)
     new.rmdir()
+
+
+def only_one(site: Optional[Path]) -> Optional[Path]:
+    """A site's folder, if all of its runs have one body; None for several, and for a folder that is no site's."""
+    if site is None or not all((site / name).is_file() for name in (site_choices.NAME, f"{BODY}.depth.asc")):
+        return None
+    return None if site_choices.found(site).bodies else site

@@ -147,7 +147,7 @@ def walls(drawn: Iterable["Drawn"], raster: Raster, height: Optional[float], wid
 def one_line(found, path: str):
     """The one line that a file holds; SlopeError if it holds several."""
     if len(found.geoms) != 1:
-        raise SlopeError(path, "must hold one line", f"{len(found.geoms)} that do not meet")
+        raise SlopeError(path, "must hold one line", f"{len(found.geoms)}, which are not joined end to end")
     return found.geoms[0]
 
 

@@ -183,7 +183,8 @@ def road_layers(choices: Choices, raster: Raster, folder: Path, tell, warn) -> D
         if len(written) == 1 and len(found) > 1:
             roads.write(folder / site_roads.ROAD, road, raster)
         what = "polygon" if road.line is None else \
-            f"line of {road.line.length:,.0f} m, {choices.road.width:g} m wide"
+            f"line{'s' * (len(road.lines) > 1)} of {' and '.join(f'{line.length:,.0f}' for line in road.lines)} m, " \
+            f"{choices.road.width:g} m wide"
         tell(f"{target.name}: {len(polygons.polygons_of(geometry))} {what}, {geometry.area:,.0f} m2")
     return written
 

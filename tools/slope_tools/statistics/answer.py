@@ -22,7 +22,7 @@ class Kind(Enum):
     NUMBER = "number"
     FLOOR = "floor"             # at least so much
     WITHHELD = "withheld"
-    NOTHING = "nothing"         # 0, and no more than MANY of the known events reach the road
+    NOTHING = "nothing"         # 0: no run of any study reaches the road, and no more than MANY of the known events
 
 
 class Source(Enum):
@@ -35,6 +35,7 @@ class Code(Enum):
     """Of a reason: why a number is a floor, why no more runs were added, what a rule says."""
     BEYOND = "known beyond runs"
     NOT_REACHED = "road not reached"
+    SOME = "some runs reach"
     ONE_SCATTER = "one scatter reaches"
     TERRAIN = "terrain ends"
     RANGE = "range ends"
@@ -76,6 +77,10 @@ class Road(NamedTuple):
         """Whether no run reaches it."""
         return self.brought.reach == 0
 
+    def some(self) -> Reason:
+        """That runs reach it, where nothing governs."""
+        return Reason(Code.SOME, {key: getattr(self.brought, key) for key in ("runs", "reach", "least_m3", "most_m3")})
+
     def numbers(self) -> Dict[str, Any]:
         return {"low": min(self.reached), "high": max(self.reached), "near_m": self.near, "longest_m": self.longest}
 
@@ -109,7 +114,7 @@ class Ensemble(NamedTuple):
     """A weighted ensemble: (value, low, high) of its quantiles (m3) by share, of shares().
 
     far: share of the known events beyond all runs; longest: m; stopped: why no more runs were added, None: enough were.
-    size: as of Paper.
+    size: as of Paper; path_end: m, of a fall path that ends before the longest run: far is the share beyond it.
     """
     quantiles: Mapping[float, Tuple[Optional[float], Optional[float], Optional[float]]]
     far: float
@@ -117,6 +122,7 @@ class Ensemble(NamedTuple):
     withheld: Sequence[Withheld] = ()
     stopped: Optional[Reason] = None
     size: Optional[Reason] = None
+    path_end: Optional[float] = None
 
 
 def shares(far: float) -> List[float]:
@@ -189,7 +195,8 @@ def of_ensemble(one: Ensemble, road: Optional[Road]) -> Part:
     if share == SHARE:
         return number(Part(Kind.NUMBER, value, share, low_m3, high_m3), one.size)
     return Part(Kind.FLOOR, value, share, low_m3, None,
-                [Reason(Code.BEYOND, {"far": one.far, "longest_m": one.longest}), *stopped])
+                [Reason(Code.BEYOND, {"far": one.far, "longest_m": one.longest, **(
+                    {} if one.path_end is None else {"path_end_m": one.path_end})}), *stopped])
 
 
 def number(part: Part, size: Optional[Reason]) -> Part:
@@ -202,7 +209,8 @@ def number(part: Part, size: Optional[Reason]) -> Part:
 def of(paper: Optional[Paper], ensemble: Optional[Ensemble], road: Optional[Road]) -> Optional[Answer]:
     """The larger of both; None without either.
 
-    Where one of them is withheld for a reason that the other does not make up for, the other is a floor.
+    Where one of them is withheld for a reason that the other does not make up for, the other is a floor; so is 0 where
+    a run reaches the road.
     """
     parts: List[Tuple[Source, Part]] = []
     if paper and (mine := of_paper(paper, ensemble is not None)):
@@ -216,10 +224,17 @@ def of(paper: Optional[Paper], ensemble: Optional[Ensemble], road: Optional[Road
     if not known:
         return Answer(Kind.WITHHELD, None, None, None, None, None, paper, ensemble, road, reasons)
     source, best = max(known, key=lambda one: one[1].volume or 0.0)
-    open_ = any(part.kind is Kind.FLOOR or part.kind is Kind.WITHHELD and not few(part) for _, part in parts)
+    some = []
+    if road and not best.volume:
+        if not road.missed:
+            some = [road.some()]
+        elif not ensemble and min(road.reached) > MANY:
+            some = [Reason(Code.NOT_REACHED, road.numbers())]
+    open_ = bool(some) or any(
+        part.kind is Kind.FLOOR or part.kind is Kind.WITHHELD and not few(part) for _, part in parts)
     kind = Kind.FLOOR if open_ else Kind.NUMBER if best.volume else Kind.NOTHING
     return Answer(kind, best.volume, best.share, best.low, None if open_ else best.high, source, paper, ensemble, road,
-                  reasons)
+                  [*some, *reasons])
 
 
 def few(part: Part) -> bool:

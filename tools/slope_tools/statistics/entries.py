@@ -70,18 +70,24 @@ class Analysis:
 
 
 class AtRoad(NamedTuple):
-    """Of runs: how many there are, bring a ball to the road, past it; the most that one brings, m3 and balls."""
+    """Of runs: how many there are, bring a ball to the road, past it; the most that one brings, m3 and balls.
+
+    least_m3, most_m3: to remove, of the runs after which something is; 0: of none.
+    """
     runs: int
     reach: int
     passing: int
     volume: float
     balls: float
+    least_m3: float = 0.0
+    most_m3: float = 0.0
 
     def and_of(self, other: "AtRoad") -> "AtRoad":
         """Of the runs of both."""
         most = max(self, other, key=lambda one: one.balls)
+        least = min((one.least_m3 for one in (self, other) if one.least_m3), default=0.0)
         return AtRoad(self.runs + other.runs, self.reach + other.reach, self.passing + other.passing, most.volume,
-                      most.balls)
+                      most.balls, least, max(self.most_m3, other.most_m3))
 
 
 @dataclass(frozen=True)

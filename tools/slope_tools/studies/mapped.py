@@ -1,7 +1,7 @@
 """The runs of a site's study against its mapped deposit, whatever the method: overlap, run-out, volume of each.
 
-The length of the mapped deposit is that of a run, along the fall path to its farthest lobe; that of an outline to its
-farthest corner.
+The length of the mapped deposit is that of a run, along the fall path to its farthest lobe, by the cells that it
+covers; what of an outline lies beside the run's grid counts by its corners.
 """
 import os
 from dataclasses import replace
@@ -13,6 +13,7 @@ import numpy as np
 from ..case import run_folders
 from ..deposits import deposit, score
 from ..findings import Finding
+from ..geometry import extent
 from ..mobility import run_length
 from ..sites.site_folder import TERRAIN
 from ..sites.site_layers import OBSERVED
@@ -20,6 +21,7 @@ from ..survey import rasters
 from ..tables import study_types
 from ..tables.rows import Failed, Finished, Mapped, Row, finished_of
 
+HALF = 0.5              # of a cell, which an outline covers
 SAME_MASS = 0.1         # of the released volume: a mapped deposit that holds so much less or more is not the same mass
 
 
@@ -79,7 +81,12 @@ def length_of(run_: deposit.Deposit, terrain: Optional[Path], observed: score.Ob
     if observed.thickness is not None:
         found = run_length.of_deposit(run_._replace(raster=run_.raster._replace(z=observed.thickness)), path)
         return found and found.distance
-    points = np.asarray(observed.points)
+    rows, columns = np.nonzero(observed.share >= HALF)
+    points = np.column_stack(run_.raster.transform * np.array([columns + 0.5, rows + 0.5]))
+    xlo, ylo, xhi, yhi = extent(run_.raster)
+    x, y = np.asarray(observed.points).reshape(-1, 2).T
+    beside = (x < xlo) | (x > xhi) | (y < ylo) | (y > yhi) | (not len(points))
+    points = np.concatenate([points, np.column_stack([x, y])[beside]])
     return float(run_length.lengths_of(points, path, run_)[0].max()) if len(points) else None
 
 

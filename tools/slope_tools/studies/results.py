@@ -9,6 +9,7 @@ from ..ensembles import ensemble, known_events
 from ..mobility.exceedance import Mobility
 from ..runs import jobs
 from ..runs.repeats import Repeat
+from ..sites import site_folder
 from ..statistics import conservative_volume
 from ..survey import roads
 from ..tables import combinations, elastic, fine_run, next_step, study_maps, study_types, usable, withheld_words
@@ -108,7 +109,8 @@ def events_of(setup: Setup, run: Repeat, row: Finished, among: Mapping[str, Any]
     summary = run_folders.summary_of(setup.output, row.summary)
     raster = placed(run_folders.load_raster(run_folders.prefix_of(summary), "thickness"), run)
     road = setup.road.read(raster).polygon if setup.road else None
-    return usable.known_events(run_folders.prefix_of(summary), terrain_of(run.folder, run.log), road, among)
+    return usable.known_events(run_folders.prefix_of(summary), terrain_of(run.folder, run.log), road, among,
+                               site_folder.only_one(setup.site))
 
 
 def case_of(setup: Setup, questions: Questions, row: Finished) -> withheld_words.Case:

@@ -1,4 +1,6 @@
 """A GeoPackage of layers in the CRS of a terrain."""
+import contextlib
+import sqlite3
 from pathlib import Path
 from typing import Any, Dict, Iterable, Mapping, NamedTuple, Tuple
 
@@ -44,4 +46,15 @@ def write(path: Path, layers: Dict[str, Layer], raster: Raster, styles: Mapping[
                 out.writerecords({"type": "Feature", "geometry": None, "properties": {
                     **dict.fromkeys(OF_STYLE, ""), "f_table_name": name, "f_geometry_column": "geom", "styleName": name,
                     "styleQML": text, "useAsDefault": True, "update_time": NO_DATE}} for name, text in styles.items())
-        disk.write(path, bytes(memory.getbuffer()))
+        data = bytes(memory.getbuffer())
+    disk.write(path, data if crs else cartesian(data))
+
+
+def cartesian(data: bytes) -> bytes:
+    """A GeoPackage whose layers have no CRS with coordinates in metres: GDAL takes them for degrees (srs_id 0)."""
+    with contextlib.closing(sqlite3.connect(":memory:")) as base:
+        base.deserialize(data)
+        for table in ("gpkg_contents", "gpkg_geometry_columns"):
+            base.execute(f"UPDATE {table} SET srs_id = -1 WHERE srs_id = 0")
+        base.commit()
+        return base.serialize()

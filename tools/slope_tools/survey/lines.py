@@ -12,6 +12,7 @@ from ..findings import Finding
 from ..geometry import extent
 from . import polygons, text_points, vectors, well_known
 from .crs import require_degrees, same_crs, transform
+from .network import Drawn
 from .rasters import crs_name
 
 
@@ -39,20 +40,21 @@ def joined(lines):
 def once(lines):
     """Lines with what is drawn more than once, or there and back, drawn once; which share of the length that is.
 
-    They have the direction of the first of the lines there.
+    Each with the number of the first of the lines there, whose direction it has.
     """
     whole = unary_union(lines)
     share = 1 - whole.length / sum(line.length for line in lines)
     if share <= SAME:
-        return lines_of(MultiLineString(lines)), 0.0
-    return MultiLineString([directed(line, lines) for line in lines_of(whole).geoms]), share
+        return [(line, number) for number, line in enumerate(lines)], 0.0
+    return [directed(line, lines) for line in parts_of(whole)], share
 
 
 def directed(line, lines):
-    """A line in the direction in which the first of the lines that it is part of passes there."""
+    """A line in the direction in which the first of the lines that it is part of passes there, and which that is."""
     begin, end = (LineString(line.coords[:2]).interpolate(share, normalized=True) for share in (1 / 3, 2 / 3))
-    first = next((one for one in lines if one.distance(begin) <= SAME * one.length), line)
-    return line if first.project(begin) < first.project(end) else LineString(line.coords[::-1])
+    number = next((k for k, one in enumerate(lines) if one.distance(begin) <= SAME * one.length), 0)
+    first = lines[number]
+    return (line if first.project(begin) < first.project(end) else LineString(line.coords[::-1])), number
 
 
 def read_local(path, raster, local, what="line", advice=None, crs=None, warn=vectors.ignore,
@@ -64,6 +66,12 @@ def read_local(path, raster, local, what="line", advice=None, crs=None, warn=vec
     polygons.Advice for those on a missing CRS; warn is called with a line for each doubt. Raises SlopeError, which
     names the file; instead: its remedy for a file of polygons.
     """
+    return lines_of(MultiLineString([one.line for one in read_drawn(path, raster, local, what, advice, crs, warn,
+                                                                    instead)]))
+
+
+def read_drawn(path, raster, local, what="line", advice=None, crs=None, warn=vectors.ignore, instead=""):
+    """The same lines as they are drawn, a list of Drawn with the attributes of their features."""
     vectors.require_file(path)
     text_ = polygons.read_text(path)
     own = raster.crs
@@ -73,11 +81,14 @@ def read_local(path, raster, local, what="line", advice=None, crs=None, warn=vec
     if text_ is None:
         found = vectors.read(path, "Line", warn)
         own = None if local or crs else found.known_crs(path, (advice or polygons.ADVICE).wrong_crs)
-        geometry = GeometryCollection([one for _, one in found.features])
+        geometry, abouts = GeometryCollection([one for _, one in found.features]), found.attributes
     else:
         geometry, unit = text_geometry(path, text_)
         polygons.check_unit(path, unit, local, crs, advice or polygons.ADVICE)
-    parts = parts_of(geometry)
+        geometry = GeometryCollection(list(getattr(geometry, "geoms", [geometry])))
+        abouts = [{}] * len(geometry.geoms)
+    each = [(line, about) for one, about in zip(geometry.geoms, abouts) for line in parts_of(one)]
+    parts = [line for line, _ in each]
     lines = MultiLineString(parts)
     if lines.is_empty and (others := kinds(geometry)):
         raise SlopeError(path, f"must hold a line: {instead if 'Polygon' in others else 'draw one'}",
@@ -87,9 +98,11 @@ def read_local(path, raster, local, what="line", advice=None, crs=None, warn=vec
     others = [one for one in getattr(geometry, "geoms", []) if not parts_of(one)]
     if left_out := kinds(GeometryCollection(others)):
         warn(Finding("no line", {"file": path, "kinds": left_out}))
-    lines, twice = once(parts)
+    pieces, twice = once(parts)
     if twice:
         warn(Finding("drawn twice", {"file": path, "percent": 100 * twice}))
+    about = [each[number][1] for _, number in pieces]
+    lines = MultiLineString([line for line, _ in pieces])
     local = local or text_ is not None and polygons.is_local(path, text_, raster)
     plain = text_ is not None and crs is None
     crs = crs or own
@@ -98,7 +111,7 @@ def read_local(path, raster, local, what="line", advice=None, crs=None, warn=vec
     check_order(path, lines, raster, local, None if plain else crs)
     points = [np.asarray(line.coords)[:, :2] for line in lines.geoms]
     if local:
-        return MultiLineString(points)
+        return [Drawn(*one) for one in zip(map(LineString, points), about)]
     if not plain and (crs is None or raster.crs is None):
         where, remedy = "--terrain", f"--local if the {what} is in the run's local metres"
         if advice:
@@ -110,9 +123,8 @@ def read_local(path, raster, local, what="line", advice=None, crs=None, warn=vec
         if not all(np.isfinite(line).all() for line in points):
             raise SlopeError(path, f"must lie where {crs_name(raster.crs)}, the CRS of the terrain, covers it")
         if polygons.is_cut(lines, crs):
-            whole = lines_of(GeometryCollection(polygons.snapped(map(LineString, points))))
-            points = [np.asarray(line.coords) for line in whole.geoms]
-    return MultiLineString([line - raster.offset for line in points])
+            points = [np.asarray(line.coords) for line in polygons.snapped(map(LineString, points))]
+    return [Drawn(*one) for one in zip((LineString(line - raster.offset) for line in points), about)]
 
 
 def check_order(path, lines, raster, local, crs):

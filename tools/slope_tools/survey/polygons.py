@@ -85,16 +85,16 @@ def _read_local(path, raster, local, crs, advice, warn):
     return _placed(path, polygons, raster, local, plain, crs or own, advice)
 
 
-def of_feature(where, geometry, raster, crs, advice=ADVICE, anywhere=False):
+def of_feature(where, geometry, raster, crs, advice=ADVICE, anywhere=False, local=False):
     """What read_local() gives, of one geometry of a vectors.Found; where: its file and feature, for messages.
 
-    anywhere: it may lie beside the terrain.
+    anywhere: it may lie beside the terrain; local: it is in the terrain's local metres.
     """
     try:
         parts = _parts(where, geometry)
         if not parts:
             raise SlopeError(where, "must hold a polygon, it is empty")
-        return _placed(where, parts, raster, False, False, crs, advice, anywhere)
+        return _placed(where, parts, raster, local, False, crs, advice, anywhere)
     except ShapelyError as error:
         raise SlopeError(where, "must be polygons whose points differ by more than rounding") from error
 

@@ -5,7 +5,7 @@ points of a line.
 """
 import re
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence
 
 import numpy as np
 from shapely.errors import ShapelyError
@@ -15,17 +15,24 @@ from shapely.ops import unary_union
 
 from .. import disk
 from ..errors import SlopeError
+from ..findings import Finding
 from ..geometry import extent, numbers
-from . import lines, polygons, vectors, well_known
+from . import features, lines, network, polygons, vectors, well_known
 
 ARCS = 45       # pieces of a quarter of a circle, outside of bends
+SHOWN = 3       # places where roads meet, that are told
 SLACK = 1e-5    # m, beyond the terrain; written coordinates are rounded
 
 
 class Road(NamedTuple):
     """A road in local metres."""
     polygon: BaseGeometry
-    line: Optional[LineString]      # None of a road that was given as polygons
+    lines: Sequence[LineString] = ()    # none of a road that was given as polygons; several: carriageways, together
+
+    @property
+    def line(self) -> Optional[LineString]:
+        """The first of them."""
+        return self.lines[0] if self.lines else None
 
 
 class Asked(NamedTuple):
@@ -95,59 +102,70 @@ def read_local(path, raster, asked: Asked = NOTHING, local=False, crs=None, advi
     if asked.width is None:
         try:
             if MARK not in (polygons.read_text(path) or ""):
-                return Road(polygons.read_local(path, raster, local, crs, advice or polygons.ADVICE, warn), None)
+                return Road(polygons.read_local(path, raster, local, crs, advice or polygons.ADVICE, warn))
         except SlopeError:
             if not is_line(path):
                 raise
         raise SlopeError(path, WITHOUT_WIDTH)
-    found = lines_in(path, raster, local, crs, advice, warn)
+    drawn = drawn_in(path, raster, local, crs, advice, warn)
+    if MARK in (polygons.read_text(path) or ""):
+        return together(path, [one.line for one in drawn], raster, asked)
+    found = network.roads_of(drawn)
     if len(found) != 1:
-        raise SlopeError(path, "must hold one line, for --road-width", f"{len(found)} that do not meet")
-    return along(path, found[0], raster, asked)
+        met = network.meetings(found)
+        raise SlopeError(path, "must hold one line, for --road-width" + "; save it alone" * bool(met), f"{len(found)} "
+                         "that " + (f"meet {features.place(met[0][2], raster)}" if met else "do not meet"))
+    return together(path, [found[0].line], raster, asked)
 
 
 def read_each(path, raster, asked: Asked = NOTHING, crs=None, advice=None, warn=vectors.ignore) -> Dict[str, Road]:
-    """The roads of a file by their names: polygons together are one, and lines that do not meet are each one.
+    """The roads of a file by their names: polygons together are one; of lines see network.
 
-    A road has the name of its file, or layer; one of several the attribute `name` of its line, or a number. Arguments
-    and errors as of read_local().
+    A road has the name of its file, or layer; one of several the names of its lines, or a number. Carriageways that
+    run side by side are also a road together. Arguments and errors as of read_local().
     """
     where = vectors.source(path)
     own = where.layer or Path(where.path).stem
-    found = lines_in(path, raster, False, crs, advice, warn) if asked.width is not None else []
-    if len(found) < 2:
+    if asked.width is None or MARK in (polygons.read_text(path) or ""):
         return {own: read_local(path, raster, asked, False, crs, advice, warn)}
-    names = names_of(path, len(found)) or [f"{own}_{number}" for number in range(1, len(found) + 1)]
-    return {name: along(path, line, raster, asked) for name, line in zip(names, found)}
+    found = network.roads_of(drawn_in(path, raster, False, crs, advice, warn))
+    if len(found) == 1:
+        return {own: together(path, [found[0].line], raster, asked)}
+    names: List[str] = []
+    made: Dict[str, Road] = {}
+    for number, one in enumerate(found, 1):
+        names.append(free(", ".join(one.names) or f"{own}_{number}", made))
+        made[names[-1]] = together(path, [one.line], raster, asked)
+    for group in network.side_by_side(found, asked.width):
+        name = ", ".join(dict.fromkeys(name for k in group for name in found[k].names[:1])) or own
+        made[free(f"{name} {'both' if len(group) == 2 else 'all'} carriageways", made)] = together(
+            path, [found[k].line for k in group], raster, asked)
+    if met := network.meetings(found):
+        shown = "; ".join(f"{names[k]} and {names[j]} {features.place(at, raster)}" for k, j, at in met[:SHOWN])
+        warn(Finding("roads meet", {"file": str(path), "places": shown + f"; and {len(met) - SHOWN} more" * (
+            len(met) > SHOWN)}))
+    return made
 
 
-def names_of(path, number: int) -> List[str]:
-    """What the attribute `name` of a file says of so many lines that do not meet; none unless it tells all apart."""
-    if polygons.read_text(path) is not None:
-        return []
-    found = vectors.read(path, "Line")
-    whole, _ = lines.once([line for _, one in found.features for line in lines.parts_of(one)])
-    names = []
-    for line in whole.geoms:
-        middle = line.interpolate(0.5, normalized=True)
-        of_it = min(range(len(found.features)), key=lambda k: found.features[k][1].distance(middle))
-        text = {key.lower(): value for key, value in found.attributes[of_it].items()}.get("name")
-        names.append(str(text or ""))
-    return names if len(names) == number and all(names) and len(set(names)) == number else []
+def free(name: str, taken: Mapping[str, Any]) -> str:
+    """A name, with a number if it is taken."""
+    return next(one for one in (name, *(f"{name}_{k}" for k in range(2, len(taken) + 3))) if one not in taken)
 
 
-def lines_in(path, raster, local, crs, advice, warn) -> List[LineString]:
-    """The lines of a file that do not meet, in local metres."""
-    found = lines.read_local(path, raster, local, "road", advice, crs, warn,
-                             "leave out --road-width, which is that of a line")
-    return list(found.geoms)
+def drawn_in(path, raster, local, crs, advice, warn) -> List[network.Drawn]:
+    """The lines of a file as they are drawn, in local metres."""
+    return lines.read_drawn(path, raster, local, "road", advice, crs, warn,
+                            "leave out --road-width, which is that of a line")
 
 
-def along(path, line: LineString, raster, asked: Asked) -> Road:
-    """The road of a line, on the terrain."""
+def together(path, several: Sequence[LineString], raster, asked: Asked) -> Road:
+    """The road of lines, each of them on the terrain: all that lies within half the width of one."""
     assert asked.width is not None
-    check_line(path, line, getattr(raster, "extent", None) or extent(raster), asked.start)
-    return Road(line.buffer(asked.width / 2, cap_style=2, resolution=ARCS), line)
+    for line in several:
+        check_line(path, line, getattr(raster, "extent", None) or extent(raster), asked.start)
+    return Road(unary_union([line.buffer(asked.width / 2, cap_style=2, resolution=ARCS) for line in several])
+                if len(several) > 1 else several[0].buffer(asked.width / 2, cap_style=2, resolution=ARCS),
+                tuple(several))
 
 
 def is_line(path) -> bool:
@@ -185,6 +203,9 @@ def write(path: Path, road: Road, raster) -> BaseGeometry:
     """Write a road in the local metres of a terrain, for read_local() with the same width; its polygon as written."""
     if road.line is None:
         return polygons.write(path, road.polygon, raster)
-    points = np.round(np.asarray(road.line.coords)[:, :2], polygons.DIGITS) + 0.0
-    disk.write(path, f"{polygons.place_line(raster)}\n{MARK}\n" + "".join(f"{x!r},{y!r}\n" for x, y in points.tolist()))
+    texts = []
+    for line in road.lines:
+        points = np.round(np.asarray(line.coords)[:, :2], polygons.DIGITS) + 0.0
+        texts.append("".join(f"{x!r},{y!r}\n" for x, y in points.tolist()))
+    disk.write(path, f"{polygons.place_line(raster)}\n{MARK}\n" + "\n".join(texts))
     return road.polygon

@@ -21,11 +21,11 @@ def number(about: study_types.Headline) -> str:
     if Kind(about.kind) is Kind.WITHHELD:
         return "withheld, neither study gives a number" if about.paper and about.ensemble else "withheld"
     source = Source(about.source)
+    floor = Kind(about.kind) is Kind.FLOOR
     volume = f"{quantities.number(about.volume_m3 or 0.0)} m3 to remove"
     share = f", {percent(about.share)} of them stay within" if about.share else ""
-    floor = Kind(about.kind) is Kind.FLOOR
     of = OF[source] if floor or source is Source.ENSEMBLE else CONSERVATIVE
-    return f"{'at least ' * floor}{volume}, {of}{share}{beside(about, source)}"
+    return f"{('at least ' if about.volume_m3 else 'more than ') * floor}{volume}, {of}{share}{beside(about, source)}"
 
 
 def beside(about: study_types.Headline, source: Source) -> str:
@@ -70,9 +70,10 @@ def finding(reason: Reason) -> Finding:
         return Finding("rule", {"study": STUDY[of["source"]], "rule": of["rule"]})
     if code is Code.SIZE:
         return of_size(of)
-    words = {"longest": lambda: metres(of["longest_m"]), "far": lambda: percent(of["far"]),
+    words = {"longest": lambda: metres(of["longest_m"]), "far": lambda: beyond(of["far"], of.get("path_end_m")),
              "near": lambda: metres(of["near_m"]), "path": lambda: metres(of["path_m"]),
              "share": lambda: percent(of["share"]), "shares": lambda: shares((of["low"], of["high"])),
+             "reach": lambda: f"{of['reach']} of {of['runs']}", "left": lambda: left(of),
              "ends": lambda: ends(of), "points": lambda: f"{of['points']:g}"}
     return Finding(code.value, {name: words[name]() for name in TAKES.get(code, ())})
 
@@ -99,7 +100,18 @@ def grown(of: Mapping[str, Any]) -> str:
 # of each code the words that its sentence takes
 TAKES = {Code.BEYOND: ("longest", "far"), Code.NOT_REACHED: ("near", "shares", "ends"),
          Code.ONE_SCATTER: ("near", "shares", "ends"), Code.TERRAIN: ("path", "share"), Code.RANGE: ("ends",),
-         Code.RUNS: ("points",)}
+         Code.RUNS: ("points",), Code.SOME: ("reach", "left")}
+
+
+def beyond(far: float, path_end: Optional[float]) -> str:
+    """The share of known events beyond all runs, and where it is counted if that is not where the longest ends."""
+    return percent(far) + ("" if path_end is None else f" (beyond {metres(path_end)}, where the fall path ends)")
+
+
+def left(of: Mapping[str, Any]) -> str:
+    """What is to be removed after the runs that leave something, "" if none does."""
+    least, most = (quantities.number(of[key]) for key in ("least_m3", "most_m3"))
+    return f", which leave {least if least == most else f'{least} to {most}'} m3 to remove" * bool(of["most_m3"])
 
 
 def ends(of: Mapping[str, Any]) -> str:

@@ -47,7 +47,7 @@ def ensemble_of(about: study_types.Study) -> Optional[Ensemble]:
     quantiles = {each.share: (raised(each.value), raised(each.low), raised(each.high))
                  for each in one.to_remove}
     return Ensemble(quantiles, one.far, one.longest_m, rules(whole.withheld),
-                    Reason.read(stopped) if stopped else None, size_of(about))
+                    Reason.read(stopped) if stopped else None, size_of(about), one.path_end_m)
 
 
 def size_of(about: study_types.Study) -> Optional[Reason]:
@@ -107,6 +107,14 @@ def study_in(folder: Path) -> Optional[Path]:
         return folder
     found = governing(*(folder / name for name in INSIDE))
     return found if (found / STUDY).is_file() else None
+
+
+def weighted_in(folder: Path) -> Optional[Path]:
+    """The study of a site, or of one of its roads, whose runs known events weigh; None where there is none."""
+    found = folder / INSIDE[1]
+    told = (folder / STUDY).is_file() or not (found / STUDY).is_file()
+    ensemble = None if told else schemas.load(found / STUDY, "what `slope study` wrote", SCHEMA).get("ensemble")
+    return found if ensemble and (ensemble.get("known_events") or {}).get("weights") else None
 
 
 def without_study(site: Path) -> SlopeError:

@@ -88,6 +88,7 @@ class Weighted(Known):
     influence: Dict[str, Analysis]
     weights: Dict[str, float]
     maps: List[MapEntry]
+    path_end_m: Optional[float] = None      # of a fall path that ends before the longest run, beyond which far counts
 
 
 @dataclass(frozen=True)

@@ -33,14 +33,15 @@ class Events(NamedTuple):
         return answer.Road(self.near, self.far, self.reached, self.passed, longest(rows), at_the_road(rows))
 
 
-def known_events(prefix: Path, terrain: Optional[Path], road: Any, about: Mapping[str, Any]) -> Optional[Events]:
+def known_events(prefix: Path, terrain: Optional[Path], road: Any, about: Mapping[str, Any],
+                 site: Optional[Path] = None) -> Optional[Events]:
     """Those of a run; None where it has no fall path.
 
     prefix: of its deposit; terrain: the ground before it; road: polygons in local metres; about: of the events, see
-    known.of_about().
+    known.of_about(); site: see known.of_mass().
     """
     read = deposit.read(prefix, terrain, lambda text: None)
-    found = known.of_mass(read.raster, *scar.before(read.raster, read.base, terrain), about).found
+    found = known.of_mass(read.raster, *scar.before(read.raster, read.base, terrain), about, site).found
     if found is None:
         return None
     one, median = found.decides, found.strict and found.strict.length_at(0.5)
@@ -63,8 +64,10 @@ def at_the_road(rows: Sequence[Finished]) -> answer.AtRoad:
     past = [row.at_road.beyond_road_m3 or 0.0 for row in rows]
     brought = [(row.at_road.on_road_m3 or 0.0) + one for row, one in zip(rows, past)]
     balls, most = max((one / size, one) for one, size in zip(brought, ball))
+    left = [row.at_road.remove_m3 for row in rows if row.at_road.remove_m3]
     return answer.AtRoad(len(rows), sum(one >= size for one, size in zip(brought, ball)),
-                         sum(one >= size for one, size in zip(past, ball)), most, balls)
+                         sum(one >= size for one, size in zip(past, ball)), most, balls, min(left, default=0.0),
+                         max(left, default=0.0))
 
 
 def left_before(row: Finished) -> float:

@@ -1,0 +1,153 @@
+"""Bodies below several polygons: a base level, or a layer, in each of them, to the same depth or to one of its own."""
+from typing import Any, Dict, List, NamedTuple, Optional, Tuple
+
+import numpy as np
+from rasterio.features import rasterize
+
+from ..digits import rounded
+from ..errors import SlopeError
+from ..findings import Finding
+from ..survey.features import Polygon
+from ..survey.rasters import Raster
+from . import release_area, release_solve
+from .release_area import Area
+from .release_bodies import slbl_shape
+
+LITTLE = 0.75   # share of a polygon; a body that takes less of it is a doubtful one
+LISTED = 12     # polygons that are told one by one
+
+
+class Size(NamedTuple):
+    """What is asked of the bodies, one of them; called: what messages call it, a function of the word."""
+    depth: Optional[float]          # m, of those that have none of their own
+    volume: Optional[float]         # m3, of all together
+    curvature: Optional[float]      # 1/m
+    called: Any
+    another: bool                   # whether the user can choose another shape
+
+
+class Made(NamedTuple):
+    """What became of a polygon."""
+    name: str
+    cells: int                      # in the polygon
+    taken: int                      # of these, in the body
+    volume: float                   # m3
+    largest: float                  # m of depth
+    mean: float                     # m, of where it is
+    asked: Optional[float]          # m of depth; None: a volume, or a curvature, is asked for
+    attribute: str                  # of the feature, that asks for it; "": the option does
+    curvature: Optional[float]      # 1/m, of a base level
+
+    @property
+    def share(self) -> float:
+        return self.taken / self.cells if self.cells else 0.0
+
+    def about(self, cell: float) -> Dict[str, Any]:
+        """For NAME.yaml."""
+        found = {"name": self.name, "polygon_m2": self.cells * cell ** 2, "area_m2": self.taken * cell ** 2,
+                 "volume_m3": self.volume, "largest_depth_m": self.largest, "depth_m": self.asked,
+                 "depth_from": self.attribute or None, "curvature_per_m": self.curvature}
+        return {key: value for key, value in found.items() if value is not None}
+
+
+def numbered(raster: Raster, several: List[Polygon]) -> np.ndarray:
+    """Of each node of a terrain the number of its polygon, from 1, 0 outside of all; of several the deepest has it."""
+    if not several:
+        return np.zeros(raster.z.shape, "int32")
+    order = sorted(range(len(several)), key=lambda k: several[k].depth or 0.0)
+    return rasterize([(several[k].geometry, k + 1) for k in order], raster.z.shape, transform=raster.transform,
+                     dtype="int32")
+
+
+def within(numbers: np.ndarray, area: Area) -> np.ndarray:
+    """The part of an array on a terrain that is an area's."""
+    row, column = area.corner
+    return numbers[row:row + area.z.shape[0], column:column + area.z.shape[1]]
+
+
+def depths(area: Area, numbers: np.ndarray, several: List[Polygon], shape: str, size: Size, where: str):
+    """Depth (m) on the nodes of an area, and the Made of each polygon; numbers: see numbered(), of the area's nodes."""
+    total, found, made = int((numbers > 0).sum()), np.zeros(area.z.shape), []
+    for number, one in enumerate(several, 1):
+        inside = numbers == number
+        cells = int(inside.sum())
+        asked = None if size.volume is not None or size.curvature is not None else one.depth or size.depth
+        attribute = one.attribute if asked is not None and one.depth else ""
+        if not cells:
+            made.append(Made(one.name, 0, 0, 0.0, 0.0, 0.0, asked, attribute, None))
+            continue
+        part, place = release_area.part_of(area, inside)
+        alone = len(several) == 1
+        if cells >= release_area.FEWEST:
+            release_area.require_slope(part, where if alone else f"{where}: {one.name}")
+        volume = size.volume and size.volume * cells / total
+        called = f"{where}: {one.name}: {attribute}" if attribute else \
+            size.called("volume" if volume else "depth" if asked else "curvature") + (
+                "" if alone else f" in {one.name}")
+        curvature = None
+        if shape == "slbl":
+            curvature, depth = base_level(part, asked, volume, size.curvature, called, size.another)
+        else:
+            even = asked if asked is not None else (volume or 0.0) / (cells * area.cell ** 2)
+            depth = np.where(part.inside, even, 0.0)
+        found[place] += depth
+        taken = depth >= release_solve.THINNEST
+        made.append(Made(one.name, cells, int(taken.sum()), release_solve.volume(depth, area.cell), float(depth.max()),
+                         float(depth[taken].mean()) if taken.any() else 0.0, asked, attribute, curvature))
+    return found, made
+
+
+def base_level(part: Area, depth: Optional[float], volume: Optional[float], curvature: Optional[float], called: str,
+               another: bool) -> Tuple[float, np.ndarray]:
+    """The curvature (1/m) of the base level of a polygon, and its depths, to one of depth, volume or curvature."""
+    shape = slbl_shape(part)
+    if depth is not None:
+        return release_solve.to_depth(part, shape, depth, called, another)
+    if volume is not None:
+        return release_solve.to_volume(part, shape, volume, called, another)
+    free = shape.most if curvature is None else curvature
+    if not shape.least <= free <= shape.most:
+        raise SlopeError(called, f"must be >= {shape.least:.3g} and <= {shape.most:.3g} /m for "
+                         f"{shape.about['length_m']:.4g} m of slope in the release polygon", f"{free:g}")
+    return free, release_solve.depths(part, shape.surface(free))
+
+
+def own_depths(made: List[Made], depth: Optional[float], where: str) -> List[Finding]:
+    """That features have a depth of their own, where another one was asked for."""
+    own = [one for one in made if one.attribute and one.asked != depth]
+    if depth is None or not own:
+        return []
+    named = ", ".join(f"{one.name} {one.asked:g} m" for one in own[:LISTED]) + ", ..." * (len(own) > LISTED)
+    return [Finding("own depth", {"file": where, "attribute": own[0].attribute, "depths": named, "depth": depth,
+                                  "which": "the others" if len(own) < len(made) else "none of them"})]
+
+
+def empty(depth: np.ndarray, numbers: np.ndarray, names: List[str], where: str) -> List[Finding]:
+    """The polygons of a scar in which none of it lies."""
+    return [Finding("no body", {"polygon": f"{where}: {name}", "why": "the raster has no depth in it"})
+            for number, name in enumerate(names, 1) if not (depth[numbers == number] > 0).any()]
+
+
+def warnings(made: List[Made], shape: str, where: str) -> List[Finding]:
+    """The polygons in which nothing, or little, is released."""
+    doubts, several = [], len(made) > 1
+    for one in made:
+        curvature = one.curvature or 0.0
+        if not one.taken:
+            doubts.append(Finding("no body", {"polygon": f"{where}: {one.name}", "why": (
+                "no slip surface of this curvature lies below its ground" if one.cells else
+                "it holds no centre of a cell of the terrain")}))
+        elif shape == "slbl" and (curvature < 0 or one.share < LITTLE):
+            doubts.append(Finding("little", {"form": f"bulges (curvature {curvature:.3g} /m) and " * (curvature < 0),
+                                             "percent": 100 * one.share, "depth": one.mean, "name": one.name},
+                                  part=one.name if several else ""))
+    return doubts
+
+
+def text(made: List[Made], cell: float) -> str:
+    """What is released in each of several polygons, a line each."""
+    shown = sorted(made, key=lambda one: one.taken)[:LISTED] if len(made) > LISTED else made
+    lines = [f"{one.name}: volume {rounded(one.volume)} m3, up to {one.largest:.4g} m deep"
+             + f" (its {one.attribute})" * bool(one.attribute) + f", on {rounded(one.taken * cell ** 2)} of "
+             f"{rounded(one.cells * cell ** 2)} m2" for one in shown]
+    return "\n".join([*lines, *[f"and {len(made) - LISTED} more polygons"] * (len(made) > LISTED)])
