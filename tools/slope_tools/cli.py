@@ -186,7 +186,7 @@ def main(argv=None):
         check_names(argv)
         forget_matplotlibrc()
         if asked not in WITHOUT_PLACES:
-            importlib.import_module(f"{__package__}.survey.proj").require_database()
+            importlib.import_module(f"{__package__}.survey.crs").require_database()
         warnings.showwarning = lambda message, *_, **__: findings.printer(args.command)(str(message))     # of libraries
         args.run(args)
     except SlopeError as error:

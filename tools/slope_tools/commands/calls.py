@@ -27,7 +27,7 @@ def call(command: str, deck: Any, **options: Any) -> Any:
     declare(parser, module.Request)
     found = parser.parse_args([*words(parser, options), "--", str(deck)], argparse.Namespace(command=command))
     asked = request(module.Request, found)
-    importlib.import_module("..survey.proj", __package__).require_database()
+    importlib.import_module("..survey.crs", __package__).require_database()
     module.run(asked)
     if command != "study" or asked.dry_run:
         return None

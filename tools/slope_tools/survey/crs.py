@@ -1,5 +1,6 @@
 """Coordinate reference systems: names, are two the same, is a metre a metre, do the axes point east and north."""
 import math
+import os
 import re
 import warnings
 from typing import Any, Optional
@@ -14,9 +15,24 @@ from ..errors import SlopeError
 from ..findings import Finding
 from ..geometry import numbers
 
+# without the database of PROJ coordinates come out hundreds of metres wrong in another CRS, without a word
+KNOWN = 30169       # EPSG, one of the many that PROJ knows by its database only
+NAMES = ("PROJ_DATA", "PROJ_LIB")       # the first that is set leads PROJ there
 OTHER = "give one whose axes do, such as a UTM zone"
 NORTH = 5.0            # degrees between grid north and north from which on the user is warned
 STRETCH = 0.01         # relative error of lengths in a CRS from which on the user is warned
+
+
+def require_database() -> None:
+    """Raise SlopeError unless PROJ finds a database that fits it: variables may lead to another installation's."""
+    try:
+        with rasterio.Env():
+            CRS.from_epsg(KNOWN)
+    except CRSError as error:
+        name = next((name for name in NAMES if os.environ.get(name)), None)
+        where = f"{name}={os.environ[name]}" if name else "PROJ"
+        remedy = f"unset {name}, or let it lead to one" if name else "install it (Debian: proj-data)"
+        raise SlopeError(where, f"must have a database (proj.db) that fits this PROJ: {remedy}", error) from None
 
 
 def epsg(crs):

@@ -10,7 +10,7 @@ from shapely.ops import linemerge, unary_union
 from ..errors import SlopeError
 from ..findings import Finding
 from ..geometry import extent
-from . import polygons, text_points, vectors, well_known
+from . import polygons, text_points, vectors
 from .crs import require_degrees, same_crs, transform
 from .network import Drawn
 from .rasters import crs_name
@@ -76,7 +76,7 @@ def read_drawn(path, raster, local, what="line", advice=None, crs=None, warn=vec
     text_ = polygons.read_text(path)
     own = raster.crs
     if text_ is not None:
-        text_, named = well_known.plain(path, text_)
+        text_, named = vectors.plain_text(path, text_)
         crs = crs or (None if local else named)
     if text_ is None:
         found = vectors.read(path, "Line", warn)

@@ -21,7 +21,7 @@ from shapely.validation import explain_validity
 from .. import disk
 from ..errors import SlopeError
 from ..geometry import extent, numbers, polygons_of
-from . import text_points, vectors, well_known
+from . import text_points, vectors
 from .crs import require_degrees, same_crs
 from .text_points import FARTHEST
 from .rasters import crs_name
@@ -32,7 +32,7 @@ DIGITS = 6     # decimals of a written coordinate, m: beyond them is the noise o
 EXCHANGED = " (with x and y exchanged it would)"
 HEAD = "local metres:"       # in the first line of what write() wrote
 PLACE = re.compile(rf"^# {HEAD} .+", re.MULTILINE)
-WKT = re.compile(well_known.KINDS, re.IGNORECASE)
+WKT = re.compile(vectors.KINDS, re.IGNORECASE)
 
 
 class Advice(NamedTuple):
@@ -71,7 +71,7 @@ def read_local(path, raster, local=False, crs=None, advice=ADVICE, warn=vectors.
 def _read_local(path, raster, local, crs, advice, warn):
     text = read_text(path)
     if text is not None:
-        text, named = well_known.plain(path, text)
+        text, named = vectors.plain_text(path, text)
         crs = crs or (None if local else named)
     if text is None:
         polygons, own = _read_layer(path, warn, None if local or crs else advice)

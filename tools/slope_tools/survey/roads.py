@@ -17,7 +17,7 @@ from .. import disk
 from ..errors import SlopeError
 from ..findings import Finding
 from ..geometry import extent, numbers
-from . import features, lines, network, polygons, vectors, well_known
+from . import features, lines, network, polygons, vectors
 
 ARCS = 45       # pieces of a quarter of a circle, outside of bends
 SHOWN = 3       # places where roads meet, that are told
@@ -172,7 +172,7 @@ def is_line(path) -> bool:
     """Whether a file holds lines and no polygon, or is a CSV of too few points for one."""
     try:
         text = polygons.read_text(path)
-        text = None if text is None else well_known.plain(path, text)[0]
+        text = None if text is None else vectors.plain_text(path, text)[0]
         geometry = unary_union([one for _, one in vectors.read(path, "Line").features]) if text is None else \
             lines.text_geometry(path, text)[0]
         if text is not None and not polygons.WKT.match(re.sub("#.*", "", text).lstrip()):

@@ -20,7 +20,14 @@ from shapely.geometry import Polygon, shape
 from ..errors import SlopeError
 from ..findings import Finding
 from . import zips
+from .crs import as_crs
 
+# well-known text as others write it: SRID=n; in front, as PostGIS does, or a column of a table, as QGIS does
+KINDS = (r"(?:(?:MULTI|COMPOUND)?(?:POLYGON|LINESTRING|POINT|CURVE|SURFACE)|GEOMETRYCOLLECTION|LINEARRING|CURVEPOLYGON|"
+         r"CIRCULARSTRING|TRIANGLE|TIN)\s*(?:Z|M|ZM)?\s*(?:\(|EMPTY)")
+SRID = re.compile(rf"SRID\s*=\s*(\d+)\s*;\s*(?={KINDS})", re.IGNORECASE)
+CELL = re.compile(rf"(?:{SRID.pattern})?{KINDS}[^\";\t\n]*", re.IGNORECASE)
+COLUMNS = {"wkt", "wkt_geom", "geom", "geometry", "the_geom"}
 MARK = "layername="         # QGIS: FILE|layername=NAME|geometrytype=...
 MAGIC = bytes([0, 0, 0x27, 0x0a])       # begins a shapefile
 ANY = "any"                 # type of the geometries of a layer that may have several
@@ -219,3 +226,18 @@ def check_shapefile(path: Path) -> None:
     for one in (path, *beside):
         with open(one, "rb") as file:
             zips.check_length(str(one), one.stat().st_size, file.read(32))
+
+
+def plain_text(path: object, text: str) -> Tuple[str, Optional[CRS]]:
+    """A text without what is around its well-known text, and the CRS that this names; another text as it is.
+
+    Raises SlopeError where several are named.
+    """
+    head, _, body = text.lstrip().partition("\n")
+    if COLUMNS & {word.strip(' "\r').lower() for word in re.split("[,;\t]", head)}:
+        text = "\n".join(match.group() for match in CELL.finditer(body))
+    numbers = sorted({int(number) for number in SRID.findall(text)})
+    if len(numbers) > 1:
+        raise SlopeError(path, "must be in one CRS", " and ".join(f"SRID={number}" for number in numbers))
+    named = as_crs(f"{path}: SRID", f"EPSG:{numbers[0]}") if numbers and numbers[0] else None
+    return SRID.sub("", text) if numbers else text, named
