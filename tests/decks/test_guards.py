@@ -305,8 +305,8 @@ GROWS = "variable d equal ramp(1.0,{})\nfix grow ball adapt 1 atom diameter v_d"
 def test_balls_that_grow(tmp_path, atoms, z, most, neigh, told):
     """Neither lists nor their reach follow: balls grew through each other, and through the ground."""
     (tmp_path / "below.xyz").write_text("5.2 5.1 0\n")
-    warnings, summary = run(tmp_path, DECK.replace("sphere", "sphere 1", 1), atoms=atoms.format(z=z), z=z, floor=BELOW, neigh=neigh, extra=GROWS.format(most),
-                            weight="", skin=0.2, steps=400)
+    warnings, summary = run(tmp_path, DECK.replace("sphere", "sphere 1", 1), atoms=atoms.format(z=z), z=z, floor=BELOW,
+                            neigh=neigh, extra=GROWS.format(most), weight="", skin=0.2, steps=400)
     found = [w for w in warnings if "half the skin" in w]
     assert len(found) == len(told) and all(text in w for w, text in zip(found, told))
     assert set(warnings) == set(summary["warnings"])
