@@ -44,17 +44,18 @@ typename Reveal<Tag, Type, pointer>::AtStart Reveal<Tag, Type, pointer>::at_star
 
 // Owner: the class if it has such a member, of whatever access; beside one that is inherited too, its name means two things
 
-#define SLOPE_REVEAL(CLASS, TYPE, MEMBER)                                                         \
-  struct CLASS##_##MEMBER : Slope::RevealedMember<CLASS##_##MEMBER, TYPE(CLASS::*)> {             \
-    struct None {                                                                                 \
-      char MEMBER;                                                                                \
-    };                                                                                            \
-    template <typename T> struct Both : T, None {};                                               \
-    template <typename T> static None *owner(decltype(&Both<T>::MEMBER));                         \
-    template <typename T> static T *owner(...);                                                   \
-    typedef std::remove_pointer<decltype(owner<CLASS>(nullptr))>::type Owner;                     \
-  };                                                                                              \
-  template struct Slope::Reveal<CLASS##_##MEMBER, decltype(&CLASS##_##MEMBER::Owner::MEMBER),     \
+#define SLOPE_REVEAL(CLASS, TYPE, MEMBER)                                                     \
+  struct CLASS##_##MEMBER : Slope::RevealedMember<CLASS##_##MEMBER, TYPE(CLASS::*)> {         \
+    struct None {                                                                             \
+      char MEMBER;                                                                            \
+    };                                                                                        \
+    template <typename T> struct Both : T, None {                                             \
+    };                                                                                        \
+    template <typename T> static None *owner(decltype(&Both<T>::MEMBER));                     \
+    template <typename T> static T *owner(...);                                               \
+    typedef std::remove_pointer<decltype(owner<CLASS>(nullptr))>::type Owner;                 \
+  };                                                                                          \
+  template struct Slope::Reveal<CLASS##_##MEMBER, decltype(&CLASS##_##MEMBER::Owner::MEMBER), \
                                 &CLASS##_##MEMBER::Owner::MEMBER>;
 
 // whether all of these members are known

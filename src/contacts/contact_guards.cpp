@@ -159,7 +159,8 @@ void ContactGuards::check_dashpots(int i, int j)
 void ContactGuards::check_neighbor_lists(int freeze_group_bit)
 {
   if (neighbor->includegroup) {
-    const int listed = compat::group_bit(lmp, group->names[neighbor->includegroup]) | freeze_group_bit;
+    const int listed =
+        compat::group_bit(lmp, group->names[neighbor->includegroup]) | freeze_group_bit;
     bigint mine = 0, outside;
     for (int i = 0; i < atom->nlocal; i++) mine += !(atom->mask[i] & listed);
     MPI_Allreduce(&mine, &outside, 1, MPI_LMP_BIGINT, MPI_SUM, world);
@@ -217,10 +218,11 @@ void ContactGuards::check_growth(double beyond)
 {
   const double skin = neighbor->skin, grown = growth.grown();
   if (grown > 0.5 * skin && told.insert("growth").second)
-    warn("balls should grow by at most half the skin, {:.4g}, while there is one neighbor list, got "
-         "{:.4g} until step {}: contacts may be found late or not at all; a larger skin, or "
-         "neigh_modify check no",
-         0.5 * skin, grown, update->ntimestep);
+    warn(
+        "balls should grow by at most half the skin, {:.4g}, while there is one neighbor list, got "
+        "{:.4g} until step {}: contacts may be found late or not at all; a larger skin, or "
+        "neigh_modify check no",
+        0.5 * skin, grown, update->ntimestep);
   if (beyond > 0.5 * skin && atom->natoms > 1 && told.insert("reach").second)
     warn("two balls should reach at most half the skin, {:.4g}, farther than the largest at the "
          "start of the run, got {:.4g} at step {}: neighbor lists do not reach so far, and balls "
@@ -380,9 +382,9 @@ std::vector<std::string> MotionGuard::begin_step()
 
 void MotionGuard::check_frozen(const Movers &m, std::vector<std::string> &found) const
 {
-  std::vector<Fix *> after;    // that add forces
+  std::vector<const Fix *> after;    // that add forces
   bool freezes = false;
-  for (Fix *fix : compat::fixes(lmp))
+  for (const Fix *fix : compat::fixes(lmp))
     if (Slope::is_style(fix->style, "freeze"))
       freezes = true;
     else if (freezes && (compat::mask_of(lmp, fix) & FixConst::POST_FORCE))

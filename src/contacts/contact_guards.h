@@ -86,7 +86,8 @@ class ContactGuards : protected Pointers {
   void watch_energy(double elastic);    // J, of this rank's springs; collective
   EnergyGuard energy;
   GrowthGuard growth;
-  void check_growth(double beyond);    // m, by which two balls reach farther than at the set-up; collective
+  // collective; beyond: m, by which two balls reach farther than at the set-up
+  void check_growth(double beyond);
   void say(const std::string &text);    // a warning of a wall; by rank 0, or by all
   void report();                        // at the end of a run; collective
 

@@ -58,8 +58,8 @@ class ContactList : public ContactSizes {
       mass_i = mi;
       mass_j = mj;
     }
-    equal = equal && same(ri, radius_i) && same(rj, radius_j) && same(mi, mass_i) &&
-        same(mj, mass_j);
+    equal =
+        equal && same(ri, radius_i) && same(rj, radius_j) && same(mi, mass_i) && same(mj, mass_j);
     if (entries.size() % BLOCK == 0) bits.push_back({0, 0, 0, 0, 0});
     entries.push_back({i, j});
     histories.push_back(history);

@@ -42,7 +42,7 @@ std::string EnergyGuard::unknown_work() const
 {
   const std::string other = other_forces();
   if (!other.empty()) return other;
-  for (Fix *fix : compat::fixes(lmp))
+  for (const Fix *fix : compat::fixes(lmp))
     if (!does_no_work(Slope::plain_style(fix->style), compat::mask_of(lmp, fix)))
       return fmt::format("fix {} {}", fix->id, fix->style);
   return "";

@@ -152,12 +152,13 @@ void FixContactHistory::init()
 
 void FixContactHistory::check_order() const
 {
-  for (Fix *fix : compat::fixes(lmp)) {
+  for (const Fix *fix : compat::fixes(lmp)) {
     if (fix == this) return;
     if (!(compat::mask_of(lmp, fix) & PRE_EXCHANGE)) continue;
     bool keeps_balls = utils::strmatch(fix->style, "^n[pv][ht]");    // of boxes that are turned
-    for (const char *style : {"append/atoms", "BOND_HISTORY", "CONTACT_HISTORY", "deform", "deposit",
-                              "DUMMY", "NEIGH_HISTORY", "pour", "wall/gran/balls", "wall/gran/mesh"})
+    for (const char *style :
+         {"append/atoms", "BOND_HISTORY", "CONTACT_HISTORY", "deform", "deposit", "DUMMY",
+          "NEIGH_HISTORY", "pour", "wall/gran/balls", "wall/gran/mesh"})
       keeps_balls = keeps_balls || Slope::is_style(fix->style, style);
     if (!keeps_balls)
       error->all(FLERR,

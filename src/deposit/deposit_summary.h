@@ -19,7 +19,7 @@ namespace Slope {
 // volumes are bulk unless stated otherwise.
 struct DepositSummary {
   static constexpr double MOVING_SHARE = 0.1;    // of the volume: more is a mass in motion
-  static constexpr double FAST = 0.1;            // m/s: faster than this is fast, in other units too
+  static constexpr double FAST = 0.1;    // m/s: faster than this is fast, in other units too
 
   // --- versions, the run ---
 

@@ -13,8 +13,8 @@ using namespace Slope;
 
 constexpr double ScatteredSampler::WIDEST;
 
-static constexpr double NEAREST = 0.795;          // of the spacing: gives one ball per spacing^2
-static constexpr size_t MOST = 1 << 18;           // candidates of 48 bytes that are remembered
+static constexpr double NEAREST = 0.795;    // of the spacing: gives one ball per spacing^2
+static constexpr size_t MOST = 1 << 18;     // candidates of 48 bytes that are remembered
 
 /* ---------------------------------------------------------------------- */
 

@@ -97,10 +97,10 @@ Fix *compat::fix_by_id(LAMMPS *lmp, const std::string &id)
   return nullptr;
 }
 
-int compat::mask_of(LAMMPS *lmp, Fix *fix)
+int compat::mask_of(LAMMPS *lmp, const Fix *fix)
 {
 #if SLOPE_LAMMPS_IS_NEW
-  return lmp->modify->get_fix_mask(fix);
+  return lmp->modify->get_fix_mask(const_cast<Fix *>(fix));
 #else
   for (int k = 0; k < lmp->modify->nfix; k++)
     if (lmp->modify->fix[k] == fix) return lmp->modify->fmask[k];
@@ -295,8 +295,8 @@ std::string compat::unseen()
   std::string found;
   for (const auto &use : uses)
     if (!use.first) found += std::string(found.empty() ? "" : "; ") + use.second;
-  return found.empty() ? found :
-                         "this LAMMPS has other members than 29Sep2021 to 4Jul2026: " + found;
+  return found.empty() ? found
+                       : "this LAMMPS has other members than 29Sep2021 to 4Jul2026: " + found;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -321,7 +321,7 @@ std::vector<std::pair<std::string, std::string>> compat::left_in_restart(LAMMPS 
   std::vector<std::pair<std::string, std::string>> found;
   if (!sees_restart()) return found;
   Modify *m = lmp->modify;
-  const auto add = [&](int n, int *used, char **id, char **style) {
+  const auto add = [&](int n, const int *used, char **id, char **style) {
     for (int k = 0; k < n; k++)
       if (!used[k]) found.emplace_back(id[k], style[k]);
   };
@@ -422,7 +422,7 @@ bool compat::shape(Region *region, Cylinder &c)
 {
   const auto r = seen_as<RegCylinder>(region, c);
   if (!r) return false;
-  c = {r->*RegCylinder_axis::at(), r->*RegCylinder_c1::at(), r->*RegCylinder_c2::at(),
+  c = {r->*RegCylinder_axis::at(),   r->*RegCylinder_c1::at(), r->*RegCylinder_c2::at(),
        r->*RegCylinder_radius::at(), r->*RegCylinder_lo::at(), r->*RegCylinder_hi::at()};
   return true;
 }

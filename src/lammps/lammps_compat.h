@@ -36,7 +36,7 @@ std::vector<Region *> parts_of(LAMMPS *, Region *);
 std::vector<Fix *> fixes(LAMMPS *);
 std::vector<Fix *> fixes_of_style(LAMMPS *, const std::string &style);
 Fix *fix_by_id(LAMMPS *, const std::string &id);
-int mask_of(LAMMPS *, Fix *);
+int mask_of(LAMMPS *, const Fix *);
 void drop_fix(LAMMPS *, const std::string &id);
 
 // bit of a group that exists, in the masks of atoms

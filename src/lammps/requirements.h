@@ -17,7 +17,7 @@
 namespace LAMMPS_NS {
 class LAMMPS;
 
-bool in_si(const LAMMPS *);    // the units of the deck
+bool in_si(const LAMMPS *);                            // the units of the deck
 double from_si_speed(const LAMMPS *, double speed);    // in its units; reduced ones (lj) have none
 
 void require_run(LAMMPS *,
