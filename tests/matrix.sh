@@ -4,7 +4,7 @@
 #
 #   tests/matrix.sh [--fetch SUITE]... [--only WAY]... [--tests REGEX] [-o DIR] [TREE]...
 #
-# TREE          a LAMMPS source tree
+# TREE          a LAMMPS source tree, or an archive of one (.tar.gz, .tar.xz), which is unpacked into DIR/source
 # --fetch SUITE a Debian release (bookworm, trixie, sid): the LAMMPS of its source package is fetched
 #               into DIR/source/SUITE from the mirror that this machine's apt uses
 # --only WAY    smallbig-mpi, smallbig-serial, bigbig-mpi, bigbig-serial (sizes and MPI of LAMMPS),
@@ -48,45 +48,38 @@ done
 ((${#suites[@]} + ${#trees[@]})) || die "needs a TREE or --fetch SUITE, see --help"
 ((${#ways[@]})) || ways=("${all_ways[@]}")
 for tree in "${trees[@]}"; do
-  [[ -e $tree/cmake/CMakeLists.txt ]] || die "$tree is no LAMMPS source tree"
+  [[ -f $tree || -e $tree/cmake/CMakeLists.txt ]] || die "$tree is no LAMMPS source tree, nor an archive of one"
 done
 mkdir -p "$out"
 out=$(realpath "$out")
 
-# --- sources that Debian has ---
+# --- sources in archives, and those that Debian has ---
 
 # shellcheck source=/dev/null
 . "$top/tools/upstream_source.sh"
 
-# fetch SUITE -> DIR/source/SUITE, by apt with its state in a temporary folder. The upstream
-# archive alone: Debian's changes to it are none that matter here.
-fetch() {
-  local suite=$1 tmp target=$out/source/$1 mirror
-  [[ -d $target ]] && return
-  echo "matrix: fetching the LAMMPS source of Debian $suite (up to 220 MB)"
+# unpack ARCHIVE: -> its folder DIR/source/NAME, in $tree
+unpack() {
+  local tmp name
+  name=$(basename "$1")
+  tree=$out/source/${name%%.t*}
+  [[ -d $tree ]] && return
   mkdir -p "$out/source"
   tmp=$(mktemp -d "$out/source/tmp.XXXXXX")
   # shellcheck disable=SC2064 # this folder
   trap "rm -rf '$tmp'" RETURN EXIT
-  mkdir -p "$tmp/lists/partial" "$tmp/sources"
-
-  # shellcheck disable=SC2016 # apt expands these
-  mirror=$(apt-get indextargets --format '$(ORIGIN) $(CODENAME) $(REPO_URI)' 'Created-By: Packages' |
-    sed -n 's/^Debian [a-z]* //p' | head -n 1)
-  [[ -n $mirror ]] || die "no Debian mirror among apt's sources (apt-get update may help)"
-  echo "deb-src [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] $mirror $suite main" \
-    >"$tmp/sources/debian.list"
-
-  local apt=(-q -o Dir::State::lists="$tmp/lists" -o Dir::Cache::pkgcache= -o Dir::Cache::srcpkgcache=
-    -o APT::Sandbox::User=root -o APT::Update::Error-Mode=any
-    -o Dir::Etc::sourcelist=/dev/null -o Dir::Etc::sourceparts="$tmp/sources")
-  apt-get "${apt[@]}" update >"$tmp/log" 2>&1 || die "Debian $suite: $(grep -m1 '^E:' "$tmp/log")"
-  upstream_source "lammps/$suite" "$tmp" "${apt[@]}" || die "Debian $suite: $(grep -m1 '^E:' "$tmp/log")"
-  mv -T "$tmp/tree" "$target"
+  unpack_source "$1" "$tmp" || die "$1: $(head -n 1 "$tmp/log")"
+  mv -T "$tmp/tree" "$tree"
 }
 
+for k in "${!trees[@]}"; do
+  [[ -f ${trees[k]} ]] || continue
+  unpack "${trees[k]}"
+  trees[k]=$tree
+done
 for suite in "${suites[@]}"; do
-  fetch "$suite"
+  [[ -d $out/source/$suite ]] || echo "matrix: fetching the LAMMPS source of Debian $suite (up to 220 MB)"
+  reason=$(debian_source "$suite" "$out/source/$suite" 2>&1) || die "$reason"
   trees+=("$out/source/$suite")
 done
 

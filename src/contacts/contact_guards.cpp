@@ -15,7 +15,6 @@
 #include "group.h"
 #include "lammps_compat.h"
 #include "large_messages.h"
-#include "modify.h"
 #include "neighbor.h"
 #include "update.h"
 
@@ -34,7 +33,8 @@ static constexpr double DEEP = 0.1;         // overlap, of the smaller radius, t
 /* ---------------------------------------------------------------------- */
 
 ContactGuards::ContactGuards(LAMMPS *lmp, const ContactTable &contacts) :
-    Pointers(lmp), energy(lmp), table(contacts), motion(lmp), overlaps{0.0, 0, 0, 0}
+    Pointers(lmp), energy(lmp), growth(lmp), table(contacts), motion(lmp), overlaps{0.0, 0, 0, 0},
+    unseen_told(false), running(false)
 {
 }
 
@@ -59,12 +59,16 @@ void ContactGuards::say(const std::string &text)
 void ContactGuards::start(int freeze_group_bit)
 {
   print_table();
+  const std::string unseen = compat::unseen();
+  if (!unseen.empty() && !unseen_told) warn("{}", unseen);
+  unseen_told = true;
   told.clear();
   check_balls();
   check_neighbor_lists(freeze_group_bit);
   overlaps = {0.0, 0, 0, 0};
   energy.start();
   motion.start(freeze_group_bit);
+  running = true;
 }
 
 void ContactGuards::print_table()
@@ -155,7 +159,8 @@ void ContactGuards::check_dashpots(int i, int j)
 void ContactGuards::check_neighbor_lists(int freeze_group_bit)
 {
   if (neighbor->includegroup) {
-    const int listed = group->bitmask[neighbor->includegroup] | freeze_group_bit;
+    const int listed =
+        compat::group_bit(lmp, group->names[neighbor->includegroup]) | freeze_group_bit;
     bigint mine = 0, outside;
     for (int i = 0; i < atom->nlocal; i++) mine += !(atom->mask[i] & listed);
     MPI_Allreduce(&mine, &outside, 1, MPI_LMP_BIGINT, MPI_SUM, world);
@@ -169,7 +174,7 @@ void ContactGuards::check_neighbor_lists(int freeze_group_bit)
     warn("neigh_modify once should be no, got yes: balls that come near each other or a wall later "
          "are "
          "not found, and pass through");
-  if (neighbor->delay == 0 && neighbor->every == 1 && neighbor->dist_check) return;
+  if (neighbor->delay == 0 && neighbor->every == 1) return;
   warn("with neigh_modify every {} delay {} check {} contacts may be found late and rebound too "
        "fast; every 1 delay 0 check yes finds them in time",
        neighbor->every, neighbor->delay, neighbor->dist_check ? "yes" : "no");
@@ -179,6 +184,7 @@ void ContactGuards::check_neighbor_lists(int freeze_group_bit)
 
 void ContactGuards::begin_step()
 {
+  running = true;
   for (const std::string &text : motion.begin_step()) warn("{}", text);
 }
 
@@ -202,6 +208,48 @@ void ContactGuards::watch_energy(double elastic)
          "step {}, with nothing but contacts and gravity at work: the time step is too large, or "
          "contacts were found late",
          100.0 * energy.growth(), update->ntimestep);
+}
+
+/* ----------------------------------------------------------------------
+   lists are found again when a ball has moved by half the skin, whatever its size
+------------------------------------------------------------------------- */
+
+void ContactGuards::check_growth(double beyond)
+{
+  const double skin = neighbor->skin, grown = growth.grown();
+  if (grown > 0.5 * skin && told.insert("growth").second)
+    warn(
+        "balls should grow by at most half the skin, {:.4g}, while there is one neighbor list, got "
+        "{:.4g} until step {}: contacts may be found late or not at all; a larger skin, or "
+        "neigh_modify check no",
+        0.5 * skin, grown, update->ntimestep);
+  if (beyond > 0.5 * skin && atom->natoms > 1 && told.insert("reach").second)
+    warn("two balls should reach at most half the skin, {:.4g}, farther than the largest at the "
+         "start of the run, got {:.4g} at step {}: neighbor lists do not reach so far, and balls "
+         "may pass through each other; a larger skin, or several runs",
+         0.5 * skin, beyond, update->ntimestep);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void GrowthGuard::begin_list()
+{
+  if (wanted) radius.assign(atom->radius, atom->radius + atom->nlocal);
+}
+
+void GrowthGuard::end_list()
+{
+  const size_t known = std::min<size_t>(radius.size(), atom->nlocal);
+  for (size_t i = 0; i < known; i++) most = std::max(most, atom->radius[i] - radius[i]);
+}
+
+double GrowthGuard::grown()
+{
+  end_list();
+  double all;
+  MPI_Allreduce(&most, &all, 1, MPI_DOUBLE, MPI_MAX, world);
+  most = 0.0;
+  return all;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -235,6 +283,8 @@ void ContactGuards::Found::add(const Found &other)
 
 void ContactGuards::report()
 {
+  if (!running) return;
+  running = false;
   const Found f = found();
   if (f.deep) {
     Overlaps deepest = overlaps;
@@ -271,8 +321,7 @@ void MotionGuard::start(int freeze_group_bit)
 MotionGuard::Movers MotionGuard::movers() const
 {
   Movers m = {0, 0, ""};
-  for (int k = 0; k < modify->nfix; k++) {
-    const Fix *fix = modify->fix[k];
+  for (const Fix *fix : compat::fixes(lmp)) {
     const std::string style = Slope::plain_style(fix->style);
     if (fix->time_integrate) m.moved |= fix->groupbit;
     if (style != "move" && style != "setforce" && style != "nve/noforce") continue;
@@ -323,7 +372,45 @@ std::vector<std::string> MotionGuard::begin_step()
                     "balls with more: are they in rad/s, and meant?",
                     most, MOST_TURN, whirling));
   check_gravity(found);
+  check_frozen(m, found);
   return found;
+}
+
+/* ----------------------------------------------------------------------
+   fix freeze takes away the forces that there are when its turn comes, and none of the fixes after it
+------------------------------------------------------------------------- */
+
+void MotionGuard::check_frozen(const Movers &m, std::vector<std::string> &found) const
+{
+  std::vector<const Fix *> after;    // that add forces
+  bool freezes = false;
+  for (const Fix *fix : compat::fixes(lmp))
+    if (Slope::is_style(fix->style, "freeze"))
+      freezes = true;
+    else if (freezes && (compat::mask_of(lmp, fix) & FixConst::POST_FORCE))
+      after.push_back(fix);
+
+  // how many balls move though frozen, and of how many each fix has the force
+
+  std::vector<bigint> mine(after.size() + 1, 0), all(mine.size());
+  for (int i = 0; i < atom->nlocal; i++) {
+    const double *f = atom->f[i];
+    const int mask = atom->mask[i];
+    if (!(mask & frozen) || !(mask & m.moved) || (f[0] == 0.0 && f[1] == 0.0 && f[2] == 0.0))
+      continue;
+    mine.back()++;
+    for (size_t k = 0; k < after.size(); k++) mine[k] += (mask & after[k]->groupbit) != 0;
+  }
+  MPI_Allreduce(mine.data(), all.data(), static_cast<int>(mine.size()), MPI_LMP_BIGINT, MPI_SUM,
+                world);
+  if (all.back() == 0) return;
+  std::string names;
+  for (size_t k = 0; k < after.size(); k++)
+    if (all[k])
+      names += fmt::format("{}{} {}", names.empty() ? "" : ", ", after[k]->id, after[k]->style);
+  found.push_back(fmt::format("balls of fix freeze must have no force, got {} that move by one: "
+                              "define fix freeze after fix {}",
+                              all.back(), names));
 }
 
 /* ---------------------------------------------------------------------- */
@@ -410,6 +497,7 @@ void InitialOverlap::record(double overlap, double radius, tagint ball, const do
 
 void InitialOverlap::check(const std::string &caller, const std::string &remedy)
 {
+  if (!in_run) return;
   bigint total;
   MPI_Allreduce(&count, &total, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   if (total == 0) return;

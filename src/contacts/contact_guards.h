@@ -45,6 +45,26 @@ class MotionGuard : protected Pointers {
   template <typename Test> bigint count_free(Test test) const;
   void check_unmoved(const Movers &, std::vector<std::string> &found);
   void check_gravity(std::vector<std::string> &found) const;
+  void check_frozen(const Movers &, std::vector<std::string> &found) const;
+};
+
+// Balls that grow: neither do new neighbor lists come for that, nor do lists reach farther than for the largest balls of the
+// set-up.
+class GrowthGuard : protected Pointers {
+ public:
+  bool wanted;    // sizes vary
+
+  explicit GrowthGuard(LAMMPS *lmp) : Pointers(lmp), wanted(false), most(0.0) {}
+
+  void begin_list();    // around each neighbor list, of which the balls are known by their indices
+  void end_list();
+
+  // by how much a radius has grown at most while there was one list, m; collective. Begins anew.
+  double grown();
+
+ private:
+  std::vector<double> radius;    // when the list was made
+  double most;
 };
 
 class ContactGuards : protected Pointers {
@@ -55,6 +75,9 @@ class ContactGuards : protected Pointers {
   void start(int freeze_group_bit);
   void begin_step();    // collective
 
+  // from start(), or the first step, to report(): not while rerun looks at snapshots, of which none follows from the one before
+  bool in_run() const { return running; }
+
   // whatever of step, dashpots and masses is not sensible and has not been told in this run: when balls have come or changed,
   // and the step
   void check_balls();
@@ -62,6 +85,9 @@ class ContactGuards : protected Pointers {
   void record_overlap(int i, double overlap, double radius);    // m; radius: the smaller one
   void watch_energy(double elastic);    // J, of this rank's springs; collective
   EnergyGuard energy;
+  GrowthGuard growth;
+  // collective; beyond: m, by which two balls reach farther than at the set-up
+  void check_growth(double beyond);
   void say(const std::string &text);    // a warning of a wall; by rank 0, or by all
   void report();                        // at the end of a run; collective
 
@@ -87,6 +113,9 @@ class ContactGuards : protected Pointers {
     bigint step, count;
   } overlaps;
 
+  bool unseen_told;    // of this LAMMPS: in one run of each pair style
+  bool running;
+
   template <typename... Args> void warn(const char *format, const Args &...args);
   void print_table();
   void check_timestep();
@@ -97,12 +126,15 @@ class ContactGuards : protected Pointers {
 // The guard against balls that are placed inside each other. A linear spring of this
 // stiffness turns an overlap of a few per cent of the radius into a shot; a run must not
 // start from one. Used by the pair style and by the wall fix at set-up; contacts that come
-// with a history (a continued or restarted run) are not looked at.
+// with a history (a continued or restarted run) are not looked at, nor are the snapshots of rerun.
 class InitialOverlap : protected Pointers {
  public:
   static constexpr double LIMIT = 0.05;    // of the smaller radius
 
-  explicit InitialOverlap(class LAMMPS *lmp) : Pointers(lmp), worst(LIMIT), count(0) {}
+  InitialOverlap(class LAMMPS *lmp, const ContactGuards &guards) :
+      Pointers(lmp), in_run(guards.in_run()), worst(LIMIT), count(0)
+  {
+  }
 
   // note one overlapping pair; partner names it in the message
   void record(double overlap, double radius, tagint ball, const double *where,
@@ -112,6 +144,7 @@ class InitialOverlap : protected Pointers {
   void check(const std::string &caller, const std::string &remedy = "see delete_balls");
 
  private:
+  const bool in_run;
   double worst;        // overlap / radius
   bigint count;        // pairs above the limit
   std::string text;    // the worst pair

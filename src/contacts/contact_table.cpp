@@ -90,9 +90,10 @@ void ContactTable::find_ranges(int freeze_group_bit)
   }
   for (const InsertedBalls &balls : inserted_balls(lmp)) {
     TypeRange &range = ranges[balls.type];
+    range.radius_dynamic = std::max(range.radius_dynamic, balls.radius_max);
+    if (balls.mass_max == 0.0) continue;
     range.mass_min = range.moving ? std::min(range.mass_min, balls.mass_min) : balls.mass_min;
     range.mass_max = std::max(range.mass_max, balls.mass_max);
-    range.radius_dynamic = std::max(range.radius_dynamic, balls.radius_max);
     range.moving = true;
   }
 }
@@ -148,6 +149,15 @@ double ContactTable::cutoff(int i, int j) const
   const TypeRange &a = ranges[i], &b = ranges[j];
   return std::max({a.radius_dynamic + b.radius_dynamic, a.radius_frozen + b.radius_dynamic,
                    a.radius_dynamic + b.radius_frozen});
+}
+
+double ContactTable::largest_cutoff() const
+{
+  double largest = 0.0;
+  for (int i = 1; i <= atom->ntypes; i++)
+    for (int j = i; j <= atom->ntypes; j++)
+      if (balls_can_touch(i, j)) largest = std::max(largest, cutoff(i, j));
+  return largest;
 }
 
 /* ----------------------------------------------------------------------

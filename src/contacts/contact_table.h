@@ -53,6 +53,7 @@ class ContactTable : protected Pointers {
   bool balls_can_touch(int itype,
                        int jtype) const;          // without walls; balls that are to be poured, too
   double cutoff(int itype, int jtype) const;      // m, largest sum of the radii
+  double largest_cutoff() const;                  // of balls that can touch
   double lightest(int itype, int jtype) const;    // mass of the lightest moving ball, kg
   Slope::SpringDashpot normal(int itype,
                               int jtype) const;        // of that ball, fixed on the other type

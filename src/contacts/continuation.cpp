@@ -10,7 +10,6 @@
 #include "fix.h"
 #include "lammps_compat.h"
 #include "memory.h"
-#include "modify.h"
 #include "update.h"
 
 #include <algorithm>
@@ -62,8 +61,7 @@ void Continuation::keep_forces()
 bool Continuation::others_move() const
 {
   int known = 0, mine = 0, any;
-  for (int k = 0; k < modify->nfix; k++) {
-    const Fix *fix = modify->fix[k];
+  for (const Fix *fix : compat::fixes(lmp)) {
     const bool integrates = Slope::is_style(fix->style, "nve/sphere");
     if (fix->time_integrate && !integrates) return true;
     if (integrates || Slope::is_style(fix->style, "freeze")) known |= fix->groupbit;

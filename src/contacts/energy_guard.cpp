@@ -10,7 +10,6 @@
 #include "fix.h"
 #include "force.h"
 #include "lammps_compat.h"
-#include "modify.h"
 #include "update.h"
 
 #include <algorithm>
@@ -43,11 +42,9 @@ std::string EnergyGuard::unknown_work() const
 {
   const std::string other = other_forces();
   if (!other.empty()) return other;
-  for (int k = 0; k < modify->nfix; k++) {
-    const Fix *fix = modify->fix[k];
-    if (!does_no_work(Slope::plain_style(fix->style), modify->fmask[k]))
+  for (const Fix *fix : compat::fixes(lmp))
+    if (!does_no_work(Slope::plain_style(fix->style), compat::mask_of(lmp, fix)))
       return fmt::format("fix {} {}", fix->id, fix->style);
-  }
   return "";
 }
 
@@ -57,7 +54,7 @@ std::string EnergyGuard::other_forces() const
 {
   if (force->bond || force->angle || force->dihedral || force->improper) return "bonds";
   if (force->kspace) return "a kspace style";
-  for (const std::string &style : compat::parts_of_hybrid(force->pair))
+  for (const std::string &style : compat::parts_of_hybrid(lmp))
     if (!Slope::is_style(style, "gran/restitution") && !Slope::is_style(style, "zero"))
       return "pair style " + style;
   return "";

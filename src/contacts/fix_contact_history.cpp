@@ -17,6 +17,7 @@
 #include "exchange_size.h"
 #include "lammps_compat.h"
 #include "memory.h"
+#include "pair.h"
 #include "update.h"
 
 #include <algorithm>
@@ -55,6 +56,7 @@ FixContactHistory::~FixContactHistory()
 void FixContactHistory::pre_exchange()
 {
   owner->run_guards().energy.end_list();
+  owner->run_guards().growth.end_list();
   store_contacts();
 }
 
@@ -78,6 +80,7 @@ void FixContactHistory::post_neighbor()
   pair->beyond_contact = 0;
   lists_new = true;
   owner->run_guards().energy.begin_list();
+  owner->run_guards().growth.begin_list();
 }
 
 void FixContactHistory::setup_post_neighbor()
@@ -140,7 +143,29 @@ void FixContactHistory::init()
 {
   restart_extra.check(CALLER);
   FixNeighHistory::init();
+  check_order();
   maxexchange = exchange_size(lmp, most_packed());    // of a restart file's contacts, too
+}
+
+// A fix that deletes balls gives the index of one to another before the contacts are stored, which name balls by index. Those
+// that only add balls, or change the box, may come first.
+
+void FixContactHistory::check_order() const
+{
+  for (const Fix *fix : compat::fixes(lmp)) {
+    if (fix == this) return;
+    if (!(compat::mask_of(lmp, fix) & PRE_EXCHANGE)) continue;
+    bool keeps_balls = utils::strmatch(fix->style, "^n[pv][ht]");    // of boxes that are turned
+    for (const char *style :
+         {"append/atoms", "BOND_HISTORY", "CONTACT_HISTORY", "deform", "deposit", "DUMMY",
+          "NEIGH_HISTORY", "pour", "wall/gran/balls", "wall/gran/mesh"})
+      keeps_balls = keeps_balls || Slope::is_style(fix->style, style);
+    if (!keeps_balls)
+      error->all(FLERR,
+                 "{}: fix {} {} must be defined after pair_style, got it before: it may take away "
+                 "balls whose contacts are not stored yet",
+                 CALLER, fix->id, fix->style);
+  }
 }
 
 void FixContactHistory::setup(int)

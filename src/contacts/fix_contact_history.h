@@ -63,6 +63,7 @@ class FixContactHistory : public FixNeighHistory {
 
   void store_contacts();
   void rename_partners();
+  void check_order() const;
   void archive(Slope::Archive &);    // members of a restart file
   int most_packed() const;           // numbers of a ball of this rank, as pack_exchange() has them
 };

@@ -10,7 +10,7 @@
 #include "error.h"
 #include "exchange_size.h"
 #include "group.h"
-#include "modify.h"
+#include "lammps_compat.h"
 #include "pair_gran_restitution.h"
 #include "update.h"
 
@@ -66,11 +66,11 @@ void FixContactWall::init()
 
   // contacts must be stored by atom before any fix migrates atoms
 
-  for (int i = 0; i < modify->nfix; i++) {
-    if (modify->fix[i] == this) break;
-    if (modify->fix[i]->pre_exchange_migrate)
+  for (const Fix *fix : compat::fixes(lmp)) {
+    if (fix == this) break;
+    if (fix->pre_exchange_migrate)
       error->all(FLERR, "{}: must come before fix {} {}, which moves atoms between ranks", caller,
-                 modify->fix[i]->id, modify->fix[i]->style);
+                 fix->id, fix->style);
   }
   reserve();    // of a restart file's contacts, too
 }

@@ -15,6 +15,7 @@
 #include "force.h"
 #include "lammps_compat.h"
 #include "memory.h"
+#include "modify.h"
 #include "neigh_list.h"
 #include "neighbor.h"
 #include "rank_zero.h"
@@ -61,17 +62,17 @@ PairGranRestitution::PairGranRestitution(LAMMPS *lmp) :
   // a restart file hands the history back to a fix of the same ID
 
   for (int n = 0;
-       history_id.empty() || modify->find_fix(history_id) >= 0 || modify->find_fix(dummy_id) >= 0;
+       history_id.empty() || compat::fix_by_id(lmp, history_id) || compat::fix_by_id(lmp, dummy_id);
        n++) {
     history_id = fmt::format("NEIGH_HISTORY_SLOPE{}", n);
     dummy_id = fmt::format("NEIGH_HISTORY_SLOPE_DUMMY{}", n);
   }
-  modify->add_fix(dummy_id + " all DUMMY");
+  Fix *const dummy = modify->add_fix(dummy_id + " all DUMMY");
 
   // a restart file in parts (with % in its name): balls move between ranks with what they have there, as
   // numbers of a fix of LAMMPS that reserves no room for them, see exchange_size()
 
-  modify->fix[modify->find_fix(dummy_id)]->maxexchange = ROOM_IN_RESTART;
+  dummy->maxexchange = ROOM_IN_RESTART;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -80,8 +81,7 @@ PairGranRestitution::~PairGranRestitution()
 {
   if (copymode) return;
   delete[] svector;
-  for (const std::string &fix_id : {history_id, dummy_id})
-    if (modify->find_fix(fix_id) >= 0) modify->delete_fix(fix_id);
+  for (const std::string &fix_id : {history_id, dummy_id}) compat::drop_fix(lmp, fix_id);
   if (allocated) {
     memory->destroy(setflag);
     memory->destroy(cutsq);
@@ -185,7 +185,7 @@ void PairGranRestitution::init_style()
                "Pair gran/restitution pair_style must be hybrid or hybrid/overlay with others, got "
                "{}, which scales the forces between balls but not those of walls",
                force->pair_style);
-  const auto parts = compat::parts_of_hybrid(force->pair);
+  const auto parts = compat::parts_of_hybrid(lmp);
   const auto ours = std::count_if(parts.begin(), parts.end(), [](const std::string &part) {
     return is_style(part, "gran/restitution");
   });
@@ -203,7 +203,7 @@ void PairGranRestitution::init_style()
   compat::request_history_list(neighbor, this, instance_me);
 
   const std::string &kept_by = fix_history ? history_id : dummy_id;
-  if (modify->find_fix(kept_by) < 0)
+  if (!compat::fix_by_id(lmp, kept_by))
     error->all(
         FLERR,
         "Pair gran/restitution: fix {} must not be removed, as it keeps the contacts: define "
@@ -223,9 +223,11 @@ void PairGranRestitution::init_style()
 
   sizes_vary = !compat::fixes_of_style(lmp, "adapt").empty() ||
       !compat::fixes_of_style(lmp, "set").empty();
+  guards.growth.wanted = sizes_vary;
   works.wanted = !compat::fixes_of_style(lmp, "energy/ledger").empty();
 
   table.find_ranges(freeze_group_bit);
+  require_wide_box(lmp, "Pair gran/restitution", table.largest_cutoff());
   table.forget_walls();    // wall fixes announce themselves after
   walls.clear();
 }
@@ -277,6 +279,7 @@ void PairGranRestitution::setup()
 
 void PairGranRestitution::watch_energy()
 {
+  if (!guards.in_run()) return;
   const MovingBalls balls = states.balls();
   double elastic = lists.elastic_energy(balls, states.partners(balls), guards);
   for (const ContactHolder *wall : walls) elastic += wall->elastic_energy();
@@ -284,6 +287,12 @@ void PairGranRestitution::watch_energy()
   if (!sizes_vary && !guards.energy.balls_came()) return;
   table.find_ranges(freeze_group_bit);
   guards.check_balls();
+  double beyond = 0.0;
+  for (int i = 1; i <= atom->ntypes; i++)
+    for (int j = i; j <= atom->ntypes; j++)
+      if (table.balls_can_touch(i, j))
+        beyond = std::max(beyond, table.cutoff(i, j) - sqrt(cutsq[i][j]));
+  guards.check_growth(beyond);
   for (ContactHolder *wall : walls) wall->check_sizes();
 }
 
@@ -346,7 +355,7 @@ void PairGranRestitution::compute(int eflag, int vflag)
   states.begin_step(fix_history->continuation, repeat, table.is_exact(), freeze_group_bit != 0);
   const MovingBalls balls = states.balls();
   const MovingPartners partners = states.partners(balls);
-  lists.find(repeat, balls, partners);
+  lists.find(repeat, balls, partners, guards);
   for (ContactHolder *wall : walls) wall->find_contacts(repeat);
   states.share_counts(this);
 

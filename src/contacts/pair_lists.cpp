@@ -69,10 +69,11 @@ void PairLists::build(const NeighList &near, FixNeighHistory &history, int froze
 
 /* ---------------------------------------------------------------------- */
 
-void PairLists::find(bool repeat, const MovingBalls &balls, const MovingPartners &partners)
+void PairLists::find(bool repeat, const MovingBalls &balls, const MovingPartners &partners,
+                     const ContactGuards &guards)
 {
   if (repeat) {
-    InitialOverlap initial(lmp);
+    InitialOverlap initial(lmp, guards);
     for (ContactList &l : lists)
       l.adopt_overlaps(balls, partners, [&](const ContactList::Entry &e, double overlap) {
         initial.record(overlap, std::min(atom->radius[e.i], atom->radius[e.j]), atom->tag[e.i],

@@ -28,7 +28,8 @@ class PairLists : protected Pointers {
 
   // which contacts touch, counted with the balls; repeat: in the step that has just ended, at a set-up, where
   // a run must not begin with deep overlaps
-  void find(bool repeat, const Slope::MovingBalls &, const Slope::MovingPartners &);
+  void find(bool repeat, const Slope::MovingBalls &, const Slope::MovingPartners &,
+            const class ContactGuards &);
 
   // use(list, its law) for all lists
   template <class Use> void for_each(Use use)

@@ -9,6 +9,7 @@
 #include "histogram.h"
 #include "large_messages.h"
 #include "mass_ledger.h"
+#include "requirements.h"
 
 #include "atom.h"
 #include "domain.h"
@@ -30,7 +31,7 @@ enum { X, Y, Z };
 /* ---------------------------------------------------------------------- */
 
 DepositBalls::DepositBalls(LAMMPS *lmp, int groupbit_in, double bulk) :
-    Pointers(lmp), groupbit(groupbit_in)
+    Pointers(lmp), groupbit(groupbit_in), fast(from_si_speed(lmp, DepositSummary::FAST))
 {
   set_bulk(bulk);
 }
@@ -106,7 +107,7 @@ DepositBalls::Sums DepositBalls::bin(DepositBins &bins) const
     sums.mass += m;
     sums.mass_x += m * x[X];
     sums.mass_y += m * x[Y];
-    if (speed > DepositSummary::FAST) sums.fast += side * side * side;
+    if (speed > fast) sums.fast += side * side * side;
   }
   Sums all;
   MPI_Allreduce(&sums, &all, sizeof(Sums) / sizeof(double), MPI_DOUBLE, MPI_SUM, world);
@@ -246,12 +247,12 @@ DepositSummary::Motion DepositBalls::motion(double threshold, double &moving) co
     const double speed = speed_of(i);
     mine[0] = std::max(mine[0], speed);
     if (speed > threshold) mine[1] += volume_of(i);
-    if (speed > DepositSummary::FAST) mine[2] += volume_of(i);
+    if (speed > fast) mine[2] += volume_of(i);
   }
   MPI_Allreduce(mine, all, 1, MPI_DOUBLE, MPI_MAX, world);
   MPI_Allreduce(mine + 1, all + 1, 2, MPI_DOUBLE, MPI_SUM, world);
   moving = all[1];
-  DepositSummary::Motion found = {threshold, all[0], 0.0, 0.0, all[2], 0.0};
+  DepositSummary::Motion found = {threshold, all[0], 0.0, 0.0, all[2], 0.0, fast};
   if (found.largest == 0.0) return found;
 
   Histogram speeds(log(SLOWEST), 0.0);

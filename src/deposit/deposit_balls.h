@@ -58,6 +58,7 @@ class DepositBalls : protected Pointers {
   int groupbit;
   double factor;         // bulk
   double side_factor;    // side of a cube / diameter
+  const double fast;     // speed
 
   double side_of(int i) const;
   double speed_of(int i) const;

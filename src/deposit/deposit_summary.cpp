@@ -117,7 +117,7 @@ void DepositSummary::write_motion(std::string &s) const
 {
   s += "motion:  # of the balls now; moving_share: of the volume, faster than threshold; fast: "
        "than " +
-      real(FAST) + "\n";
+      real(motion.fast) + "\n";
   line(s, "  threshold", real(motion.threshold));
   line(s, "  largest_speed", real(motion.largest));
   line(s, "  median_speed", real(motion.median));

@@ -19,7 +19,7 @@ namespace Slope {
 // volumes are bulk unless stated otherwise.
 struct DepositSummary {
   static constexpr double MOVING_SHARE = 0.1;    // of the volume: more is a mass in motion
-  static constexpr double FAST = 0.1;            // m/s: faster than this is fast
+  static constexpr double FAST = 0.1;    // m/s: faster than this is fast, in other units too
 
   // --- versions, the run ---
 
@@ -69,6 +69,7 @@ struct DepositSummary {
   struct Motion {
     double threshold, largest, median, moving_share, fast_volume;
     double fast_share;    // of the released volume
+    double fast;          // speed from which on a ball is fast
   } motion;
   double change_rate;
   double rest_share;    // of the released volume: less may be fast in a mass at rest

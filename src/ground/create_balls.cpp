@@ -18,7 +18,6 @@
 #include "error.h"
 #include "group.h"
 #include "lammps_compat.h"
-#include "modify.h"
 #include "region.h"
 #include "style_argument.h"
 
@@ -93,7 +92,7 @@ void CreateBalls::check_box() const
   if (!domain->box_exist) error->all(FLERR, "Create_balls before the simulation box is defined");
   if (domain->dimension != 3)
     error->all(FLERR, "Create_balls dimension must be 3, got {}", domain->dimension);
-  if (modify->nfix_restart_peratom)
+  if (compat::balls_wait_for_fixes(lmp))
     error->all(FLERR,
                "Create_balls cannot follow a restart file with per-atom info of a fix "
                "before that fix is defined");
@@ -110,7 +109,7 @@ void CreateBalls::check_box() const
 
 bigint CreateBalls::place(double diameter, int narg, char **arg, std::vector<double> &xyz) const
 {
-  const double smallest = BallPlacement::smallest_ball(lmp, group->bitmask[0]);
+  const double smallest = BallPlacement::smallest_ball(lmp, compat::group_bit(lmp, "all"));
   BallPlacement placement(lmp, "Create_balls", diameter, smallest, narg, arg);
   std::vector<double> all;
   for (const Slope::PlacedBall &b : placement.all()) all.insert(all.end(), {b.x, b.y, b.z});

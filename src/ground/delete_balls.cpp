@@ -37,8 +37,7 @@ void DeleteBalls::command(int narg, char **arg)
     error->all(FLERR, "Delete_balls needs GROUP overlap FRACTION, got {} arguments", narg);
   if (strcmp(arg[1], "overlap") != 0)
     error->all(FLERR, "Delete_balls keyword must be overlap, got {}", arg[1]);
-  const int igroup = group->find(arg[0]);
-  if (igroup < 0) error->all(FLERR, "Delete_balls group must exist, got {}", arg[0]);
+  if (group->find(arg[0]) < 0) error->all(FLERR, "Delete_balls group must exist, got {}", arg[0]);
   const std::string name = arg[0];    // arg does not outlive the commands that we issue
   const double fraction = number_argument(lmp, "Delete_balls overlap", arg[2]);
   if (!(fraction >= 0.0 && fraction < 1.0))
@@ -53,8 +52,8 @@ void DeleteBalls::command(int narg, char **arg)
 
   // mark them by a group, and let LAMMPS delete the group
 
-  const int marked = group->bitmask[group->find_or_create(MARKED)];
-  const int groupbit = group->bitmask[igroup];
+  group->find_or_create(MARKED);
+  const int marked = compat::group_bit(lmp, MARKED), groupbit = compat::group_bit(lmp, name);
   double mine[4] = {0.0, 0.0, 0.0, 0.0}, all[4];    // marked, left, their volumes
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;

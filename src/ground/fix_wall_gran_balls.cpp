@@ -246,7 +246,7 @@ void FixWallGranBalls::find_contacts(bool repeat)
 {
   const MovingBalls moving = pair->moving_balls();
   const FixedPartners fixed = partners();
-  InitialOverlap initial(lmp);
+  InitialOverlap initial(lmp, pair->guards);
   for (ContactList &l : lists) {
     if (repeat)
       l.adopt_overlaps(moving, fixed, [&](const ContactList::Entry &e, double overlap) {

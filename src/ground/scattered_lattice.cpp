@@ -171,6 +171,8 @@ ScatteredLattice::Block &ScatteredLattice::block(int64_t bi, int64_t bj)
   if (!found) {
     found.reset(new Block);
     make(*found, bi, bj);
+    found->candidates.shrink_to_fit();
+    known += found->candidates.size();
   }
   return *found;
 }

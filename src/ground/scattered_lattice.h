@@ -58,8 +58,12 @@ class ScatteredLattice {
   // the same of those nearer to a place than a distance
   template <typename Visit> bool any_near(const Candidate &, double distance, Visit visit);
 
-  void forget() { blocks.clear(); }
-  size_t remembered() const { return blocks.size(); }    // blocks
+  void forget()
+  {
+    blocks.clear();
+    known = 0;
+  }
+  size_t remembered() const { return known; }    // candidates
 
  private:
   static constexpr int BLOCK_BITS =
@@ -77,6 +81,7 @@ class ScatteredLattice {
     int first[BLOCK * BLOCK + 1];    // of each cell, row by row
   };
   std::unordered_map<int64_t, std::unique_ptr<Block>> blocks;
+  size_t known = 0;
 
   struct Place {
     double x, y, z;

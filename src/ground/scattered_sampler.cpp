@@ -13,8 +13,8 @@ using namespace Slope;
 
 constexpr double ScatteredSampler::WIDEST;
 
-static constexpr double NEAREST = 0.795;          // of the spacing: gives one ball per spacing^2
-static constexpr size_t MOST_BLOCKS = 1 << 14;    // that are remembered
+static constexpr double NEAREST = 0.795;    // of the spacing: gives one ball per spacing^2
+static constexpr size_t MOST = 1 << 18;     // candidates of 48 bytes that are remembered
 
 /* ---------------------------------------------------------------------- */
 
@@ -102,9 +102,9 @@ void ScatteredSampler::sample(int tile, std::vector<PlacedBall> &balls, SurfaceC
 {
   const Cells own = cells_of(tile, lattices[0]);
   const double cell = lattices[0].cell;
-  size_t blocks = 0;
-  for (const ScatteredLattice &lattice : lattices) blocks += lattice.remembered();
-  if (blocks > MOST_BLOCKS) forget();
+  size_t known = 0;
+  for (const ScatteredLattice &lattice : lattices) known += lattice.remembered();
+  if (known > MOST) forget();
   const size_t before = balls.size();
   for (size_t k = 0; k < lattices.size(); k++) {
     const Cells in = cells_of(tile, lattices[k]);

@@ -6,9 +6,7 @@
 #ifndef SLOPE_EXCHANGE_SIZE_H
 #define SLOPE_EXCHANGE_SIZE_H
 
-#include "fix.h"
-#include "lammps.h"
-#include "modify.h"
+#include "lammps_compat.h"
 
 namespace LAMMPS_NS {
 
@@ -20,7 +18,7 @@ inline int exchange_size(LAMMPS *lmp, int mine)
 {
   int most, fixes = 0;
   MPI_Allreduce(&mine, &most, 1, MPI_INT, MPI_MAX, lmp->world);
-  for (int i = 0; i < lmp->modify->nfix; i++) fixes += lmp->modify->fix[i]->maxexchange_dynamic;
+  for (const Fix *fix : compat::fixes(lmp)) fixes += fix->maxexchange_dynamic;
   return fixes * most;
 }
 

@@ -8,102 +8,41 @@
 #include "constants.h"
 #include "lammps_compat.h"
 
-#include "fix_deposit.h"
-#include "fix_pour.h"
+#include "atom.h"
+#include "fix.h"
 #include "molecule.h"
 
-#include <algorithm>
-
 using namespace LAMMPS_NS;
-
-namespace LAMMPS_NS {
-namespace compat {
-typedef double *Numbers;
-typedef Molecule **Molecules;
-SLOPE_REVEAL(FixPour, int, ntype)
-SLOPE_REVEAL(FixPour, int, mode)
-SLOPE_REVEAL(FixPour, int, dstyle)
-SLOPE_REVEAL(FixPour, int, npoly)
-SLOPE_REVEAL(FixPour, double, radius_one)
-SLOPE_REVEAL(FixPour, double, radius_lo)
-SLOPE_REVEAL(FixPour, double, radius_hi)
-SLOPE_REVEAL(FixPour, Numbers, radius_poly)
-SLOPE_REVEAL(FixPour, double, density_lo)
-SLOPE_REVEAL(FixPour, double, density_hi)
-SLOPE_REVEAL(FixPour, Molecules, onemols)
-SLOPE_REVEAL(FixPour, int, nmol)
-SLOPE_REVEAL(FixDeposit, int, ntype)
-SLOPE_REVEAL(FixDeposit, int, mode)
-SLOPE_REVEAL(FixDeposit, Molecules, onemols)
-SLOPE_REVEAL(FixDeposit, int, nmol)
-}    // namespace compat
-}    // namespace LAMMPS_NS
-
-enum { ATOM, MOLECULE };      // mode, in both fixes
-enum { ONE, RANGE, POLY };    // dstyle
-
-static constexpr double RADIUS = 0.5, DENSITY = 1.0;    // of LAMMPS, where nothing else is said
 
 static double ball_of(double radius, double density)
 {
   return 4.0 / 3.0 * Slope::PI * radius * radius * radius * density;
 }
 
-/* ---------------------------------------------------------------------- */
+/* ----------------------------------------------------------------------
+   as Atom::add_molecule_atom() makes them
+------------------------------------------------------------------------- */
 
-static void add(std::vector<InsertedBalls> &found, int type, int mask, double radius_lo,
-                double radius_hi, double density_lo, double density_hi)
+static void add_molecule(std::vector<InsertedBalls> &found, const compat::Insertion &its, int mask,
+                         const Molecule &m)
 {
-  found.push_back({type, mask, ball_of(radius_lo, density_lo), ball_of(radius_hi, density_hi),
-                   radius_lo, radius_hi});
-}
-
-// as Atom::add_molecule_atom() makes them
-
-static void add(std::vector<InsertedBalls> &found, int first_type, int mask, int number,
-                Molecule **molecules)
-{
-  for (int k = 0; k < number; k++)
-    for (int i = 0; i < molecules[k]->natoms; i++) {
-      const Molecule &m = *molecules[k];
-      const double radius = m.radiusflag ? m.radius[i] : RADIUS;
-      const double mass = m.rmassflag ? m.rmass[i] : ball_of(radius, DENSITY);
-      const int type = first_type + (m.typeflag ? m.type[i] : 0);
-      found.push_back({type, mask, mass, mass, radius, radius});
-    }
-}
-
-/* ---------------------------------------------------------------------- */
-
-static void add(std::vector<InsertedBalls> &found, FixPour *fix)
-{
-  using namespace compat;
-  const int type = fix->*reveal(FixPour_ntype()), mask = 1 | fix->groupbit;
-  if (fix->*reveal(FixPour_mode()) == MOLECULE)
-    return add(found, type, mask, fix->*reveal(FixPour_nmol()), fix->*reveal(FixPour_onemols()));
-  const int sizes = fix->*reveal(FixPour_dstyle());
-  double lo = fix->*reveal(FixPour_radius_one()), hi = lo;
-  if (sizes == RANGE) {
-    lo = fix->*reveal(FixPour_radius_lo());
-    hi = fix->*reveal(FixPour_radius_hi());
-  } else if (sizes == POLY) {
-    const double *radii = fix->*reveal(FixPour_radius_poly());
-    const auto ends = std::minmax_element(radii, radii + fix->*reveal(FixPour_npoly()));
-    lo = *ends.first;
-    hi = *ends.second;
+  for (int i = 0; i < m.natoms; i++) {
+    const double radius = m.radiusflag ? m.radius[i] : its.radius_lo;
+    const double mass = m.rmassflag ? m.rmass[i] : ball_of(radius, its.density_lo);
+    const int type = its.type + (m.typeflag ? m.type[i] : 0);
+    found.push_back({type, mask, mass, mass, radius, radius});
   }
-  add(found, type, mask, lo, hi, fix->*reveal(FixPour_density_lo()),
-      fix->*reveal(FixPour_density_hi()));
 }
 
-static void add(std::vector<InsertedBalls> &found, FixDeposit *fix)
+// the largest radius of each type is all that a fix tells of itself
+
+static void add_unseen(std::vector<InsertedBalls> &found, int ntypes, int mask, Fix *fix)
 {
-  using namespace compat;
-  const int type = fix->*reveal(FixDeposit_ntype()), mask = 1 | fix->groupbit;
-  if (fix->*reveal(FixDeposit_mode()) == MOLECULE)
-    add(found, type, mask, fix->*reveal(FixDeposit_nmol()), fix->*reveal(FixDeposit_onemols()));
-  else
-    add(found, type, mask, RADIUS, RADIUS, DENSITY, DENSITY);
+  for (int t = 1; t <= ntypes; t++) {
+    int type = t;
+    const auto radius = static_cast<const double *>(fix->extract("radius", type));
+    if (radius && *radius > 0.0) found.push_back({t, mask, 0.0, 0.0, *radius, *radius});
+  }
 }
 
 /* ---------------------------------------------------------------------- */
@@ -111,8 +50,16 @@ static void add(std::vector<InsertedBalls> &found, FixDeposit *fix)
 std::vector<InsertedBalls> LAMMPS_NS::inserted_balls(LAMMPS *lmp)
 {
   std::vector<InsertedBalls> found;
-  for (Fix *fix : compat::fixes_of_style(lmp, "pour")) add(found, static_cast<FixPour *>(fix));
-  for (Fix *fix : compat::fixes_of_style(lmp, "deposit"))
-    add(found, static_cast<FixDeposit *>(fix));
+  for (const char *style : {"pour", "deposit"})
+    for (Fix *fix : compat::fixes_of_style(lmp, style)) {
+      const int mask = 1 | fix->groupbit;
+      compat::Insertion its;
+      if (!compat::insertion(fix, its))
+        add_unseen(found, lmp->atom->ntypes, mask, fix);
+      else if (its.molecules.empty())
+        found.push_back({its.type, mask, ball_of(its.radius_lo, its.density_lo),
+                         ball_of(its.radius_hi, its.density_hi), its.radius_lo, its.radius_hi});
+      for (const Molecule *molecule : its.molecules) add_molecule(found, its, mask, *molecule);
+    }
   return found;
 }

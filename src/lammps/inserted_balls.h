@@ -13,7 +13,7 @@
 namespace LAMMPS_NS {
 class LAMMPS;
 
-// kinds of balls; lightest and heaviest of each, kg; radii, m
+// kinds of balls; lightest and heaviest of each, kg, 0: unknown; radii, m
 struct InsertedBalls {
   int type, mask;    // as balls have them
   double mass_min, mass_max, radius_min, radius_max;

@@ -6,11 +6,11 @@
 #include "requirements.h"
 
 #include "atom.h"
+#include "domain.h"
 #include "error.h"
 #include "fix.h"
 #include "force.h"
 #include "lammps_compat.h"
-#include "modify.h"
 #include "update.h"
 
 #include <cmath>
@@ -52,6 +52,13 @@ bool LAMMPS_NS::in_si(const LAMMPS *lmp)
   return strcmp(lmp->update->unit_style, "si") == 0;
 }
 
+// micrometers per microsecond, and so on, are meters per second
+
+double LAMMPS_NS::from_si_speed(const LAMMPS *lmp, double speed)
+{
+  return strcmp(lmp->update->unit_style, "cgs") == 0 ? 100.0 * speed : speed;
+}
+
 /* ----------------------------------------------------------------------
    the law takes stiffness times length for a force, and mass times velocity squared for an energy
 ------------------------------------------------------------------------- */
@@ -71,9 +78,7 @@ void LAMMPS_NS::require_plain_units(LAMMPS *lmp, const std::string &caller)
 
 void LAMMPS_NS::require_single_balls(LAMMPS *lmp, const std::string &caller)
 {
-  const Modify *modify = lmp->modify;
-  for (int i = 0; i < modify->nfix; i++) {
-    const Fix *fix = modify->fix[i];
+  for (const Fix *fix : compat::fixes(lmp)) {
     if (fix->rigid_flag)
       lmp->error->all(
           FLERR,
@@ -113,7 +118,6 @@ static bool integrates_spins(const std::string &style)
 void LAMMPS_NS::require_spins(LAMMPS *lmp, const std::string &caller, int frozen)
 {
   const Atom *atom = lmp->atom;
-  const Modify *modify = lmp->modify;
   const auto count = [&](const std::function<bool(int)> &test) {
     bigint mine = 0, all;
     for (int i = 0; i < atom->nlocal; i++) mine += test(atom->mask[i]);
@@ -121,8 +125,8 @@ void LAMMPS_NS::require_spins(LAMMPS *lmp, const std::string &caller, int frozen
     return all;
   };
   std::vector<const Fix *> movers;
-  for (int k = 0; k < modify->nfix; k++)
-    if (modify->fix[k]->time_integrate) movers.push_back(modify->fix[k]);
+  for (const Fix *fix : compat::fixes(lmp))
+    if (fix->time_integrate) movers.push_back(fix);
 
   std::string names;
   for (const Fix *fix : movers) {
@@ -148,6 +152,26 @@ void LAMMPS_NS::require_spins(LAMMPS *lmp, const std::string &caller, int frozen
   if (twice)
     lmp->error->all(FLERR, "{}: each ball must be moved by one fix, got {} balls with more, of {}",
                     caller, twice, names);
+}
+
+/* ----------------------------------------------------------------------
+   LAMMPS keeps what contacts remember by the ID of the other ball: the second contact of the same two balls, across a
+   periodic side, would have the history of the first one. In two dimensions no ball has an image along z.
+------------------------------------------------------------------------- */
+
+void LAMMPS_NS::require_wide_box(LAMMPS *lmp, const std::string &caller, double reach)
+{
+  const Domain *domain = lmp->domain;
+  if (lmp->atom->natoms < 2) return;
+  const double *h = domain->h_inv;    // rows: h[0] h[5] h[4], h[1] h[3], h[2]
+  const double width[3] = {1.0 / std::sqrt(h[0] * h[0] + h[5] * h[5] + h[4] * h[4]),
+                           1.0 / std::sqrt(h[1] * h[1] + h[3] * h[3]), 1.0 / h[2]};
+  for (int d = 0; d < domain->dimension; d++)
+    if (domain->periodicity[d] && width[d] <= 2.0 * reach)
+      lmp->error->all(FLERR,
+                      "{}: a periodic box must be wider than {:g}, two of the largest balls that "
+                      "can touch, or they touch at both sides, got {:g} along {}",
+                      caller, 2.0 * reach, width[d], "xyz"[d]);
 }
 
 /* ----------------------------------------------------------------------

@@ -17,7 +17,8 @@
 namespace LAMMPS_NS {
 class LAMMPS;
 
-bool in_si(const LAMMPS *);    // the units of the deck
+bool in_si(const LAMMPS *);                            // the units of the deck
+double from_si_speed(const LAMMPS *, double speed);    // in its units; reduced ones (lj) have none
 
 void require_run(LAMMPS *,
                  const std::string &caller);    // with run_style verlet, forwards; no minimize
@@ -28,6 +29,8 @@ void require_single_balls(LAMMPS *, const std::string &caller);    // no rigid b
 void require_spheres(LAMMPS *, const std::string &caller);         // no discs
 // what moves balls turns them, too, and one fix each; frozen: group bits of balls that do not move
 void require_spins(LAMMPS *, const std::string &caller, int frozen);
+// a periodic box in which two balls touch at one side only; reach: m, largest distance of two that touch
+void require_wide_box(LAMMPS *, const std::string &caller, double reach);
 void require_whole_contacts(LAMMPS *,
                             const std::string &caller);    // special_bonds, if there are bonds
 

@@ -11,7 +11,6 @@
 #include "atom.h"
 #include "comm.h"
 #include "fix.h"
-#include "modify.h"
 
 #include <algorithm>
 #include <cmath>
@@ -100,8 +99,7 @@ void RestartExtra::check(const std::string &caller) const
 
 void RestartDrops::check()
 {
-  for (int i = 0; i < modify->nfix; i++) {
-    const Fix *fix = modify->fix[i];
+  for (const Fix *fix : compat::fixes(lmp))
     if (std::find(dropped.begin(), dropped.end(), Name(fix->id, fix->style)) != dropped.end())
       error->all(FLERR,
                  "Fix {} {} must be defined before the first command after read_restart that sets "
@@ -110,11 +108,5 @@ void RestartDrops::check()
                  "define it before, or "
                  "with another ID if it is to begin anew",
                  fix->id, fix->style);
-  }
-  const auto drop = [this](const compat::RestartList &list) {
-    for (int k = 0; k < list.number; k++)
-      if (!list.used[k]) dropped.emplace_back(list.id[k], list.style[k]);
-  };
-  drop(compat::restart_of_fixes(modify));
-  drop(compat::restart_by_atom(modify));
+  for (const Name &left : compat::left_in_restart(lmp)) dropped.push_back(left);
 }

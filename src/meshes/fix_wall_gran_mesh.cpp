@@ -315,7 +315,7 @@ void FixWallGranMesh::find_contacts(bool repeat)
   find_features();
   const MovingBalls moving = pair->moving_balls();
   const FixedPartners fixed = phantoms(centres);
-  InitialOverlap initial(lmp);
+  InitialOverlap initial(lmp, pair->guards);
   for (ContactList &l : lists) {
     if (repeat)
       l.adopt_overlaps(moving, fixed, [&](const ContactList::Entry &e, double) {

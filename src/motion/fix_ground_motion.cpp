@@ -10,6 +10,7 @@
 #include "fix_ground_motion.h"
 
 #include "empty_group.h"
+#include "lammps_compat.h"
 #include "large_messages.h"
 #include "rank_zero.h"
 #include "requirements.h"
@@ -22,7 +23,6 @@
 #include "error.h"
 #include "force.h"
 #include "group.h"
-#include "modify.h"
 #include "update.h"
 
 #include <algorithm>
@@ -123,8 +123,7 @@ void FixGroundMotion::init()
 
   kicked = placed = frozen = 0;
   bool before = true;
-  for (int k = 0; k < modify->nfix; k++) {
-    const Fix *fix = modify->fix[k];
+  for (const Fix *fix : compat::fixes(lmp)) {
     if (fix == this) before = false;
     if (Slope::is_style(fix->style, "freeze")) frozen |= fix->groupbit;
     if (!fix->time_integrate || !utils::strmatch(fix->style, "^nve")) continue;

@@ -49,6 +49,15 @@ def flat(tmp_path, size=20, z=0.0, xlo=0.0, ylo=0.0, cell=1.0):
     write_asc(tmp_path / "ground.asc", np.full((size, size), z), xlo, ylo, cell)
 
 
+@pytest.mark.parametrize("units, speed, fast", [("si", 0.11, 1), ("cgs", 9.0, 0), ("cgs", 11.0, 1)])
+def test_fast_is_one_speed_in_all_units(tmp_path, units, speed, fast):
+    flat(tmp_path)
+    write_balls(tmp_path / "balls.data", [[5, 5, 5]], 1.0, [[speed, 0, 0]], [(0, 20)] * 3)
+    run_deck(head().replace("units si", f"units {units}")
+             + "fix dep all deposit/grid 1 0 cell 1 terrain ground output out bulk 1.9\nrun 1\n", tmp_path)
+    assert summary(tmp_path)["motion"]["fast_share"] == fast
+
+
 # --- volume ---
 
 

@@ -271,3 +271,77 @@ def test_a_ball_that_leaves(tmp_path):
     told, = (w for w in warnings if "ball 1 left the box at 5.2 5.1" in w)
     assert told in summary["warnings"] and summary["balls"]["lost"] == 1
     assert summary["volume"]["lost"] == pytest.approx(summary["volume"]["released"])
+
+
+# --- what changes between two looks ---
+
+BELOW = "fix floor ball wall/gran/balls 2 1.0 file below.xyz"      # one fixed ball below the first one
+
+
+@pytest.mark.parametrize("np", [1, 2])
+def test_rerun_has_nothing_to_tell(tmp_path, np):
+    """A ball that rests 8 % of its radius deep, and comes from above: no snapshot follows from the one before."""
+    (tmp_path / "below.xyz").write_text("5.2 5.1 0\n")
+    soft = {"floor": BELOW, "k": 3.2e5, "z": 1.2, "e": 0.3, "np": np}
+    again = "unfix deposit\nrerun run.dump dump x y z vx vy vz"
+    dumped = "dump d ball custom 200 run.dump id type x y z vx vy vz\nthermo_style custom step f_floor[3]"
+    warnings, summary = run(tmp_path, extra=dumped, **soft)
+    assert 0.05 < summary["guards"]["largest_overlap"] and warnings == summary["warnings"]
+    assert run(tmp_path, extra=dumped, steps=f"1000\nundump d\n{again}", **soft)[0] == warnings
+    assert run(tmp_path, DECK.replace("run         {steps}", again), extra="thermo_style custom step f_floor[3]",
+               **soft)[0] == []
+
+
+GROWS = "variable d equal ramp(1.0,{})\nfix grow ball adapt 1 atom diameter v_d"
+
+
+@pytest.mark.parametrize("atoms, z, most, neigh, told", [
+    ("", 1.2, 1.6, "", ["at most half the skin, 0.1, while there is one neighbor list, got 0.15"]),
+    ("", 1.2, 1.6, "neigh_modify check no", []),
+    ("", 1.2, 1.19, "", []),
+    ("create_atoms 1 single 6.7 5.1 {z}", 5, 1.6, "neigh_modify check no",
+     ["at most half the skin, 0.1, farther than the largest at the start of the run, got 0.3"]),
+    ("create_atoms 1 single 8.7 5.1 {z}", 5, 1.09, "", [])])
+def test_balls_that_grow(tmp_path, atoms, z, most, neigh, told):
+    """Neither lists nor their reach follow: balls grew through each other, and through the ground."""
+    (tmp_path / "below.xyz").write_text("5.2 5.1 0\n")
+    warnings, summary = run(tmp_path, DECK.replace("sphere", "sphere 1", 1), atoms=atoms.format(z=z), z=z, floor=BELOW,
+                            neigh=neigh, extra=GROWS.format(most), weight="", skin=0.2, steps=400)
+    found = [w for w in warnings if "half the skin" in w]
+    assert len(found) == len(told) and all(text in w for w, text in zip(found, told))
+    assert set(warnings) == set(summary["warnings"])
+
+
+@pytest.mark.parametrize("np", [1, 2])
+@pytest.mark.parametrize("before", [True, False])
+def test_frozen_balls_with_a_force(tmp_path, np, before):
+    """A freeze takes away the forces of the fixes before it: the frozen ground fell."""
+    fix = "fix weight2 all gravity 9.81 vector 0 0 -1"
+    freeze = "group stay type 2\nfix stay stay freeze\nfix moved stay nve/sphere"
+    warnings, summary = run(tmp_path, atoms=FIXED, floor="", weight="", steps=10, np=np,
+                            extra="\n".join([freeze, fix] if before else [fix, freeze]))
+    message = "balls of fix freeze must have no force, got 1 "
+    told = [w for w in warnings if message in w and w.endswith("fix weight2 gravity")]
+    assert len(told) == before and summary["warnings"] == told
+
+
+@pytest.mark.parametrize("where, message", [
+    ("{pair}\n{fix}", None),
+    ("{fix}\n{pair}", "Pair gran/restitution: fix evap evaporate must be defined after pair_style, got it before"),
+])
+def test_balls_that_are_taken_away(tmp_path, where, message):
+    """Their contacts went to the balls that took their indices."""
+    pair = "pair_style  {pair} {style}"
+    text = DECK.replace(pair, where.format(pair=pair, fix="fix evap ball evaporate 1000 1 ground 1"))
+    run(tmp_path, text, steps=20, expect_error=message)
+
+
+@pytest.mark.parametrize("width, other, message", [
+    (2.0, "create_atoms 1 single 1.5 5.1 5", "a periodic box must be wider than 2, got 2 along x"),
+    (2.02, "create_atoms 1 single 1.51 5.1 5", None),
+    (2.0, "", None)])
+def test_two_balls_that_would_touch_at_both_sides(tmp_path, width, other, message):
+    """LAMMPS finds the history of a contact by the ID of the other ball: both contacts had one."""
+    text = DECK.replace("f f f", "p f f").replace("5.2 5.1", "0.5 5.1")
+    run(tmp_path, text.replace("0 10 0 10 -2 10", f"0 {width} 0 10 -2 10"), atoms=other, z=5, steps=2, floor="",
+        expect_error=message and f"Pair gran/restitution: {message}")

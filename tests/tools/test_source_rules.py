@@ -175,3 +175,29 @@ def test_destructors_beside_the_one_of_lammps():
 def test_sizes(path):
     text = path.read_text()
     assert [start for start, length in functions(text) if length > LONGEST_FUNCTION] == []
+
+
+# LAMMPS' lists of fixes, computes and groups, which change between its versions, and members that are not public
+INSIDES = re.compile(r"modify->(?!(?:add|replace)_fix\()\w+|\b(?:find|delete)_(?:fix|compute)(?:_by_style)?\(|"
+                     r"\bbitmask\b|SLOPE_REVEAL|LAMMPS_VERSION\s*[<>]=?")
+KNOWS_INSIDES = {"lammps_compat.h", "lammps_compat.cpp", "reveal.h", "test_reveal.cpp"}
+
+
+def insides(text):
+    """What code has of LAMMPS' insides, without its comments."""
+    return INSIDES.findall(re.sub(r"//[^\n]*|/\*.*?\*/", "", text, flags=re.DOTALL))
+
+
+@pytest.mark.parametrize("code", [
+    "for (int k = 0; k < modify->nfix; k++)", "lmp->modify->fix[k]", "modify->fmask[k]", "modify->find_fix(id)",
+    "modify->ncompute", "m.delete_fix(id)", "group->bitmask[igroup]", "modify->nfix_restart_peratom",
+    "SLOPE_REVEAL(Modify, int, nfix)", "#if SLOPE_LAMMPS_VERSION >= 20220504"])
+def test_insides_of_lammps_are_found(code):
+    assert insides(code)
+
+
+def test_one_file_knows_the_insides_of_lammps():
+    assert not insides("modify->add_fix(words); modify->replace_fix(id, words); x;  // modify->fix[0]\n")
+    tests = (SRC.parent / "tests").glob("unit/**/*.cpp")
+    assert {path.name: found for path in [*SOURCES, *tests] if path.name not in KNOWS_INSIDES
+            and (found := insides(path.read_text()))} == {}

@@ -580,3 +580,19 @@ TEST_P(ContactLists, StartTakesOverlapsForOldContacts)
   trio.forces(false);
   EXPECT_FALSE(is_new(trio.history[0][AGE]));
 }
+
+// a mass that differs in its last digit made a whole list one of unequal balls, which takes more time
+TEST(ContactList, SizesThatDifferByRoundingAreOne)
+{
+  double history[HISTORY] = {};
+  auto equal = [&](double r, double m) {
+    ContactList list;
+    list.add(0, 1, history, false, 0.1, 0.1, MASS, MASS);
+    list.add(0, 2, history, false, 0.1, r, MASS, m);
+    return list.equal;
+  };
+  EXPECT_TRUE(equal(0.1 * (1.0 + 4e-16), MASS));
+  EXPECT_TRUE(equal(0.1, MASS * (1.0 - 4e-16)));
+  EXPECT_FALSE(equal(0.1 * (1.0 + 1e-9), MASS));
+  EXPECT_FALSE(equal(0.1, MASS * (1.0 + 1e-9)));
+}

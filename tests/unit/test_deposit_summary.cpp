@@ -75,13 +75,14 @@ TEST(DepositSummary, Travel)
 TEST(DepositSummary, Motion)
 {
   DepositSummary s = halted(0.0);
-  s.motion = {0.1, 4.5, 0.001, 0.1001, 700.0, 0.0625};
+  s.motion = {0.1, 4.5, 0.001, 0.1001, 700.0, 0.0625, 10.0};
   EXPECT_TRUE(has(s.text(), "moving: true"));
   EXPECT_TRUE(has(s.text(), "  fast_volume: 700.0"));
   EXPECT_TRUE(has(s.text(), "  fast_speed: 4.5"));
+  EXPECT_NE(s.text().find("fast: than 10.0\n"), std::string::npos);
   EXPECT_NE(s.text().find("  fast_share: 0.0625  #"), std::string::npos);
   EXPECT_NE(s.text().find("\nat_rest: false  #"), std::string::npos);
-  s.motion = {0.1, 4.5, 0.001, 0.1, 7.0, 0.000625};
+  s.motion = {0.1, 4.5, 0.001, 0.1, 7.0, 0.000625, 10.0};
   EXPECT_TRUE(has(s.text(), "moving: false"));
   EXPECT_NE(s.text().find("\nat_rest: true  #"), std::string::npos);
 }

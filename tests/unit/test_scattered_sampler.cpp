@@ -14,6 +14,8 @@
 
 #include <gtest/gtest.h>
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -361,4 +363,22 @@ TEST(ScatteredSampler, no_curtain_up_to_a_region_above_the_ground)
     return true;
   };
   EXPECT_EQ(scatter(10.0, WIDEST, s), without);
+}
+
+// of tiles that follow each other: 200 MB a rank, once
+TEST(ScatteredSampler, remembers_little)
+{
+  ScatteredSampler sampler({0.0, 160.0, 0.0, 160.0, 1.0, 0.3, 0.1}, plane(20.0, 30.0), 7);
+  const TilePlan tiles = sampler.tiles();
+  std::vector<PlacedBall> balls;
+  SurfaceCounts counts;
+  const size_t before = mallinfo2().uordblks;
+  size_t most = 0;
+  for (int tile = 0; tile < tiles.nx * tiles.ny; tile++) {
+    balls.clear();
+    sampler.sample(tile, balls, counts);
+    most = std::max(most, mallinfo2().uordblks - before);
+  }
+  EXPECT_GT(most, 2000000);
+  EXPECT_LT(most, 20000000);
 }

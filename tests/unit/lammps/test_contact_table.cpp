@@ -4,6 +4,7 @@
 #include "archive.h"
 #include "contact_table.h"
 #include "deck.h"
+#include "lammps_compat.h"
 
 #include <cstring>
 
@@ -42,7 +43,7 @@ struct Table {
     table.set(i, j, c);
   }
 
-  void find_ranges() { table.find_ranges(deck.lmp->group->bitmask[deck.lmp->group->find("held")]); }
+  void find_ranges() { table.find_ranges(compat::group_bit(deck.lmp.get(), "held")); }
 };
 
 // dashpots that give the restitution: e = exp(-pi zeta/sqrt(1 - zeta^2)), c = 2 zeta sqrt(k m)

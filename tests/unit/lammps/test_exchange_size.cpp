@@ -2,7 +2,7 @@
 
 #include "deck.h"
 #include "exchange_size.h"
-#include "fix.h"
+#include "lammps_compat.h"
 
 #include <algorithm>
 
@@ -14,7 +14,7 @@ TEST(ExchangeSize, OfAllRanksAndFixes)
   Deck deck;
   LAMMPS *lmp = deck.lmp.get();
   for (const char *id : {"a", "b", "c"}) deck.one(std::string("fix ") + id + " all nve/sphere");
-  lmp->modify->fix[0]->maxexchange_dynamic = lmp->modify->fix[2]->maxexchange_dynamic = 1;
+  for (const char *id : {"a", "c"}) compat::fix_by_id(lmp, id)->maxexchange_dynamic = 1;
   const int most = 100 + lmp->comm->nprocs - 1;
   EXPECT_EQ(exchange_size(lmp, 100 + deck.me()), 2 * most);
 }
@@ -31,8 +31,7 @@ TEST(ExchangeSize, OfContacts)
   deck.one("run 1");
   LAMMPS *lmp = deck.lmp.get();
   Fix *contacts = nullptr;
-  for (int k = 0; k < lmp->modify->nfix; k++)
-    if (std::string(lmp->modify->fix[k]->style) == "CONTACT_HISTORY") contacts = lmp->modify->fix[k];
+  for (Fix *fix : compat::fixes_of_style(lmp, "CONTACT_HISTORY")) contacts = fix;
   ASSERT_NE(contacts, nullptr);
   int i, mine = 0, size;
   std::vector<double> numbers(1000);

@@ -4,7 +4,7 @@
 #include "contact_table.h"
 #include "deck.h"
 #include "energy_guard.h"
-#include "fix.h"
+#include "lammps_compat.h"
 #include "neighbor.h"
 
 #include <algorithm>
@@ -190,7 +190,7 @@ TEST(EnergyGuard, Fall)
 {
   Energy e;
   e.deck.one("fix fall all gravity 10 vector 0 0 -1");
-  e.deck.lmp->modify->fix[e.deck.lmp->modify->find_fix("fall")]->init();
+  compat::fix_by_id(e.deck.lmp.get(), "fall")->init();
   e.guard.start();
   e.speeds(0.0);
   EXPECT_FALSE(e.guard.check(0.0));
