@@ -241,8 +241,8 @@ def main():
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))     # which removes the copies
     began = time.monotonic()
     missed = look(tree, build, faults)
-    print(f"{len(faults) - missed} of {len(faults)} faults found in {time.monotonic() - began:.0f} s, {seconds():.0f} s "
-          f"of the processor{'; only by --all: ' * bool(long)}{', '.join(long)}")
+    print(f"{len(faults) - missed} of {len(faults)} faults found in {time.monotonic() - began:.0f} s, "
+          f"{seconds():.0f} s of the processor{'; only by --all: ' * bool(long)}{', '.join(long)}")
     return int(missed > 0)
 
 
