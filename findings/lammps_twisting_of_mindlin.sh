@@ -49,7 +49,7 @@ DECK
 echo "import make from 'lammps.js/wasm-atomify'; import fs from 'fs'; const lmp = new (await make({ print: console.log })).LAMMPSWeb();
 lmp.startWithArgs([]); lmp.runScript(fs.readFileSync('in.twist', 'utf8')); process.exit(0);" >run.mjs
 lib=$tmp/root/usr/lib/x86_64-linux-gnu
-old=$(env OPAL_PREFIX="$tmp/root/usr" OMPI_MCA_btl=self OMPI_MCA_plm=isolated root/lib/x86_64-linux-gnu/ld-linux-x86-64.so.2 --library-path \
+old=$(env OPAL_PREFIX="$tmp/root/usr" OMPI_MCA_btl=self OMPI_MCA_ess_singleton_isolated=1 root/lib/x86_64-linux-gnu/ld-linux-x86-64.so.2 --library-path \
   "$lib:$tmp/root/lib/x86_64-linux-gnu:$lib/blas:$lib/lapack" root/usr/bin/lmp -in in.twist -log none 2>&1 | grep -E '^LAMMPS|^k =' | xargs)
 new=$(node run.mjs 2>&1 | grep -E '^LAMMPS|^k =' | xargs)
 echo "software:     LAMMPS of Debian 12 and of lammps.js 1.5.1"
