@@ -3,10 +3,9 @@ import math
 from typing import List, Sequence, Tuple
 
 from qgis.core import (QgsColorRampShader, QgsFillSymbol, QgsGraduatedSymbolRenderer, QgsHillshadeRenderer,
-                       QgsLineSymbol, QgsPalLayerSettings, QgsProcessingException, QgsRasterBandStats,
-                       QgsRasterDataProvider, QgsRasterPipe, QgsRasterShader, QgsRendererRange,
-                       QgsSingleBandPseudoColorRenderer, QgsSingleSymbolRenderer, QgsTextBufferSettings, QgsTextFormat,
-                       QgsVectorLayerSimpleLabeling)
+                       QgsLineSymbol, QgsPalLayerSettings, QgsProcessingException, QgsRasterDataProvider,
+                       QgsRasterPipe, QgsRasterShader, QgsRendererRange, QgsSingleBandPseudoColorRenderer,
+                       QgsSingleSymbolRenderer, QgsTextBufferSettings, QgsTextFormat, QgsVectorLayerSimpleLabeling)
 from qgis.PyQt.QtGui import QColor
 
 CLASSES = 7         # at most about so many
@@ -114,7 +113,7 @@ def labels(bounds: Sequence[float], unit: str, smallest: float) -> List[str]:
 
 def extremes(layer) -> Tuple[float, float]:
     """Smallest and largest value of a raster."""
-    found = layer.dataProvider().bandStatistics(1, QgsRasterBandStats.Stats.Min | QgsRasterBandStats.Stats.Max)
+    found = layer.dataProvider().bandStatistics(1)
     return found.minimumValue, found.maximumValue
 
 
