@@ -165,7 +165,7 @@ def project(prefix, road):
         parameters = {"RUN": prefix, "ROAD": road, "MESH": 5, "OUTPUT": "loaded", "LOAD": load}
         processing.run("slope:volume", parameters, context=context, feedback=Feedback())
         algorithm = QgsApplication.processingRegistry().algorithmById("slope:volume")
-        assert handleAlgorithmResults(algorithm, context, Feedback(), True, parameters)
+        assert handleAlgorithmResults(algorithm, context, Feedback(), parameters=parameters)
         if not load:
             assert not QgsProject.instance().mapLayers()
     return {layer.name(): style(layer) for layer in QgsProject.instance().mapLayers().values()}

@@ -20,7 +20,7 @@ from tiny_collapse import LMP
 sys.path.insert(0, str(TOP / "tests"))
 
 from other_codes import crosscheck as crosscheck_command, crosscheck_cases as crosscheck  # noqa: E402
-from other_codes import crosscheck_laws, crosscheck_table, peers  # noqa: E402
+from other_codes import crosscheck_laws, crosscheck_table, granular_suite, peers  # noqa: E402
 from slope_tools.errors import SlopeError  # noqa: E402
 from slope_tools.survey import rasters  # noqa: E402
 
@@ -247,3 +247,66 @@ def test_every_example_of_the_page_and_the_help_is_understood(slope, monkeypatch
                         {name: lambda work, case: done.append(case) for name in crosscheck_command.CASES})
     status, out, err = slope(command)
     assert (status, err) == (0, "") and (done or "--help" in shlex.split(command))
+
+
+# --- LAMMPS' own granular verifications ---
+
+GRANULAR = """---
+lammps_version: 1 Jan 2026
+pre_commands: ! |
+  units si
+  boundary p p f
+  atom_style sphere
+  region box block -1 1 -1 1 -0.5 2 units box
+  create_box 1 box
+  create_atoms 1 single 0.0 0.0 0.55 units box
+  set group all diameter ${diam} density 1.0
+  velocity all set ${vx_in} 0.0 -${vz_in}
+  comm_modify vel yes
+  neighbor 0.3 bin
+  timestep 2.0e-4
+post_commands: ! |
+  fix integr all nve/sphere
+  fix floor all wall/gran MODEL zplane 0.0 NULL
+variables: ! |
+  diam 1.0
+  knorm 1.0e4
+  en 0.6
+  xmu 0.3
+  vx_in 4.0
+  vz_in 1.0
+  radius 0.5
+pair_style: granular
+pair_coeff: ! |
+  * * MODEL
+run_segments: ! |-
+  400 400
+analytic_model: oblique_impact
+analytic_segment: 1
+run_pos: ! |2
+  1   1  0.5  0.0  0.5
+run_vel: ! |2
+  1   1  3.5  0.0  0.61
+run_omega: ! |2
+  1   1  0.0  2.4  0.0
+...
+"""
+
+
+def test_a_case_of_the_granular_suite(tmp_path, monkeypatch, capsys):
+    """Its deck in our words meets the closed form, its own numbers are in the table; a case of Hertz has a reason."""
+    cases = tmp_path / "unittest" / "granular" / "tests"
+    cases.mkdir(parents=True)
+    for name, model in (("linear", "hooke ${knorm} ${en} tangential linear_history 2857.0 0.0 ${xmu}"),
+                        ("springs", "hertz/material ${knorm} ${en} 0.3 tangential mindlin NULL 0.0 ${xmu}")):
+        words = f"granular {model} damping coeff_restitution"
+        (cases / f"dem05-{name}.yaml").write_text(GRANULAR.replace("MODEL", words).replace("* * granular", "* *"))
+    monkeypatch.setenv("LMP", LMP)
+    granular_suite.main(str(tmp_path))
+    page = capsys.readouterr().out
+    rows = [[cell.strip() for cell in row.rstrip().split("\n     -")] for row in page.split("   * -")[2:]]
+    assert [row[:2] for row in rows[:3]] == [["dem05-linear", "vz"], ["", "vx"], ["", "spin"]]
+    assert [float(row[2]) for row in rows[:3]] == pytest.approx([0.6, 3.52, 2.4])
+    assert [float(row[3]) for row in rows[:3]] == [0.61, 3.5, 2.4]
+    assert all(abs(float(row[6])) < 0.01 for row in rows[:3]) and abs(float(rows[0][6])) < 1e-4, rows
+    assert rows[3][0] == "dem05-springs" and "Hertz" in rows[3][1] and len(rows) == 4

@@ -1,9 +1,17 @@
-"""slope COMMAND --describe, and the QGIS plugin's copy of it."""
+"""slope COMMAND --describe, and the QGIS plugin's copy of it; what QGIS 4 needs, without QGIS."""
+import ast
+import configparser
+import enum
+import importlib
 import json
 import os
 import re
 import subprocess
+import sys
+import types
 import zipfile
+from pathlib import Path
+from unittest import mock
 
 import pytest
 
@@ -70,6 +78,61 @@ def test_nothing_is_started_to_load_it():
     """The table of options imports no process, and reads one file."""
     text = (PLUGIN / "options.py").read_text(encoding="utf-8")
     assert "subprocess" not in text and "process" not in re.findall(r"^from \. import (.*)$", text, re.MULTILINE)
+
+
+# --- QGIS 4: Qt 6, whose enums are Python's ---
+
+def test_qgis_4_offers_the_plugin():
+    about = configparser.ConfigParser()
+    about.read(PLUGIN / "metadata.txt", encoding="utf-8")
+    assert about["general"]["qgisMinimumVersion"] == "3.22" and about["general"]["qgisMaximumVersion"] == "4.99"
+
+
+def unscoped(text):
+    """Members of enums that a source names by their class alone: Class.Member instead of Class.Enum.Member."""
+    tree = ast.parse(text)
+    names = {name.asname or name.name for one in ast.walk(tree) if isinstance(one, ast.ImportFrom)
+             and (one.module or "").startswith("qgis") for name in one.names}
+    inner = {id(one.value) for one in ast.walk(tree) if isinstance(one, ast.Attribute)}
+    inner |= {id(one.func) for one in ast.walk(tree) if isinstance(one, ast.Call)}
+    return [f"{one.value.id}.{one.attr}" for one in ast.walk(tree)
+            if isinstance(one, ast.Attribute) and isinstance(one.value, ast.Name) and one.value.id in names
+            and one.attr[0].isupper() and id(one) not in inner]
+
+
+@pytest.mark.parametrize("path", [*sorted(PLUGIN.glob("*.py")), Path(__file__).parent / "qgis_inside.py"],
+                         ids=lambda path: path.stem)
+def test_enums_are_scoped_and_qt_is_that_of_qgis(path):
+    text = path.read_text(encoding="utf-8")
+    assert not unscoped(text) and "PyQt" not in text.replace("qgis.PyQt", "")
+
+
+def test_the_look_for_enums_sees_one():
+    line = "from qgis.core import QgsA, QgsB\n{}\n"
+    assert unscoped(line.format("f(QgsA.Double | QgsB.Flag)")) == ["QgsA.Double", "QgsB.Flag"]
+    assert not unscoped(line.format("f(QgsA.Type.Double, QgsB.Inner(3), QgsA.instance, g.Other)"))
+
+
+@pytest.mark.parametrize("result", ["NoError", "WriteError"])
+def test_a_raster_that_was_written_is_no_error(result, monkeypatch):
+    """A member of Python's enum is true, also the one whose value is 0."""
+    package, results, core = types.ModuleType("slope"), types.ModuleType("slope.results"), mock.MagicMock()
+    package.__path__, results.TERRAIN_TAG = [str(PLUGIN)], "TAG"
+    core.QgsProcessingException = ValueError
+    core.QgsRasterFileWriter.WriterError = enum.Enum("WriterError", {"NoError": 0, "WriteError": 6})
+    core.QgsRasterFileWriter.return_value.writeRaster.return_value = core.QgsRasterFileWriter.WriterError[result]
+    core.QgsProcessingUtils.generateTempFilename.return_value = "copy.tif"
+    for name, module in {"slope": package, "slope.results": results, "qgis": mock.MagicMock(), "qgis.core": core,
+                         "osgeo": mock.MagicMock()}.items():
+        monkeypatch.setitem(sys.modules, name, module)
+    monkeypatch.delitem(sys.modules, "slope.layers", raising=False)
+    asked = mock.MagicMock(keep=None)
+    try:
+        found = importlib.import_module("slope.layers").raster_file(asked, "DEM")
+    except ValueError as error:
+        found = str(error)
+    sys.modules.pop("slope.layers", None)
+    assert found == "copy.tif" if result == "NoError" else "DEM" in found and "WriteError" in found
 
 
 @pytest.mark.parametrize("line, completed", [("slope vol", {"volume"}), ("slope volume --cut", {"--cut-angle"}),

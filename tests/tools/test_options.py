@@ -1,6 +1,7 @@
 """Options of the command line: the fields of a request; what types take, and the one line for what they do not."""
 import argparse
 import dataclasses
+import importlib
 import re
 import shlex
 from pathlib import Path
@@ -18,6 +19,15 @@ from slope_tools import cli, options
 def test_help_has_units_and_an_example(command, capsys):
     status, out, _ = called(capsys, [command, "--help"])
     assert status == 0 and "units: metres" in out and f"\n  tools/slope {command} " in out
+
+
+def test_annotations_that_are_made_when_they_are_asked_for(monkeypatch):
+    """From Python 3.14 on a class's dictionary has none."""
+    monkeypatch.setattr(options, "vars", lambda one: {name: vars(one)[name] for name in vars(one)
+                                                      if name != "__annotations__"}, raising=False)
+    parser = argparse.ArgumentParser()
+    options.declare(parser, importlib.import_module("slope_tools.commands.terrain").Request)
+    assert parser.parse_args(["dem.tif", "-o", "t.asc", "--cell", "2"]).cell == 2
 
 
 @pytest.mark.parametrize("text, value", [("1", 1), ("007", 7), ("1000000", 1000000), ("1000000000", 10 ** 9)])

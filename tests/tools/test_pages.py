@@ -15,7 +15,7 @@ import slope_options  # noqa: E402  (after the path is set)
 
 from slope_tools import cli  # noqa: E402
 
-GENERATED = ("verification", "wrong_inputs")        # by slope verify, by test_wrong_inputs.py
+GENERATED = ("verification", "wrong_inputs", "granular_suite")     # by slope verify, test_wrong_inputs.py, its script
 PAGES = {path.stem: path.read_text(encoding="utf-8") for path in sorted(DOC.glob("*.rst"))}
 COMMANDS = [*cli.COMMANDS, *cli.IN_TESTS]
 READERS = r"users|reviewers|developers|writers of decks|all"

@@ -91,6 +91,8 @@ def test_every_line_is_an_object(words, level, text, tmp_path, monkeypatch, caps
 def test_a_warning_of_a_library_is_a_line_of_ours(before, monkeypatch, capsys):
     def warns(_):
         warnings.warn("two\tnumbers are one", UserWarning)
+        for kind in (DeprecationWarning, PendingDeprecationWarning):        # for those who write programs
+            warnings.warn("write @ for *", kind)
     monkeypatch.setattr(polygon, "run", warns)
     mine = warnings.showwarning
     with warnings.catch_warnings():

@@ -15,6 +15,7 @@ import yaml
 from affine import Affine
 from rasterio.crs import CRS
 
+import country_grids
 from messages import says
 from run_helpers import examples
 
@@ -811,3 +812,46 @@ def test_a_copy_of_a_system_in_feet_is_another_system():
     assert rasters.epsg(feet) is None and rasters.epsg(CRS.from_epsg(6677)) == 6677
     assert not crs.same_crs(feet, CRS.from_epsg(6677))
     assert rasters.epsg(CRS.from_wkt(CRS.from_epsg(6677).to_wkt(version="WKT1_ESRI"))) == 6677
+
+
+# --- the table of countries ---
+
+COUNTRIES = {                   # first words of a row in gis.rst: functions of country_grids.py
+    "Austria": ["austria", "canada", "norway"],
+    "Bavaria": ["bavaria", "denmark", "england", "netherlands", "new_zealand", "spain", "taiwan"],
+    "France, LiDAR": ["france_lidar"], "France, RGE": ["france_rge"], "Germany, Baden": ["baden_wuerttemberg"],
+    "Germany, North": ["westphalia"], "Hong Kong": ["hong_kong"], "Italy": ["bologna"], "Poland": ["poland"],
+    "Slovenia": ["slovenia"], "Switzerland": ["switzerland"], "USA": ["usa"], "Copernicus": ["glo_30"]}
+
+
+def country_rows():
+    """{first cell: what to type} of the table in gis.rst."""
+    page = (TOP / "doc" / "src" / "gis.rst").read_text(encoding="ascii")
+    table = page[page.index("Elevation models by country"):page.index("Coordinate systems\n")]
+    return {row[0]: row[2].strip("`") for row in (re.split(r"\n     - ", part.strip())
+                                                  for part in table.split("   * - ")[2:])}
+
+
+def test_every_country_has_its_files():
+    rows = [row for row in country_rows() if not row.startswith("Japan")]       # those: test_fggml.py
+    assert [[name for name in COUNTRIES if row.startswith(name)] for row in rows] == [[name] for name in COUNTRIES]
+
+
+@pytest.mark.parametrize("country, name", [(country, name) for country, names in COUNTRIES.items() for name in names])
+def test_files_of_a_country_are_read_by_what_its_row_says(written, here, country, name):
+    getattr(country_grids, name)()
+    words = next(words for row, words in country_rows().items() if row.startswith(country))
+    assert set(words.partition(" --")[0].split()) == {path.name for path in here.iterdir()}
+    if "W S E N" in words:
+        with rasterio.open(words.split()[0]) as raster:
+            west, south, east, north = (float(value) for value in raster.bounds)
+        words = words.replace("W S E N", f"{west + 5} {south + 5} {east - 5} {north - 5}")
+    z, east, north, about, _ = written(words)
+    known = np.isfinite(z)
+    given = re.search(r"--crs EPSG:(\d+)", words)
+    assert known.sum() > 300 and about["crs"] and (not given or about["crs"]["epsg"] == int(given[1]))
+    if name == "glo_30":
+        east, north = (np.reshape(values, z.shape) for values in
+                       rasterio.warp.transform("EPSG:32632", "EPSG:4326", east.ravel(), north.ravel()))
+    off = np.abs(z - country_grids.ground(east, north))[known].max()
+    assert off < (0.2 if name == "glo_30" else 0.006), off

@@ -80,6 +80,12 @@ def say(level, command, text):
         print(f"slope{f' {command}' * (command != 'slope')}: {'note: ' * (level == 'note')}{text}", file=sys.stderr)
 
 
+def say_of_library(command, message, kind):
+    """What a library warns of, as a line; what it is going to drop concerns only those who write programs."""
+    if not issubclass(kind, (DeprecationWarning, PendingDeprecationWarning)):
+        findings.printer(command)(str(message))
+
+
 def module_of(name, parser):
     """The module of a subcommand; ends the program where it is not installed."""
     if name in COMMANDS:
@@ -187,7 +193,7 @@ def main(argv=None):
         forget_matplotlibrc()
         if asked not in WITHOUT_PLACES:
             importlib.import_module(f"{__package__}.survey.crs").require_database()
-        warnings.showwarning = lambda message, *_, **__: findings.printer(args.command)(str(message))     # of libraries
+        warnings.showwarning = lambda message, kind, *_, **__: say_of_library(args.command, message, kind)
         args.run(args)
     except SlopeError as error:
         if args.debug:

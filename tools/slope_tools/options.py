@@ -11,6 +11,7 @@ help is no option.
 """
 import argparse
 import dataclasses
+import inspect
 import json
 import math
 import re
@@ -57,7 +58,7 @@ def declare(parser: argparse.ArgumentParser, kind: Any) -> None:
     groups: Dict[Tuple[str, str], Any] = {("", ""): parser}
     fields = {field.name: field for field in dataclasses.fields(kind) if field.metadata}
     for field, title in [(fields.pop(name), vars(base).get("GROUP", "")) for base in kind.__mro__
-                         for name in vars(base).get("__annotations__", ()) if name in fields]:
+                         for name in inspect.get_annotations(base) if name in fields]:
         names, one_of, also, words = (field.metadata[key] for key in ("names", "one_of", "also", "words"))
         if (title, "") not in groups:
             groups[title, ""] = parser.add_argument_group(title)

@@ -69,7 +69,7 @@ def raster_file(asked, key):
         raise QgsProcessingException(f"{key}: must be a raster whose values can be read, got {layer.name()}")
     error = writer.writeRaster(pipe, layer.width(), layer.height(), layer.extent(), layer.crs(),
                                asked.context.transformContext())
-    if error:
+    if error != QgsRasterFileWriter.WriterError.NoError:      # with Qt 6 an enum, which is true whatever it is
         raise QgsProcessingException(f"{key}: cannot be written as a GeoTIFF (error {error}), got {layer.name()}")
     return kept(asked, path)
 

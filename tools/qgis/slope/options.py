@@ -14,8 +14,8 @@ from qgis.core import (QgsProcessing, QgsProcessingException, QgsProcessingParam
 
 from . import layers
 
-GEOMETRIES = {"polygons": (QgsProcessing.TypeVectorPolygon,), "line": (QgsProcessing.TypeVectorLine,),
-              "road": (QgsProcessing.TypeVectorPolygon, QgsProcessing.TypeVectorLine)}
+POLYGON, LINE = QgsProcessing.SourceType.TypeVectorPolygon, QgsProcessing.SourceType.TypeVectorLine
+GEOMETRIES = {"polygons": (POLYGON,), "line": (LINE,), "road": (POLYGON, LINE)}
 
 
 @dataclass(frozen=True)
@@ -43,14 +43,14 @@ class Option:
         """What Processing shows of it."""
         found = self._parameter()
         if self.advanced:
-            found.setFlags(found.flags() | QgsProcessingParameterDefinition.FlagAdvanced)
+            found.setFlags(found.flags() | QgsProcessingParameterDefinition.Flag.FlagAdvanced)
         return found
 
     def _parameter(self):
         names, optional = (self.key, self.label), not self.needed
         if self.kind in ("number", "whole"):
-            kind = (QgsProcessingParameterNumber.Double if self.kind == "number" else
-                    QgsProcessingParameterNumber.Integer)
+            kind = (QgsProcessingParameterNumber.Type.Double if self.kind == "number" else
+                    QgsProcessingParameterNumber.Type.Integer)
             return QgsProcessingParameterNumber(*names, kind, self.default, optional, self.least)
         if self.kind == "choice":
             return QgsProcessingParameterEnum(*names, list(self.choices), False, self.default, optional, True)
@@ -61,7 +61,8 @@ class Option:
         if self.kind in GEOMETRIES:
             return QgsProcessingParameterFeatureSource(*names, list(GEOMETRIES[self.kind]), self.default, optional)
         if self.kind == "files":
-            return QgsProcessingParameterMultipleLayers(*names, QgsProcessing.TypeFile, self.default, optional)
+            return QgsProcessingParameterMultipleLayers(*names, QgsProcessing.SourceType.TypeFile, self.default,
+                                                        optional)
         if self.kind == "raster":
             return QgsProcessingParameterRasterLayer(*names, self.default, optional)
         if self.kind == "crs":
@@ -72,7 +73,8 @@ class Option:
             return QgsProcessingParameterFolderDestination(*names, self.default, optional)
         if self.kind == "new file":
             return QgsProcessingParameterFileDestination(*names, self.filter, self.default, optional)
-        behaviour = QgsProcessingParameterFile.Folder if self.kind == "folder" else QgsProcessingParameterFile.File
+        behaviour = (QgsProcessingParameterFile.Behavior.Folder if self.kind == "folder" else
+                     QgsProcessingParameterFile.Behavior.File)
         return QgsProcessingParameterFile(*names, behaviour, defaultValue=self.default, optional=optional,
                                           fileFilter=self.filter)
 

@@ -3,10 +3,9 @@ import math
 from typing import List, Sequence, Tuple
 
 from qgis.core import (QgsColorRampShader, QgsFillSymbol, QgsGraduatedSymbolRenderer, QgsHillshadeRenderer,
-                       QgsLineSymbol, QgsPalLayerSettings, QgsProcessingException, QgsRasterBandStats,
-                       QgsRasterDataProvider, QgsRasterPipe, QgsRasterShader, QgsRendererRange,
-                       QgsSingleBandPseudoColorRenderer, QgsSingleSymbolRenderer, QgsTextBufferSettings, QgsTextFormat,
-                       QgsVectorLayerSimpleLabeling)
+                       QgsLineSymbol, QgsPalLayerSettings, QgsProcessingException, QgsRasterDataProvider,
+                       QgsRasterPipe, QgsRasterShader, QgsRendererRange, QgsSingleBandPseudoColorRenderer,
+                       QgsSingleSymbolRenderer, QgsTextBufferSettings, QgsTextFormat, QgsVectorLayerSimpleLabeling)
 from qgis.PyQt.QtGui import QColor
 
 CLASSES = 7         # at most about so many
@@ -114,7 +113,7 @@ def labels(bounds: Sequence[float], unit: str, smallest: float) -> List[str]:
 
 def extremes(layer) -> Tuple[float, float]:
     """Smallest and largest value of a raster."""
-    found = layer.dataProvider().bandStatistics(1, QgsRasterBandStats.Min | QgsRasterBandStats.Max)
+    found = layer.dataProvider().bandStatistics(1)
     return found.minimumValue, found.maximumValue
 
 
@@ -131,7 +130,7 @@ def classes(layer, kind):
     items += [QgsColorRampShader.ColorRampItem(high, colour, name) for high, colour, name in
               zip([*bounds[:-1], math.inf], shades(colours, len(bounds)), names)]
     last = largest if bounds[-1] == math.inf else bounds[-1]
-    ramp = QgsColorRampShader(start, last, None, QgsColorRampShader.Discrete)
+    ramp = QgsColorRampShader(start, last, None, QgsColorRampShader.Type.Discrete)
     ramp.setColorRampItemList(items)
     shader = QgsRasterShader()
     shader.setRasterShaderFunction(ramp)
