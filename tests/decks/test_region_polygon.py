@@ -119,6 +119,18 @@ create_balls 1 1.0 2600 surface ground upper spacing 1.0 origin 0.5 0.5 {filters
     assert counts[1] == 91 and counts[1] + counts[2] == counts[0]
 
 
+def test_no_smooth_wall(tmp_path):
+    (tmp_path / "road.csv").write_text(SQUARE)
+    run_deck(deck() + """
+pair_style none
+comm_modify cutoff 1
+fix nve all nve/sphere
+fix w all wall/gran/region hooke/history 1e5 NULL 10 NULL 0.5 1 region road
+run 1
+""", tmp_path, expect_error="Region polygon road makes no wall: take fix "
+             "wall/gran/balls")
+
+
 @pytest.mark.parametrize("content, message", [
     (None, "Region polygon: cannot read road.csv: No such file or directory"),
     ("0,0\n10,10\n10,0\n{,10\n", "Region polygon: road.csv, line 4: must be 2 numbers, x,y, got {,10"),

@@ -101,6 +101,19 @@ region lifted intersect 2 raised slip
     assert z.max() > 5
 
 
+def test_no_smooth_wall(tmp_path):
+    write_asc(tmp_path / "ground.asc", np.full((4, 4), 5.0))
+    text = deck() + """
+pair_style none
+comm_modify cutoff 1
+fix nve all nve/sphere
+fix w all wall/gran/region hooke/history 1e5 NULL 10 NULL 0.5 1 region ground
+run 1
+"""
+    run_deck(text, tmp_path, expect_error="Region terrain ground makes no wall: take fix wall/gran/balls "
+             "or fix wall/gran/mesh")
+
+
 GOOD = "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n"
 
 

@@ -407,10 +407,6 @@ SETUPS = [
      "Pair gran/restitution: balls must move one by one, got fix move rigid, whose bodies have another mass"),
     ({"move": "fix move soil rigid/nve single"},
      "Pair gran/restitution: balls must move one by one, got fix move rigid/nve, whose bodies"),
-    ({"move": DECK["move"] + "\nfix region soil wall/gran/region hooke/history 1e5 NULL 10 NULL 0.5 1 region ground"},
-     "Region terrain ground makes no wall: take fix wall/gran/balls or fix wall/gran/mesh"),
-    ({"move": DECK["move"] + "\nfix region soil wall/gran/region hooke/history 1e5 NULL 10 NULL 0.5 1 region road"},
-     "Region polygon road makes no wall: take fix wall/gran/balls"),
     ({"deposit": "region high sphere 4 4 9 3 units box\n" + DECK["deposit"].replace("terrain ground", "terrain high")},
      "Fix deposit/grid terrain region high must have a height within one "),
 ]
