@@ -50,7 +50,7 @@ CHANGES = [("2 1.0 surface", "2 0.9 surface", "balls"), ("spacing 1.0", "spacing
            ("scale 1 start", "scale 1.1 start", "quake"), ("start 0", "start 0.1", "quake"),
            ("motion.txt", "other_motion.txt", "quake"), ("cell 1 ", "cell 2 ", "dep"), ("bulk 1.5", "bulk 1.6", "dep"),
            ("extent 0 16", "extent 0 15", "dep"), ("line.csv", "other.csv", "line"),
-           ("line.csv", "backwards.csv", "line"), ("lower 0", "lower 0.1", "line")]      # backwards: forward would be back
+           ("line.csv", "backwards.csv", "line"), ("lower 0", "lower 0.1", "line")]   # backwards: forward is back
 # words of these parsers that a restart file does not guard, as decks may change them, or that another one stands for
 PARSERS = ("ground/placement_arguments", "meshes/surface_options", "deposit/deposit_options",
            "motion/fix_ground_motion", "deposit/fix_control_line")
