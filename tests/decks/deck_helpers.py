@@ -1,9 +1,11 @@
 """Runs LAMMPS decks for the tests in this folder; the environment says LMP=<binary>."""
 
 import functools
+import importlib.util
 import os
 import re
 import subprocess
+import sys
 from pathlib import Path
 
 import numpy
@@ -31,6 +33,16 @@ def serial():
     """Whether LMP was built with LAMMPS' stand-in for MPI, which knows one rank."""
     help = subprocess.run([LMP, "-h"], env=ENVIRONMENT, stdin=subprocess.DEVNULL, capture_output=True, text=True)
     return "LAMMPS MPI STUBS" in help.stdout
+
+
+def script_of(path):
+    """A script of a case as a module; the paths that it adds are forgotten."""
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    module = importlib.util.module_from_spec(spec)
+    before = list(sys.path)
+    spec.loader.exec_module(module)
+    sys.path[:] = before
+    return module
 
 
 def run_deck(text, tmp_path, np=1, vars={}, expect_error=None, timeout=300):

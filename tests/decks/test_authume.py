@@ -1,5 +1,4 @@
 """inputs/25_authume on a stand-in for its data: a bench between two slopes; and on the data, where it is at hand."""
-import importlib.util
 import os
 import re
 import subprocess
@@ -9,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from deck_helpers import ALONE, ENVIRONMENT, LMP, read_asc
+from deck_helpers import ALONE, ENVIRONMENT, LMP, read_asc, script_of
 
 CASE = Path(__file__).resolve().parents[2] / "inputs" / "25_authume"
 FALL = [(-4.0, 30.0), (20.0, 14.0), (32.0, 14.0), (60.0, 0.0)]      # x, height: a slope, a bench, another slope
@@ -45,13 +44,10 @@ def stand_in(tmp_path_factory):
 @pytest.fixture(scope="module")
 def authume(stand_in):
     """The case's script as a module, on the stand-in."""
-    spec = importlib.util.spec_from_file_location("authume", CASE / "authume.py")
-    module = importlib.util.module_from_spec(spec)
     before = dict(os.environ)
     os.environ.update({**ENVIRONMENT, **ALONE, "SLOPE_DATA": str(stand_in), "LMP": LMP})
     try:
-        spec.loader.exec_module(module)
-        yield module
+        yield script_of(CASE / "authume.py")
     finally:
         os.environ.clear()
         os.environ.update(before)

@@ -14,7 +14,7 @@ import pytest
 from deck_helpers import run_deck
 
 from slope_tools.validation.verification.claims import number
-from slope_tools.validation.verification.slide_roll import D, G, on_a_sphere
+from slope_tools.validation.verification.slide_roll import G, on_a_sphere
 
 TOP = Path(__file__).resolve().parents[2]
 INPUTS = TOP / "inputs"
@@ -102,19 +102,12 @@ def test_time_step(tmp_path, scheme, tolerances):
 
 @pytest.mark.parametrize("theta, theory", [(0, "slide_theory"), (10, "roll_theory")])
 def test_slide_and_roll(tmp_path, theta, theory):
+    """The curve is on the line of theory that the deck draws beside it."""
     run_case("03_slide_roll", tmp_path, theta=theta)
     path = curve(tmp_path, "slide_roll.csv")
     later = path["time"] >= 0.001
     assert later.sum() == 96
     assert np.allclose(path["path"][later], path[theory][later], rtol=0.01)
-    other = "slide_theory" if theory == "roll_theory" else "roll_theory"
-    assert not np.any(np.isclose(path["path"][later], path[other][later], rtol=0.1))
-    if theta == 0:
-        assert np.all(path["rotation"] == 0.0)
-        assert np.allclose(path["sliding"], path["path"])
-    else:
-        assert np.allclose(0.5 * D * path["rotation"][later], path["path"][later], rtol=0.01)
-        assert np.abs(path["sliding"]).max() < 1e-4 * path["path"][-1]
 
 
 def test_threshold_of_rolling(tmp_path):
@@ -133,25 +126,6 @@ def test_threshold_of_rolling(tmp_path):
 
 
 # --- 04_rolling_resistance ---
-
-
-@pytest.mark.parametrize("friction, rolling, verdict", [
-    (31, 0.58, "stays still"), (29, 0.58, "slides without rotating"), (31, 0.56, "rotates without sliding")])
-def test_table_3(tmp_path, friction, rolling, verdict):
-    log = run_case("04_rolling_resistance", tmp_path, friction=friction, rolling=rolling)
-    line, = printed(log, "rolling_resistance:")
-    assert f": {verdict}: " in line
-    rotation, sliding = number("rotation", line), number("sliding", line)
-    mu = math.tan(math.radians(friction))
-    if verdict == "stays still":
-        assert abs(rotation) < 1e-4 and abs(sliding) < 1e-6 and abs(number("path", line)) < 3e-6
-    elif verdict == "slides without rotating":
-        theory, _, _ = on_a_sphere(0.2, mu=mu)
-        assert sliding == pytest.approx(theory, rel=0.03) and abs(rotation) < 1e-5
-    else:
-        theory, slope, needed = on_a_sphere(0.2, spin=True, mu_r=rolling)
-        assert needed < mu and slope < 34.9  # the friction still holds it
-        assert rotation == pytest.approx(theory / (0.5 * D), rel=0.03) and abs(sliding) < 1e-6
 
 
 def test_case_3_slides_in_the_end(tmp_path):

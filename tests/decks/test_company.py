@@ -121,14 +121,6 @@ def test_nearly_parallel_contacts_make_no_energy(tmp_path, contacts, height, e, 
     assert -0.01 < got.min() and got.max() <= most
 
 
-def test_scheme_plain_fails(tmp_path):
-    """The control."""
-    def balls(k):
-        return [(1, 1.0, 0, 0, 1 + phase(k), 0, 0, -SPEED), (2, 1.0, 0, 0, 0, 0, 0, 0)]
-
-    assert velocities(tmp_path, PHASES, balls, 0.1, scheme="plain")[:, 0, 2].mean() < 0.08
-
-
 @pytest.mark.parametrize("neighbors", [8, 28])
 @pytest.mark.parametrize("e", [0.1, 0.5])
 def test_ball_in_company(tmp_path, neighbors, e):

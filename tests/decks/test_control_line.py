@@ -224,16 +224,6 @@ def test_restart(tmp_path):
     close(crossings(tmp_path), collapse(tmp_path, "run 100\nrun 300", 1, out="other", **settings))
 
 
-@pytest.mark.parametrize("points", ["9 20\n8 10\n", "8 -13\n8 10\n9 20\n"], ids=["other points", "other direction"])
-def test_other_line_in_the_restart(tmp_path, points):
-    """Forward would be back in the other direction."""
-    collapse(tmp_path, "run 10\nwrite_restart cut.restart")
-    (tmp_path / "line.csv").write_text(points)
-    text = collapse_deck("run 1", begin="read_restart cut.restart")
-    text = text.replace("\nthermo 1000", "\nfix line soil control/line line.csv output out\nthermo 1000", 1)
-    run_deck(text, tmp_path, expect_error="Fix control/line line: the line must be that of the restart file, 3 points")
-
-
 @pytest.mark.parametrize("closed", ["-4 -4\n4 -4\n4 4\n-4 4\n-4 -4\n", "4 4\n4 -4\n-4 -4\n-4 4\n4 4\n"])
 def test_a_closed_line(tmp_path, closed):
     """Counterclockwise, forward is outwards; volume forward less back is what has left."""
@@ -248,14 +238,6 @@ def test_a_closed_line(tmp_path, closed):
     outwards = 1 if closed.startswith("-4 -4") else -1
     assert about["net_volume"] == pytest.approx(outwards * left * volume(1), abs=1e-9) and left != 0
     assert min(about["forward"]["crossings"], about["back"]["crossings"]) > 3
-
-
-@pytest.mark.parametrize("np_", [1, 2])
-def test_a_group_without_balls_is_told(tmp_path, np_):
-    log = fly(tmp_path, [[-1, 0, 8]], [[3, 0, 0]], "0 -9\n0 9\n",
-              "group none empty\nfix empty none control/line line.csv deposit deposit output none\nrun 1\n", np_=np_)
-    assert "WARNING: Fix control/line empty: the group should have balls, got none" in log
-    assert "Fix control/line line: the group" not in log
 
 
 @pytest.mark.parametrize("np_, name", [(1, "out.line.csv"), (2, "out.line.yaml")])

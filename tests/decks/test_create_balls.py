@@ -88,15 +88,6 @@ def test_balls_are_on_the_lower_half_of_the_sphere(one_rank):
         assert row[4] == pytest.approx(6 - math.sqrt(25 - x * x - y * y), abs=1e-6)
 
 
-def test_origin_moves_the_plan_grid(tmp_path):
-    run_deck(deck(more="origin 0.1 -0.2"), tmp_path)
-    base = sorted(nodes(5, 0.5, 0.1, -0.2), key=lambda p: (p[1], p[0]))
-    rows = atoms(tmp_path / "balls.dump")
-    assert len(rows) > len(base)
-    for (x, y), row in zip(base, rows):
-        assert row[2:4] == pytest.approx([x, y], abs=1e-9)
-
-
 @pytest.mark.parametrize("ranks, decomposition", [
     (2, ""),
     (4, ""),

@@ -257,8 +257,6 @@ def read_asc_centred(path):
 
 
 @pytest.mark.parametrize("settings, message", [
-    ({"bulk": "region"}, "Fix deposit/grid bulk: value 2 is missing"),
-    ({"bulk": "region nowhere"}, "Fix deposit/grid bulk region nowhere does not exist"),
     ({"bulk": "region none"}, "Fix deposit/grid bulk region none must have a volume > 0, got 0: it is empty"),
     ({"bulk": "region above"}, "Fix deposit/grid bulk region above must be bounded on all sides, got one without an "
                                "end (the body is the intersection of ground and slip surface)"),

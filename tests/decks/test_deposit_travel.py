@@ -1,4 +1,4 @@
-"""fix deposit/grid: what shares of the volume stay within, what is fast or at rest, and the ground without the body.
+"""fix deposit/grid: what shares of the volume stay within, what is fast or at rest.
 
 Balls are placed by hand and lie still, or fly freely, so that numpy gives every number."""
 
@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import yaml
 
-from deck_helpers import flight_head, read_asc, run_deck, write_asc, write_balls
+from deck_helpers import flight_head, run_deck, write_asc, write_balls
 
 SHARES = [0.5, 0.9, 0.95, 0.99]
 BIN = (1 + 1e-6) / 8192
@@ -244,27 +244,3 @@ def test_files_in_a_run_are_not_at_rest(tmp_path):
              expect_error="Fix halt condition for fix-id crash")
     found = summary(tmp_path)
     assert found["stop"]["reason"] == "running" and found["at_rest"] is False
-
-
-# --- the ground without the body ---
-
-
-@pytest.mark.parametrize("np_", [1, 3])
-def test_base(tmp_path, np_):
-    """Ground where the body is not, its scar where it is, NODATA where no ground is; surface = base + thickness."""
-    values = np.full((20, 20), 10.0)
-    values[2, 2] = np.nan
-    write_asc(tmp_path / "ground.asc", values, -10.0, -10.0)
-    write_balls(tmp_path / "balls.data", [[0.3, 0.2, 9]], 2.0, None, [(-10.0, 10.0), (-10.0, 10.0), (0.0, 40.0)])
-    regions = "region out sphere 0 0 12 5 side out units box\nregion stays intersect 2 ground out"
-    run_deck(flight_head(regions=regions) + DEPOSIT.replace("cell 2 terrain ground", "cell 0.5 terrain stays")
-             + "run 1\n", tmp_path, np=np_)
-    base, thickness, surface = (read_asc(tmp_path / f"out.{name}.asc")[0] for name in ("base", "thickness", "surface"))
-    x, y = np.meshgrid(*2 * [-10 + 0.5 * (np.arange(40) + 0.5)])
-    r2 = x**2 + y**2
-    expected = np.where(r2 < 25 - 4, 12 - np.sqrt(np.maximum(25 - r2, 0)), 10.0)
-    hole = (abs(x + 7.5) < 1) & (abs(y + 7.5) < 1)
-    assert np.isnan(base[hole]).all()
-    assert base[~hole] == pytest.approx(expected[~hole], abs=1e-6)
-    assert np.nanmin(base) < 7.1 and thickness.max() > 1.9
-    assert surface[~hole] == pytest.approx((base + thickness)[~hole], abs=1e-7)

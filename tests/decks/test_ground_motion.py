@@ -157,17 +157,6 @@ def test_bodies_that_do_not_feel_it_are_told(tmp_path):
     assert re.search("WARNING: Fix ground/motion shake: .*2 of 3 balls of the group are not", log)
 
 
-def test_a_group_without_balls_is_told(tmp_path):
-    text = "group none empty\nfix shake {} ground/motion motion.txt"
-    random_motion(tmp_path)
-    write_asc(tmp_path / "ground.asc", np.zeros((20, 20)), -100, -100, 10)
-    write_balls(tmp_path / "balls.data", [[0, 0, 1]], 1.0, None, [(-9, 9)] * 3)
-    for group in ("none", "all"):
-        log = run_deck(flight_head() + text.format(group) + "\nrun 3", tmp_path)
-        said = "WARNING: Fix ground/motion shake: the group should have balls, got none" in log
-        assert said == (group == "none")
-
-
 # --- Newmark: a ball that cannot roll on a frozen one of 2 km slides as a block ---
 
 BLOCK = """
@@ -233,19 +222,6 @@ def test_newmark_rectangle(tmp_path, tilt):
 
 
 @pytest.mark.parametrize("tilt", [0, 10])
-def test_newmark_half_sine(tmp_path, tilt):
-    ay, seconds = yield_acceleration(tilt), 0.25
-    a, w = 2.5 * ay, np.pi / seconds
-    t = np.linspace(0, seconds, 101)
-    found = slide(tmp_path, t, a * np.sin(w * t), 1.0, tilt)
-    begin = np.arcsin(ay / a) / w
-    c = np.cos(w * begin)
-    u = a / w * (c + 1) - ay * (seconds - begin)    # speed on the ground when the pulse ends, integrated below
-    d = a / w * (c * (seconds - begin) - (0 - np.sin(w * begin)) / w) - 0.5 * ay * (seconds - begin) ** 2
-    assert -found == pytest.approx(d + u ** 2 / (2 * ay), rel=0.01)
-
-
-@pytest.mark.parametrize("tilt", [0, 10])
 @pytest.mark.parametrize("share", [0.99, 1.01])
 def test_yield_acceleration(tmp_path, share, tilt):
     """One per cent below it the block stands, one above it slides."""
@@ -290,13 +266,6 @@ def test_restart(tmp_path, scheme, ranks, other):
         assert max(dump_difference(frames[0][step], frames[2][step])) < 1e-7, step
 
 
-def test_pieces_are_the_whole(tmp_path):
-    collapse(tmp_path, "run 500")
-    collapse(tmp_path, "run 130\nwrite_restart cut.restart\nrun 370", out="pieces")
-    one, two = (read_dump(tmp_path / f"{name}.dump")[500] for name in ("out", "pieces"))
-    assert max(dump_difference(one, two)) < 1e-12
-
-
 def test_ranks_agree(tmp_path):
     collapse(tmp_path, "run 400")
     collapse(tmp_path, "run 400", 4, out="four")
@@ -309,14 +278,6 @@ def test_suffix_slope(tmp_path):
     collapse(tmp_path, "run 300", before="suffix slope\n", out="fast")
     one, two = (read_dump(tmp_path / f"{name}.dump")[300] for name in ("out", "fast"))
     assert max(dump_difference(one, two)) < 1e-9
-
-
-def test_other_motion_in_the_restart(tmp_path):
-    collapse(tmp_path, "run 10\nwrite_restart cut.restart")
-    text = collapse_deck("run 1", begin="read_restart cut.restart")
-    run_deck(text.replace("fix deposit", SHAKE + " scale 2\nfix deposit", 1), tmp_path,
-             expect_error="Fix ground/motion shake: the motion must be that of the restart file, 301 points from 0 "
-                          "to 3")
 
 
 # --- energy guard: the work of the motion is known to it ---

@@ -143,6 +143,7 @@ def test_other_fixes_on_a_group_that_is_empty(tmp_path, fix, name):
     write_files(tmp_path)
     log = balls(fix + "\nrun 10", tmp_path, create=LATER)
     assert len(told(log, name)) == 1
+    assert not told(balls(fix.replace("early", "soil") + "\nrun 10", tmp_path), "the group should have balls")
 
 
 @pytest.mark.parametrize("run, settings", [

@@ -1,11 +1,10 @@
 """inputs/26_okada: blocks begin where the deck says, none overlaps, and they run down; its numbers."""
-import importlib.util
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from deck_helpers import run_deck
+from deck_helpers import run_deck, script_of
 
 CASE = Path(__file__).resolve().parents[2] / "inputs" / "26_okada"
 DECK = (CASE / "in.okada").read_text()
@@ -14,10 +13,7 @@ D, ANGLE = 0.124, np.radians(35)
 
 @pytest.fixture(scope="module")
 def okada():
-    spec = importlib.util.spec_from_file_location("okada", CASE / "okada.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    return script_of(CASE / "okada.py")
 
 
 def places(path):

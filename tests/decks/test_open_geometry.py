@@ -1,25 +1,18 @@
 """inputs/20_embankment/open_geometry.py: bodies of other faces and depths, what it counts as the paper's numbers."""
-import importlib.util
 import math
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from deck_helpers import LMP
+from deck_helpers import LMP, script_of
 
 CASE = Path(__file__).resolve().parents[2] / "inputs" / "20_embankment"
 
 
 @pytest.fixture(scope="module")
 def script():
-    spec = importlib.util.spec_from_file_location("open_geometry", CASE / "open_geometry.py")
-    module = importlib.util.module_from_spec(spec)
-    before = list(sys.path)
-    spec.loader.exec_module(module)
-    sys.path[:] = before
-    return module
+    return script_of(CASE / "open_geometry.py")
 
 
 def test_enough_bodies_and_the_usual_one_among_them(script):

@@ -116,11 +116,6 @@ def test_mass_pair_gives_the_target(tmp_path, e, case):
     assert table(log)[i, j][5 if "kind" in case else 4] == pytest.approx(e, abs=1e-4)
 
 
-def test_momentum_of_an_unequal_pair(tmp_path):
-    _, one, two = collide(tmp_path, rho2=10000.0)
-    assert one[-1, 2] + 4 * two[-1, 2] == pytest.approx(1.0 - 4.0, rel=1e-12)
-
-
 PRINTED = [  # ball mass from diameter and density; kn; e; printed dashpot
     (0.185, 8.78 / (math.pi * 0.185 ** 3 / 6), 3.67e7, 0.25, 1.45e4),
     (0.185, 8.78 / (math.pi * 0.185 ** 3 / 6), 3.67e7, 0.445, 8.96e3),
@@ -145,28 +140,6 @@ def test_mass_ball_gives_the_printed_dashpots(tmp_path, d, rho, k, e, printed):
     assert moving == pytest.approx(fixed / math.sqrt(2), rel=1e-3)
 
 
-def test_table_4_means_0_344_between_moving_balls(tmp_path):
-    given = dict(k=1.96e9, d1=1.25, d2=1.25, rho1=3411.4, rho2=3411.4, dt=1e-5, steps=1500, box=4)
-    for style, coeff, e in [("mass ball", "restitution 0.48", 0.344), ("", "damping 1.19e6 1.19e6", 0.344),
-                            ("mass pair", "restitution 0.48", 0.48), ("", "damping 8.41e5 8.41e5", 0.48)]:
-        log, one, two = collide(tmp_path, style=style, coeff=coeff, **given)
-        assert speed_ratio(one, two) == pytest.approx(e, abs=0.005), coeff
-        assert table(log)[1, 2][4] == pytest.approx(e, abs=0.001), coeff
-    log, one, two = collide(tmp_path, "wall", style="mass ball", coeff="restitution 0.48", **given)
-    assert speed_ratio(one, two) == pytest.approx(0.48, abs=0.005)
-
-
-def test_contact_time_and_largest_overlap(tmp_path):
-    """REFERENCE 8: contact time pi/(w sqrt(1-z^2)), overlap v/w exp(-z/sqrt(1-z^2) acos z)."""
-    log, one, _ = collide(tmp_path, "wall", coeff="restitution 0.3")
-    zeta = -math.log(0.3) / math.hypot(math.pi, math.log(0.3))
-    w, root = math.sqrt(1e6 / ball_mass(0.1, 2500)), math.sqrt(1 - zeta ** 2)
-    overlap = 0.1 + one[:, 0]
-    assert overlap.max() == pytest.approx(1 / w * math.exp(-zeta / root * math.acos(zeta)), rel=0.005)
-    assert (overlap > 0).sum() * 2e-6 == pytest.approx(math.pi / (w * root), rel=0.005)
-    assert table(log)[1, 3][8] * 2e-6 == pytest.approx(math.pi / (w * root), rel=1e-3)
-
-
 def test_limit_damping(tmp_path):
     """A force that never pulls ends where it is zero (Schwager & Poeschel 2007): e above the formula's."""
     zeta = -math.log(0.3) / math.hypot(math.pi, math.log(0.3))
@@ -179,52 +152,6 @@ def test_limit_damping(tmp_path):
             assert speed_ratio(one, two) == pytest.approx(e, abs=0.005), (kind, style)
             pulls = np.diff(one[:, 2]).max() > 1e-9
             assert pulls == (style != "limit_damping yes"), (kind, style)
-
-
-# --- friction ---
-
-
-@pytest.mark.parametrize("kind", ["wall", "frozen"])
-@pytest.mark.parametrize("angle", [50, 70])
-def test_oblique_impact(tmp_path, kind, angle):
-    """Chung & Ooi 2011, test 4, gross sliding: e_t = 1 - mu(1+e)/tan(theta), spin 2.5 mu (1+e) vn/R."""
-    mu, e, v, radius = 0.092, 0.98, 3.9, 2.5e-3
-    vn, vt = v * math.cos(math.radians(angle)), v * math.sin(math.radians(angle))
-    _, one, _ = collide(tmp_path, kind, coeff=f"restitution {e} friction {math.degrees(math.atan(mu))}",
-                        k=1e8, d1=2 * radius, d2=1.0, v1=(vn, vt), dt=2e-8, steps=400, gap=1e-7)
-    assert -one[-1, 2] / vn == pytest.approx(e, abs=0.005)
-    assert one[-1, 3] / vt == pytest.approx(1 - mu * (1 + e) * vn / vt, rel=0.003)
-    assert abs(one[-1, 4]) == pytest.approx(2.5 * mu * (1 + e) * vn / radius, rel=0.01)
-
-
-@pytest.mark.parametrize("newton", ["on", "off"])
-def test_conservation(tmp_path, newton):
-    """Oblique collision of two moving balls of different radius and mass, friction and rolling resistance.
-
-    Momentum is exact. The friction acts at the ends of the radii, which overlap: angular momentum is
-    off by at most the overlap's share of the distance, times the tangential momentum."""
-    d1, d2, rho1, rho2 = 0.1, 0.16, 2500.0, 4000.0
-    _, one, two = collide(tmp_path, d1=d1, d2=d2, rho1=rho1, rho2=rho2, y1=0.05, v1=(1.0, 0.3), v2=(-0.5, 0.2),
-                          coeff="restitution 0.6 friction 30 rolling 0.2", newton=newton,
-                          extra="set atom 1 omega 0 0 20")
-    m = [ball_mass(d1, rho1), ball_mass(d2, rho2)]
-    inertia = [0.1 * m[0] * d1 ** 2, 0.1 * m[1] * d2 ** 2]
-
-    def momentum(row):
-        return m[0] * one[row, 2:4] + m[1] * two[row, 2:4]
-
-    def angular(row, spin=1.0):
-        return sum(mass * (ball[row, 0] * ball[row, 3] - ball[row, 1] * ball[row, 2]) + spin * i * ball[row, 4]
-                   for ball, mass, i in zip((one, two), m, inertia))
-
-    assert np.hypot(*(one[-1, :2] - two[-1, :2])) > 0.5 * (d1 + d2)  # it is over
-    assert np.allclose(momentum(-1), momentum(0), rtol=0, atol=1e-12)
-    distance = np.hypot(*(one[:, :2] - two[:, :2]).T)
-    overlap = 0.5 * (d1 + d2) - distance.min()
-    turned = abs(inertia[0] * (one[-1, 4] - one[0, 4])) + abs(inertia[1] * (two[-1, 4] - two[0, 4]))
-    assert turned > 0.01
-    assert abs(angular(-1) - angular(0)) < turned * overlap / distance.min()
-    assert abs(angular(-1, 0.0) - angular(0, 0.0)) > 100 * abs(angular(-1) - angular(0))  # spin is needed
 
 
 # --- rolling ---

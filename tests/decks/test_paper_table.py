@@ -1,27 +1,20 @@
 """inputs/20_embankment/paper_table.py: means and ranges of a study, by two bulk factors; and the longer terrain."""
-import importlib.util
 import math
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from deck_helpers import LMP
+from deck_helpers import LMP, script_of
 
 CASE = Path(__file__).resolve().parents[2] / "inputs" / "20_embankment"
 
 
 @pytest.fixture(scope="module")
 def script():
-    spec = importlib.util.spec_from_file_location("paper_table", CASE / "paper_table.py")
-    module = importlib.util.module_from_spec(spec)
-    before = list(sys.path)
-    spec.loader.exec_module(module)
-    sys.path[:] = before
-    return module
+    return script_of(CASE / "paper_table.py")
 
 
 @pytest.fixture(scope="module")

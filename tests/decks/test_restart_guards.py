@@ -49,7 +49,8 @@ CHANGES = [("2 1.0 surface", "2 0.9 surface", "balls"), ("spacing 1.0", "spacing
            ("terrain floor.asc", "terrain higher.asc", "floor"), ("terrain ground.asc", "terrain higher.asc", "balls"),
            ("scale 1 start", "scale 1.1 start", "quake"), ("start 0", "start 0.1", "quake"),
            ("motion.txt", "other_motion.txt", "quake"), ("cell 1 ", "cell 2 ", "dep"), ("bulk 1.5", "bulk 1.6", "dep"),
-           ("extent 0 16", "extent 0 15", "dep"), ("line.csv", "other.csv", "line"), ("lower 0", "lower 0.1", "line")]
+           ("extent 0 16", "extent 0 15", "dep"), ("line.csv", "other.csv", "line"),
+           ("line.csv", "backwards.csv", "line"), ("lower 0", "lower 0.1", "line")]   # backwards: forward is back
 # words of these parsers that a restart file does not guard, as decks may change them, or that another one stands for
 PARSERS = ("ground/placement_arguments", "meshes/surface_options", "deposit/deposit_options",
            "motion/fix_ground_motion", "deposit/fix_control_line")
@@ -66,6 +67,7 @@ def site(tmp_path_factory):
     for name, x in (("road", 12), ("line", 10), ("other", 11)):
         ring = f"{x},0\n16,0\n16,16\n{x},16\n"
         (folder / f"{name}.csv").write_text(ring if name == "road" else f"{x},0\n{x},16\n")
+    (folder / "backwards.csv").write_text("10,16\n10,0\n")
     for name, x in (("places", 1.0), ("other", 1.2)):
         (folder / f"{name}.txt").write_text(f"{x} 1 0\n3 1 0\n")
     for name, x in (("motion", 0.5), ("other_motion", 0.6)):

@@ -1,5 +1,4 @@
 """inputs/16_flume/in.sarno: beads stay behind the gate, and flow below it; how deep they are at the gauge."""
-import importlib.util
 import re
 import shutil
 from pathlib import Path
@@ -7,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from deck_helpers import run_deck
+from deck_helpers import run_deck, script_of
 
 CASE = Path(__file__).resolve().parents[2] / "inputs" / "16_flume"
 COARSE = {"ratio": 6, "settle": 0.4, "duration": 1}
@@ -15,10 +14,7 @@ COARSE = {"ratio": 6, "settle": 0.4, "duration": 1}
 
 @pytest.fixture(scope="module")
 def sarno():
-    spec = importlib.util.spec_from_file_location("sarno", CASE / "sarno.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    return script_of(CASE / "sarno.py")
 
 
 def flow(folder, **variables):

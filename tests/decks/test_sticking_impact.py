@@ -34,11 +34,11 @@ def swapped(*swaps):
 
 
 @pytest.mark.parametrize("partner", sticking_impact.PARTNERS)
-@pytest.mark.parametrize("more", [{}, ROUGH], ids=["", "spinning and rolling"])
-def test_continuous_law(tmp_path, partner, more):
-    errors = sticking_impact.Errors(run(tmp_path, partner=partner, **{"laws": 36, **more}))
+def test_continuous_law(tmp_path, partner):
+    """Spinning and rolling; what does not is among the quick claims."""
+    errors = sticking_impact.Errors(run(tmp_path, partner=partner, **ROUGH))
     assert errors.together == 0
-    beta, beta_each, spin, spin_each, e = sticking_impact.ROLLING_BOUNDS if more else sticking_impact.BOUNDS
+    beta, beta_each, spin, spin_each, e = sticking_impact.ROLLING_BOUNDS
     for name, mean, each in (("beta", beta, beta_each), ("spin", spin, spin_each), ("partner_spin", spin, spin_each)):
         assert errors.mean[name].max() <= mean and errors.largest[name].max() <= each, name
     assert errors.largest["restitution"].max() <= e

@@ -1,5 +1,4 @@
 """slope stability --failed: the strengths with which a body has F = 1, for spheres and for other surfaces."""
-import csv
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +7,7 @@ import yaml
 
 from run_helpers import called, write_asc
 from test_slips import CASES, embankment, plane, write_columns
+from tiny_collapse import rows_of
 
 from slope_tools.commands import stability_failed
 from slope_tools.slips import back, bishop, columns, failed
@@ -91,8 +91,7 @@ def ran(capsys, words):
 
 
 def table():
-    with open("out/back.csv", newline="") as source:
-        return np.array([[float(value) for value in row.values()] for row in csv.DictReader(source)]).T
+    return np.array([list(row.values()) for row in rows_of("out/back.csv", float)]).T
 
 
 @pytest.mark.drawn

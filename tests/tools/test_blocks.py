@@ -1,5 +1,4 @@
 """Sites of single blocks: from a GeoTIFF and a polygon to the share that reaches a road; what is refused."""
-import csv
 import re
 import shutil
 import subprocess
@@ -14,7 +13,7 @@ from shapely.geometry import LineString, Polygon
 
 from run_helpers import EAST, NORTH, called, write_tif
 from test_site import write_layer
-from tiny_collapse import LMP
+from tiny_collapse import LMP, rows_of
 
 from slope_tools import digits
 from slope_tools.blocks import files, kinds, outcome, page, runs, site as of_blocks
@@ -125,9 +124,7 @@ def test_a_mass_knows_nothing_of_it(told, gis):
     (["--blocks", "1000000"], "--blocks: must be at most 100,000: more grounds (blocks.grounds of site.yaml) say more "
      "than more blocks, got 1,000,000"),
     (["--depth", "3"], "--depth: must not be given with a site of single blocks"),
-    (["--shape", "plane"], "--shape: must not be given with a site of single blocks"),
     (["--known", "rockfalls"], "--known: must not be given with a site of single blocks"),
-    (["--minutes", "5"], "--minutes: must not be given with a site of single blocks"),
     (["--wall", "fence.geojson", "--height", "3"], "--wall: must not be given with a site of single blocks"),
     (["--release", "beyond.geojson"], "beyond.geojson: must have terrain in it, and 1.2 m beside it"),
     (["--release", "flat.geojson", "--speed", "2"], "--speed: needs a fall line"),
@@ -168,11 +165,6 @@ def test_options_of_blocks_are_refused_for_a_mass(told):
 
 
 # --- results, against what the runs wrote ---
-
-def rows_of(path):
-    with open(path, encoding="ascii") as lines:
-        return list(csv.DictReader(lines))
-
 
 def test_blocks_are_counted_not_crossings(made):
     """Of each run by its files: ends, those that came onto the road and beyond it, the largest of each block."""

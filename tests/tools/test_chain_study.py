@@ -1,5 +1,4 @@
 """slope study --fragility: the chain of a small embankment, from its slips to how often the road is blocked."""
-import csv
 import os
 import shutil
 from dataclasses import replace
@@ -102,8 +101,8 @@ def test_the_chain_of_two_bodies(mine, capsys):
 
 
 def fragility_rows():
-    with open("fragility/fragility.csv", newline="") as lines:
-        return [(row["body"], float(row["peak_gal"]), float(row["probability"])) for row in csv.DictReader(lines)]
+    return [(row["body"], float(row["peak_gal"]), float(row["probability"]))
+            for row in rows_of("fragility/fragility.csv")]
 
 
 def shown_in_the_report(of):

@@ -12,7 +12,7 @@ import known_twins as twins
 import made_rows
 import made_study
 from messages import is_one
-from tiny_collapse import read_asc
+from tiny_collapse import read_asc, rows_of
 
 from slope_tools import cli
 from slope_tools.deposits import travel_shares
@@ -212,8 +212,7 @@ def test_an_ensemble_is_weighted(slope, succeed, capsys, monkeypatch):
     found = yaml.safe_load(Path("out/study.yaml").read_text())["ensemble"]["known_events"]
     assert found["left_out"] == ["event 3"] and found["path"] == "not laterally confined" and not found["outside"]
     assert found["reached"] + found["short"] + found["far"] == pytest.approx(1) and found["reached"] > 0.05
-    with open("out/weights.csv", encoding="ascii") as lines:
-        rows = list(csv.DictReader(lines))
+    rows = rows_of("out/weights.csv")
     weight, length, beyond, ratio = (np.array([float(row[key]) for row in rows])
                                      for key in ("weight", "length_m", "beyond", "ratio"))
     assert weight.sum() == pytest.approx(found["reached"], abs=1e-4)

@@ -174,17 +174,6 @@ def test_a_finished_run_of_another_input_is_not_taken(slope, succeed, here, monk
         assert status == 2 and re.match(f"slope study: {RUN}: was run with another ", err), (more, err)
 
 
-@pytest.mark.parametrize("make", CHANGES)
-def test_an_unfinished_run_of_another_input_starts_anew(slope, here, monkeypatch, make):
-    monkeypatch.setenv("SLOPE_TEST_G", "")
-    in_deck("region      ground", 'if "0" then "read_restart ${restart}"\nregion      ground')
-    change = make()
-    assert slope()[0] == 0
-    (here / RUN / "finished.yaml").unlink()
-    change()
-    assert f"{Path(RUN).name}: starts again: it was started with another " in slope()[1]
-
-
 # --- the program ---
 
 def shared(here, monkeypatch):

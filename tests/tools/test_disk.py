@@ -201,7 +201,7 @@ def test_a_tool_and_a_file_that_does_not_fit(before, here, capsys, name):
     assert slope(TOOLS_OUTPUTS[name][0], "results") == 0 and contents("results") == whole
 
 
-@pytest.mark.parametrize("name", TOOLS_OUTPUTS)
+@pytest.mark.parametrize("name", ["volume", "report"])      # of all, see above
 def test_a_tool_on_a_full_disk(before, small_disk, here, capsys, name):
     disk = small_disk(20000)
     whole = before(name, disk)

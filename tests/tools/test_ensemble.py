@@ -12,7 +12,7 @@ from scipy import stats
 import made_rows
 import made_study
 from messages import is_one
-from tiny_collapse import loaded, read_asc
+from tiny_collapse import loaded, read_asc, rows_of
 
 from slope_tools import cli
 from slope_tools.case import deck_ranges
@@ -328,8 +328,7 @@ def test_an_ensemble_grows_and_its_tables_are_those_of_the_runs(slope, succeed, 
     one = found["influence"]["remove_on_road_m3"]
     assert one["variables"]["rolling"]["rank"] == pytest.approx(stats.spearmanr(
         [float(row["rolling"]) for row in table], volumes)[0])
-    with open("out/influence.csv", encoding="ascii") as lines:
-        cells = list(csv.DictReader(lines))
+    cells = rows_of("out/influence.csv")
     assert {row["variable"] for row in cells} == {"friction", "rolling"}
     for row in cells:
         entry = found["influence"][row["quantity"]]["variables"][row["variable"]]

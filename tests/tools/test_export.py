@@ -139,13 +139,6 @@ def test_a_site_is_the_run_of_the_first_page(slope, here, known, inside, run, pa
         assert tif.tags()["run"] == f"{run}, the governing run of mine/ensemble"
 
 
-def test_a_study_of_an_older_version_is_made_once_more(slope, here):
-    Path("mine").mkdir()
-    Path("mine/study.yaml").write_text("conservative: null\nlargest: {front_m: {run: two}}\nruns: []\n")
-    status, out, err = slope("mine")
-    assert (status, out) == (2, "") and "mine/study.yaml: must " in err and err.count("\n") == 1
-
-
 def test_without_a_terrain_in_local_metres(slope):
     write_rasters()
     status, out, err = slope("run")

@@ -1,5 +1,4 @@
 """The fall path against closed forms, the probabilities on it against the t distribution, and slope mobility."""
-import csv
 import math
 import shutil
 from pathlib import Path
@@ -14,6 +13,7 @@ from scipy import stats
 from shapely.geometry import LineString, Point, box
 
 from run_helpers import TOP, run_command, write_asc, write_geojson, examples
+from tiny_collapse import rows_of
 
 from slope_tools.errors import SlopeError
 from slope_tools.mobility import body, charts, events, exceedance, fall_path, known as known_events
@@ -270,8 +270,7 @@ COLUMNS = ["length_m", "height_m", "elevation_m", "x", "y", *(f"exceedance_{kind
 
 
 def rows(folder="out"):
-    with open(Path(folder, "mobility.csv"), encoding="ascii") as lines:
-        found = list(csv.DictReader(lines))
+    found = rows_of(Path(folder, "mobility.csv"))
     return list(found[0]), {key: np.array([float(row[key] or "nan") for row in found]) for key in found[0]}
 
 

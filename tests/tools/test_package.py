@@ -1,5 +1,4 @@
 """The package from a script: the example of the page, and what --debug and a bug look like."""
-import csv
 import importlib.util
 import os
 import re
@@ -79,8 +78,7 @@ def test_the_frame_is_the_table(session):
     pytest.importorskip("pandas")
     folder, told = session
     frame = slope_tools.Study.read(folder / "ensemble").frame()
-    with open(folder / "ensemble" / "study.csv", encoding="ascii", newline="") as lines:
-        rows = list(csv.DictReader(lines))
+    rows = tiny_collapse.rows_of(folder / "ensemble" / "study.csv")
     assert list(frame.index) == [row["run"] for row in rows] and len(rows) == 4
     assert list(frame["front_m"]) == [float(row["front_m"]) for row in rows]
     assert f"{frame['front_m'].mean():.6f}" in next(line for line in told if line.startswith("mean"))

@@ -1,5 +1,4 @@
 """tools/slope study --repeat: which runs are made, the headline over them, what is called a trend, rest and travel."""
-import csv
 import statistics
 from pathlib import Path
 
@@ -7,7 +6,7 @@ import pytest
 
 from made_rows import changed, row
 from messages import is_one
-from tiny_collapse import edit, loaded
+from tiny_collapse import edit, loaded, rows_of
 
 from slope_tools import records
 from slope_tools import schemas
@@ -68,8 +67,7 @@ def test_repeats_are_made_for_each_combination_and_the_headline_is_theirs(slope)
     assert "conservative volume to remove" not in out
 
     assert [entry["combination"] for entry in about["combinations"]] == ["rolling_0_steps_700", "rolling_0.3_steps_700"]
-    with open("out/combinations.csv", encoding="ascii") as lines:
-        cells = list(csv.DictReader(lines))
+    cells = rows_of("out/combinations.csv")
     for entry, line, several, mean in zip(about["combinations"], cells, volumes, means):
         assert entry["repeats"] == 3 and entry["remove_m3"]["mean"] == pytest.approx(mean)
         assert entry["remove_m3"]["scatter"] == pytest.approx(statistics.stdev(several))

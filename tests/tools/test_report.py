@@ -1,6 +1,5 @@
 """tools/slope report: one page with everything in it, the answer and its doubts, the section by hand."""
 import base64
-import csv
 import html
 import json
 import os
@@ -264,17 +263,6 @@ def test_what_stands_on_the_page(slope, here):
         assert word not in text.replace((run / "in.tiny").read_text(), "")
 
 
-def test_numbers_have_three_digits(slope, here):
-    about = yaml.safe_load(Path("repeated/study.yaml").read_text())
-    for k, row in enumerate(about["runs"]):
-        row["remove_m3"] = 12345.678 + k
-    Path("repeated/study.yaml").write_text(yaml.safe_dump(about))
-    assert slope("repeated")[0] == 0
-    kept = [row for row in numbers("repeated/report.numbers.csv")
-            if (row["what"], row["of"]) == ("to remove", "rolling 0")]
-    assert {(row["shown"], row["value"]) for row in kept} == {("12300", "12345.678")}
-
-
 def test_the_shown_run_is_the_one_that_the_volume_rests_on(slope, here):
     about = yaml.safe_load(Path("repeated/study.yaml").read_text())
     names = [row["run"] for row in about["runs"]]
@@ -466,21 +454,9 @@ def test_the_run_that_lost_most_went_farthest(slope, here):
         assert report_data.Data(Path("out")).result.name == farthest["run"]
 
 
-def test_a_study_of_an_older_version_is_one_line(slope, here):
-    about = yaml.safe_load(Path("out/study.yaml").read_text())
-    for row in about["runs"]:
-        del row["at_rest"]
-    Path("out/study.yaml").write_text(yaml.safe_dump(about))
-    status, out, err = slope("out")
-    assert (status, out) == (2, "") and err.count("\n") == 1
-    assert "of this version (the same command rewrites it, and keeps the runs): must have at_rest" in err
-
-
 @pytest.mark.parametrize("body, factor, words, doubt", [
-    (1000.0, 6 / np.pi, ("body 1,000 m³", "bulk factor 1.91, 6/pi "), False),
-    (1000.0, 1.14 * 6 / np.pi, ("14 % above 6/pi",), False),
-    (1000.0, 1.16 * 6 / np.pi, ("16 % above 6/pi",), True), (1000.0, 0.8 * 6 / np.pi, ("20 % below 6/pi",), True),
-    (None, 6 / np.pi, ("body unknown",), False)])
+    (1000.0, 1.14 * 6 / np.pi, ("body 1,000 m³", "bulk factor 2.177, 14 % above 6/pi"), False),
+    (1000.0, 1.16 * 6 / np.pi, ("16 % above 6/pi",), True), (None, 6 / np.pi, ("body unknown",), False)])
 def test_the_released_mass_and_its_body(slope, here, body, factor, words, doubt):
     def set_it(summary):
         with_release(body, factor)(summary)
@@ -503,15 +479,12 @@ def test_the_released_mass_and_its_body(slope, here, body, factor, words, doubt)
 def test_many_balls_removed_without_a_body_are_doubted(slope, here):
     change(here / "one", of_an_older_version)
     log = here / "one" / "log.lammps"
-    text = "".join(line for line in log.read_text().splitlines(True) if "Delete_balls" not in line)
-    for gone, doubt in ((10, False), (30, True)):
-        told = (f"Delete_balls: {gone} balls of group soil removed that overlapped fixed balls by more than 0 of their "
-                f"radius: 9 m3 of balls; {100 - gone} balls left")
-        log.write_text(text.replace("Fix deposit/grid", f"{told}\nFix deposit/grid", 1))
-        assert slope("one")[0] == 0
-        page, reader = read("one/report.html")
-        assert f"{gone} % of the balls overlapped the slip surface or the ground" in cards(page)["Released"][1]
-        assert any("released mass is doubtful" in text for _, text in reader.warnings) == doubt
+    log.write_text(re.sub("^Delete_balls: .*", "Delete_balls: 30 balls of group soil removed; 70 balls left",
+                          log.read_text(), flags=re.MULTILINE))
+    assert slope("one")[0] == 0
+    page, reader = read("one/report.html")
+    assert "30 % of the balls overlapped the slip surface or the ground" in cards(page)["Released"][1]
+    assert any("released mass is doubtful" in text for _, text in reader.warnings)
 
 
 # --- warnings ---
@@ -524,6 +497,7 @@ def test_red_on_a_deposit_that_moves(slope, here, folder):
     red = [text for level, text in reader.warnings if level == "red"]
     assert status == 0 and len(red) == 1 and "not at rest" in red[0] and "42 % of the volume" in red[0]
     assert "WARNING: " in out and "not at rest" in out
+    assert re.search(r'number status (\w+)', page)[1] == "moving"
     # first in the appendix, on the client's page in its words, and really red
     assert page.index('id="appendix"') < page.index('<li class="red">not at rest') < \
         page.index("<figure", page.index('id="appendix"'))
@@ -544,20 +518,17 @@ def without_log_warnings(folder):
 
 
 @pytest.mark.parametrize("share, reason, level", [
-    (0.009, "halted", "green"), (0.0, "halted", "green"), (0.01, "halted", "amber"), (0.042, "halted", "amber"),
-    (0.009, "run completed", "amber"), (0.0, "run completed", "amber"), (0.0, "running", "amber"),
-    (0.2, "halted", "red")])
+    (0.009, "halted", "green"), (0.042, "halted", "amber"), (0.0, "run completed", "amber")])
 @pytest.mark.parametrize("folder", ["out", "one"])
 def test_green_only_at_rest(slope, here, folder, share, reason, level):
-    """Ended by its rest criterion, and less than 1 % of the volume faster than 0.1 m/s; nothing else is green."""
+    """As test_repeats.py has it."""
     set_moving(here / folder, share, reason, 12.5)
     without_log_warnings(here / folder)
     assert slope(folder)[0] == 0
     page, reader = read(f"{folder}/report.html")
     [found] = [(level, text) for level, text in reader.warnings if level]
     assert found[0] == level
-    card = re.search(r'number status (\w+)', page)[1]
-    assert card == {"green": "rest", "amber": "doubt", "red": "moving"}[level]
+    assert re.search(r'number status (\w+)', page)[1] == {"green": "rest", "amber": "doubt"}[level]
     if level != "green":
         volume = share * yaml.safe_load(next((here / folder).rglob("*.summary.yaml")).read_text())["volume"]["released"]
         assert f"{volume:,.3g} m³" in found[1] and "up to 12 m/s" in found[1]
@@ -567,32 +538,6 @@ def test_green_only_at_rest(slope, here, folder, share, reason, level):
             assert "At rest at the end" in page and re.search(r"At rest at the end.{0,200}\b0 of 2\b", page, re.DOTALL)
         else:
             assert "At the end of the run" in page and "At rest at the end" not in page
-
-
-def test_an_older_summary_is_green_below_1_percent_of_the_deck_s_threshold(slope, here):
-    for share, threshold, level in ((0.009, 0.1, "green"), (0.03, 0.1, "amber"), (0.0, 0.5, "amber")):
-        def set_it(summary, share=share, threshold=threshold):
-            of_an_older_version(summary)
-            summary["moving"], summary["stop"]["reason"] = False, "halted"
-            summary["motion"].update(moving_share=share, threshold=threshold)
-        change(here / "one", set_it)
-        without_log_warnings(here / "one")
-        assert slope("one")[0] == 0
-        assert [level for level, _ in read("one/report.html")[1].warnings if level] == [level]
-
-
-def test_warnings_of_the_logs_and_failed_runs_are_on_top(slope, here):
-    about = yaml.safe_load(Path("out/study.yaml").read_text())
-    about["runs"][0]["log_warnings"] = ["Pair gran/restitution: time step 0.0025 s is too long"]
-    about["runs"].append({"run": "rolling_9", "status": "failed", "set": {"rolling": "9", "steps": "1200"},
-                          "repeat": {}, "batch": 0, "error": "ERROR: lost <b>all</b> atoms", "log_warnings": []})
-    Path("out/study.yaml").write_text(yaml.safe_dump(about))
-    assert slope("out")[0] == 0
-    page, reader = read("out/report.html")
-    texts = [text for _, text in reader.warnings]
-    assert any(text.startswith("LAMMPS: Pair gran/restitution: time step 0.0025 s is") for text in texts)
-    assert ["red", "failed: ERROR: lost <b>all</b> atoms (1 of 3 runs: rolling 9)"] in reader.warnings
-    assert "<b>all</b>" not in page
 
 
 def test_one_line_for_each_kind_of_warning(slope, here):
@@ -606,13 +551,15 @@ def test_one_line_for_each_kind_of_warning(slope, here):
         about["runs"][k]["mass_error"] = share
     for name in ("a", "b", "c"):
         about["runs"].append({"run": name, "status": "failed", "set": {"rolling": name, "steps": "1200"}, "repeat": {},
-                              "batch": 0, "error": f"ERROR: 1{len(about['runs'])} atoms lost", "log_warnings": []})
+                              "batch": 0, "error": f"ERROR: 1{len(about['runs'])} <b>atoms lost", "log_warnings": []})
     Path("repeated/study.yaml").write_text(yaml.safe_dump(about))
     assert slope("repeated")[0] == 0
-    texts = [text for level, text in read("repeated/report.html")[1].warnings if level]
+    page, reader = read("repeated/report.html")
+    texts = [text for level, text in reader.warnings if level]
     assert sum("contacts were seen" in text for text in texts) == 1
     [deep] = [text for text in texts if "contacts were seen" in text]
-    assert "5 of 9 runs: " in deep and "and 1 more" in deep and "other numbers in some" in deep
+    assert deep.startswith("LAMMPS: Pair gran/restitution: ") and "5 of 9 runs: " in deep
+    assert "and 1 more" in deep and "other numbers in some" in deep
     [neighbor] = [text for text in texts if "Neighbor lists" in text]
     assert "5 of 9 runs" in neighbor and "other numbers" not in neighbor
     [only] = [text for text in texts if "Only here" in text]
@@ -622,6 +569,7 @@ def test_one_line_for_each_kind_of_warning(slope, here):
     assert "3.0e-05" in differ      # the gravest comes first
     assert "2 of 6 runs: rolling 0, seed 2; rolling 0, seed 1; other numbers in some" in differ
     [failed] = [text for text in texts if "atoms lost" in text]
+    assert ["red", failed] in reader.warnings and "<b>atoms" not in page
     assert failed.startswith("failed: ERROR: ") and "(3 of 9 runs: rolling a; rolling b; rolling c; " in failed
 
 
@@ -751,14 +699,6 @@ def test_numbers_from_elsewhere_stand_beside(slope, here):
     assert ["mapped", "33.5"] in [row for table in read("one/report.html")[1].tables for row in table]
 
 
-def test_the_paper_s_numbers_ship_with_inputs_20(slope, here):
-    shutil.copy(TOP / "inputs" / "20_embankment" / "reference.yaml", "paper.yaml")
-    assert slope("out --reference paper.yaml")[0] == 0
-    tables = [row for table in read("out/report.html")[1].tables for row in table]
-    assert ["company J", "24,048", "26,009", "22,340"] in tables
-    assert ["company I", "22,114", "18,262", "14,490"] in tables and ["actual damage", "14,225"] in tables
-
-
 def test_no_paper_is_still_taken(slope, here):
     status, out, err = slope("out --no-paper")
     assert (status, err) == (0, "") and "--no-paper is the default now" in out
@@ -793,8 +733,7 @@ def test_the_report_takes_the_convergence_in(slope, here):
 # --- the section ---
 
 def section(path):
-    with open(path, newline="", encoding="utf-8") as lines:
-        rows = list(csv.DictReader(lines))
+    rows = rows_of(path)
     return {key: np.array([float(row[key] or "nan") for row in rows]) for key in rows[0]}
 
 
@@ -841,12 +780,9 @@ def test_the_cut_and_the_road_on_the_section(here):
 BENT = [[4.5, 4.5], [20.5, 4.5], [20.5, 20.5], [36.5, 20.5]]
 
 
-@pytest.mark.parametrize("name, text", [
-    ("line.geojson", '{"type": "LineString", "coordinates": %s}' % BENT),
-    ("line.wkt", "LINESTRING (" + ", ".join(f"{x} {y}" for x, y in BENT) + ")"),
-    ("line.csv", "".join(f"{x},{y}\n" for x, y in BENT))])
-def test_the_section_follows_a_line(slope, here, name, text):
-    Path(name).write_text(text)
+def test_the_section_follows_a_line(slope, here):
+    name = "line.wkt"
+    Path(name).write_text("LINESTRING (" + ", ".join(f"{x} {y}" for x, y in BENT) + ")")
     assert slope(f"one --section {name}")[0] == 0
     line = section("one/report.section.csv")
     assert line["distance"][-1] == pytest.approx(48, abs=1e-3) and line["distance"][0] == 0
@@ -908,12 +844,6 @@ def test_one_map_for_each_combination(slope, here, monkeypatch):
     assert "2 of the 6 runs are shown" in Path("repeated/report.html").read_text()
 
 
-def test_the_section_along_the_fall_line_and_by_its_ends(slope, here):
-    assert slope("one --section fall")[0] == 0
-    line = section("one/report.section.csv")
-    assert np.ptp(line["y"]) < 0.5 and "along its mean fall line" in Path("one/report.html").read_text()
-
-
 # --- bad input: one line, status 2, nothing written ---
 
 def without(path):
@@ -940,18 +870,10 @@ BAD = {     # what else a file may have: test_schemas.py
     "two summaries": (text_of("one/b.summary.yaml", ""), "one", "one: must be the folder of a study, with study.yaml, "
                       "or of one run, with one PREFIX.summary.yaml, got 2 summaries"),
     "no thickness": (without("one/tiny.thickness.asc"), "one", "one/tiny.thickness.asc: must be"),
-    "no surface": (without("one/tiny.surface.asc"), "one", "one/tiny.surface.asc: must be"),
-    "another base": (text_of("one/tiny.base.asc", "ncols 1\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n3\n"),
-                     "one", "one/tiny.base.asc: must have the grid of one/tiny.thickness.asc"),
-    "no speed": (without("one/tiny.max_speed.asc"), "one", "one/tiny.max_speed.asc: must be there: fix deposit/grid"),
     "no arrival": (without("one/tiny.arrival.asc"), "one", "one/tiny.arrival.asc: must be there: fix deposit/grid"),
-    "no summary": (without("one/tiny.summary.yaml"), "one", "one: must be the folder of a study"),
     "broken summary": (text_of("one/tiny.summary.yaml", "volume: {released: 3}"), "one", "one/tiny.summary.yaml: must "
                        "be a summary that fix deposit/grid wrote: must have travel"),
-    "cut raster": (lambda: Path("one/tiny.arrival.asc").write_text(Path("one/tiny.arrival.asc").read_text()[:900]),
-                   "one", "one/tiny.arrival.asc: values: must be 24 rows of 40"),
     "broken study": (text_of("out/study.yaml", "runs: ["), "out", "out/study.yaml: must be what `slope study` wrote"),
-    "study without runs": (text_of("out/study.yaml", "study: 1\n"), "out", "out/study.yaml: must be what `slope"),
     "only failed runs": (only_failed, "out", "out/study.yaml: must have a finished run, got 1 that failed"),
     "a run is gone": (lambda: shutil.rmtree(RUN), "out", f"{RUN}/tiny.summary.yaml: must be a summary"),
     "a raster of a run": (without(f"{RUN}/tiny.surface.asc"), "out", f"{RUN}/tiny.surface.asc: must be"),
@@ -964,9 +886,6 @@ BAD = {     # what else a file may have: test_schemas.py
     "output folder": (lambda: None, "one -o none/page.html", "-o: must be in an existing folder, got none/page.html"),
     "section of a point": (lambda: None, "one --section 3 4 3 4", "--section: must have two different ends, got 3 4"),
     "section of three numbers": (lambda: None, "one --section 3 4 3", "--section: must be X1 Y1 X2 Y2, the file of a "),
-    "section of no file": (lambda: None, "one --section none.geojson", "none.geojson: must be an existing file"),
-    "section of a polygon": (text_of("p.wkt", "POLYGON ((0 0, 1 0, 1 1, 0 0))"), "one --section p.wkt", "p.wkt: must "
-                             "hold a line: draw one"),
     "section of two lines": (text_of("p.wkt", "MULTILINESTRING ((0 0, 1 0), (3 3, 9 9))"), "one --section p.wkt",
                              "p.wkt: must hold one line, for --section, got 2 lines"),
     "section line elsewhere": (text_of("p.wkt", "LINESTRING (100 0, 110 0, 120 9)"), "one --section p.wkt", "p.wkt: "
@@ -975,15 +894,12 @@ BAD = {     # what else a file may have: test_schemas.py
     "no reference": (lambda: None, "out --reference none.yaml", "none.yaml: must be a file of reference values"),
     "reference without quantities": (text_of("r.yaml", "title: T\n"), "out --reference r.yaml", f"{REFERENCES}: must "
                                      "have quantities"),
-    "reference without a title": (text_of("r.yaml", "quantities: {front_m: {levels: {a: 1}}}"),
-                                  "out --reference r.yaml", f"{REFERENCES}: must have title"),
     "quantity of a road, without one": (text_of("r.yaml", "title: T\nquantities: {remove_m3: {levels: {a: 1}}}"),
                                         "one --reference r.yaml",
                                         "r.yaml: quantities: must be columns that all runs have"),
     "reference without variable": (text_of("r.yaml", "title: T\nquantities: {front_m: {series: {a: {0: 1}}}}"),
                                    "out --reference r.yaml", f"{REFERENCES}: quantities: front_m: must have "
                                    "levels: {NAME: VALUE}, or variable and series: {NAME: {X: VALUE}}, or both"),
-    "reference that is no mapping": (text_of("r.yaml", "- 1\n"), "out --reference r.yaml", "r.yaml: must be a file"),
     "no convergence": (lambda: None, "out --converge none", "--converge: must be a converge.yaml of `slope "),
     "section elsewhere": (lambda: None, "one --section 100 4 120 4", "--section: must cross the grid of the run, 0 0 "),
     "section of nan": (lambda: None, "one --section 1 2 3 nan", "--section: must be X1 Y1 X2 Y2 (finite numbers, "),

@@ -548,21 +548,6 @@ def test_only_the_first_line_of_the_deck_s_head_is_the_purpose(plain):
     assert f'<p class="purpose">{first.lstrip("# ")}</p>' in text and "By hand" not in text.split("<h2>")[0]
 
 
-@pytest.mark.parametrize("options, site, where", [
-    (["--client", "two\nlines"], "", "--client"), (["--author", "x" * 201], "", "--author"),
-    ([], "project: [a]", "site.yaml: must be a file of `slope site`: project: must"),
-    ([], "project: {client: 5}", "site.yaml: project: client"),
-    ([], "project: {author: [", "site.yaml")])
-def test_a_bad_heading_is_one_line(plain, capsys, options, site, where):
-    if site:
-        (plain / "site.yaml").write_text(site)
-    before = set(plain.parent.rglob("*"))
-    capsys.readouterr()
-    assert cli.main(["report", "case", *options]) == 2
-    line = capsys.readouterr().err
-    assert line.count("\n") == 1 and where in line and set(plain.parent.rglob("*")) == before
-
-
 # --- limits ---
 
 def limits_of(path):
@@ -584,19 +569,3 @@ def test_limits_of_a_run(plain):
     # balls of 1 m, of which each stands for a cube: 6/pi of its volume
     assert "1.00 m³ of ground, a cube of 1.00 m" in found["The mass"] and "Dry" in found["The mass"]
     assert "cells of 1 m" in found["The ground"]
-
-
-def test_limits_of_a_study_with_repeats(case):
-    deck = write_case(case.parent / "deck")
-    deck.write_text(deck.read_text().replace("variable  kn", "variable  xoffset index 0.0\nvariable  kn")
-                    .replace("lattice     sc 1.0", "lattice     sc 1.0 origin ${xoffset} 0 0"))
-    assert cli.main(["study", str(deck), "--set", "rolling=0,0.3", "--set", "steps=900", "--repeat",
-                     "xoffset=0.25,0.5", "-o", "out", "--lmp", LMP, "--road", "deck/road.csv", "--local"]) == 0
-    assert cli.main(["report", "out"]) == 0
-    found = limits_of(Path("out/report.html"))
-    about = yaml.safe_load(Path("out/study.yaml").read_text())
-    best = about["conservative"]
-    low, high = map(float, re.search(r"gives ([\d.,]+) to ([\d.,]+) m³ to remove, in 95 %", found["Chance"]).groups())
-    assert low == pytest.approx(max(0, best["mean_m3"] - best["chance_m3"]), abs=best["place_m3"])
-    assert high == pytest.approx(best["mean_m3"] + best["chance_m3"], abs=best["place_m3"])
-    assert "rolling 0, 0.3" in found["Varied"]

@@ -24,6 +24,7 @@ import route_stand_in
 import run_helpers
 import test_export
 from run_helpers import TOOLS, called, write_asc
+from tiny_collapse import rows_of
 
 from slope_tools.errors import SlopeError
 from slope_tools import records
@@ -216,8 +217,7 @@ def test_stretches_and_bodies(two):
     by_place = {(one["from"], one["to"]): (one["share"], one["body"]) for one in found["pieces"]}
     assert by_place[20.0, 45.0] == (0.75, 1) and by_place[50.0, 55.0] == (0.25, 1) and by_place[60.0, 80.0] == (0.5, 2)
     assert (45.0, 50.0) in by_place and (80.0, 90.0) not in by_place
-    with open(two[0] / results.STRETCHES) as source:
-        rows = list(csv.DictReader(source))
+    rows = rows_of(two[0] / results.STRETCHES)
     assert [(row["stretch"], row["body"]) for row in rows] == [("1", "1"), ("1", "2"), ("2", "2")]
 
 
@@ -240,17 +240,8 @@ def test_who_hits_what(two):
             "first": (37.5, 82.5), "both": (72.5, 62.5), "second": (90.0, 72.5), "none": (300.0, 100.0)}.items()}
     assert (body[cells["first"]], share[cells["first"]], number[cells["first"]]) == (1, 1.0, 1)
     assert body.mask[cells["none"]]
-    # own counts on a cell, from the rasters of the runs
     for name, (x, y) in {"both": (72.5, 62.5), "second": (90.0, 72.5)}.items():
-        shares = {}
-        for one in (1, 2):
-            counted = 0
-            for k in range(4):
-                with rasterio.open(folder / f"bodies/{one}/runs/run_{k}/run.max_thickness.asc") as source:
-                    row, column = source.index(x, y)
-                    if 0 <= row < source.height and 0 <= column < source.width:
-                        counted += source.read(1)[row, column] > 0.1
-            shares[one] = counted / 4
+        shares = shares_at(folder, x, y)
         assert share[cells[name]] == max(shares.values()) and number[cells[name]] == sum(v > 0 for v in shares.values())
     with fiona.open(folder / results.LAYERS, layer="hits") as layer:
         at = Point(run_helpers.EAST + 72.5, run_helpers.NORTH + 62.5)
@@ -262,6 +253,7 @@ def test_who_hits_what(two):
 
 
 def shares_at(folder, x, y):
+    """Own counts on a cell, from the rasters of the runs."""
     found = {}
     for one in (1, 2):
         values = []

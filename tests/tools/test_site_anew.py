@@ -44,14 +44,14 @@ def inside(told):  # noqa: F811
 
 
 @pytest.fixture(scope="module")
-def once(tmp_path_factory):
+def once(shared):
     """The standard files, and a site of them without a trial run, which each test gets a copy of."""
-    folder = tmp_path_factory.mktemp("once")
-    write_files(folder)
-    with pytest.MonkeyPatch.context() as patch:
-        work_in(folder, patch)
-        make_mine()
-    return folder
+    def fill(folder):
+        write_files(folder)
+        with pytest.MonkeyPatch.context() as patch:
+            work_in(folder, patch)
+            make_mine()
+    return shared("site", fill)
 
 
 @pytest.fixture
@@ -402,13 +402,6 @@ def test_all_warnings_are_kept_in_the_folder(inside, mine):
 
 # --- the program ---
 
-def test_a_program_that_is_named_must_be_there(gis):  # noqa: F811
-    site = slope(gis, "site", "--terrain", "dem.tif", "--release", "release.geojson", *BODY, "-o", "mine",
-                 LMP="/nowhere/lmp")
-    refused(site, "LMP in the environment: must lead to the LAMMPS program, got /nowhere/lmp")
-    assert not (gis / "mine").exists()
-
-
 def test_an_end_from_outside_ends_the_trial_run(gis):  # noqa: F811
     (gis / "slow").write_text("#!/bin/bash\ntrap 'exit 1' TERM\nwhile :; do sleep 0.1; done\n")
     (gis / "slow").chmod(0o755)
@@ -501,13 +494,6 @@ def told_by_study(capsys):
     return capsys.readouterr().err
 
 
-def test_a_source_of_the_same_name_is_another_one(inside, mine, gis, capsys):  # noqa: F811
-    (gis / "new").mkdir()
-    shutil.copy(gis / "dem.tif", gis / "new" / "dem.tif")
-    edit(mine, "terrain", files=["../new/dem.tif"])
-    assert told_by_study(capsys).startswith("slope study: mine/site.yaml: must not have been changed since in.site ")
-
-
 def test_a_source_that_was_edited(inside, mine, gis, capsys):  # noqa: F811
     assert cli.main(["study", "mine", "--dry-run"]) == 0
     with rasterio.open(gis / "dem.tif", "r+") as dem:
@@ -517,13 +503,6 @@ def test_a_source_that_was_edited(inside, mine, gis, capsys):  # noqa: F811
     assert cli.main(["study", "mine", "--dry-run"]) == 0
     (gis / "dem.prj").write_text("another CRS")
     assert "dem.tif: must not have changed" in told_by_study(capsys)
-
-
-def test_a_folder_without_its_sources(inside, mine, gis, capsys):  # noqa: F811
-    """It may have gone to a cluster alone."""
-    for path in gis.glob("*.*"):
-        path.unlink()
-    assert cli.main(["study", "mine", "--dry-run"]) == 0
 
 
 # --- a mapped deposit that lies elsewhere, and a score that fails ---

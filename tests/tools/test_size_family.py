@@ -52,7 +52,7 @@ def test_the_table_is_made_of_the_runs(tmp_path):
                                       "wide,2,200,5,9", "wide,4,240,5,9", "wide,8,360,5,9"]
 
 
-@pytest.mark.parametrize("name, road", [("thin", 10.0), ("compact", 4.0)])
+@pytest.mark.parametrize("name, road", [("thin", 10.0), pytest.param("compact", 4.0, marks=pytest.mark.long)])
 def test_two_slides_of_the_family_in_small(tmp_path, monkeypatch, name, road):
     """100 balls and half their diameter: what is released stays, the travel within 25 %, and the thickness doubles."""
     monkeypatch.setenv("LMP", LMP)

@@ -1,5 +1,4 @@
 """tools/slope study --engine slurm, on a real Slurm in a folder: three nodes on this machine; and --launcher."""
-import csv
 import getpass
 import os
 import re
@@ -145,8 +144,8 @@ def cluster(here, monkeypatch):
 
 
 def table(folder):
-    with open(Path(folder) / "study.csv", encoding="ascii") as lines:
-        return [{key: value for key, value in row.items() if key != "wall_s"} for row in csv.DictReader(lines)]
+    return [{key: value for key, value in row.items() if key != "wall_s"}
+            for row in tiny_collapse.rows_of(Path(folder) / "study.csv")]
 
 
 def states():

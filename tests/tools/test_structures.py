@@ -1,5 +1,4 @@
 """Structures and control lines in study and report: numbers against the runs' own files and closed forms."""
-import csv
 import html
 import re
 import shlex
@@ -11,7 +10,7 @@ import yaml
 
 import made_rows
 from run_helpers import called
-from tiny_collapse import LMP, edit, write_case, write_stl
+from tiny_collapse import LMP, edit, rows_of, write_case, write_stl
 
 from slope_tools import cli, digits, errors
 from slope_tools.plots import figure_structures
@@ -55,11 +54,6 @@ def studied(tmp_path_factory):
         patch.setenv("LMP", LMP)
         assert cli.main(shlex.split("study case/in.tiny --set wall=1,0 --jobs 1 -o out")) == 0
     return folder / "out"
-
-
-def rows_of(path):
-    with open(path, encoding="ascii") as file:
-        return list(csv.DictReader(file))
 
 
 def test_structures_of_each_run_are_those_of_its_files(studied):

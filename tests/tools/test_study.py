@@ -1,5 +1,4 @@
 """tools/slope study: the product of variables, resuming, failing runs; table and maps against the runs' own files."""
-import csv
 import os
 import pty
 import re
@@ -18,7 +17,7 @@ import yaml
 from shapely.geometry import Polygon
 
 from run_helpers import called, examples
-from tiny_collapse import LMP, TOP, edit, processes_in, read_asc, serial, write_case
+from tiny_collapse import LMP, TOP, edit, processes_in, read_asc, rows_of, serial, write_case
 
 from slope_tools.case import decks, logs, settings
 from slope_tools.releases import release_toe
@@ -175,8 +174,7 @@ def finished(tmp_path_factory):
 
 def load(folder):
     about = yaml.safe_load((folder / "study.yaml").read_text())
-    with open(folder / "study.csv", newline="", encoding="ascii") as lines:
-        return about, list(csv.DictReader(lines))
+    return about, rows_of(folder / "study.csv")
 
 
 def test_table_yaml_and_summaries_have_the_same_numbers(finished):
@@ -390,19 +388,6 @@ def test_nothing_is_repeated_when_all_is_done_and_values_can_be_added(slope, her
     assert status == 0 and "2 of 3 runs are finished already" in out
     assert [print_of(folder) for folder in folders] == before
     assert len(load(here / "out")[1]) == 3
-
-
-def test_finished_runs_of_another_deck_are_not_taken(slope, here):
-    assert slope("case/in.tiny --set rolling=0 --set steps=20 -o out")[0] == 0
-    (here / "case" / "notes.txt").write_text("not named by the deck\n")
-    assert slope("case/in.tiny --set rolling=0 --set steps=20 -o out")[0] == 0
-    edit("case/in.tiny", "group       soil", "# a comment alone\ngroup   soil")
-    assert slope("case/in.tiny --set rolling=0 --set steps=20 -o out")[0] == 0
-    edit("case/in.tiny", "0.1 friction", "0.2 friction")
-    for words in ("", " --dry-run"):
-        assert slope(f"case/in.tiny --set rolling=0 --set steps=20 -o out{words}")[::2] == (
-            2, "slope study: out/rolling_0_steps_20: was run with another in.tiny than that of case: --anew makes "
-               "it again, with all others of which that holds\n")
 
 
 def test_what_the_deck_writes_is_no_data(slope, here):
@@ -668,8 +653,6 @@ BAD = {
                    "path, got ../dem.asc"),
     "output is a file": (lambda: Path("out").write_text(""), OK, "-o: must be a folder, got out"),
     "output is the deck's": (nothing, "case/in.tiny --set rolling=0 -o case", "-o: must not be the folder of the deck"),
-    "jobs": (nothing, OK + " --jobs 0", "argument --jobs: must be a whole number >= 1, got '0'"),
-    "np": (nothing, OK + " --np 1.5", "argument --np: must be a whole number >= 1, got '1.5'"),
     "lmp": (nothing, OK + " --lmp none/lmp", "--lmp: must lead to the LAMMPS program, got "),
     "thresholds": (nothing, OK + " --exceed 0.1,x", "--exceed: must be different thicknesses >= 0, with commas"),
     "thresholds twice": (nothing, OK + " --exceed 1,1", "--exceed: must be different thicknesses >= 0, with commas"),
@@ -679,7 +662,6 @@ BAD = {
     "road elsewhere": (lambda: Path("far.csv").write_text("100,0\n110,0\n110,10\n"), OK + " --road far.csv",
                        "far.csv: must overlap the terrain, local x y 0 0 40 24"),
     "cut angle": (nothing, OK + " --road case/road.csv --cut-angle 90", "--cut-angle: must be > 0 and < 90 degrees"),
-    "mesh": (nothing, OK + " --road case/road.csv --mesh 0", "--mesh: must be > 0, got 0"),
 }
 
 

@@ -1,5 +1,4 @@
 """tools/slope volume: prisms and wedges by hand, conservation, files that agree, places that are right, bad input."""
-import csv
 import json
 import math
 import os
@@ -22,8 +21,9 @@ import made_rows
 import made_study
 from run_helpers import (BULK, CRS_M, EAST, NORTH, TOP, centres, examples, warned, write_asc, write_geojson, write_run,
                          write_sidecar)
+from tiny_collapse import rows_of
 
-from slope_tools import disk, geometry
+from slope_tools import geometry
 from slope_tools.deposits import cut, deposit, volume, volume_files
 from slope_tools.survey import rasters, roads
 
@@ -48,11 +48,6 @@ def cleared(slope, no_map):
         assert status == 0, err
         return yaml.safe_load(Path("out/volume.yaml").read_text())
     return run
-
-
-def read_csv(path):
-    with open(path, newline="", encoding="ascii") as lines:
-        return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(lines)]
 
 
 def strip(rows=80, columns=100, cell=2.5, thickness=3.0, y=(80, 120), x=(0, 1e9)):
@@ -262,7 +257,7 @@ def test_mass_is_conserved_and_every_file_has_the_same_numbers(cleared, seed, me
     assert removed.sum() * 4 == pytest.approx(total["remove"], rel=1e-9)
     assert total["remove"] + total["stays"] == pytest.approx(total["deposit"], rel=1e-12)
     assert total["remove_on_road"] + total["remove_beside_road"] == pytest.approx(total["remove"], rel=1e-12)
-    table = read_csv("out/volume.csv")
+    table = rows_of("out/volume.csv", float)
     for key in ("deposit", "remove", "remove_on_road", "remove_beside_road"):
         assert math.fsum(row[key] for row in table) == pytest.approx(total[key], abs=1e-11)
     assert math.fsum(row["road_area"] for row in table) == pytest.approx(road.area, rel=1e-9)
@@ -398,7 +393,7 @@ def test_blocked_length_and_profile(cleared):
     assert axis["blocked_length"] == pytest.approx(45)
     assert np.allclose(axis["blocked_stretches"], [[77, 117], [167, 172]])
     assert axis["largest_thickness"] == 5 and axis["largest_thickness_at"] == [99, 96.25]
-    profile = read_csv("out/axis.csv")
+    profile = rows_of("out/axis.csv", float)
     assert [row["from"] for row in profile[1:]] == [row["to"] for row in profile[:-1]]
     assert sum((row["to"] - row["from"]) * row["blocked"] for row in profile) == pytest.approx(45)
     assert all(row["x"] == 99 and row["ground"] == pytest.approx(12) for row in profile)
@@ -457,7 +452,7 @@ def test_every_output_is_in_the_crs_of_the_terrain(slope, no_map):
     assert unary_union([square for square, _ in squares]).bounds == (EAST, NORTH, EAST + 250, NORTH + 200)
     assert all(square.bounds[:2] == (where["east"], where["north"]) for square, where in squares)
     assert math.fsum(where["remove"] for _, where in squares) == pytest.approx(hand, rel=1e-9)
-    row = read_csv("metres/axis.csv")[0]
+    row = rows_of("metres/axis.csv", float)[0]
     assert (row["east"] - row["x"], row["north"] - row["y"]) == (EAST, NORTH)
 
 
@@ -531,7 +526,6 @@ def test_a_cut_angle_that_looks_like_a_tangent_is_asked_about(slope, angle, aske
     ("run --road road.geojson --mesh 10 --cut-angle 0", "--cut-angle: must be > 0 and < 90 degrees, got 0"),
     ("run --road road.geojson --mesh 10 --cut-angle 90", "--cut-angle: must be > 0 and < 90 degrees, got 90"),
     ("run --road road.geojson --mesh 0", "--mesh: must be > 0, got 0"),
-    ("run --road road.geojson --mesh nan", "argument --mesh: must be a finite number, got 'nan'"),
     ("run --road road.geojson --mesh 0.01", "--mesh: must give at most 4000000 mesh cells"),
     ("run --road road.geojson", "the following arguments are required: --mesh"),
     ("run --mesh 10", "the following arguments are required: --road"),
@@ -539,20 +533,13 @@ def test_a_cut_angle_that_looks_like_a_tangent_is_asked_about(slope, angle, aske
     ("run --road road.geojson --mesh 10 --blocked -1", "--blocked: must be >= 0, got -1"),
     ("run --road road.geojson --mesh 10 --samples 3", "--samples: must be even, 2 to 32, got 3"),
     ("none --road road.geojson --mesh 10", "none.thickness.asc: must be an existing file; none must be the output of"),
-    ("run --road none.geojson --mesh 10", "none.geojson: must be an existing file"),
-    ("run --road outside.geojson --mesh 10", "outside.geojson: must overlap"),
-    ("run --road crossing.geojson --mesh 10", "crossing.geojson: feature 0: must be polygons that do not cross"),
-    ("run --road nocrs.shp --mesh 10", "nocrs.shp: must have a CRS"),
     ("run --road road.geojson --mesh 10 --terrain none.asc", "none.asc: must be an existing file"),
     ("run --road road.geojson --mesh 10 --terrain other.asc", "other.asc: must be the terrain of the run, whose grid"),
     ("run --road road.geojson --mesh 10 --terrain moved.asc", "moved.asc: must lie where the run's terrain.asc does"),
     ("run --road road.geojson --mesh 10 --axis run.summary.yaml", "run.summary.yaml: must be lines that GDAL can read"),
-    ("run --road road.geojson --mesh 10 --axis road.geojson", "road.geojson: must hold a line: draw one"),
     ("run --road road.geojson --mesh 10 --axis away.csv", "away.csv: axis of the road must lie in the grid"),
     ("run --road road.geojson --mesh 10 --axis bad.csv", "bad.csv: must be a line"),
     ("run --road road.geojson --mesh 10 -o road.geojson", "-o: must be a folder, got road.geojson"),
-    ("run --road road.geojson --mesh 10 -o none/out", "-o: must be in an existing folder, got none/out"),
-    ("run --road road.geojson --mesh ten", "argument --mesh: must be a finite number, got 'ten'"),
 ])
 def test_bad_input_is_one_line(slope, no_map, here, arguments, message):
     write_sidecar(80, 100, 2.5)
@@ -563,12 +550,6 @@ def test_bad_input_is_one_line(slope, no_map, here, arguments, message):
     assert Path("moved.yaml").read_text() != about
     write_run(strip(), 0.0, 2.5)
     write_geojson("road.geojson", translate(box(90, 0, 110, 200), EAST, NORTH), crs=CRS_M)
-    write_geojson("outside.geojson", translate(box(990, 0, 1010, 200), EAST, NORTH), crs=CRS_M)
-    write_geojson("crossing.geojson", translate(Polygon([(90, 0), (110, 200), (110, 0), (90, 200)]), EAST, NORTH),
-                  crs=CRS_M)
-    with fiona.open("nocrs.shp", "w", "ESRI Shapefile", {"geometry": "Polygon", "properties": {"id": "int"}}) as out:
-        out.write({"geometry": {"type": "Polygon", "coordinates": [[(0, 0), (9, 0), (9, 9), (0, 0)]]},
-                   "properties": {"id": 1}})
     (here / "away.csv").write_text("0,0\n5,5\n")
     (here / "bad.csv").write_text("0,0\nfive,5\n")
     before = sorted(here.rglob("*"))
@@ -605,20 +586,6 @@ def test_a_run_that_still_moved_or_lost_mass_is_warned_of(cleared, slope):
     about = cleared(box(90, 0, 110, 200))
     assert warned(about)["moves"]["seconds"] == 12.5 and warned(about)["not counted"]["volume"] == pytest.approx(100)
     assert slope("run --road road.geojson --local --mesh 10")[2].count("slope volume: warning: ") == 3
-
-
-def test_a_command_that_fails_at_the_end_changes_nothing(cleared, slope, monkeypatch, here):
-    write_run(strip(), 0.0, 2.5)
-    cleared(box(90, 0, 110, 200))
-    before = {path: path.read_bytes() for path in here.rglob("*") if path.is_file()}
-
-    def full(*_):
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(disk, "write_yaml", full)
-    status, out, err = slope("run --road road.geojson --local --mesh 5 -o out")
-    assert (status, out) == (2, "") and err.endswith("slope volume: out: cannot be written: No space left on device\n")
-    assert {path: path.read_bytes() for path in here.rglob("*") if path.is_file()} == before
 
 
 def write_site(road):

@@ -168,17 +168,11 @@ TEST_F(MotionFile, WhatIsWrongIsSaid)
 {
   EXPECT_EQ(problem("0 0 0 0\n1 0 0\n"),
             path + ", line 2: must be 4 numbers, t ax ay az, got 1 0 0");
-  EXPECT_EQ(problem("0 0 0 0\n1 0 x 0\n"),
-            path + ", line 2: must be 4 numbers, t ax ay az, got 1 0 x 0");
   EXPECT_EQ(problem("0 0 0 0\n1 0 0 0 0\n"),
             path + ", line 2: must be 4 numbers, t ax ay az, got 1 0 0 0 0");
   EXPECT_EQ(problem("# t ax ay az (gal)\n0 0 0 0\n1 0 0 0\n"),
             path + ", line 1: columns must be t ax ay az in s and m/s2, got t ax ay az (gal)");
   EXPECT_EQ(read("# t ax ay az (gal)\n0 0 0 0\n1 0 100 0\n", 0.01).peak(), 1.0);
-  EXPECT_EQ(problem("0 0 0 0\n1 0x1p3 0 0\n"),
-            path + ", line 2: must be 4 numbers, t ax ay az, got 1 0x1p3 0 0");
-  EXPECT_EQ(problem("0 0 0 0\n1 nan 0 0\n"),
-            path + ", line 2: must be 4 numbers, t ax ay az, got 1 nan 0 0");
   EXPECT_EQ(problem("0 0 0 0\n\n1 0 0 0\n0.5 0 0 0\n"),
             path + ", line 4: times must not fall, got 0.5 after 1");
   EXPECT_EQ(problem("0 0 0 0\n1 0 0 0\n1 1 0 0\n1 2 0 0\n"),

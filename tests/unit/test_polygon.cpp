@@ -99,14 +99,9 @@ TEST_F(PolygonFile, BadFiles)
   EXPECT_EQ(error("0,0\n1,1\n"), "p.csv, line 1: a ring must have at least 3 points, got 2");
   EXPECT_EQ(error(s + "\n0,0\n1,1\n0,0\n"),
             "p.csv, line 6: a ring must have at least 3 points, got 2");
-  EXPECT_EQ(error("0,0\n1;1\n"), "p.csv, line 2: must be 2 numbers, x,y, got 1;1");
   EXPECT_EQ(error("x,y\n0,0\n"), "p.csv, line 1: must be 2 numbers, x,y, got x,y");
   EXPECT_EQ(error("# y,x\n0,0\n1,0\n0,1\n"), "p.csv, line 1: columns must be x,y in m, got y,x");
-  EXPECT_EQ(error("0,0\n0x8,0\n0,1\n"), "p.csv, line 2: must be 2 numbers, x,y, got 0x8,0");
   EXPECT_EQ(error("1,2,3\n"), "p.csv, line 1: must be 2 numbers, x,y, got 1,2,3");
-  EXPECT_EQ(error("1,\n"), "p.csv, line 1: must be 2 numbers, x,y, got 1,");
-  EXPECT_EQ(error("0,0\n1,nan\n"),
-            "p.csv, line 2: must be 2 numbers, x,y, got 1,nan");
   EXPECT_EQ(error("0,0\n1e13,1\n"),
             "p.csv, line 2: x and y must be within +-1e+12, got 1e+13,1");
   EXPECT_EQ(error("\x89PNG\r\n"), "p.csv, line 1: must be 2 numbers, x,y, got ?PNG");

@@ -49,13 +49,6 @@ struct Guarded {
   }
 };
 
-TEST(ContactGuards, NothingToSay)
-{
-  Guarded g;
-  g.guards.start(0);
-  g.expect({});
-}
-
 TEST(ContactGuards, Start)
 {
   Guarded g;
@@ -67,50 +60,6 @@ TEST(ContactGuards, Start)
   g.guards.start(0);
   g.guards.start(0);    // each is noted once
   g.expect({"2 times the rule's", "delay 5"});
-}
-
-// only a run that makes a step moves balls, and only what could have moved hangs
-TEST(ContactGuards, WhatMovesAndHolds)
-{
-  Guarded g;
-  g.deck.one("unfix move");
-  g.deck.one("group one id 1");
-  g.deck.one("fix move one nve/sphere");
-  for (int i = 0; i < g.deck.lmp->atom->nlocal; i++) std::fill_n(g.deck.lmp->atom->f[i], 3, 0.0);
-  g.guards.start(0);
-  g.guards.report();
-  g.expect({});
-  g.guards.begin_step();
-  g.guards.begin_step();
-  g.expect({"no integrator moves 1 balls"});
-  g.guards.report();
-  g.expect({"no integrator moves 1 balls", "1 balls hang at rest"});
-}
-
-TEST(ContactGuards, ForcesHold)
-{
-  Guarded g;
-  g.guards.start(0);
-  g.guards.begin_step();
-  for (int ball = 1; ball <= 2; ball++) {
-    int i;
-    if (g.deck.with(ball, i)) g.deck.lmp->atom->f[i][2] = -1.0;
-  }
-  g.guards.report();
-  g.expect({});
-}
-
-// a damping ratio above 2: cn = 2 zeta sqrt(kn m) of the mass of a pair, half a ball's
-TEST(ContactGuards, Dashpots)
-{
-  Guarded g;
-  const double m = Deck::mass(0.2, DENSITY), per_zeta = 2.0 * std::sqrt(2e6 * m);
-  g.set({"stiffness", "2e6", "1e6", "damping", std::to_string(1.9 * per_zeta), "0"});
-  g.guards.start(0);
-  g.expect({});
-  g.set({"stiffness", "2e6", "1e6", "damping", std::to_string(2.5 * per_zeta), "0"});
-  g.guards.start(0);
-  g.expect({"damping ratio of types 1 and 1"});
 }
 
 // seen on any rank: the deepest, how many are deeper than a tenth of the radius
@@ -202,17 +151,4 @@ TEST(EnergyGuard, Fall)
   EXPECT_LT(e.guard.growth(), 1e-9);
   for (int k = 0; k < e.deck.lmp->atom->nlocal; k++) e.deck.lmp->atom->v[k][2] = -3.0;
   EXPECT_TRUE(e.guard.check(0.0));
-}
-
-// a fix that does work of its own: the guard cannot know
-TEST(EnergyGuard, OthersAtWork)
-{
-  Energy e;
-  e.deck.one("fix push all addforce 1 0 0");
-  e.guard.start();
-  e.speeds(1.0);
-  EXPECT_FALSE(e.guard.check(0.0));
-  e.speeds(10.0);
-  EXPECT_FALSE(e.guard.check(0.0));
-  EXPECT_EQ(e.guard.seen(), 0);
 }
