@@ -175,7 +175,8 @@ CASES = [
          [*TERRAIN, "--z-unit", "us-ft"],
          "dem.tif: CRS must be in metres; give --crs EPSG:n of a projected one, got EPSG:2225"),
     Case("heights in feet", "a file that says so", lambda: tif("dem.tif", ground() / 0.3048, units="ft"), TERRAIN,
-         "dem.tif: heights in feet over a plan in metres must be confirmed, as many such tags are wrong: --z-unit m if"),
+         "dem.tif: heights in feet over a plan in metres must be confirmed, as many such tags are wrong: --z-unit m "
+         "if"),
     Case("heights in feet", "a file that does not", lambda: tif("dem.tif", 8 * ground()), TERRAIN,
          "asked: the ground falls by 51 degrees on average: are the heights in feet? Then --z-unit ft, which makes "
          "it 21"),
