@@ -10,6 +10,8 @@ import yaml
 
 import tiny_collapse
 
+from slope_tools import written_yaml  # noqa: F401
+
 
 @pytest.fixture
 def here(tmp_path, monkeypatch):
@@ -56,7 +58,7 @@ def tiny_case(tmp_path, monkeypatch):
 
 # --- what takes time and is not looked at ---
 
-# large files are read by libyaml, as the tools do
+# large files are read by libyaml, as the tools do; written_yaml first, which leaves what is deeply nested to Python's loader
 yaml.SafeLoader, yaml.SafeDumper = yaml.CSafeLoader, yaml.CSafeDumper
 
 

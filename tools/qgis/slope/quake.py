@@ -10,8 +10,8 @@ class Quake(Algorithm):
     command = "quake"
     title = "Motion of the ground from a record"
     about = """
-    Strong-motion records (NIED, PEER, ESM, AFAD, CWA, JMA, GeoNet, CSV) as the acceleration of the ground (s, m/s2) that
-    decks and the algorithms Site and Fragility read: one file for each component, or one with all of them.
+    Strong-motion records (NIED, PEER, ESM, AFAD, CWA, JMA, GeoNet, CSV) as the acceleration of the ground (s, m/s2)
+    that decks and the algorithms Site and Fragility read: one file for each component, or one with all of them.
 
     The largest horizontal acceleration, of both components together, can be set (gal), or all of it scaled. The ground
     ends at rest where it began unless another baseline is wanted. The deck's x axis is east unless it has another
