@@ -58,7 +58,7 @@ def tiny_case(tmp_path, monkeypatch):
 
 # --- what takes time and is not looked at ---
 
-# large files are read by libyaml, as the tools do; written_yaml first, which leaves what is deeply nested to Python's loader
+# large files are read by libyaml, as the tools do; after written_yaml, which leaves deeply nested ones to Python
 yaml.SafeLoader, yaml.SafeDumper = yaml.CSafeLoader, yaml.CSafeDumper
 
 
