@@ -163,8 +163,8 @@ def together(path, several: Sequence[LineString], raster, asked: Asked) -> Road:
     assert asked.width is not None
     for line in several:
         check_line(path, line, getattr(raster, "extent", None) or extent(raster), asked.start)
-    return Road(unary_union([line.buffer(asked.width / 2, cap_style=2, resolution=ARCS) for line in several])
-                if len(several) > 1 else several[0].buffer(asked.width / 2, cap_style=2, resolution=ARCS),
+    return Road(unary_union([line.buffer(asked.width / 2, ARCS, cap_style=2) for line in several])
+                if len(several) > 1 else several[0].buffer(asked.width / 2, ARCS, cap_style=2),
                 tuple(several))
 
 
