@@ -76,6 +76,7 @@ def test_pictures_are_those_without_a_matplotlibrc(site, command):
 
 
 @pytest.mark.drawn
+@pytest.mark.long
 def test_wherever_the_settings_are(site):
     expected = draw(RELEASE)
     Path("matplotlibrc").write_bytes(b"font.family: \xe9\xff\n")

@@ -766,7 +766,8 @@ def test_killed_at_random(slope):
 
 
 @pytest.mark.parametrize("change, said", [
-    ({"--bodies": None, "--below": "0.01", "--volume": "60 800"}, ("axis.csv", "60 m", "0.01")),
+    pytest.param({"--bodies": None, "--below": "0.01", "--volume": "60 800"}, ("axis.csv", "60 m", "0.01"),
+                 marks=pytest.mark.long),        # it searches
     ({"slides": [((40, 45), 4.0), ((55, 45), 4.0)]}, ("slides.geojson", "feature 1", "feature 2", "0.1")),
     ({"slides": [((40, 45), None)]}, ("slides.geojson", "feature 1", "depth")),
     ({"--reach": "1"}, ("--reach", "1")), ({"--corridor": "-5"}, ("--corridor", "-5")),

@@ -45,7 +45,8 @@ def site(tmp_path_factory):
     return measured(tmp_path_factory.mktemp("site") / "one", 1)
 
 
-@pytest.mark.parametrize("factor", [10, pytest.param(0.1, marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("factor", [10, 0.1])
 def test_scaled_lengths_give_the_scaled_collapse(site, tmp_path, factor):
     variables, about, lengths = site
     scaled, other, found = measured(tmp_path / "other", factor)

@@ -724,7 +724,7 @@ def test_input_too_large_is_one_line(here, cells):
                           env={**os.environ, "OPENBLAS_NUM_THREADS": "1"})
     assert (done.returncode, done.stderr.count("\n")) == (2, 1)
     assert done.stderr.startswith(("slope terrain: huge.asc: must fit in the ",
-                                   "slope terrain: huge.asc: must be a raster that GDAL can read (Too large",      # 3.13
+                                   "slope terrain: huge.asc: must be a raster that GDAL can read (Too large",     # 3.13
                                    "slope terrain: not enough memory: Unable to allocate 2.98 GiB")), done.stderr
     assert os.listdir() == ["huge.asc"]
 
