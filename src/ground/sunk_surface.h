@@ -91,7 +91,8 @@ template <typename Value> class SparsePlane {
     uint64_t number;
     const Square *square;
   };
-  mutable Last last[4];
+  mutable Last last[4] = {
+      {UINT64_MAX, nullptr}, {UINT64_MAX, nullptr}, {UINT64_MAX, nullptr}, {UINT64_MAX, nullptr}};
 
   void forget_last()
   {

@@ -259,7 +259,7 @@ def test_stiff_pair_that_cannot_touch_does_not_count(tmp_path):
 
 
 def test_late_neighbor_lists_are_warned_of(tmp_path):
-    for extra, warned in (("neigh_modify delay 10", True), ("neigh_modify delay 0 check no", True),
+    for extra, warned in (("neigh_modify delay 10", True), ("neigh_modify every 2 delay 0 check no", True),
                           ("neigh_modify delay 0 every 1 check yes", False)):
         log, _, _ = collide(tmp_path, steps=1, extra=extra)
         assert ("contacts may be found late and rebound too fast" in log) == warned

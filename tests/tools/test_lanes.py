@@ -403,7 +403,7 @@ def test_a_road_that_is_written_is_read_as_the_same_line(here):
     write_sidecar(40, 40, 2.0)
     place = gridded(GROUNDS["level"], 2.0)._replace(offset=(EAST, NORTH))
     asked = roads.Asked(6.0)
-    road = roads.Road(CURVE.buffer(3, cap_style=2), CURVE)
+    road = roads.Road(CURVE.buffer(3, cap_style=2), [CURVE])
     roads.write(Path("road.csv"), road, place)
     assert roads.read_local("road.csv", place, asked).line.equals_exact(CURVE, 1e-6)
     with pytest.raises(roads.SlopeError, match="road.csv: is a line, whose width must be given: --road-width"):

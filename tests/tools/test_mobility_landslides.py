@@ -106,7 +106,7 @@ def test_at_most_where_the_curve_begins_below_a_share():
     assert told["lengths_m"]["0.95"] is None and told["at_most_m"]["0.95"] == toe
     assert told["lengths_m"]["0.1"] == one.length_at(0.1, "landslides_wide") and told["at_most_m"]["0.1"] is None
     text = results.lengths(one, "landslides_wide")
-    assert text.startswith(f"95 % beyond at most {three(toe)} m, 90 % beyond at most {three(toe)} m, ")
+    assert text.startswith(f"95 % beyond {three(toe)} m or less, 90 % beyond {three(toe)} m or less, ")
     assert f"10 % beyond {three(one.length_at(0.1, 'landslides_wide'))} m" in text
 
 

@@ -169,7 +169,7 @@ def test_a_record_of_several_kinds_is_the_smallest_that_has_all_keys():
         entry = records.plain(made_study.ensemble(dict(vars(one))))
         assert records.read(ensemble_types.Ensemble, entry).known_events == one
     entry = records.plain(made_study.ensemble({}))
-    for name in vars(weighted).keys() - vars(known).keys():
+    for name in entry["known_events"].keys() - vars(known).keys():      # but for what is none by default
         lacks = {key: value for key, value in entry["known_events"].items() if key != name}
         with pytest.raises(records.NoRecord, match=f"known_events: must have {name}"):
             records.read(ensemble_types.Ensemble, {**entry, "known_events": lacks})

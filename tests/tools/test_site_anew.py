@@ -258,7 +258,7 @@ def test_the_ground_is_scattered_balls_as_large_as_those_of_the_soil(inside, min
     assert "spacing 0.8" in inside("mine --balls 60 --spacing 0.8").out
     deck = decks.index_variables(mine / site_deck.NAME)
     assert (deck["field_d"], deck["spacing"], deck["ground_seed"]) == ("${d}", "0.8", "1")
-    for name in ("slip", "beyond", "field"):
+    for name in ("slip", "field"):
         words, = [words for words in decks.commands(mine / site_deck.NAME) if words[:2] == ["fix", name]]
         assert words[words.index("pattern"):] == ["pattern", "scattered", "${which}"]
 
