@@ -266,7 +266,7 @@ def test_a_run_reaches_the_road_by_what_lies_there_however_small_the_lobe():
         rows(0.0, 0, 0, 0, length_m=200.0), ((0.6, 0.0), (0.6, 0.5), (0.0, 40.0), (0.0, 0.99)))]
     road = events(400.0, 0.6).road(several)
     assert road.brought._asdict() == {"runs": 4, "reach": 2, "passing": 1, "volume": 40.0, "balls": 40.0,
-                                       "least_m3": 0.0, "most_m3": 0.0}
+                                      "least_m3": 0.0, "most_m3": 0.0}
     assert not road.missed and road.longest == 200 < road.near
     several = [changed(one, on_road_m3=0.4, beyond_road_m3=0.5, length_m=900.0) for one in several]
     assert events(400.0, 0.6).road(several).missed
