@@ -408,6 +408,9 @@ def test_a_road_that_is_written_is_read_as_the_same_line(here):
     assert roads.read_local("road.csv", place, asked).line.equals_exact(CURVE, 1e-6)
     with pytest.raises(roads.SlopeError, match="road.csv: is a line, whose width must be given: --road-width"):
         roads.read_local("road.csv", place)
+    Path("degrees.wkt").write_text("LINESTRING (36.14 39.66, 36.141 39.66)")
+    with pytest.raises(roads.SlopeError, match="degrees.wkt: must be a line of 1 m at least; .*degrees.*, got 0"):
+        roads.read_local("degrees.wkt", place, asked, local=True)
 
 
 UP, REST = [(40, 0), (40, 80)], [(40, 30), (40, 80)]

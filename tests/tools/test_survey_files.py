@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import rasterio
+import rasterio.shutil
 import yaml
 from affine import Affine
 from rasterio.crs import CRS
@@ -425,3 +426,15 @@ def test_the_cells_of_a_survey_are_in_the_crs_that_is_assigned(here):
     assert rasters.surveyed_cell("dem.tif", site.crs_of(of, "dem.tif")) == 10
     of = OfMass.of({"terrain": {"files": ["dem.tif"]}, "crs": {"assigned": {"dem.tif": "EPSG:2225"}}})
     assert rasters.surveyed_cell("dem.tif", site.crs_of(of, "dem.tif")) == pytest.approx(3.048, abs=1e-3)
+
+
+def test_a_vrt_without_a_crs_is_no_list_of_points(succeed):
+    """Its second line is a name and numbers."""
+    with rasterio.open("tile.tif", "w", driver="GTiff", height=4, width=5, count=1, dtype="float32",
+                       transform=Affine(2, 0, 10, 0, -2, 50)) as out:
+        out.write(np.arange(20.0, dtype="float32").reshape(1, 4, 5))
+    rasterio.shutil.copy("tile.tif", "a.vrt", driver="VRT")
+    lines = Path("a.vrt").read_text().splitlines()
+    assert lines[1].split()[0] == "<GeoTransform>"
+    succeed("a.vrt -o out.asc")
+    assert rasters.read_asc_local("out.asc")[0].ravel().tolist() == list(range(20))

@@ -64,7 +64,10 @@ class FallLine(NamedTuple):
 
 def nodes_inside(raster: Raster, geometry: BaseGeometry) -> np.ndarray:
     """Mask of the nodes of a terrain that lie in polygons (local metres)."""
-    return geometry_mask(polygons_of(geometry), raster.z.shape, raster.transform, invert=True)
+    parts = polygons_of(geometry)       # none of one that is as good as a point
+    if not parts:
+        return np.zeros(raster.z.shape, bool)
+    return geometry_mask(parts, raster.z.shape, raster.transform, invert=True)
 
 
 def area_of(raster: Raster, inside: np.ndarray, where: str, terrain: str, remedy: str = "") -> Area:

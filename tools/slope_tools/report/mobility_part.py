@@ -62,7 +62,7 @@ def beyond(known: exceedance.Mobility, share: float, numbers: Numbers) -> str:
     if math.isinf(high):
         return f"the end of the {'elevation model' if known.path.end == TERRAIN else 'fall path'}"
     length = numbers(f"length that {percent(share)} of known events go beyond", "m", high)
-    return f"{'at most ' * (low < high)}{length} m"
+    return f"{length} m{' or less' * (low < high)}"
 
 
 def bounds(known: exceedance.Mobility, share: float) -> Tuple[float, float]:

@@ -64,6 +64,7 @@ KEYS = {"width": "width", "start": "from", "blocked": "blocked", "lane": "lane",
         "loosening": "loosening"}       # in site.yaml and study.yaml
 OPTIONS = {"width": "--road-width", "start": "--road-from", "blocked": "--blocked", "lane": "--lane",
            "clearing": "--clearing", "loosening": "--loosening"}
+SHORTEST = 1.0          # m, of a line
 WITHOUT_WIDTH = "is a line, whose width must be given: --road-width"
 MARK = "# the line of a road, whose width is given apart"
 
@@ -184,7 +185,14 @@ def is_line(path) -> bool:
 
 
 def check_line(path, line: LineString, within, start: float) -> None:
-    """Raise SlopeError if a line crosses itself, or leaves the terrain (local xlo, ylo, xhi, yhi); start: km."""
+    """Raise SlopeError if a line crosses itself, or leaves the terrain (local xlo, ylo, xhi, yhi); start: km.
+
+    So it does where it is as good as a point, as degrees are that are taken for metres.
+    """
+    if line.length < SHORTEST:
+        raise SlopeError(path, f"must be a line of {SHORTEST:g} m at least; are its coordinates in degrees? Then name "
+                         "their CRS, such as EPSG:4326", f"{line.length:.2g} m at {numbers(line.coords[0])}")
+
     def chainage(length):
         return f"{1000 * start + length:.1f} m"
     if not line.is_simple:

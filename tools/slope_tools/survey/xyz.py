@@ -50,7 +50,7 @@ def form_of(path: str) -> Optional[Form]:
         return None
     with open_text(path) as lines:
         first = [line for line in (lines.readline(LONGEST) for _ in range(SNIFFED)) if line]
-    if any("\0" in line for line in first):
+    if any("\0" in line for line in first) or first and first[0].lstrip("\ufeff ").startswith("<"):      # XML: a VRT
         return None
     head: Optional[text_points.Head] = None
     said: Optional[Tuple[int, bool, str]] = None    # of a line of words: its number, whether it may be a head, its text
