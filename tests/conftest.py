@@ -12,6 +12,7 @@ import pytest
 from times import read_seconds
 
 TESTS = Path(__file__).resolve().parent
+LONGEST = 200       # letters of a test's name that are kept
 
 sys.path.insert(0, os.environ.get("SLOPE_TOOLS", str(TESTS.parent / "tools")))
 
@@ -44,7 +45,7 @@ def pytest_runtest_protocol(item):
     yield
     if os.environ.get("SLOPE_TIMES"):
         with open(os.environ["SLOPE_TIMES"], "a", encoding="utf-8", newline="") as file:        # one write a row
-            csv.writer(file).writerow([relative(item.path), item.name, f"{time.perf_counter() - wall:.3f}",
+            csv.writer(file).writerow([relative(item.path), item.name[:LONGEST], f"{time.perf_counter() - wall:.3f}",
                                        f"{processor_seconds() - processor:.3f}"])
 
 
