@@ -18,15 +18,15 @@ jobs=${JOBS:-2}
 floor=85
 last=$top/build/last_all # what the last --all ended with
 
-kind=short keep_times=0 commit=HEAD
+kind=short keep_times=0 commit=HEAD most=1
 case ${1-} in
   "") ;;
   --times) keep_times=1 ;;
   --all) kind=all ;;
-  --changed) kind=changed commit=${2-HEAD} ;;
+  --changed) kind=changed commit=${2-HEAD} most=2 ;;
   *) kind=chosen ;;
 esac
-if [[ $kind != chosen ]] && (($# > (${#kind} == 7) + 1)); then
+if [[ $kind != chosen ]] && (($# > most)); then
   echo "run: $1 must be the only argument, got $*" >&2
   exit 2
 fi
