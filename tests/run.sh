@@ -85,8 +85,9 @@ keep=()
 if ((keep_times)); then keep=(--keep); fi
 "$top/tests/times.py" "$SLOPE_TIMES" "${keep[@]}"
 # the sums of this shell's children: minutes and seconds
-times | awk -v built="$built" -v wall="$SECONDS" 'function s(t) { split(t, p, "m"); return p[1] * 60 + p[2] }
-  NR == 2 { printf "wall %d s, build %d s of it; user %d s, system %d s, build included\n", wall, built, s($1), s($2) }'
+times >"$work/times" # not in a pipe, where it would be of another shell
+awk -v built="$built" -v wall="$SECONDS" 'function s(t) { split(t, p, "m"); return p[1] * 60 + p[2] }
+  NR == 2 { printf "wall %d s, build %d s of it; user %d s, system %d s, build included\n", wall, built, s($1), s($2) }' "$work/times"
 awk '/tests passed, [0-9]+ tests failed out of/ { failed += $4; passed += $NF - $4 }
   / (passed|failed|error)/ && / in [0-9.]+s/ { gsub(/=/, ""); for (i = 2; i <= NF; i++) { if ($i ~ /^passed/) passed += $(i - 1)
     if ($i ~ /^(failed|error)/) failed += $(i - 1); if ($i ~ /^skipped/) skipped += $(i - 1) } }
