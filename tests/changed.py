@@ -96,15 +96,15 @@ def touched_by(path):
     if parts[0] == "tools" and path.endswith(".py"):
         name = path.removeprefix("tools/").removesuffix(".py").replace("/", ".").removesuffix(".__init__")
         return {**distances({name}), "tools/test_rooms.py": 0, "tools/test_lint.py": 0}, []
-    if parts[0] == "tests" and Path(path).name.startswith("test_"):
-        if path.endswith(".py"):
-            return {"/".join(parts[1:]): 0}, []
+    if parts[:2] == ["tests", "unit"]:
         return {}, SUITE.findall((TOP / path).read_text())
-    if parts[0] == "doc":
-        return dict.fromkeys(PAGES, 0), []
-    # whatever names it
-    return {test.relative_to(TESTS).as_posix(): 1 for test in TESTS.glob("*/test_*.py")
-            if parts[-1] in test.read_text() or (len(parts) > 1 and parts[-2] in test.read_text())}, []
+    if parts[0] == "tests" and len(parts) == 3 and path.endswith(".py"):
+        own = {"/".join(parts[1:]): 0} if parts[2].startswith("test_") else {}
+        return {**distances({Path(path).stem}), **own}, []
+    # whatever names it: a page, a case, a script
+    name = {"doc": Path(path).stem, "inputs": parts[min(1, len(parts) - 1)]}.get(parts[0], parts[-1])
+    named = {test.relative_to(TESTS).as_posix(): 1 for test in TESTS.glob("*/test_*.py") if name in test.read_text()}
+    return {**named, **(dict.fromkeys(PAGES, 0) if parts[0] == "doc" else {})}, []
 
 
 def main(commit, units_file):

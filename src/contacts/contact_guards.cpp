@@ -232,6 +232,15 @@ void ContactGuards::check_growth(double beyond)
 
 /* ---------------------------------------------------------------------- */
 
+void GrowthGuard::begin(bool sizes_vary)
+{
+  wanted = sizes_vary;
+  radius.clear();    // other balls may have these indices now
+  most = 0.0;
+}
+
+/* ---------------------------------------------------------------------- */
+
 void GrowthGuard::begin_list()
 {
   if (wanted) radius.assign(atom->radius, atom->radius + atom->nlocal);

@@ -48,13 +48,12 @@ class MotionGuard : protected Pointers {
   void check_frozen(const Movers &, std::vector<std::string> &found) const;
 };
 
-// Balls that grow: neither do new neighbor lists come for that, nor do lists reach farther than for the largest balls of the
-// set-up.
+// Balls that grow: no new neighbor list comes for that, and none reaches farther than for the largest balls of the set-up.
 class GrowthGuard : protected Pointers {
  public:
-  bool wanted;    // sizes vary
-
   explicit GrowthGuard(LAMMPS *lmp) : Pointers(lmp), wanted(false), most(0.0) {}
+
+  void begin(bool sizes_vary);    // a run
 
   void begin_list();    // around each neighbor list, of which the balls are known by their indices
   void end_list();
@@ -63,6 +62,7 @@ class GrowthGuard : protected Pointers {
   double grown();
 
  private:
+  bool wanted;                   // sizes vary
   std::vector<double> radius;    // when the list was made
   double most;
 };
@@ -78,7 +78,7 @@ class ContactGuards : protected Pointers {
   // from start(), or the first step, to report(): not while rerun looks at snapshots, of which none follows from the one before
   bool in_run() const { return running; }
 
-  // whatever of step, dashpots and masses is not sensible and has not been told in this run: when balls have come or changed,
+  // whatever of step, dashpots and masses is not sensible and has not been warned of in this run: when balls have come or changed,
   // and the step
   void check_balls();
 
@@ -104,7 +104,7 @@ class ContactGuards : protected Pointers {
   const class ContactTable &table;
   std::string printed;    // table as last printed
   MotionGuard motion;
-  std::set<std::string> told;    // by check_balls() in this run
+  std::set<std::string> told;    // warned of by check_balls() in this run
 
   // contacts that were seen deeper than is sensible: with every neighbor list and by watch_energy()
   struct Overlaps {

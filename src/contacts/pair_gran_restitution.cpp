@@ -223,7 +223,7 @@ void PairGranRestitution::init_style()
 
   sizes_vary = !compat::fixes_of_style(lmp, "adapt").empty() ||
       !compat::fixes_of_style(lmp, "set").empty();
-  guards.growth.wanted = sizes_vary;
+  guards.growth.begin(sizes_vary);
   works.wanted = !compat::fixes_of_style(lmp, "energy/ledger").empty();
 
   table.find_ranges(freeze_group_bit);

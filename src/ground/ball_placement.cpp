@@ -447,9 +447,9 @@ const std::vector<double> &BallPlacement::fingerprint()
     marks.push_back(plan.probe(i, j));
     if (several) marks.push_back(spacing_around(plan.x(i), plan.y(j)));
   }
-  if (arguments.scattered) marks.push_back(arguments.seed);
   if (arguments.sink > 0.0) marks.push_back(arguments.sink);
   if (arguments.angle != 0.0) marks.insert(marks.end(), {arguments.angle, 0.0});
+  if (arguments.scattered) marks.push_back(arguments.seed);    // the last, see unlike()
   return marks;
 }
 
@@ -469,6 +469,8 @@ std::string BallPlacement::unlike(const std::vector<double> &there)
   const std::vector<double> &here = fingerprint();
   const double d = arguments.diameter;
   if (there.size() < 2) return "no data of them";
+  if (sampler && arguments.scattered && there.size() == here.size() && there.back() != here.back())
+    return fmt::format("seed {:.0f} there, {:.0f} here", there.back(), here.back());
   if (there[0] >= 0.0 && here[0] >= 0.0 && there[0] != here[0])
     return fmt::format("{:.0f} there, {:.0f} here", there[0], here[0]);
   if (std::fabs(there[1] - d) > 1.0e-9 * d)
@@ -482,8 +484,6 @@ std::string BallPlacement::unlike(const std::vector<double> &there)
   }
   for (size_t k = 2; k < 7; k++)
     if (!(std::fabs(there[k] - here[k]) <= SAME_PLACE * d)) return "another plan grid";
-  if (arguments.scattered && there.back() != here.back())
-    return fmt::format("seed {:.0f} there, {:.0f} here", there.back(), here.back());
   for (size_t k = 7; k < here.size(); k++) {
     if (std::isinf(here[k]) || std::isinf(there[k])) continue;    // rounding may decide there
     if (std::isnan(here[k]) != std::isnan(there[k]) ||

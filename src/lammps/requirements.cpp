@@ -10,6 +10,7 @@
 #include "error.h"
 #include "fix.h"
 #include "force.h"
+#include "inserted_balls.h"
 #include "lammps_compat.h"
 #include "update.h"
 
@@ -162,7 +163,7 @@ void LAMMPS_NS::require_spins(LAMMPS *lmp, const std::string &caller, int frozen
 void LAMMPS_NS::require_wide_box(LAMMPS *lmp, const std::string &caller, double reach)
 {
   const Domain *domain = lmp->domain;
-  if (lmp->atom->natoms < 2) return;
+  if (lmp->atom->natoms < 2 && inserted_balls(lmp).empty()) return;
   const double *h = domain->h_inv;    // rows: h[0] h[5] h[4], h[1] h[3], h[2]
   const double width[3] = {1.0 / std::sqrt(h[0] * h[0] + h[5] * h[5] + h[4] * h[4]),
                            1.0 / std::sqrt(h[1] * h[1] + h[3] * h[3]), 1.0 / h[2]};

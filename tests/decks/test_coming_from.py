@@ -98,13 +98,6 @@ def test_words_of_a_mesh_in_another_order():
     assert scale == same and (-5 + move) * scale == pytest.approx(-5 * same + moved)
 
 
-def test_what_yade_makes_of_its_materials():
-    """Each material of YADE that has a contact in SLOPE is named, and epsd2 on meshes (test_mesh_impact.py)."""
-    rows = dict(re.findall(r"^   \* - (.*?)\n     - (.*?)(?=\n   \* - |\n\n)", PAGE, re.M | re.S))
-    assert "FrictMat, CohFrictMat: young, poisson" in rows and "0" in rows["CohFrictMat: etaRoll, alphaKr"]
-    assert "meshes" in rows["epsd2: coefficientRollingFriction"] and "after" in rows["fix freeze"]
-
-
 # --- large boxes ---
 
 LARGE = """

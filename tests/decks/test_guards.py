@@ -175,6 +175,8 @@ def test_a_ball_that_two_fixes_move(tmp_path):
                                "again nve/sphere", move=MOVE + "\nfix again all nve/sphere")
 
 
+POUR = ("group new empty\nregion above block 2 8 2 8 4 6\n"
+        "fix pour new pour 3 1 5 vol 0.1 100 region above diam one 1.0 dens 2500 2500")
 NOTHING_MOVES = "no integrator moves {} balls and no fix freeze holds them"
 
 
@@ -196,9 +198,7 @@ def test_where_nothing_should_move(tmp_path):
 
 
 def test_balls_that_come_and_that_nothing_moves(tmp_path):
-    extra = ("group new empty\nregion above block 2 8 2 8 4 6\n"
-             "fix pour new pour 3 1 5 vol 0.1 100 region above diam one 1.0 dens 2500 2500")
-    warnings, summary = run(tmp_path, extra=extra, steps=600)
+    warnings, summary = run(tmp_path, extra=POUR, steps=600)
     assert [NOTHING_MOVES.format(3) in w for w in warnings if "integrator" in w] == [True]
     assert set(warnings) == set(summary["warnings"])
 
@@ -301,6 +301,14 @@ def test_balls_that_grow(tmp_path, atoms, z, most, neigh, told):
     assert set(warnings) == set(summary["warnings"])
 
 
+def test_what_grew_in_an_earlier_run_does_not_count(tmp_path):
+    """Nor is a ball that is made larger between two runs one that grows: the lists of the second are its own."""
+    again = f"run 100\nunfix grow\nset atom 1 diameter 1.5\n{POUR}\nrun 100"
+    warnings, _ = run(tmp_path, DECK.replace("sphere", "sphere 1", 1).replace("run         {steps}", again), z=5,
+                      floor="", extra=GROWS.format(1.01), skin=0.2)
+    assert not any("half the skin" in w for w in warnings)
+
+
 @pytest.mark.parametrize("np", [1, 2])
 @pytest.mark.parametrize("before", [True, False])
 def test_frozen_balls_with_a_force(tmp_path, np, before):
@@ -327,10 +335,12 @@ def test_balls_that_are_taken_away(tmp_path, where, message):
 
 @pytest.mark.parametrize("width, other, message", [
     (2.0, "create_atoms 1 single 1.5 5.1 5", "a periodic box must be wider than 2, got 2 along x"),
+    (2.0, POUR.replace("2 8", "0 2", 1), "a periodic box must be wider than 2, got 2 along x"),
     (2.02, "create_atoms 1 single 1.51 5.1 5", None),
     (2.0, "", None)])
 def test_two_balls_that_would_touch_at_both_sides(tmp_path, width, other, message):
     """LAMMPS finds the history of a contact by the ID of the other ball: both contacts had one."""
     text = DECK.replace("f f f", "p f f").replace("5.2 5.1", "0.5 5.1")
-    run(tmp_path, text.replace("0 10 0 10 -2 10", f"0 {width} 0 10 -2 10"), atoms=other, z=5, steps=2, floor="",
+    where = "extra" if "pour" in other else "atoms"       # balls that are to come touch at both sides, too
+    run(tmp_path, text.replace("0 10 0 10 -2 10", f"0 {width} 0 10 -2 10"), z=5, steps=2, floor="", **{where: other},
         expect_error=message and f"Pair gran/restitution: {message}")

@@ -19,7 +19,7 @@ pair_style gran/restitution
 pair_coeff * * stiffness 1e6 1e6 restitution 0.5 friction 30
 group soil type 1
 fix balls soil wall/gran/balls 2 1.0 surface ground upper spacing 1.0 origin 0 0 angle 0 sink 0.2 outside road
-fix loose soil wall/gran/balls 2 1.0 surface ground upper spacing 0.9 pattern scattered 3
+fix loose soil wall/gran/balls 2 1.0 surface ground upper spacing 0.9 sink 0.3 pattern scattered 3
 region cap sphere 8 8 3 4
 region body intersect 2 ground cap
 fix slip soil wall/gran/balls 2 1.0 surface body lower spacing 0.5 sink 0.5
@@ -41,7 +41,8 @@ create_atoms 1 region soil
 set group all diameter 0.9 density 2000"""
 CHANGES = [("2 1.0 surface", "2 0.9 surface", "balls"), ("spacing 1.0", "spacing 0.9", "balls"),
            ("origin 0 0", "origin 0.3 0", "balls"), ("sink 0.2", "sink 0.1", "balls"),
-           ("angle 0", "angle 10", "balls"), ("pattern scattered 3", "pattern scattered 4", "loose"),
+           ("angle 0", "angle 10", "balls"),
+           ("pattern scattered 3", "pattern scattered 4", "loose: seed 3 there, 4 here"),
            ("pattern scattered 3", "pattern grid", "loose"), ("outside road", "inside road", "balls"),
            ("outside road", "", "balls"), ("sink 0.5", "sink 0.4", "slip"),
            ("file places.txt", "file other.txt", "places"), ("scale 1 move", "scale 1.1 move", "house"),
@@ -89,7 +90,9 @@ def test_another_one_is_refused(site, old, new, fix):
     with pytest.raises(AssertionError) as failed:
         run_deck(deck.replace(old, new) + "run 0\n", site)
     error = [line for line in str(failed.value).splitlines() if line.startswith("ERROR")]
-    assert len(error) == 1 and f" {fix}" in error[0] and "restart file" in error[0], str(failed.value)[-500:]
+    name, _, what = fix.partition(": ")
+    assert len(error) == 1 and f" {name}" in error[0] and "restart file" in error[0], str(failed.value)[-500:]
+    assert what in error[0]
 
 
 def test_every_word_is_guarded():

@@ -201,33 +201,6 @@ def test_a_field_that_is_not_sunk_has_a_step(tmp_path):
     assert seam(tmp_path, 2.0, 2.0, STEP)[1] < 0.1
 
 
-@pytest.mark.parametrize("sink", [0, 1, 2])
-def test_a_layer_of_one_ball_is_as_thick_whatever_the_sink(tmp_path, sink):
-    """Its balls touch fixed ones that are sunk; bulk 6/pi: cubes of 2 m."""
-    write_asc(tmp_path / "ground.asc", numpy.zeros((40, 40)), cell=0.5)
-    run_deck(f"""units si
-atom_style sphere
-boundary f f f
-comm_modify vel yes
-region ground terrain ground.asc depth 20 headroom 20
-create_box 3 ground
-lattice sc 2 origin 0.5 0.5 {(2 - sink) / 2 % 1}
-region layer block 4 16 4 16 {1.99 - sink} {2.01 - sink} units box
-create_atoms 1 region layer
-set group all diameter 2 density 2500
-pair_style gran/restitution
-pair_coeff * * stiffness 1e7 1e7 restitution 0.4 friction 25
-fix field all wall/gran/balls 3 2 surface ground upper spacing 2 origin 1 1 sink {sink}
-fix dep all deposit/grid 10 0 cell 0.5 terrain ground output out
-fix move all nve/sphere
-neighbor 0.3 bin
-timestep 1e-4
-run 0
-""", tmp_path)
-    thickness = numpy.loadtxt(tmp_path / "out.thickness.asc", skiprows=6)
-    assert thickness[thickness > 0] == pytest.approx(2.0) and (thickness > 0).sum() == 36 * 16
-
-
 def test_on_the_surface_itself_many_are(tmp_path):
     log, slip, _ = place(tmp_path, sink=0)
     assert removed(log) > 0.15

@@ -136,6 +136,8 @@ class Copy:
                 done = subprocess.run(words, cwd=self.top, env=self.environment(room), stdin=subprocess.DEVNULL,
                                       capture_output=True, text=True, timeout=PATIENCE, check=False)
             except subprocess.TimeoutExpired:
+                if test in self.passed:         # without the fault it does end
+                    return False, "no end"
                 raise Unusable(f"{test} must end in {PATIENCE} s") from None
         said = (done.stdout + done.stderr).strip()[-400:]
         if pytest and done.returncode not in (0, 1) or "0 tests from 0" in done.stdout:

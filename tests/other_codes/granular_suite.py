@@ -20,6 +20,7 @@ from typing import Dict, List, NamedTuple, Optional, Tuple
 import numpy as np
 import yaml
 
+from slope_tools import disk
 from slope_tools.deposits import dumps
 
 COLUMNS = "x y z vx vy vz omegax omegay omegaz"
@@ -317,11 +318,11 @@ def main(tree: str, source: str = "4Jul2026", *names: str) -> None:
     stock = sorted({Case(path).about["lammps_version"] for path in paths})
     print(PAGE.format(source=source, version=found_in(r"Simulator - (.*\w)", version), stock=", ".join(stock),
                       date=datetime.date.today()))
-    print(".. list-table::\n   :header-rows: 1\n   :widths: 26 18 11 11 11 11 12\n")
+    print(".. csv-table::\n   :header-rows: 1\n   :widths: 26 18 11 11 11 11 12\n")
     head = ["case", "quantity", "closed form", "stock", "plain", "ours", "difference"]
     found = (row for path in paths if not names or path.stem in names for row in rows(Case(path), lmp))
     for row in itertools.chain([head], found):
-        print("\n".join(f"   {'* -' if i == 0 else '  -'} {cell}".rstrip() for i, cell in enumerate(row)), flush=True)
+        print("   " + disk.csv_text(row, []), end="", flush=True)
 
 
 if __name__ == "__main__":

@@ -74,23 +74,15 @@ def no_power_cut():
 
 # --- runs ---
 
-@pytest.fixture(scope="session")
-def run_cache(tmp_path_factory):
+@pytest.fixture(scope="session", autouse=True)
+def runs_once(tmp_path_factory):
+    """Runs that several tests make are made once."""
     from run_cache import RunCache
     top = Path(os.environ.get("SLOPE_SHARED") or tmp_path_factory.mktemp("shared")) / "runs"
     top.mkdir(exist_ok=True)
-    return RunCache(top, tiny_collapse.LMP)
-
-
-@pytest.fixture(scope="module", autouse=True)
-def runs_in_fixtures(request, run_cache):
-    """What the fixtures of a module make, unless the module has the mark runs_anew."""
-    run_cache.install(not request.node.get_closest_marker("runs_anew"))
-
-
-@pytest.fixture(autouse=True)
-def runs_in_tests(request, run_cache):
-    run_cache.install(not request.node.get_closest_marker("runs_anew"))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("slope_tools.processes.start", RunCache(top, tiny_collapse.LMP).cached)
+        yield
 
 
 # --- pictures ---
@@ -103,7 +95,6 @@ rendered = False        # whether the test that runs looks at its pictures
 
 def pytest_configure(config):
     config.addinivalue_line("markers", "drawn: the pictures of this test or file are rendered, as it looks at them")
-    config.addinivalue_line("markers", "runs_anew: no run of this test or file is a copy: it tests how they are made")
 
 
 def save_blank():

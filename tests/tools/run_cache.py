@@ -1,7 +1,7 @@
 """Runs of LAMMPS that several tests make are made once in a run of the tests, and copied for the others.
 
-A run is known by its program, its words and all files of its folder. Only one that a study starts in the test's own
-process, and that ends well, is kept.
+A run is known by its words, PATH, and all files of its folder; the place is of one run of the tests, so of one program.
+Only one that a study starts in the test's own process, and that ends well, is kept.
 """
 import fcntl
 import hashlib
@@ -20,7 +20,7 @@ OWN = {run_folders.VARIABLES, "screen.txt"}                    # of this run alo
 
 def digest_of(words, folder):
     """Of the words and of what lies in the folder; None where the run may read other files."""
-    total = hashlib.sha256(repr(words).encode())
+    total = hashlib.sha256(repr((words, os.environ["PATH"])).encode())      # PATH: a test may have an mpirun of its own
     for path in sorted(path for path in folder.rglob("*") if path.is_file()):
         name, content = path.relative_to(folder).as_posix(), path.read_bytes()
         if name in OWN:
@@ -47,14 +47,12 @@ class RunCache:
     def __init__(self, top, program):
         self.top, self.program, self.start = Path(top), str(program), processes.start
 
-    def install(self, on=True):
-        processes.start = self.cached if on else self.start
-
     def cached(self, words, folder, screen):
         """As processes.start."""
         words, folder = [str(word) for word in words], Path(folder)
         study = self.program in words and (folder / run_folders.VARIABLES).is_file()      # a run of one
-        digest = digest_of(words, folder) if study else None
+        inside = not any(word.startswith("/") for word in words if word != self.program)
+        digest = digest_of(words, folder) if study and inside else None
         if digest is None:
             return self.start(words, folder, screen)
         place = self.top / digest

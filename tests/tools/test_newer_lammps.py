@@ -34,11 +34,6 @@ def make_private(text, name):
     return found
 
 
-def test_a_declaration_is_made_private():
-    assert make_private(" public:\n  int nfix, maxfix;\n  int nfix_all;\n", "nfix") == (
-        " public:\n private:\n  int nfix, maxfix;\n public:\n  int nfix_all;\n")
-
-
 @pytest.fixture(scope="module")
 def tree():
     """A source tree that is new enough."""
