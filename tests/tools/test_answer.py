@@ -167,6 +167,24 @@ def test_a_road_that_no_run_reaches(low, high, kind, said):
     assert answer.of(Paper(0.0), ensemble(values=0.0), road(low, high, None)).kind is kind
 
 
+@pytest.mark.parametrize("reached, paper, rules, kind, said", [
+    (far, paper, rules, kind, said)
+    for paper, rules, near, beyond in [
+        (0.0, None, (Kind.NOTHING, []), (Kind.FLOOR, [Code.NOT_REACHED])),
+        (0.0, [Rule.BALLS], (Kind.NOTHING, [Code.RULE]), (Kind.FLOOR, [Code.NOT_REACHED, Code.RULE])),
+        (0.0, [Rule.LEFT], (Kind.FLOOR, [Code.RULE]), (Kind.FLOOR, [Code.NOT_REACHED, Code.RULE])),
+        (0.0, [Rule.MOBILITY], (Kind.NOTHING, []), (Kind.FLOOR, [Code.NOT_REACHED])),
+        (None, [], (Kind.FLOOR, [Code.RULE]), (Kind.FLOOR, [Code.NOT_REACHED, Code.RULE])),
+        (70.0, [Rule.BALLS], (Kind.NUMBER, [Code.RULE]), (Kind.NUMBER, [Code.RULE])),
+        (70.0, [], (Kind.NUMBER, []), (Kind.FLOOR, [Code.NOT_REACHED]))]
+    for far, (kind, said) in (((0.02, 0.05), near), ((0.3, 0.4), beyond))])
+def test_a_road_that_known_events_reach_and_no_run_does(reached, paper, rules, kind, said):
+    """0 m3 is nothing only where few known events reach it, whatever study stands beside it; rules: of an ensemble."""
+    beside = None if rules is None else ensemble(values=0.0, rules=rules)
+    found = answer.of(Paper(paper, [Withheld(Rule.LEFT)] * (paper is None)), beside, road(*reached, 0.0))
+    assert (found.kind, found.volume, codes(found)) == (kind, paper or 0.0, said)
+
+
 @pytest.mark.parametrize("rules", [[], [Rule.BALLS], [Rule.LEFT]])
 @pytest.mark.parametrize("reached", [(0.02, 0.05), (0.11, 0.33), (0.9, 0.95)])
 def test_nothing_is_said_only_where_no_run_brings_a_ball(rules, reached):

@@ -228,7 +228,7 @@ def of(paper: Optional[Paper], ensemble: Optional[Ensemble], road: Optional[Road
     if road and not best.volume:
         if not road.missed:
             some = [road.some()]
-        elif not ensemble and min(road.reached) > MANY:
+        elif min(road.reached) > MANY and not any(one.code is Code.NOT_REACHED for one in reasons):
             some = [Reason(Code.NOT_REACHED, road.numbers())]
     open_ = bool(some) or any(
         part.kind is Kind.FLOOR or part.kind is Kind.WITHHELD and not few(part) for _, part in parts)
