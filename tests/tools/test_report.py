@@ -732,6 +732,19 @@ def test_the_report_takes_the_convergence_in(slope, here):
 
 # --- the section ---
 
+def test_known_events_are_of_the_body_that_study_yaml_names(here):
+    """Not of a site in whose folder the study only lies."""
+    (here / "site.yaml").write_text("{}\n")
+    (here / "release.depth.asc").touch()
+    found = []
+    for body in (None, "../mine"):
+        path = here / "out" / "study.yaml"
+        about = yaml.safe_load(path.read_text())
+        path.write_text(yaml.safe_dump({**about, "study": {**about["study"], "body": body}}))
+        found.append(report_ground.Ground(report_data.Data(Path("out"))).site)
+    assert found == [None, Path("out/../mine")]
+
+
 def section(path):
     rows = rows_of(path)
     return {key: np.array([float(row[key] or "nan") for row in rows]) for key in rows[0]}

@@ -165,6 +165,7 @@ def test_two_commands_lead_from_gis_files_to_a_report(done):
                  "release.png", "report.html"):
         assert (mine / name).stat().st_size > 0, name
     study = yaml.safe_load((mine / "study" / "study.yaml").read_text())
+    assert study["study"]["body"] == ".."
     assert study["study"]["finished"] == 13 and study["study"]["set"] == {"rolling": ["0", "0.05", "0.1"],
                                                                           "spacing": ["0.9", "0.5", "0.7"]}
     best = study["conservative"]

@@ -10,7 +10,6 @@ from ..deposits import scar
 from ..drawing import maps
 from ..errors import SlopeError
 from ..mobility import body, known, steeper
-from ..sites import site_folder, site_roads
 from ..survey.resampling import sample
 from . import known_reach, obstacles
 
@@ -41,7 +40,8 @@ class Ground:
         for other in data.drawn:
             self.touched = self.touched | (other.thickness > 0)
         self.obstacles = obstacles.of_run(one)
-        self.mapped, self.site = data.mapped, site_folder.only_one(site_roads.home(data.folder))
+        named = data.study.study.body if data.study else None
+        self.mapped, self.site = data.mapped, named and data.folder / named
         self.volume = data.largest_release()
         self.events = {"confined": "unknown", **(data.study.study.known if data.study else {})}
         if not self.touched.any():

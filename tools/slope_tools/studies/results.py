@@ -1,4 +1,5 @@
 """The runs of a study: read, evaluated (outcome), and shown in files and on the console, side by side."""
+import os
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Dict, Mapping, Optional, Sequence
@@ -9,7 +10,6 @@ from ..ensembles import ensemble, known_events
 from ..mobility.exceedance import Mobility
 from ..runs import jobs
 from ..runs.repeats import Repeat
-from ..sites import site_folder
 from ..statistics import conservative_volume
 from ..survey import roads
 from ..tables import combinations, elastic, fine_run, next_step, study_maps, study_types, usable, withheld_words
@@ -36,6 +36,7 @@ def collect(setup: Setup, questions: Questions, todo: Sequence[Repeat], work: jo
         runs=len(found.rows), finished=len(found.finished), method=questions.method, ranks=work.ranks, jobs=work.jobs,
         package=work.package, governs=setup.output.name, balls_thick=found.balls_thick, collected=provenance.now(),
         machine=provenance.machine(),
+        body=os.path.relpath(setup.body.resolve(), setup.output.resolve()) if setup.body else None,
         road=write_road(setup.output, setup.road, first) if setup.road and first else None)
     outcome = evaluate(questions, found, header)
     made = next_step.Made(outcome.about, setup.output, given=setup.given)
@@ -110,7 +111,7 @@ def events_of(setup: Setup, run: Repeat, row: Finished, among: Mapping[str, Any]
     raster = placed(run_folders.load_raster(run_folders.prefix_of(summary), "thickness"), run)
     road = setup.road.read(raster).polygon if setup.road else None
     return usable.known_events(run_folders.prefix_of(summary), terrain_of(run.folder, run.log), road, among,
-                               site_folder.only_one(setup.site))
+                               setup.body)
 
 
 def case_of(setup: Setup, questions: Questions, row: Finished) -> withheld_words.Case:

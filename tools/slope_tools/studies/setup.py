@@ -2,6 +2,7 @@
 from pathlib import Path
 from typing import Any, Callable, Dict, List, NamedTuple, Optional
 
+from ..sites import site_folder
 from ..survey.roads import NOTHING, Asked, read_local
 from ..survey.vectors import ignore
 
@@ -51,6 +52,11 @@ class Setup(NamedTuple):
     def home(self) -> Path:
         """The folder in which one command works at a time."""
         return self.site or self.output
+
+    @property
+    def body(self) -> Optional[Path]:
+        """The folder of the site, if all of its runs have one body."""
+        return site_folder.only_one(self.site)
 
     @property
     def runs(self) -> Path:

@@ -32,6 +32,7 @@ class Header:
     balls_thick: Optional[float]    # balls over the thickness of the body
     collected: str                  # date and time
     machine: Mapping[str, Any]
+    body: Optional[str] = None      # folder of the site whose body known events are of, from here; None: of a run's
     road: Optional[Mapping[str, Any]] = None        # setup.Road.about(); local: its file in the study's folder
 
     @property
