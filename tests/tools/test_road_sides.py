@@ -154,6 +154,19 @@ def test_the_numbers_of_a_road_that_ends_inside():
     assert {each["add"] for each in one["sides"]} == {10 * math.ceil(far / 10)}
 
 
+def test_what_areas_and_sums_round_off_is_no_mass():
+    """Where nothing lies, exactly nothing does; what is there counts, however little."""
+    thickness, random = np.zeros((ROWS, COLUMNS)), np.random.default_rng(1)
+    thickness[20:40, 60:70] = 1.234567
+    for _ in range(10):
+        x, slant = random.uniform(300, 400), random.uniform(-150, 150)
+        sides = sides_of(strip((x - slant, -10), (x + slant, 610)).intersection(box(0, 0, 800, 600)))
+        left = balls((x, 300, 100, 300), volume=1e-3)
+        divided = passed.of_mass(ground_of(thickness, lost=1e-3), sides, left)["divided"]
+        assert divided == {"before": 0.0, "on": pytest.approx(1e-3, rel=1e-6), "past": pytest.approx(24691.34),
+                           "past_end": 0.0, "unknown": 0.0}
+
+
 def test_a_ball_between_two_looks_may_have_left_before_the_road():
     """Of dumps: one that is seen 30 m beyond a road counts as before it if a frame is 50 m."""
     ground, sides = ground_of(np.zeros((ROWS, COLUMNS)), lost=2.0), sides_of(ROADS["divides"][0])

@@ -41,6 +41,7 @@ def test_shares_and_numbers_of_nothing():
     assert [digits.plain(one) for one in ("-1.2e+03", "1e-05", "12")] == ["-1200", "1e-05", "12"]
     assert study_table.volume(7.62e-11, None) == "0" == Numbers()("beyond it", "m3", 7.62e-11)
     assert study_table.volume(0.0762, None) == "0.0762" == Numbers()("beyond it", "m3", 0.0762)
+    assert Numbers()("frequency", "per year", 2.5e-7) == "0.000000250"
 
 
 def test_a_warning_is_said_once(capsys):

@@ -16,6 +16,7 @@ from .road_sides import BEFORE, ON, PAST, Sides, divide
 
 AROUND = "past its end"      # beyond the road, but not across it
 PARTS = BEFORE, ON, PAST
+ROUNDING = 1e-9              # of the mass: less is what areas and sums round off
 
 
 class Left(NamedTuple):
@@ -57,7 +58,9 @@ def of_mass(ground: Ground, sides: Sides, left: Optional[Gone]) -> Dict[str, Any
         for name in PARTS:
             mass[name] += about[name] + over * (edge[name] / total if total > 0 else float(name == BEFORE))
         unknown = 0.0
-    return {"divided": {**mass, "past_end": min(around, mass[PAST]), "unknown": unknown}, "left": about}
+    divided = {**mass, "past_end": min(around, mass[PAST]), "unknown": unknown}
+    least = ROUNDING * sum(mass.values())
+    return {"divided": {name: value if abs(value) > least else 0.0 for name, value in divided.items()}, "left": about}
 
 
 def per_part(values: np.ndarray, ground: Ground, sides: Sides) -> Dict[str, float]:

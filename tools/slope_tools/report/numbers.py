@@ -30,7 +30,7 @@ class Numbers:
         """A number as text, with three digits."""
         if value is None:
             return UNKNOWN
-        text = rounding.text(value, rounding.place_of_digits(value))
+        text = rounding.text(value, rounding.place_of_digits(value, unit))
         self.rows.append((what, unit, of, text, value))
         return text
 

@@ -3,7 +3,7 @@ import math
 
 from ..digits import SIGNIFICANT
 
-NOTHING = 1e-6      # m3, m, m/s
+NOISE = dict.fromkeys(("m", "m2", "m3", "m/s"), 1e-6)      # of a unit: what sums of areas and lengths leave
 
 
 def place(uncertainty: float) -> float:
@@ -11,9 +11,10 @@ def place(uncertainty: float) -> float:
     return 10.0 ** math.floor(math.log10(uncertainty / 5) + 1e-9)
 
 
-def place_of_digits(value: float) -> float:
-    """The power of ten that leaves three digits of a value; 1 of 0, and of what sums of volumes and lengths leave."""
-    return 10.0 ** (math.floor(math.log10(abs(value)) + 1e-9) - SIGNIFICANT + 1) if abs(value) >= NOTHING else 1.0
+def place_of_digits(value: float, unit: str = "") -> float:
+    """The power of ten that leaves three digits of a value; 1 of 0, and of less than the noise of its unit."""
+    return 10.0 ** (math.floor(math.log10(abs(value)) + 1e-9) - SIGNIFICANT + 1) \
+        if abs(value) > NOISE.get(unit, 0.0) else 1.0
 
 
 def up(value: float, step: float) -> float:

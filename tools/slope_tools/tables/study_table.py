@@ -44,7 +44,7 @@ def volume(value, scatter):
     """A volume rounded to what is known: by its scatter, else to three digits; if repeats agree, to whole m3."""
     if scatter is not None and scatter.deviation > 0:
         return rounding.text(value, rounding.place(scatter.deviation))
-    place = rounding.place_of_digits(value)
+    place = rounding.place_of_digits(value, "m3")
     return rounding.text(value, min(1.0, place) if scatter else place)
 
 
