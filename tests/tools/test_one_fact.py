@@ -146,7 +146,8 @@ def test_the_middle_is_that_of_the_values(several, expected):
 def test_the_deck_of_a_ground_with_a_step_is_made_anew(mine, dry):  # noqa: F811
     deck = mine / "in.site"
     text = deck.read_text()
-    assert " rim " not in text
+    deck.write_text(f"# the rim of a tank\nprint 'a rim '  # rim \n{text}")
+    assert dry("mine")[0] == 0
     deck.write_text(text.replace(" inside body", " rim within"))
     status, _, err = dry("mine")
     assert status == 2 and re.search("mine/in.site: must be made anew, `slope site mine`: .* got rim", err)

@@ -132,7 +132,8 @@ def check(site: Folder[Choices]) -> None:
     for name in (site_deck.NAME, *found.files):
         if not (folder / name).is_file():
             raise SlopeError(folder / name, f"must exist; `slope site {quote(str(folder))}` rebuilds it")
-    if " rim " in (folder / site_deck.NAME).read_text(encoding="utf-8"):
+    if any(words[0] == "fix" and "wall/gran/balls" in words and "rim" in words
+           for words in decks.commands(folder / site_deck.NAME)):
         raise SlopeError(folder / site_deck.NAME, f"must be made anew, `slope site {quote(str(folder))}`: ground and "
                          "slip surface are one surface now", "rim, of an older version")
     if found.choices_sha256 not in ("", site.fingerprint()):
