@@ -418,6 +418,13 @@ def test_archives_in_archives(slope):
     archive("a.tar.gz", "a.EW", "a.NS", "a.UD")
     archive("a.zip", "a.tar.gz")
     assert slope("a.zip -o motion.txt")[0] == 0 and len(read_motion()) == len(T)
+    at2("b.AT2", EW, "090")     # known by its name only
+    text = Path("b.AT2").read_text().replace("PEER", "")
+    for name in ("b.AT2.gz", "c.AT2.GZ"):
+        Path(name).write_bytes(gzip.compress(text.encode()))
+    archive("b.zip", "c.AT2.GZ")
+    for name in ("b.zip", "b.zip/c.AT2", "'b.zip/*.AT2.gz'", "b.AT2.gz"):
+        assert slope(f"{name} -o two.txt --overwrite")[0] == 0
 
 
 @pytest.mark.parametrize("name, content", [
@@ -497,11 +504,12 @@ def test_a_motion_in_another_order_or_unit(slope, head, rule):
     ("time,EW (gal),NS (gal),UD (gal)", GAL, ""), ("t;e [g];n [g];up [g]", G, ""),
     ("time\tew\tns\tud", 1.0, "--unit m/s2"), ("time,E-W (cm/s^2),N-S (cm/s^2),U-D (cm/s^2)", GAL, ""),
     ('"time","EW (m/s\u00b2)","NS [m/sec2]","UD [m/s**2]"', 1.0, ""),
+    ("t,ew gals,ns mm/s/s,up cm/s/s", (GAL, 1e-3, GAL), ""), ("t,E (g),N (g),Z (g)", G, ""),
     ("Time (s) , East ( m/s2 ) , North (m/s2), Vertical (m/s2)", 1.0, "--unit gal")])
 def test_csv(slope, head, unit, option):
     mark = next(mark for mark in ",;\t" if mark in head)
     rows = [f"{a:.6f}{mark}{b:.9g}{mark}{c:.9g}{mark}{d:.9g}" for a, b, c, d in
-            zip(T + 5, EW / unit, NS / unit, UD / unit)]
+            zip(T + 5, *(np.array((EW, NS, UD)).T / unit).T)]
     Path("a.csv").write_text("# a record\n" + head + "\n" + "\n".join(rows) + "\n")
     assert slope(f"a.csv {option} --baseline none -o motion.txt")[0] == 0
     assert read_motion() == pytest.approx(np.column_stack([T, EW, NS, UD]), abs=1e-7)

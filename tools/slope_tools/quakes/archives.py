@@ -4,6 +4,7 @@ import fnmatch
 import gzip
 import io
 import lzma
+import re
 import tarfile
 import zipfile
 import zlib
@@ -30,6 +31,7 @@ def files(path) -> List[Tuple[str, bytes]]:
     found = list(unpacked(str(archive), data))
     names = [name[len(str(archive)) + 1:] for name, _ in found]
     if pattern:
+        pattern = pattern.removesuffix(".gz")       # which names are without
         found = [one for one, name in zip(found, names) if any(fnmatch.fnmatch(part, pattern) for part in
                                                                (name, PurePosixPath(name).name))]
     if not found:
@@ -52,7 +54,8 @@ def unpacked(name: str, data: bytes, depth: int = 0) -> Iterator[Tuple[str, byte
                             yield from unpacked(f"{name}/{one.filename}", read(name, member), depth + 1)
         elif data[:2] == b"\x1f\x8b":
             with gzip.open(opened) as member:
-                yield from unpacked(name, read(name, member), depth + 1)
+                found = unpacked(name, read(name, member), depth + 1)
+            yield from ((re.sub(r"\.gz$", "", one, flags=re.I) if one == name else one, text) for one, text in found)
         elif data[257:262] == b"ustar":
             with tarfile.open(fileobj=opened) as tar:
                 for entry in tar:

@@ -6,16 +6,16 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 import numpy as np
 
 from ..errors import SlopeError
+from ..heads import ACCELERATIONS
 
-GAL, G = 0.01, 9.80665      # m/s2
-UNITS = {"gal": GAL, "cm/s2": GAL, "cm/s/s": GAL, "g": G, "m/s2": 1.0, "m/s/s": 1.0, "mm/s2": 1e-3, "mm/s/s": 1e-3}
+GAL, G = ACCELERATIONS["gal"], ACCELERATIONS["g"]       # m/s2
 UP = "up"
 SLOWEST = 1.0               # s, time step; records have 0.02 s or less
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?")
 DIRECTIONS: Dict[str, Tuple[Any, float]] = {
-    **dict.fromkeys(("UP", "UD", "U-D", "U", "VER", "VERT", "V", "Z"), (UP, 1.0)),
-    **dict.fromkeys(("DWN", "DOWN"), (UP, -1.0)), **dict.fromkeys(("NS", "N-S", "N"), (0.0, 1.0)),
-    **dict.fromkeys(("EW", "E-W", "E"), (90.0, 1.0))}
+    **dict.fromkeys(("UP", "UD", "U-D", "U", "VER", "VERT", "VERTICAL", "V", "Z"), (UP, 1.0)),
+    **dict.fromkeys(("DWN", "DOWN"), (UP, -1.0)), **dict.fromkeys(("NS", "N-S", "N", "NORTH"), (0.0, 1.0)),
+    **dict.fromkeys(("EW", "E-W", "E", "EAST"), (90.0, 1.0))}
 
 
 @dataclass
@@ -39,12 +39,6 @@ class Component:
 
 class NoAcceleration(SlopeError):
     """A file of velocities, displacements or spectra, which archives have beside the accelerations."""
-
-
-def unit_of(text):
-    """m/s2 of a unit as it is written, such as cm/sec**2; None of another."""
-    plain = re.sub(r"\*\*|\^", "", text.lower().replace("\u00b2", "2").replace("sec", "s"))
-    return UNITS.get(plain.rstrip(".,"))
 
 
 def direction_of(word: str) -> Optional[Tuple[Any, float]]:

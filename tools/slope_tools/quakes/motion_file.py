@@ -7,7 +7,6 @@ import numpy as np
 
 from .. import heads
 from ..errors import SlopeError
-from . import quake_records
 from .quake_records import MOST
 
 NAMES = re.compile(r"\b(?:a(?:cc)?_?([xyz])|([xyz])|t|time)\b", re.IGNORECASE)
@@ -51,8 +50,8 @@ def check_head(comment: str, where: str) -> None:
     if sorted(names) != ["t", "x", "y", "z"]:
         return
     units = [unit.strip().lower() for one in UNITS.findall(comment) for unit in one.split(",")]
-    others = [unit for unit in units if unit not in heads.TIMES and quake_records.unit_of(unit) is not None]
-    if names != ["t", "x", "y", "z"] or any(quake_records.unit_of(unit) != 1.0 for unit in others) or any(
+    others = [unit for unit in units if unit not in heads.TIMES and heads.acceleration(unit) is not None]
+    if names != ["t", "x", "y", "z"] or any(heads.acceleration(unit) != 1.0 for unit in others) or any(
             heads.TIMES.get(unit, 1.0) != 1.0 for unit in units):
         raise SlopeError(where, "columns must be t ax ay az in s and m/s2", comment.strip()[:60])
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from .. import heads
 from ..errors import SlopeError
-from .components import (SLOWEST, Component, NoAcceleration, check_count, direction_of, numbers_of, unit_of, values_of)
+from .components import SLOWEST, Component, NoAcceleration, check_count, direction_of, numbers_of, values_of
 
 TIME = "time"               # a column that is none of a direction
 FLAGS = re.MULTILINE | re.IGNORECASE
@@ -105,7 +105,7 @@ def block(path, lines: Sequence[str], begin: int, form: Form) -> List[Component]
 
     unit, step, what = part(form.unit), part(form.step), said(form.what)
     plain, named = unit[unit.lastgroup or 1], unit.groupdict()
-    factor = (unit_of(plain) or 0.0) * heads.number(named.get("factor") or "1")
+    factor = (heads.acceleration(plain) or 0.0) * heads.number(named.get("factor") or "1")
     if not factor > 0 or what.upper() not in ("", "ACCELERATION"):
         raise NoAcceleration(place, "must be of an acceleration", ", ".join(filter(None, (plain, what))))
     dt = heads.number(step[1])

@@ -10,17 +10,15 @@ import numpy as np
 from .. import heads
 from ..errors import SlopeError
 from . import archives, networks
-from .components import (G, GAL, SLOWEST, UNITS, UP, Component, NoAcceleration, check_count, direction_of, numbers_of,
-                         unit_of, values_of)
+from .components import (DIRECTIONS, G, GAL, SLOWEST, UP, Component, NoAcceleration, check_count, direction_of,
+                         numbers_of, values_of)
 
-__all__ = ["Component", "G", "GAL", "MOST", "UNITS", "UP", "read", "unit_of"]
+__all__ = ["Component", "G", "GAL", "MOST", "UP", "read"]
 MOST = 50.0                 # m/s2; no ground has moved with more
 EVEN = 1e-3                 # of a time step, that steps of a CSV may differ, beside the rounding of its times
 KIK_NET = {"1": 0.0, "2": 90.0, "3": UP, "4": 0.0, "5": 90.0, "6": UP}    # 1 to 3: in the borehole
-KNET = {"N-S": 0.0, "E-W": 90.0, "U-D": UP, **KIK_NET}
+KNET = {**{name: DIRECTIONS[name][0] for name in ("N-S", "E-W", "U-D")}, **KIK_NET}
 SENSORS = {**dict.fromkeys("123", "in the borehole"), **dict.fromkeys("456", "at the surface")}
-COLUMNS = {"ew": 90.0, "e-w": 90.0, "e": 90.0, "east": 90.0, "ns": 0.0, "n-s": 0.0, "n": 0.0, "north": 0.0,
-           "ud": UP, "u-d": UP, "u": UP, "up": UP, "vertical": UP}
 FORMATS = ", ".join(["K-NET", "KiK-net", "PEER AT2", *(form.networks for form in networks.FORMS)])
 NAMED = "first line must name the columns, such as time,EW (gal),NS (gal)"
 
@@ -140,7 +138,7 @@ def at2(path, lines):
     if re.search("VELOCITY|DISPLACEMENT", lines[2].upper()):
         raise NoAcceleration(f"{path}, line 3", "must be of an acceleration", repr(lines[2].strip()))
     unit = re.search(r"UNITS? +OF +(\S+)", lines[2].upper())
-    factor = unit_of(unit[1]) if unit else None
+    factor = heads.acceleration(unit[1]) if unit else None
     if factor is None:
         raise SlopeError(f"{path}, line 3", "must end in UNITS OF G (or GAL, CM/S2, M/S2)", repr(lines[2].strip()))
     size = (re.search(r"NPTS *= *(\d+)(?: *, *| +)DT *= *([\d.eE+-]+)", lines[3].upper()) or
@@ -179,9 +177,9 @@ def table(path, lines, unit):
         raise SlopeError(f"{path}, line {place}", f"the {NAMED}", shown(head))
     for k in list(columns)[1:]:
         name, own = columns[k]
-        if name not in COLUMNS:
+        if name.upper() not in DIRECTIONS:
             raise SlopeError(f"{path}, line {place}", "columns must be time and EW, NS or UD", repr(name))
-        if unit_of(own or unit or "") is None:
+        if heads.acceleration(own or unit or "") is None:
             raise SlopeError(f"{path}, line {place}",
                              f"column {name} needs a unit, gal, g or m/s2, in brackets or by --unit",
                              repr(own) if own else "none")
@@ -195,8 +193,12 @@ def table(path, lines, unit):
     if dt > SLOWEST:
         raise SlopeError(path, f"times must be in s, with a step of at most {SLOWEST:g} s: are they in ms? Then the "
                          "head must say time (ms)", f"{dt:g} s")
-    return [Component(str(path), COLUMNS[columns[k][0]], dt, values[:, k] * unit_of(columns[k][1] or unit),
-                      first_time=factor * float(values[0, 0])) for k in list(columns)[1:]]
+    found = []
+    for k in list(columns)[1:]:
+        direction, sign = DIRECTIONS[columns[k].name.upper()]
+        scale = sign * (heads.acceleration(columns[k].unit or unit or "") or 0.0)
+        found.append(Component(str(path), direction, dt, scale * values[:, k], first_time=factor * float(values[0, 0])))
+    return found
 
 
 def shown(head: str) -> str:

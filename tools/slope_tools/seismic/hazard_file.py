@@ -8,8 +8,8 @@ from typing import Callable, List, NamedTuple, Optional, Sequence, Tuple
 import numpy as np
 
 from ..errors import SlopeError
-from ..heads import Column, column, number
-from ..quakes.quake_records import GAL, unit_of
+from ..heads import Column, acceleration, column, number
+from ..quakes.quake_records import GAL
 from .fragility import Hazard
 
 PEAKS = {"peak", "pga", "peak acceleration", "peak ground acceleration", "acceleration", "acc", "a"}
@@ -97,7 +97,7 @@ def head_of(path: Path, row: Sequence[str]) -> Optional[Head]:
     if rate is None:
         return None
     unit = columns[peak[0]].unit
-    gal = 1.0 if unit is None else (unit_of(unit) or math.nan) / GAL
+    gal = 1.0 if unit is None else (acceleration(unit) or math.nan) / GAL
     of_rate, units = rate
     if math.isnan(gal) or columns[1 - peak[0]].unit not in units:
         raise SlopeError(f"{path}: head", RULE, ",".join(row)[:60])
