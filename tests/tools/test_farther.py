@@ -168,7 +168,7 @@ def test_why_no_more_are_added():
     assert proposed(added, u, response(u)[0], beyond)[0] is not None
     u[:2] = 0, 0, 1
     found = stopped(added, lengths=response(u)[0])
-    assert found.code is Code.RANGE and found.numbers["ends"].startswith("a 0.0")
+    assert found.code is Code.RANGE and found.numbers["ends"]["a"].startswith("0.0")
     assert "range" in answer_words.text(found) and "a 0.0" in answer_words.text(found)
     u[:2] = 0.5
     for _ in range(8):
@@ -211,7 +211,7 @@ def test_runs_are_added_beyond_the_bounds():
     assert new is not None      # that one may be by chance
     lengths[1] *= 1.1
     new, added = proposed(added, u, lengths, beyond)
-    assert new is None and added.stopped == (Code.RANGE, {"ends": "a -0.20"})
+    assert new is None and added.stopped == (Code.RANGE, {"ends": {"a": "-0.20"}})
 
 
 def test_the_design_has_no_points_beyond_the_bounds():

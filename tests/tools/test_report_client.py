@@ -264,8 +264,8 @@ def test_the_next_step_and_its_time(tmp_path):
     assert found.command == ("tools/slope study in.tiny -o site/ensemble --sample 128 --known rock_avalanches --vary "
                              "friction=2:30 --vary rolling=uniform:0:0.15 --vary slip=list:a,b")
     assert step(beyond).command == found.command
-    assert "--sample 64 " in step(("range ends", {"ends": "friction 2"})).command
-    assert "--vary friction=1:30 --vary rolling=0:0.15 --vary slip=list:a,b" in step(("range ends", {})).command
+    assert "--sample 64 " in step(("range ends", {"ends": {"friction": "2"}})).command
+    assert "--vary friction=1:30 --vary rolling=0:0.15 --vary slip=list:a,b" in step(("range ends", {"ends": {}})).command
     assert next_step.times(made_, Rule.BALLS, {"number": 0.0045, "bound": 10}) == pytest.approx(600 * 10 ** (4 / 3))
     (tmp_path / "site.yaml").touch()
     assert step(("terrain ends", TERRAIN["numbers"]), of=made_._replace(folder=tmp_path / "ensemble")).command.endswith(

@@ -97,7 +97,7 @@ def test_the_commands_are_ones_that_the_tools_take(case, changed):
 # --- every command that is proposed, on every kind of answer ---
 
 REASONS = [("terrain ends", {"share": 0.1, "path_m": 100.0}), ("no more runs", {"points": 8}), ("too few runs", {}),
-           ("range ends", {"ends": "friction 20, packing 1"}), ("range ends", {"ends": ""}),
+           ("range ends", {"ends": {"friction": "20", "packing": "1"}}), ("range ends", {"ends": {}}),
            *(("size of balls", {"run": run, "balls_thick": 2.0, "enough": 16.0, "growth": None})
              for run in ("", "failed", "finished")),
            *(("rule", {"source": source, "rule": rule.value, "number": 5, "bound": 10}) for rule in Kind
@@ -178,14 +178,16 @@ def test_what_is_proposed_can_be_run(here, given):
 
 
 def test_a_range_is_made_wider_where_it_ends(here):
-    """Not the seed of a packing, which has no resistance: 0.5 is none."""
+    """Not the seed of a packing, which has no resistance: 0.5 is none; the same ranges once more are no step."""
     whole = made_study.ensemble({"set": "rock_avalanches.csv"}, design={"points": 8, "variables": {
         "friction": "uniform:5:30", "rolling": "uniform:0:0.15", "packing": "uniform:1:1000000"}})
     made = next_step.Made(made_study.study({"deck": "in.all"}, ensemble=whole), Path("out"))
-    for ends, friction in (("", "2.5:30"), ("friction 5", "2.5:30"), ("rolling 0", "uniform:5:30"),
-                           ("friction 5, packing 1", "2.5:30")):
+    for ends, friction in (({}, "2.5:30"), ({"friction": "5"}, "2.5:30"),
+                           ({"friction": "5", "packing": "1"}, "2.5:30")):
         command = next_step.step_of(made, Code.RANGE, {"ends": ends}).command
         assert f"--vary friction={friction} " in command and command.endswith("--vary packing=uniform:1:1000000")
+    for ends in ({"rolling": "0"}, {"packing": "friction"}):
+        assert next_step.step_of(made, Code.RANGE, {"ends": ends}) is None
 
 
 # --- of the rows of a study ---

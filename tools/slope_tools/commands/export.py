@@ -72,7 +72,7 @@ def run_zones(args: Request, zones_: str) -> None:
     own = Path(args.prefix, "zones") if Path(args.prefix).is_dir() else Path(f"{args.prefix}.zones")
     folder = args.output or own
     disk.check_folder(folder)
-    if (study := answered.weighted_in(Path(args.prefix)) or named_run.study_in(Path(args.prefix))):
+    if (study := answered.study_in(Path(args.prefix), weighted=True)):
         outdated.check(Path(args.prefix), study)
     ground = zones.ground_of(args.prefix, findings.printer("export"))
     zones.check(ground, wanted, args.prefix, zones_)

@@ -93,14 +93,14 @@ class Added:
                  if low > one.places[0] + ROUNDING or high < one.places[1] - ROUNDING]
         return ", ".join(parts) or "all of their ranges"
 
-    def ends(self, box: List[List[float]]) -> str:
-        """At which end of which range a box lies, in words; not of a variable that hardly matters for it."""
-        found = []
+    def ends(self, box: List[List[float]]) -> Dict[str, str]:
+        """The variables at an end of whose ranges a box lies, and that end; not one that hardly matters for it."""
+        found = {}
         for one, (low, high) in zip(self.sample.variables, box):
             least, most = low <= one.places[0] + ROUNDING, high >= one.places[1] - ROUNDING
             if least != most and high - low <= NARROW * (one.places[1] - one.places[0]):
-                found.append(f"{one.name} {backanalysis.shown(one, low if least else high)}")
-        return ", ".join(found)
+                found[one.name] = backanalysis.shown(one, low if least else high)
+        return found
 
     def line(self, batch: Batch, lengths: np.ndarray, beyond: np.ndarray) -> str:
         """What is done, for the console."""

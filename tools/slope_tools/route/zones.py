@@ -86,7 +86,7 @@ def ground_of(name: str, warn) -> Ground:
         return Ground(corridor.read(asked, folder).raster,
                       [results.read_body(folder, about).source for about in table["bodies"]],
                       results.yearly_of(asked, folder, table["bodies"]))
-    study = answered.weighted_in(folder) or answered.study_in(folder)
+    study = answered.study_in(folder, weighted=True)
     if study is None and not (folder / "site.yaml").is_file():
         run = deposit.read(named_run.read(name).prefix, None, warn)
         return Ground(run.raster, [Source(1, [Path(run.prefix)], np.ones(1), 0, run.raster.offset)], None)

@@ -117,7 +117,9 @@ def left(of: Mapping[str, Any]) -> str:
 def ends(of: Mapping[str, Any]) -> str:
     """Where the longest run ends, or where the ranges do."""
     if "ends" in of:
-        return f", which end at {of['ends']}," if of["ends"] else ""
+        # text: of older versions
+        ranges = of["ends"] if isinstance(of["ends"], str) else ", ".join(map(" ".join, of["ends"].items()))
+        return f", which end at {ranges}," if ranges else ""
     return "no run leaves a deposit" if of["longest_m"] is None else \
         f"the longest run ends after {metres(of['longest_m'])}"
 

@@ -101,20 +101,24 @@ def governing(paper: Path, ensemble: Path) -> Path:
     return max(there, key=lambda one: made(said[one]))
 
 
-def study_in(folder: Path) -> Optional[Path]:
-    """The folder of the study that a page on a folder shows: its own, else the one of a site that governs; or None."""
+def study_in(folder: Path, weighted: bool = False) -> Optional[Path]:
+    """The folder of the study that a folder names: its own, else the one of a site that governs; None: there is none.
+
+    weighted: of a site, rather the one whose runs known events weigh.
+    """
     if (folder / STUDY).is_file():
         return folder
-    found = governing(*(folder / name for name in INSIDE))
+    paper, ensemble = (folder / name for name in INSIDE)
+    found = ensemble if weighted and weighs(ensemble) else governing(paper, ensemble)
     return found if (found / STUDY).is_file() else None
 
 
-def weighted_in(folder: Path) -> Optional[Path]:
-    """The study of a site, or of one of its roads, whose runs known events weigh; None where there is none."""
-    found = folder / INSIDE[1]
-    told = (folder / STUDY).is_file() or not (found / STUDY).is_file()
-    ensemble = None if told else schemas.load(found / STUDY, "what `slope study` wrote", SCHEMA).get("ensemble")
-    return found if ensemble and (ensemble.get("known_events") or {}).get("weights") else None
+def weighs(study: Path) -> bool:
+    """Whether a folder has a study whose runs known events weigh."""
+    if not (study / STUDY).is_file():
+        return False
+    about = schemas.load(study / STUDY, "what `slope study` wrote", SCHEMA).get("ensemble") or {}
+    return bool((about.get("known_events") or {}).get("weights"))
 
 
 def without_study(site: Path) -> SlopeError:

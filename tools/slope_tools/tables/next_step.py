@@ -2,7 +2,7 @@
 import math
 from pathlib import Path
 from shlex import quote
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import Any, Collection, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from .. import heads
 from ..findings import Finding
@@ -115,7 +115,7 @@ def step_of(made: Made, code: Code, of: Mapping[str, Any]) -> Optional[Step]:
     if code in (Code.RUNS, Code.FEW):
         return more_runs(made)
     if code is Code.RANGE:
-        return wider_ranges(made, str(of.get("ends", "")))
+        return wider_ranges(made, of["ends"])
     if code is Code.SIZE:
         return finer_balls(made) if of["run"] == "finished" else fine_run(made)
     if code is not Code.RULE:
@@ -157,14 +157,14 @@ def more_runs(made: Made) -> Optional[Step]:
     return Step("more runs", ensemble(made, points), seconds)
 
 
-def wider_ranges(made: Made, ends: str) -> Optional[Step]:
-    """Runs with less resistance; ends: where the ranges end in the way, as answer_words has it."""
+def wider_ranges(made: Made, ends: Collection[str]) -> Optional[Step]:
+    """Runs with less resistance; ends: the variables whose ranges end in the way; none: of all that resist."""
     if not made.study.ensemble or made.given and made.given.fit:
         return None
     ranges = ranges_of(made)
-    asked = [name for name in LESS if name in ranges and (name in ends.replace(",", " ").split() or not ends)]
+    asked = [name for name in LESS if name in ranges and (name in ends or not ends)]
     wider = {**ranges, **{name: widened(ranges[name], LESS[name]) for name in asked}}
-    if made.given and all(wider[name] == ranges[name].removeprefix("uniform:") for name in asked):
+    if all(wider[name] == ranges[name].removeprefix("uniform:") for name in asked):
         return None
     return Step("runs with less resistance than the least that was tried",
                 ensemble(made, made.study.ensemble.design.points, wider), made.seconds)
