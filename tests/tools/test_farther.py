@@ -170,6 +170,7 @@ def test_why_no_more_are_added():
     found = stopped(added, lengths=response(u)[0])
     assert found.code is Code.RANGE and found.numbers["ends"]["a"].startswith("0.0")
     assert "range" in answer_words.text(found) and "a 0.0" in answer_words.text(found)
+    assert "a 0.07" in answer_words.text(found._replace(numbers={"ends": "a 0.07"}))       # of an older version
     u[:2] = 0.5
     for _ in range(8):
         new, added = proposed(added, u, lengths, beyond)

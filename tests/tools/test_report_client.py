@@ -265,8 +265,9 @@ def test_the_next_step_and_its_time(tmp_path):
                              "friction=2:30 --vary rolling=uniform:0:0.15 --vary slip=list:a,b")
     assert step(beyond).command == found.command
     assert "--sample 64 " in step(("range ends", {"ends": {"friction": "2"}})).command
-    assert "--vary friction=1:30 --vary rolling=0:0.15 --vary slip=list:a,b" in step(("range ends", {"ends": {}})).command
-    assert next_step.times(made_, Rule.BALLS, {"number": 0.0045, "bound": 10}) == pytest.approx(600 * 10 ** (4 / 3))
+    wider = step(("range ends", {"ends": {}})).command
+    assert "--vary friction=1:30 --vary rolling=0:0.15 --vary slip=list:a,b" in wider
+    assert next_step.times(made_, Rule.BALLS, {"number": 0.0045, "bound": 10}) == pytest.approx(600 * 11 ** (4 / 3))
     (tmp_path / "site.yaml").touch()
     assert step(("terrain ends", TERRAIN["numbers"]), of=made_._replace(folder=tmp_path / "ensemble")).command.endswith(
         f"{tmp_path}/site.yaml, then: tools/slope site {tmp_path} && tools/slope study {tmp_path} --anew")

@@ -53,6 +53,8 @@ ANEW = "tools/slope site 'my site'{} && tools/slope study 'my site' --anew"
 
 @pytest.mark.parametrize("changed, case, text, remedy", [
     ({"on_road": 50.0}, SITE, "on the road lies the volume of 5 balls, fewer than 10", ANEW.format(" --balls 2200")),
+    ({"on_road": 95.0}, SITE._replace(balls=120), "9.5 balls", ANEW.format(" --balls 240")),
+    ({"on_road": 99.0}, DECK, "9.9 balls", "the same command with --set d=1.59"),
     ({"on_road": 50.0}, DECK, "5 balls", "the same command with --set d=1.54"),
     ({"length": 700.0}, SITE, "no run reaches 800 m, as half of known events of this volume and height do; the longest "
      "one ends at 700 m", "tools/slope study 'my site' --sample 64 --known rock_avalanches"),

@@ -15,6 +15,7 @@ from ..statistics.withheld import Kind as Rule
 from . import answer_words, study_types
 from .fine_run import VARIABLE
 from .rows import finished_of
+from .withheld_words import times_the_balls, two_digits
 
 MORE = 2            # times the runs, where more are needed
 PROGRAM = "tools/slope "
@@ -141,7 +142,7 @@ def times(made: Made, rule: Rule, of: Mapping[str, Any]) -> Optional[float]:
     whole = made.whole
     factor = 2.0 if rule is Rule.RUNS else 1.0
     if rule is Rule.BALLS:
-        factor = (of["bound"] / max(of["number"] or 0.0, 1.0)) ** (4 / 3) if of["bound"] else 1.0
+        factor = times_the_balls(of["number"] or 0.0) ** (4 / 3)
     return None if whole is None else factor * whole
 
 
@@ -177,8 +178,8 @@ def finer_balls(made: Made) -> Optional[Step]:
     if site is None or not rows:
         return None
     row = rows[0]
-    number = round(8 * row.released_m3 / row.ball_m3, -2)
-    return Step("smaller balls in the model", f"tools/slope site {quote(str(site))} --balls {number:.0f} && "
+    number = two_digits(8 * row.released_m3 / row.ball_m3)
+    return Step("smaller balls in the model", f"tools/slope site {quote(str(site))} --balls {number} && "
                 f"{study_anew(made)}", None if whole is None else 16 * whole)
 
 

@@ -1,5 +1,4 @@
 """The command that mends each reason for which a number is withheld, and what is said in its place."""
-import math
 from pathlib import Path
 from shlex import quote
 from typing import Any, List, Mapping, NamedTuple, Optional, Sequence
@@ -12,6 +11,7 @@ from . import study_types
 
 UNUSABLE = "not usable as a conservative volume"
 MARGIN = 1.1            # of the balls: chance
+LEAST = 2.0             # times the balls: fewer tell hardly more than the study that is there
 
 
 class Case(NamedTuple):
@@ -27,7 +27,7 @@ class Case(NamedTuple):
 def remedy(reason: Finding, case: Case) -> str:
     """The command that mends it."""
     if reason.kind == Kind.BALLS:
-        return finer(case, BALLS / max(reason.numbers["number"], 1.0))
+        return finer(case, times_the_balls(reason.numbers["number"]))
     if reason.kind == Kind.MOBILITY:
         return mobile(case)
     if reason.kind == Kind.LEFT:
@@ -41,13 +41,23 @@ def remedy(reason: Finding, case: Case) -> str:
     return changed(case, "more time (model.duration)", "more time in the deck")
 
 
+def times_the_balls(on_road: float) -> float:
+    """How many times the balls bring enough of them to a road on which so many lie."""
+    return max(LEAST, MARGIN * BALLS / max(on_road, 1.0))
+
+
+def two_digits(number: float) -> int:
+    """Of a number of balls."""
+    return round(float(f"{number:.2g}"))
+
+
 def finer(case: Case, factor: float) -> str:
     """The same with so many times the balls."""
-    number = round(MARGIN * factor * case.balls, -max(0, int(math.log10(max(factor * case.balls, 1))) - 1))
+    number = two_digits(factor * case.balls)
     if case.site:
-        return anew(case, f" --balls {number:.0f}")
+        return anew(case, f" --balls {number}")
     try:
-        return with_value(case, "d", f"{float(case.variables['d']) / (MARGIN * factor) ** (1 / 3):.3g}")
+        return with_value(case, "d", f"{float(case.variables['d']) / factor ** (1 / 3):.3g}")
     except (KeyError, ValueError):
         return f"the same with smaller balls, about {number:,.0f} of them"
 
