@@ -5,6 +5,7 @@ The ground is a plane with a hill, so that a cell at another place has another h
 import gzip
 import itertools
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -22,9 +23,10 @@ from rasterio.windows import Window
 
 from messages import is_one
 
+from slope_tools.errors import SlopeError
 from slope_tools.sites import site
 from slope_tools.sites.site_sections import OfMass
-from slope_tools.survey import crs, rasters
+from slope_tools.survey import crs, rasters, vectors
 
 COMMAND = "terrain"
 EAST, NORTH = 460000.0, 101000.0        # of the first centre in the south-west
@@ -243,6 +245,35 @@ def test_a_raster_in_the_zip_in_which_it_is_downloaded(made, here, name):
         archive.writestr(f"{name}.aux.xml", "<PAMDataset/>")
     assert in_place(made("a.zip"))
     assert rasters.surveyed_cell("a.zip") == 1 and rasters.is_raster("a.zip")
+    assert rasters.read(f"./a.zip/{name}").z.shape == (ROWS, COLUMNS)
+    with zipfile.ZipFile("a.zip", "a") as archive:
+        archive.writestr("outline.geojson", "{}")
+    assert not rasters.is_raster("a.zip")       # a layer, with a raster or a list of its points
+
+
+@pytest.mark.parametrize("member", ["a.txt", "a.asc", "a.xyz", "a.tif", "a.geojson", "a.shp"])
+@pytest.mark.parametrize("password", [False, True])
+def test_an_archive_that_is_damaged_or_has_a_password(here, member, password):
+    with zipfile.ZipFile("a.zip", "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr(member, "0 1 2\n" * 40)
+        archive.writestr(f"{member[:-3]}shx", "")
+    data = Path("a.zip").read_bytes()
+    begin = 30 + len(member)
+    damaged = data[:begin] + b"\xff" * 9 + data[begin + 9:]
+    for head, at in ((b"PK\3\4", 6), (b"PK\1\2", 8)):     # where the first bit of the flags says that it is encrypted
+        data = re.sub(re.escape(head) + b"." * at, lambda found: found[0][:-2] + b"\1\0", data, flags=re.DOTALL)
+    Path("a.zip").write_bytes(data if password else damaged)
+    with pytest.raises(SlopeError, match="^a.zip") as raised:
+        vectors.read("a.zip", "Polygon") if member in ("a.geojson", "a.shp") else rasters.read("a.zip")
+    assert ("a.zip: must be a whole archive without a password" in str(raised.value)) or not password
+    Path("a.asc.gz").write_bytes(b"garbage")
+    with pytest.raises(SlopeError, match="^a.asc.gz: must be a whole archive"):
+        rasters.read("a.asc.gz")
+
+
+@pytest.mark.parametrize("name", ["A.HGT", "a.dt2", "a.asc.gz", "a.vrt", "a.tif", "folder/w001001.adf"])
+def test_the_names_of_rasters(name):
+    assert rasters.is_raster(name)
 
 
 def test_several_rasters_in_a_zip_are_merged(made, slope, here):

@@ -31,8 +31,6 @@ WHAT_SIDECAR = "a sidecar that `slope terrain` wrote"
 ORIGIN, EXTENT = ("east", "north"), ("xlo", "ylo", "xhi", "yhi")
 SIDECAR = mapping({"crs": mapping({"wkt": TEXT}, null=True), "origin": mapping(numbers(*ORIGIN)),
                    "size": mapping({"rows": COUNT, "columns": COUNT}), "extent": mapping(numbers(*EXTENT))})
-# of files that are rasters and not layers of shapes
-ENDINGS = {".tif", ".tiff", ".asc", ".vrt", ".img", ".bil", ".xyz"}
 NODATA = -9999             # in written files
 HIGHEST = 9000.0           # m; beyond +-HIGHEST a value is a NODATA mark that the file does not declare (-9999, -32768)
 UNITS = {"m": 1.0, "ft": 0.3048, "us-ft": 1200 / 3937}      # m, of heights
@@ -122,7 +120,8 @@ def unreadable(path, name, error):
 
 def is_raster(path):
     """Whether a file is a raster and no layer of shapes, by its name, or what a .zip holds."""
-    return Path(path).suffix.lower() in ENDINGS or bool(zips.rasters_in(path))
+    name = str(path).lower().removesuffix(".gz")
+    return name.endswith((*zips.RASTERS, ".vrt")) or bool(zips.rasters_in(path, alone=True))
 
 
 def only(path):

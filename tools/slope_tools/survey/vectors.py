@@ -6,7 +6,6 @@ geometry.
 import contextlib
 import io
 import json
-import os
 import re
 import zipfile
 from pathlib import Path
@@ -100,7 +99,7 @@ def read(name: object, kind: str, warn: Callable[[Finding], Any] = ignore) -> Fo
     where = require_file(name)
     check_shapefile(Path(where.path))
     member = zips.layer_in(where.path, where.layer)
-    opened = f"/vsizip/{{{os.path.abspath(where.path)}}}/{member}" if member else where.path
+    opened = zips.gdal_name(f"{where.path}/{member}") if member else where.path
     what = {"Polygon": "polygons", "Line": "lines"}[kind]
     try:
         # fiona prints what it cannot decode of GDAL's messages
