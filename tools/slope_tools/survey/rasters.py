@@ -24,7 +24,7 @@ from ..errors import SlopeError
 from ..schemas import COUNT, TEXT, mapping, numbers
 from . import plausible, text_grids, xyz, zips
 from .crs import crs_name, epsg, require_axes
-from .grids import Raster, check_memory, progress
+from .grids import UNITS, Raster, check_memory, progress
 from .marks import Scale, cells_of, text
 
 WHAT_SIDECAR = "a sidecar that `slope terrain` wrote"
@@ -33,7 +33,6 @@ SIDECAR = mapping({"crs": mapping({"wkt": TEXT}, null=True), "origin": mapping(n
                    "size": mapping({"rows": COUNT, "columns": COUNT}), "extent": mapping(numbers(*EXTENT))})
 NODATA = -9999             # in written files
 HIGHEST = 9000.0           # m; beyond +-HIGHEST a value is a NODATA mark that the file does not declare (-9999, -32768)
-UNITS = {"m": 1.0, "ft": 0.3048, "us-ft": 1200 / 3937}      # m, of heights
 TAGS = {"m": "m", "metre": "m", "meter": "m", "metres": "m", "meters": "m", "ft": "ft", "foot": "ft", "feet": "ft",
         "international foot": "ft", "us survey foot": "us-ft", "us survey feet": "us-ft", "ftus": "us-ft",
         "us-ft": "us-ft", "foot_us": "us-ft"}      # how files spell them, in lower case
@@ -82,7 +81,7 @@ def in_metres(path, found, heights=True, unit=None, marks=None, assigned=None, a
             marks.note(found.stored, found.none, scale)
     raster = Raster(scale.metres(z), found.transform, found.crs)
     if heights and ask and unit is None and own != "m":
-        plausible.ask(path, raster._replace(z=z), assigned or found.crs, own, UNITS[own])
+        plausible.ask(path, raster._replace(z=z), assigned or found.crs, own)
     return raster
 
 

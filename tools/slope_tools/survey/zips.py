@@ -46,7 +46,7 @@ def is_of_macos(member: str) -> bool:
 
 
 def check_length(name: str, size: int, head: bytes) -> None:
-    """Raise SlopeError if a .shp, .shx or .dbf has fewer bytes than its head (32 bytes) says: features would be lost."""
+    """Raise SlopeError if a .shp, .shx or .dbf has fewer bytes than its head (32 bytes) says: features are lost."""
     if PurePosixPath(name).suffix.lower() == ".dbf":
         records, first, each = (int.from_bytes(head[k:k + n], "little") for k, n in ((4, 4), (8, 2), (10, 2)))
         wanted = first + records * each
@@ -107,7 +107,7 @@ def remedy(name: str) -> str:
 
 
 def rasters_in(path: str, alone: bool = False) -> List[str]:
-    """The rasters in a .zip, each as ZIP/MEMBER; none of any other file, or, alone, of one that holds a layer, too."""
+    """The rasters in a .zip, each as ZIP/MEMBER; none of other files, or, alone, of one that holds a layer, too."""
     if not zipfile.is_zipfile(path):
         return []
     with whole(path), zipfile.ZipFile(path) as archive:
