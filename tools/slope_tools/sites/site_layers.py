@@ -60,8 +60,8 @@ def with_missing(choices: OfMass, check: Callable[[], T]) -> T:
         checked.append(check())
     except SlopeError as error:
         missing.append(error)
-    if road.file and road.width is None and roads.is_line(road.file):
-        missing.append(SlopeError(road.file, roads.WITHOUT_WIDTH))
+    missing += [SlopeError(path, roads.WITHOUT_WIDTH) for path in site_roads.listed(choices)
+                if road.width is None and roads.is_line(path)]
     if along.walls and along.height is None:
         missing.append(SlopeError("--height", site_inputs.WITHOUT_HEIGHT))
     if missing:
