@@ -26,7 +26,8 @@ from messages import is_one
 from slope_tools.errors import SlopeError
 from slope_tools.sites import site
 from slope_tools.sites.site_sections import OfMass
-from slope_tools.survey import crs, rasters, vectors
+from slope_tools.survey import crs, rasters, vectors, xyz, zips
+from slope_tools.survey.vectors import ignore
 
 COMMAND = "terrain"
 EAST, NORTH = 460000.0, 101000.0        # of the first centre in the south-west
@@ -244,7 +245,7 @@ def test_a_raster_in_the_zip_in_which_it_is_downloaded(made, here, name):
         archive.writestr("__MACOSX/._a.tif", "x")
         archive.writestr(f"{name}.aux.xml", "<PAMDataset/>")
     assert in_place(made("a.zip"))
-    assert rasters.surveyed_cell("a.zip") == 1 and rasters.is_raster("a.zip")
+    assert rasters.is_raster("a.zip")
     assert rasters.read(f"./a.zip/{name}").z.shape == (ROWS, COLUMNS)
     with zipfile.ZipFile("a.zip", "a") as archive:
         archive.writestr("outline.geojson", "{}")
@@ -269,6 +270,8 @@ def test_an_archive_that_is_damaged_or_has_a_password(here, member, password):
     Path("a.asc.gz").write_bytes(b"garbage")
     with pytest.raises(SlopeError, match="^a.asc.gz: must be a whole archive"):
         rasters.read("a.asc.gz")
+    with pytest.raises(FileNotFoundError), zips.open_text("gone.asc"):      # no archive
+        pass
 
 
 @pytest.mark.parametrize("name", ["A.HGT", "a.dt2", "a.asc.gz", "a.vrt", "a.tif", "folder/w001001.adf"])
@@ -452,11 +455,23 @@ def test_a_grid_whose_north_is_not_north_is_said(made, code, east, north, angle)
 # --- the size of the survey's cells ---
 
 def test_the_cells_of_a_survey_are_in_the_crs_that_is_assigned(here):
-    tif("dem.tif", step=10.0, east=50.0, north=50.0, crs_="EPSG:4326")
-    of = OfMass.of({"terrain": {"files": ["dem.tif"], "assign_crs": "EPSG:31254"}})
-    assert rasters.surveyed_cell("dem.tif", site.crs_of(of, "dem.tif")) == 10
-    of = OfMass.of({"terrain": {"files": ["dem.tif"]}, "crs": {"assigned": {"dem.tif": "EPSG:2225"}}})
-    assert rasters.surveyed_cell("dem.tif", site.crs_of(of, "dem.tif")) == pytest.approx(3.048, abs=1e-3)
+    tif("dem.tif", step=10.0, east=50.0, north=50.0, crs_="EPSG:4326", z=points()[:, 2].reshape(ROWS, COLUMNS) / 100)
+
+    def surveyed(crs_, of):
+        choices = OfMass.of({**of, "terrain": {**of["terrain"], "files": ["dem.tif"], "crs": crs_}})
+        return site.terrain(choices, here, ignore, ignore)[1]["surveyed_cell"]
+    assert surveyed("EPSG:31254", {"terrain": {"assign_crs": "EPSG:31254"}}) == 10
+    of = {"terrain": {"z_unit": "m"}, "crs": {"assigned": {"dem.tif": "EPSG:2225"}}}
+    assert surveyed("EPSG:26942", of) == pytest.approx(3.048, abs=1e-3)
+
+
+def test_a_list_of_points_is_read_once(here, monkeypatch):
+    """Also for the size of its cells."""
+    write("a.xyz", points(2.0))
+    parsed, read = [], xyz.read
+    monkeypatch.setattr(xyz, "read", lambda name, form: parsed.append(name) or read(name, form))
+    choices = OfMass.of({"terrain": {"files": ["a.xyz"], "crs": CRS_M}})
+    assert site.terrain(choices, here, ignore, ignore)[1]["surveyed_cell"] == 2 and parsed == ["a.xyz"]
 
 
 def test_a_vrt_without_a_crs_is_no_list_of_points(succeed):

@@ -6,7 +6,6 @@ counted from the outer corner of the first cell, to (x, y).
 """
 import math
 import warnings
-from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple, Optional, Tuple, Union
 
@@ -38,7 +37,6 @@ TAGS = {"m": "m", "metre": "m", "meter": "m", "metres": "m", "meters": "m", "ft"
         "us-ft": "us-ft", "foot_us": "us-ft"}      # how files spell them, in lower case
 NO_UNIT = {"", "unspecified", "unknown", "undefined", "none"}       # how files spell that they do not say one
 CACHE = 64              # MB, of GDAL, of parts of large files
-DEGREE = 111_195.0      # m along a meridian
 
 
 class File(NamedTuple):
@@ -234,22 +232,6 @@ def placed(path, raster):
     if place.size != raster.z.shape or not np.allclose(raster.transform * (0, 0), place.extent[::3], rtol=0, atol=1e-3):
         raise SlopeError(Path(path).with_suffix(".yaml"), f"must be the sidecar of {path}: size and extent differ")
     return raster._replace(crs=place.crs, offset=place.offset)
-
-
-def surveyed_cell(path, assigned=None) -> float:
-    """The size (m) of the cells of a raster as it was surveyed, about; 0 where it has none, such as FG-GML.
-
-    assigned: the CRS of its coordinates, whatever it says.
-    """
-    sides = []
-    for name in zips.rasters_in(path) or [path]:
-        with suppress(RasterioError, OSError, SlopeError):
-            place = read_place(name)
-            xlo, ylo, xhi, yhi = place.extent
-            crs = assigned or place.crs
-            unit = 1.0 if crs is None else DEGREE if crs.is_geographic else crs.linear_units_factor[1]
-            sides.append((yhi - ylo) / place.size[0] * unit)
-    return max(sides, default=0.0)
 
 
 class Place(NamedTuple):

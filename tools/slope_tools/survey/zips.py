@@ -7,7 +7,7 @@ import re
 import tarfile
 import zipfile
 import zlib
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, nullcontext
 from pathlib import Path, PurePosixPath
 from typing import Iterator, List, Optional, Sequence, TextIO, Tuple
 
@@ -141,10 +141,10 @@ def gdal_name(name: str) -> str:
 def open_text(name: str) -> Iterator[TextIO]:
     """A file, one in a .zip, or one that is packed by gzip, as text; what is no UTF-8 becomes U+FFFD."""
     path, member = split(name)
-    with whole(name), ExitStack() as opened:
+    packed = path.lower().endswith(".gz")
+    with whole(name) if member or packed else nullcontext(), ExitStack() as opened:
         if member:
             data = opened.enter_context(opened.enter_context(zipfile.ZipFile(path)).open(member))
         else:
-            packed = path.lower().endswith(".gz")
             data = opened.enter_context(gzip.open(path) if packed else open(path, "rb"))    # type: ignore[arg-type]
         yield io.TextIOWrapper(data, encoding="utf-8-sig", errors="replace")
