@@ -261,7 +261,7 @@ def test_an_archive_that_is_damaged_or_has_a_password(here, member, password):
     data = Path("a.zip").read_bytes()
     begin = 30 + len(member)
     damaged = data[:begin] + b"\xff" * 9 + data[begin + 9:]
-    for head, at in ((b"PK\3\4", 6), (b"PK\1\2", 8)):     # where the first bit of the flags says that it is encrypted
+    for head, at in ((b"PK\3\4", 4), (b"PK\1\2", 6)):     # where the first bit of the flags says that it is encrypted
         data = re.sub(re.escape(head) + b"." * at, lambda found: found[0][:-2] + b"\1\0", data, flags=re.DOTALL)
     Path("a.zip").write_bytes(data if password else damaged)
     with pytest.raises(SlopeError, match="^a.zip") as raised:

@@ -96,8 +96,7 @@ def opened(path, heights=True, unit=None, part=None, assigned=None):
         if grid.degrees and not (assigned is not None and assigned.is_geographic):
             raise SlopeError(path, "columns in degrees must have a CRS in degrees; --assign-crs EPSG:n gives one",
                              crs_name(assigned))
-        said = unit_of(path, grid.unit, None, heights, unit)
-        return File(grid.z, np.isnan(grid.z), grid.transform, None, unit=said)
+        return File(grid.z, np.isnan(grid.z), grid.transform, None, unit=unit_of(path, grid.unit, None, heights, unit))
     try:
         # Env: GDAL's own messages are not for stderr
         with warnings.catch_warnings(), rasterio.Env(GDAL_CACHEMAX=CACHE):
@@ -180,7 +179,7 @@ def unit_of(path, tag, crs, heights=True, given=None):
 def _read(path, name, source, unit, part):
     """The File of an open raster, or of a part of it."""
     if source.count != 1:
-        bands = ", ".join(f"{band} {said}".rstrip() for band, said in enumerate((one or "" for one in
+        bands = ", ".join(f"{band} {label}".rstrip() for band, label in enumerate((one or "" for one in
                           source.descriptions), 1))
         raise SlopeError(path, f"must have one band, the heights; gdal_translate -b N takes one of {bands}",
                          f"{source.count} bands")
