@@ -138,7 +138,7 @@ def unknown_crs(path: str, member: Optional[str], taken: Optional[CRS]) -> Optio
     GDAL takes what it does not know for longitude and latitude.
     """
     if member:
-        with zipfile.ZipFile(path) as archive:
+        with zips.whole(path), zipfile.ZipFile(path) as archive:
             content = archive.read(member)
     else:
         content = Path(path).read_bytes()

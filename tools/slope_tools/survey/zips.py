@@ -26,7 +26,7 @@ OF_POINTS = "points: make a raster of them with pdal (writers.gdal), gdal_grid -
 OF_MESH = "a mesh or TIN: rasterize its heights with QGIS (Rasterize mesh dataset) or CloudCompare"
 OF_LAYER = "points or contours: gdal_grid -a linear, or TIN interpolation of QGIS, makes a raster of them"
 SHOWN = 6           # names of members in a message
-# what damaged archives, and those with a password, raise
+# what damaged archives, and those with a password, raise; ValueError: a member that begins before the file does
 FAULTS = (zipfile.BadZipFile, tarfile.TarError, lzma.LZMAError, zlib.error, OSError, EOFError, RuntimeError, ValueError)
 
 
