@@ -39,7 +39,7 @@ class Drawn(NamedTuple):
     about: Mapping[str, Any] = {}
 
     def words(self) -> Set[str]:
-        """Its name and ref, by which it is told to be the same road as another."""
+        """Its name and ref, by which it is known to be the same road as another."""
         return {str(value) for key in ("name", "ref") if (value := attribute(self.about, key)) is not None}
 
     @property
