@@ -68,7 +68,7 @@ unpack() {
   tmp=$(mktemp -d "$out/source/tmp.XXXXXX")
   # shellcheck disable=SC2064 # this folder
   trap "rm -rf '$tmp'" RETURN EXIT
-  unpack_source "$1" "$tmp" || die "$1: $(head -n 1 "$tmp/log")"
+  unpack_source "$1" "$tmp" || die "$1: $(reason "$tmp/log")"
   mv -T "$tmp/tree" "$tree"
 }
 

@@ -190,10 +190,10 @@ if (cd "$tmp/work" && apt_get "${from_source[@]}" source lammps >"$tmp/log" 2>&1
   mv -T "$tmp"/work/lammps-*/ "$source_dir"
 else
   # a mirror that lost a file of the package may still have LAMMPS' own archive
-  why=$(sed -n 's/^E: //p' "$tmp/log" | head -n 1)
+  why=$(reason "$tmp/log")
   say "apt-get source lammps failed ($why), trying the upstream archive alone, without Debian's patches"
   upstream_source lammps "$tmp" "${apt_options[@]}" "${from_source[@]}" ||
-    die "apt-get source lammps failed: $why; the upstream archive: $(sed -n 's/^E: //p' "$tmp/log" | head -n 1)"
+    die "apt-get source lammps failed: $why; the upstream archive: $(reason "$tmp/log")"
   mv -T "$tmp/tree" "$source_dir"
 fi
 say "LAMMPS source: $source_dir"

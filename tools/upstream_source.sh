@@ -1,6 +1,12 @@
 # shellcheck shell=bash
 # Sourced by tools/setup.sh, tests/matrix.sh and tests/tools/test_newer_lammps.py.
 
+# reason LOG: why a command failed: its first line that is an error of apt, else its last one.
+reason() {
+  awk '/^E: / && !error { error = substr($0, 4) } NF { last = $0 }
+    END { print error ? error : last ? last : "without a message" }' "$1"
+}
+
 # unpack_source ARCHIVE TMP: a LAMMPS archive, with or without a folder around it, into TMP/tree. Most of its size is examples
 # and potentials, which stay behind. Fails with a line in TMP/log.
 unpack_source() {
@@ -41,7 +47,7 @@ debian_source() (
   tmp=$(mktemp -d "$(dirname "$target")/tmp.XXXXXX")
   # shellcheck disable=SC2064 # this folder
   trap "rm -rf '$tmp'" EXIT
-  fail() { echo "Debian $suite: $(grep -m1 '^E:' "$tmp/log")" >&2; exit 1; }
+  fail() { echo "Debian $suite: $(reason "$tmp/log")" >&2; exit 1; }
   mkdir -p "$tmp/lists/partial" "$tmp/sources"
 
   # shellcheck disable=SC2016 # apt expands these

@@ -13,8 +13,11 @@ from run_helpers import CRS_M, EAST, NORTH, write_asc, write_tif
 
 from slope_tools import cli
 from slope_tools.commands import stability
+from slope_tools.deposits import score
 from slope_tools.errors import SlopeError
 from slope_tools.findings import Finding
+from slope_tools.releases import release_scar
+from slope_tools.slips import failed
 from slope_tools.survey import beside, rasters
 from slope_tools.survey.rasters import Raster
 
@@ -87,6 +90,33 @@ def test_what_does_not_fit_is_one_line(bed):
         beside.heights_on("wide.asc", far)
     with pytest.raises(SlopeError, match="bed.tif: is in EPSG:6677, and the terrain must have a CRS, too"):
         beside.heights_on("bed.tif", TERRAIN._replace(crs=None))
+
+
+@pytest.mark.parametrize("unit, shown", [("ft", "ft"), ("US survey foot", "us-ft")])
+def test_a_false_tag_of_feet_is_refused_by_all_that_take_heights(bed, unit, shown):
+    with rasterio.open("feet.tif", "r+") as out:
+        out.write(BED, 1)
+        out.units = (unit,)
+    for taken in (lambda: beside.heights_on("feet.tif", TERRAIN),
+                  lambda: release_scar.read("feet.tif", None, TERRAIN, 0),
+                  lambda: release_scar.read("feet.tif", "surface", TERRAIN, 0),
+                  lambda: failed.of_base(TERRAIN, Path("feet.tif"), None, 2000, None)):
+        with pytest.raises(SlopeError, match=f"feet.tif: heights in {shown} must be confirmed.*--z-unit m, ft or us-ft"
+                                             " .*, got 11[0-9] m off"):
+            taken()
+    for taken in (lambda: score.read_observed("feet.tif", TERRAIN, 0.1, False),     # a thickness has nothing beside it
+                  lambda: release_scar.read("feet.tif", "depth", TERRAIN, 0)):
+        with pytest.raises(SlopeError, match=f"feet.tif: must be in metres, got {unit}"):
+            taken()
+
+
+def test_heights_in_feet_are_a_scar_in_metres(bed, monkeypatch):
+    assert release_scar.read("feet.tif", None, TERRAIN, 0).depth == pytest.approx(TERRAIN.z - BED)
+    assert failed.of_base(TERRAIN, Path("feet.tif"), None, 2000, None).cells
+    opened, names = rasters.opened, []
+    monkeypatch.setattr(rasters, "opened", lambda path, *more: names.append(path) or opened(path, *more))
+    beside.heights_on("feet.tif", TERRAIN)
+    assert names == ["feet.tif"]        # also for the unit
 
 
 @pytest.mark.parametrize("name", ["wide.asc", "survey.asc", "bed.tif"])

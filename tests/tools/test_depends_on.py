@@ -113,6 +113,17 @@ def test_a_file_of_a_site_counts_by_what_is_in_it(tmp_path, section, key, end):
     assert len(before) == 1 and site_choices.unread(choices, tmp_path).sources() != before
 
 
+@pytest.mark.parametrize("member", ["part/dem.tif", "a.shp", "*.csv"])
+def test_a_member_counts_by_its_archive(tmp_path, member):
+    (tmp_path / "site").mkdir()
+    choices = OfMass.of({"terrain": {"files": [f"{tmp_path}/site/../dem.zip/{member}"]}})
+    found = []
+    for content in "12":
+        (tmp_path / "dem.zip").write_text(content)
+        found.append(site_choices.unread(choices, tmp_path / "site").sources())
+    assert list(found[0]) == list(found[1]) == ["../dem.zip"] and found[0] != found[1]
+
+
 VIRTUAL = "<VRTDataset><X><SourceFilename shared='0' relativeToVRT=\"1\">{}</SourceFilename></X></VRTDataset>"
 DRAWN = "<OGRVRTDataSource><OGRVRTLayer name='x'><SrcDataSource>{}</SrcDataSource></OGRVRTLayer></OGRVRTDataSource>"
 

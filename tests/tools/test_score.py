@@ -262,7 +262,7 @@ def test_files_and_warnings(slope):
     ("run --observed none.tif", "none.tif: must be an existing file"),
     ("run --observed away.tif", "away.tif: must overlap the grid of the run, 0 0 150 100 (local metres), got 500 0"),
     ("run --observed zone8.tif", "zone8.tif: must be in the CRS of the run, EPSG:6677"),
-    ("run --observed negative.tif", "negative.tif: row 1 column 1: must be a thickness >= 0, got -1"),
+    ("run --observed negative.tif", "negative.tif: row 1 column 1: must be a thickness >= 0 and <= 9000 m, got -1"),
     ("run --observed turned.tif", "turned.tif: must be a raster with rows from west to east"),
     ("run --observed mapped.tif -o mapped.tif", "-o: must be a folder, got mapped.tif"),
 ])

@@ -198,6 +198,15 @@ def test_no_source_of_lammps(machine, tmp_path, uris, why):
     assert not list((tmp_path / ".lammps").iterdir())
 
 
+@pytest.mark.parametrize("log, why", [("x\nE: one\nE: two\n", "one"), ("tar: a\ntar: Exiting\n\n", "tar: Exiting"),
+                                      ("", "without a message")])
+def test_the_reason_of_a_failure(tmp_path, log, why):
+    (tmp_path / "log").write_text(log)
+    done = subprocess.run(["bash", "-c", '. "$0/tools/upstream_source.sh"; reason "$1"', TOP, tmp_path / "log"],
+                          capture_output=True, text=True)
+    assert (done.stdout, done.stderr) == (f"{why}\n", "")
+
+
 def test_no_root_and_no_sudo(machine, tmp_path):
     if os.geteuid() == 0:
         pytest.skip("for a user; this is root")

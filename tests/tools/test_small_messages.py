@@ -132,11 +132,12 @@ def test_a_road_of_a_layer_is_there(here):
 def test_all_that_is_missing_is_said_at_once(here, capsys):
     """Before the body is computed."""
     terrain()
-    write_geojson("road.geojson", LineString([(EAST + 20, NORTH + 30), (EAST + 80, NORTH + 30)]), crs="EPSG:6677")
-    status, _, err = called(capsys, shlex.split("site --terrain terrain.asc --release release.geojson "
-                                                "--road road.geojson --wall road.geojson -o mine"))
+    for name in ("road.geojson", "second.geojson"):
+        write_geojson(name, LineString([(EAST + 20, NORTH + 30), (EAST + 80, NORTH + 30)]), crs="EPSG:6677")
+    status, _, err = called(capsys, shlex.split("site --terrain terrain.asc --release release.geojson --road "
+                                                "road.geojson --road second.geojson --wall road.geojson -o mine"))
     assert status == 2 and err.count("\n") == 1, err
-    for item in ("--depth", "road.geojson: ", "--road-width", "--height"):
+    for item in ("--depth", "road.geojson: ", "second.geojson: ", "--road-width", "--height"):
         assert item in err, err
 
 

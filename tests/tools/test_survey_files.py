@@ -5,6 +5,7 @@ The ground is a plane with a hill, so that a cell at another place has another h
 import gzip
 import itertools
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -22,9 +23,11 @@ from rasterio.windows import Window
 
 from messages import is_one
 
+from slope_tools.errors import SlopeError
 from slope_tools.sites import site
 from slope_tools.sites.site_sections import OfMass
-from slope_tools.survey import crs, rasters
+from slope_tools.survey import crs, rasters, vectors, xyz, zips
+from slope_tools.survey.vectors import ignore
 
 COMMAND = "terrain"
 EAST, NORTH = 460000.0, 101000.0        # of the first centre in the south-west
@@ -242,7 +245,38 @@ def test_a_raster_in_the_zip_in_which_it_is_downloaded(made, here, name):
         archive.writestr("__MACOSX/._a.tif", "x")
         archive.writestr(f"{name}.aux.xml", "<PAMDataset/>")
     assert in_place(made("a.zip"))
-    assert rasters.surveyed_cell("a.zip") == 1 and rasters.is_raster("a.zip")
+    assert rasters.is_raster("a.zip")
+    assert rasters.read(f"./a.zip/{name}").z.shape == (ROWS, COLUMNS)
+    with zipfile.ZipFile("a.zip", "a") as archive:
+        archive.writestr("outline.geojson", "{}")
+    assert not rasters.is_raster("a.zip")       # a layer, with a raster or a list of its points
+
+
+@pytest.mark.parametrize("member", ["a.txt", "a.asc", "a.xyz", "a.tif", "a.geojson", "a.shp"])
+@pytest.mark.parametrize("password", [False, True])
+def test_an_archive_that_is_damaged_or_has_a_password(here, member, password):
+    with zipfile.ZipFile("a.zip", "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr(member, "0 1 2\n" * 40)
+        archive.writestr(f"{member[:-3]}shx", "")
+    data = Path("a.zip").read_bytes()
+    begin = 30 + len(member)
+    damaged = data[:begin] + b"\xff" * 9 + data[begin + 9:]
+    for head, at in ((b"PK\3\4", 4), (b"PK\1\2", 6)):     # where the first bit of the flags says that it is encrypted
+        data = re.sub(re.escape(head) + b"." * at, lambda found: found[0][:-2] + b"\1\0", data, flags=re.DOTALL)
+    Path("a.zip").write_bytes(data if password else damaged)
+    with pytest.raises(SlopeError, match="^a.zip") as raised:
+        vectors.read("a.zip", "Polygon") if member in ("a.geojson", "a.shp") else rasters.read("a.zip")
+    assert ("a.zip: must be a whole archive without a password" in str(raised.value)) or not password
+    Path("a.asc.gz").write_bytes(b"garbage")
+    with pytest.raises(SlopeError, match="^a.asc.gz: must be a whole archive"):
+        rasters.read("a.asc.gz")
+    with pytest.raises(FileNotFoundError), zips.open_text("gone.asc"):      # no archive
+        pass
+
+
+@pytest.mark.parametrize("name", ["A.HGT", "a.dt2", "a.asc.gz", "a.vrt", "a.tif", "folder/w001001.adf"])
+def test_the_names_of_rasters(name):
+    assert rasters.is_raster(name)
 
 
 def test_several_rasters_in_a_zip_are_merged(made, slope, here):
@@ -421,11 +455,23 @@ def test_a_grid_whose_north_is_not_north_is_said(made, code, east, north, angle)
 # --- the size of the survey's cells ---
 
 def test_the_cells_of_a_survey_are_in_the_crs_that_is_assigned(here):
-    tif("dem.tif", step=10.0, east=50.0, north=50.0, crs_="EPSG:4326")
-    of = OfMass.of({"terrain": {"files": ["dem.tif"], "assign_crs": "EPSG:31254"}})
-    assert rasters.surveyed_cell("dem.tif", site.crs_of(of, "dem.tif")) == 10
-    of = OfMass.of({"terrain": {"files": ["dem.tif"]}, "crs": {"assigned": {"dem.tif": "EPSG:2225"}}})
-    assert rasters.surveyed_cell("dem.tif", site.crs_of(of, "dem.tif")) == pytest.approx(3.048, abs=1e-3)
+    tif("dem.tif", step=10.0, east=50.0, north=50.0, crs_="EPSG:4326", z=points()[:, 2].reshape(ROWS, COLUMNS) / 100)
+
+    def surveyed(crs_, of):
+        choices = OfMass.of({**of, "terrain": {**of["terrain"], "files": ["dem.tif"], "crs": crs_}})
+        return site.terrain(choices, here, ignore, ignore)[1]["surveyed_cell"]
+    assert surveyed("EPSG:31254", {"terrain": {"assign_crs": "EPSG:31254"}}) == 10
+    of = {"terrain": {"z_unit": "m"}, "crs": {"assigned": {"dem.tif": "EPSG:2225"}}}
+    assert surveyed("EPSG:26942", of) == pytest.approx(3.048, abs=1e-3)
+
+
+def test_a_list_of_points_is_read_once(here, monkeypatch):
+    """Also for the size of its cells."""
+    write("a.xyz", points(2.0))
+    parsed, read = [], xyz.read
+    monkeypatch.setattr(xyz, "read", lambda name, form: parsed.append(name) or read(name, form))
+    choices = OfMass.of({"terrain": {"files": ["a.xyz"], "crs": CRS_M}})
+    assert site.terrain(choices, here, ignore, ignore)[1]["surveyed_cell"] == 2 and parsed == ["a.xyz"]
 
 
 def test_a_vrt_without_a_crs_is_no_list_of_points(succeed):

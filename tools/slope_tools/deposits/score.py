@@ -9,7 +9,7 @@ from ..errors import SlopeError
 from ..geometry import coverage, extent
 from ..survey import beside, polygons
 from ..survey.crs import same_crs
-from ..survey.rasters import Raster, crs_name, is_raster
+from ..survey.rasters import HIGHEST, Raster, crs_name, is_raster
 from . import reach
 from .connected import connected, top
 from .volume_files import text
@@ -35,7 +35,7 @@ def read_observed(path, raster, threshold, local, warn=None):
     if not is_raster(path):
         polygon = polygons.read_local(path, raster, local)
         return from_polygon(polygon, raster)
-    mapped = beside.read(path, raster, local=beside.Local(local), warn=warn,
+    mapped = beside.read(path, raster, False, local=beside.Local(local), warn=warn,
                          remedy=" (--local if it is in the run's local metres)")
     return from_raster(path, mapped, raster, threshold)
 
@@ -62,10 +62,10 @@ def from_raster(path, mapped, raster, threshold):
         raise SlopeError(path, f"must be in the CRS of the run, {crs_name(raster.crs)} (gdalwarp -t_srs reprojects)",
                          crs_name(mapped.crs))
     thickness = np.nan_to_num(mapped.z, nan=0.0)
-    wrong = np.argwhere(thickness < 0)
+    wrong = np.argwhere((thickness < 0) | (thickness > HIGHEST))
     if len(wrong):
         row, column = wrong[0]
-        raise SlopeError(f"{path}: row {row + 1} column {column + 1}", "must be a thickness >= 0",
+        raise SlopeError(f"{path}: row {row + 1} column {column + 1}", f"must be a thickness >= 0 and <= {HIGHEST:g} m",
                          f"{thickness[row, column]:g}")
     there = beside.in_local(mapped, raster)
     to_index = ~raster.transform * there

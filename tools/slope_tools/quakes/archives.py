@@ -3,33 +3,28 @@ to the disk."""
 import fnmatch
 import gzip
 import io
-import lzma
 import re
 import tarfile
 import zipfile
-import zlib
 from pathlib import Path, PurePosixPath
 from typing import Iterator, List, Tuple
 
 from ..errors import SlopeError
-from ..survey.zips import is_of_macos
+from ..survey.zips import is_of_macos, split, whole
 
 LARGEST = 300_000_000       # bytes of a file; a record of ten minutes has some 3 million
 DEEPEST = 3                 # archives in archives
-FAULTS = (zipfile.BadZipFile, tarfile.TarError, lzma.LZMAError, zlib.error, OSError, EOFError, RuntimeError,
-          NotImplementedError, ValueError)
 
 
 def files(path) -> List[Tuple[str, bytes]]:
     """Name and content of a file, or of those of an archive; ARCHIVE/PATTERN: of those that it names."""
-    archive = next((one for one in (Path(path), *Path(path).parents) if one.is_file()), Path(path))
-    pattern = str(path)[len(str(archive)):].lstrip("/")
+    archive, pattern = split(str(path))
     try:
-        data = archive.read_bytes()
+        data = Path(archive).read_bytes()
     except OSError as error:
         raise SlopeError(path, f"cannot be read: {error.strerror}") from None
-    found = list(unpacked(str(archive), data))
-    names = [name[len(str(archive)) + 1:] for name, _ in found]
+    found = list(unpacked(archive, data))
+    names = [name[len(archive) + 1:] for name, _ in found]
     if pattern:
         pattern = pattern.removesuffix(".gz")       # which names are without
         found = [one for one, name in zip(found, names) if any(fnmatch.fnmatch(part, pattern) for part in
@@ -45,7 +40,7 @@ def unpacked(name: str, data: bytes, depth: int = 0) -> Iterator[Tuple[str, byte
     if depth > DEEPEST:
         raise SlopeError(name, f"archives must be in at most {DEEPEST} others")
     opened = io.BytesIO(data)
-    try:
+    with whole(name):
         if data[:4] == b"PK\3\4":
             with zipfile.ZipFile(opened) as archive:
                 for one in archive.infolist():
@@ -63,8 +58,6 @@ def unpacked(name: str, data: bytes, depth: int = 0) -> Iterator[Tuple[str, byte
                         yield from unpacked(f"{name}/{entry.name}", read(name, tar.extractfile(entry)), depth + 1)
         else:
             yield name, data
-    except FAULTS as error:
-        raise SlopeError(name, f"must be a whole archive without a password ({error})") from error
 
 
 def read(name: str, member) -> bytes:

@@ -20,7 +20,6 @@ from ..errors import SlopeError
 from ..findings import Finding, finding
 from ..releases import release, release_files, release_toe
 from ..survey import local_terrain, polygons, rasters
-from ..survey.crs import as_crs
 from ..survey.rasters import Raster, crs_name
 from . import site_bodies, site_budget, site_choices, site_deck, site_folder, site_layers, site_trial, site_warnings
 from .site_budget import Size, Trial
@@ -120,6 +119,7 @@ def build(given: OfMass, known: Derived, new: Path, folder: Path, machine: Machi
         warn(said)
     wanted = site_layers.with_missing(given, lambda: wanted_body(given, new))
     raster, about = terrain(given, new, tell, keep)
+    surveyed = about["surveyed_cell"]
     found = body_of(given, wanted, raster, keep)
     if found.choices.get("scar_is") == "height":
         steps = [*about["steps"], f"the height of the mass in {wanted.scar} added"]
@@ -148,8 +148,7 @@ def build(given: OfMass, known: Derived, new: Path, folder: Path, machine: Machi
     say_size(choices, size, found, machine, tell)
     for one in (*site_warnings.of_resistance(choices), *site_warnings.of_zones(layers.zones),
                 *site_warnings.site_warnings(found.measures, size, trial),
-                *site_warnings.of_cells(found.area.z - found.slip, found.area.cell, max(
-                    rasters.surveyed_cell(name, crs_of(choices, name)) for name in choices.terrain.files)),
+                *site_warnings.of_cells(found.area.z - found.slip, found.area.cell, surveyed),
                 *(one for name, road in layers.roads.items() for one in site_warnings.of_road(
                     road, choices.road.width, size.diameter, max(found.area.cell, choices.model.cell or 0.0),
                     name))):
@@ -205,12 +204,6 @@ def wanted_body(choices: OfMass, new: Path) -> release.Wanted:
     return release.check(release.Wanted(
         str(new / TERRAIN), one.polygon, one.shape, one.depth, one.volume, one.curvature, one.dip, one.direction,
         one.scar, one.scar_is, one.least, crs, scar_crs, advice=advice(choices, where)))
-
-
-def crs_of(choices: Choices, path: str):
-    """The CRS that the choices assign to an elevation model, None if they assign none."""
-    name = site_choices.assigned(choices, path) or choices.terrain.assign_crs
-    return as_crs("--assign-crs", name) if name else None
 
 
 def terrain(choices: Choices, new: Path, tell, warn) -> Tuple[Raster, Dict[str, Any]]:

@@ -16,7 +16,7 @@ import yaml
 from .. import disk, schemas, written_yaml
 from ..errors import SlopeError
 from ..releases import packing
-from ..survey import file_parts, vectors
+from ..survey import file_parts, vectors, zips
 from ..survey.crs import as_crs
 from . import site_found
 from .site_found import Found
@@ -144,9 +144,10 @@ class Folder(Generic[K]):
         that say what they mean."""
         digests: Dict[str, str] = {}
         for place, name in zip(source_files(self.choices), source_files(self.written)):
-            path = vectors.source(place).path
+            path, member = zips.split(os.path.normpath(vectors.source(place).path))
             if os.path.isfile(path):
-                digests[os.path.normpath(vectors.source(name).path)] = file_parts.content(path)
+                own = os.path.normpath(vectors.source(name).path)
+                digests[own.removesuffix(f"/{member}")] = file_parts.content(path)
         return digests
 
 

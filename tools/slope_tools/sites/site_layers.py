@@ -60,8 +60,8 @@ def with_missing(choices: OfMass, check: Callable[[], T]) -> T:
         checked.append(check())
     except SlopeError as error:
         missing.append(error)
-    if road.file and road.width is None and roads.is_line(road.file):
-        missing.append(SlopeError(road.file, roads.WITHOUT_WIDTH))
+    missing += [SlopeError(path, roads.WITHOUT_WIDTH) for path in site_roads.listed(choices)
+                if road.width is None and roads.is_line(path)]
     if along.walls and along.height is None:
         missing.append(SlopeError("--height", site_inputs.WITHOUT_HEIGHT))
     if missing:
@@ -207,9 +207,9 @@ def observed_layer(choices: OfMass, raster: Raster, folder: Path, tell, warn):
     if not same_crs(mapped.crs, raster.crs):
         raise SlopeError(path, f"must be in the CRS of the terrain, {crs_name(raster.crs)} (gdalwarp -t_srs "
                          "reprojects)", crs_name(mapped.crs))
-    wrong = np.argwhere(mapped.z < 0)
+    wrong = np.argwhere((mapped.z < 0) | (mapped.z > rasters.HIGHEST))
     if len(wrong) or not np.nansum(mapped.z) > 0:
-        raise SlopeError(path, "must be thicknesses >= 0, somewhere > 0",
+        raise SlopeError(path, f"must be thicknesses >= 0 and <= {rasters.HIGHEST:g} m, somewhere > 0",
                          f"{mapped.z[tuple(wrong[0])]:g}" if len(wrong) else "none")
     check_overlap(path, mapped, raster)
     target = folder / f"{OBSERVED}.tif"

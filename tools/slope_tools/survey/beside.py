@@ -32,20 +32,30 @@ def read(path: Union[str, Path], terrain: Raster, heights: bool = True, crs: Opt
     """A raster file, in a CRS if the terrain has one: coordinates are transform * (column, row) + offset.
 
     heights: the values are, and become metres; crs: of the raster, whatever it says. warn: called with what is taken
-    for granted, remedy: of that, where the raster has no CRS. Raises SlopeError where the file is no raster, or has no
-    value.
+    for granted, remedy: of that, where the raster has no CRS. Raises SlopeError where the file is no raster, has no
+    value, or says that its heights are feet while those of the terrain speak for metres.
     """
-    found = rasters.read_asc_local(path, heights, ask=False)
+    stored = rasters.opened(path, heights)
+    found = rasters.placed(path, rasters.in_metres(path, stored, heights, ask=False))
     if not np.isfinite(found.z).any():
         raise SlopeError(path, "must hold a value, all cells are NODATA")
     bare = rasters.read_sidecar(path) is None
     if local.given and bare:
-        return found._replace(crs=terrain.crs, offset=terrain.offset)
-    found = found._replace(crs=crs or found.crs)
-    if found.crs is not None:
-        return found
-    of_survey, as_local = found._replace(crs=terrain.crs), found._replace(crs=terrain.crs, offset=terrain.offset)
-    if bare and local.guessed and terrain.offset != (0.0, 0.0) and touches(as_local, terrain):
+        found = found._replace(crs=terrain.crs, offset=terrain.offset)
+    elif crs or found.crs:
+        found = found._replace(crs=crs or found.crs)
+    else:
+        found = unexplained(path, found._replace(crs=terrain.crs), terrain, bare and local.guessed, warn, remedy)
+    if heights and stored.unit not in (None, "m"):
+        check_unit(path, found, terrain, stored.unit)
+    return found
+
+
+def unexplained(path: Union[str, Path], of_survey: Raster, terrain: Raster, guess: bool,
+                warn: Optional[Callable[[Finding], Any]], remedy: str) -> Raster:
+    """A raster without a CRS in the survey's coordinates, or by a guess in the terrain's local metres, see read()."""
+    as_local = of_survey._replace(offset=terrain.offset)
+    if guess and terrain.offset != (0.0, 0.0) and touches(as_local, terrain):
         if not touches(of_survey, terrain):
             tell(warn, "local raster", path)
             return as_local
@@ -105,14 +115,17 @@ def on_cells(path: Union[str, Path], found: Raster, terrain: Raster) -> np.ndarr
 def heights_on(path: Union[str, Path], terrain: Raster, local: bool = False,
                warn: Optional[Callable[[Finding], Any]] = None) -> np.ndarray:
     """Heights (m) of a raster file at the cells of a terrain; local: those that no file places are in local metres."""
-    z = on_cells(path, read(path, terrain, local=Local(local, True), warn=warn), terrain)
-    factor = rasters.UNITS[rasters.opened(path).unit or "m"]
-    as_tagged, as_metres = (float(np.nanmedian(np.abs(one - terrain.z))) for one in (z, z / factor))
+    return on_cells(path, read(path, terrain, local=Local(local, True), warn=warn), terrain)
+
+
+def check_unit(path: Union[str, Path], found: Raster, terrain: Raster, unit: str) -> None:
+    """Raise SlopeError if heights that were taken for feet are nearer to the terrain's as metres: the tag is wrong."""
+    z = on_cells(path, found, terrain)
+    as_tagged, as_metres = (float(np.nanmedian(np.abs(one - terrain.z))) for one in (z, z / rasters.UNITS[unit]))
     if as_metres < as_tagged:
-        raise SlopeError(path, "must have the unit that its tag says, and as metres its heights are nearer to the "
-                         f"terrain's, {as_metres:.3g} m at the median: slope terrain --z-unit m makes such a raster",
-                         f"{as_tagged:.3g} m")
-    return z
+        raise SlopeError(path, f"heights in {unit} must be confirmed, as in metres they are nearer to the terrain's, "
+                         f"{as_metres:.3g} m off at the median: slope terrain --z-unit m, ft or us-ft makes a raster "
+                         "in metres of it", f"{as_tagged:.3g} m off")
 
 
 def has_cells(found: Raster, terrain: Raster) -> bool:

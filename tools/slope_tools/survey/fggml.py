@@ -12,7 +12,6 @@ import math
 import re
 import warnings
 import zipfile
-import zlib
 from typing import List, NamedTuple
 from xml.parsers import expat
 
@@ -94,7 +93,7 @@ def _read_zip(source, where, room=None):
     size = source.seek(0, io.SEEK_END)
     try:
         archive = zipfile.ZipFile(source)
-    except (zipfile.BadZipFile, NotImplementedError, ValueError) as error:
+    except zips.FAULTS as error:
         raise SlopeError(where, f"must be a whole zip file ({str(error)[:LONGEST]})") from error
     wanted = (".xml", ".zip") if outer else (".xml",)
     members = [member for member in archive.infolist() if member.filename.lower().endswith(wanted)
@@ -124,8 +123,7 @@ def _read_zip(source, where, room=None):
                     tiles += _read_zip(io.BytesIO(inner.read()), name, room)
         except NotTiles:
             continue  # metadata, or roads and buildings
-        except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, ValueError,
-                OSError) as error:     # ValueError: a member that begins before the file does
+        except zips.FAULTS as error:
             raise SlopeError(name, f"is damaged ({str(error)[:LONGEST]})") from error
     if outer and not tiles:
         inside = [member.filename for member in archive.infolist() if not zips.is_of_macos(member.filename)]

@@ -12,6 +12,7 @@ from rich.progress import track
 from .. import streams
 from ..errors import SlopeError
 
+UNITS = {"m": 1.0, "ft": 0.3048, "us-ft": 1200 / 3937}      # m, of heights
 BYTES_PER_CELL = 40        # peak memory of `slope terrain` per cell, measured 22 to 33 for 16 million cells
 
 

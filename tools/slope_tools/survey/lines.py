@@ -131,18 +131,17 @@ def check_order(path, lines, raster, local, crs):
     """Raise SlopeError if lines miss the terrain, and would not with x and y exchanged; crs: None of the terrain's."""
     bounds = getattr(raster, "extent", None) or extent(raster)
 
-    def placed(order):
-        points = [np.asarray(line.coords)[:, order] for line in lines.geoms]
+    def placed(given):
+        points = [np.asarray(line.coords)[:, :2] for line in given.geoms]
         if not (local or crs is None or same_crs(crs, raster.crs)):
             points = [np.transpose(transform(crs, raster.crs, *line.T)) for line in points]
         return MultiLineString([line - (0.0 if local else raster.offset) for line in points])
 
     try:
-        there, turned = placed([0, 1]), placed([1, 0])
-        misses = not there.intersects(box(*bounds)) and turned.intersects(box(*bounds))
-    except (SlopeError, ShapelyError, ValueError):       # one of both has no place
+        there = placed(lines)
+    except polygons.NO_PLACE:
         return
-    if misses:
+    if not there.intersects(box(*bounds)) and polygons.fits_exchanged(lines, placed, bounds):
         raise SlopeError(path, f"must overlap the terrain{polygons.EXCHANGED}, local x y {polygons.decimetres(bounds)}",
                          polygons.decimetres(there.bounds))
 

@@ -22,6 +22,9 @@ from .resampling import needed, regrid
 from .terrain import DIFFER, Tile, declare, merge, read_fggml
 
 
+DEGREE = 111_195.0      # m along a meridian
+
+
 class Wanted(NamedTuple):
     """How the terrain shall be; None: as it is in the files."""
     crs: Optional[str] = None           # such as EPSG:6677
@@ -64,7 +67,8 @@ def own_crs(path: str, wanted: Wanted, assigned: Optional[CRS]) -> Optional[CRS]
 
 def make(inputs: Sequence[str], output: Path, wanted: Wanted, tell: Callable[[str], Any],
          warn: Callable[[Finding], Any]) -> Dict[str, Any]:
-    """Write the terrain of survey files to output (.asc, with its sidecar); returns the sidecar.
+    """Write the terrain of survey files to output (.asc, with its sidecar); returns the sidecar, and surveyed_cell: the
+    size (m) of the largest cells of the files, about; 0 for FG-GML.
 
     tell is called with a line for each thing that was done, warn with warnings. Raises SlopeError on bad input.
     """
@@ -75,6 +79,7 @@ def make(inputs: Sequence[str], output: Path, wanted: Wanted, tell: Callable[[st
         steps.append(step)
         tell(step)
 
+    surveyed = 0.0
     cell, marks, differ = wanted.cell, Marks(wanted.nodata), wanted.differ or DIFFER
     files = [(path, name) for path in inputs for name in zips.rasters_in(path) or [path]]
     if any(fggml.is_one(name) for _, name in files):
@@ -89,6 +94,7 @@ def make(inputs: Sequence[str], output: Path, wanted: Wanted, tell: Callable[[st
             return needed(whole, crs or whole.crs, wanted.cell, wanted.bounds, wanted.fill + 2)
         tiles = [declare(name, crs, keep, warn, own_crs(path, wanted, assigned), wanted.z_unit, marks,
                          part if wanted.bounds else None) for path, name in files]
+        surveyed = max(surveyed_cell(tile.whole) for tile in tiles)
         tile = merge(tiles, keep, warn, wanted.cell, differ)
         crs = crs or tile.whole.crs
     raster = tile.raster
@@ -121,7 +127,15 @@ def make(inputs: Sequence[str], output: Path, wanted: Wanted, tell: Callable[[st
         east, north = raster.transform * (0, len(z))
         origin = math.floor(east + 1e-6), math.floor(north + 1e-6)  # 1e-6: rounding noise
     local = Raster(z, Affine.translation(-origin[0], -origin[1]) * raster.transform, crs, origin)
-    return rasters.write_asc_local(output, local, {"filled_cells": filled, "sources": list(inputs), "steps": steps})
+    about = rasters.write_asc_local(output, local, {"filled_cells": filled, "sources": list(inputs), "steps": steps})
+    return {**about, "surveyed_cell": surveyed}
+
+
+def surveyed_cell(raster: Raster) -> float:
+    """The size (m) of the cells of a raster in its CRS, about."""
+    crs = raster.crs
+    unit = 1.0 if crs is None else DEGREE if crs.is_geographic else crs.linear_units_factor[1]
+    return abs(raster.transform.e) * unit
 
 
 def check_pits(raster: Raster, marks: Marks, where: str, allowed: bool, warn: Callable[[Finding], Any]) -> None:

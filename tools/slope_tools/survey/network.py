@@ -39,7 +39,7 @@ class Drawn(NamedTuple):
     about: Mapping[str, Any] = {}
 
     def words(self) -> Set[str]:
-        """Its name and ref, by which it is told to be the same road as another."""
+        """Its name and ref, by which it is known to be the same road as another."""
         return {str(value) for key in ("name", "ref") if (value := attribute(self.about, key)) is not None}
 
     @property
@@ -77,7 +77,7 @@ def roads_of(drawn: Sequence[Drawn]) -> List[One]:
     nodes = at_nodes(ways)
     partner: Dict[End, End] = {}
     for island in islands(ways, nodes):
-        pass_island(island, ways, nodes, drawn, partner)
+        pass_island(island, ways, drawn, partner)
     for node in nodes.values():
         pair_up(node, ways, drawn, partner)
     return [road for chain in chains(ways, partner) for road in as_roads(chain, ways, drawn)]
@@ -190,8 +190,7 @@ def in_order(within: Sequence[int], ways: Sequence[Way]) -> Optional[Tuple[List[
     return (numbers, starts) if at == first else None
 
 
-def pass_island(island: Island, ways: List[Way], nodes: Mapping[int, Sequence[End]], drawn: Sequence[Drawn],
-                partner: Dict[End, End]) -> None:
+def pass_island(island: Island, ways: List[Way], drawn: Sequence[Drawn], partner: Dict[End, End]) -> None:
     """Join the roads that come to an island by one side of it; partner gets their ends."""
     if any((number, end) in partner for number in island.ways for end in (0, 1)):
         return          # a side of a larger one, that is passed already

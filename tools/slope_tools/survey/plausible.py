@@ -6,7 +6,7 @@ import numpy as np
 
 from ..errors import SlopeError
 from ..findings import Finding
-from .grids import Raster
+from .grids import UNITS, Raster
 from .marks import Marks, text
 
 DEEP = 10.0         # m; a pit is deeper than this and than STEEP_SIDES cells, on all sides
@@ -14,7 +14,6 @@ STEEP_SIDES = 2.0
 FEW = 100           # cells; fewer do not show what a ground spans
 STEEPEST = 50.0     # degrees, mean of a terrain; steeper ones may be in feet
 ROWS = 1000         # of a terrain that are looked at for its slope
-FOOT = 0.3048
 BRIGHT, MOST = 240.0, 255.0     # of a picture: its brightest cell is between these
 
 
@@ -110,7 +109,7 @@ def warn_of_picture(raster: Raster, warn: Callable[[Finding], Any]) -> None:
         warn(Finding("picture", {"low": float(known.min()), "high": float(known.max())}))
 
 
-def mean_slope(raster) -> float:
+def mean_slope(raster: Raster) -> float:
     """Of a terrain in metres, degrees, by differences in some of its rows; NaN where there are none."""
     rows = len(raster.z)
     if min(raster.z.shape) < 2:
@@ -125,10 +124,10 @@ def mean_slope(raster) -> float:
 
 def in_feet(slope: float) -> float:
     """The slope (degrees) of a ground whose heights are not metres but feet."""
-    return math.degrees(math.atan(math.tan(math.radians(slope)) * FOOT))
+    return math.degrees(math.atan(math.tan(math.radians(slope)) * UNITS["ft"]))
 
 
-def ask(path, raster, crs, unit: str, metres: float) -> None:
+def ask(path, raster: Raster, crs, unit: str) -> None:
     """Raise SlopeError where a plan in metres has heights (of a Raster) that the file says are feet: many such tags are
     wrong.
 
@@ -137,7 +136,7 @@ def ask(path, raster, crs, unit: str, metres: float) -> None:
     if not np.isfinite(raster.z).any() or crs is not None and (
             crs.is_geographic or not math.isclose(crs.linear_units_factor[1], 1)):
         return
-    feet = raster._replace(z=raster.z * metres)
+    feet = raster._replace(z=raster.z * UNITS[unit])
     raise SlopeError(path, "heights in feet over a plan in metres must be confirmed, as many such tags are wrong: "
                      f"--z-unit m if they are metres, and the ground falls by {mean_slope(raster):.3g} degrees on "
                      f"average, --z-unit ft or us-ft if they are feet, {mean_slope(feet):.3g} degrees (slope terrain, "

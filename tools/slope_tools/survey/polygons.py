@@ -15,7 +15,7 @@ from shapely import wkt
 from shapely.errors import ShapelyError
 from shapely.geometry import MultiPolygon, Polygon, box
 from shapely.geometry.base import BaseGeometry
-from shapely.ops import snap, unary_union
+from shapely.ops import snap, transform, unary_union
 from shapely.validation import explain_validity
 
 from .. import disk
@@ -30,6 +30,7 @@ AT_180 = 1e-6      # degrees, from 180, at which a geometry is cut there
 CUT = 1e-3         # m, between the halves of a cut geometry in another CRS
 DIGITS = 6     # decimals of a written coordinate, m: beyond them is the noise of origins and projections
 EXCHANGED = " (with x and y exchanged it would)"
+NO_PLACE = (SlopeError, ShapelyError, ValueError)       # raised for points where a CRS has no coordinates
 HEAD = "local metres:"       # in the first line of what write() wrote
 PLACE = re.compile(rf"^# {HEAD} .+", re.MULTILINE)
 WKT = re.compile(vectors.KINDS, re.IGNORECASE)
@@ -109,16 +110,21 @@ def _placed(path, polygons, raster, local, plain, crs, advice, anywhere=False):
     bounds = getattr(raster, "extent", None) or extent(raster)
     if not anywhere and geometry.intersection(box(*bounds)).area == 0:
         hint = " (with --local it would)" if plain and as_it_stands.intersection(box(*bounds)).area > 0 else ""
-        with suppress(SlopeError, ShapelyError):
-            turned = map_points(as_it_stands, lambda points: points[:, ::-1])
-            turned = turned if local else _to_local(path, turned, crs, raster, plain, advice)
-            if turned.intersection(box(*bounds)).area > 0:
-                hint = EXCHANGED
+        if fits_exchanged(as_it_stands, lambda turned: turned if local else _to_local(path, turned, crs, raster, plain,
+                                                                                      advice), bounds):
+            hint = EXCHANGED
         read_as = "" if local or plain else (f", read as {crs_name(crs)}: is that right? The terrain is in "
                                              f"{crs_name(raster.crs)}; {advice.wrong_crs}")
         raise SlopeError(path, f"must overlap the terrain{hint}, local x y {decimetres(bounds)}",
                          decimetres(geometry.bounds) + read_as)
     return geometry
+
+
+def fits_exchanged(geometry, to_local, bounds):
+    """Whether a geometry, which to_local brings to a terrain's local metres, lies on it with x and y exchanged."""
+    with suppress(*NO_PLACE):
+        return to_local(transform(lambda x, y, *_: (y, x), geometry)).intersects(box(*bounds))
+    return False
 
 
 def decimetres(values):

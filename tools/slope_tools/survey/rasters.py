@@ -6,7 +6,6 @@ counted from the outer corner of the first cell, to (x, y).
 """
 import math
 import warnings
-from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple, Optional, Tuple, Union
 
@@ -24,24 +23,20 @@ from ..errors import SlopeError
 from ..schemas import COUNT, TEXT, mapping, numbers
 from . import plausible, text_grids, xyz, zips
 from .crs import crs_name, epsg, require_axes
-from .grids import Raster, check_memory, progress
+from .grids import UNITS, Raster, check_memory, progress
 from .marks import Scale, cells_of, text
 
 WHAT_SIDECAR = "a sidecar that `slope terrain` wrote"
 ORIGIN, EXTENT = ("east", "north"), ("xlo", "ylo", "xhi", "yhi")
 SIDECAR = mapping({"crs": mapping({"wkt": TEXT}, null=True), "origin": mapping(numbers(*ORIGIN)),
                    "size": mapping({"rows": COUNT, "columns": COUNT}), "extent": mapping(numbers(*EXTENT))})
-# of files that are rasters and not layers of shapes
-ENDINGS = {".tif", ".tiff", ".asc", ".vrt", ".img", ".bil", ".xyz"}
 NODATA = -9999             # in written files
 HIGHEST = 9000.0           # m; beyond +-HIGHEST a value is a NODATA mark that the file does not declare (-9999, -32768)
-UNITS = {"m": 1.0, "ft": 0.3048, "us-ft": 1200 / 3937}      # m, of heights
 TAGS = {"m": "m", "metre": "m", "meter": "m", "metres": "m", "meters": "m", "ft": "ft", "foot": "ft", "feet": "ft",
         "international foot": "ft", "us survey foot": "us-ft", "us survey feet": "us-ft", "ftus": "us-ft",
         "us-ft": "us-ft", "foot_us": "us-ft"}      # how files spell them, in lower case
 NO_UNIT = {"", "unspecified", "unknown", "undefined", "none"}       # how files spell that they do not say one
 CACHE = 64              # MB, of GDAL, of parts of large files
-DEGREE = 111_195.0      # m along a meridian
 
 
 class File(NamedTuple):
@@ -84,7 +79,7 @@ def in_metres(path, found, heights=True, unit=None, marks=None, assigned=None, a
             marks.note(found.stored, found.none, scale)
     raster = Raster(scale.metres(z), found.transform, found.crs)
     if heights and ask and unit is None and own != "m":
-        plausible.ask(path, raster._replace(z=z), assigned or found.crs, own, UNITS[own])
+        plausible.ask(path, raster._replace(z=z), assigned or found.crs, own)
     return raster
 
 
@@ -101,8 +96,7 @@ def opened(path, heights=True, unit=None, part=None, assigned=None):
         if grid.degrees and not (assigned is not None and assigned.is_geographic):
             raise SlopeError(path, "columns in degrees must have a CRS in degrees; --assign-crs EPSG:n gives one",
                              crs_name(assigned))
-        said = unit_of(path, grid.unit, None, heights, unit)
-        return File(grid.z, np.isnan(grid.z), grid.transform, None, unit=said)
+        return File(grid.z, np.isnan(grid.z), grid.transform, None, unit=unit_of(path, grid.unit, None, heights, unit))
     try:
         # Env: GDAL's own messages are not for stderr
         with warnings.catch_warnings(), rasterio.Env(GDAL_CACHEMAX=CACHE):
@@ -122,7 +116,8 @@ def unreadable(path, name, error):
 
 def is_raster(path):
     """Whether a file is a raster and no layer of shapes, by its name, or what a .zip holds."""
-    return Path(path).suffix.lower() in ENDINGS or bool(zips.rasters_in(path))
+    name = str(path).lower().removesuffix(".gz")
+    return name.endswith((*zips.RASTERS, ".vrt")) or bool(zips.rasters_in(path, alone=True))
 
 
 def only(path):
@@ -184,7 +179,7 @@ def unit_of(path, tag, crs, heights=True, given=None):
 def _read(path, name, source, unit, part):
     """The File of an open raster, or of a part of it."""
     if source.count != 1:
-        bands = ", ".join(f"{band} {said}".rstrip() for band, said in enumerate((one or "" for one in
+        bands = ", ".join(f"{band} {label}".rstrip() for band, label in enumerate((one or "" for one in
                           source.descriptions), 1))
         raise SlopeError(path, f"must have one band, the heights; gdal_translate -b N takes one of {bands}",
                          f"{source.count} bands")
@@ -236,22 +231,6 @@ def placed(path, raster):
     if place.size != raster.z.shape or not np.allclose(raster.transform * (0, 0), place.extent[::3], rtol=0, atol=1e-3):
         raise SlopeError(Path(path).with_suffix(".yaml"), f"must be the sidecar of {path}: size and extent differ")
     return raster._replace(crs=place.crs, offset=place.offset)
-
-
-def surveyed_cell(path, assigned=None) -> float:
-    """The size (m) of the cells of a raster as it was surveyed, about; 0 where it has none, such as FG-GML.
-
-    assigned: the CRS of its coordinates, whatever it says.
-    """
-    sides = []
-    for name in zips.rasters_in(path) or [path]:
-        with suppress(RasterioError, OSError, SlopeError):
-            place = read_place(name)
-            xlo, ylo, xhi, yhi = place.extent
-            crs = assigned or place.crs
-            unit = 1.0 if crs is None else DEGREE if crs.is_geographic else crs.linear_units_factor[1]
-            sides.append((yhi - ylo) / place.size[0] * unit)
-    return max(sides, default=0.0)
 
 
 class Place(NamedTuple):

@@ -6,7 +6,6 @@ geometry.
 import contextlib
 import io
 import json
-import os
 import re
 import zipfile
 from pathlib import Path
@@ -100,7 +99,7 @@ def read(name: object, kind: str, warn: Callable[[Finding], Any] = ignore) -> Fo
     where = require_file(name)
     check_shapefile(Path(where.path))
     member = zips.layer_in(where.path, where.layer)
-    opened = f"/vsizip/{{{os.path.abspath(where.path)}}}/{member}" if member else where.path
+    opened = zips.gdal_name(f"{where.path}/{member}") if member else where.path
     what = {"Polygon": "polygons", "Line": "lines"}[kind]
     try:
         # fiona prints what it cannot decode of GDAL's messages
@@ -139,7 +138,7 @@ def unknown_crs(path: str, member: Optional[str], taken: Optional[CRS]) -> Optio
     GDAL takes what it does not know for longitude and latitude.
     """
     if member:
-        with zipfile.ZipFile(path) as archive:
+        with zips.whole(path), zipfile.ZipFile(path) as archive:
             content = archive.read(member)
     else:
         content = Path(path).read_bytes()

@@ -1,11 +1,13 @@
 """Files as they are downloaded: layers of a GIS and rasters in a .zip, which GDAL reads without unpacking."""
 import gzip
 import io
+import lzma
 import os
 import re
+import tarfile
 import zipfile
 import zlib
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import ExitStack, contextmanager, nullcontext
 from pathlib import Path, PurePosixPath
 from typing import Iterator, List, Optional, Sequence, TextIO, Tuple
 
@@ -24,6 +26,17 @@ OF_POINTS = "points: make a raster of them with pdal (writers.gdal), gdal_grid -
 OF_MESH = "a mesh or TIN: rasterize its heights with QGIS (Rasterize mesh dataset) or CloudCompare"
 OF_LAYER = "points or contours: gdal_grid -a linear, or TIN interpolation of QGIS, makes a raster of them"
 SHOWN = 6           # names of members in a message
+# what damaged archives, and those with a password, raise; ValueError: a member that begins before the file does
+FAULTS = (zipfile.BadZipFile, tarfile.TarError, lzma.LZMAError, zlib.error, OSError, EOFError, RuntimeError, ValueError)
+
+
+@contextmanager
+def whole(name: str) -> Iterator[None]:
+    """Raise SlopeError if an archive turns out to be damaged, or to have a password."""
+    try:
+        yield
+    except FAULTS as error:
+        raise SlopeError(name, f"must be a whole archive without a password ({error})") from error
 
 
 def is_of_macos(member: str) -> bool:
@@ -33,7 +46,7 @@ def is_of_macos(member: str) -> bool:
 
 
 def check_length(name: str, size: int, head: bytes) -> None:
-    """Raise SlopeError if a .shp, .shx or .dbf has less bytes than its head (32 bytes) says: features would be lost."""
+    """Raise SlopeError if a .shp, .shx or .dbf has fewer bytes than its head (32 bytes) says: features are lost."""
     if PurePosixPath(name).suffix.lower() == ".dbf":
         records, first, each = (int.from_bytes(head[k:k + n], "little") for k, n in ((4, 4), (8, 2), (10, 2)))
         wanted = first + records * each
@@ -55,29 +68,31 @@ def layer_in(path: str, layer: Optional[str] = None) -> Optional[str]:
     """
     if Path(path).suffix.lower() != ".zip" or not zipfile.is_zipfile(path):
         return None
-    try:
-        with zipfile.ZipFile(path) as archive:
-            names = archive.namelist()
-    except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError) as error:
-        raise SlopeError(path, f"must be a whole zip file ({error})") from error
-    found = [name for name in names if PurePosixPath(name).suffix.lower() in LAYERS and not is_of_macos(name)]
-    if len(found) > 1 and layer is not None:
-        found = [name for name in found if PurePosixPath(name).stem == layer] or found
-    if len(found) > 1:
-        raise SlopeError(path, "must hold one layer, or one must be named (--layer, FILE|layername=NAME): "
-                         + some([PurePosixPath(name).stem for name in found]),
-                         f"{len(found)} files of layers")
-    if found and found[0].lower().endswith(".shp"):
-        beside = {name.lower() for name in names}
-        index = found[0].lower()[:-4] + ".shx"
-        if index not in beside:
-            raise SlopeError(path, f"must have all files of the shapefile, {PurePosixPath(index).name} is missing")
-        with zipfile.ZipFile(path) as archive:
+    with whole(path), zipfile.ZipFile(path) as archive:
+        names = archive.namelist()
+        found = [name for name in names if name.lower().endswith(LAYERS) and not is_of_macos(name)]
+        if len(found) > 1 and layer is not None:
+            found = [name for name in found if PurePosixPath(name).stem == layer] or found
+        if len(found) > 1:
+            raise SlopeError(path, "must hold one layer, or one must be named (--layer, FILE|layername=NAME): "
+                             + some([PurePosixPath(name).stem for name in found]),
+                             f"{len(found)} files of layers")
+        require_open(archive, found)
+        if found and found[0].lower().endswith(".shp"):
+            index = found[0].lower()[:-4] + ".shx"
+            if index not in map(str.lower, names):
+                raise SlopeError(path, f"must have all files of the shapefile, {PurePosixPath(index).name} is missing")
             for name in names:
                 if name.lower()[:-4] == index[:-4] and name.lower().endswith((".shp", ".shx", ".dbf")):
                     with archive.open(name) as member:
                         check_length(f"{path}/{name}", archive.getinfo(name).file_size, member.read(32))
-    return found[0] if found else None
+        return found[0] if found else None
+
+
+def require_open(archive: zipfile.ZipFile, names: Sequence[str]) -> None:
+    """Raise one of FAULTS if a member has a password, of which GDAL does not know."""
+    for name in names:
+        archive.open(name).close()
 
 
 # --- rasters ---
@@ -91,25 +106,26 @@ def remedy(name: str) -> str:
     return ""
 
 
-def rasters_in(path: str) -> List[str]:
-    """The rasters in a .zip, each as ZIP/MEMBER; none of any other file, or of a damaged one."""
+def rasters_in(path: str, alone: bool = False) -> List[str]:
+    """The rasters in a .zip, each as ZIP/MEMBER; none of other files, or, alone, of one that holds a layer, too."""
     if not zipfile.is_zipfile(path):
         return []
-    with suppress(zipfile.BadZipFile, OSError, ValueError, NotImplementedError), zipfile.ZipFile(path) as archive:
+    with whole(path), zipfile.ZipFile(path) as archive:
         names = [name for name in archive.namelist() if not is_of_macos(name)]
+        if alone and any(name.lower().endswith(LAYERS) for name in names):
+            return []
         found = [name for name in names if name.lower().endswith(RASTERS)]
+        require_open(archive, found)
         texts = [name for name in names if name.lower().endswith(TEXTS)]
         found = found or [name for name in texts if POINT.search(archive.open(name).read(2000))]
         return [f"{path}/{name}" for name in found]
-    return []
 
 
 def split(name: str) -> Tuple[str, str]:
     """ZIP and MEMBER of a name ZIP/MEMBER; the member is empty of any other name."""
-    if not os.path.exists(name):
-        for place in Path(name).parents:
-            if place.is_file():
-                return str(place), name[len(str(place)) + 1:]
+    for slash in re.finditer("/+", name):
+        if os.path.isfile(name[:slash.start()]):
+            return name[:slash.start()], name[slash.end():]
     return name, ""
 
 
@@ -125,13 +141,10 @@ def gdal_name(name: str) -> str:
 def open_text(name: str) -> Iterator[TextIO]:
     """A file, one in a .zip, or one that is packed by gzip, as text; what is no UTF-8 becomes U+FFFD."""
     path, member = split(name)
-    with ExitStack() as opened:
-        try:
-            if member:
-                data = opened.enter_context(opened.enter_context(zipfile.ZipFile(path)).open(member))
-            else:
-                packed = path.lower().endswith(".gz")
-                data = opened.enter_context(gzip.open(path) if packed else open(path, "rb"))    # type: ignore[arg-type]
-            yield io.TextIOWrapper(data, encoding="utf-8-sig", errors="replace")
-        except (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, NotImplementedError) as error:
-            raise SlopeError(name, f"is damaged ({error})") from error
+    packed = path.lower().endswith(".gz")
+    with whole(name) if member or packed else nullcontext(), ExitStack() as opened:
+        if member:
+            data = opened.enter_context(opened.enter_context(zipfile.ZipFile(path)).open(member))
+        else:
+            data = opened.enter_context(gzip.open(path) if packed else open(path, "rb"))    # type: ignore[arg-type]
+        yield io.TextIOWrapper(data, encoding="utf-8-sig", errors="replace")
