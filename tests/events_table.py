@@ -4,6 +4,7 @@
 Length: plan distance from the highest released ball that 99 % of the volume stays within. Area: cells that were ever
 thicker than 0.1 and 1 m; cells that are in the end.
 """
+import math
 import sys
 from pathlib import Path
 
@@ -25,7 +26,7 @@ def main():
     for path in sys.argv[1:]:
         about = yaml.safe_load(Path(path).read_text())
         prefix, cell = path[:-len(".summary.yaml")], about["grid"]["cell"]
-        last = about["travel"]["quantiles"][-1]
+        last = {key: math.nan if value is None else value for key, value in about["travel"]["quantiles"][-1].items()}
         volume = about["volume"]
         print(f"{last['distance']:10.0f} {about['travel']['front']:9.0f} {last['reach_angle']:10.1f} "
               f"{covered(prefix, 'max_thickness', 0.1, cell):10.3f} {covered(prefix, 'max_thickness', 1, cell):7.3f} "
