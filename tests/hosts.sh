@@ -3,14 +3,14 @@
 # The hosts are two network namespaces of this machine, with a cable between them (veth), so this needs root; without it
 # the script says so and skips (status 77). Not one of ctest's tests.
 #
-#   tests/hosts.sh [DECK_VARIABLE VALUE ...]       default: d 4 duration 4
+#   tests/hosts.sh [DECK_VARIABLE VALUE ...]       default: rule ours d 4 duration 4
 #   LMP=<binary> in the environment: default build/lmp
 set -euo pipefail
 
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 LMP=${LMP:-$top/build/lmp}
 variables=()
-[ $# -gt 0 ] || set -- d 4 duration 4
+[ $# -gt 0 ] || set -- rule ours d 4 duration 4
 while [ $# -gt 0 ]; do variables+=(-var "$1" "$2"); shift 2; done
 
 a=slope-a-$$ b=slope-b-$$               # the hosts

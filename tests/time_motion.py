@@ -46,6 +46,7 @@ def main():
         shutil.copy(CASES / "20_embankment" / "terrain.asc", folder)
         write_motion(folder)
         deck = (CASES / "20_embankment" / "in.embankment").read_text()
+        deck = deck.replace("rule        index paper", "rule        index ours")
         (folder / "in.still").write_text(deck)
         place = "# --- output ---"
         assert place in deck

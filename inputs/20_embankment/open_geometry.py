@@ -52,8 +52,8 @@ def run(body, rolling, d, out, lmp):
     shoulder = make_terrain.TOE + slope * height
     make_terrain.write(folder / "terrain.asc", make_terrain.heights(height, shoulder))
     shutil.copy(HERE / "in.embankment", folder)
-    words = {"d": d, "rolling": rolling, "depth": depth, "rise": height, "shoulder": shoulder}
-    options = [word for name, value in words.items() for word in ("-var", name, f"{value:g}")]
+    words = {"rule": "ours", "d": d, "rolling": rolling, "depth": depth, "rise": height, "shoulder": shoulder}
+    options = [word for name, value in words.items() for word in ("-var", name, f"{value}")]
     done = subprocess.run([str(lmp), "-in", "in.embankment", "-screen", "none", *options], cwd=folder, check=False,
                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     if done.returncode:

@@ -192,7 +192,7 @@ def test_embankment(tmp_path, d, whole):
         body, rest = text.split("# --- contact model ---")
         deposit = re.search(r"^fix +deposit .*$", rest, re.M)[0]
         text = f"{body}\npair_style none\nneighbor 0.1 bin\nvariable second equal 100\n{deposit}\nrun 0\n"
-    run_deck(text, tmp_path, vars={"d": d, "duration": 0.001})
+    run_deck(text, tmp_path, vars={"rule": "ours", "d": d, "duration": 0.001})
     found = summary(tmp_path, "embankment")
     assert found["release"]["body_volume"] == pytest.approx(48858, rel=1e-3)
     assert found["volume"]["released"] == pytest.approx(48858, rel=1e-3)
@@ -200,7 +200,7 @@ def test_embankment(tmp_path, d, whole):
 
 def test_embankment_with_a_given_factor(tmp_path):
     shutil.copy(CASE / "terrain.asc", tmp_path)
-    run_deck((CASE / "in.embankment").read_text(), tmp_path, vars={"d": 4, "duration": 0.001, "bulk": 1.9098593171027})
+    run_deck((CASE / "in.embankment").read_text(), tmp_path, vars={"rule": "ours", "d": 4, "duration": 0.001, "bulk": 1.9098593171027})
     found = summary(tmp_path, "embankment")
     assert found["volume"]["released"] == pytest.approx(found["balls"]["released"] * 64, rel=1e-12)
 

@@ -11,16 +11,16 @@ import yaml
 from deck_helpers import read_asc, run_deck
 
 CASE = Path(__file__).resolve().parents[2] / "inputs" / "20_embankment"
-BODY = 48858    # m3, the slip sphere below the face, from columns every 0.125 m
+BODY = {"ours": 48858, "paper": 24628}    # m3, the slip sphere below the face, from columns every 0.125 m
 
 
 DECK = (CASE / "in.embankment").read_text()
 
 
 def collapse(tmp_path, np=1, deck=DECK, **variables):
-    """Run the deck; return its log, the deposit's summary, thickness (m) and header."""
+    """Run the deck, with the deeper slip sphere; its log, the deposit's summary, thickness (m) and header."""
     shutil.copy(CASE / "terrain.asc", tmp_path)
-    log = run_deck(deck, tmp_path, np=np, vars={"d": 4, **variables})
+    log = run_deck(deck, tmp_path, np=np, vars={"rule": "ours", "d": 4, **variables})
     summary = yaml.safe_load((tmp_path / "embankment.summary.yaml").read_text())
     thickness, header = read_asc(tmp_path / "embankment.thickness.asc")
     return log, summary, thickness, header
@@ -55,7 +55,22 @@ def test_volume_balance(smooth):
     on_grid = thickness.sum() * header["cellsize"] ** 2
     left = volume["off_grid"] + volume["lost"]
     assert on_grid + left == pytest.approx(volume["released"], rel=1e-9)
-    assert volume["released"] == pytest.approx(BODY, rel=1e-3)
+    assert volume["released"] == pytest.approx(BODY["ours"], rel=1e-3)
+
+
+@pytest.mark.parametrize("rule, radius, dip, sink", [("paper", 90, 0, 0), ("ours", 54, 3.80, 2)])
+def test_a_rule_makes_the_slip_sphere(tmp_path, rule, radius, dip, sink):
+    """The paper's: of the spheres through toe and shoulder that dip least below the toe, the one with the most."""
+    log, summary, _, _ = collapse(tmp_path, deck=SETUP, rule=rule, d=2, bulk="region slip")
+    found = re.search(r"^slip sphere: (\S+) m deep, radius (\S+) m, dips (\S+) m .* (\S+) m below it", log, re.M)
+    assert [float(one) for one in found.groups()[1:]] == pytest.approx([radius, dip, sink], abs=1e-3)
+    assert summary["volume"]["released"] == pytest.approx(BODY[rule], rel=1e-3)
+
+
+def test_a_value_stands_above_the_rule_and_a_wrong_rule_is_refused(tmp_path):
+    log = collapse(tmp_path, deck=SETUP, rule="paper", depth=12, sink=0.5)[0]
+    assert "slip sphere: 12 m deep" in log and "slip balls 0.5 m below it" in log
+    run_deck(DECK, tmp_path, vars={"rule": "theirs"}, expect_error="variable rule must be paper or ours, got theirs")
 
 
 def test_mass_leaves_the_face_for_the_road(smooth):
@@ -88,7 +103,7 @@ def test_balls_on_the_slip_surface_itself_leave_much_out(tmp_path):
 @pytest.mark.parametrize("sizes", [{"d": 4}, {"d": 4, "field_d": 2}, {"d": 4, "field_d": 5.6}], ids=str)
 def test_no_ball_falls_through_the_ground(tmp_path, sizes):
     """Every ball ends on the grid, and above the fixed balls that are close to it in plan."""
-    deck = DECK.replace("sink ${sink}", "sink ${sink} write slip.xyz")
+    deck = DECK.replace("sink ${lower}", "sink ${lower} write slip.xyz")
     deck = deck.replace("outside slip", "outside slip write field.xyz")
     _, summary, _, _ = collapse(tmp_path, deck=deck, rolling=0.1, **sizes)    # large balls roll far on small ones
     volume = summary["volume"]
@@ -122,7 +137,7 @@ def test_table_4_dashpots_and_true_restitution(smooth, tmp_path):
 def test_wall_balls_and_frozen_atoms_make_the_same_deposit(tmp_path):
     """The ground as a wall, and the same balls as frozen atoms. Many balls are chaotic: the
     deposits agree within the scatter of such runs."""
-    walls = DECK.replace("outside slip", "outside slip sunk ${sink} origin 0.5 0.5")    # no fix to ask for the sink
+    walls = DECK.replace("outside slip", "outside slip sunk ${lower} origin 0.5 0.5")    # no fix to ask for the sink
     lines = walls.splitlines()
     atoms = []
     for line in lines:

@@ -34,7 +34,7 @@ SHORT = {
     "13_ground_direction/in.ground_direction": {"wide": 5, "tend": 4},
     "14_repose_walls/in.repose_walls": {"plate": 10, "height": 4, "most": 20},
     "15_axisymmetric/in.axisymmetric": {"radius": 4},
-    "20_embankment/in.embankment": {"d": 4, "duration": 10},
+    "20_embankment/in.embankment": {"rule": "ours", "d": 4, "duration": 10},
     "21_earthquake/in.earthquake": {"d": 4, "duration": 15},
     "22_structures/in.structures": {"d": 4, "duration": 8},
     "16_flume/in.flume": {"length": 0.2, "height": 0.1},

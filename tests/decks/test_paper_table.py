@@ -26,7 +26,7 @@ def runs(tmp_path_factory):
         for file in ("in.embankment", "terrain.asc"):
             shutil.copy(CASE / file, folders[name])
         subprocess.run([LMP, "-in", "in.embankment", "-screen", "none", "-var", "d", "8", "-var", "sink", "0", "-var",
-                        "bulk", bulk], cwd=folders[name], check=True, stdin=subprocess.DEVNULL)
+                        "rule", "ours", "-var", "bulk", bulk], cwd=folders[name], check=True, stdin=subprocess.DEVNULL)
     return folders
 
 

@@ -53,7 +53,7 @@ def test_restitution(tmp_path):
 
 @pytest.mark.parametrize("np", [1, 2])
 def test_embankment(tmp_path, np):
-    run_with_plugin("20_embankment", tmp_path, np=np, vars={"d": 4})
+    run_with_plugin("20_embankment", tmp_path, np=np, vars={"rule": "ours", "d": 4})
     volume = yaml.safe_load((tmp_path / "embankment.summary.yaml").read_text())["volume"]
     assert volume["released"] == pytest.approx(48858.3, abs=0.1)
     assert abs(volume["residual"]) <= 1e-9 * volume["released"]

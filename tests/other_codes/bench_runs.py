@@ -195,7 +195,7 @@ class Plan:
         folder = self.folder(f"rest_{ranks}")
         for path in (CASE, CASE.with_name("terrain.asc")):
             shutil.copy(path, folder)
-        steps, seconds = peer_runs.run_deck(self.lmp, folder, CASE.name, ranks)
+        steps, seconds = peer_runs.run_deck(self.lmp, folder, CASE.name, ranks, ["-var", "rule", "ours"])
         self.cases.append({"ranks": ranks, "steps": steps, "seconds": seconds})
         self.bar.update(self.task, advance=1, refresh=self.live)
         return seconds / steps

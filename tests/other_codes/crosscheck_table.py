@@ -76,7 +76,7 @@ def table(work, case):
             volumes[code.name].append([])
         for start in STARTS:
             name = f"{case}_{rolling:g}_{start:g}"
-            settings = {"d": d, "rolling": rolling, "xoffset": start, "yoffset": start}
+            settings = {"rule": "ours", "d": d, "rolling": rolling, "xoffset": start, "yoffset": start}
             scene = work.scene(name, DECK_NAME, settings)._replace(headroom=30.0)
             found = work.run(name, scene, round(SECONDS / scene.dt), codes=codes)
             for code, (final, _) in found.items():
@@ -100,7 +100,7 @@ def control(work, case, peer, d: float, ours) -> List[Dict[str, Any]]:
     for rolling in ROLLING[1:]:
         wrong.append([])
         for start in STARTS:
-            settings = {"d": d, "rolling": rolling, "xoffset": start, "yoffset": start}
+            settings = {"rule": "ours", "d": d, "rolling": rolling, "xoffset": start, "yoffset": start}
             scene = work.scene(f"{case}_{rolling:g}_{start:g}", DECK_NAME, settings)._replace(headroom=30.0)
             laws = {kind: one._replace(rolling=WRONG * one.rolling) for kind, one in scene.contacts.items()}
             name = f"{case}_{rolling:g}_{start:g}"

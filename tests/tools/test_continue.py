@@ -275,7 +275,7 @@ def test_the_embankment_can_be_continued(here):
         folder.mkdir()
         for name in ("in.embankment", "terrain.asc"):
             (folder / name).write_text((case / name).read_text())
-        words = ["-var", "d", "4", "-var", "out", "tiny", "-var", "duration"]
+        words = ["-var", "rule", "ours", "-var", "d", "4", "-var", "out", "tiny", "-var", "duration"]
         return subprocess.run([LMP, "-in", "in.embankment", *words, *more], cwd=folder, check=False,
                               capture_output=True, text=True)
 

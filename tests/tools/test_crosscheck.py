@@ -71,7 +71,7 @@ def test_a_disagreement_is_exit_status_2(slope, monkeypatch):
 def test_final_numbers_of_a_deck(here):
     """Positions, velocities and coefficients of inputs/20 with coarse balls."""
     deck = TOP / "inputs" / "20_embankment" / "in.embankment"
-    scene = crosscheck.scene_of(Path(LMP), deck, {"d": 6, "rolling": 0.05}, here / "deck")
+    scene = crosscheck.scene_of(Path(LMP), deck, {"rule": "ours", "d": 6, "rolling": 0.05}, here / "deck")
     share = 6 / 1.25
     assert scene.diameter == 6 and scene.density == pytest.approx(3411.4) and scene.gravity == 9.80665
     assert scene.contacts[1][:6] == pytest.approx((1.96e9 * share, 1.96e9 * share, 1.19e6 * share ** 2,

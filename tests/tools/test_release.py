@@ -206,6 +206,81 @@ def test_the_sphere_of_the_embankment():
     assert line.toe == pytest.approx([84, 80, 0], abs=0.3) and line.shoulder == pytest.approx([156, 80, 36], abs=0.3)
 
 
+# --- the sphere that dips least ---
+
+
+def test_the_sphere_that_dips_least_is_level_at_the_toe(body):
+    """On a plane face: the angle at the toe is 0 where the sagitta is half the chord times tan(slope/2)."""
+    terrain(ramp(30), cell=1.0, size=(160, 160))
+    polygon(box(30, 20, 110, 140))
+    found, about = body("t.asc --polygon p.csv --dip least")
+    chord = 80 / math.cos(math.radians(30))
+    assert about["shape"] == "sphere" and about["dip"] == "least"
+    assert about["sagitta_m"] == pytest.approx(chord / 2 * math.tan(math.radians(15)), rel=1e-3)
+    assert about["dip_m"] == about["below_foundation_m3"] == 0
+    deeper, about = body(f"t.asc --polygon p.csv --depth {1.1 * found['largest_depth']}")
+    run, fall = (about["shoulder"][0] - about["toe"][0]), about["shoulder"][2] - about["toe"][2]
+    s = about["sagitta_m"]
+    radius = (chord ** 2 / 4 + s ** 2) / (2 * s)
+    assert about["toe"][2] + fall / 2 + (radius - s) * run / chord - radius < about["toe"][2] - 0.1     # it dips
+
+
+@pytest.mark.parametrize("level", [0.0, -2.0, -6.0])
+def test_a_foundation_is_a_level_or_a_raster_of_it(body, level):
+    terrain(ramp(30), cell=1.0, size=(160, 160))
+    polygon(box(30, 20, 110, 140))
+    toe = body("t.asc --polygon p.csv --dip least")[1]["toe"][2] + level
+    found, about = body(f"t.asc --polygon p.csv --dip least --foundation {toe}")
+    terrain(lambda x, y: toe, "old.asc", cell=1.0, size=(160, 160))
+    same, other = body("t.asc --polygon p.csv --dip least --foundation old.asc")
+    assert same == pytest.approx(found, rel=1e-3, abs=1e-6)
+    assert about["foundation"] != other["foundation"] == "old.asc"
+    s, chord = about["sagitta_m"], about["chord_m"]
+    radius = (chord ** 2 / 4 + s ** 2) / (2 * s)
+    lowest = (about["toe"][2] + about["shoulder"][2]) / 2 + (radius - s) * math.cos(math.radians(30)) - radius
+    assert lowest == pytest.approx(toe, abs=1e-3) and about["dip_m"] < 1e-3
+
+
+def test_an_old_slope_below_the_face_holds_the_sphere_up(body):
+    """A fill of 3 m at most on a parallel slope: the sphere touches that, and goes no deeper in its section."""
+    terrain(ramp(30), cell=1.0, size=(160, 160))
+    polygon(box(30, 20, 110, 140))
+    terrain(ramp(30, top=500 - 3 * math.sqrt(4 / 3)), "old.asc", cell=1.0, size=(160, 160))
+    _, about = body("t.asc --polygon p.csv --dip least --foundation old.asc")
+    assert about["sagitta_m"] == pytest.approx(3.0, abs=2e-3) and about["dip_m"] < 2e-3
+    step = ramp(30, top=497)
+    terrain(lambda x, y: step(x, y) + 2 * (abs(x - 70) < 1.5), "high.asc", cell=1.0, size=(160, 160))
+    _, higher = body("t.asc --polygon p.csv --dip least --foundation high.asc")
+    assert higher["sagitta_m"] < 1.0 and higher["dip_m"] < 2e-3
+
+
+def test_the_body_of_the_papers_rule_is_that_of_the_deck(body):
+    """inputs/20: a sphere of 90 m that is level at the toe, 24,628 m3."""
+    case = TOP / "inputs" / "20_embankment"
+    found, about = body(f"{case}/terrain.asc --polygon {case}/face.csv --local --shape sphere --dip least")
+    assert found["volume"] == pytest.approx(24628, rel=0.01) and about["sagitta_m"] == pytest.approx(9.50, abs=0.08)
+    assert about["dip_m"] == 0 and not warned(about)
+
+
+def test_what_the_sphere_that_dips_least_does_not_go_with(refused):
+    terrain(ramp(30), cell=1.0, size=(160, 160))
+    polygon(box(30, 20, 110, 140))
+    least = "t.asc --polygon p.csv --dip least"
+    for words, *parts in (("--depth 5", "--depth: must not be given with --dip least", "got 5"),
+                          ("--volume 500", "--volume: must not", "got 500"),
+                          ("--shape slbl", "--dip: must be degrees for --shape slbl", "got least"),
+                          ("--direction 90", "--direction: must not", "got 90"),
+                          ("--foundation 600", "--foundation: must be lower than the shoulder", "got 600"),
+                          ("--foundation none.asc", "none.asc: must be")):
+        refused(f"{least} {words}", *parts)
+    refused("t.asc --polygon p.csv --depth 5 --foundation 3", "--foundation: must be given with --dip least only, got 3")
+    refused("t.asc --polygon p.csv --dip most", "--dip: must be a finite number, got 'most'")
+    old = np.full((160, 160), 400.0)
+    old[:, 60:80] = np.nan
+    write_asc("old.asc", old, 1.0, EAST, NORTH)
+    refused(f"{least} --foundation old.asc", "old.asc: must have heights from the toe to the shoulder", "none at")
+
+
 # --- a target ---
 
 
@@ -845,6 +920,7 @@ def test_every_example_of_the_page_and_the_help_runs(slope, no_picture, command)
     terrain(hill, "terrain.asc")
     terrain(hill, "t.asc")
     terrain(hill, "before.asc")
+    terrain(lambda x, y: hill(x, y) - 8, "old_ground.asc")
     terrain(lambda x, y: hill(x, y) - 6 * (np.hypot(x - 120, y - 100) < 40), "after.asc")
     terrain(lambda x, y: -6.0 * (np.hypot(x - 120, y - 100) < 40), "change.asc")
     terrain(lambda x, y: 6.0 * (np.hypot(x - 120, y - 100) < 40), "depth.asc")

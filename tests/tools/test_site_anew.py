@@ -233,6 +233,29 @@ def test_a_shape_that_nobody_named_is_none(inside, gis):  # noqa: F811
     assert yaml.safe_load((gis / "other" / "release.yaml").read_text())["shape"] == "slbl"
 
 
+def test_the_sphere_that_dips_least_follows_its_foundation(inside, mine, gis):  # noqa: F811
+    """Its depth is given up for it, and it for a depth; a raster counts by what is in it."""
+    with rasterio.open(gis / "dem.tif") as dem:
+        z, profile = dem.read(1), dem.profile
+    for words, depth, dip, foundation in (
+            ("--dip least", None, "least", None), ("--foundation -5", None, "least", -5.0),
+            ("--foundation old.tif", None, "least", "old.tif"), ("--depth 3", 3.0, None, None)):
+        with rasterio.open("old.tif", "w", **profile) as out:
+            out.write(z - 2, 1)
+        inside(f"mine {words}")
+        one = site_choices.load(mine).choices.release
+        assert (one.depth, one.volume, one.dip) == (depth, None, dip)
+        assert (Path(one.foundation).name if isinstance(one.foundation, str) else one.foundation) == foundation
+        about = yaml.safe_load((mine / "release.yaml").read_text())
+        assert about["shape"] == "sphere" and ("dip_m" in about) == bool(dip)
+    edit(mine, "release", depth=None, dip="least", foundation="../old.tif")
+    inside("mine")
+    assert "old.tif" in str(site_choices.load(mine).sources())
+    edit(mine, "release", dip="most")
+    with pytest.raises(SlopeError, match="release.dip"):
+        site_choices.load(mine)
+
+
 # --- warnings ---
 
 def kept(mine):

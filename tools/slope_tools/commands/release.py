@@ -14,9 +14,9 @@ DESCRIPTION = "The body that is released: a slip surface below a polygon, or a s
 EPILOG = """\
 P: polygons as slope polygon takes them (GeoJSON, shapefile, FILE|layername=NAME, CSV, WKT)
 shapes: sphere (default) through the ends of the fall line in the polygon; ellipsoid, the same, but as wide as the
-  polygon; plane (default with --dip), through the toe unless a depth or volume is given; slbl, the sloping local base
-  level. --depth or --volume finds their free number. slab: the ground lowered by the depth. slbl and slab take several
-  polygons, and their attribute depth or thickness (m).
+  polygon; plane (default with a --dip in degrees), through the toe unless a depth or volume is given; slbl, the sloping
+  local base level. --depth or --volume finds their free number, --dip least that of the sphere. slab: the ground
+  lowered by the depth. slbl and slab take several polygons, and their attribute depth or thickness (m).
 Writes NAME.slip.asc (the ground without the body) and NAME.depth.asc with sidecars, NAME.png (map, section), NAME.yaml
 (choices, numbers) and NAME.deck.txt (lines of the deck); with --scar-is height also NAME.ground.asc, the ground before.
 
@@ -25,6 +25,7 @@ examples:
   tools/slope release terrain.asc --polygon release.shp --shape slbl --volume 50000 -o release
   tools/slope release terrain.asc --polygon release.shp --shape slab --depth 1.5 -o release
   tools/slope release terrain.asc --polygon release.csv --dip 35 --direction 110 -o release
+  tools/slope release terrain.asc --polygon release.csv --dip least --foundation old_ground.asc -o release
   tools/slope release before.asc --scar after.asc --polygon release.csv --least 0.5 -o release
 """
 
@@ -38,7 +39,7 @@ class Request(Body, Overwrite):
 def run(args: Request) -> None:
     """Do the command; raises SlopeError on bad input. Prints the body's numbers before it writes any file."""
     asked = wanted(args)
-    sources = [path for path in (args.terrain, asked.polygon, args.scar) if path]
+    sources = [path for path in (args.terrain, asked.polygon, args.scar, args.foundation) if isinstance(path, str)]
     release_files.check(args.output, [vectors.source(path).path for path in sources])
     raised = args.scar_is == "height"
     made = release_files.paths(args.output, raised)

@@ -1,10 +1,24 @@
 """Arguments of the commands that take a body: which one, below a polygon or from a scar."""
+import argparse
 from dataclasses import dataclass
-from typing import Optional
+from typing import Optional, Union
 
-from ..options import flag, option
-from ..releases import release, release_scar
+from ..options import flag, number, option
+from ..releases import release, release_dip, release_scar
 from ..survey import vectors
+
+
+def degrees_or_least(text: str) -> Union[float, str]:
+    """argparse type of --dip."""
+    return text if text == release_dip.LEAST else number(text)
+
+
+def level_or_file(text: str) -> Union[float, str]:
+    """argparse type of --foundation."""
+    try:
+        return number(text)
+    except argparse.ArgumentTypeError:
+        return text
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,7 +39,12 @@ class Body:
     curvature: Optional[float] = option(
         "of slbl: sum of the slip surface's second derivatives, 1/m; 8 D / L^2 for a depth D on a length L",
         metavar="K", one_of="size")
-    dip: Optional[float] = option("of the plane, degrees below the horizontal", metavar="A")
+    dip: Union[float, str, None] = option(
+        "of the plane, degrees below the horizontal; least: the sphere that dips least below the foundation and "
+        "contains the most of what is above it", metavar="A|least", type=degrees_or_least)
+    foundation: Union[float, str, None] = option(
+        "of --dip least: its level, m, or a raster of its heights (default: the level of the toe)",
+        metavar="LEVEL|RASTER", type=level_or_file)
     direction: Optional[float] = option(
         "compass bearing to which the plane dips, degrees (default: the fall line's)", metavar="B")
     scar: Optional[str] = option("the body is what this raster says, see --scar-is", metavar="RASTER")
@@ -44,4 +63,5 @@ def wanted(args: Body) -> release.Wanted:
     """What these arguments, and the terrain, ask for."""
     polygon = args.polygon and vectors.named(args.polygon, args.layer)
     return release.Wanted(args.terrain, polygon, args.shape, args.depth, args.volume, args.curvature, args.dip,
-                          args.direction, args.scar, args.scar_is, args.least, args.crs, local=args.local)
+                          args.direction, args.scar, args.scar_is, args.least, args.crs, local=args.local,
+                          foundation=args.foundation)

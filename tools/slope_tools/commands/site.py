@@ -4,7 +4,7 @@ from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from shlex import quote
-from typing import Any, Dict, List, Optional, Sequence, Tuple
+from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
 
 from ..blocks import kinds
 from ..case import decks
@@ -16,6 +16,7 @@ from ..plots import site_map
 from ..programs import find_lmp
 from ..releases import packing
 from ..releases.release import SHAPES
+from ..releases.release_dip import LEAST
 from ..releases.release_scar import KINDS
 from ..runs import jobs
 from ..sites import site, site_budget, site_choices, site_deck, site_older, site_scenarios
@@ -26,6 +27,7 @@ from ..studies.setup import RUNS, Setup
 from ..survey import roads
 from ..survey.rasters import UNITS
 from . import known_arguments, road_arguments
+from .release_arguments import degrees_or_least, level_or_file
 
 # option -> section and key of site.yaml
 OPTIONS = {"terrain": ("terrain", "files"), "crs": ("terrain", "crs"),
@@ -33,7 +35,8 @@ OPTIONS = {"terrain": ("terrain", "files"), "crs": ("terrain", "crs"),
            "z_unit": ("terrain", "z_unit"), "nodata": ("terrain", "nodata"), "differ": ("terrain", "differ"),
            "cell": ("terrain", "cell"), "fill": ("terrain", "fill"), "release": ("release", "polygon"),
            "shape": ("release", "shape"), "depth": ("release", "depth"), "volume": ("release", "volume"),
-           "curvature": ("release", "curvature"), "dip": ("release", "dip"), "direction": ("release", "direction"),
+           "curvature": ("release", "curvature"), "dip": ("release", "dip"),
+           "foundation": ("release", "foundation"), "direction": ("release", "direction"),
            "scar": ("release", "scar"), "scar_is": ("release", "scar_is"), "least": ("release", "least"),
            "bodies": ("release", "bodies"),
            "road": ("road", "file"), "roads": ("road", "others"), "cut_angle": ("road", "cut_angle"),
@@ -58,6 +61,7 @@ BESIDE = {"road", "roads", *road_arguments.OPTIONS, "cut_angle", "mesh", "line",
 OTHERWISE = {"assigned": "--assign-crs", "roads": "--road"}     # options that are not called so
 # of each group, an option that is given replaces the others
 SIZES = ("diameter", "balls", "minutes", "memory")
+OF_SHAPE = "depth", "volume", "curvature", "dip", "direction"
 ONE_OF = (("depth", "volume", "curvature"), SIZES)
 OF_SOIL = ("friction", "rolling", "spacing", "field_restitution", "density", "slip_friction")
 LIGHT = 100                 # kg/m3; less is not a ground's density, but one in t/m3 or relative to water's
@@ -124,7 +128,11 @@ class Ground:
     depth: Optional[float] = option("largest depth of the body, vertical, m", metavar="D", one_of="size")
     volume: Optional[float] = option("volume of the body, m3", metavar="V", one_of="size")
     curvature: Optional[float] = option("of slbl, 1/m", metavar="K", one_of="size")
-    dip: Optional[float] = option("of a plane, degrees below the horizontal", metavar="A")
+    dip: Union[float, str, None] = option(
+        "of a plane, degrees below the horizontal; least: the sphere that dips least, see slope release",
+        metavar="A|least", type=degrees_or_least)
+    foundation: Union[float, str, None] = option("of --dip least: level, m, or raster (default: the toe's level)",
+                                                 metavar="LEVEL|RASTER", type=level_or_file)
     direction: Optional[float] = option("compass bearing to which the plane dips, degrees", metavar="B")
     scar: Optional[str] = option("the body is what this raster says, see --scar-is", metavar="RASTER")
     scar_is: Optional[str] = option(
@@ -276,7 +284,7 @@ def chosen(args: Request) -> Chosen:
     was found before.
     """
     given = {name: value for name in OPTIONS if (value := getattr(args, name, None)) is not None}
-    given.update(assigned_crs(given.pop("assign_crs", ())))
+    given.update(site_choices.assigned_crs(given.pop("assign_crs", ())))
     given.update(of_roads(given.pop("road", ())))
     given.update(of_slips(args))
     if args.folder is not None:
@@ -356,26 +364,13 @@ def soil(choices: OfMass) -> str:
             f"restitution {of.field_restitution:g}; bulk density {of.density / packing.BULK:,.0f} kg/m3")
 
 
-def assigned_crs(words):
-    """Options from the values of --assign-crs, [FILE=]EPSG:n: that of the elevation model, those of other files."""
-    given: Dict[str, Any] = {}
-    for word in words:
-        name, _, crs = word.rpartition("=")
-        if not name and "assign_crs" in given:
-            raise SlopeError("--assign-crs", "must be given once without a FILE=", word)
-        if name:
-            parts = [part for part in Path(name).parts if part not in ("..", "/")]
-            given.setdefault("assigned", {})[str(Path(*parts))] = crs
-        else:
-            given["assign_crs"] = crs
-    return given
-
-
 def replaced(choices: Choices, given: Dict[str, Any]) -> Choices:
     """The choices with options; those that one of them replaces become null."""
     new: Dict[Key, Any] = {OPTIONS[name]: None for group in ONE_OF if given.keys() & set(group) for name in group}
-    if "scar" in given:
-        new.update({("release", key): None for key in ("shape", "depth", "volume", "curvature", "dip", "direction")})
+    least = LEAST in (given.get("dip"), choices.value("release", "dip"))     # depth and volume follow from it
+    if "scar" in given or least and given.keys() & {*OF_SHAPE}:
+        new.update({("release", key): None for key in (*OF_SHAPE, "shape")})
+        new.update({("release", "foundation"): None} if given.get("dip") != LEAST else {})
     if isinstance(choices, OfMass) and ("scar" in given or "release" in given):
         new["release", "bodies"] = []
     if isinstance(choices, OfMass) and "road" in given:

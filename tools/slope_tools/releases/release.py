@@ -1,7 +1,7 @@
 """The body that is released, below a polygon or from a scar."""
 import math
 from pathlib import Path
-from typing import Any, Dict, List, NamedTuple, Optional, Tuple
+from typing import Any, Dict, List, NamedTuple, Optional, Tuple, Union
 
 import numpy as np
 from scipy.ndimage import label
@@ -11,7 +11,7 @@ from ..errors import SlopeError
 from ..findings import Finding
 from ..survey import features, marks, plausible, polygons, rasters
 from ..survey.crs import as_crs
-from . import release_area, release_bodies, release_parts, release_scar, release_solve, release_toe
+from . import release_area, release_bodies, release_dip, release_parts, release_scar, release_solve, release_toe
 
 SHAPES = ("sphere", "ellipsoid", "plane", "slbl", "slab")
 OF_EACH = ("slbl", "slab")      # of SHAPES, which take several polygons: a body in each
@@ -33,13 +33,15 @@ class Wanted(NamedTuple):
     depth: Optional[float] = None       # m
     volume: Optional[float] = None      # m3
     curvature: Optional[float] = None   # 1/m, of slbl
-    dip: Optional[float] = None         # degrees, of a plane
+    dip: Union[float, str, None] = None     # degrees, of a plane; release_dip.LEAST, of a sphere
     direction: Optional[float] = None   # degrees from north, of a plane
     scar: Optional[str] = None          # raster
     scar_is: Optional[str] = None       # of release_scar.KINDS; None: heights, if they look like it
     least: float = 0.0                  # m; a scar is where it is deeper
     crs: Optional[str] = None           # of the polygon, whatever it says
     scar_crs: Optional[str] = None      # of the scar
+    foundation: Union[float, str, None] = None  # of the sphere that dips least: level, m, or raster
+    foundation_crs: Optional[str] = None
     local: bool = False                 # the polygon is in local metres
     advice: Optional[polygons.Advice] = None        # for messages on the polygon's place
     read: Optional[Tuple[rasters.Raster, Any]] = None   # ground and polygon in local metres, if they are read already
@@ -121,7 +123,7 @@ def check(wanted: Wanted) -> Wanted:
     if wanted.least < 0:
         raise SlopeError("--least", "must be >= 0", f"{wanted.least:g}")
     if wanted.scar:
-        for name in ("shape", "depth", "volume", "curvature", "dip", "direction"):
+        for name in ("shape", "depth", "volume", "curvature", "dip", "foundation", "direction"):
             if getattr(wanted, name) is not None:
                 raise SlopeError(f"--{name}", "must not be given with --scar, whose depths are not changed")
         return wanted
@@ -131,7 +133,7 @@ def check(wanted: Wanted) -> Wanted:
     if not wanted.polygon:
         raise SlopeError("--polygon", "must be given, unless --scar says where the body is")
     if wanted.shape is None:
-        plane = wanted.dip is not None or wanted.direction is not None
+        plane = wanted.dip != release_dip.LEAST and (wanted.dip, wanted.direction) != (None, None)
         wanted = wanted._replace(shape="plane" if plane else "slbl" if wanted.curvature is not None else "sphere")
     check_shape(wanted)
     return wanted
@@ -139,10 +141,16 @@ def check(wanted: Wanted) -> Wanted:
 
 def check_shape(wanted: Wanted) -> None:
     """What goes with which shape."""
+    if wanted.dip == release_dip.LEAST:
+        check_least(wanted)
+        return
+    if wanted.foundation is not None:
+        raise SlopeError(wanted.called("foundation"), f"must be given with --dip {release_dip.LEAST} only",
+                         wanted.foundation if isinstance(wanted.foundation, str) else f"{wanted.foundation:g}")
     if wanted.shape == "plane":
         if wanted.dip is None:
             raise SlopeError("--dip", "must be given for a plane, degrees below the horizontal")
-        if not 0 < wanted.dip < 90:
+        if not 0 < float(wanted.dip) < 90:
             raise SlopeError("--dip", "must be > 0 and < 90 degrees", f"{wanted.dip:g}")
         if wanted.direction is not None and not 0 <= wanted.direction <= 360:
             raise SlopeError("--direction", "must be a compass bearing, 0 to 360 degrees", f"{wanted.direction:g}")
@@ -162,6 +170,17 @@ def check_shape(wanted: Wanted) -> None:
             f", or an attribute {' or '.join(features.DEPTHS)} of each feature, m"
         without = f"none of {next(name for name, depth in each.items() if depth is None)}" if each else None
     raise SlopeError("--depth", must, without)
+
+
+def check_least(wanted: Wanted) -> None:
+    """What goes with the sphere that dips least, whose depth and volume follow."""
+    if wanted.shape != "sphere":
+        raise SlopeError(wanted.called("dip"), f"must be degrees for --shape {wanted.shape}: the sphere dips least",
+                         wanted.dip)
+    for name in ("depth", "volume", "curvature", "direction"):
+        if (value := getattr(wanted, name)) is not None:
+            raise SlopeError(wanted.called(name), f"must not be given with --dip {wanted.dip}, from which it follows",
+                             f"{value:g}")
 
 
 def read_terrain(path):
@@ -223,6 +242,7 @@ def from_shape(wanted: Wanted, raster, geometry):
     if parts > 1:
         raise SlopeError(wanted.polygon, "must be one polygon: make a feature of each part" if wanted.read else
                          f"must be one polygon for --shape {wanted.shape}; {' and '.join(OF_EACH)} take several", parts)
+    below = None
     if wanted.shape == "sphere":
         shape = release_bodies.sphere_shape(area, geometry, wanted.where)
     elif wanted.shape == "ellipsoid":
@@ -230,8 +250,14 @@ def from_shape(wanted: Wanted, raster, geometry):
     else:
         assert wanted.dip is not None       # check() has seen to it
         direction = release_bodies.bearing(area.downhill) if wanted.direction is None else wanted.direction
-        shape = release_bodies.plane_shape(area, wanted.dip, direction)
-    if wanted.depth is not None:
+        shape = release_bodies.plane_shape(area, float(wanted.dip), direction)
+    if wanted.dip == release_dip.LEAST:
+        line = release_area.fall_line(area, geometry, wanted.where)
+        crs = as_crs("--assign-crs", wanted.foundation_crs) if wanted.foundation_crs else None
+        below = release_dip.foundation(wanted.foundation, raster, area, line, crs)
+        free = release_dip.least(area, line, below)
+        depth = release_solve.depths(area, shape.surface(free))
+    elif wanted.depth is not None:
         free, depth = release_solve.to_depth(area, shape, wanted.depth, wanted.called("depth"), not wanted.read)
     elif wanted.volume is not None:
         free, depth = release_solve.to_volume(area, shape, wanted.volume, wanted.called("volume"), not wanted.read)
@@ -241,6 +267,8 @@ def from_shape(wanted: Wanted, raster, geometry):
     choices = {"shape": shape.name, "given": given(wanted), shape.number: free, **shape.about}
     above = release_toe.above_ground(area.z, shape.surface(free), area.inside, area.cell)
     choices[ABOVE] = above and above._asdict()
+    if below:
+        choices.update(dip=wanted.dip, **release_dip.dips(area, area.z - depth, below))
     return area, area.z - depth, choices
 
 
@@ -349,7 +377,8 @@ def text(body: Body) -> str:
         wide = f", {choices['width_m']:.4g} m wide" if shape == "ellipsoid" else ""
         sagitta = choices["sagitta_m"]
         what = (f"{shape} through toe {toe} and shoulder {shoulder}, {abs(sagitta):.4g} m "
-                f"{'below' if sagitta > 0 else 'above'} its chord of {choices['chord_m']:.4g} m{wide}")
+                f"{'below' if sagitta > 0 else 'above'} its chord of {choices['chord_m']:.4g} m{wide}"
+                f"{release_dip.text(choices) if 'dip_m' in choices else ''}")
     return (f"{what}\n"
             f"volume {rounded(found.volume)} m3, largest depth {found.largest_depth:.4g} m, mean depth "
             f"{found.mean_depth:.4g} m, area {rounded(found.area)} m2 ({found.cells} cells of {cell:g} m)\n"

@@ -4,7 +4,7 @@ A slip surface is an array of heights (m) on the nodes of an Area, NaN where the
 with one free number, which release_solve finds for a depth or a volume.
 """
 import math
-from typing import Callable, NamedTuple
+from typing import Callable, NamedTuple, Tuple
 
 import numpy as np
 from scipy.ndimage import binary_erosion
@@ -38,20 +38,32 @@ def cap(area: Area, line: FallLine, sagitta: float, stretch: float = 1.0, aside:
     the sphere in plan. On a plane slope the body is a spherical cap of the volume pi sagitta^2 (3 r - sagitta) / 3,
     times stretch, with the radius r = (chord^2/4 + sagitta^2) / (2 sagitta).
     """
-    side, sagitta = (1, sagitta) if sagitta > 0 else (-1, -sagitta)
-    sagitta = max(sagitta, STRAIGHT * line.chord)
-    way = line.shoulder - line.toe
-    run = math.hypot(way[0], way[1])
-    east = way[:2] / run
+    side, radius, centre, east = sphere(line, sagitta)
     left = np.array([-east[1], east[0]])
-    radius = (line.chord ** 2 / 4 + sagitta ** 2) / (2 * sagitta)
-    normal = np.array([*(-way[2] * east), run]) / line.chord
-    centre = (line.toe + line.shoulder) / 2 + side * (radius - sagitta) * normal
     centre[:2] += aside * left
     dx, dy = area.x[None, :] - centre[0], area.y[:, None] - centre[1]
     # the circle of the vertical plane through the chord looks the same however it is turned: only `left` is stretched
     squared = radius ** 2 - (dx * east[0] + dy * east[1]) ** 2 - ((dx * left[0] + dy * left[1]) / stretch) ** 2
     return np.where(squared >= 0, centre[2] - side * np.sqrt(np.maximum(squared, 0)), np.nan)
+
+
+def sphere(line: FallLine, sagitta: float) -> Tuple[int, float, np.ndarray, np.ndarray]:
+    """The sphere through toe and shoulder: 1 for its lower side, -1 for its upper one; radius, centre (m); way up."""
+    side, sagitta = (1, sagitta) if sagitta > 0 else (-1, -sagitta)
+    sagitta = max(sagitta, STRAIGHT * line.chord)
+    way = line.shoulder - line.toe
+    run = math.hypot(way[0], way[1])
+    east = way[:2] / run
+    radius = (line.chord ** 2 / 4 + sagitta ** 2) / (2 * sagitta)
+    normal = np.array([*(-way[2] * east), run]) / line.chord
+    return side, radius, (line.toe + line.shoulder) / 2 + side * (radius - sagitta) * normal, east
+
+
+def section(line: FallLine, sagitta: float, share: np.ndarray) -> np.ndarray:
+    """Heights (m) of cap() between toe and shoulder: at shares of the way in plan, 0 at the toe."""
+    side, radius, centre, east = sphere(line, sagitta)
+    along = share * ((line.shoulder - line.toe)[:2] @ east) - (centre - line.toe)[:2] @ east
+    return centre[2] - side * np.sqrt(np.maximum(radius ** 2 - along ** 2, 0))
 
 
 def plane(area: Area, dip: float, direction: float, level: float) -> np.ndarray:

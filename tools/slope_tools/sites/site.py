@@ -200,10 +200,12 @@ def wanted_body(choices: OfMass, new: Path) -> release.Wanted:
     if not where:
         raise SlopeError("--release", "must be given, a polygon, or --scar, a raster")
     site_choices.check_assigned(choices)
-    crs, scar_crs = (path and site_choices.assigned(choices, path) for path in (one.polygon, one.scar))
+    crs, scar_crs, foundation_crs = (isinstance(path, str) and site_choices.assigned(choices, path) or None
+                                     for path in (one.polygon, one.scar, one.foundation))
     return release.check(release.Wanted(
         str(new / TERRAIN), one.polygon, one.shape, one.depth, one.volume, one.curvature, one.dip, one.direction,
-        one.scar, one.scar_is, one.least, crs, scar_crs, advice=advice(choices, where)))
+        one.scar, one.scar_is, one.least, crs, scar_crs, one.foundation, foundation_crs,
+        advice=advice(choices, where)))
 
 
 def terrain(choices: Choices, new: Path, tell, warn) -> Tuple[Raster, Dict[str, Any]]:

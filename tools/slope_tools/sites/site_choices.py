@@ -9,7 +9,7 @@ import os
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Callable, Collection, Dict, Generic, List, Mapping, Optional, Tuple, Type, TypeVar
+from typing import Any, Callable, Collection, Dict, Generic, Iterable, List, Mapping, Optional, Tuple, Type, TypeVar
 
 import yaml
 
@@ -28,7 +28,8 @@ VERSION = 1             # of site.yaml, also in its schema
 LONGEST_TEXT = 200      # letters of a name in the heading of a report
 WHAT = "a site.yaml of `slope site`"
 # keys that hold one file, and lists of files
-FILES = (("terrain", "files"), ("release", "polygon"), ("release", "scar"), ("release", "bodies"), ("road", "file"),
+FILES = (("terrain", "files"), ("release", "polygon"), ("release", "scar"), ("release", "bodies"),
+         ("release", "foundation"), ("road", "file"),
          ("road", "others"), ("ground", "file"), ("ground", "table"), ("structures", "files"), ("structures", "walls"),
          ("lines", "files"), ("motion", "file"), ("observed", "file"))
 
@@ -41,7 +42,7 @@ DERIVED = (("balls", "diameter"), ("balls", "number"), ("model", "speed"), ("mod
 # keys that came later: those who made a folder before did not count them
 LATER = (("ground", "file"), ("ground", "table"), ("model", "film"), ("structures", "walls"), ("structures", "height"),
          ("structures", "width"), ("model", "least_speed"), ("model", "least_thick"), ("road", "others"),
-         ("terrain", "differ"))
+         ("terrain", "differ"), ("release", "foundation"))
 
 # keys of section model, and of others, that make the model's balls, cells and stiffness; not what is asked for
 OF_MODEL = (*DERIVED, ("model", "least_speed"), ("model", "least_thick"))
@@ -226,7 +227,7 @@ def with_files(choices: C, change: Callable[[str], str]) -> C:
     """The choices with all names of files changed by a function."""
     new: Dict[Key, Any] = {}
     for section, key in FILES:
-        if value := choices.value(section, key):
+        if (value := choices.value(section, key)) and not disk.is_number(value):
             new[section, key] = change(value) if isinstance(value, str) else [change(one) for one in value]
     return choices.changed(new)
 
@@ -242,6 +243,21 @@ def assigned(choices: Choices, name: str) -> Optional[str]:
     own = choices.crs.assigned
     fit = [key for key in own if is_end(key, parts)]
     return own[max(fit, key=len)] if fit else None
+
+
+def assigned_crs(words: Iterable[str]) -> Dict[str, Any]:
+    """Options from the values of --assign-crs, [FILE=]EPSG:n: that of the elevation model, those of other files."""
+    given: Dict[str, Any] = {}
+    for word in words:
+        name, _, crs = word.rpartition("=")
+        if not name and "assign_crs" in given:
+            raise SlopeError("--assign-crs", "must be given once without a FILE=", word)
+        if name:
+            parts = [part for part in Path(name).parts if part not in ("..", "/")]
+            given.setdefault("assigned", {})[str(Path(*parts))] = crs
+        else:
+            given["assign_crs"] = crs
+    return given
 
 
 def is_end(key: str, parts: Tuple[str, ...]) -> bool:

@@ -61,7 +61,8 @@ class MassRelease(Release):
     depth: Optional[float]
     volume: Optional[float]
     curvature: Optional[float]
-    dip: Optional[float]
+    dip: Union[float, str, None]
+    foundation: Union[float, str, None]    # a level, or a file
     direction: Optional[float]
     scar: Optional[str]
     scar_is: Optional[str]
@@ -237,7 +238,7 @@ class Choices:
     def files(self, section: str, key: str) -> List[str]:
         """Those of a key that holds one file, several, or none."""
         value = self.value(section, key)
-        return [value] if isinstance(value, str) else list(value or ())
+        return [value] if isinstance(value, str) else [] if disk.is_number(value) else list(value or ())
 
     def changed(self: C, values: Mapping[Key, Any]) -> C:
         """The same with other values of these sections and keys."""
