@@ -13,7 +13,7 @@ from ..options import Program, bare, flag, option
 from ..programs import find_lmp
 from ..runs import jobs
 from ..validation import verification
-from ..validation.verify import NAME, Runner, compared, judge, line, made, write
+from ..validation.verify import NAME, Runner, compared, judge, line, made, value, write
 
 DESCRIPTION = "Run the cases of inputs/, compare them with closed forms and published numbers, write a report."
 EPILOG = """\
@@ -24,9 +24,9 @@ example: what takes seconds; all of it; one case:
   tools/slope verify -o verification
   tools/slope verify --only 11_column_collapse --jobs 1
 
-Writes DIR/verification.csv, .yaml, .rst and .html; every run stays in DIR/runs, and is made anew only if its deck, its
-data or the program has changed. The exit status is 0 when every claim
-holds and every control fails, as it must, else 2.
+Writes DIR/verification.csv, .yaml, .rst and .html, and DIR/numbers/CASE.yaml, what the README of each case shows; every
+run stays in DIR/runs, and is made anew only if its deck, its data or the program has changed. The exit status is 0 when
+every claim holds and every control fails, as it must, else 2.
 """
 
 
@@ -58,11 +58,14 @@ def run(args: Request) -> None:
         output.mkdir(parents=True, exist_ok=True)
         with disk.alone_in(output), jobs.signals_interrupt():
             runner = Runner(output / "runs", lmp)
-            runner.do(runs_of(claims), args.jobs or jobs.cores())
+            others = [one for one in verification.all_seen()
+                      if one.case in {claim.case for claim in claims} and (one.quick or not args.quick)]
+            runner.do(runs_of(claims) + [run for one in others for run in one.runs], args.jobs or jobs.cores())
             outcomes = [judge(claim, runner) for claim in claims]
+            seen = [(one, value(one, one.runs, runner)) for one in others]
             words = ["tools/slope verify"] + ["--quick"] * args.quick + [f"--only {args.only}"] * bool(args.only)
             about = made(" ".join(words), lmp, runner, outcomes, time.monotonic() - began)
-            write(output, outcomes, about, peers)
+            write(output, outcomes, about, peers, seen)
     except OSError as error:
         raise SlopeError(error.filename or output, f"cannot be used: {error.strerror}") from error
     for outcome in outcomes:

@@ -21,6 +21,7 @@ from .verification.claims import INPUTS, Result
 from .verification.errata import errata
 
 NAME = "verification"       # of the files
+NUMBERS = "numbers"         # folder of them, and name of a case's file
 FINISHED = "finished"       # in the folder of a run that ended well: checksums of the program and of the run
 COLUMNS = ("case", "claim", "name", "source", "unit", "expected", "tolerance", "got", "passed", "control",
            "control_got", "control_fails", "remark", "commands")
@@ -140,6 +141,8 @@ class Outcome(NamedTuple):
     passed: bool
     control_got: Union[float, str]
     control_fails: bool
+    package: str = ""       # that made it, and when
+    date: str = ""
 
     @property
     def right(self):
@@ -154,8 +157,14 @@ def value(claim, wanted, runner):
 
 def judge(claim, runner):
     """Hold a claim against its bound, and its control too, which must fail; NaN shows nothing."""
-    got, broken = value(claim, claim.runs, runner), value(claim, claim.control.runs, runner)
-    return Outcome(claim, got, bool(claim.bound.holds(got)), broken, broken == broken and not claim.bound.holds(broken))
+    return judged(claim, value(claim, claim.runs, runner), value(claim, claim.control.runs, runner),
+                  provenance.package_version() or "not a git checkout", provenance.now()[:10])
+
+
+def judged(claim, got, broken, package="", date=""):
+    """The Outcome of numbers that are there."""
+    return Outcome(claim, got, bool(claim.bound.holds(got)), broken,
+                   broken == broken and not claim.bound.holds(broken), package, date)
 
 
 def text(got):
@@ -181,8 +190,12 @@ def made(words: str, lmp, runner, outcomes, seconds) -> Dict[str, Any]:
             "lammps": log.lammps, "lmp_sha256": disk.sha256(lmp),
             "python": platform.python_version(), "numpy": np.__version__,
             "processor": machine["processor"], "cores": machine["cores"], "system": platform.system(),
-            "runs": len(runner.results), "kept": runner.kept, "seconds": round(seconds, 1), "claims": len(outcomes),
-            "passed": sum(outcome.passed for outcome in outcomes),
+            "runs": len(runner.results), "kept": runner.kept, "seconds": round(seconds, 1), **counted(outcomes)}
+
+
+def counted(outcomes) -> Dict[str, int]:
+    """How many claims hold, and how many controls fail."""
+    return {"claims": len(outcomes), "passed": sum(outcome.passed for outcome in outcomes),
             "controls_that_fail": sum(outcome.control_fails for outcome in outcomes)}
 
 
@@ -216,10 +229,53 @@ def second_table() -> Dict[str, Any]:
     return {"heads": ["", *(f"{x:.2f}" for x in heads)], "rows": rows, "remark": " ".join(about["remark"].split())}
 
 
-def write(output, outcomes, about, peers=None):
-    """The report in its four forms."""
+def write(output, outcomes, about, peers=None, seen=()):
+    """The report in its four forms, and the numbers of each case.
+
+    seen: (Seen, number or word).
+    """
     rows = [row(outcome) for outcome in outcomes]
     table = disk.csv_text(COLUMNS, ({**entry, "commands": "; ".join(entry["commands"])}.values() for entry in rows))
+    found = content(outcomes, peers)
+    whole = yaml.safe_dump({**about, "results": rows}, sort_keys=False)
+    (output / NUMBERS).mkdir(exist_ok=True)
+    for case, kept in kept_numbers(outcomes, seen).items():
+        disk.write(output / NUMBERS / f"{case}.yaml", yaml.safe_dump(kept, sort_keys=False))
+    for name, data in ((".csv", table), (".yaml", whole), (".rst", render("verify.rst.j2", found)),
+                       (".html", render("verify.html.j2", {**found, "about": about}))):
+        disk.write(output / f"{NAME}{name}", data)
+
+
+def kept_numbers(outcomes, seen) -> Dict[str, Dict[str, Any]]:
+    """{case: what inputs/CASE/numbers.yaml holds}: what its claims, and other numbers of its README, gave."""
+    found: Dict[str, Dict[str, Any]] = {}
+    for one in outcomes:
+        found.setdefault(one.claim.case, {"claims": {}, "seen": {}})["claims"][one.claim.name] = {
+            "got": digits_of(one.got), "control": digits_of(one.control_got), "package": one.package, "date": one.date}
+    for one, got in seen:
+        found.setdefault(one.case, {"claims": {}, "seen": {}})["seen"][one.name] = digits_of(got)
+    return found
+
+
+def digits_of(got):
+    """As it is kept."""
+    return got if isinstance(got, str) else float(f"{got:.8g}")
+
+
+def kept_outcomes(inputs=INPUTS):
+    """The Outcomes of all claims whose numbers are kept in inputs/."""
+    found = []
+    for claim in verification.all_claims():
+        path = Path(inputs) / claim.case / f"{NUMBERS}.yaml"
+        one = yaml.safe_load(path.read_text(encoding="utf-8"))["claims"].get(claim.name) if path.is_file() else None
+        if one:
+            found.append(judged(claim, one["got"], one["control"], one["package"], one["date"]))
+    return found
+
+
+def content(outcomes, peers=None) -> Dict[str, Any]:
+    """What the page shows of outcomes."""
+    rows = [{**row(one), "package": one.package, "date": one.date} for one in outcomes]
 
     def of_module(case):        # several modules may be about one folder
         names = {claim.name for claim in case.CLAIMS}
@@ -227,19 +283,21 @@ def write(output, outcomes, about, peers=None):
 
     cases = [{"folder": case.CASE, "title": case.__doc__.splitlines()[0],
               "intro": " ".join(case.__doc__.split("\n", 1)[1].split()),
+              "made": ", ".join(dict.fromkeys(f"{entry['package']} of {entry['date']}" for entry in of_module(case))),
               "rows": [{**entry, "got": text(entry["got"]), "control_got": text(entry["control_got"])}
                        for entry in of_module(case)],
               "commands": list(dict.fromkeys(command for entry in of_module(case) for command in entry["commands"]))}
              for case in verification.cases()]
-    content = {"about": about, "peers": peers, "table": second_table(),
-               "cases": [case for case in cases if case["rows"]],
-               "errata": [{**erratum._asdict(), "rows": [entry for case in cases for entry in case["rows"]
-                                                         if entry["name"] in erratum.claims]}
-                          for erratum in errata()]}
-    whole = yaml.safe_dump({**about, "results": rows}, sort_keys=False)
-    for name, data in ((".csv", table), (".yaml", whole),
-                       (".rst", render("verify.rst.j2", content)), (".html", render("verify.html.j2", content))):
-        disk.write(output / f"{NAME}{name}", data)
+    return {"about": counted(outcomes), "peers": peers, "table": second_table(),
+            "cases": [case for case in cases if case["rows"]],
+            "errata": [{**erratum._asdict(), "rows": [entry for case in cases for entry in case["rows"]
+                                                      if entry["name"] in erratum.claims]}
+                       for erratum in errata()]}
+
+
+def page(outcomes) -> str:
+    """doc/src/verification.rst of outcomes."""
+    return render("verify.rst.j2", content(outcomes))
 
 
 def render(template, content):

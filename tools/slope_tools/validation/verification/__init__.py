@@ -18,3 +18,8 @@ def cases():
 def all_claims():
     """All claims, in the order of the report."""
     return [claim for case in cases() for claim in case.CLAIMS]
+
+
+def all_seen():
+    """All other numbers that READMEs of the cases show, in that order."""
+    return [one for case in cases() for one in getattr(case, "SEEN", ())]

@@ -62,7 +62,8 @@ class Run(NamedTuple):
     def data(self):
         """The files that the deck may read, sorted."""
         return sorted(path for path in self.source.parent.iterdir()
-                      if path.is_file() and path.suffix not in NO_DATA and not path.name.startswith("in."))
+                      if path.is_file() and path.suffix not in NO_DATA and path.name != "numbers.yaml"
+                      and not path.name.startswith("in."))
 
     @property
     def text(self):
@@ -203,6 +204,18 @@ class Claim(NamedTuple):
     control: Control
     quick: bool = True                  # seconds, not minutes
     remark: str = ""                    # where published values are not met, or met in another sense: why
+
+    @property
+    def case(self):
+        return self.runs[0].deck.split("/")[0]
+
+
+class Seen(NamedTuple):
+    """A number or word that the README of a case shows beside its claims."""
+    name: str
+    runs: Tuple[Run, ...]
+    got: Callable[..., Union[float, str]]
+    quick: bool = True
 
     @property
     def case(self):

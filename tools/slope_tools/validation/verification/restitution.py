@@ -4,7 +4,7 @@ inputs/01_restitution: a ball falls on a fixed ball; e = sqrt(h2/h1). The dashpo
 """
 import math
 
-from .claims import Claim, Control, Near, Run
+from .claims import Claim, Control, Near, Run, Seen
 
 CASE = "01_restitution"
 DROP = Run("01_restitution/in.restitution")(tend=0.45)
@@ -45,3 +45,7 @@ CLAIMS = [
     _claim("restitution_0.445_dashpot", "Table 1's 8.96e3 N s/m: observed restitution", DROP(cn=8.96e3), 0.445,
            DROP(cn=8.96e3 / math.sqrt(2))),
 ]
+RUNS = {"e_0.25": DROP(e=0.25), "cn_1.45e4": DROP(cn=1.45e4), "e_0.445": DROP(e=0.445), "cn_8.96e3": DROP(cn=8.96e3)}
+SEEN = [Seen(f"h2_{name}", (deck,), lambda result: result.number("h2", "restitution:")) for name, deck in RUNS.items()]
+SEEN += [Seen(f"plain_{name}", (deck(scheme="plain"),), observed) for name, deck in RUNS.items()]
+SEEN.append(Seen("plain_e_0.445_g", (DROP(e=0.445, scheme="plain", g=9.80665),), observed))

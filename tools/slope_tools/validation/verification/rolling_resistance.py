@@ -4,7 +4,7 @@ inputs/04_rolling_resistance: a ball on a fixed ball, contact at 30 degrees; the
 """
 import math
 
-from .claims import Claim, Control, Near, Run, Verdict
+from .claims import Claim, Control, Near, Run, Seen, Verdict
 from .slide_roll import on_a_sphere
 
 CASE = "04_rolling_resistance"
@@ -51,3 +51,9 @@ CLAIMS = [
     _path("rolls_path", "Friction 31 degrees, mu_r 0.56: path after 0.2 s, rolling on a sphere", ROLLS, SLIDES,
           spin=True, mu_r=0.56),
 ]
+SEEN = [Seen(f"{name}.{what}", (_run(case),), lambda result, what=what: result.number(what, "rolling_resistance:"))
+        for name, case in (("still", STILL), ("slides", SLIDES), ("rolls", ROLLS))
+        for what in ("path", "rotation", "sliding")]
+SEEN += [Seen(f"still_zeta_{zeta:g}", (_run(STILL, BALL(zeta=zeta)),), path) for zeta in (0.1, 0.5, 1.5, 8)]
+SEEN.append(Seen("half.rotation", (_run(STILL)(HALF),),
+                 lambda result: result.number("rotation", "rolling_resistance:")))

@@ -6,7 +6,7 @@ energy is that of motion, spin and normal springs; what tangential springs hold 
 import numpy as np
 
 from . import energy
-from .claims import AtMost, Claim, Control, Run
+from .claims import AtMost, Claim, Control, Run, Seen
 from .collisions import NEWTON
 
 CASE = "08_collisions"
@@ -69,3 +69,26 @@ CLAIMS = [
                  "it, and its energy wanders by chance: between 0.85 and 1.16 with one kernel, up to 1.37 with "
                  "another, which rounds otherwise. No theory bounds that; the bound is a doubling."),
 ]
+
+CLOSE = 0.05        # of the energy
+
+
+def slot_changes(result):
+    """Of each gap, from the narrowest: the largest change of the energy at any moment."""
+    return np.abs(energy.slot(result) - 1).max(axis=0)
+
+
+def slot_close(result):
+    """How many of the gaps keep the energy within 5 %."""
+    return (slot_changes(result) <= CLOSE).sum()
+
+
+def slot_squeezed(result):
+    """The largest loss of the gaps that squeeze the ball."""
+    return 1 - energy.slot(result)[:, energy.gaps(result) < 0].min()
+
+
+SEEN = [Seen(f"{scheme}.{name}", (SLOT(scheme=scheme),), got) for scheme in ("exact", "plain") for name, got in (
+    ("slot_close", slot_close), ("slot_squeezed", slot_squeezed), ("slot_largest", lambda result: slot_changes(
+        result).max()))]
+SEEN += [Seen("dense.plain_gain", (DENSE(scheme="plain"),), rise), Seen("dense.loss", (DENSE,), loss)]
