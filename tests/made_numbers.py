@@ -9,7 +9,7 @@ number has its name: NN.name or NN.name:format, NN being that of the case, the f
 NN.claim and NN.claim.control.
 
     Markdown    <!--01.restitution_0.25-->0.24873<!--/-->           the comments are not shown
-    pages       :made:`0.24873 <01.restitution_0.25>`               a role of doc/src/conf.py
+    pages       :made:`0.24873<01.restitution_0.25>`                a role of doc/src/conf.py
     YAML        series: {0.0: 1, 0.05: 2}   # 20.paper.remove       a name and its keys
 
 doc/src/verification.rst is made as a whole. tests/tools/test_made_numbers.py fails where text and file differ.
@@ -31,7 +31,7 @@ PAGES = sorted({TOP / "README.md", *INPUTS.glob("*/README.md"), *INPUTS.glob("*/
                 *(TOP / "doc" / "src").glob("*.rst")} - {VERIFICATION})
 NAME = r"(?P<case>\d\d)\.(?P<name>[^\s:<>`]+?)(?::(?P<form>[^\s<>`]+?))?"
 MARKS = (re.compile(rf"(?P<start><!--{NAME}-->)(?P<shown>[^<]*)(?P<end><!--/-->)"),
-         re.compile(rf"(?P<start>:made:`)(?P<shown>[^`<]*?)(?P<end> <{NAME}>`)"))
+         re.compile(rf"(?P<start>:made:`)(?P<shown>[^`<]*?)(?P<end><{NAME}>`)"))
 SERIES = re.compile(r"(?P<start>\{)(?P<shown>[^}]*)(?P<end>\}\s+# (?P<case>\d\d)\.(?P<name>[\w.]+))$", re.MULTILINE)
 
 

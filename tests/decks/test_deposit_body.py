@@ -200,7 +200,8 @@ def test_embankment(tmp_path, d, whole):
 
 def test_embankment_with_a_given_factor(tmp_path):
     shutil.copy(CASE / "terrain.asc", tmp_path)
-    run_deck((CASE / "in.embankment").read_text(), tmp_path, vars={"rule": "ours", "d": 4, "duration": 0.001, "bulk": 1.9098593171027})
+    run_deck((CASE / "in.embankment").read_text(), tmp_path,
+             vars={"rule": "ours", "d": 4, "duration": 0.001, "bulk": 1.9098593171027})
     found = summary(tmp_path, "embankment")
     assert found["volume"]["released"] == pytest.approx(found["balls"]["released"] * 64, rel=1e-12)
 

@@ -55,3 +55,24 @@ def test_the_longer_terrain_has_the_same_heights(script):
     head = dict(line.split() for line in (CASE / "terrain_long.asc").read_text().splitlines()[:6])
     assert (head["xllcorner"], head["cellsize"]) == ("-400", "2.5")
     assert script.make_terrain.heights(west=script.make_terrain.FAR) == pytest.approx(long, abs=6e-4)
+
+
+def volumes(*remove):
+    return [{"released": 50.0, "to remove": one, "on the road": 5.0, "beyond": one / 10} for one in remove]
+
+
+def test_the_change_over_the_lattices_and_its_chance(script):
+    """Of pairs: what all lattices share drops out. One lattice, or no difference at all, has no chance."""
+    found = {"0.10": volumes(89, 100, 109), "0": volumes(100, 110, 120.0)}
+    change, chance = script.trend(found, "to remove")
+    assert change == pytest.approx(-32 / 3) and chance == pytest.approx(0.000976, rel=1e-2)
+    assert script.trend({"0": volumes(1.0), "0.1": volumes(2.0)}, "to remove") is None
+    assert script.trend(found, "on the road") is None
+    assert script.largest(found) == 110
+
+
+def test_the_numbers_that_pages_get(script):
+    kept = script.numbers(script.Table((2.45, 2.7), {"0": volumes(14225, 28450.0), "0.10": volumes(9, 11.0)}), "a.body")
+    assert kept["a.body.ball"] == "2.45 to 2.7" and kept["a.body.ratio"] == 1.5
+    assert kept["a.body.remove.0.1"] == 10 and kept["a.body.remove.0.all"] == "21,338 (14,225 to 28,450)"
+    assert kept["a.body.beyond.0"] == pytest.approx(2133.8, abs=0.06) and "a.body.road.change" not in kept

@@ -300,7 +300,8 @@ def collapse(work, case):
     rolling: their deposit must lie within what ours gives with none and with twice the rolling resistance.
     """
     d, duration = 4.0 if work.quick else 2.5, 15.0
-    scene = work.scene(case, "20_embankment/in.embankment", {"rule": "ours", "d": d, "rolling": 0.05})._replace(headroom=30.0)
+    settings = {"rule": "ours", "d": d, "rolling": 0.05}
+    scene = work.scene(case, "20_embankment/in.embankment", settings)._replace(headroom=30.0)
     steps = round(duration / scene.dt)
     ours = work.codes[:1]
     found = {name: final for name, (final, _) in work.run(case, scene, steps).items()}

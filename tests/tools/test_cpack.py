@@ -88,8 +88,9 @@ def test_a_study_where_it_was_unpacked(made, kind, tmp_path):
     at = made / "deb" / "opt" / "slope" if kind == "deb" else next(made.glob("tar/slope-*"))
     slope = made / "deb" / "usr" / "bin" / "slope" if kind == "deb" else at / "bin" / "slope"
     case = at / "share" / "slope" / "inputs" / "20_embankment" / "in.embankment"
-    done = subprocess.run([slope, "study", case, "--set", "d=8", "--set", "rule=ours", "--set", "duration=1", "-o", "out"], cwd=tmp_path,
-                          env=outside(), text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
+    words = [slope, "study", case, "--set", "d=8", "--set", "rule=ours", "--set", "duration=1", "-o", "out"]
+    done = subprocess.run(words, cwd=tmp_path, env=outside(), text=True, stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, check=False)
     assert done.returncode == 0, done.stdout[-2000:]
     about, = (tmp_path / "out").rglob("variables.yaml")
     lmp = hashlib.sha256((at / "bin" / "lmp").read_bytes()).hexdigest()

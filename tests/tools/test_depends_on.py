@@ -69,7 +69,8 @@ LATER = {("project", "name"), ("project", "client"), ("project", "author"), ("ro
 KEYS = [(section, key) for section, about in sections() for key in about["properties"]]
 OF_BLOCKS = [(section, key) for section, about in sections("blocks") for key in about["properties"]]
 NOT_FILES = {("terrain", "crs"), ("terrain", "assign_crs"), ("terrain", "z_unit"), ("release", "shape"),
-             ("release", "scar_is"), ("release", "dip"), ("project", "name"), ("project", "client"), ("project", "author"),
+             ("release", "scar_is"), ("release", "dip"), ("project", "name"), ("project", "client"),
+             ("project", "author"),
              ("known", "set"), ("known", "confined"), ("study", "fine")}
 
 

@@ -9,8 +9,8 @@ from run_helpers import TOP
 from tiny_collapse import LMP
 
 # what a command gets after its own words, so that it takes seconds; without --dry-run: long
-QUICK = {"tools/slope site": "--balls 60", "tools/slope study mine": "--dry-run", "tools/slope study $e": "--set d=4 --set "
-         "duration=0.5", "mpirun": "-var d 4 -var duration 0.1"}
+QUICK = {"tools/slope site": "--balls 60", "tools/slope study mine": "--dry-run",
+         "tools/slope study $e": "--set d=4 --set duration=0.5", "mpirun": "-var d 4 -var duration 0.1"}
 WHOLE = {**QUICK, "tools/slope study mine": "--paper"}
 BUILDERS = "tools/demo.sh", "tests/run.sh"      # the machine, and the whole package: the build and this suite run them
 
@@ -38,7 +38,8 @@ def test_every_command_of_the_front_page_runs(tmp_path, quick):
     assert len(script) >= 6
     environment = {**os.environ, "LMP": str(tmp_path / "build" / "lmp"), "OMPI_MCA_rmaps_base_oversubscribe": "1"}
     done = subprocess.run(["bash", "-e", "-o", "pipefail", "-c", "\n".join(script)], cwd=tmp_path, env=environment,
-                          stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+                          stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                          check=False)
     assert done.returncode == 0, done.stdout[-3000:]
     assert done.stdout.count("| to remove |") == 2      # paper_table.py, by both bulk factors
 

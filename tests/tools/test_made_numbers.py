@@ -39,7 +39,7 @@ def test_the_page_on_verification_is_made_of_all_claims():
     ("<!--01.e:.2f-->?<!--/-->|<!--01.verdict-->slides<!--/-->",
      "<!--01.e:.2f-->0.25<!--/-->|<!--01.verdict-->rolls<!--/-->"),
     ("<!--01.sum.0:,.0f--><!--/-->", "<!--01.sum.0:,.0f-->15,003<!--/-->"),
-    ("* :made:`1 <01.e>`, :made:`2 % <01.share:.0%>`", "* :made:`0.24873 <01.e>`, :made:`12% <01.share:.0%>`"),
+    ("* :made:`1<01.e>`, :made:`2 %<01.share:.0%>`", "* :made:`0.24873<01.e>`, :made:`12%<01.share:.0%>`"),
     ("  ours: {0: 1, 0.05: 2}    # 01.sum", "  ours: {0: 15003, 0.05: 15681}    # 01.sum"),
     ("no <!-- comment --> 0.25", "no <!-- comment --> 0.25")])
 def test_a_mark_gets_its_number(was, now):

@@ -4,7 +4,6 @@ import re
 import sys
 
 import pytest
-import yaml
 
 from run_helpers import TOP
 
@@ -70,16 +69,3 @@ def test_the_pages_are_as_long_as_they_may_be():
     assert words(*(set(PAGES) - set(GENERATED))) <= MOST
     assert words("tutorial", "gis", "limits") <= USERS
     assert len((TOP / "README.md").read_text(encoding="utf-8").split()) <= README
-
-
-def test_the_numbers_of_the_papers_case_are_the_same_everywhere():
-    """Its file of reference values has them: means, and ranges in its remark; each page has all of them."""
-    about = yaml.safe_load((TOP / "inputs" / "20_embankment" / "reference.yaml").read_text(encoding="utf-8"))
-    ours = [value for name, series in about["quantities"]["remove_m3"]["series"].items() if name.startswith("SLOPE")
-            for value in series.values()]
-    numbers = {f"{value:,}" for value in ours} | set(re.findall(r"\d+,\d+ to \d+,\d+", about["remark"]))
-    assert len(ours) == 9 and len(numbers) > 9
-    for path in (TOP / "README.md", TOP / "inputs" / "20_embankment" / "README.md", DOC / "scoreboard.rst",
-                 DOC / "verification.rst"):
-        text = " ".join(path.read_text(encoding="utf-8").split())
-        assert [one for one in sorted(numbers) if one not in text] == [], path

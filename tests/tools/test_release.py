@@ -273,7 +273,8 @@ def test_what_the_sphere_that_dips_least_does_not_go_with(refused):
                           ("--foundation 600", "--foundation: must be lower than the shoulder", "got 600"),
                           ("--foundation none.asc", "none.asc: must be")):
         refused(f"{least} {words}", *parts)
-    refused("t.asc --polygon p.csv --depth 5 --foundation 3", "--foundation: must be given with --dip least only, got 3")
+    refused("t.asc --polygon p.csv --depth 5 --foundation 3", "--foundation: must be given with --dip least only",
+            "got 3")
     refused("t.asc --polygon p.csv --dip most", "--dip: must be a finite number, got 'most'")
     old = np.full((160, 160), 400.0)
     old[:, 60:80] = np.nan

@@ -78,3 +78,5 @@ SEEN += [Seen(f"{what}.{pattern.split()[0]}.{e}.{friction}.{spacing}",
               (CLOSE(spacing=spacing, pattern=pattern, e=e, friction=friction),), of_means(k), False)
          for e, friction in PAIRS for spacing in CLOSER for pattern in ("grid", "scattered 1")
          for k, what in enumerate(("mean", "sd"))]
+SEEN += [Seen(f"{what}.hard", (HARD(balls=1000, e=0.25, tend=0.1),), of_table("1.4", what), False)
+         for what in ("alone", "median_error", "largest_error")]

@@ -40,10 +40,6 @@ def errata():
                 f"They are 1.96e9 N/m, and 1.19e6 and 3.09e6 N s/m: with Table 5's ball ({MASS:.1f} kg) the formula "
                 f"gives {soil:.3g} N s/m for 0.48 and {field:.3g} N s/m for 0.1.",
                 ("table_4_moving",)),
-        Erratum("The larger the rolling resistance, the smaller the outflow: not in company J's numbers",
-                "\"The larger the rolling resistance coefficient, the smaller the outflow amount of soil becomes.\"",
-                "Company J's volume is largest at 0.05: 24,048, 26,009 and 22,340 m3. The paper notes that the trends "
-                "of the two codes differ.", ()),
         Erratum("In Table 3's case 3 the ball rotates without sliding",
                 "\"The element slides in cases 2 and 3.\"",
                 "Case 3 of Table 3 rotates without sliding, as the simulation here does.", ()),

@@ -49,3 +49,12 @@ RUNS = {"e_0.25": DROP(e=0.25), "cn_1.45e4": DROP(cn=1.45e4), "e_0.445": DROP(e=
 SEEN = [Seen(f"h2_{name}", (deck,), lambda result: result.number("h2", "restitution:")) for name, deck in RUNS.items()]
 SEEN += [Seen(f"plain_{name}", (deck(scheme="plain"),), observed) for name, deck in RUNS.items()]
 SEEN.append(Seen("plain_e_0.445_g", (DROP(e=0.445, scheme="plain", g=9.80665),), observed))
+
+
+def with_overlap(result):
+    """The restitution as Table 2 has it: both heights from the deepest point, not from first touch."""
+    deep = -result.curve("restitution.csv")["height"].min()
+    return math.sqrt((result.number("h2", "restitution:") + deep) / (0.740 + deep))
+
+
+SEEN += [Seen(f"overlap_added_{e}", (DROP(e=e, h1=0.740),), with_overlap) for e in (0.25, 0.445)]

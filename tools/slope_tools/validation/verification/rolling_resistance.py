@@ -57,3 +57,13 @@ SEEN = [Seen(f"{name}.{what}", (_run(case),), lambda result, what=what: result.n
 SEEN += [Seen(f"still_zeta_{zeta:g}", (_run(STILL, BALL(zeta=zeta)),), path) for zeta in (0.1, 0.5, 1.5, 8)]
 SEEN.append(Seen("half.rotation", (_run(STILL)(HALF),),
                  lambda result: result.number("rotation", "rolling_resistance:")))
+
+
+def at_fall(result):
+    """When the centre has fallen by 0.18 m, the end of the axis of Figure 9, s."""
+    curve = result.curve("rolling_resistance.csv")
+    return curve["time"][curve["fall"] >= 0.18][0]
+
+
+SEEN += [Seen(f"{name}.at_0.18", (_run(case, BALL(tend=1)),), at_fall) for name, case in (
+    ("slides", SLIDES), ("rolls", ROLLS))]
