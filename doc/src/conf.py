@@ -111,8 +111,8 @@ def formula(writer, node):
 
 
 def made_number(_name, _raw, text, _line, _inliner, options=None, content=None):  # pylint: disable=unused-argument
-    """:made:`0.249 <01.name>`: a number that tests/made_numbers.py puts in."""
-    return [nodes.Text(text.rsplit(" <", 1)[0])], []
+    """:made:`0.249<01.name>`: a number that tests/made_numbers.py puts in."""
+    return [nodes.Text(text.rsplit("<", 1)[0])], []
 
 
 def setup(app):

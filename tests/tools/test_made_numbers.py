@@ -1,4 +1,5 @@
 """Numbers of pages that are made, not typed: tests/made_numbers.py. What decks give now: test_verification.py."""
+import importlib.util
 import sys
 
 import pytest
@@ -44,6 +45,14 @@ def test_the_page_on_verification_is_made_of_all_claims():
     ("no <!-- comment --> 0.25", "no <!-- comment --> 0.25")])
 def test_a_mark_gets_its_number(was, now):
     assert made_numbers.filled(was, dict(KNOWN)) == now == made_numbers.filled(now, dict(KNOWN))
+
+
+def test_the_pages_show_the_number_alone():
+    spec = importlib.util.spec_from_file_location("pages_conf", TOP / "doc" / "src" / "conf.py")
+    conf = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(conf)
+    (shown,), _ = conf.made_number("made", "", "15,003<20.e.0:,.0f>", 1, None)
+    assert str(shown) == "15,003"
 
 
 def test_a_mark_of_no_number_is_refused():
