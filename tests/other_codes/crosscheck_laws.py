@@ -47,7 +47,7 @@ def laws(work, case):
     for i, rolling in enumerate(ROLLING[1:]):
         for start in STARTS:
             name = f"{case}_{rolling:g}_{start:g}"
-            settings = {"d": d, "rolling": rolling, "xoffset": start, "yoffset": start}
+            settings = {"rule": "ours", "d": d, "rolling": rolling, "xoffset": start, "yoffset": start}
             scene = work.scene(name, DECK_NAME, settings)._replace(headroom=30.0)
             tried = [(OURS, scene, ours), *((what, other, ours) for what, other in variants(scene).items()),
                      ("velocities of half a step ago", scene, plain)]

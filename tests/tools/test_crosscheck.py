@@ -146,7 +146,7 @@ def test_a_wrong_law_is_found_in_the_table():
     none, = crosscheck_table.differences([[1.0, 2.0, 3.0]], [[0.0, 0.0, 0.0]])
     assert none.verdict(0.05) == "cannot tell" and math.isnan(none.share)
     rows = crosscheck_table.about({"slope": made(beyond), "granular": made(wrong),
-                                   "yade": made(wrong)}, 2.5)["rows"]
+                                   "yade": made(wrong)}, {"d": 2.5})["rows"]
     checks_ = [crosscheck_table.check_of("table", row) for row in rows if row["verdict"]]
     of = {code: [check.passed for check in checks_ if check.code == code and check.case == "table"
                  and check.quantity.startswith("beyond")] for code in ("granular", "yade")}
@@ -180,16 +180,23 @@ def volumes_by_rolling(factor):
         crosscheck_table.QUANTITIES, 1000.0 - factor * 500 * final.contacts[3].rolling + settings["xoffset"])
 
 
+@pytest.mark.parametrize("quick", [True, False])
 @pytest.mark.parametrize("factor, verdict, passed", [(5, "found", True), (0.1, "not found", False)])
-def test_the_table_must_find_a_doubled_rolling_resistance(here, monkeypatch, factor, verdict, passed):
+def test_the_table_must_find_a_doubled_rolling_resistance(here, monkeypatch, factor, verdict, passed, quick):
+    """With balls of 4 m, whatever those of the table: the paper's set-up, or with --quick the same."""
     monkeypatch.setattr(crosscheck_table, "numbers_of", volumes_by_rolling(factor))
     work = Stub(here, [peers.Slope(LMP), peers.Granular(LMP)])
+    work.quick = quick
     crosscheck_table.table(work, "table")
     last = work.checks[-1]
     assert last.quantity == "rolling doubled, as a control"
     assert (last.code, last.value, last.passed) == ("granular", verdict, passed)
     wrong = [scene.contacts[3].rolling for name, code, scene, _ in work.given if name.endswith("_control")]
     assert wrong == [0.1] * 3 + [0.2] * 3
+    sizes = [(scene.diameter, name.endswith(("_control", "_coarse"))) for name, _, scene, _ in work.given]
+    assert {size for size, coarse in sizes if not coarse} == {4.0 if quick else 1.25}
+    assert {size for size, coarse in sizes if coarse} == {4.0} and len(sizes) == (15 if quick else 21)
+    assert (work.about_table["rule"], work.about_table["d"]) == (("ours", 4.0) if quick else ("paper", 1.25))
     assert {check.value for check in work.checks[:-1]} == {"agrees"}       # the same law
 
 
