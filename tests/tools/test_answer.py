@@ -114,7 +114,7 @@ def test_the_growth_of_the_family_stands_beside_a_floor(monkeypatch, slides):
     about = made_study.study(conservative=made_study.conservative(1200.0), size=size)
     floor = answer.of(answered.paper_of(about), None, None)
     said = answer_words.number(floor.about())       # what finer balls bring is open: nothing conservative
-    assert said.startswith("at least 1,200 m3 to remove, by the paper's study") and "conservative" not in said
+    assert said.startswith("at least 1,200 m3 to remove, by the sweep") and "conservative" not in said
     [reason] = floor.reasons
     growth = size_family.growth(2.0)
     if slides < size_family.FEWEST:

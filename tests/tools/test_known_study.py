@@ -1,4 +1,4 @@
-"""tools/slope study SITE: by the paper's method, and weighted by known events, for masses of all sizes."""
+"""tools/slope study SITE: by a sweep, and weighted by known events, for masses of all sizes."""
 from dataclasses import asdict
 
 import numpy as np
@@ -51,7 +51,7 @@ def test_both_studies_of_masses_of_all_sizes(request, capsys, monkeypatch, name,
     request.getfixturevalue(name)
     status, out, err = study(capsys, monkeypatch, words)
     assert status == 0, err
-    assert out.startswith("weighted by known events of this volume and height, beside the paper's method")
+    assert out.startswith("weighted by known events of this volume and height, beside a sweep")
     assert " 64 runs, 0 of them finished" in f" {out.splitlines()[-1]}"
     assert sum("rolling_" in line and "friction_" in line for line in out.splitlines()) == 64
     assert "17 runs, 0 of them finished" in out or "18 runs, 0 of them finished" in out
@@ -59,11 +59,11 @@ def test_both_studies_of_masses_of_all_sizes(request, capsys, monkeypatch, name,
     status, _, err = study(capsys, monkeypatch, f"{words} --paper --unconfined")
     assert status == 2 and "must be given with --known" in err
     status, out, _ = study(capsys, monkeypatch, f"{words} --paper")
-    assert status == 0 and out.startswith("by the paper's method, as asked for\n") and "64 runs" not in out
+    assert status == 0 and out.startswith("by a sweep, as asked for\n") and "64 runs" not in out
     path = request.getfixturevalue(name) / "site.yaml"
     path.write_text(path.read_text().replace("points: 64", "points: 0"))
     status, out, _ = study(capsys, monkeypatch, words)
-    assert status == 0 and out.startswith("by the paper's method; site.yaml asks for no runs") and "64 runs" not in out
+    assert status == 0 and out.startswith("by a sweep; site.yaml asks for no runs") and "64 runs" not in out
 
 
 def test_the_ensemble_varies_ground_and_restitution(large, capsys, monkeypatch):

@@ -555,7 +555,7 @@ def test_what_the_runs_differ_in_is_said_without_names_of_variables():
         "8 runs of a computer model of equal balls, which differ in the rolling resistance, the size of the model's "
         "balls and 1 other setting and, by chance, in how the balls lie at the start.")
     data.study = made_study.study({
-        "method": "by the paper's method; the set of known events does not cover this volume, 900 m3"})
+        "method": "by a sweep; the set of known events does not cover this volume, 900 m3"})
     assert numbers.basis(data).endswith(
         "at the start. Known events of this size do not count in them: the set of known events does not cover this "
         "volume, 900 m3.")

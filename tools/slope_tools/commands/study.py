@@ -54,8 +54,8 @@ such an ensemble of a site that `slope site ... -o mine` made, with its road and
 the whole chain, from an earthquake to how often the road is blocked, of a site made with `slope site --slips`:
   tools/slope study mine --sample 64 --vary friction=25:35 --vary rolling=0:0.1 --fragility fragility --more-than 500
 
-everything of a site that `slope site ... -o mine` made, with its report: rolling resistances, repeats and sizes of
-balls by the paper's method, and an ensemble that is weighted by known events; the larger volume of both counts:
+everything of a site that `slope site ... -o mine` made, with its report: a sweep of rolling resistances, with repeats
+and sizes of balls, and an ensemble that is weighted by known events; the larger volume of both counts:
   tools/slope study mine
 
 Every run has a folder of its own in DIR, and is not repeated once it is finished. Over all runs: DIR/study.csv,
@@ -82,7 +82,7 @@ class Request(Sample, known_arguments.Known, Repeats, Intensity, Runs):
         "of a site with several bodies, with --sample: what `slope fragility` wrote; how likely which volume reaches "
         "the road at a peak acceleration, and per year", metavar="FOLDER")
     paper: bool = flag(
-        "of a site: the paper's method alone, the largest volume over the rolling resistances")
+        "of a site: the sweep alone, the largest volume over the rolling resistances")
     fine: Optional[str] = option(
         "one more run with balls so many times smaller, at the values in the middle, which tells what their size "
         "changes; of a deck with a variable d (default no; of a site what site.yaml says, else 2)",
@@ -149,7 +149,7 @@ def run_site_of(args: Request, site: Site) -> Made:
 
 
 def run_both(args: Request, asked: Site, points: int) -> Made:
-    """The paper's study and the ensemble of a site, the number that both give, and a report of each.
+    """The sweep and the ensemble of a site, the number that both give, and a report of each.
 
     One of both is never the site's: what both study.yaml say of it, or that there are none, stands until both are there
     anew.

@@ -1,6 +1,6 @@
 """The ensemble of a site's study, which counts as known events of this volume and height say: how many runs, of what.
 
-Its runs go from masses as sluggish as the defaults to rock avalanches. Beside it stands the paper's study, the largest
+Its runs go from masses as sluggish as the defaults to rock avalanches. Beside it stands the sweep, the largest
 volume over rolling resistances and grounds; the larger of both counts (statistics.answer).
 """
 from pathlib import Path
@@ -8,11 +8,11 @@ from pathlib import Path
 from ..errors import SlopeError
 from ..mobility import body
 
-PAPER = "by the paper's method"
+PAPER = "by a sweep"
 ASKED = f"{PAPER}, as asked for"
 BESIDE = f"{PAPER}, beside runs that are weighted by known events"
 NONE = "site.yaml asks for no runs that are weighted by known events (study.points)"
-WEIGHTED = "weighted by known events of this volume and height, beside the paper's method"
+WEIGHTED = "weighted by known events of this volume and height, beside a sweep"
 OF_BOTH = (BESIDE, WEIGHTED)        # methods of the two studies that give one number together
 # --vary, unless it is given: from values back-calculated for rock avalanches (doc/src/events.rst) to the defaults
 # and site_choices.chance()

@@ -6,9 +6,9 @@ from ..findings import Finding
 from ..statistics.answer import Code, Kind, Reason, Source
 from . import quantities, study_types
 
-OF = {Source.PAPER: "by the paper's study", Source.ENSEMBLE: "by known events"}
-CONSERVATIVE = "the conservative volume of the paper's study"       # what a floor may not be
-STUDY = {Source.PAPER.value: "the paper's study", Source.ENSEMBLE.value: "the runs weighted by known events"}
+OF = {Source.PAPER: "by the sweep", Source.ENSEMBLE: "by known events"}
+CONSERVATIVE = "the conservative volume of the sweep"       # what a floor may not be
+STUDY = {Source.PAPER.value: "the sweep", Source.ENSEMBLE.value: "the runs weighted by known events"}
 
 
 def lines(about: study_types.Headline) -> List[str]:
@@ -31,7 +31,7 @@ def number(about: study_types.Headline) -> str:
 def beside(about: study_types.Headline, source: Source) -> str:
     """What the other study gives."""
     if source is Source.ENSEMBLE:
-        return of_other("the paper's study", about.paper.volume_m3 if about.paper else None)
+        return of_other("the sweep", about.paper.volume_m3 if about.paper else None)
     return of_other("95 % of known events", about.ensemble.volume_m3 if about.ensemble else None)
 
 
