@@ -82,8 +82,13 @@ def run_out(*results):
     return longest
 
 
+def share_below(limit):
+    """The share of the rocks that lie so far (m) below the toe."""
+    return lambda at: (at[:, 0] <= -limit).mean()
+
+
 RANGED = {"along": lambda at: np.median(at[:, 0]), "across": lambda at: np.median(at[:, 1]),
-          **{f"share_{limit}": lambda at, limit=limit: (at[:, 0] <= -limit).mean() for limit in (2, 1, 0.5)}}
+          **{f"share_{limit:g}": share_below(limit) for limit in (2.0, 1.0, 0.5)}}
 ALONE = {"along_5": lambda at: np.percentile(at[:, 0], 5), "along_95": lambda at: np.percentile(at[:, 0], 95),
          "across_5": lambda at: np.percentile(at[:, 1], 5), "across_95": lambda at: np.percentile(at[:, 1], 95),
          "along_low": lambda at: at[:, 0].min(), "along_high": lambda at: at[:, 0].max(),
