@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from .claims import AtMost, Claim, Control, Near, Run
+from .claims import AtMost, Claim, Control, Near, Run, Seen
 
 CASE = "03_slide_roll"
 START = Run("03_slide_roll/in.slide_roll")
@@ -79,3 +79,7 @@ CLAIMS = [
     _path("roll_long", "Friction 60 degrees: path after 0.08 s, sphere on sphere", "equation of motion, Runge-Kutta",
           on_a_sphere(0.08, spin=True)[0], 60, 0, tend=0.08),
 ]
+SEEN = [Seen(f"{theta}.{name}", (START(theta=theta),), lambda result, name=name: result.number(name, "slide_roll:"))
+        for theta in (0, 10) for name in ("rotation", "sliding")]
+SEEN += [Seen(f"velocity.{theta}", (START(theta=theta, tend=0.005),),
+              lambda result: result.number("velocity", "slide_roll:")) for theta in ("9.0", "9.2", "9.5", "9.7")]

@@ -2,7 +2,7 @@
 
 inputs/02_timestep: nine balls that meet the contact at different phases of a step; e from their energies.
 """
-from .claims import AtLeast, Claim, Control, Near, Run
+from .claims import AtLeast, Claim, Control, Near, Run, Seen
 
 CASE = "02_timestep"
 DROP = Run("02_timestep/in.timestep")(tend=0.4)
@@ -40,3 +40,7 @@ CLAIMS = [
     Claim("step_5e-7", "At 5e-7 s: restitution of the worst of nine phases", "", FIGURE_6, (EXACT(dt="5.0e-7"),), worst,
           Near(TARGET, 0.003), Control("5e-4 s", (EXACT(dt=BEYOND),)), quick=False),
 ]
+STEPS = {"5e-7": "5.0e-7", "5e-6": "5.0e-6", "5e-5": "5.0e-5", "1.2e-4": RULE, "5e-4": BEYOND}
+SEEN = [Seen(f"{scheme}.{step}.{name}", (DROP(scheme=scheme, dt=dt),),
+             lambda result, name=name: result.number(name, "timestep:"), step != "5e-7")
+        for scheme in ("plain", "exact") for step, dt in STEPS.items() for name in ("observed", "from", "to")]
