@@ -241,6 +241,19 @@ def test_a_foundation_is_a_level_or_a_raster_of_it(body, level):
     assert lowest == pytest.approx(toe, abs=1e-3) and about["dip_m"] < 1e-3
 
 
+def test_a_foundation_above_the_toe_is_dipped_into_as_little_as_at_the_toe(body):
+    """All spheres through the toe lie below it there: none that goes no lower is worse."""
+    terrain(ramp(30), cell=1.0, size=(160, 160))
+    polygon(box(30, 20, 110, 140))
+    found, about = body("t.asc --polygon p.csv --dip least")
+    same, other = body(f"t.asc --polygon p.csv --dip least --foundation {about['toe'][2] + 2}")
+    assert same == pytest.approx(found, rel=1e-6) and 1 < other["dip_m"] < 2 and other["below_foundation_m3"] > 0
+    terrain(ramp(30, 225), cell=1.0, size=(160, 160))       # along a diagonal
+    polygon(rotate(box(50, 40, 110, 120), 45, (80, 80)))
+    _, turned = body("t.asc --polygon p.csv --dip least")
+    assert turned["sagitta_m"] == pytest.approx(turned["chord_m"] / 2 * math.tan(math.radians(15)), rel=2e-3)
+
+
 def test_an_old_slope_below_the_face_holds_the_sphere_up(body):
     """A fill of 3 m at most on a parallel slope: the sphere touches that, and goes no deeper in its section."""
     terrain(ramp(30), cell=1.0, size=(160, 160))
