@@ -325,8 +325,8 @@ WORDS: Dict[str, Union[str, Words]] = {
     "blocks on level ground": "the release area falls by {slope:.1f} degrees, less than {limit:g}: blocks hardly move",
     "blocks below cell": Words("the blocks, {size:g} m, are smaller than the cells of the terrain, {cell:g} m: steps "
                                "and ledges that throw them are not in it", NOTE),
-    "blocks left": "{left:,} of {blocks:,} blocks left the terrain: how far they go is not known, and what is said of "
-                   "reach is the least; use a larger elevation model",
+    "blocks left": "{left:,} of {blocks:,} blocks left the terrain{without}: how far they go is not known, and what is "
+                   "said of it is the least; use a larger elevation model",
     "blocks moving": "{moving:,} of {blocks:,} blocks still moved at the end of their run: what is said of reach is "
                      "the least; a longer model.duration in site.yaml",
     "blocks too fast": "contacts overlap by up to {percent:.0f} % of the radius: a larger model.speed in site.yaml",
