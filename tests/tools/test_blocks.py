@@ -2,6 +2,7 @@
 import re
 import shutil
 import subprocess
+from dataclasses import replace
 from types import SimpleNamespace
 
 import fiona
@@ -343,6 +344,13 @@ def test_blocks_that_left_make_it_at_least():
     assert away.best.at_least == "at least " and away.doubts()[0].numbers["away"] == 10       # how far they go
     none = outcome.evaluate([a_run(ground, [0, 0, 0, 0], [1, 0, 0, 0]) for ground in range(10)]).best.reach
     assert none.text.startswith("up to ") and none.high > 0.25
+
+
+def test_blocks_that_stay_where_they_begin_are_counted():
+    """Two of the four blocks of ground 0 and one of ground 1 go less than two diameters."""
+    grounds = [replace(a_run(ground, [0] * 4, [0] * 4), diameter=np.ones(4)) for ground in range(3)]
+    of = outcome.evaluate(grounds)
+    assert [(one.kind, one.numbers["still"], one.numbers["blocks"]) for one in of.doubts()] == [("blocks still", 3, 12)]
 
 
 def test_a_road_is_ahead_of_a_block_that_leaves_unless_it_is_behind_or_was_passed():

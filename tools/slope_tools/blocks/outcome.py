@@ -15,6 +15,7 @@ from ..statistics import hazard, withheld
 from .runs import AT_ROAD, QUANTITIES, Run
 
 SHARES = 0.5, 0.95      # of the quantiles
+STILL = 2.0             # diameters: a block that goes less far stays where it begins
 DEEP = 0.2              # radii: contacts that overlap by more were too soft for the speed
 
 
@@ -66,6 +67,7 @@ class Result:
     left: int
     away: int           # of these, with no road ahead
     moving: int
+    still: int          # that stay where they begin
     reach: Optional[Share]
     past: Optional[Share]
     crossed: Dict[str, Share]
@@ -95,11 +97,12 @@ class Outcome:
 
     def doubts(self) -> List[Finding]:
         """What is to be known of the runs."""
-        blocks, left, away, moving = (sum(getattr(one, of) for one in self.results)
-                                      for of in ("blocks", "left", "away", "moving"))
+        blocks, left, away, moving, still = (sum(getattr(one, of) for one in self.results)
+                                             for of in ("blocks", "left", "away", "moving", "still"))
         without = f", {away:,} of them where no road is ahead, which count as not reaching it" * (away > 0)
         found = [(left, Finding("blocks left", {"left": left, "blocks": blocks, "away": away, "without": without})),
                  (moving, Finding("blocks moving", {"moving": moving, "blocks": blocks})),
+                 (still, Finding("blocks still", {"still": still, "blocks": blocks, "limit": STILL})),
                  (self.overlap > DEEP, Finding("blocks too fast", {"percent": 100 * self.overlap}))]
         return [one for holds, one in found if holds]
 
@@ -146,7 +149,9 @@ def result_of(runs: Sequence[Run]) -> Result:
         past = share(joined(lambda one: one.passed), AT_ROAD)
         reach, past = replace(reach, low=max(reach.low, past.low)), replace(past, high=min(reach.high, past.high))
     travel = {name: quantity(joined(lambda one: one.travel[name])) for name in runs[0].travel}
+    still = joined(lambda one: one.travel["distance"] < STILL * one.diameter) & ~left
     away = int((left & ~joined(lambda one: one.ahead[AT_ROAD])).sum()) if reach else 0
-    return Result(runs[0].rolling, len(ground), len(runs), int(left.sum()), away, int(moving.sum()), reach, past,
-                  crossed, {name: one for name, one in travel.items() if one},
+    return Result(runs[0].rolling, len(ground), len(runs), int(left.sum()), away, int(moving.sum()),
+                  int(still.sum()), reach, past, crossed,
+                  {name: one for name, one in travel.items() if one},
                   {place: {name: quantity(values) for name, values in of.items()} for place, of in at.items()})
