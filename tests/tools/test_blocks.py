@@ -277,6 +277,18 @@ def test_export_and_report_again(made, told):
     assert status == 0 and "again.html" in out, err
 
 
+def test_files_for_paraview_are_of_the_run_with_the_farthest_block(made, told, monkeypatch, tmp_path):
+    (tmp_path / "stand-in").write_text(f"#!/bin/sh\necho $* > {tmp_path}/words\n")
+    (tmp_path / "stand-in").chmod(0o755)
+    monkeypatch.setenv("DUMP2VTK", str(tmp_path / "stand-in"))
+    status, out, err = told("vtk", "tmp")
+    assert status == 0 and "tmp/vtk/site.pvd" in out, err
+    name = page.shown(made.known).name
+    words = (tmp_path / "words").read_text().split()
+    assert words[0].endswith(f"{made.folder.name}/runs/{name}/site.00000000.dump")
+    assert words[words.index("--deposit") + 1].endswith(f"/{name}/site")
+
+
 @pytest.mark.parametrize("words", [["report", "tmp", "-o", "again.html"], ["export", "tmp"], ["study", "tmp"]])
 def test_runs_of_other_choices_are_no_answer(made, told, words):
     """Of a site whose site.yaml was changed since, until it is rebuilt."""

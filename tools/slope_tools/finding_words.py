@@ -329,8 +329,8 @@ WORDS: Dict[str, Union[str, Words]] = {
                    "said of it is the least; use a larger elevation model",
     "blocks moving": "{moving:,} of {blocks:,} blocks still moved at the end of their run: what is said of reach is "
                      "the least; a longer model.duration in site.yaml",
-    "blocks still": Words("{still:,} of {blocks:,} blocks stay where they begin, within {limit:g} diameters, as the "
-                          "release area is too flat there for the roughness of its ground: they count in all shares",
+    "blocks still": Words("{still:,} of {blocks:,} blocks stay where they begin, within {limit:g} diameters, held by "
+                          "the roughness of the ground, more of them the flatter it is: they count in all shares",
                           NOTE),
     "blocks too fast": "contacts overlap by up to {percent:.0f} % of the radius: a larger model.speed in site.yaml",
     "lost fits": Words("{lost} of {runs} runs lost up to {volume:,.0f} m3 over the edge of the terrain or the box: how "
