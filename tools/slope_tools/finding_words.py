@@ -153,13 +153,15 @@ WORDS: Dict[str, Union[str, Words]] = {
     # of a body and its balls
     "no program": "no LAMMPS program (LMP, --lmp, build/lmp): no trial run, time and speeds are unknown",
     "left terrain": "{percent:.2g} % of the mass left the terrain in the trial run: use a larger elevation model",
-    "narrow road": "the road is about {width:.3g} m wide, {balls:.2g} balls of {d:g} m and {cells:.2g} cells of "
+    "narrow road": "{file}: the road is about {width:.3g} m wide, {balls:.2g} balls of {d:g} m and {cells:.2g} cells of "
                    "{cell:g} m: narrower than a ball or two cells, so what lies on it is a guess: use {remedy}",
+    "low wall": "{name}: the wall is {height:.3g} m high, less than a ball of {d:.3g} m: what it holds, and the force on "
+                "it, are of single balls, not of a mass: use {remedy}",
     "few across": "the body is about {across:.2g} cells of {cell:.3g} m across, below {limit:g}: its surface and "
                   "volume are rough; use a finer elevation model",
     "not at rest": "the trial run was not at rest after {seconds:.0f} s: the run time of the study is a guess",
-    "first look": "the body is {balls:.1f} balls thick at most, below {limit:g}: a first look; to repeat it, use more "
-                  "balls (--balls, --minutes)",
+    "first look": Words("the body is {balls:.1f} balls thick at most, below {limit:g}: a first look; to repeat it, use "
+                        "more balls (--balls, --minutes)", NOTE),
     "small angle": "{option} {degrees:g}: is it in degrees? A coefficient of {degrees:g} is {meant:.3g} degrees",
     "large rolling": "{option} {rolling:g}: is it a coefficient? More than {limit:g} stands for bodies that do not "
                      "roll",
@@ -167,7 +169,7 @@ WORDS: Dict[str, Union[str, Words]] = {
     "moves": "{file}: the mass was still moving at {seconds:g} s: these are not final numbers",
     "not counted": "{file}: {volume:.6g} m3 of the mass left the grid or the box and are not counted",
     "no terrain": "no --terrain and no {file}: no CRS, coordinates are the local metres of the run",
-    "no CRS": "{file} has no CRS: coordinates are {coordinates}",
+    "no CRS": Words("{file} has no CRS: coordinates are {coordinates}", NOTE),
     "cut off": "{file}: {percent:.3g} % of the polygon lies outside of the grid of the run: cut off",
     "no ground": "{volume:.6g} m3 lie on cells without ground, beside the road: not in the volume to remove",
     "outside of grid": "{file}: {area:.6g} m2 of it lie outside of the grid of the run: counted as false negative",
