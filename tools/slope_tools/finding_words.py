@@ -312,6 +312,8 @@ WORDS: Dict[str, Union[str, Words]] = {
     "lengths lost": Words("{lost} of {runs} runs lost more than {percent:g} % of their volume over the edge: their "
                           "lengths, and so the weights, are those of what stayed; take a larger terrain", NOTE),
     "outside of set": "{text}; that set says nothing of this mass",
+    "second opinion": "{name}, whose friction falls with the volume, has the mass end after {near} to {far}, {events} after "
+                      "{known_near} to {known_far}: nothing in common, {farther} go farther",
     "path ends": "the path leaves the terrain after {length}, where {share} of known events go on: take a larger "
                  "terrain",
     "body without run": Words("body {body} has no finished run: all of it, {volume:,.0f} m3, counts as on the road; "

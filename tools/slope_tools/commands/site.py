@@ -12,6 +12,7 @@ from ..case import decks
 from ..ensembles import known_study
 from ..errors import SlopeError
 from ..findings import Finding, finding, printer
+from ..mobility import results
 from ..options import Program, flag, number, option, positional, whole
 from ..plots import site_map
 from ..programs import find_lmp
@@ -274,6 +275,11 @@ def run(args: Request) -> None:
                              how=kinds.build(choices))
         if isinstance(choices, OfMass):
             lines += [*site_ground.lines(site_choices.load(folder)), *outlook.lines(folder)]
+            second, differs = results.of_site(folder)
+            lines += second
+            if differs:
+                keep(differs[0])
+                site_warnings.add(folder, differs)
             if (folder / RUNS).is_dir():
                 lines.append(runs_ahead(args, folder, choices.study.points))
         first = None if args.verbose else site_warnings.heaviest(list(doubts.values()))

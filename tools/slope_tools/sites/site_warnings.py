@@ -12,7 +12,7 @@ from .. import disk
 from ..digits import at_most, three
 from ..errors import SlopeError
 from ..finding_words import words_of
-from ..findings import WARNING, Finding, entries
+from ..findings import WARNING, Finding, entries, finding
 from ..releases.release_solve import Measures
 from .site_budget import Size, Trial
 from .site_inputs import Structure
@@ -29,6 +29,7 @@ HEAVIEST = ("in feet", "no ground's slope", "cliff", "picture", "pits", "no such
             "no way out", "hollow", "above ground", "no body", "little", "road on body", "under road", "beyond toe",
             "bulges", "rim", "parts", "own depth",
             "small angle", "large rolling", "left terrain", "outside", "not at rest", "zone covered", "zones overlap",
+            "second opinion",
             "blocks on level ground", "narrow road", "low wall", "thin", "few across", "few cells")
 NAMES = "{file}:", "{name}:"        # with which the words of a kind begin that is of one object
 LARGE = 1e6             # m3: larger masses run farther than laboratory friction suggests
@@ -169,6 +170,12 @@ def heaviest(several: Sequence[Finding]) -> List[Finding]:
             numbers[key] = ", ".join(dict.fromkeys(str(one.numbers[key]) for one in (first, *others)))
         found.append(first._replace(numbers=numbers))
     return sorted(found, key=lambda one: HEAVIEST.index(one.kind) if one.kind in HEAVIEST else len(HEAVIEST))[:MOST]
+
+
+def add(folder: Path, several: Sequence[Finding]) -> None:
+    """More of them, to those in a site's folder."""
+    path = folder / NAME
+    write(folder, [finding(one) for one in [*yaml.safe_load(path.read_text(encoding="utf-8")), *several]])
 
 
 def write(folder: Path, several: Sequence[Finding]) -> None:
