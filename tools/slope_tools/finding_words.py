@@ -153,10 +153,10 @@ WORDS: Dict[str, Union[str, Words]] = {
     # of a body and its balls
     "no program": "no LAMMPS program (LMP, --lmp, build/lmp): no trial run, time and speeds are unknown",
     "left terrain": "{percent:.2g} % of the mass left the terrain in the trial run: use a larger elevation model",
-    "narrow road": "{file}: the road is about {width:.3g} m wide, {balls:.2g} balls of {d:g} m and {cells:.2g} cells of "
-                   "{cell:g} m: narrower than a ball or two cells, so what lies on it is a guess: use {remedy}",
-    "low wall": "{name}: the wall is {height:.3g} m high, less than a ball of {d:.3g} m: what it holds, and the force on "
-                "it, are of single balls, not of a mass: use {remedy}",
+    "narrow road": "{file}: the road is about {width:.3g} m wide, {balls:.2g} balls of {d:g} m and {cells:.2g} cells "
+                   "of {cell:g} m: narrower than a ball or two cells, so what lies on it is a guess: use {remedy}",
+    "low wall": "{name}: the wall is {height:.3g} m high, less than a ball of {d:.3g} m: what it holds, and the force "
+                "on it, are of single balls, not of a mass: use {remedy}",
     "few across": "the body is about {across:.2g} cells of {cell:.3g} m across, below {limit:g}: its surface and "
                   "volume are rough; use a finer elevation model",
     "not at rest": "the trial run was not at rest after {seconds:.0f} s: the run time of the study is a guess",
@@ -312,8 +312,8 @@ WORDS: Dict[str, Union[str, Words]] = {
     "lengths lost": Words("{lost} of {runs} runs lost more than {percent:g} % of their volume over the edge: their "
                           "lengths, and so the weights, are those of what stayed; take a larger terrain", NOTE),
     "outside of set": "{text}; that set says nothing of this mass",
-    "second opinion": "{name}, whose friction falls with the volume, has the mass end after {near} to {far}, {events} after "
-                      "{known_near} to {known_far}: nothing in common, {farther} go farther",
+    "second opinion": "{name}, whose friction falls with the volume, has the mass end after {near} to {far}, {events} "
+                      "after {known_near} to {known_far}: nothing in common, {farther} go farther",
     "path ends": "the path leaves the terrain after {length}, where {share} of known events go on: take a larger "
                  "terrain",
     "body without run": Words("body {body} has no finished run: all of it, {volume:,.0f} m3, counts as on the road; "

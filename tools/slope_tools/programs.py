@@ -16,6 +16,16 @@ def find_lmp(option):
                                         ("--lmp is not given, LMP is not set", BESIDE)))
 
 
+def lmp_if_any(option):
+    """The same; None where there is none and none was named."""
+    try:
+        return find_lmp(option)
+    except SlopeError:
+        if option or os.environ.get("LMP"):
+            raise
+        return None
+
+
 def find_dump2vtk():
     """Absolute path of dump2vtk, which the build makes if it finds the VTK library."""
     return first("dump2vtk", (("DUMP2VTK in the environment", os.environ.get("DUMP2VTK")),

@@ -1,5 +1,4 @@
 """slope site: make a folder with terrain, body, deck and map from GIS files, ready for `slope study`."""
-import os
 from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,7 +14,7 @@ from ..findings import Finding, finding, printer
 from ..mobility import results
 from ..options import Program, flag, number, option, positional, whole
 from ..plots import site_map
-from ..programs import find_lmp
+from ..programs import lmp_if_any
 from ..releases import packing
 from ..releases.release import SHAPES
 from ..releases.release_dip import LEAST
@@ -269,7 +268,7 @@ def run(args: Request) -> None:
     cores, first = args.jobs or jobs.cores(), None
     try:
         with jobs.signals_interrupt(), site_scenarios.room(folder) if args.scenario is not None else nullcontext():
-            made = site.make(choices, folder, site.Machine(program(args.lmp), cores), lines.append,
+            made = site.make(choices, folder, site.Machine(lmp_if_any(args.lmp), cores), lines.append,
                              warn if findings.as_json else keep, site_map.draw,
                              again=args.folder is not None and args.scenario is None, known=known,
                              how=kinds.build(choices))
@@ -395,13 +394,3 @@ def replaced(choices: Choices, given: Dict[str, Any]) -> Choices:
         section, key = OPTIONS[name]
         new[section, key] = {**choices.value(section, key), **value} if isinstance(value, dict) else value
     return choices.changed(new)
-
-
-def program(option):
-    """The LAMMPS program, None where there is none and none was named."""
-    try:
-        return find_lmp(option)
-    except SlopeError:
-        if option or os.environ.get("LMP"):
-            raise
-        return None

@@ -299,18 +299,3 @@ def flow(value: object) -> str:
     """A value as YAML on one line."""
     line: str = yaml.safe_dump(disk.plain(value), default_flow_style=True, allow_unicode=True, width=10 ** 9)
     return line.strip().removesuffix("...").strip()
-
-
-def assigned_crs(words: Iterable[str]) -> Dict[str, Any]:
-    """Options from the values of --assign-crs, [FILE=]EPSG:n: that of the elevation model, those of other files."""
-    given: Dict[str, Any] = {}
-    for word in words:
-        name, _, crs = word.rpartition("=")
-        if not name and "assign_crs" in given:
-            raise SlopeError("--assign-crs", "must be given once without a FILE=", word)
-        if name:
-            parts = [part for part in Path(name).parts if part not in ("..", "/")]
-            given.setdefault("assigned", {})[str(Path(*parts))] = crs
-        else:
-            given["assign_crs"] = crs
-    return given
