@@ -9,7 +9,7 @@ from run_helpers import called, write_asc
 from test_slips import CASES, embankment, plane, write_columns
 from tiny_collapse import rows_of
 
-from slope_tools.commands import stability_failed
+from slope_tools.commands import stability
 from slope_tools.slips import back, bishop, columns, failed
 from slope_tools.slips.bishop import Strengths
 
@@ -146,7 +146,7 @@ def test_a_hollow_that_is_no_sphere(here, capsys):
     body = failed.read("scar.asc", HIGH[0], None, 1919.1)
     line = back.line(body.columns)
     assert abs(back.line(body.far).cohesion[0] / line.cohesion[0] - 1) < 0.1
-    [text] = map(str, stability_failed.warnings_of(body, line, line._replace(cohesion=1.2 * line.cohesion)))
+    [text] = map(str, stability.failed_warnings(body, line, line._replace(cohesion=1.2 * line.cohesion)))
     assert "depends on the axis of moments" in text and "+20 %" in text
 
 

@@ -2,6 +2,7 @@
 import re
 import shutil
 import subprocess
+from dataclasses import replace
 from types import SimpleNamespace
 
 import fiona
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 import rasterio
 import yaml
+from affine import Affine
 from shapely.geometry import LineString, Polygon
 
 from run_helpers import EAST, NORTH, called, write_tif
@@ -23,7 +25,7 @@ from slope_tools.plots import site_map
 from slope_tools.sites import site_choices, site_deck
 from slope_tools.sites.site_sections import OfBlocks, OfMass
 from slope_tools.statistics import withheld
-from slope_tools.survey.rasters import read_asc_local
+from slope_tools.survey.rasters import Raster, read_asc_local
 
 CELL, COLUMNS, ROWS = 1.0, 90, 50
 TOE, ANGLE = 40.0, 40.0         # m, where the slope begins; degrees
@@ -275,6 +277,18 @@ def test_export_and_report_again(made, told):
     assert status == 0 and "again.html" in out, err
 
 
+def test_files_for_paraview_are_of_the_run_with_the_farthest_block(made, told, monkeypatch, tmp_path):
+    (tmp_path / "stand-in").write_text(f"#!/bin/sh\necho $* > {tmp_path}/words\n")
+    (tmp_path / "stand-in").chmod(0o755)
+    monkeypatch.setenv("DUMP2VTK", str(tmp_path / "stand-in"))
+    status, out, err = told("vtk", "tmp")
+    assert status == 0 and "tmp/vtk/site.pvd" in out, err
+    name = page.shown(made.known).name
+    words = (tmp_path / "words").read_text().split()
+    assert words[0].endswith(f"{made.folder.name}/runs/{name}/site.00000000.dump")
+    assert words[words.index("--deposit") + 1].endswith(f"/{name}/site")
+
+
 @pytest.mark.parametrize("words", [["report", "tmp", "-o", "again.html"], ["export", "tmp"], ["study", "tmp"]])
 def test_runs_of_other_choices_are_no_answer(made, told, words):
     """Of a site whose site.yaml was changed since, until it is rebuilt."""
@@ -290,15 +304,15 @@ def test_runs_of_other_choices_are_no_answer(made, told, words):
 
 # --- shares and their bounds ---
 
-def a_run(ground, reached, left=None, rolling="0.1"):
-    """Blocks of which those in `reached` come to the road."""
+def a_run(ground, reached, left=None, rolling="0.1", ahead=True):
+    """Blocks of which those in `reached` come to the road; ahead: it may be, of those that left the terrain."""
     n = len(reached)
     zeros = np.zeros(n)
     reached, left = np.array(reached, bool), np.zeros(n, bool) if left is None else np.array(left, bool)
     at = {runs.AT_ROAD: {name: np.where(reached, 1.0, np.nan) for name in runs.QUANTITIES}}
     travel = {name: np.arange(n) + ground for name in ("distance", "along", "across")}
     return runs.Run("a", None, rolling, ground, zeros, np.zeros((n, 3)), np.zeros((n, 2)), left, zeros.astype(bool),
-                    reached, reached, at, travel, 0.1)
+                    reached, reached, {runs.AT_ROAD: left & ahead}, at, travel, 0.1)
 
 
 def test_none_that_reaches_is_never_certain():
@@ -337,8 +351,30 @@ def test_blocks_that_left_make_it_at_least():
     assert reach.share == 0.25 and reach.open == 10 and reach.high > 0.5 > reach.low
     assert reach.text.startswith("at least 25 %") and of.best.at_least == "at least "
     assert [one.kind for one in of.doubts()] == ["blocks left"]
+    away = outcome.evaluate([a_run(ground, [1, 0, 0, 0], [0, 1, 0, 0], ahead=False) for ground in range(10)])
+    assert away.best.reach.open == away.best.past.open == 0 and away.best.reach.high < 0.5 and away.best.away == 10
+    assert away.best.at_least == "at least " and away.doubts()[0].numbers["away"] == 10       # how far they go
     none = outcome.evaluate([a_run(ground, [0, 0, 0, 0], [1, 0, 0, 0]) for ground in range(10)]).best.reach
     assert none.text.startswith("up to ") and none.high > 0.25
+
+
+def test_blocks_that_stay_where_they_begin_are_counted():
+    """Two of the four blocks of ground 0 and one of ground 1 go less than two diameters."""
+    grounds = [replace(a_run(ground, [0] * 4, [0] * 4), diameter=np.ones(4)) for ground in range(3)]
+    of = outcome.evaluate(grounds)
+    assert [(one.kind, one.numbers["still"], one.numbers["blocks"]) for one in of.doubts()] == [("blocks still", 3, 12)]
+
+
+def test_a_road_is_ahead_of_a_block_that_leaves_unless_it_is_behind_or_was_passed():
+    """North of a road from west to east: over the back of the hill, towards both sides, beyond the road and on it."""
+    raster = Raster(np.zeros((40, 40)), Affine(1, 0, 0, 0, -1, 40), None, np.zeros(2))
+    released = np.zeros((40, 40), bool)
+    released[10, 20] = True
+    sides = road_sides.divide(Polygon([(5, 10), (35, 10), (35, 12), (5, 12)]), None, raster, released)
+    ends = {(20, 40): False, (30, 40): False, (40, 31): True, (0, 20): True, (20, 0): False, (40, 11): True}
+    start, end = np.full((len(ends), 2), (20.0, 30.0)), np.array(list(ends), float)
+    assert runs.road_ahead(np.ones(len(ends), bool), start, end, sides).tolist() == list(ends.values())
+    assert not runs.road_ahead(np.zeros(len(ends), bool), start, end, sides).any()
 
 
 def test_beyond_the_road():

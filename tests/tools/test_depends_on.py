@@ -179,7 +179,7 @@ def test_every_option_is_said(command):
 
 # --- environment variables ---
 
-PROGRAM = {"LMP", "LAMMPS_PLUGIN_PATH", "LD_LIBRARY_PATH"}      # by what they lead to
+PROGRAM = {"LMP", "DUMP2VTK", "LAMMPS_PLUGIN_PATH", "LD_LIBRARY_PATH"}      # by what they lead to
 # of one result, but for rounding; a shell completes words; is set, not read; how ranks are started
 SAME = {"SLOPE_KERNEL", "OMP_NUM_THREADS", "COMP_LINE", "MATPLOTLIBRC", "SLURM_TASKS_PER_NODE"}
 

@@ -17,7 +17,7 @@ from shapely.geometry import Point
 
 import made_study
 from made_rows import row
-from run_helpers import CRS_M, EAST, NORTH, write_asc, write_run, write_sidecar, examples
+from run_helpers import CRS_M, EAST, NORTH, called, examples, write_asc, write_run, write_sidecar
 from tiny_collapse import LMP, read_asc, write_case
 
 from slope_tools.case import run_folders
@@ -96,6 +96,38 @@ def test_a_run_by_its_folder_or_one_of_its_files(slope, here, best):
         with rasterio.open(f"{folder}/site.base.tif") as tif:
             assert tif.tags()["run"] == ("two, the governing run of mine/study" if of_study else "mine/study/two/site")
         shutil.rmtree(folder)
+
+
+def test_files_for_paraview_are_of_the_run_of_the_first_page(here, capsys, monkeypatch):
+    """By dump2vtk, here a stand-in that keeps its words; snapshots after the run's end and of others are left out."""
+    program = Path("stand-in")
+    program.write_text("#!/bin/sh\necho $* > words\n[ ! -e refuse ] || { echo 'dump2vtk: cut short' >&2; exit 2; }\n")
+    program.chmod(0o755)
+    monkeypatch.setenv("DUMP2VTK", str(program))
+    for run in ("one", "two"):
+        Path("mine/study", run).mkdir(parents=True)
+        write_rasters(f"mine/study/{run}/site")
+        for name in ("site.0.dump", "site.5.dump", "site.9.dump", "other.1.dump", "other.2.dump", "other.3.dump"):
+            Path("mine/study", run, name).touch()
+        about = yaml.safe_load(Path("mine/study", run, "site.summary.yaml").read_text())
+        keep = Path("mine/study", run, "site.summary.yaml").write_text
+        keep(yaml.safe_dump({**about, "stop": {"reason": "halt", "step": 5, "time": 9.0}}))
+    made_study.write(Path("mine/study"), [row(run=name, summary=f"{name}/site.summary.yaml", distance_99_m=distance)
+                                          for name, distance in (("one", 50.0), ("two", 60.0))])
+    for name, output in (("mine", "mine/vtk/site"), ("mine/study/two/site", "mine/study/two/vtk/site")):
+        status, out, err = called(capsys, ["vtk", name])
+        assert (status, err) == (0, "") and f"open {output}.pvd" in out
+        assert Path("words").read_text().split() == [
+            *(f"mine/study/two/site.{step}.dump" for step in (0, 5)), "--deposit", "mine/study/two/site", "-o", output]
+    status, out, err = called(capsys, ["vtk", "mine", "--single", "-o", "new/mine"])
+    assert status == 2 and "-o: must be in an existing folder, got new/mine" in err
+    Path("refuse").touch()
+    status, out, err = called(capsys, ["vtk", "mine", "--single", "-o", "mine/out"])
+    assert (status, err) == (2, "slope vtk: dump2vtk: cut short\n")
+    assert Path("words").read_text().endswith("-o mine/out --single\n")
+    monkeypatch.setenv("DUMP2VTK", "nowhere")
+    status, out, err = called(capsys, ["vtk", "mine"])
+    assert status == 2 and "DUMP2VTK in the environment: must lead to dump2vtk, got" in err
 
 
 def quantiles(value):

@@ -12,7 +12,7 @@ from test_mobility_path import RADIUS, STEEP, disc, hillside, terrain
 
 from slope_tools.digits import three
 from slope_tools.errors import SlopeError
-from slope_tools.mobility import body, exceedance, fall_path, known, landslides, results, road
+from slope_tools.mobility import body, exceedance, fall_path, known, landslides, lucas, results, road
 from slope_tools.releases import release
 from slope_tools.survey import rasters
 
@@ -63,6 +63,37 @@ def test_both_scatters():
     narrow, wide = (ROW.beyond(kind, length, volume, fall) for kind in ROW.kinds[:2])
     near, far = ROW.beyond("landslides", length, volume, fall)
     assert near == narrow[0] > wide[0] and far == wide[1] > narrow[1]
+
+
+# --- a second opinion ---
+
+def test_friction_falls_with_the_volume():
+    """11,000 m3: 25.9 degrees, 95 % between 19.8 and 33.3, as published."""
+    shares = 0.5, 0.025, 0.975
+    assert [math.degrees(math.atan(lucas.friction(11000, one))) for one in shares] == pytest.approx(
+        [25.9, 19.8, 33.3], abs=0.06)
+    assert lucas.friction(1e6) == pytest.approx(1e6 ** -0.0774) and lucas.friction(1e8) < lucas.friction(1e6)
+
+
+def test_the_line_from_the_crown_comes_out_where_a_slope_and_a_flat_have_it():
+    """100 m down at 45 degrees, then a flat: H / mu; steeper than the slope at the toe; beyond the path nowhere."""
+    length = np.linspace(0, 400, 401)
+    path = fall_path.FallPath(length, 0 * length, length, np.minimum(length, 100.0), fall_path.TERRAIN, (0, 0, 100))
+    assert lucas.reach(path, 20, 0.4) == pytest.approx(250) and lucas.reach(path, 20, 0.33) == pytest.approx(100 / 0.33)
+    assert lucas.reach(path, 20, 1.1) == 20 and lucas.reach(path, 20, 0.2) is None
+
+
+@pytest.mark.parametrize("moved, farther", [(0.0, None), (-1.2, "the events"), (1.2, "that law's masses")])
+def test_where_the_two_have_nothing_in_common_a_warning_says_so(moved, farther):
+    """Of a row whose line lies where it does, and far above and below it, with a small scatter."""
+    mass = gentle()
+    row = ROW._replace(a=ROW.a + moved, limit=0.1, r2=0.97)
+    found = known.Found(None, exceedance.of_body(mass, row))
+    said = lucas.opinion(mass, found.decides.path)
+    assert said.steep > said.angle > said.flat and said.toe > 0
+    assert [(one.kind, one.numbers["farther"]) for one in results.disagreement(mass, found)] == (
+        [("second opinion", farther)] if farther else [])
+    assert f"{said.angle:.1f} degrees" in results.second_opinion(mass, found)
 
 
 # --- on a path ---

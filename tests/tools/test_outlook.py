@@ -88,7 +88,7 @@ def test_a_coarse_elevation_model(inside, gis):  # noqa: F811
     z = np.broadcast_to(100 + height((np.arange(12) + 0.5) * 10), (8, 12))
     write_tif(gis / "coarse.tif", z, 10.0, crs="EPSG:6677")
     for words in ("", "--cell 2"):
-        err = inside(f"--terrain coarse.tif {STANDARD} {words} -o coarse{len(words)}").err
+        err = inside(f"--terrain coarse.tif {STANDARD} {words} --verbose -o coarse{len(words)}").err
         assert re.search(r"the body is about (3|4)(\.\d)? cells of 10 m across, below 10: its surface and volume", err)
     assert "cells of" not in inside(f"--terrain dem.tif {STANDARD} -o fine").err
 

@@ -26,8 +26,13 @@ from slope_tools.animation import film
 from slope_tools.case import decks
 from slope_tools.deposits import score_run
 from slope_tools.errors import SlopeError
+from slope_tools.finding_words import WORDS
+from slope_tools.findings import Finding
+from slope_tools.mobility import body, known
+from slope_tools.plots import site_map
 from slope_tools.sites import site, site_budget, site_choices, site_deck, site_folder, site_trial, site_warnings
 from slope_tools.studies import site_study
+from slope_tools.survey.resampling import sample
 
 
 MAPPED = [(25, 25), (60, 25), (60, 55), (25, 55)]
@@ -270,6 +275,35 @@ def test_a_thin_body_is_warned_of_by_its_mean_thickness(mean, largest, words):
     assert words in str(line) and "more balls (--balls, --minutes)" in str(line)
 
 
+def test_the_heaviest_warnings_are_shown_once_for_all_objects():
+    """By weight, three at most, no notes; of two roads with the numbers of the first."""
+    narrow = [Finding("narrow road", {"file": name, "width": wide, "balls": 0.5, "d": 8.0, "cells": 2.0, "cell": 2.0,
+                                      "remedy": "x"}) for name, wide in (("north", 4.0), ("south", 5.0))]
+    others = [Finding("thin", {"balls": 2.0, "limit": 3.0}), Finding("first look", {"balls": 5.0, "limit": 10.0}),
+              Finding("no CRS", {"file": "a.tif", "coordinates": "b"}),
+              Finding("in feet", {"degrees": 80, "in_feet": 50})]
+    found = site_warnings.heaviest([*narrow, *others])
+    assert [one.kind for one in found] == ["in feet", "narrow road", "thin"]
+    assert found[1].numbers["file"] == "north, south" and found[1].numbers["width"] == 4.0
+    assert str(found[1]).startswith("north, south: ") and str(narrow[0]).startswith("north: ")
+    assert len(site_warnings.heaviest([*narrow, *others, Finding("few cells", {"cells": 3, "cell": 5.0})])) == 3
+    assert set(site_warnings.HEAVIEST) <= set(WORDS) and len(set(site_warnings.HEAVIEST)) == len(site_warnings.HEAVIEST)
+
+
+def test_the_map_has_the_fall_path(inside, mine, monkeypatch):
+    """From the body down, as slope mobility has it; where no events cover the body, too, and none without a body."""
+    seen = []
+    monkeypatch.setattr(site_map, "draw", lambda path, shown, _: seen.append(shown) or path.write_bytes(b""))
+    inside("mine --known rock_avalanches")
+    path = site_map.reach_of(seen[0]).path
+    asked = known.of_about({"set": "rock_avalanches", "confined": "unknown"})
+    found = known.of_body(body.of_site(mine), asked).decides.path
+    assert path == pytest.approx(np.column_stack([found.x, found.y])) and len(path) > 3
+    z = sample(seen[0].raster, *path.T)
+    assert z[0] > z[-1] + 5
+    assert not len(site_map.reach_of(seen[0]._replace(depth=0 * seen[0].depth)).path)
+
+
 def test_a_large_body_needs_a_past_event():
     assert site_warnings.of_thickness(3.1, 10.0) == []
     assert site_warnings.of_volume(9.9e5) == []
@@ -411,9 +445,12 @@ def test_refused_values_of_soil_and_ground(inside, mine, words, line):
 def test_all_warnings_are_kept_in_the_folder(inside, mine):
     """Those of layers and balls; anew with the other files."""
     write_layer(mine.parent / "road.geojson", [(20, -40), (36, -40), (36, 80), (20, 80)])
-    err = inside("mine --balls 60 --road road.geojson").err
+    err = inside("mine --balls 60 --road road.geojson --verbose").err
     lines = kept(mine)
     assert err.splitlines() == [f"slope site: warning: {line}" for line in lines]
+    out, err = inside("mine")       # the three that weigh most
+    assert err.splitlines() == [f"slope site: warning: {lines[k]}" for k in (0, 1, 3)]
+    assert f"all 4 warnings and notes: --verbose, or mine/{site_warnings.NAME}" in out
     assert [next(word for word in ("above", "outside", "LAMMPS", "thick") if word in line)
             for line in lines] == ["above", "outside", "LAMMPS", "thick"]
     inside("mine --bounds -12000 33000 -11890 35000")

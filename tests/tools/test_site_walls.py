@@ -5,6 +5,7 @@ import subprocess
 
 import numpy as np
 import pytest
+import yaml
 from affine import Affine
 from shapely.geometry import LineString
 
@@ -13,8 +14,8 @@ from test_site_anew import inside, once  # noqa: F401
 from tiny_collapse import LMP
 
 from slope_tools.errors import SlopeError
-from slope_tools.sites import site_choices, site_inputs, site_walls
-from slope_tools.survey.rasters import Raster
+from slope_tools.sites import site_choices, site_inputs, site_walls, site_warnings
+from slope_tools.survey.rasters import Raster, read_asc_local
 from slope_tools.survey.resampling import sample
 
 BENT = LineString([(20, 20), (45, 24), (60, 60), (62, 90)])
@@ -100,7 +101,17 @@ def test_options_and_keys(inside, gis):  # noqa: F811
     corners = site_inputs.corners(str(gis / "mine" / "second.stl"))
     assert np.ptp(corners[..., 0]) == pytest.approx(1, abs=0.01)
     assert np.ptp(corners[..., 1]) == pytest.approx(60, abs=0.1)
-    inside("mine --height 9 --width 2")
+    # lower than a ball: both walls in a line, with what smaller balls take; the meshes alone say it, too
+    err = inside("mine --height 1.5 --diameter 3").err
+    [line] = [one for one in err.splitlines() if "lower" in one or "less than a ball" in one]
+    assert "wall, second: the wall is 1.5 m high, less than a ball of 3 m" in line
+    assert "--diameter 1.5, about 16.0" in line
+    found = yaml.safe_load((gis / "mine" / site_warnings.NAME).read_text())
+    assert [one["numbers"]["name"] for one in found if one["kind"] == "low wall"] == ["wall", "second"]
+    ground = read_asc_local(gis / "mine" / "terrain.asc")
+    again = site_inputs.structure(str(gis / "mine" / "second.stl"), ground, gis, set())
+    assert again.above == pytest.approx(1.5, abs=0.5) and site_warnings.of_walls([again], again.above) == []
+    assert "low wall" not in (inside("mine --height 9 --width 2") and (gis / "mine" / site_warnings.NAME).read_text())
     again = site_inputs.corners(str(gis / "mine" / "second.stl"))
     assert again[..., 2].max() == pytest.approx(corners[..., 2].max() + 1)
     # the same mesh, made by hand

@@ -415,7 +415,7 @@ def test_a_wrong_input(case, files, tmp_path, monkeypatch, capsys):
     case.make()
     before = set(os.listdir())
     status, out, err = called(capsys, case.words)
-    lines = [line for line in err.splitlines() if "warning: " not in line]
+    lines = [line for line in err.splitlines() if "warning: " not in line and "note: " not in line]
     assert "Traceback" not in err and "a bug" not in err
     if case.answer.startswith((RIGHT, ASKED)):
         assert (status, lines) == (0, []), err

@@ -30,6 +30,7 @@ COMMANDS = {
     "quake": "convert strong-motion records of networks, or as CSV, to the ground motion that decks read",
     "volume": "compute the volume to remove from a road, in total and for each mesh cell",
     "export": "write the rasters of a run as GeoTIFFs in the survey's coordinates",
+    "vtk": "write a run's snapshots, ground and deposit as files for ParaView",
     "score": "compare a run's deposit with a mapped one: overlap, run-out, volume",
     "study": "run a deck for many values of its variables: table, maps, conservative volume",
     "calibrate": "find the values of a deck's variables that reproduce an observed deposit, and their uncertainty",
@@ -53,7 +54,7 @@ RENAMED = {
     "calibrate": {"--volume": "--road-volume"}, "sensitivity": {"--vary": "--levels"},
     "report": {"--project": "--name"}, "bench": {"--repeat": "--runs"},
 }
-BY_KIND = {"study", "export", "report"}     # see blocks/kinds.py
+BY_KIND = {"study", "export", "report", "vtk"}     # see blocks/kinds.py
 WITHOUT_PLACES = {"quake", "verify", *IN_TESTS}      # no file of theirs has a CRS
 TESTS = Path(__file__).resolve().parents[2] / "tests"
 

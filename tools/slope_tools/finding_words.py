@@ -153,13 +153,15 @@ WORDS: Dict[str, Union[str, Words]] = {
     # of a body and its balls
     "no program": "no LAMMPS program (LMP, --lmp, build/lmp): no trial run, time and speeds are unknown",
     "left terrain": "{percent:.2g} % of the mass left the terrain in the trial run: use a larger elevation model",
-    "narrow road": "the road is about {width:.3g} m wide, {balls:.2g} balls of {d:g} m and {cells:.2g} cells of "
-                   "{cell:g} m: narrower than a ball or two cells, so what lies on it is a guess: use {remedy}",
+    "narrow road": "{file}: the road is about {width:.3g} m wide, {balls:.2g} balls of {d:g} m and {cells:.2g} cells "
+                   "of {cell:g} m: narrower than a ball or two cells, so what lies on it is a guess: use {remedy}",
+    "low wall": "{name}: the wall is {height:.3g} m high, less than a ball of {d:.3g} m: what it holds, and the force "
+                "on it, are of single balls, not of a mass: use {remedy}",
     "few across": "the body is about {across:.2g} cells of {cell:.3g} m across, below {limit:g}: its surface and "
                   "volume are rough; use a finer elevation model",
     "not at rest": "the trial run was not at rest after {seconds:.0f} s: the run time of the study is a guess",
-    "first look": "the body is {balls:.1f} balls thick at most, below {limit:g}: a first look; to repeat it, use more "
-                  "balls (--balls, --minutes)",
+    "first look": Words("the body is {balls:.1f} balls thick at most, below {limit:g}: a first look; to repeat it, use "
+                        "more balls (--balls, --minutes)", NOTE),
     "small angle": "{option} {degrees:g}: is it in degrees? A coefficient of {degrees:g} is {meant:.3g} degrees",
     "large rolling": "{option} {rolling:g}: is it a coefficient? More than {limit:g} stands for bodies that do not "
                      "roll",
@@ -167,7 +169,7 @@ WORDS: Dict[str, Union[str, Words]] = {
     "moves": "{file}: the mass was still moving at {seconds:g} s: these are not final numbers",
     "not counted": "{file}: {volume:.6g} m3 of the mass left the grid or the box and are not counted",
     "no terrain": "no --terrain and no {file}: no CRS, coordinates are the local metres of the run",
-    "no CRS": "{file} has no CRS: coordinates are {coordinates}",
+    "no CRS": Words("{file} has no CRS: coordinates are {coordinates}", NOTE),
     "cut off": "{file}: {percent:.3g} % of the polygon lies outside of the grid of the run: cut off",
     "no ground": "{volume:.6g} m3 lie on cells without ground, beside the road: not in the volume to remove",
     "outside of grid": "{file}: {area:.6g} m2 of it lie outside of the grid of the run: counted as false negative",
@@ -310,6 +312,8 @@ WORDS: Dict[str, Union[str, Words]] = {
     "lengths lost": Words("{lost} of {runs} runs lost more than {percent:g} % of their volume over the edge: their "
                           "lengths, and so the weights, are those of what stayed; take a larger terrain", NOTE),
     "outside of set": "{text}; that set says nothing of this mass",
+    "second opinion": "{name}, whose friction falls with the volume, has the mass end after {near} to {far}, {events} "
+                      "after {known_near} to {known_far}: nothing in common, {farther} go farther",
     "path ends": "the path leaves the terrain after {length}, where {share} of known events go on: take a larger "
                  "terrain",
     "body without run": Words("body {body} has no finished run: all of it, {volume:,.0f} m3, counts as on the road; "
@@ -325,10 +329,13 @@ WORDS: Dict[str, Union[str, Words]] = {
     "blocks on level ground": "the release area falls by {slope:.1f} degrees, less than {limit:g}: blocks hardly move",
     "blocks below cell": Words("the blocks, {size:g} m, are smaller than the cells of the terrain, {cell:g} m: steps "
                                "and ledges that throw them are not in it", NOTE),
-    "blocks left": "{left:,} of {blocks:,} blocks left the terrain: how far they go is not known, and what is said of "
-                   "reach is the least; use a larger elevation model",
+    "blocks left": "{left:,} of {blocks:,} blocks left the terrain{without}: how far they go is not known, and what is "
+                   "said of it is the least; use a larger elevation model",
     "blocks moving": "{moving:,} of {blocks:,} blocks still moved at the end of their run: what is said of reach is "
                      "the least; a longer model.duration in site.yaml",
+    "blocks still": Words("{still:,} of {blocks:,} blocks stay where they begin, within {limit:g} diameters, held by "
+                          "the roughness of the ground, more of them the flatter it is: they count in all shares",
+                          NOTE),
     "blocks too fast": "contacts overlap by up to {percent:.0f} % of the radius: a larger model.speed in site.yaml",
     "lost fits": Words("{lost} of {runs} runs lost up to {volume:,.0f} m3 over the edge of the terrain or the box: how "
                        "far they went is unknown, and they are left out; use a larger one", NOTE),

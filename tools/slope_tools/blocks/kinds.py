@@ -12,7 +12,8 @@ from ..studies import site_study
 WRONG = "must not be given with a site of single blocks"
 # of a command: what it calls a site's folder, and the options that have a meaning for blocks
 TAKEN = {"study": ("deck", "np", "jobs", "lmp", "dry_run", "anew", "launcher", "engine", "slurm"),
-         "export": ("prefix", "output", "overwrite"), "report": ("folder", "output", "overwrite")}
+         "export": ("prefix", "output", "overwrite"), "report": ("folder", "output", "overwrite"),
+         "vtk": ("prefix", "output", "single")}
 
 
 def run(command: str, module: Any, request: Any, tell: Any) -> None:
@@ -31,6 +32,11 @@ def run(command: str, module: Any, request: Any, tell: Any) -> None:
     if command == "study":
         from . import study
         return study.run(found, module.setup_of(request))
+    if command == "vtk":
+        from . import page, runs, study as of_blocks
+        shown = page.shown(of_blocks.read(found, of_blocks.planned(found)))
+        tell(f"{shown.name}, the run with the farthest block: {shown.folder}")
+        return module.convert(str(shown.folder / runs.PREFIX), request.output, found.folder, request.single)
     return (export if command == "export" else report)(found, request.output, request.overwrite, tell)
 
 

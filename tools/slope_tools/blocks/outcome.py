@@ -1,8 +1,8 @@
 """The runs of a site of blocks evaluated, by block: shares and quantiles with bounds, for each rolling resistance.
 
 Blocks of one run share its ground: bounds (90 %) count how many of them are worth one independent block, by the
-differences between the grounds. What a block that left the terrain, or still moves, would have done is not known: in a
-lower bound it does not do it, in an upper one it does.
+differences between the grounds. What a block that left the terrain with the road ahead, or still moves, would have done
+is not known: in a lower bound it does not do it, in an upper one it does.
 """
 from dataclasses import asdict, dataclass, replace
 from typing import Any, Dict, List, Optional, Sequence
@@ -15,12 +15,13 @@ from ..statistics import hazard, withheld
 from .runs import AT_ROAD, QUANTITIES, Run
 
 SHARES = 0.5, 0.95      # of the quantiles
+STILL = 2.0             # diameters: a block that goes less far stays where it begins
 DEEP = 0.2              # radii: contacts that overlap by more were too soft for the speed
 
 
 @dataclass(frozen=True)
 class Share:
-    """Of blocks that were seen to do something; open: how many of the others left the terrain or still moved."""
+    """Of blocks that were seen to do something; open: how many of the others may have done it unseen."""
     share: float
     low: float
     high: float
@@ -64,7 +65,9 @@ class Result:
     blocks: int
     grounds: int
     left: int
+    away: int           # of these, with no road ahead
     moving: int
+    still: int          # that stay where they begin
     reach: Optional[Share]
     past: Optional[Share]
     crossed: Dict[str, Share]
@@ -94,9 +97,12 @@ class Outcome:
 
     def doubts(self) -> List[Finding]:
         """What is to be known of the runs."""
-        blocks, left, moving = (sum(getattr(one, of) for one in self.results) for of in ("blocks", "left", "moving"))
-        found = [(left, Finding("blocks left", {"left": left, "blocks": blocks})),
+        blocks, left, away, moving, still = (sum(getattr(one, of) for one in self.results)
+                                             for of in ("blocks", "left", "away", "moving", "still"))
+        without = f", {away:,} of them where no road is ahead, which count as not reaching it" * (away > 0)
+        found = [(left, Finding("blocks left", {"left": left, "blocks": blocks, "away": away, "without": without})),
                  (moving, Finding("blocks moving", {"moving": moving, "blocks": blocks})),
+                 (still, Finding("blocks still", {"still": still, "blocks": blocks, "limit": STILL})),
                  (self.overlap > DEEP, Finding("blocks too fast", {"percent": 100 * self.overlap}))]
         return [one for holds, one in found if holds]
 
@@ -109,7 +115,8 @@ def evaluate(runs: Sequence[Run]) -> Outcome:
     """Of finished runs."""
     results = [result_of([one for one in runs if one.rolling == rolling])
                for rolling in dict.fromkeys(one.rolling for one in runs)]
-    best = max(results, key=lambda one: (one.reach.share if one.reach else 0.0, one.left, one.travel["distance"].most))
+    best = max(results, key=lambda one: (one.reach.share if one.reach else 0.0, one.left - one.away,
+                                         one.travel["distance"].most))
     return Outcome(results, best, withheld.exceeded_at_most(min(one.grounds for one in results)),
                    max(one.overlap for one in runs))
 
@@ -120,8 +127,9 @@ def result_of(runs: Sequence[Run]) -> Result:
     ground = np.repeat([one.ground for one in runs], [len(one.left) for one in runs])
     left, moving = joined(lambda one: one.left), joined(lambda one: one.moving)
 
-    def share(seen: np.ndarray) -> Share:
-        unknown, number = int(((left | moving) & ~seen).sum()), int(seen.sum())
+    def share(seen: np.ndarray, place: str) -> Share:
+        ahead = joined(lambda one: one.ahead[place])
+        unknown, number = int(((ahead | moving) & ~seen).sum()), int(seen.sum())
         low, high = hazard.share_bounds(number, len(seen) - unknown, unknown, hazard.effect_of(seen, ground))
         # a few say little of how alike blocks of a ground are: chance leaves no less than if none had been seen
         none = np.zeros(len(seen), bool)
@@ -135,12 +143,15 @@ def result_of(runs: Sequence[Run]) -> Result:
             if several else None
 
     at = {place: {name: joined(lambda one: one.at[place][name]) for name in QUANTITIES} for place in runs[0].at}
-    crossed = {place: share(np.isfinite(values["energy"])) for place, values in at.items()}
-    reach, past = crossed.pop(AT_ROAD, None), share(joined(lambda one: one.passed))
+    crossed = {place: share(np.isfinite(values["energy"]), place) for place, values in at.items()}
+    reach, past = crossed.pop(AT_ROAD, None), None
     if reach:       # what passes has reached it
+        past = share(joined(lambda one: one.passed), AT_ROAD)
         reach, past = replace(reach, low=max(reach.low, past.low)), replace(past, high=min(reach.high, past.high))
     travel = {name: quantity(joined(lambda one: one.travel[name])) for name in runs[0].travel}
-    return Result(runs[0].rolling, len(ground), len(runs), int(left.sum()), int(moving.sum()), reach,
-                  past if reach else None, crossed,
+    still = joined(lambda one: one.travel["distance"] < STILL * one.diameter) & ~left
+    away = int((left & ~joined(lambda one: one.ahead[AT_ROAD])).sum()) if reach else 0
+    return Result(runs[0].rolling, len(ground), len(runs), int(left.sum()), away, int(moving.sum()),
+                  int(still.sum()), reach, past, crossed,
                   {name: one for name, one in travel.items() if one},
                   {place: {name: quantity(values) for name, values in of.items()} for place, of in at.items()})

@@ -23,7 +23,7 @@ from ..survey import polygons
 from ..survey.rasters import crs_name
 from . import files
 from .outcome import Quantity, Result
-from .runs import AT_ROAD, QUANTITIES
+from .runs import AT_ROAD, QUANTITIES, Run
 from .site import sizes_of
 
 NAME = "report.html"
@@ -144,16 +144,21 @@ def maps(known, data: Data, ground: Ground) -> Dict[str, Picture]:
     return found
 
 
+def shown(known) -> Run:
+    """The run with the farthest block of those that govern."""
+    return max((one for one in known.runs if one.rolling == known.outcome.best.rolling),
+               key=lambda one: one.travel["distance"].max())
+
+
 def write(known, output: Path) -> str:
     """The page; a line for the user."""
-    site, shown = known.site, max((one for one in known.runs if one.rolling == known.outcome.best.rolling),
-                                  key=lambda one: one.travel["distance"].max())
-    data = Data(shown.folder)
+    site, run = known.site, shown(known)
+    data = Data(run.folder)
     data.road = known.terrain.road and known.terrain.road.polygon
     ground = Ground(data)
     shots, why = frames.read(data.result)
     about = view.content(data, ground, Profile(data, ground, None, False), shots, why, "")
-    caption = f"Run with the farthest block, {shown.name}: {about['caption'].partition(' The ground is')[0]}"
+    caption = f"Run with the farthest block, {run.name}: {about['caption'].partition(' The ground is')[0]}"
     head = heading.heading(site.folder, {}, site.content)
     html = document.render({
         "title": f"Single blocks: {head['project']}", "name": head["project"], "heading": head,

@@ -1,10 +1,13 @@
 """What became of each block of a run: where it began and ended, what it had at each line and at the road."""
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Dict, List, NamedTuple, Optional
+from typing import Dict, NamedTuple, Optional
 
 import numpy as np
-from shapely.geometry import Point
+from shapely.geometry import LineString, Point
+from shapely.geometry.base import BaseGeometry
+from shapely.ops import nearest_points, unary_union
+from shapely.prepared import prep
 
 from ..case import run_folders
 from ..deposits import dumps, road_sides
@@ -22,6 +25,7 @@ AT_ROAD = "road"        # the name of its near edge among the lines
 QUANTITIES = {"energy": "J", "speed": "m/s", "height": "m"}     # at a line
 CROSSING = "ball", "direction", "x", "y", *QUANTITIES      # columns of a line's file
 SLOW = 0.05             # m/s: slow of the deck
+BEHIND = -0.5           # cosine: what lies more than 120 degrees off its way is behind a block that left the terrain
 Columns = Dict[str, np.ndarray]
 
 
@@ -31,7 +35,7 @@ class Terrain(NamedTuple):
     down: np.ndarray                    # x y, unit vector of the fall line
     road: Optional[roads.Road]
     sides: Optional[road_sides.Sides]   # of what touches it
-    lines: List[str]                    # names of the control lines
+    lines: Dict[str, LineString]        # the control lines by name
 
 
 @dataclass(frozen=True)
@@ -44,10 +48,11 @@ class Run:
     diameter: np.ndarray    # m
     start: np.ndarray       # x y z
     end: np.ndarray         # x y; of one that left the terrain, where it did
-    left: np.ndarray        # bool, also the next three
+    left: np.ndarray        # bool, also the next four
     moving: np.ndarray      # at the end of the run
     reached: np.ndarray     # the road
     passed: np.ndarray
+    ahead: Columns          # {line: of those that left the terrain, which may come to it beyond}
     at: Dict[str, Columns]  # {line: {quantity: the largest of a block, NaN of one that does not come there}}
     travel: Columns         # m, from start to end in plan: distance; along and across the fall line
     overlap: float          # the deepest of a contact, in radii
@@ -57,7 +62,8 @@ def terrain_of(site: Folder[OfBlocks]) -> Terrain:
     """What all runs of a site share."""
     raster, road, sides = rasters.read_asc_local(site.folder / TERRAIN), None, None
     names = [Path(name) for name in site.found.files if name.endswith(".csv")]
-    lines = [one.stem for one in names if (site.folder / one).read_text(encoding="utf-8").startswith("# control line")]
+    lines = {one.stem: LineString(np.loadtxt(site.folder / one, delimiter=",")) for one in names
+             if (site.folder / one).read_text(encoding="utf-8").startswith("# control line")}
     if site.choices.road.file:
         road = roads.read_local(site.folder / ROAD, raster, site.choices.road.asked, True)
         text = (site.folder / "blocks.1.data").read_text(encoding="ascii").split("sphere\n")[1]
@@ -85,17 +91,19 @@ def read(name: str, folder: Path, chosen: Dict[str, str], terrain: Terrain) -> R
     if "halt" not in str(summary["stop"]["reason"]):
         moving[there] = np.linalg.norm(last[:, heads.index("vx"):heads.index("vx") + 3], axis=1) > SLOW
     at = {line: largest(table_of(Path(f"{prefix}.{line}.line.csv"), CROSSING), diameter) for line in terrain.lines}
+    ahead = {line: before(left, first[:, 2:4], end, one) for line, one in terrain.lines.items()}
     if terrain.sides:
         parts = [table_of(path, CROSSING) for path in sorted(folder.glob(f"{PREFIX}.{EDGE}_*.line.csv"))]
         crossed = {key: np.concatenate([part[key] for part in parts]) for key in parts[0]}
         at[AT_ROAD] = largest({key: value[crossed["direction"] > 0] for key, value in crossed.items()}, diameter)
         reached = np.isfinite(at[AT_ROAD]["energy"])
         passed = reached & beyond_road(crossed, end, terrain.sides)
+        ahead[AT_ROAD] = road_ahead(left, first[:, 2:4], end, terrain.sides)
     way = end - first[:, 2:4]
     travel = {"distance": np.hypot(*way.T), "along": way @ terrain.down,
               "across": way @ np.array([-terrain.down[1], terrain.down[0]])}
     return Run(name, folder, chosen["rolling"], int(chosen["ground"]), diameter, first[:, 2:5], end, left, moving,
-               reached, passed, at, travel, float(summary["guards"]["largest_overlap"]))
+               reached, passed, ahead, at, travel, float(summary["guards"]["largest_overlap"]))
 
 
 def largest(crossings: Columns, diameter: np.ndarray) -> Columns:
@@ -115,3 +123,22 @@ def beyond_road(crossed: Columns, end: np.ndarray, sides: road_sides.Sides) -> n
         place = Point(x, y)
         found[int(block) - 1] |= sides.past.distance(place) < sides.before.distance(place)
     return found
+
+
+def before(left: np.ndarray, start: np.ndarray, end: np.ndarray, line: BaseGeometry) -> np.ndarray:
+    """Of blocks that left the terrain, whether a line is not behind them, seen along the way from start to end."""
+    found = left.copy()
+    for k in np.flatnonzero(left):
+        way, there = end[k] - start[k], nearest_points(line, Point(end[k]))[0].coords[0] - end[k]
+        found[k] = way @ there >= BEHIND * np.hypot(*way) * np.hypot(*there)
+    return found
+
+
+def road_ahead(left: np.ndarray, start: np.ndarray, end: np.ndarray, sides: road_sides.Sides) -> np.ndarray:
+    """Of blocks that left the terrain, whether they did so on a road, or with one ahead: with its ends prolonged."""
+    whole, part = unary_union([sides.before, sides.road, sides.past]).envelope, sides.of_places(end)
+    roads_ = unary_union([one for barrier in sides.barriers for one in (barrier.road, *barrier.lines)])
+    another = prep(sides.ahead)
+    return before(left, start, end, roads_.intersection(whole)) & (part != road_sides.PAST) | left & np.array([
+        one == road_sides.ON or one == road_sides.PAST and another.intersects(Point(place))
+        for one, place in zip(part, end)], bool)

@@ -1,25 +1,26 @@
 """slope site: make a folder with terrain, body, deck and map from GIS files, ready for `slope study`."""
-import os
 from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from shlex import quote
 from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
 
+from .. import findings
 from ..blocks import kinds
 from ..case import decks
 from ..ensembles import known_study
 from ..errors import SlopeError
-from ..findings import printer
-from ..options import Program, number, option, positional, whole
+from ..findings import Finding, finding, printer
+from ..mobility import results
+from ..options import Program, flag, number, option, positional, whole
 from ..plots import site_map
-from ..programs import find_lmp
+from ..programs import lmp_if_any
 from ..releases import packing
 from ..releases.release import SHAPES
 from ..releases.release_dip import LEAST
 from ..releases.release_scar import KINDS
 from ..runs import jobs
-from ..sites import site, site_budget, site_choices, site_deck, site_older, site_scenarios
+from ..sites import site, site_budget, site_choices, site_deck, site_older, site_scenarios, site_warnings
 from ..sites.site_sections import Choices, Key, OfMass, sections
 from ..slips import bodies
 from ..studies import ahead, outlook, site_ground
@@ -248,23 +249,45 @@ class Request(Ground, Layers, known_arguments.Confined, Model, Size, Blocks, Abo
         "time limit and packings of FOLDER, and at least as stiff", metavar="NAME")
     output: Optional[Path] = option("the new folder", "-o", metavar="FOLDER")
     jobs: Optional[int] = option("runs at a time, for the estimate (default: as many as the cores)", metavar="J")
+    verbose: bool = flag(f"print all warnings and notes, not the {site_warnings.MOST} that weigh most")
 
 
 def run(args: Request) -> None:
-    """Do the command; raises SlopeError on bad input. Prints what was read, found and written."""
+    """Do the command; raises SlopeError on bad input. Prints what may make the answer wrong, then what was read, found
+    and written.
+    """
     folder, choices, known = chosen(args)
+    lines: List[str] = []
+    doubts: Dict[str, Finding] = {}
+    warn = printer("site")
+
+    def keep(said) -> None:
+        doubts.setdefault(str(one := finding(said)), one)
     if isinstance(choices, OfMass) and any(getattr(args, option) is not None for option in OF_SOIL):
-        print(soil(choices))
-    cores = args.jobs or jobs.cores()
-    with jobs.signals_interrupt(), site_scenarios.room(folder) if args.scenario is not None else nullcontext():
-        made = site.make(choices, folder, site.Machine(program(args.lmp), cores),
-                         lambda line: print(line, flush=True), printer("site"), site_map.draw,
-                         again=args.folder is not None and args.scenario is None, known=known, how=kinds.build(choices))
-    if isinstance(choices, OfMass):
-        for line in (*site_ground.lines(site_choices.load(folder)), *outlook.lines(folder)):
-            print(line)
-        if (folder / RUNS).is_dir():
-            print(runs_ahead(args, folder, choices.study.points))
+        lines.append(site_deck.soil(choices))
+    cores, first = args.jobs or jobs.cores(), None
+    try:
+        with jobs.signals_interrupt(), site_scenarios.room(folder) if args.scenario is not None else nullcontext():
+            made = site.make(choices, folder, site.Machine(lmp_if_any(args.lmp), cores), lines.append,
+                             warn if findings.as_json else keep, site_map.draw,
+                             again=args.folder is not None and args.scenario is None, known=known,
+                             how=kinds.build(choices))
+        if isinstance(choices, OfMass):
+            lines += [*site_ground.lines(site_choices.load(folder)), *outlook.lines(folder)]
+            second, differs = results.of_site(folder)
+            lines += second
+            if differs:
+                keep(differs[0])
+                site_warnings.add(folder, differs)
+            if (folder / RUNS).is_dir():
+                lines.append(runs_ahead(args, folder, choices.study.points))
+        first = None if args.verbose else site_warnings.heaviest(list(doubts.values()))
+    finally:        # all of them where it ends with an error
+        for one in doubts.values() if first is None else first:
+            warn(one)
+        print("".join(f"{line}\n" for line in lines), end="", flush=True)
+    if first is not None and len(doubts) > len(first):
+        print(f"all {len(doubts)} warnings and notes: --verbose, or {folder / site_warnings.NAME}")
     print(f"written to {folder}: {' '.join(made.files)}")
     print(f"look at {folder / site.MAP}, then: tools/slope study {quote(str(folder))}")
 
@@ -356,14 +379,6 @@ def density_of_ball(bulk):
     return round(bulk * packing.BULK, 1)
 
 
-def soil(choices: OfMass) -> str:
-    """The values of soil and ground in words."""
-    of = choices.model
-    return (f"friction {of.friction:g} degrees, on the slip surface {of.slip_friction:g}; rolling resistance "
-            f"{', '.join(f'{one:g}' for one in choices.study.rolling)}; the ground: spacing {of.spacing:g}, "
-            f"restitution {of.field_restitution:g}; bulk density {of.density / packing.BULK:,.0f} kg/m3")
-
-
 def replaced(choices: Choices, given: Dict[str, Any]) -> Choices:
     """The choices with options; those that one of them replaces become null."""
     new: Dict[Key, Any] = {OPTIONS[name]: None for group in ONE_OF if given.keys() & set(group) for name in group}
@@ -379,13 +394,3 @@ def replaced(choices: Choices, given: Dict[str, Any]) -> Choices:
         section, key = OPTIONS[name]
         new[section, key] = {**choices.value(section, key), **value} if isinstance(value, dict) else value
     return choices.changed(new)
-
-
-def program(option):
-    """The LAMMPS program, None where there is none and none was named."""
-    try:
-        return find_lmp(option)
-    except SlopeError:
-        if option or os.environ.get("LMP"):
-            raise
-        return None

@@ -201,12 +201,14 @@ def centroids(result) -> Optional[np.ndarray]:
     return np.array(places)
 
 
-def snapshots(folder: Path, last: int) -> List[Path]:
-    """Text dumps of a run whose names differ in the step only, in the order of the steps, up to the last."""
+def snapshots(folder: Path, last: int, begin: str = "") -> List[Path]:
+    """Text dumps of a run whose names, with this beginning, differ in the step only: in the order of the steps, up to
+    the last.
+    """
     series: Dict[Tuple[str, str], List[Tuple[int, Path]]] = {}
     for path in folder.glob("*.dump*"):
         match = re.fullmatch(r"(.*?)(\d+)(\.dump(?:\.gz)?)", path.name)
-        if match and int(match[2]) <= last:
+        if match and int(match[2]) <= last and path.name.startswith(begin):
             series.setdefault((match[1], match[3]), []).append((int(match[2]), path))
     longest: List[Tuple[int, Path]] = max(series.values(), key=len, default=[])
     return [path for _, path in sorted(longest)]

@@ -1,6 +1,6 @@
 """A mass among known events in words, as a table and as files; all of them or none."""
 from pathlib import Path
-from typing import Any, Dict, List, NamedTuple, Optional
+from typing import Any, Dict, List, NamedTuple, Optional, Tuple
 
 import numpy as np
 from shapely.geometry import LineString
@@ -8,14 +8,17 @@ from shapely.geometry.base import BaseGeometry
 
 from .. import disk
 from ..digits import metres, percent, volume
+from ..errors import SlopeError
 from ..findings import Finding, entries
 from ..provenance import version
+from ..sites import site_choices
 from ..survey import geopackage
 from ..survey.geopackage import Layer
+from . import body, lucas
 from .body import Body
 from .exceedance import WORDS, Mobility
 from .fall_path import TERRAIN
-from .known import Choice, Found
+from .known import Choice, Found, choice, of_body
 from .landslides import NOT_OF_ROADS
 from .road import AtRoad
 
@@ -60,6 +63,43 @@ def write_lines(path: Path, found: Found, body: Body) -> None:
     features = [(LineString(places[k:k + 2]), {name: None if np.isnan(one[k + 1]) else float(one[k + 1])
                                                for name, one in values.items()}) for k in range(len(places) - 1)]
     geopackage.write(path, {"path": Layer("LineString", dict.fromkeys(values, "float"), features)}, body.raster)
+
+
+def second_opinion(mass: Body, found: Found) -> str:
+    """That of a law that knows nothing of the events."""
+    said = lucas.opinion(mass, found.decides.path)
+    return (f"second opinion, {lucas.NAME}: the line from crown to tip falls by {said.angle:.1f} degrees "
+            f"({said.steep:.1f} to {said.flat:.1f}, {100 * lucas.BAND:g} %), which is after "
+            f"{ends(said.reach, said.toe)} ({ends(said.near, said.toe)} to {ends(said.far, said.toe)})")
+
+
+def of_site(folder: Path) -> Tuple[List[str], List[Finding]]:
+    """Both, of the folder of a site; nothing where its mass has no fall path."""
+    choices = site_choices.load(folder).choices
+    try:
+        mass = body.of_site(folder)
+        found = of_body(mass, choice(choices.known.set, (), choices.known.confined))
+    except SlopeError:
+        return [], []
+    return [second_opinion(mass, found)], disagreement(mass, found)
+
+
+def ends(length: Optional[float], toe: float = -1.0) -> str:
+    """Where a mass ends, whose body ends at the toe (m)."""
+    if length is None or np.isinf(length):
+        return "the end of the path"
+    return metres(length) + " or less" * (length <= toe)
+
+
+def disagreement(mass: Body, found: Found) -> List[Finding]:
+    """Where the second opinion and the events that count have nothing in common."""
+    said = lucas.opinion(mass, found.decides.path)
+    if (known := lucas.differ(said, found.decides)) is None:
+        return []
+    return [Finding("second opinion", {
+        "name": lucas.NAME, "near": ends(said.near, said.toe), "far": ends(said.far, said.toe),
+        "events": found.decides.law.name, "known_near": ends(known.near), "known_far": ends(known.far),
+        "farther": "the events" if known.near > lucas.beyond(said.far) else "that law's masses"})]
 
 
 def doubts(found: Found) -> List[Finding]:
@@ -125,7 +165,8 @@ def about(found: Found, source: Source, road: Optional[AtRoad]) -> Dict[str, Any
                         "confined": law.lateral}
         whole["relation"] = {**dict(zip(("constant", "log_volume", "log_fall", "confined"), law.coefficients)),
                              "deviation": law.deviation, "degrees_of_freedom": law.free, "r2": law.r2}
-    return {**whole, "files": list(FILES)}
+    return {**whole, "second_opinion": {"law": lucas.NAME, "share": lucas.BAND,
+                                        **lucas.opinion(source.body, path)._asdict()}, "files": list(FILES)}
 
 
 def words(found: Found, source: Source, road: Optional[AtRoad]) -> List[str]:
@@ -148,7 +189,7 @@ def words(found: Found, source: Source, road: Optional[AtRoad]) -> List[str]:
             f"the path does not meet the road, and is nearest to it, {metres(road.beside)} beside,"
         lines.append(f"{where} after {metres(road.length)}, {metres(road.fall)} below the crown: "
                      f"{of_road(counts, road)}")
-    return lines
+    return [*lines, second_opinion(source.body, found)]
 
 
 def lengths(one: Mobility, kind: str) -> str:

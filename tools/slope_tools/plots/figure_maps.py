@@ -101,7 +101,7 @@ def base_map(axes, layers, labels=True):
             style = OUTLINES[one]
             axes.contour(share, [one], extent=where, origin="upper", colors=style["color"], linewidths=style["lw"],
                          linestyles=[style.get("ls", "-")], zorder=6)
-    if layers.reach.marks:
+    if len(layers.reach.path):
         axes.plot(*layers.reach.path.T, zorder=6, **PATH)
     for mark in layers.reach.marks:
         axes.plot(*mark.ends.T, zorder=6.5, **MARKS[mark.share])
@@ -174,6 +174,8 @@ def entries(layers):
         found.append(Entry("zone of the ground", ZONE))
     if layers.exceeded:
         found += layers.exceeded.entries()
+    if len(layers.reach.path):
+        found.append(Entry("fall path", PATH))
     found += entries_of_marks({mark.share for mark in layers.reach.marks})
     if layers.section is not None:
         found.append(Entry("section A-A'", SECTION_LINE))

@@ -24,7 +24,7 @@ class Mark(NamedTuple):
 
 
 class KnownReach(NamedTuple):
-    """The path to the farthest mark, rows of x y (local m), the marks, and of what curve; no path without marks."""
+    """The path to the farthest mark, or all of it, rows of x y (local m), the marks, and of what curve."""
     path: np.ndarray
     marks: List[Mark]
     kind: str = ""
@@ -34,7 +34,7 @@ NOTHING = KnownReach(np.zeros((0, 2)), [])
 
 
 def of_mobility(mobility: Mobility) -> KnownReach:
-    """The KnownReach of a Mobility."""
+    """The KnownReach of a Mobility; NOTHING without marks."""
     lengths = [(share, length) for share in SHARES if (length := mobility.length_at(share)) is not None and length > 0]
     if not lengths:
         return NOTHING

@@ -1,4 +1,4 @@
-"""The map of a site, to check by eye: ground, body, road, structures, and where the trial run went."""
+"""The map of a site, to check by eye: ground, body, fall path, road, structures, and where the trial run went."""
 import base64
 from pathlib import Path
 from typing import List
@@ -8,9 +8,10 @@ import numpy as np
 from ..drawing import figures, palettes, pictures
 from ..drawing.maps import outline, window
 from ..geometry import extent
+from ..mobility import known
 from ..sites.site_layers import Shown
 from ..survey.rasters import Raster, crs_name
-from . import figure_maps, sheets
+from . import figure_maps, known_reach, sheets
 from .figure_maps import LINE, WALL
 from .sheets import Entry
 
@@ -25,7 +26,7 @@ def draw(path: Path, layers: Shown, title: str) -> None:
     raster, crs = layers.raster, crs_name(layers.raster.crs) if layers.raster.crs is not None else ""
     shown = window(raster, *boxes(layers))
     base = figure_maps.Layers(raster, raster.z, shown, None, layers.road, None, figures.contour_interval(raster.z),
-                              zones={zone.name: zone.geometry for zone in layers.zones})
+                              reach=reach_of(layers), zones={zone.name: zone.geometry for zone in layers.zones})
     bounds = figures.even(float(layers.depth.max()))
     with pictures.settings(figures.STYLE):
         frame = figure_maps.frame_of(base, True, crs)
@@ -42,6 +43,15 @@ def draw(path: Path, layers: Shown, title: str) -> None:
                                 [*figure_maps.entries(base), *entries], raster.crs is not None)
         uri = figures.data_uri(sheet.finish())
     path.write_bytes(base64.b64decode(uri.partition(",")[2]))
+
+
+def reach_of(layers: Shown) -> known_reach.KnownReach:
+    """The fall path of the body, and how far known events went on it; nothing without a body that falls."""
+    found = known.of_mass(layers.raster, layers.raster.z, layers.depth, layers.known).found
+    if not found:
+        return known_reach.NOTHING
+    path, reach = found.decides.path, known_reach.of_mobility(found.decides)
+    return reach._replace(path=np.column_stack([path.x, path.y]))
 
 
 def boxes(layers: Shown) -> List:

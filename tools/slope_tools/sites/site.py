@@ -151,12 +151,14 @@ def build(given: OfMass, known: Derived, new: Path, folder: Path, machine: Machi
                 *site_warnings.of_cells(found.area.z - found.slip, found.area.cell, surveyed),
                 *(one for name, road in layers.roads.items() for one in site_warnings.of_road(
                     road, choices.road.width, size.diameter, max(found.area.cell, choices.model.cell or 0.0),
-                    name))):
+                    name)),
+                *site_warnings.of_walls(layers.structures, size.diameter)):
         keep(one)
     site_warnings.write(new, warnings)
     deck = site_deck.text(choices, parts, numbers(choices, soil_of(choices.model, parts), trial, size))
     disk.write(new / site_deck.NAME, deck)
-    draw(new / MAP, shown(found, layers, first and first.reached), f"{title}: {found.measures.volume:,.0f} m\u00b3")
+    draw(new / MAP, shown(choices, found, layers, first and first.reached),
+         f"{title}: {found.measures.volume:,.0f} m\u00b3")
     about = {**about_made(choices, new, folder, raster, layers), "derived": derived,
              "body": found.measures._asdict(), "bodies": site_bodies.about(several), "balls": size.balls,
              "trial": trial and trial._asdict(), "trial_of": first and first.about,
@@ -378,7 +380,7 @@ def depth_of(found: release.Body) -> np.ndarray:
     return depth
 
 
-def shown(found: release.Body, layers: Layers, reached: Optional[Raster]) -> Shown:
+def shown(choices: OfMass, found: release.Body, layers: Layers, reached: Optional[Raster]) -> Shown:
     """What the map shows; reached: the largest thickness of the trial run."""
     return Shown(found.raster, depth_of(found), found.geometry, layers.road, layers.observed, layers.structures,
-                 layers.lines, reached, layers.zones)
+                 layers.lines, reached, layers.zones, {"set": choices.known.set, "confined": choices.known.confined})

@@ -173,3 +173,11 @@ def aligned(deck: str) -> str:
     wide = max(len(code.rstrip()) for code, mark, _ in parts if mark)
     return "".join(f"{code.rstrip():<{wide}}  # {comment.strip()}\n" if mark else f"{code}\n"
                    for code, mark, comment in parts)
+
+
+def soil(choices: OfMass) -> str:
+    """The values of soil and ground in words."""
+    of = choices.model
+    return (f"friction {of.friction:g} degrees, on the slip surface {of.slip_friction:g}; rolling resistance "
+            f"{', '.join(f'{one:g}' for one in choices.study.rolling)}; the ground: spacing {of.spacing:g}, "
+            f"restitution {of.field_restitution:g}; bulk density {of.density / packing.BULK:,.0f} kg/m3")

@@ -16,6 +16,7 @@ from ..geometry import extent
 from ..quakes import motion_file
 from ..survey import lines, polygons, vectors
 from ..survey.rasters import Raster, crs_name
+from ..survey.resampling import sample
 from . import site_walls
 
 # names of the deck's own fixes and groups, and of files that a run writes beside them
@@ -35,6 +36,7 @@ class Structure(NamedTuple):
     low: np.ndarray         # its box, local metres
     high: np.ndarray
     triangles: int
+    above: float            # m, its highest point above the ground there; of a wall along a line its height
 
     @property
     def summary(self) -> str:
@@ -119,14 +121,16 @@ def structure(path: str, raster: Raster, folder: Path, taken: Set[str]) -> Struc
                          f"{a[2]:.6g} to {b[2]:.6g}")
     name = unused(Path(path).stem, taken)
     copy(path, folder / f"{name}.stl")
-    return placed(name, points + move)._replace(move=move)
+    x, y, z = (points + move).reshape(-1, 3).T
+    above = z - sample(raster, x, y)
+    return placed(name, points + move, float(above[np.isfinite(above)].max(initial=0.0)))._replace(move=move)
 
 
-def placed(name: str, points: np.ndarray) -> Structure:
+def placed(name: str, points: np.ndarray, above: float) -> Structure:
     """A mesh of triangles (n, 3, 3) in local metres."""
     low, high = points.min(axis=(0, 1)), points.max(axis=(0, 1))
     point = float(low[0] + high[0]) / 2, float(low[1] + high[1]) / 2, float(low[2])
-    return Structure(name, f"{name}.stl", (0.0, 0.0, 0.0), point, low, high, len(points))
+    return Structure(name, f"{name}.stl", (0.0, 0.0, 0.0), point, low, high, len(points), above)
 
 
 def walls(drawn: Iterable["Drawn"], raster: Raster, height: Optional[float], width: Optional[float], folder: Path,
@@ -140,7 +144,7 @@ def walls(drawn: Iterable["Drawn"], raster: Raster, height: Optional[float], wid
         wall = np.round(site_walls.triangles(path, line, raster, height, width or site_walls.WIDTH), 4)
         name = unused(stem(path), taken)
         disk.write(folder / f"{name}.stl", site_walls.stl(name, wall))
-        found.append(placed(name, wall))
+        found.append(placed(name, wall, height))
     return found
 
 

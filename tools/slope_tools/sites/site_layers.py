@@ -1,7 +1,7 @@
 """What lies on a site's terrain: road, structures, control lines, a mapped deposit, and the motion of the ground."""
 import shlex
 from pathlib import Path
-from typing import Callable, Dict, List, NamedTuple, Optional, Sequence, Set, TypeVar
+from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Set, TypeVar
 
 import numpy as np
 from rasterio.crs import CRS
@@ -51,6 +51,7 @@ class Shown(NamedTuple):
     lines: Sequence[Line]
     reached: Optional[Raster]           # largest thickness of the trial run, m
     zones: Sequence[Zone] = ()          # of the ground
+    known: Mapping[str, Any] = {}       # with which events it is compared, as site.yaml says
 
 
 def with_missing(choices: OfMass, check: Callable[[], T]) -> T:

@@ -1,7 +1,7 @@
-"""The warnings of a site: slope site prints them, and keeps them in the folder for the report."""
+"""The warnings of a site: slope site prints the heaviest, and keeps all in the folder for the report."""
 import math
 from pathlib import Path
-from typing import List, Mapping, Optional, Sequence
+from typing import Dict, List, Mapping, Optional, Sequence
 
 import numpy as np
 import yaml
@@ -9,17 +9,29 @@ from shapely.geometry import MultiPoint
 from shapely.geometry.base import BaseGeometry
 
 from .. import disk
-from ..digits import at_most
+from ..digits import at_most, three
 from ..errors import SlopeError
-from ..findings import Finding, entries
+from ..finding_words import words_of
+from ..findings import WARNING, Finding, entries, finding
 from ..releases.release_solve import Measures
 from .site_budget import Size, Trial
+from .site_inputs import Structure
 from .site_sections import Choices, OfMass
 from .site_zones import Zone
 
 NAME = "warnings.yaml"
 ROUGH = 3.0             # balls, mean thickness of the body: below, the numbers are rough
 THICK = 10.0            # balls, largest thickness: below, a site should be repeated with more balls
+MOST = 3                # warnings that are shown before the numbers
+# kinds by what they do to the number, the heaviest first: it may be another ground, another body, another run, or rough
+HEAVIEST = ("in feet", "no ground's slope", "cliff", "picture", "pits", "no such cell", "swapped", "tiles differ",
+            "shift", "stretched", "CRS of terrain", "datums",
+            "no way out", "hollow", "above ground", "no body", "little", "road on body", "under road", "beyond toe",
+            "bulges", "rim", "parts", "own depth",
+            "small angle", "large rolling", "narrow road", "low wall", "left terrain", "outside", "not at rest",
+            "zone covered", "zones overlap", "second opinion",
+            "blocks on level ground", "thin", "few across", "few cells")
+NAMES = "{file}:", "{name}:"        # with which the words of a kind begin that is of one object
 LARGE = 1e6             # m3: larger masses run farther than laboratory friction suggests
 LOST = 0.001            # share of the mass that may leave the terrain
 LEAST_CELLS = 2         # across a road
@@ -94,17 +106,29 @@ def of_thickness(mean: float, largest: float) -> List[Finding]:
     return []
 
 
-def of_road(road: Optional[BaseGeometry], width: Optional[float], d: float, cell: float, name="") -> List[Finding]:
+def of_road(road: Optional[BaseGeometry], width: Optional[float], d: float, cell: float, name="road") -> List[Finding]:
     """Whether balls (d, m) and cells (m) are small enough for a road; width: of a line, m; name: of the road."""
     if road is None:
         return []
     wide = width or 2 * road.area / road.length         # of a strip, whose ends hardly count
     if wide >= max(d, LEAST_CELLS * cell):
         return []
-    remedy = [f"more balls (--diameter {at_most(wide, 2)})"] * (wide < d)
+    remedy = [smaller(d, wide)] * (wide < d)
     remedy += ["a finer elevation model, or a smaller model.cell"] * (wide < LEAST_CELLS * cell)
     return [Finding("narrow road", {"file": name, "width": wide, "d": d, "balls": wide / d, "cell": cell,
                                     "cells": wide / cell, "remedy": " and ".join(remedy)})]
+
+
+def of_walls(structures: Sequence[Structure], d: float) -> List[Finding]:
+    """Structures that are not as high above the ground as a ball (d, m)."""
+    return [Finding("low wall", {"name": one.name, "height": one.above, "d": d, "remedy": smaller(d, one.above)})
+            for one in structures if 0 < one.above < d]
+
+
+def smaller(d: float, most: float) -> str:
+    """Balls of at most so many metres instead of d, and what they take: more of them, and smaller steps."""
+    size = at_most(most, 2)
+    return f"smaller balls (--diameter {size}, about {three((d / float(size)) ** 4)} times the minutes)"
 
 
 def of_cells(depth: np.ndarray, cell: float, surveyed: float) -> List[Finding]:
@@ -131,6 +155,27 @@ def require_standing(error: SlopeError, peak_friction: float, slope: float) -> N
                          f"one stands at no --peak-friction: {alone}", f"{slope:.0f} degrees") from None
     raise SlopeError("--peak-friction", "must hold the body before it is shaken: try a larger one, up to 80, or a "
                      f"thinner body; or {alone}", f"{peak_friction:g}") from None
+
+
+def heaviest(several: Sequence[Finding]) -> List[Finding]:
+    """The warnings that weigh most, one for all objects of which the same is said: with the numbers of the first."""
+    groups: Dict[str, List[Finding]] = {}
+    for one in several:
+        if one.level == WARNING:
+            groups.setdefault(one.kind if words_of(one.kind).text.startswith(NAMES) else str(one), []).append(one)
+    found = []
+    for first, *others in groups.values():
+        numbers = dict(first.numbers)
+        if key := next((name for name in ("file", "name") if name in numbers), None) if others else None:
+            numbers[key] = ", ".join(dict.fromkeys(str(one.numbers[key]) for one in (first, *others)))
+        found.append(first._replace(numbers=numbers))
+    return sorted(found, key=lambda one: HEAVIEST.index(one.kind) if one.kind in HEAVIEST else len(HEAVIEST))[:MOST]
+
+
+def add(folder: Path, several: Sequence[Finding]) -> None:
+    """More of them, to those in a site's folder."""
+    path = folder / NAME
+    write(folder, [finding(one) for one in [*yaml.safe_load(path.read_text(encoding="utf-8")), *several]])
 
 
 def write(folder: Path, several: Sequence[Finding]) -> None:
