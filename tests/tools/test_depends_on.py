@@ -60,7 +60,7 @@ def test_other_values_have_another_folder(one, other):
 # --- a site: its options are choices in its site.yaml, which slope study holds against those of the deck ---
 
 SET_CHOICES = {"slips", "body"}       # of several keys
-TRIAL = {"lmp", "jobs"}                         # what the trial run finds is written as a choice
+TRIAL = {"lmp", "jobs", "verbose"}              # of this command alone; what the trial run finds is written as a choice
 # keys that slope study and the report read from site.yaml
 LATER = {("project", "name"), ("project", "client"), ("project", "author"), ("road", "cut_angle"), ("road", "mesh"),
          *(("road", key) for key in ("width", "from", "blocked", "lane", "clearing", "loosening")),
