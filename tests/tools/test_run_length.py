@@ -4,14 +4,16 @@ import math
 import numpy as np
 import pytest
 from affine import Affine
-from shapely.geometry import LineString
+from shapely.geometry import LineString, box
 
 from run_helpers import write_asc, write_run
 from test_mobility_path import STEEP
 
 from slope_tools.deposits import deposit as deposits
 from slope_tools.deposits.deposit import Deposit
-from slope_tools.mobility import fall_path, run_length
+from slope_tools.mobility import body, fall_path, offices, run_length
+from slope_tools.report import run_part
+from slope_tools.report.numbers import UNKNOWN, Numbers
 from slope_tools.survey.rasters import Raster
 
 CELL, ROWS, COLUMNS = 10.0, 60, 200
@@ -117,3 +119,42 @@ def test_of_a_run(here):
     assert found[0].on_path and found[0].distance == found[1].distance
     assert found[0].distance > 1.12 * found[0].straight and found[0].others == (found[0].distance,) * 2
     assert not run_length.of_run(deposits.read("run", None, lambda text: None), None).on_path
+
+
+# --- what offices ask for ---
+
+def test_shares_of_the_volume_over_the_height_by_hand():
+    """41 columns of cells of one thickness, 100 to 500 m from the crown; a body whose toe is 50 m below it."""
+    found = offices.distances(deposit((*BULK, 9e4)), path(*STRAIGHT))
+    assert found == pytest.approx([300, 460, 500], abs=1)
+    slope = offices.Slope(50.0, 120.0)
+    assert slope.zone == 50 and slope._replace(height=20.0).zone == 40
+    numbers = Numbers()
+    table = run_part.over_height(slope, [300.0, 460.0, 500.0], numbers)
+    assert [row[1:] for row in table.rows] == [["300", "6.00", "180", "3.60"], ["460", "9.20", "340", "6.80"],
+                                               ["500", "10.0", "380", "7.60"]]
+    assert {what: value for what, _, _, _, value in numbers.rows}["90 % of the volume: from the toe over height"] == 6.8
+
+
+def test_height_and_toe_are_those_of_the_body_on_its_path():
+    ground = 1000 - STEEP * X
+    mass = body.of_arrays(Raster(ground, Affine(CELL, 0, 0, 0, -CELL, ROWS * CELL), None),
+                          np.where((X < 200) & (X > 100) & (abs(Y - 305) < 30), 4.0, 0.0), "a")
+    way = path(*STRAIGHT)
+    found = offices.slope(mass, way)
+    assert found.toe == pytest.approx(195 - 105, abs=10)
+    assert found.height == pytest.approx(STEEP * (found.toe + 105), rel=0.05)
+
+
+def test_pressures_at_the_edge_of_a_road():
+    """The largest of the cells that its outline crosses, not of those inside: 3 m at 8 m/s, 1,800 kg/m3."""
+    raster = deposit().raster
+    thick, speed = (np.where(X < 510, *values) for values in ((3.0, 1.0), (8.0, 2.0)))
+    thick[(X > 530) & (X < 570) & (Y > 150) & (Y < 450)] = 9.0      # inside
+    edge = offices.at_edge(box(502, 100, 598, 500), raster, thick, speed)
+    assert edge == (3.0, 8.0)
+    numbers = Numbers()
+    [row] = run_part.at_edge(edge, 1800.0, numbers).rows
+    assert row == ["3.00", "8.00", "115", "53.0"]
+    assert [value for *_, value in numbers.rows[2:]] == pytest.approx([1.8 * 64, 1.8 * 9.80665 * 3])
+    assert run_part.at_edge(edge, None, Numbers()).rows[0][2:] == [UNKNOWN, UNKNOWN]

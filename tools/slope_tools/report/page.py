@@ -65,6 +65,7 @@ class Page:
             reference.section(self.reference, data, numbers),
             maps.section(of_run),
             run_part.balance(data, numbers),
+            run_part.for_offices(data, ground, numbers),
             run_part.what_was_run(data),
             run_part.origin(data, made)]
         client = client_part.content(data, ground, numbers, answers, self.findings, len(self.warnings))

@@ -1,13 +1,17 @@
 """What a report shows of a run alone: its volume balance and travel, what was run, and where that comes from."""
 import datetime
 import re
-from typing import Any, List
+from typing import Any, List, Optional
 
 from .. import digits, provenance
 from ..case import decks
 from ..deposits import rest, travel_shares
 from ..digits import percent
+from ..errors import SlopeError
+from ..mobility import offices, run_length
+from ..mobility.body import of_arrays
 from ..mobility.run_length import LEAST, OF_99, OTHERS
+from . import body
 from .charts import TERMS
 from .data import Data, find_deck
 from .numbers import farthest_of, Numbers, UNKNOWN
@@ -56,6 +60,55 @@ def balance(data: Data, numbers: Numbers):
         [Table("Distance in plan from the highest released ball, and the angle below the horizontal at which it is "
                "seen from there.", ["of the deposit", Cell("distance", "m"), Cell("reach angle", "deg")], travel,
                style="keep"), Pairs(end)]])])
+
+
+def for_offices(data: Data, ground, numbers: Numbers):
+    """The section of what offices ask of the shown run; None where its mass has no fall path."""
+    one = data.result
+    path = run_length.path_of(one.deposit, one.terrain_path)
+    try:
+        mass = of_arrays(ground.raster._replace(z=ground.before), ground.slip_depth, "the run")
+    except SlopeError:
+        return None
+    slope = path and offices.slope(mass, path)
+    if not (path and slope):
+        return None
+    blocks = [over_height(slope, offices.distances(one.deposit, path), numbers)]
+    if data.road is not None:
+        edge = offices.at_edge(data.road, ground.raster, ground.max_thickness, ground.max_speed)
+        blocks.append(at_edge(edge, body.of_data(data, ground).density, numbers))
+    return Section("offices", titled("For offices: distances over the height, pressures", data), blocks)
+
+
+def over_height(slope: offices.Slope, lengths: List[float], numbers: Numbers) -> Table:
+    """Distances (m, of offices.SHARES) over the height."""
+    def row(share: float, length: float):
+        what, beyond = f"{100 * share:g} % of the volume", max(0.0, length - slope.toe)
+        return [what, *(numbers(f"{what}: {name}", unit, value) for name, unit, value in (
+            ("reach", "m", length), ("reach over height", "", length / slope.height), ("from the toe", "m", beyond),
+            ("from the toe over height", "", beyond / slope.height)))]
+    height, twice, zone = (numbers(name, "m", value) for name, value in (
+        ("height of the slope", slope.height), ("2 H", offices.HEIGHTS * slope.height),
+        ("2 H, at most 50 m", slope.zone)))
+    return Table(
+        f"Along the fall path, from the crown and from the toe of the body; H: {height} m, from the crown down to that "
+        f"toe. Beside it: 2 H is {twice} m; with 50 m at most it is {zone} m (Japan's Sediment Disaster Act for steep "
+        "slopes, from their toe).",
+        ["within which stays", Cell("reach", "m"), "over H", Cell("from the toe", "m"), "over H"],
+        [row(share, length) for share, length in zip(offices.SHARES, lengths)])
+
+
+def at_edge(edge: offices.Edge, density: Optional[float], numbers: Numbers) -> Table:
+    """Depth, speed and pressures; density: bulk, kg/m3."""
+    moves, lies = (density and value(density, of) / 1000 for value, of in (
+        (offices.of_movement, edge.speed), (offices.of_deposit, edge.depth)))
+    return Table(
+        "The largest at the edges of the road, not of one time, and what follows with the bulk density rho: pressures "
+        "rho v^2, where a wall stops the mass, and rho g h, at the foot of a deposit as of a liquid.",
+        [Cell("depth h", "m"), Cell("speed v", "m/s"), Cell("of movement", "kPa"), Cell("of the deposit", "kPa")],
+        [[numbers(name, unit, value) for name, unit, value in (
+            ("depth at the road's edge", "m", edge.depth), ("speed at the road's edge", "m/s", edge.speed),
+            ("pressure of movement, rho v^2", "kPa", moves), ("pressure of the deposit, rho g h", "kPa", lies))]])
 
 
 def travel_rows(data: Data, numbers: Numbers):
