@@ -1,9 +1,10 @@
 """From runs with balls of several sizes to values at the finest one, each with its error.
 
-Between two sizes a quantity changes by a factor, the same for all points or one that depends on a few parameters; below
-ten balls' volume, where a factor means nothing, by a difference.  Both are found from pairs: points that were run with
-both sizes.  What is left of a pair that the others predict is the error of a value that was not run: the model's and
-that of chance, of both runs.  A value passes through one Step after another to the finest size.
+Between two sizes a quantity changes by a factor, the same for all points or one that depends on the value itself, as
+sluggish masses gain and mobile ones lose, or on a few parameters; below ten balls' volume, where a factor means
+nothing, by a difference.  Both are found from pairs: points that were run with both sizes.  What is left of a pair that
+the others predict is the error of a value that was not run: the model's and that of chance, of both runs.  A value
+passes through one Step after another to the finest size.
 
 What balls that are finer still would change follows from the last step (grid convergence: Roache, Journal of Fluids
 Engineering, 116, 405 (1994); ASME V&V 20-2009, section 2).  All functions are pure.
@@ -18,7 +19,8 @@ COUNTED = 10.0          # balls: a volume of fewer has no ratio
 CONFIDENCE = 0.9        # of a band: 5 % beyond either end
 RIDGES = 1.0, 3.0, 10.0, 30.0       # in units of the parameters' own variance and one pair
 BETTER = 0.9            # of the constant's squares of left-out pairs, which a model with parameters must stay below
-FEWEST = 3              # pairs more than parameters that such a model needs
+FEWEST = 5              # pairs more than parameters that such a model needs
+FEW = 3                 # pairs of few balls, whose scatter is known no better than that of ratios
 PRIOR = 3.0             # pairs' worth says the step before of the scatter of this one: coarser balls scatter no less
 SAFETY = 1.25           # of the extrapolation, where three sizes tell the order (ASME V&V 20)
 ORDERS = 0.5, 2.0       # between which an observed order counts
@@ -49,7 +51,7 @@ class Model(NamedTuple):
     """Of a change by its pairs: constant + slopes . (at - centre); number: of pairs.
 
     unit: covariance of constant and slopes over the variance of a pair; deviation: of a pair that was left out;
-    freedom: of it; low, high: of the parameters of the pairs, beyond which nothing is extrapolated.
+    freedom: of it; low, high: of the places of the pairs, beyond which nothing is extrapolated.
     """
     number: int
     constant: float
@@ -95,10 +97,10 @@ class Step(NamedTuple):
     ratio: Optional[Model]
     small: Optional[Model]
 
-    def apply(self, one: Finest, at: Sequence[float]) -> Finest:
+    def apply(self, one: Finest, at: Any) -> Finest:
         """A value with the next finer balls."""
         if one.value >= self.least and self.ratio:
-            factor = math.exp(float(self.ratio.change(at)))
+            factor = math.exp(float(self.ratio.change(with_own(at, one.value))))
             value = one.value * factor
             return joined(value, (one.deviation * factor, one.freedom),
                           (value * self.ratio.deviation, self.ratio.freedom))
@@ -109,7 +111,7 @@ class Step(NamedTuple):
     def of_small(self) -> Tuple[float, float]:
         """Deviation and degrees of freedom below least; of few pairs at least that of a ratio at it."""
         deviation, freedom = (self.small.deviation, self.small.freedom) if self.small else (0.0, math.inf)
-        if self.ratio and (not self.small or self.small.number < FEWEST):
+        if self.ratio and (not self.small or self.small.number < FEW):
             return max(deviation, self.least * self.ratio.deviation), self.ratio.freedom
         return deviation, freedom
 
@@ -119,7 +121,8 @@ class Step(NamedTuple):
         big = values >= self.least
         if self.ratio and big.any():
             drawn, deviation = self.ratio.draw(rng)
-            found[big] = values[big] * np.exp(self.ratio.change(at[big], drawn) + deviation * noise[big])
+            changes = self.ratio.change(with_own(at[big], values[big]), drawn)
+            found[big] = values[big] * np.exp(changes + deviation * noise[big])
         else:
             big = np.zeros(len(values), bool)
         change = self.small.constant if self.small else 0.0
@@ -139,7 +142,7 @@ def joined(value: float, *parts: Tuple[float, float]) -> Finest:
 
 # --- the models ---
 
-def fit(coarse: Sequence[float], fine: Sequence[float], at: Sequence[Sequence[float]], finer: float = 2.0,
+def fit(coarse: Sequence[float], fine: Sequence[float], at: Any, finer: float = 2.0,
         ball: float = 0.0, before: Optional[Step] = None) -> Step:
     """The Step that pairs tell: values (>= 0) with either balls, and their parameters (n, p), of similar ranges.
 
@@ -151,24 +154,34 @@ def fit(coarse: Sequence[float], fine: Sequence[float], at: Sequence[Sequence[fl
     big = (one >= least) & (one > 0)
     floor = np.where(ball > 0, ball / COUNTED, 1e-3 * one[big])     # what became nothing became less than that
     logs = np.log(np.maximum(other[big], floor) / one[big])
-    return Step(finer, least, model(logs, places[big], before.ratio if before else None),
+    return Step(finer, least, model(logs, with_own(places[big], one[big]), before.ratio if before else None),
                 model((other - one)[~big], np.empty((int((~big).sum()), 0)), None))
 
 
+def with_own(at: Any, values: Any) -> np.ndarray:
+    """Places (..., p) with the logarithm of values (> 0) as the last of their parameters."""
+    own, places = np.log(np.asarray(values, float))[..., None], np.asarray(at, float)
+    return np.concatenate([places.reshape(*own.shape[:-1], places.shape[-1]), own], axis=-1)
+
+
 def model(changes: np.ndarray, at: np.ndarray, before: Optional[Model]) -> Optional[Model]:
-    """Of changes (n) at places (n, p): the constant, or a ridge, by the left-out pairs; None without a pair."""
+    """Of changes (n) at places (n, p) of with_own(): the constant, or a ridge on the value itself or on the others, by
+    the left-out pairs; None without a pair."""
     number = len(changes)
     if not number:
         return None
     whole, parameters = at, at.shape[1]
-    varies = np.ptp(at, axis=0) > 0 if number > 1 else np.zeros(parameters, bool)
-    best = ridge(changes, at, math.inf)
-    if number >= FEWEST + varies.sum() and varies.any():
-        others = [ridge(changes, np.where(varies, at, at.mean(axis=0)), one) for one in RIDGES]
+    best, few = ridge(changes, at, math.inf), BETTER
+    for used in ([parameters - 1], range(parameters - 1)) if parameters else ():
+        mask = np.isin(np.arange(parameters), used) & (np.ptp(at, axis=0) > 0)
+        if not mask.any() or number < FEWEST + mask.sum():
+            continue
+        others = [ridge(changes, np.where(mask, at, at.mean(axis=0)), penalty) for penalty in RIDGES]
         other = min(others, key=lambda one: one[3])
-        best = other if other[3] < BETTER * best[3] else best
-    coefficients, unit, used, squares = best
-    freedom, variance = number - used, squares / number
+        if other[3] < few * best[3]:
+            best, few = other, 1.0
+    coefficients, unit, taken, squares = best
+    freedom, variance = number - taken, squares / number
     if before is not None:
         prior = min(PRIOR, before.freedom)
         variance = (max(freedom, 0.0) * variance + prior * before.deviation ** 2) / (max(freedom, 0.0) + prior)
@@ -199,7 +212,7 @@ def ridge(changes: np.ndarray, at: np.ndarray, penalty: float) -> Tuple[np.ndarr
     return found, unit, float(np.trace(hat)), float(left_out @ left_out)
 
 
-def transfer(steps: Sequence[Step], value: float, at: Sequence[float]) -> Finest:
+def transfer(steps: Sequence[Step], value: float, at: Any) -> Finest:
     """A value of a run through the steps that are left from its size to the finest."""
     one = Finest(value)
     for step in steps:
@@ -207,7 +220,7 @@ def transfer(steps: Sequence[Step], value: float, at: Sequence[float]) -> Finest
     return one
 
 
-def draws(steps: Sequence[Sequence[Step]], values: Sequence[float], at: Sequence[Sequence[float]], number: int,
+def draws(steps: Sequence[Sequence[Step]], values: Sequence[float], at: Any, number: int,
           seed: int = 1) -> np.ndarray:
     """Values (number, n) as they may be at the finest size; steps: left of each value, the last ones of one list."""
     rng, places = np.random.default_rng(seed), np.asarray(at, float).reshape(len(values), -1)
