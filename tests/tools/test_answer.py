@@ -110,8 +110,10 @@ def test_fewer_than_two_halvings_or_one_that_grows_make_a_floor(size, kind, word
 
 
 def test_where_known_events_lie_beyond_the_runs_the_number_is_of_those_within():
-    """A floor only where the terrain ends: the lower end."""
+    """A floor only where the terrain ends before the road does: the lower end."""
     found = answer.of(Paper(0.0), ensemble(0.08, stopped=STOPPED), road(0.5, 0.6))
+    assert (found.kind, found.volume, codes(found)) == (Kind.NUMBER, 920.0, [Code.BEYOND, Code.TERRAIN])
+    found = answer.of(Paper(0.0), ensemble(0.08, stopped=STOPPED), road(0.5, 0.6)._replace(far=901.0))
     assert (found.kind, found.volume, found.share, found.high) == (Kind.FLOOR, 828.0, 0.92, None)
     assert codes(found) == [Code.BEYOND, Code.TERRAIN]
     assert found.reasons[0].numbers == {"far": 0.08, "longest_m": 800.0, "most_m3": 0.0}

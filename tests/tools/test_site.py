@@ -19,7 +19,7 @@ from rasterio.warp import transform as warp
 from shapely.geometry import LineString, Polygon, mapping
 
 from run_helpers import called, write_tif
-from tiny_collapse import LMP, TOP
+from tiny_collapse import LMP, rows_of, TOP
 
 from slope_tools import cli, digits, programs
 from slope_tools.case import decks
@@ -301,6 +301,52 @@ def test_the_page_of_a_site_and_its_scenarios(done, tmp_path):
     (mine / "scenarios.html").write_text("of the user\n")
     found = inside(tmp_path, "report", "mine", "--no-film")
     assert found.returncode == 2 and "scenarios.html must be" in found.stderr.splitlines()[-1]
+
+
+def test_a_site_has_one_number_of_three_sizes_of_balls(tmp_path, monkeypatch, capsys):
+    """Points of both studies share the runs with finer balls; the same number when it is repeated."""
+    write_files(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("LMP", LMP)
+    monkeypatch.setattr(volume_files, "draw", lambda path, *_: path.touch())
+    monkeypatch.setattr(study_command, "write_report", lambda *_, **__: None)
+    monkeypatch.setattr(farther, "MOST", 0.0)
+    monkeypatch.setattr(site_budget, "LEAST", (4, 2))
+    monkeypatch.setattr(site_budget, "ENOUGH", (4, 2))
+    monkeypatch.setattr(site_budget, "PAIRS", (4, 2))
+    assert cli.main(["site", "--terrain", "dem.tif", "--release", "release.geojson", *BODY, "--road", "road.geojson",
+                     "--balls", "12", "--rolling", "0", "0.1", "-o", "mine"]) == 0
+    mine = tmp_path / "mine"
+    text = (mine / "site.yaml").read_text()
+    for key, value in (("spacing", "[]"), ("packing", "[2]"), ("largest_restitution", "null"), ("points", "8"),
+                       ("levels", "3")):
+        before, _, after = text.partition("\nstudy:")
+        text = before + "\nstudy:" + re.sub(rf"(?m)^  {key}: [^#]*#", f"  {key}: {value}    #", after, count=1)
+    (mine / "site.yaml").write_text(text)
+    assert cli.main(["study", "mine"]) == 0, capsys.readouterr().err
+    out = capsys.readouterr().out
+    abouts = {name: yaml.safe_load((mine / name / "study.yaml").read_text()) for name in ("study", "ensemble")}
+    made = [path.name for path in runs_in(mine / "runs")]
+    assert len(made) == 4 + 1 + 8 + 4 + 2 and sum("_d_" in name for name in made) == 6
+    assert abouts["study"]["size"]["effects"] == abouts["ensemble"]["size"]["effects"]
+    assert [one["runs"] for one in abouts["study"]["size"]["sizes"]] == [12, 4, 2]
+    points = [row for about in abouts.values() for row in about["runs"]]
+    assert len(points) == 12 and sum("_d_" in row["run"] for row in points) == 4
+    raw = {row["run"]: float(row["length_m"]) for name in abouts for row in rows_of(mine / name / "levels.csv")}
+    finest = min(float(row["variables"]["d"]) for row in points)
+    for row in points:
+        low, high = row["bands"]["length_m"]
+        assert low <= row["length_m"] <= high
+        if float(row["variables"]["d"]) == finest:
+            assert row["length_m"] == pytest.approx(raw[row["run"]]) and low == high
+    number = abouts["study"]["headline"]
+    assert number == abouts["ensemble"]["headline"] and "finer balls: 4 points" in out
+    if number["kind"] == "number":
+        assert number["low_m3"] < number["volume_m3"] < number["high_m3"] and len(number["band"]) == 3
+    before = {path: path.stat().st_mtime_ns for path in mine.rglob("finished.yaml")}
+    assert cli.main(["study", "mine"]) == 0
+    assert before == {path: path.stat().st_mtime_ns for path in mine.rglob("finished.yaml")}
+    assert yaml.safe_load((mine / "study" / "study.yaml").read_text())["headline"] == number
 
 
 def test_the_longest_runs_begin_first(done):

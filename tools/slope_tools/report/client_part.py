@@ -115,7 +115,7 @@ def of_number(about: study_types.Headline, numbers: Numbers) -> First:
 def title_of(about: study_types.Headline) -> str:
     """What the number is."""
     if about.source == Source.PAPER.value:
-        return f"Conservative {REMOVE[0].lower()}{REMOVE[1:]}"
+        return f"Conservative {REMOVE[0].lower()}{REMOVE[1:]}" if answer_words.is_conservative(about) else REMOVE
     return f"{REMOVE}: {percent(about.share or 0.0)} of known events stay within"
 
 

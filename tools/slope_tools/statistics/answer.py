@@ -234,7 +234,9 @@ def of_ensemble(one: Ensemble, road: Optional[Road]) -> Part:
             Share(Cause.TRANSFER.value, *(best.transfer or (0.0, 0.0)))]
     part = Part(Kind.NUMBER, best.value, best.share, band)
     if best.share != SHARE:
-        ends = any(reason.code is Code.TERRAIN for reason in stopped)
+        # a terrain that ends behind the road is no reason against its number
+        ends = any(reason.code is Code.TERRAIN and not (road and road.far < reason.numbers["path_m"])
+                   for reason in stopped)
         part = part._replace(kind=Kind.FLOOR if ends else Kind.NUMBER, reasons=[beyond(one), *stopped])
     return number(part, one.size)
 

@@ -29,6 +29,7 @@ from .setup import Setup
 OPTION = "--levels"
 FILE = "levels.csv"
 DRAWS = 200             # of the values of transferred runs, for the band of a number
+LONG = 2.0              # times the median of the time to rest: runs that take longer have no finer balls
 FINER = 1.5             # times, at least, from a size to the next one
 
 
@@ -168,9 +169,11 @@ def make(setup: Setup, work: jobs.Work, points: Sequence[Repeat], wanted: Option
     if not wanted or not known:
         return Made(points, {})
     chosen, names = pick(known), {one.name: one for one in points}
-    order = [names[known[k].run] for k in ball_sizes.spread(
-        places_of(known, chosen.along), [k for k, row in enumerate(known) if row.run in chosen.first],
-        max(wanted.points))]
+    times = np.array([row.stop_time_s for row in known])
+    first = np.array([row.run in chosen.first for row in known])
+    quick = np.flatnonzero(first | (times <= LONG * np.median(times)))
+    order = [names[known[quick[k]].run] for k in ball_sizes.spread(
+        places_of(known, chosen.along)[quick], np.flatnonzero(first[quick]).tolist(), max(wanted.points))]
     finer: Dict[Path, List[Optional[Repeat]]] = {}
     for k, (value, number) in enumerate(zip(wanted.values[1:], wanted.points)):
         for one in order[:number]:

@@ -3,11 +3,11 @@ from typing import Any, Dict, Iterable, List, Mapping, Optional, Tuple
 
 from ..digits import metres, percent
 from ..findings import Finding
-from ..statistics.answer import Code, Kind, Reason, Source
+from ..statistics.answer import Cause, Code, Kind, Reason, Source
 from . import quantities, study_types
 
 OF = {Source.PAPER: "by the sweep", Source.ENSEMBLE: "by known events"}
-CONSERVATIVE = "the conservative volume of the sweep"       # what a floor may not be
+CONSERVATIVE = "the conservative volume of the sweep"       # what is only said where chance is in it
 STUDY = {Source.PAPER.value: "the sweep", Source.ENSEMBLE.value: "the runs weighted by known events"}
 
 
@@ -26,9 +26,15 @@ def number(about: study_types.Headline) -> str:
     if about.high_m3:
         volume += f" ({quantities.number(about.low_m3 or 0.0)} to {quantities.number(about.high_m3)})"
     share = f", {percent(about.share)} of them stay within" if about.share else ""
-    of = OF[source] if floor or source is Source.ENSEMBLE else CONSERVATIVE
+    of = CONSERVATIVE if is_conservative(about) and not floor else OF[source]
     return (f"{('at least ' if about.volume_m3 else 'more than ') * floor}{volume} to remove, {of}{share}"
             f"{beside(about, source)}")
+
+
+def is_conservative(about: study_types.Headline) -> bool:
+    """Whether it is the paper's volume, and what chance adds is in it."""
+    known = about.volume_m3 == 0 or any(one.cause == Cause.RUNS.value and one.below_m3 for one in about.band)
+    return about.source == Source.PAPER.value and known
 
 
 def band(about: study_types.Headline) -> str:

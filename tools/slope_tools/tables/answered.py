@@ -34,8 +34,8 @@ def paper_of(about: study_types.Study) -> Optional[Paper]:
     best = about.conservative
     if not best:
         return None
-    return Paper(best.rounded["volume_m3"], rules(best.withheld), best.mean_m3 - (best.chance_m3 or 0.0),
-                 best.transfer_m3 or (0.0, 0.0), size_of(about))
+    least = None if best.chance_m3 is None else best.mean_m3 - best.chance_m3
+    return Paper(best.rounded["volume_m3"], rules(best.withheld), least, best.transfer_m3 or (0.0, 0.0), size_of(about))
 
 
 def ensemble_of(about: study_types.Study) -> Optional[Ensemble]:

@@ -94,8 +94,9 @@ def scaled(part: Mapping[str, Any], row: Finished, new: Mapping[str, Any]) -> Di
 # --- of the runs ---
 
 def of(points: Sequence[Point]) -> Optional[Sizes]:
-    """What points tell of sizes, of which each has as many places as there are; None where there is one size only."""
+    """What points tell of sizes; None where there is one size only."""
     levels = max(map(len, points), default=0)
+    points = [[*one, *[None] * (levels - len(one))] for one in points]
     used = 1
     while used < levels and sum(pair(one, used - 1) is not None for one in points) >= FEWEST:
         used += 1
