@@ -123,20 +123,27 @@ def test_points_of_finer_balls_are_spread_and_nested():
     assert ball_sizes.spread(places, [], 1) == [4] and len(ball_sizes.spread(places, [], 9)) == 6
 
 
-@pytest.mark.parametrize("quantity, half", [("remove", 0.15), ("on_road", 0.15), ("beyond", 0.4), ("length", 0.12)])
-def test_measured_pairs(quantity, half):
-    """Each of three points with 25,600 balls, from those with 400 and 3,200 and the other two."""
+def test_measured_pairs():
+    """Of ten points with 25,600 balls each from the other nine and its own run with 400."""
     rows = np.genfromtxt(MEASURED, delimiter=",", names=True, dtype=None, encoding="ascii", skip_header=1)
-    values = {(row["point"], int(row["balls"])): float(row[quantity]) for row in rows}
-    at = {row["point"]: ((row["friction"] - 5) / 25, (row["spacing"] - 0.3) / 0.65) for row in rows}
-    ball, inside = 0.0 if quantity == "length" else 33885 / 400, []
-    for point in (name for name, balls in values if balls == 25600):
-        first, last = ([name for name, size in values if size == balls and name != point] for balls in (3200, 25600))
-        one = fit([values[name, 400] for name in first], [values[name, 3200] for name in first],
-                  [at[name] for name in first], ball=ball)
-        two = fit([values[name, 3200] for name in last], [values[name, 25600] for name in last],
-                  [at[name] for name in last], ball=ball / 8, before=one)
-        low, high = transfer([one, two], values[point, 400], at[point]).band
-        assert math.log(high / low) / 2 < half
-        inside.append(low <= values[point, 25600] <= high)
-    assert len(inside) == 3 and sum(inside) >= 2
+    at = {row["point"]: ((row["friction"] - 5) / 25, row["rolling"] / 0.15, (row["spacing"] - 0.3) / 0.65)
+          for row in rows}
+    inside, median, half = [], {}, {}
+    for quantity in ("remove", "on_road", "beyond", "length"):
+        values = {(row["point"], int(row["balls"])): float(row[quantity]) for row in rows}
+        ball, off, wide = 0.0 if quantity == "length" else 33885 / 400, [], []
+        for point in at:
+            others, steps = [one for one in at if one != point], []
+            for coarse, fine in ((400, 3200), (3200, 25600)):
+                steps.append(fit([values[one, coarse] for one in others], [values[one, fine] for one in others],
+                                 [at[one] for one in others], ball=ball * 400 / coarse,
+                                 before=steps[-1] if steps else None))
+            one, truth = transfer(steps, values[point, 400], at[point]), values[point, 25600]
+            low, high = one.band
+            inside.append(low <= truth <= high)
+            off.append(abs(one.value / truth - 1))
+            wide.append(math.log(high / low) / 2)
+        median[quantity], half[quantity] = np.median(off), np.median(wide)
+    assert np.mean(inside) >= 0.85
+    assert max(median["remove"], median["length"]) < 0.05 and median["beyond"] < 0.12
+    assert half["remove"] < 0.1 and half["length"] < 0.1 and half["beyond"] < 0.3

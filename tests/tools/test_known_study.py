@@ -16,7 +16,7 @@ from slope_tools.errors import SlopeError
 from slope_tools.mobility import body, known
 from slope_tools.sites import site_budget, site_choices
 from slope_tools.sites.site_sections import Known
-from slope_tools.studies import results, site_study
+from slope_tools.studies import ensemble_study, results, site_study
 from slope_tools.survey import rasters
 
 CELL = 20.0
@@ -70,9 +70,8 @@ def test_both_studies_of_masses_of_all_sizes(request, capsys, monkeypatch, name,
 def test_the_ensemble_varies_ground_and_restitution(large, capsys, monkeypatch):
     """Friction, rolling, spacing, restitution on the field and the packing; runs that are added go farther."""
     seen = []
-    monkeypatch.setattr(study_command, "perform", lambda setup, *rest, **more: None)
-    monkeypatch.setattr(study_command.results, "Questions", lambda *args, **more: seen.append(args[3]))
-    monkeypatch.setattr(study_command.site_study, "run", lambda *_, **__: site_study.Done(None, None, None))
+    monkeypatch.setattr(study_command.site_study, "make", lambda *_: None)
+    monkeypatch.setattr(ensemble_study, "run", lambda _, questions, *more: seen.append(questions.order))
     assert study(capsys, monkeypatch, "big")[0] == 0
     [order] = seen
     assert {one.name: (one.low, one.high) for one in order.sample.variables} == {

@@ -30,8 +30,9 @@ from slope_tools.plots import (figure_charts, figure_maps, ground as report_grou
                                section as report_section)
 from slope_tools.report import data as report_data, printing
 from slope_tools.deposits import travel_shares
+from slope_tools.statistics import answer
 from slope_tools.studies import outcome
-from slope_tools.tables import judged, quantities, rows
+from slope_tools.tables import answered, judged, quantities, rows, study_file
 from slope_tools.tables.rows import finished_of
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
@@ -292,6 +293,8 @@ def stands(name):
     for parts in (best, best["rounded"]):
         parts["volume_m3"] = parts["mean_m3"] + (parts["chance_m3"] or 0)
     path.write_text(yaml.safe_dump(about))
+    said = answer.of(answered.paper_of(study_file.load_study(path)), None, None)
+    path.write_text(yaml.safe_dump({**about, "headline": records.plain(said.about())}))
     return best
 
 

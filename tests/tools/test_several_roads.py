@@ -24,7 +24,7 @@ from slope_tools.tables import named_run
 from slope_tools.tables.study_file import load_study
 
 NEAR, FAR = [(38, 0), (46, 0), (46, 80), (38, 80)], [(4, 0), (12, 0), (12, 80), (4, 80)]
-OF_ONE = ("collected", "machine", "jobs", "package", "road")     # of study.study, which are of the time, or of the name
+OF_ONE = ("body", "collected", "machine", "jobs", "package", "road")     # which are of the time, or the name
 
 
 def write_lines(path, *features):

@@ -183,7 +183,7 @@ def test_other_values_of_the_model_leave_the_runs_where_they_are(mine, inside, t
     finish(mine)
     assert set((mine / "runs").iterdir()) > runs and counts(mine) == (ALL, 0)
     inside("mine --friction 30")
-    assert counts(mine) == (ALL, 0) and len(trials) == 2        # its balls are determined anew each time
+    assert counts(mine) == (ALL, 0) and len(trials) == 4        # two each time, as the machine is measured anew
 
 
 def test_an_ensemble_that_does_not_vary_a_list_takes_its_first_value(mine, monkeypatch):

@@ -244,8 +244,7 @@ def run_deck(args: Request, beside: Optional[site_study.Beside] = None) -> Optio
                                   known=known_of(args))
 
     def collect(_, work):
-        at = size_runs.at_finest(setup, size_runs.make(
-            setup, work, [one for one in todo if not one.error], wanted))
+        at = size_runs.settle(setup, work, [one for one in todo if not one.error], wanted)
         return results.collect(setup, questions._replace(sizes=at, notes=at.warnings), todo, work)
 
     return perform(setup, {**settings, **repeated, **(wanted.settings if wanted else {})}, todo, collect)

@@ -181,7 +181,8 @@ def model(changes: np.ndarray, at: np.ndarray, before: Optional[Model]) -> Optio
         if other[3] < few * best[3]:
             best, few = other, 1.0
     coefficients, unit, taken, squares = best
-    freedom, variance = number - taken, squares / number
+    freedom = number - taken
+    variance = squares / max(number + 1 - taken, 1.0)       # chosen by these squares, a ridge has less of them
     if before is not None:
         prior = min(PRIOR, before.freedom)
         variance = (max(freedom, 0.0) * variance + prior * before.deviation ** 2) / (max(freedom, 0.0) + prior)

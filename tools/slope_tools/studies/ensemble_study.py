@@ -37,9 +37,8 @@ def run(setup: Setup, questions: results.Questions, fixed: Mapping[str, str], de
             made = replace(order, added=farther_runs.make(
                 setup, order, fixed, repeats.chances_of(repeated, {**defaults, **fixed}), todo, work, of_deck))
         others = beside.planned.todo if beside and beside.planned else []
-        at = size_runs.at_finest(setup, size_runs.make(
-            setup, work, [one for one in (*others, *todo) if not one.error], wanted,
-            functools.partial(farther_runs.pick, setup, made, others)))
+        at = size_runs.settle(setup, work, [one for one in (*others, *todo) if not one.error], wanted,
+                              functools.partial(farther_runs.pick, setup, made, others))
         if beside:
             beside.at = at
         return results.collect(setup, questions._replace(

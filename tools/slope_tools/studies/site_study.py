@@ -159,8 +159,8 @@ def run(site: Site, engine: Setup, method: str, asked: Asked, roads: Sequence[Ma
     planned = plan(site, engine)
 
     def finer(work: jobs.Work) -> size_runs.AtFinest:
-        return size_runs.at_finest(planned.setup, size_runs.make(
-            planned.setup, work, [one for one in planned.todo if not one.error], wanted(site, planned, asked)))
+        return size_runs.settle(planned.setup, work, [one for one in planned.todo if not one.error],
+                                wanted(site, planned, asked))
 
     return collect(site, planned, method, finer, roads)
 

@@ -5,6 +5,7 @@ that parameters and lengths are spread; the points of a finer size are among tho
 """
 import functools
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence
 
@@ -150,13 +151,13 @@ def lengths_of(rows: Sequence[Finished]) -> np.ndarray:
 
 
 def pick_largest(rows: Sequence[Finished]) -> Pick:
-    """By the paper's method: the runs of the combination that brings most, the longest one without a road."""
+    """By the paper's method: of the combination that brings most the run with most, the longest one without a road."""
     lengths = lengths_of(rows)
     along = lengths / max(lengths.max(initial=0.0), 1e-9)
     if not rows or not rows[0].road:
         return Pick([rows[int(lengths.argmax())].run] if rows else [], along)
     group = max(combinations.grouped(rows), key=lambda one: one.of(REMOVE).mean)
-    return Pick([row.run for row in group.rows], along)
+    return Pick([max(group.rows, key=lambda row: row.at_road.remove_m3).run], along)
 
 
 def make(setup: Setup, work: jobs.Work, points: Sequence[Repeat], wanted: Optional[Wanted],
@@ -185,6 +186,26 @@ def make(setup: Setup, work: jobs.Work, points: Sequence[Repeat], wanted: Option
     setup.tell(told(wanted, [one for one in todo if not one.finished]))
     work.do(todo)
     return Made(points, finer)
+
+
+def settle(setup: Setup, work: jobs.Work, points: Sequence[Repeat], wanted: Optional[Wanted],
+           pick: Callable[[Sequence[Finished]], Pick] = pick_largest) -> AtFinest:
+    """make(), then the finest runs of those on which numbers rest once all rows are at the finest size."""
+    at = at_finest(setup, make(setup, work, points, wanted, pick))
+    if not at.sizes or not wanted:
+        return at
+    k = len(at.sizes.diameters) - 1
+    rows = [replace(row, run=one.name) for one, row in zip(points, at.rows(rows_of(setup, at.runs(points))))]
+    first = pick(finished_of(rows)).first
+    more = [one for one in points if one.name in first and at.made.finest([one], k + 1) != at.made.runs(one)[k:k + 1]]
+    for one in more:
+        at.made.finer.setdefault(one.folder, [None] * (len(wanted.values) - 1))[k - 1] = SizeRun(
+            setup.runs, one, wanted.values[k])
+    todo = [run for one in more if (run := at.made.finer[one.folder][k - 1])]
+    work.store.admit(todo)
+    if todo:
+        work.do(todo)
+    return at_finest(setup, at.made) if todo else at
 
 
 def told(wanted: Wanted, todo: Sequence[Repeat]) -> str:
