@@ -21,7 +21,8 @@ from ..releases import packing
 from .site_sections import Balls, OfMass
 
 DEFAULT = 400           # of the coarsest balls, if nothing is given
-THIN = 1.3              # of these over the mean thickness of the body, at least
+THIN = 1.3              # of these over the mean thickness of the body, at least, unless they are
+MANY = 2000             # more than so many, of a thin body
 MINUTES = 10.0          # that a study may take, if nothing is given
 SIZES = 3               # of balls, where nobody knows how long they take: fewer give no number
 MOST_SIZES = 5
@@ -327,10 +328,11 @@ def size(choices: OfMass, volume: float, depth: float, soil: Soil, trial: Option
         d = up(fit(balls.memory, lambda one: gigabytes(one, volume, cells, jobs, levels or SIZES), volume, "--memory",
                    "GB"))
     else:
-        d = three_digits(min(packing.diameter(volume, DEFAULT), depth / THIN))
+        least, most = (packing.diameter(volume, number) for number in (MANY, DEFAULT))
+        d = three_digits(min(most, max(least, depth / THIN)))
     numbers = finer(d, volume, trial, soil, wanted, jobs, balls.minutes, levels)
-    least, most = study_seconds(d, volume, trial, soil, wanted, jobs, numbers) if trial else (None, None)
-    return Size(d, number_of(balls, volume, d), wanted.runs, least, most,
+    seconds = study_seconds(d, volume, trial, soil, wanted, jobs, numbers) if trial else (None, None)
+    return Size(d, number_of(balls, volume, d), wanted.runs, *seconds,
                 gigabytes(d, volume, cells, jobs, 1 + len(numbers)), wanted.text + finer_text(numbers),
                 d / 2 ** len(numbers))
 
