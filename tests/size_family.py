@@ -4,11 +4,10 @@
 tests/size_family.py site CASE FOLDER: terrain, body and road of a case, and its site by `slope site`, in a new folder
 tests/size_family.py row CASE FOLDER PREFIX FINER SEED DIAMETER [SECONDS]: the line of a run there
 tests/size_family.py list: all cases; rolling CASE: its rolling resistance; head: of the lines
-tests/size_family.py table SIZE.csv: size_family.csv; tests/size_family.py judge SIZE.csv: what page 1 would have said
+tests/size_family.py judge SIZE.csv: the finest runs, and what coarser ones and the other slides say of them
 """
 import csv
 import math
-import statistics
 import subprocess
 import sys
 from pathlib import Path
@@ -176,51 +175,31 @@ def row(name: str, folder: Path, prefix: Path, finer: str, seed: str, d: float, 
             summary["stop"]["time"], seconds]
 
 
-# --- the table ---
-
-def table(path: Path) -> list:
-    """The lines of size_family.csv of a table of tests/size.sh: means of each case and size."""
-    with open(path, newline="", encoding="ascii") as lines:
-        rows = list(csv.DictReader(lines))
-    found = []
-    for key in dict.fromkeys((one["case"], one["finer"]) for one in rows):
-        mine = [one for one in rows if (one["case"], one["finer"]) == key]
-        found.append([*key, *(sum(float(one[name]) for one in mine) / len(mine)
-                              for name in ("balls_thick", "remove", "beyond", "length"))])
-    found.sort(key=lambda one: (list(ALL).index(one[0]), float(one[1])))
-    return ["case,balls,remove,beyond,length",
-            *(",".join([name, *(f"{value:.4g}" for value in values)]) for name, _, *values in found)]
-
+# --- what slope study would say ---
 
 def judge(path: Path) -> None:
-    """Print what page 1 would have said of the volume to remove, by runs with d and one with d/2, against d/4.
-
-    The growth is that of the other cases.
-    """
-    from slope_tools.statistics import conservative_volume, size_effect, size_family
-    slides = size_family.read(table(path))
+    """Print the finest runs of each slide beside what its coarser ones and the other slides' pairs say of them."""
+    from slope_tools.statistics import ball_sizes
     with open(path, newline="", encoding="ascii") as lines:
         rows = list(csv.DictReader(lines))
-    covered = []
-    print("case,balls_thick,coarse,fine,said,upper,truth,covered,upper_over_truth")
-    for name in CASES:
-        of = {finer: [one for one in rows if (one["case"], one["finer"]) == (name, finer)] for finer in "124"}
-        if not all(of.values()):
-            continue
-        coarse = conservative_volume.Combination(name, {one["seed"]: float(one["remove"]) for one in of["1"]})
-        fine, truth = (float(of[finer][0]["remove"]) for finer in "24")
-        scatter = conservative_volume.pooled([coarse])
-        ball = float(of["1"][0]["released"]) / int(of["1"][0]["balls"])
-        said = conservative_volume.predict([coarse], size_effect.effect(coarse, fine, scatter, ball).added).volume
-        balls = float(of["2"][0]["balls_thick"])
-        grown = size_family.told(balls, {key: one for key, one in slides.items() if key != name})
-        upper = grown.covered(said) if grown else said
-        covered.append((upper >= truth, upper / truth))
-        print(f"{name},{balls:.3g},{coarse.mean:.4g},{fine:.4g},{said:.4g},{upper:.4g},{truth:.4g},{upper >= truth},"
-              f"{upper / truth:.3f}")
-    if covered:
-        print(f"{sum(one for one, _ in covered)} of {len(covered)} covered; upper end over truth, median "
-              f"{statistics.median(ratio for _, ratio in covered):.3f}")
+    sizes = sorted({one["finer"] for one in rows}, key=float)
+    print("quantity,case,coarse,said,low,high,truth,within")
+    for quantity in ("remove", "on_road", "beyond", "length"):
+        of = {(one["case"], one["finer"]): one for one in reversed(rows)}       # the first of several
+        names, inside = [name for name in CASES if all((name, size) in of for size in sizes)], []
+        for name in names:
+            others, steps = [one for one in names if one != name], []
+            for coarse, fine in zip(sizes, sizes[1:]):
+                both = [[float(of[one, size][quantity]) for one in others] for size in (coarse, fine)]
+                ball = max(float(of[one, coarse]["released"]) / float(of[one, coarse]["balls"]) for one in others)
+                steps.append(ball_sizes.fit(*both, np.empty((len(others), 0)), float(fine) / float(coarse),
+                                            0.0 if quantity == "length" else ball, steps[-1] if steps else None))
+            value, truth = (float(of[name, size][quantity]) for size in (sizes[0], sizes[-1]))
+            one = ball_sizes.transfer(steps, value, ())
+            low, high = one.band
+            inside.append(low <= truth <= high)
+            print(f"{quantity},{name},{value:.5g},{one.value:.5g},{low:.5g},{high:.5g},{truth:.5g},{inside[-1]}")
+        print(f"{quantity}: {sum(inside)} of {len(inside)} within")
 
 
 def main(words):
@@ -230,8 +209,6 @@ def main(words):
         print(HEAD)
     elif words[:1] == ["rolling"] and len(words) == 2:
         print(f"{ALL[words[1]].rolling:g}")
-    elif words[:1] == ["table"] and len(words) == 2:
-        print("\n".join(table(Path(words[1]))))
     elif words[:1] == ["judge"] and len(words) == 2:
         judge(Path(words[1]))
     elif words[:1] == ["site"] and len(words) == 3:

@@ -19,7 +19,6 @@ NOTHING = {"largest": {}, "farthest": None, "conservative": None, "size": None, 
            "largest_restitution": None, "scatter": {}, "combinations": [], "envelope": None, "exceedance": None,
            "observed": None, "roads": [], "warnings": [], "runs": [], "headline": None, "stretches": None,
            "chain": None, "intensity": None, "next_step": None}
-EFFECT = {"runs": 1, "chance": None, "difference": 0.0, "clear": None}
 
 
 def made(kind, entries):
@@ -68,7 +67,7 @@ def study(header=None, **entries):
 
 def conservative(volume, **entries):
     """Of one run, that is not withheld."""
-    parts = {"volume_m3": volume, "mean_m3": volume, "chance_m3": None, "size_m3": None}
+    parts = {"volume_m3": volume, "mean_m3": volume, "chance_m3": None}
     return made(study_types.Conservative, {
         **parts, "rounded": dict(parts), "place_m3": 1.0, "kind": "largest of 1 run; chance unknown",
         "combination": "base", "set": {}, "label": "", "ground": None, "repeats": 1, "runs": 1, "combinations": 1,
@@ -100,7 +99,7 @@ def weighted(**entries):
 def headline(**entries):
     return made(of_statistics.Headline, {
         "kind": "number", "volume_m3": None, "share": None, "low_m3": None, "high_m3": None, "source": None,
-        "paper": None, "ensemble": None, "road": None, "reasons": [], **entries})
+        "paper": None, "ensemble": None, "road": None, "reasons": [], "band": [], **entries})
 
 
 def write(folder, rows, header=None, **entries):

@@ -14,20 +14,21 @@ from slope_tools.report import client_part
 from slope_tools.report.numbers import Numbers
 from slope_tools.sites import site_choices
 from slope_tools.sites.site_sections import OfMass
-from slope_tools.statistics import answer, size_family
-from slope_tools.statistics.answer import AtRoad, Code, Ensemble, Kind, Paper, Road, Source, Withheld
+from slope_tools.statistics import answer
+from slope_tools.statistics.answer import AtRoad, Cause, Code, Ensemble, Kind, Paper, Road, Size, Source, Withheld
+from slope_tools.statistics.entries import KnownQuantile
 from slope_tools.statistics.withheld import Kind as Rule
 from slope_tools.studies import site_study
-from slope_tools.tables import answer_words, answered, fine_run, next_step
+from slope_tools.tables import answer_words, answered, next_step
 
 STOPPED = answer.Reason(Code.TERRAIN, {"share": 0.12, "path_m": 900.0})
 
 
 def ensemble(far=0.01, rules=(), values=1000.0, **more):
     """Quantiles of values * share, unknown where known events lie beyond the runs."""
-    return Ensemble({share: (values * share, 0.9 * values * share, 1.1 * values * share) if share <= 1 - far
-                     else (None, None, None) for share in answer.shares(far)}, far, 800.0,
-                    [Withheld(rule) for rule in rules], **more)
+    return Ensemble([KnownQuantile(share, values * share, 0.9 * values * share, 1.1 * values * share)
+                     if share <= 1 - far else KnownQuantile(share, None, None, None) for share in answer.shares(far)],
+                    far, 800.0, [Withheld(rule) for rule in rules], **more)
 
 
 def road(low, high, longest=500.0):
@@ -46,104 +47,92 @@ def test_the_larger_of_both():
     assert (found.low, found.high, found.reasons) == (pytest.approx(855), pytest.approx(1045), [])
     found = answer.of(Paper(1200.0), ensemble(), road(0.5, 0.6))
     assert (found.kind, found.volume, found.source, found.share, found.high) == (
-        Kind.NUMBER, 1200.0, Source.PAPER, None, None)
+        Kind.NUMBER, 1200.0, Source.PAPER, None, 1200.0)
     assert answer.of(Paper(5.0), None, None)[:2] == (Kind.NUMBER, 5.0)
     assert answer.of(None, ensemble(), None)[:2] == (Kind.NUMBER, 950.0)
     assert answer.of(None, None, None) is None
 
 
-def test_too_few_balls_over_the_thickness_make_a_floor():
-    """Of either study; nothing stays nothing, and what is withheld stays so."""
-    few = answer.Reason(Code.SIZE, {"balls_thick": 5.0, "enough": 16.0})
-    for paper, other in ((Paper(1200.0, size=few), ensemble()), (Paper(700.0), ensemble(size=few)),
-                         (Paper(1200.0), ensemble(size=few))):
+def test_a_band_has_shares_that_add_as_squares():
+    """By hand: chance, transfer and finer balls, on either side."""
+    found = answer.of(Paper(1000.0, least=940.0, transfer=(80.0, 40.0), size=Size(-0.04, 0.03)), None, None)
+    assert [tuple(one) for one in found.band] == [
+        (Cause.RUNS.value, 60.0, 0.0), (Cause.TRANSFER.value, 80.0, 40.0), (Cause.SIZE.value, 40.0, 30.0)]
+    assert (found.kind, found.volume) == (Kind.NUMBER, 1000.0)
+    assert (found.low, found.high) == pytest.approx((1000 - (60 ** 2 + 80 ** 2 + 40 ** 2) ** 0.5, 1050))
+    of = [one._replace(transfer=[50.0, 60.0]) for one in ensemble().quantiles]
+    found = answer.of(None, ensemble()._replace(quantiles=of, size=Size(0.0, 0.1)), None)
+    assert (found.low, found.high) == pytest.approx((950 - (95 ** 2 + 50 ** 2) ** 0.5,
+                                                     950 + (95 ** 2 + 60 ** 2 + 95 ** 2) ** 0.5))
+    said = found.about()
+    assert "810" not in answer_words.number(said) and f"({843:,} to 1,100)" in answer_words.number(said)
+    assert "transfer" in answer_words.band(said) and "-50 +60" in answer_words.band(said)
+
+
+def test_a_floor_is_the_lower_end_rounded_down():
+    """Of either study, where sizes of balls are too few; nothing stays nothing, and what is withheld stays so."""
+    few = Size(floor=answer.Reason(Code.SIZE, {"sizes": 1, "grown": None}))
+    for paper, other, low in ((Paper(1200.0, least=1177.0, size=few), ensemble(), 1170.0),
+                              (Paper(700.0), ensemble(size=few), 855.0)):
         found = answer.of(paper, other, road(0.5, 0.6))
-        assert (found.kind, found.volume, found.high) == (Kind.FLOOR, max(paper.volume, 950.0), None)
+        assert (found.kind, found.volume, found.low, found.high) == (Kind.FLOOR, low, low, None)
         assert codes(found) == [Code.SIZE]
     assert answer.of(Paper(0.0, size=few), None, None).kind is Kind.NOTHING
-    assert answer.of(Paper(None, [Withheld(Rule.LEFT)], few), None, None).kind is Kind.WITHHELD
+    assert answer.of(Paper(None, [Withheld(Rule.LEFT)], size=few), None, None).kind is Kind.WITHHELD
 
 
-def test_the_effect_of_size_raises_the_quantiles_of_an_ensemble():
-    """By a factor of ten balls or more, by the difference of fewer; not where the fine run brings less."""
-    def volume(**effect):
-        quantile = {"share": 0.95, "value": 100.0, "low": 80.0, "high": None}
-        about = made_study.study(ensemble=made_study.ensemble({"to_remove": [quantile]}), size={
-            "run": "d_1", "open": False, "effects": {"remove_m3": {**made_study.EFFECT, **effect}}})
-        return answered.ensemble_of(about).quantiles[0.95]
-
-    assert volume(coarse=50.0, fine=60.0, ratio=True) == pytest.approx((120.0, 96.0, None))
-    assert volume(coarse=0.0, fine=7.0, ratio=False) == pytest.approx((107.0, 87.0, None))
-    assert volume(coarse=60.0, fine=50.0, ratio=True) == pytest.approx((100.0, 80.0, None))
+STEP = {"finer": 2.0, "pairs": 8, "factor": 1.0, "deviation": 0.03, "on_parameters": False}
 
 
-def test_a_fine_run_that_failed_makes_a_floor_too():
-    """Less is known than with one that finished: the number is no firmer."""
-    entry = fine_run.evaluate(fine_run.Fine(None, (), 0.0, lambda key: None, "d_1: diverged"))
-    about = made_study.study(conservative=made_study.conservative(1200.0), size=entry)
-    found = answer.of(answered.paper_of(about), None, None)
-    assert (found.kind, found.volume, codes(found)) == (Kind.FLOOR, 1200.0, [Code.SIZE])
-    assert "did not finish" in answer_words.text(found.reasons[0]) and "d_1: diverged" in entry.text
-    assert "did not finish" in answer_words.client(found.reasons[0])
+def sized(*grown):
+    """What a study says of sizes, whose steps raised the volume to remove by these shares."""
+    left = {"low": -0.03, "best": 0.01, "high": 0.02, "grown": grown[-1], "order": 1.0, "observed": False}
+    return {"sizes": [{"d": 4 / 2 ** k, "balls": 400 * 8 ** k, "balls_thick": None, "runs": 5}
+                      for k in range(len(grown) + 1)], "parameters": [], "text": "",
+            "effects": {"remove_m3": {"steps": [STEP] * len(grown), "left": left if len(grown) > 1 else None}}}
 
 
-@pytest.mark.parametrize("balls, kind", [(None, Kind.FLOOR), (5.0, Kind.FLOOR), (16.0, Kind.NUMBER)])
-def test_without_a_fine_run_the_number_is_not_conservative(balls, kind):
-    """Unless its own balls are small enough; the page says why."""
-    about = made_study.study({"balls_thick": balls}, conservative=made_study.conservative(1200.0))
-    found = answer.of(answered.paper_of(about), None, None)
-    assert (found.kind, found.volume) == (kind, 1200.0)
-    for text in (answer_words.text, answer_words.client):
-        assert ["conservative" in text(one) and "not known" in text(one) for one in found.reasons] == \
-            [True] * (kind is Kind.FLOOR)
-    quantile = {"share": 0.95, "value": 100.0, "low": None, "high": None}
-    made = next_step.Made(made_study.study(), Path("out"))
-    step = next_step.of_studies([made], found.about())
-    assert step is None if kind is Kind.NUMBER else step.command == "the same command with --fine 2" == step.before
-    about = made_study.study({"balls_thick": balls}, ensemble=made_study.ensemble({"to_remove": [quantile]}))
-    assert answer.of(None, answered.ensemble_of(about), None).kind is kind
+@pytest.mark.parametrize("size, kind, words", [
+    (None, Kind.FLOOR, "one size"), (sized(0.1), Kind.FLOOR, "2 sizes"), (sized(0.4, 0.26), Kind.FLOOR, "26 %"),
+    (sized(0.4, 0.24), Kind.NUMBER, "")])
+def test_fewer_than_two_halvings_or_one_that_grows_make_a_floor(size, kind, words):
+    """Of both studies; what is to be done next is one size more."""
+    quantile = {"share": 0.95, "value": 1200.0, "low": 1000.0, "high": 1400.0}
+    about = made_study.study(conservative=made_study.conservative(1200.0, chance_m3=50.0), size=size)
+    other = made_study.study(ensemble=made_study.ensemble({"to_remove": [quantile]}), size=size)
+    for found in (answer.of(answered.paper_of(about), None, None), answer.of(None, answered.ensemble_of(other), None)):
+        assert found.kind is kind and [one.code for one in found.reasons] == [Code.SIZE] * (kind is Kind.FLOOR)
+        assert all(words in text(one) for one in found.reasons for text in (answer_words.text, answer_words.client))
+        step = next_step.of_studies([next_step.Made(about, Path("out"))], found.about())
+        assert (step is None) == (kind is Kind.NUMBER) and (step is None or "--levels" in step.command)
+    if kind is Kind.NUMBER:
+        assert found.band[-1] == (Cause.SIZE.value, pytest.approx(36), pytest.approx(24))
 
 
-@pytest.mark.parametrize("slides", [size_family.FEWEST - 1, size_family.FEWEST])
-def test_the_growth_of_the_family_stands_beside_a_floor(monkeypatch, slides):
-    """Where it tells: not from more balls of thickness than any slide of it has, nor of a few slides."""
-    lines = [f"{k},{balls},{100 + k * balls},1,1" for k in range(slides) for balls in (1, 4, 15)]
-    known = size_family.read(["case,balls,remove,beyond,length", *lines])
-    monkeypatch.setattr(size_family, "family", lambda: known)
-    size = {"run": "d_1", "open": True, "balls_thick": 2.0, "effects": {}}
-    about = made_study.study(conservative=made_study.conservative(1200.0), size=size)
-    floor = answer.of(answered.paper_of(about), None, None)
-    said = answer_words.number(floor.about())       # what finer balls bring is open: nothing conservative
-    assert said.startswith("at least 1,200 m3 to remove, by the sweep") and "conservative" not in said
-    [reason] = floor.reasons
-    growth = size_family.growth(2.0)
-    if slides < size_family.FEWEST:
-        assert reason.numbers["growth"] is None and "times as much" not in answer_words.text(reason)
-        return
-    assert reason.numbers["growth"] == growth._asdict() and growth.low <= growth.median <= growth.high
-    for text in (answer_words.text(reason), answer_words.client(reason)):
-        assert f"{growth.median:.2f}" in text and text.endswith("times as much")
-    about = made_study.study(conservative=made_study.conservative(1200.0), size={**size, "balls_thick": 15.99})
-    [reason] = answer.of(answered.paper_of(about), None, None).reasons
-    assert reason.numbers["growth"] is None
-
-
-def test_a_floor_where_known_events_lie_beyond_the_runs():
+def test_where_known_events_lie_beyond_the_runs_the_number_is_of_those_within():
+    """A floor only where the terrain ends before the road does: the lower end."""
     found = answer.of(Paper(0.0), ensemble(0.08, stopped=STOPPED), road(0.5, 0.6))
-    assert (found.kind, found.volume, found.share, found.high) == (Kind.FLOOR, 920.0, 0.92, None)
-    assert codes(found) == [Code.BEYOND, Code.TERRAIN] and found.reasons[0].numbers == {"far": 0.08, "longest_m": 800.0}
+    assert (found.kind, found.volume, codes(found)) == (Kind.NUMBER, 920.0, [Code.BEYOND, Code.TERRAIN])
+    found = answer.of(Paper(0.0), ensemble(0.08, stopped=STOPPED), road(0.5, 0.6)._replace(far=901.0))
+    assert (found.kind, found.volume, found.share, found.high) == (Kind.FLOOR, 828.0, 0.92, None)
+    assert codes(found) == [Code.BEYOND, Code.TERRAIN]
+    assert found.reasons[0].numbers == {"far": 0.08, "longest_m": 800.0, "most_m3": 0.0}
+    other = answer.Reason(Code.RUNS, {"points": 8})
+    found = answer.of(Paper(0.0), ensemble(0.08, stopped=other), road(0.5, 0.6))
+    assert (found.kind, found.volume, found.share, found.high) == (Kind.NUMBER, 920.0, 0.92, pytest.approx(1012))
+    assert codes(found) == [Code.BEYOND, Code.RUNS]
     found = answer.of(Paper(0.0), ensemble(0.7), road(0.5, 0.6))
-    assert (found.volume, found.share) == (300.0, 0.3)
+    assert (found.kind, found.volume, found.share) == (Kind.NUMBER, 300.0, 0.3)
     [reason] = answer.of(Paper(0.0), ensemble(0.3, path_end=161.2)._replace(longest=165.9), road(0.5, 0.6)).reasons
     assert all("30 %" in words(reason) and "161 m" in words(reason) and "166 m" in words(reason)
                for words in (answer_words.text, answer_words.client))
-    # as files of earlier versions have it
-    found = answer.of_ensemble(Ensemble({0.95: (None, 9.0, None), 0.9: (7.0, 5.0, None), 0.75: (3.0, 2.0, 4.0)}, 0.08,
-                                        800.0), None)
-    assert (found.kind, found.volume, found.share, found.low) == (Kind.FLOOR, 7.0, 0.9, 5.0)
-    # the paper's more is a floor, too: what lies beyond is not known
+    # without an upper bound it is what no run exceeded
+    several = [KnownQuantile(0.95, None, 9.0, None), KnownQuantile(0.9, 7.0, 5.0, None)]
+    found = answer.of(None, Ensemble(several, 0.08, 800.0, most=11.0), None)
+    assert (found.kind, found.volume, found.share, found.low, found.high) == (Kind.NUMBER, 7.0, 0.9, 5.0, 11.0)
+    # the paper's more is a number, too
     found = answer.of(Paper(5000.0), ensemble(0.7), road(0.5, 0.6))
-    assert (found.kind, found.volume, found.source) == (Kind.FLOOR, 5000.0, Source.PAPER)
+    assert (found.kind, found.volume, found.source) == (Kind.NUMBER, 5000.0, Source.PAPER)
     # nor is nothing known at all
     found = answer.of(None, ensemble(1.0, [Rule.MOBILITY]), road(0.5, 0.6))
     assert (found.kind, found.volume, found.share) == (Kind.FLOOR, 0.0, 0.0)
@@ -152,7 +141,7 @@ def test_a_floor_where_known_events_lie_beyond_the_runs():
 @pytest.mark.parametrize("far, shares", [
     (0.0, [0.95]), (0.05, [0.95]), (0.0501, [0.95, 0.94]), (0.08, [0.95, 0.92]), (0.104, [0.95, 0.89]),
     (1, [0.95, 0.0])])
-def test_the_floor_is_of_all_that_the_runs_reach(far, shares):
+def test_the_number_is_of_all_that_the_runs_reach(far, shares):
     assert answer.shares(far) == shares
 
 
@@ -212,7 +201,7 @@ def test_rules_that_withhold_one_of_both():
         assert (found.kind, found.volume, found.reasons) == (Kind.NUMBER, 950.0, [])
         assert answer.of(Paper(None, [harmless]), None, None).kind is Kind.WITHHELD     # alone it stands
     found = answer.of(Paper(None, [left]), ensemble(), road(0.5, 0.6))
-    assert (found.kind, found.volume, found.high, codes(found)) == (Kind.FLOOR, 950.0, None, [Code.RULE])
+    assert (found.kind, found.volume, found.high, codes(found)) == (Kind.FLOOR, 855.0, None, [Code.RULE])
     assert found.reasons[0].numbers["source"] == "paper" and found.reasons[0].numbers["rule"] == Rule.LEFT.value
     found = answer.of(Paper(70.0), ensemble(rules=[Rule.LEFT]), road(0.5, 0.6))
     assert (found.kind, found.volume, found.source) == (Kind.FLOOR, 70.0, Source.PAPER)
@@ -226,7 +215,7 @@ def test_what_study_yaml_says():
     about = answer.of(Paper(700.0), ensemble(0.08, stopped=STOPPED), road(0.5, 0.6)).about()
     about = records.plain(about)
     assert disk.plain(about) == about and list(about) == ["kind", "volume_m3", "share", "low_m3", "high_m3", "source",
-                                                          "paper", "ensemble", "road", "reasons"]
+                                                          "paper", "ensemble", "road", "reasons", "band"]
     assert about["paper"] == {"volume_m3": 700.0, "withheld": []}
     assert about["ensemble"] == {"volume_m3": None, "far": 0.08, "withheld": []}
     assert about["road"]["reached"] == [0.5, 0.6] and about["reasons"][1] == {
@@ -235,8 +224,7 @@ def test_what_study_yaml_says():
 
 def test_the_volume_is_the_one_that_the_study_shows():
     best = made_study.conservative(21700.6, rounded={"volume_m3": 21710.0})
-    done = {"run": "d_1", "open": False, "effects": {}}
-    assert answered.paper_of(made_study.study(conservative=best, size=done)) == Paper(21710.0, [])
+    assert answered.paper_of(made_study.study(conservative=best))[:2] == (21710.0, [])
 
 
 # --- which study governs ---
@@ -275,8 +263,10 @@ def test_an_older_result_is_not_merged_where_all_runs_failed(tmp_path, monkeypat
             raise study.RunsFailed(tmp_path, "all runs failed")
         return made_study.study({"collected": "2026-11-27T10:00:00+00:00"})
 
-    monkeypatch.setattr(study.site_study, "run", lambda *_, **__: site_study.Done(tmp_path, runs(False), None))
-    monkeypatch.setattr(study, "run_deck", lambda _: runs(fails))
+    for name in ("plan", "make", "wanted"):
+        monkeypatch.setattr(study.site_study, name, lambda *_: None)
+    monkeypatch.setattr(study.site_study, "collect", lambda *_, **__: site_study.Done(tmp_path, runs(False), None))
+    monkeypatch.setattr(study, "run_deck", lambda *_: runs(fails))
     monkeypatch.setattr(study, "of_ensemble", lambda *_: None)
     monkeypatch.setattr(study, "write_report", lambda *_, **__: None)
     monkeypatch.setattr(study.answered, "of_both", lambda *several: calls.append(several))

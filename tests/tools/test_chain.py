@@ -1,15 +1,9 @@
 """From an earthquake to the volume on the road: sums over bodies, peaks and runs against direct simulations."""
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 from scipy import stats
 
-import made_study
-from made_rows import row
-
-from slope_tools.seismic import chain, chain_files, fragility
-from slope_tools.statistics.size_effect import Effect
+from slope_tools.seismic import chain, fragility
 
 RATE = fragility.Hazard(np.array([50.0, 200.0, 800.0, 2000.0]), np.array([1e-2, 1e-3, 3e-5, 1e-6]))
 VOLUMES = np.array([0.0, 50.0, 120.0, 200.0, 350.0, 450.0])
@@ -150,32 +144,6 @@ def test_without_runs_the_whole_body_is_on_the_road():
     always = np.full((fragility.REPLICATES, 1, 1), 10.0)
     found = chain.family(always, np.array([20.0]), [chain.left([], [], 800.0)], np.array([0.0, 799.0, 800.0]))
     assert found.value[0].tolist() == [1, 1, 0] and found.high[0].tolist() == [1, 1, 0] and (found.low == 0).all()
-
-
-def test_the_effect_of_size_raises_what_bodies_leave():
-    """By a factor of ten balls or more, else by a difference, and not above the body; never downwards."""
-    asked = chain_files.Chain(SimpleNamespace(bodies=["1", "2"]), {"1": 1.0}, {"1": 130.0}, ())
-    rows = [row(set={"body": "1", "k": str(k)}, **{chain_files.QUANTITY: volume})
-            for k, volume in enumerate((0.0, 60.0, 120.0, 140.0))]
-
-    def volumes(**effect):
-        one, never = chain_files.left(asked, rows, Effect(runs=1, chance=None, **effect) if effect else None)
-        assert never.value.volumes.max() == 0
-        return sorted(set(one.value.volumes))
-
-    assert volumes() == [0, 60, 120, 140]
-    assert volumes(coarse=50.0, fine=60.0, ratio=True) == pytest.approx([0, 72, 130, 140])
-    assert volumes(coarse=0.0, fine=7.0, ratio=False) == pytest.approx([0, 7, 67, 127, 140])
-    assert volumes(coarse=60.0, fine=50.0, ratio=True) == [0, 60, 120, 140]
-
-
-@pytest.mark.parametrize("size, kinds", [
-    (None, ["chain size"]), ({"open": True, "fine": 60.0}, ["chain raised", "chain size"]),
-    ({"open": False, "fine": 60.0}, ["chain raised"]), ({"open": False, "fine": 40.0}, [])])
-def test_what_the_size_of_the_balls_does_to_a_chain_is_said(size, kinds):
-    effect = size and Effect(50.0, 1, size["fine"], None, True)
-    said = size and made_study.study(size={"open": size["open"]}).size
-    assert [one.kind for one in chain_files.of_size(said, effect, 100.0)] == kinds
 
 
 def test_bounds_of_runs_and_of_runs_that_failed():

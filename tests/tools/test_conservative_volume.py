@@ -9,7 +9,6 @@ from scipy import stats
 from slope_tools.statistics import rounding
 from slope_tools.statistics.conservative_volume import (Combination, ConservativeVolume, Scatter, difference, is_clear,
                                                         like, odd_one, pooled, predict, scatter_of, shared)
-from slope_tools.statistics.size_effect import Effect, effect
 
 STUDIES = 400
 REPEATS = 3
@@ -144,7 +143,7 @@ def test_scatter_that_grows_with_the_mean_is_not_that_of_small_combinations():
     def equal(several):
         scatter = pooled(several)
         top = max(several, key=lambda one: one.mean)
-        return ConservativeVolume(top.mean + scatter.chance(top.runs), top.mean, None, None, top.name, 3, 9, scatter)
+        return ConservativeVolume(top.mean + scatter.chance(top.runs), top.mean, None, top.name, 3, 9, scatter)
 
     assert stood_in(law(normal, 1, 0.1), 11, rule=equal, several=MEANS[3:]) < 0.95
     assert stood_in(law(normal, 1, 0.1), 11, several=MEANS[3:]) >= 0.97
@@ -177,7 +176,7 @@ def test_parts_by_hand():
     variances = [statistics.variance(one.volumes.values()) for one in (a, b)]
     deviation = math.sqrt((scale * variances[0] + variances[1]) / 2)
     assert (best.combination, best.repeats, best.runs, best.kind) == ("b", 3, 6, "prediction")
-    assert best.mean == pytest.approx(121) and best.size is None
+    assert best.mean == pytest.approx(121)
     assert best.scatter.deviation == pytest.approx(deviation)
     # mean squares of the two-way table, and Satterthwaite of their sum
     table = np.array([math.sqrt(scale) * np.array(list(a.volumes.values())), list(b.volumes.values())])
@@ -229,7 +228,7 @@ def test_what_differs_by_rounding_does_not_differ():
 
 def test_without_repeats_chance_is_unknown():
     best = predict(combinations((5,), (7,), (6,)))
-    assert best == ConservativeVolume(7.0, 7.0, None, None, "b", 1, 3, None)
+    assert best == ConservativeVolume(7.0, 7.0, None, "b", 1, 3, None)
     assert best.kind == "largest of 3 runs; chance unknown"
     assert predict(combinations((5,))).kind == "largest of 1 run; chance unknown"
 
@@ -238,46 +237,6 @@ def test_with_unequal_numbers_of_runs_the_least_known_may_govern():
     best = predict(combinations((100, 104, 96, 103, 97), (99, None, None, None, None)))
     assert best.combination == "b" and best.mean == 99
     assert best.chance == pytest.approx(best.scatter.chance(1)) and best.scatter.degrees_of_freedom == 4
-
-
-# --- the size of the balls ---
-
-def test_a_fine_run_that_brings_more_than_chance_raises_the_headline():
-    """By hand: the fine run may lie t s sqrt(1 + 1/4) above four runs, t 3.182."""
-    coarse = Combination("a", {"1": 98.0, "2": 102.0, "3": 98.0, "4": 102.0})
-    scatter = pooled([coarse])
-    most = 3.182446 * scatter.deviation * math.sqrt(1.25)
-    for fine, added in ((100 + most + 0.01, 0.01 * (most + 0.01)), (100 + most - 0.01, 0.0), (80.0, 0.0)):
-        found = effect(coarse, fine, scatter, ball=1.0)
-        assert found.ratio and found.chance == pytest.approx(most) and found.clear is (added > 0)
-        assert found.added(1.0) == pytest.approx(added)
-    found = effect(coarse, 130.0, scatter, ball=1.0)
-    alone, raised = predict([coarse]), predict([coarse], found.added)
-    assert alone.size is None and raised.volume == pytest.approx(1.3 * alone.volume)
-    assert raised.size == pytest.approx(0.3 * alone.volume) and raised.mean == alone.mean
-
-
-@pytest.mark.parametrize("mean, fine, ball, ratio, value, added", [
-    (0.0, 50.0, 1.0, False, 0.0, 50.0),         # from zero
-    (8.0, 20.0, 1.0, False, 100.0, 12.0),       # fewer than ten balls, before and after
-    (20.0, 8.0, 1.0, False, 100.0, 0.0),
-    (20.0, 30.0, 1.0, True, 100.0, 50.0),
-    (0.5, 0.75, None, True, 10.0, 5.0)])        # a length
-def test_an_effect_of_few_balls_is_a_difference(mean, fine, ball, ratio, value, added):
-    found = effect(Combination("a", {"1": mean}), fine, None, ball)
-    assert found.chance is None and found.clear is None and found.ratio is ratio
-    assert found.added(value) == pytest.approx(added)
-
-
-def test_equal_runs_are_rarely_raised():
-    """A fine run of the same mean and scatter lies above chance in one of forty studies."""
-    random = np.random.default_rng(4)
-    raised = 0
-    for _ in range(1000):
-        several = study(random, EQUAL, 0)
-        found = effect(several[1], random.normal(EQUAL[1], DEVIATION), scatter_of(several, several[1]), 1.0)
-        raised += found.added(1.0) > 0
-    assert 0.005 <= raised / 1000 <= 0.045
 
 
 # --- differences ---
@@ -336,10 +295,9 @@ def test_to_what_a_volume_is_known(deviation, expected):
 def test_rounded_parts_add_up_and_are_never_too_small():
     random = np.random.default_rng(6)
     for _ in range(200):
-        best = predict(study(random, random.uniform(0, 20000, 3), 0.3),
-                       Effect(100.0, 3, 105.0, 1.0, True).added)
+        best = predict(study(random, random.uniform(0, 20000, 3), 0.3))
         parts = best.rounded()
-        assert parts["volume"] == pytest.approx(parts["mean"] + parts["chance"] + parts["size"], abs=1e-6)
+        assert parts["volume"] == pytest.approx(parts["mean"] + parts["chance"], abs=1e-6)
         assert best.volume - 1e-9 <= parts["volume"] <= best.volume + 3 * best.place + 1e-9
         assert parts["volume"] / best.place == pytest.approx(round(parts["volume"] / best.place))
 

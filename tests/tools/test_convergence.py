@@ -1,4 +1,4 @@
-"""Sizes of balls: tools/slope sensitivity --converge, and the fine run of tools/slope study --fine."""
+"""Sizes of balls: tools/slope sensitivity --converge, and tools/slope study --levels."""
 import math
 import shlex
 import statistics
@@ -143,12 +143,12 @@ def test_a_failed_size_is_told_and_the_others_are_compared(slope):
     ("--converge steps=1,0", "--converge: must give numbers > 0 for steps, got 0"),
     ("--converge terrain=a.asc,b.asc", "--converge: must give numbers > 0 for terrain"),
     ("--converge colour=1,2", "--converge: must name an index variable of case/in.tiny"),
-    ("--converge d=1,2 --levels friction=20", "--converge: must be given without --levels"),
+    ("--converge d=1,2 --try friction=20", "--converge: must be given without --try"),
     ("--converge d=1,2 --set d=3", "--converge: must not name a variable of --set, got d"),
     ("--converge d=1,2 --repeat friction=20,30", "--repeat: must name a variable that differs by chance alone, seed, "
      "packing or ...offset; if the values of friction are equally good, say --equally-good friction, got friction"),
     ("--converge d=1,2 --of remove_m3 ", "--road: must be given for remove_m3"),
-    ("--levels friction=20", "--road: must be given for remove_m3"),
+    ("--try friction=20", "--road: must be given for remove_m3"),
 ])
 def test_wrong_input_is_one_line(slope, arguments, message):
     status, _, err = slope(f"{arguments} -o out")
@@ -157,37 +157,44 @@ def test_wrong_input_is_one_line(slope, arguments, message):
     assert not Path("out").exists()
 
 
-# --- the fine run ---
+# --- several sizes of a study ---
 
-def test_a_fine_run_of_a_deck_raises_the_conservative_volume(slope, succeed):
+def test_a_study_of_a_deck_at_several_sizes(slope, succeed):
+    """All points with the first diameter, some with the others; results are of the last one."""
     Path("case/road.csv").write_text("13,0\n18,0\n18,24\n13,24\n")
-    words = f"--set rolling=0,0.3 --set steps=700 --repeat xoffset=0.3,0.6 {ROAD} -o out"
+    words = f"--set rolling=0,0.15,0.3 --set steps=700 {ROAD} -o out"
     succeed(words, "study")
     before = yaml.safe_load(Path("out/study.yaml").read_text())
-    assert before["size"] is None and before["conservative"]["size_m3"] is None
-    out, _ = succeed(f"{words} --fine 2", "study")
+    assert before["size"] is None and "bands" not in before["runs"][0]
+    succeed(f"{words} --levels d=1.0,0.6,0.4", "study")
     about = yaml.safe_load(Path("out/study.yaml").read_text())
-    best, size = about["conservative"], about["size"]
-    assert (size["d"], size["coarse_d"]) == (0.5, 1.0) and size["balls_thick"] == 2 * size["coarse_balls_thick"]
-    # at the middle of the values, beside the three runs that have it
-    assert [row["set"]["rolling"] for row in about["runs"] if row["run"] in size["coarse_runs"]] == ["0.3"] * 3
-    effect = size["effects"]["remove_m3"]
-    mine = [row["remove_m3"] for row in about["runs"] if row["run"] in size["coarse_runs"]]
-    assert effect["coarse"] == pytest.approx(statistics.fmean(mine)) and effect["runs"] == 3 and effect["chance"] > 0
-    assert len(about["runs"]) == len(before["runs"])        # the fine run is none of the combinations'
-    added = best["size_m3"]
-    assert (added > 0) is (effect["difference"] > effect["chance"])
-    assert best["mean_m3"] == pytest.approx(before["conservative"]["mean_m3"])
-    assert "size of the balls: balls of 0.5 m" in out and size["open"] is True
-    # again: nothing is made
-    out, _ = succeed(f"{words} --fine 2", "study")
-    assert "7 of 7 runs are finished already" in out or "nothing to run" in out
+    size = about["size"]
+    assert [(one["d"], one["runs"]) for one in size["sizes"]] == [(1.0, 3), (0.6, 3), (0.4, 3)]
+    assert size["sizes"][2]["balls_thick"] == pytest.approx(2.5 * size["sizes"][0]["balls_thick"])
+    assert [row["variables"]["d"] for row in about["runs"]] == ["0.4"] * 3
+    assert [row["set"] for row in about["runs"]] == [row["set"] for row in before["runs"]]
+    raw = {row["run"]: row for row in rows_of("out/levels.csv")}
+    assert len(raw) == 9 and {row["d"] for row in raw.values()} == {"1.0", "0.6", "0.4"}
+    for row in about["runs"]:       # which ran with the finest balls
+        assert row["remove_m3"] == pytest.approx(float(raw[row["run"]]["remove_m3"])) and row["bands"]["remove_m3"] == [
+            row["remove_m3"]] * 2
+    # runs are kept when sizes change, those of one size among them
+    out, _ = succeed(f"{words} --levels d=1.0,0.6", "study")
+    assert "to make" not in out or "0 of these runs to make" in out
+    assert len(yaml.safe_load(Path("out/study.yaml").read_text())["size"]["sizes"]) == 2
+    succeed(words, "study")
+    assert not Path("out/levels.csv").exists()
 
 
-def test_a_deck_without_a_diameter_has_no_fine_run(slope):
-    edit("case/in.tiny", "variable  d index 1.0", "variable  q index 1.0", "${d}", "${q}")
-    status, _, err = slope(f"--set rolling=0 {ROAD} -o out --fine 2", "study")
-    assert status == 2 and "--fine: must be of a deck whose variable d is the diameter of the balls" in err
+@pytest.mark.parametrize("words, line", [
+    ("--levels d=1,0.9", "--levels: must give diameters > 0, each at most 1/1.5 of the one before"),
+    ("--levels 3", "--levels: must give diameters for a deck, such as d=5,2.5,1.25, got 3"),
+    ("--levels rolling=3,1", "--levels: must name d, the variable of the deck that is the diameter of the balls"),
+    ("--levels d=2,1 --set d=1", "--levels: must not name a variable that --set, --vary or --repeat names, got d"),
+    ("--fine 2", "--fine: must not be given any more: --levels says")])
+def test_sizes_that_are_none(slope, words, line):
+    status, _, err = slope(f"--set rolling=0 {ROAD} -o out {words}", "study")
+    assert status == 2 and err.startswith(f"slope study: {line}") and err.count("\n") == 1
     assert not Path("out").exists()
 
 

@@ -27,8 +27,8 @@ from slope_tools.survey import file_parts
 # --- options of the commands that make runs ---
 
 # values of variables: the name of a run's folder
-CHOSEN = {"set", "fine", "vary", "levels", "sample", "fit", "paper", "design", "seed", "repeat", "converge", "runs",
-          "fragility"}
+CHOSEN = {"set", "fine", "vary", "levels", "minutes", "tried", "sample", "fit", "paper", "design", "seed", "repeat",
+          "converge", "runs", "fragility"}
 FOLLOWED = {"deck", "lmp"}              # dependencies.py
 PLACE = {"output", "overwrite", "help", "dry_run", "all_columns", "scenario"}       # where to, what is shown, or no run
 ONE_RESULT = {"np", "jobs", "launcher", "engine", "slurm"}      # how it is run: the same but for rounding
@@ -65,13 +65,13 @@ TRIAL = {"lmp", "jobs", "verbose"}              # of this command alone; what th
 LATER = {("project", "name"), ("project", "client"), ("project", "author"), ("road", "cut_angle"), ("road", "mesh"),
          *(("road", key) for key in ("width", "from", "blocked", "lane", "clearing", "loosening")),
          ("study", "rolling"), ("study", "spacing"), ("study", "points"), ("known", "set"), ("known", "confined"),
-         ("study", "packing"), ("study", "fine"), ("study", "largest_restitution")}
+         ("study", "packing"), ("study", "levels"), ("study", "largest_restitution")}
 KEYS = [(section, key) for section, about in sections() for key in about["properties"]]
 OF_BLOCKS = [(section, key) for section, about in sections("blocks") for key in about["properties"]]
 NOT_FILES = {("terrain", "crs"), ("terrain", "assign_crs"), ("terrain", "z_unit"), ("release", "shape"),
              ("release", "scar_is"), ("release", "dip"), ("project", "name"), ("project", "client"),
              ("project", "author"),
-             ("known", "set"), ("known", "confined"), ("study", "fine")}
+             ("known", "set"), ("known", "confined")}
 
 
 def test_every_option_of_a_site_is_a_choice():

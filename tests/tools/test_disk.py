@@ -122,7 +122,7 @@ TOOLS_OUTPUTS = {
     "travel": ["travel out/rolling_0/tiny.dump -o {0}", "--axis 30"],
     "report": ["report out/rolling_0 --pictures -o {0}/report.html", "--section 2 12 38 12"],
     "study": ["study case/in.tiny --set rolling=0,0.1 --road case/road.csv --local -o {0}", "--cut-angle 20"],
-    "sensitivity": ["sensitivity case/in.tiny --set rolling=0 --levels friction=25 --road case/road.csv --local -o {0}",
+    "sensitivity": ["sensitivity case/in.tiny --set rolling=0 --try friction=25 --road case/road.csv --local -o {0}",
                     "--cut-angle 20"],
     "calibrate": ["calibrate case/in.tiny --observed mapped.csv --local --road-volume 5 --road case/road.csv "
                   "--vary rolling=0:0.1 --runs 5 -o {0}", "--cut-angle 20"],

@@ -4,6 +4,7 @@ from dataclasses import asdict
 import numpy as np
 import pytest
 
+import made_study
 from run_helpers import called
 from test_site import gis, told  # noqa: F401
 from test_site_anew import inside, mine, once  # noqa: F401
@@ -15,7 +16,7 @@ from slope_tools.errors import SlopeError
 from slope_tools.mobility import body, known
 from slope_tools.sites import site_budget, site_choices
 from slope_tools.sites.site_sections import Known
-from slope_tools.studies import results, site_study
+from slope_tools.studies import ensemble_study, results, site_study
 from slope_tools.survey import rasters
 
 CELL = 20.0
@@ -46,15 +47,15 @@ def small(mine, gis):  # noqa: F811
 
 @pytest.mark.parametrize("name, words", [("large", "big"), ("small", "mine")])
 def test_both_studies_of_masses_of_all_sizes(request, capsys, monkeypatch, name, words):
-    """The paper's 13 runs, three with the largest restitution, a fine one, one with half the step where there is a
-    road; 64 that known events weigh."""
+    """The paper's 13 runs, three with the largest restitution, one with half the step where there is a road; 64 that
+    known events weigh."""
     request.getfixturevalue(name)
     status, out, err = study(capsys, monkeypatch, words)
     assert status == 0, err
     assert out.startswith("weighted by known events of this volume and height, beside a sweep")
     assert " 64 runs, 0 of them finished" in f" {out.splitlines()[-1]}"
     assert sum("rolling_" in line and "friction_" in line for line in out.splitlines()) == 64
-    assert "17 runs, 0 of them finished" in out or "18 runs, 0 of them finished" in out
+    assert "16 runs, 0 of them finished" in out or "17 runs, 0 of them finished" in out
     assert study(capsys, monkeypatch, f"{words} --unconfined")[0] == 0
     status, _, err = study(capsys, monkeypatch, f"{words} --paper --unconfined")
     assert status == 2 and "must be given with --known" in err
@@ -69,9 +70,8 @@ def test_both_studies_of_masses_of_all_sizes(request, capsys, monkeypatch, name,
 def test_the_ensemble_varies_ground_and_restitution(large, capsys, monkeypatch):
     """Friction, rolling, spacing, restitution on the field and the packing; runs that are added go farther."""
     seen = []
-    monkeypatch.setattr(study_command, "perform", lambda setup, *rest, **more: None)
-    monkeypatch.setattr(study_command.results, "Questions", lambda *args, **more: seen.append(args[3]))
-    monkeypatch.setattr(study_command.site_study, "run", lambda *_, **__: site_study.Done(None, None, None))
+    monkeypatch.setattr(study_command.site_study, "make", lambda *_: None)
+    monkeypatch.setattr(ensemble_study, "run", lambda _, questions, *more: seen.append(questions.order))
     assert study(capsys, monkeypatch, "big")[0] == 0
     [order] = seen
     assert {one.name: (one.low, one.high) for one in order.sample.variables} == {
@@ -93,10 +93,7 @@ def test_other_grounds_at_both_ends_of_rolling(mine, capsys, monkeypatch):  # no
     assert runs == [*(f"rolling_{rolling}_spacing_0.9{more}" for rolling in ("0", "0.05", "0.1")
                       for more in ("", "_packing_2", "_packing_3")),
                     *(f"rolling_{rolling}_spacing_{spacing}" for spacing in ("0.5", "0.7") for rolling in ("0", "0.1"))]
-    # balls of half the size, and half the step
-    assert sum("_d_" in line for line in out.splitlines()) == 1 and "18 runs, 0 of them finished" in out
-    status, out, _ = study(capsys, monkeypatch, "mine --paper --fine no")
-    assert status == 0 and "_d_" not in out and "17 runs, 0 of them finished" in out
+    assert "_d_" not in out and "17 runs, 0 of them finished" in out        # one of half the step
     choices = site_choices.load(mine).choices
     own = choices.changed({("study", "spacing"): [0.5, 0.9], ("study", "rolling"): [0.2]})
     assert own.other_grounds == [(0.5, 0.2)]        # its own ground is none of the others
@@ -105,6 +102,11 @@ def test_other_grounds_at_both_ends_of_rolling(mine, capsys, monkeypatch):  # no
 @pytest.mark.parametrize("words, line", [
     ("mine --paper --sample 8", "--paper: must not be given with --sample or --from"),
     ("mine --paper --from fit", "--paper: must not be given with --sample or --from"),
+    ("mine --fine 2", "--fine: must not be given any more: --levels says how many sizes of balls there are"),
+    ("mine --levels 6", "--levels: must be 1 to 5 for a site, how many sizes of balls, got 6"),
+    ("mine --levels d=2,1", "--levels: must be 1 to 5 for a site, how many sizes of balls, got d=2,1"),
+    ("mine --minutes 0", "--minutes: must be > 0, got 0"),
+    ("mine/in.site --minutes 5 --set rolling=0 -o o", "--minutes: must be given with the folder of a site, got mine"),
     ("mine --vary friction=5:9", "--vary: must not be given with the folder of a site"),
     ("mine/in.site --paper --set rolling=0 -o o", "--paper: must be given with the folder of a site, got mine/in")])
 def test_refused(mine, capsys, monkeypatch, words, line):  # noqa: F811
@@ -140,30 +142,46 @@ def test_known_of_site_yaml_reaches_the_study(mine, capsys, monkeypatch):  # noq
 
 def test_the_estimate_is_of_the_study_that_is_made(large):
     choices = site_choices.load(large).choices
-    assert site_choices.load(large).content["found"]["study"]["runs"] == 18 + choices.study.points == 82
+    assert site_choices.load(large).content["found"]["study"]["runs"] == 16 + choices.study.points == 80
     plan = site_budget.plan(choices)
-    assert plan.runs == 82 and not plan.half_step and "64 runs weighted by known events" in plan.text
+    assert plan.runs == 80 and not plan.half_step and "64 runs weighted by known events" in plan.text
     choices = choices.changed({("study", "points"): 0})
     plan = site_budget.plan(choices)
-    assert plan.runs == 17 and not plan.half_step       # no road: nothing to compare
+    assert plan.runs == 16 and not plan.half_step       # no road: nothing to compare
     assert site_budget.plan(choices.changed({("road", "file"): "road.csv"})).half_step
-    assert plan.text == ("17 runs: 3 rolling resistances x 3 packings, 4 on other grounds, 3 with the largest "
-                         "restitution, 1 with balls of 1/2 of the diameter")
-    assert site_budget.plan(choices.changed({("study", "spacing"): []})).runs == 13
-    assert site_budget.plan(choices.changed({("study", "fine"): False})).runs == 16
-    assert site_budget.plan(choices.changed({("study", "largest_restitution"): None})).runs == 14
+    assert plan.text == ("16 runs: 3 rolling resistances x 3 packings, 4 on other grounds, 3 with the largest "
+                         "restitution")
+    assert site_budget.plan(choices.changed({("study", "spacing"): []})).runs == 12
+    assert site_budget.plan(choices.changed({("study", "largest_restitution"): None})).runs == 13
+
+
+@pytest.mark.parametrize("left, asked, numbers", [
+    (0.0, None, []), (3.9, None, []), (4.0, None, [4]), (43.9, None, [8]), (44.0, None, [12, 4]),
+    (0.0, 3, [12, 4]), (1e9, 3, [24, 8]), (1e9, 1, []), (1e9, 2, [8]), (5.0, 2, [5])])
+def test_time_decides_how_many_points_run_with_finer_balls(left, asked, numbers):
+    """Each size takes eight times as long as the one before; first one size more, then more points of the finest."""
+    found = site_budget.within(50, lambda k: 8.0 ** (k - 1), left, asked)
+    assert found == numbers
+    assert asked or sum(number * 8 ** k for k, number in enumerate(found)) <= left
+    assert len(site_budget.within(50, lambda k: 8.0 ** (k - 1), 1e9)) == site_budget.MOST_SIZES - 1
+    assert site_budget.within(5, lambda k: 1.0, 1e9, 3) == [5, 5]
 
 
 def test_the_method_is_in_the_results(mine, monkeypatch, capsys):  # noqa: F811
     """It goes from the command to study.yaml through the questions."""
     seen = []
     monkeypatch.setattr(site_study.results, "collect", lambda setup, questions, *_: seen.append(questions.method))
-    monkeypatch.setattr(site_study.study, "perform", lambda setup, settings, todo, collect, first: collect(todo, None))
+    monkeypatch.setattr(site_study.study, "perform", lambda *words, **_: words[3](words[2], None))
+    monkeypatch.setattr(site_study.size_runs, "make", lambda *_: site_study.size_runs.Made((), {}))
     monkeypatch.setattr(site_study, "step_of", lambda *_: None)
     monkeypatch.setattr(site_study, "elastic_of", lambda *_: None)
-    for words, method in (("mine --paper", known_study.ASKED), ("mine", known_study.BESIDE)):
-        study(capsys, monkeypatch, words)
-        assert seen.pop() == method
+    study(capsys, monkeypatch, "mine --paper")
+    assert seen.pop() == known_study.ASKED and not seen
+    monkeypatch.setattr(study_command, "run_deck", lambda args, beside: setattr(
+        beside, "at", site_study.size_runs.AtFinest(site_study.size_runs.Made((), {}), None)) or made_study.study())
+    with pytest.raises(AssertionError):       # there is no study.yaml, as nothing is collected
+        study_command.run_both(study_command.Request(deck=mine), site_choices.load(mine), 8)
+    assert seen.pop() == known_study.BESIDE
 
 
 def test_a_site_of_a_mass_on_top_of_the_terrain(large, inside):  # noqa: F811

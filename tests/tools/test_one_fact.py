@@ -79,7 +79,7 @@ def test_what_is_changed_while_the_runs_are_made_does_not_count(mine, monkeypatc
     monkeypatch.setattr(study_command.files, "write_abouts", lambda *_: None)
     monkeypatch.setenv("LMP", LMP)
     study_command.run(study_command.Request(deck=mine))
-    assert [angle for angle, _ in seen] == [30, 30] and seen[1][1] == [{"set": None, "confined": "unknown"}]
+    assert [angle for angle, _ in seen] == [30, 30, 30] and seen[1][1] == [{"set": None, "confined": "unknown"}]
 
 
 def test_other_data_between_both_studies_end_the_command(mine, monkeypatch):  # noqa: F811
@@ -103,13 +103,14 @@ def test_the_site_is_one_commands_from_end_to_end(mine, monkeypatch):  # noqa: F
         return made_study.study()
 
     tried = []
-    monkeypatch.setattr(study_command.site_study, "run", lambda *_, **__: site_study.Done(mine, others(), None))
+    monkeypatch.setattr(study_command.site_study, "make", others)
+    monkeypatch.setattr(study_command.site_study, "collect", lambda *_, **__: site_study.Done(mine, others(), None))
     monkeypatch.setattr(study_command, "run_deck", others)
     monkeypatch.setattr(study_command.answered, "of_both", lambda *_: None)
     monkeypatch.setattr(study_command.files, "write_abouts", lambda *_: None)
     monkeypatch.setattr(study_command, "write_report", others)
     study_command.run(study_command.Request(deck=mine))
-    assert len(tried) == 4
+    assert len(tried) == 5
     with disk.alone_in(mine):
         pass
 
@@ -160,12 +161,12 @@ def test_too_few_points_are_named_where_they_stand(mine, dry):  # noqa: F811
     assert status == 2 and "mine/site.yaml: study.points: must be more runs than there are parameters, 5, got 4" in err
 
 
-def test_half_step_and_fine_run_are_at_the_middle_resistance(mine, dry):  # noqa: F811
+def test_half_step_is_at_the_middle_resistance(mine, dry):  # noqa: F811
     change(mine, "rolling: [0, 0.05, 0.1]", "rolling: [0.1, 0, 0.05]")
     status, lines, err = dry("mine", "--paper")
     assert status == 0, err
-    mine_ = [line.split(":")[0] for line in lines if "_d_" in line or "step_" in line]
-    assert len(mine_) == 2 and all(line.startswith("rolling_0.05_") for line in mine_), mine_
+    mine_ = [line.split(":")[0] for line in lines if "step_" in line]
+    assert len(mine_) == 1 and all(line.startswith("rolling_0.05_") for line in mine_), mine_
 
 
 # --- a road ---

@@ -89,7 +89,7 @@ def test_abbreviations_are_no_options(words, short, capsys):
     ("polygon", "a.csv --crs EPSG:6677", "a.csv --assign-crs EPSG:6677"),
     ("release", "t.asc --crs=EPSG:6677", "t.asc --assign-crs=EPSG:6677"),
     ("calibrate", "in.x --vary a=0:1 --volume 5", "in.x --vary a=0:1 --road-volume 5"),
-    ("sensitivity", "in.x --vary a=0,1", "in.x --levels a=0,1"),
+    ("sensitivity", "in.x --vary a=0,1", "in.x --try a=0,1"),
     ("report", "out --project A", "out --name A"), ("bench", "--repeat 3", "--runs 3")])
 def test_older_names_of_options_are_taken_with_a_note(command, words, now, capsys):
     assert cli.with_new_names(command, words.split()) == now.split()

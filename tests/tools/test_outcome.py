@@ -17,7 +17,7 @@ from slope_tools.report import document
 from slope_tools.report.heading import Asked
 from slope_tools.seismic import chain_files
 from slope_tools.studies import outcome
-from slope_tools.tables import combinations, fine_run, intensity, road_runs, step_check
+from slope_tools.tables import combinations, intensity, road_runs, step_check
 
 ROOM = Path(slope_tools.__file__).parent
 WRITES = {"disk", "files", "console", "provenance"}
@@ -31,7 +31,7 @@ def test_outcome_imports_nothing_that_writes_or_tells():
 
 @pytest.mark.parametrize("evaluate", [
     outcome.evaluate, ensemble.evaluate, known_events.evaluate, chain_files.evaluate, intensity.evaluate,
-    road_runs.evaluate, fine_run.evaluate, step_check.compare, combinations.conservative],
+    road_runs.evaluate, step_check.compare, combinations.conservative],
     ids=lambda one: f"{one.__module__.split('.')[-1]}.{one.__name__}")
 def test_an_evaluation_has_no_folder_and_writes_nothing(evaluate):
     """Neither a folder nor something that tells is among its parameters, and it calls nothing that writes."""

@@ -190,7 +190,7 @@ def test_what_differs_is_said(here, capsys):
     edit(Path("mine"), "road", file=None)
     assert cli.main(["site", "mine", "--diameter", "2"]) == 0
     mine, *others = compare.read(Path("mine"))
-    assert "balls of 1.24 m instead of 2" in list(compare.differences(mine, others[1]))
+    assert "balls of 1.98 m instead of 2" in list(compare.differences(mine, others[1]))
     assert list(page.models([mine, *others]))[2] == "huge: not made yet."
 
 

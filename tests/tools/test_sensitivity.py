@@ -28,7 +28,7 @@ def here(tiny_case):
 
 @pytest.mark.drawn
 def test_one_variable_at_a_time_against_the_scatter_of_equivalent_runs(slope, succeed):
-    words = f"--levels friction=10,30,50 --levels cell=0.5 --repeat xoffset=0.0,0.25,0.5 --set rolling=0.05 " \
+    words = f"--try friction=10,30,50 --try cell=0.5 --repeat xoffset=0.0,0.25,0.5 --set rolling=0.05 " \
         f"{ROAD} -o out"
     out, _ = succeed(words)
     # the values of the base run are not run again
@@ -65,7 +65,7 @@ def test_one_variable_at_a_time_against_the_scatter_of_equivalent_runs(slope, su
 
     # what is finished is kept, and a value may be added; the base is a row, too
     before = Path(f"out/{names[0]}/finished.yaml").read_bytes()
-    status, out, err = slope(words.replace("--levels cell=0.5", "--levels cell=0.5 --levels steps=100"))
+    status, out, err = slope(words.replace("--try cell=0.5", "--try cell=0.5 --try steps=100"))
     assert status == 0 and "6 of 7 runs are finished already" in out, err
     assert Path(f"out/{names[0]}/finished.yaml").read_bytes() == before
     status, out, err = slope(words + " --of front_m")
@@ -82,28 +82,28 @@ def test_what_is_clear_depends_on_the_number_of_equivalent_runs():
 
 
 def test_without_repeats_the_scatter_is_said_to_be_unknown(succeed):
-    out, _ = succeed(f"--levels rolling=0.2 --set steps=100 {ROAD} -o out")
+    out, _ = succeed(f"--try rolling=0.2 --set steps=100 {ROAD} -o out")
     assert "without --repeat its scatter is unknown" in out
     assert [row["clear_of_remove_m3"] for row in rows_of("out/sensitivity.csv")] == ["", ""]
 
 
 def test_a_failed_run_is_told_and_the_others_are_collected(slope):
     shutil.copy("case/terrain.asc", "case/same.asc")
-    status, _, err = slope(f"--levels terrain=same.asc,none.asc --set steps=100 {ROAD} -o out")
+    status, _, err = slope(f"--try terrain=same.asc,none.asc --set steps=100 {ROAD} -o out")
     assert status == 2 and "steps_100_terrain_none.asc: ERROR: Region terrain" in err
     assert [row["value"] for row in rows_of("out/sensitivity.csv")] == ["", "same.asc"]
 
 
 @pytest.mark.parametrize("arguments, message", [
-    ("--levels colour=1", "--levels: must name an index variable of case/in.tiny"),
-    ("--levels friction=20 --repeat friction=30", "--repeat: must not name a variable of --levels, got friction"),
-    ("--levels friction=20,20.0", "--levels: must have every value once"),
+    ("--try colour=1", "--try: must name an index variable of case/in.tiny"),
+    ("--try friction=20 --repeat friction=30", "--repeat: must not name a variable of --try, got friction"),
+    ("--try friction=20,20.0", "--try: must have every value once"),
     ("--set friction=20,25", "--set: must give one value"),
-    ("--levels friction=30", "--levels, --repeat: must give a value that is not the base's"),
-    ("--levels friction=20 --of colour", "--of: must be different ones of remove_m3, "),
-    ("--levels friction=20,95",
-     "--levels: friction must stay within the deck's range, >= 0 and < 90, got friction=20,95"),
-    ("--levels out=x", "--levels: must not vary out, which only names the files that a run writes"),
+    ("--try friction=30", "--try, --repeat: must give a value that is not the base's"),
+    ("--try friction=20 --of colour", "--of: must be different ones of remove_m3, "),
+    ("--try friction=20,95",
+     "--try: friction must stay within the deck's range, >= 0 and < 90, got friction=20,95"),
+    ("--try out=x", "--try: must not vary out, which only names the files that a run writes"),
 ])
 def test_wrong_input_is_one_line(slope, arguments, message):
     status, _, err = slope(f"{arguments} {ROAD} -o out")
@@ -113,5 +113,5 @@ def test_wrong_input_is_one_line(slope, arguments, message):
 
 
 def test_the_road_is_required(slope):
-    status, _, err = slope("--levels friction=20 -o out")
+    status, _, err = slope("--try friction=20 -o out")
     assert status == 2 and "--road" in err and err.count("\n") == 1

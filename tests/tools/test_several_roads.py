@@ -24,7 +24,7 @@ from slope_tools.tables import named_run
 from slope_tools.tables.study_file import load_study
 
 NEAR, FAR = [(38, 0), (46, 0), (46, 80), (38, 80)], [(4, 0), (12, 0), (12, 80), (4, 80)]
-OF_ONE = ("collected", "machine", "jobs", "package", "road")     # of study.study, which are of the time, or of the name
+OF_ONE = ("body", "collected", "machine", "jobs", "package", "road")     # which are of the time, or the name
 
 
 def write_lines(path, *features):
@@ -58,7 +58,7 @@ def done(tmp_path_factory):
         "spacing: [0.5, 0.7]", "spacing: []"))
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(volume_files, "draw", lambda path, *_: path.touch())
-        study = inside_with_lmp(folder, "study", "mine", "--paper")
+        study = inside_with_lmp(folder, "study", "mine", "--paper", "--levels", "1")
     assert study.returncode == 0, study.stderr
     return folder, made.stdout, study.stdout
 
@@ -87,7 +87,7 @@ def test_each_road_has_the_numbers_of_a_site_with_it_alone(done, tmp_path, monke
         shutil.copytree(folder, alone)
         made = inside_with_lmp(alone, "site", "mine", "--road", f"{name}.geojson")
         assert made.returncode == 0, made.stderr
-        made = inside_with_lmp(alone, "study", "mine", "--paper")
+        made = inside_with_lmp(alone, "study", "mine", "--paper", "--levels", "1")
         assert made.returncode == 0 and "are finished already" in made.stdout, made.stderr
         own, beside = about_in(alone / "mine" / "study"), about_in(mine / "roads" / name / "study")
         assert plain(own) == plain(beside)
@@ -112,7 +112,7 @@ def test_files_of_the_user_stay(done, tmp_path, monkeypatch):
         for path in (mine / "roads" / "mine" / "axis.gpkg", mine / "roads" / "far" / "notes.txt", mine / "roads.csv"):
             path.parent.mkdir(exist_ok=True)
             path.write_text("of the user\n")
-        made = inside_with_lmp(folder, "study", "mine")
+        made = inside_with_lmp(folder, "study", "mine", "--levels", "1")
         assert made.returncode == status and ("roads.csv: must not exist" in made.stderr) is bool(status)
         for path in (mine / "roads" / "mine" / "axis.gpkg", mine / "roads" / "far" / "notes.txt", mine / "roads.csv"):
             assert path.read_text() == "of the user\n"

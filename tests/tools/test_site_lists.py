@@ -22,7 +22,7 @@ from slope_tools.errors import SlopeError
 from slope_tools.runs import store
 from slope_tools.sites import site_budget, site_choices, site_deck, site_trial
 from slope_tools.studies.road_numbers import Made
-from slope_tools.studies import ahead, outdated, site_study, study
+from slope_tools.studies import ahead, outdated, site_study, size_runs, study
 from slope_tools.studies.setup import Setup
 
 POINTS = 8
@@ -56,7 +56,7 @@ def whole(tmp_path_factory):
         patch.setattr(site_budget, "measure", measure)
         patch.setenv("LMP", LMP)
         make_mine()
-        edit(folder / "mine", "study", points=POINTS)
+        edit(folder / "mine", "study", points=POINTS, levels=1)
         finish(folder / "mine")
     return folder
 
@@ -75,7 +75,9 @@ def finish(folder, points=POINTS):
     planned = site_study.plan(site_choices.load(folder), ENGINE)
     more, _ = ahead.points_of(planned, points)
     files = data_files(planned.setup.deck, {**planned.settings, **planned.repeated})
-    fine = site_study.fine_runs.smaller(planned.setup.runs, more[0].combination, 2, planned.variables["d"])
+    wanted = site_study.wanted(site_choices.load(folder), planned, site_study.Asked(), points)
+    fine = [size_runs.SizeRun(planned.setup.runs, one, value) for value, number in zip(wanted.values[1:], wanted.points)
+            for one in [*planned.todo, *more][:number]]
     with study.prepared(planned.setup, files, 1) as work:
         for several in (planned.runs, more, fine):
             work.store.admit(several)
@@ -90,19 +92,17 @@ def counts(folder, points=POINTS):
     return found.there, found.new
 
 
-# of 3 rolling resistances x 3 packings, 2 other grounds at both ends, a fine one, half the step, 3 packings with the
-# largest restitution at the least rolling resistance; then the ensemble
-ALL = 18 + POINTS + 1
+# of 3 rolling resistances x 3 packings, 2 other grounds at both ends, half the step, 3 packings with the largest
+# restitution at the least rolling resistance; then the ensemble
+ALL = 17 + POINTS
 CHANGES = [
-    # 0.05 and 0.1 in the middle are there; 0.15 is not, nor are the fine run and half the step of another middle
-    ("study", {"rolling": [0.05, 0.1, 0.15]}, "--rolling 0.05 0.1 0.15", 6 + POINTS + 1, 3 + 4 + 2 + 3),
-    ("study", {"rolling": [0.05]}, "--rolling 0.05", 5 + POINTS + 1, 2 + 3),        # other grounds at this one
+    # 0.05 and 0.1 in the middle are there; 0.15 is not, nor is half the step of another middle
+    ("study", {"rolling": [0.05, 0.1, 0.15]}, "--rolling 0.05 0.1 0.15", 6 + POINTS, 3 + 4 + 1 + 3),
+    ("study", {"rolling": [0.05]}, "--rolling 0.05", 4 + POINTS, 2 + 3),        # other grounds at this one
     ("study", {"spacing": []}, None, ALL - 4, 0),
     ("study", {"spacing": [0.5, 0.6]}, None, ALL - 2, 2),
     ("study", {"packing": [3]}, None, ALL - 4, 0),
     ("study", {"packing": [2, 3, 4]}, None, ALL, 4),
-    ("study", {"fine": "no"}, None, ALL - 2, 0),
-    ("study", {"fine": 3}, None, ALL - 2, 2),
     ("study", {"largest_restitution": None}, None, ALL - 3, 0),
     ("study", {"largest_restitution": 0.6}, None, ALL - 3, 3),
     ("road", {"cut_angle": 45.0}, "--cut-angle 45", ALL, 0),
@@ -134,9 +134,23 @@ def test_a_list_that_changes_and_changes_back_keeps_all_runs(mine, inside, trial
 
 def test_the_number_of_points(mine):
     """The first ones of a larger design are those of a smaller one; its median run is another."""
-    for points, there, new in ((16, ALL - 1, 9), (POINTS, ALL, 0), (0, 18, 0)):
+    for points, there, new in ((16, ALL, 8), (POINTS, ALL, 0), (0, 17, 0)):
         edit(mine, "study", points=points)
         assert counts(mine, points) == (there, new)
+
+
+def test_the_sizes_of_balls(mine):
+    """Runs with finer ones are kept when there are more or fewer sizes, and when time says how many."""
+    edit(mine, "study", levels=3)
+    there, new = counts(mine)
+    assert there == ALL and new >= sum(site_budget.LEAST)
+    finish(mine)
+    assert counts(mine) == (ALL + new, 0)
+    edit(mine, "study", levels=1)
+    assert counts(mine) == (ALL, 0)
+    more = ahead.of_site(site_choices.load(mine), ENGINE, POINTS, site_study.Asked(3, 1000.0))
+    assert more.there == ALL + new and more.new > 0
+    assert ahead.of_site(site_choices.load(mine), ENGINE, POINTS, site_study.Asked(minutes=1e-3)).new == 0
 
 
 def test_files_by_any_path_from_any_folder(mine, inside, trials, monkeypatch, tmp_path):  # noqa: F811
@@ -165,17 +179,17 @@ def test_other_values_of_the_model_leave_the_runs_where_they_are(mine, inside, t
     """Those of the paper's study are other ones; the ensemble's have a friction of their own."""
     runs = set((mine / "runs").iterdir())
     inside("mine --friction 25")
-    assert counts(mine) == (POINTS + 1, 18)
+    assert counts(mine) == (POINTS, 17)
     finish(mine)
     assert set((mine / "runs").iterdir()) > runs and counts(mine) == (ALL, 0)
     inside("mine --friction 30")
-    assert counts(mine) == (ALL, 0) and len(trials) == 2        # its balls are determined anew each time
+    assert counts(mine) == (ALL, 0) and len(trials) == 4        # two each time, as the machine is measured anew
 
 
 def test_an_ensemble_that_does_not_vary_a_list_takes_its_first_value(mine, monkeypatch):
     edit(mine, "study", rolling=[0.1, 0.05])
     seen = []
-    monkeypatch.setattr(study_command, "run_deck", lambda args: seen.append((args.set, args.vary)))
+    monkeypatch.setattr(study_command, "run_deck", lambda args, _: seen.append((args.set, args.vary)))
     monkeypatch.setattr(study_command, "write_report", lambda *_, **__: None)
     request = study_command.Request(deck=mine, sample=8)
     for words in (["friction=5:30"], ["friction=5:30", "rolling=0:0.1"], []):
@@ -188,7 +202,7 @@ def test_what_is_ahead_is_said_before_anything_runs(mine, monkeypatch, capsys):
     said = []
     monkeypatch.setattr(study_command, "run_both", lambda *_: said.append(capsys.readouterr().out) or Made((), None))
     study_command.run(study_command.Request(deck=mine))
-    assert re.search(rf"^{7 + POINTS} of {19 + POINTS} runs are there, 12 to make, (\d+ s|\d+ minutes); up to {POINTS} "
+    assert re.search(rf"^{6 + POINTS} of {17 + POINTS} runs are there, 11 to make, (\d+ s|\d+ minutes); up to {POINTS} "
                      "more where known events go farther$", said[0], re.MULTILINE), said
     seconds = ahead.of_site(site_choices.load(mine), ENGINE, POINTS).seconds
     finish(mine)
@@ -238,7 +252,7 @@ def test_keys_without_an_option_are_named(capsys):
     with pytest.raises(SystemExit):
         cli.main(["site", "--help"])
     out = " ".join(capsys.readouterr().out.split())
-    assert "study.spacing" in out and "study.packing" in out and "study.points" in out and "study.fine" in out
+    assert "study.spacing" in out and "study.packing" in out and "study.points" in out and "study.levels" in out
 
 
 @pytest.mark.parametrize("words, changed", [

@@ -68,7 +68,7 @@ def test_choices_are_frozen_and_others_are_made_of_them():
     assert (other.road.from_, other.road.mesh, other.study.spacing) == (4, 5, (0.5,)) and made.road.from_ == 3
     assert other.study.rolling is made.study.rolling and isinstance(other, OfMass)
     assert OfBlocks.of({}).entries()["kind"] == "blocks" and not OfBlocks.of({}).has("motion", "file")
-    assert [OfMass.of({"study": {"fine": one}}).study.finer for one in ("no", False, 2)] == [1, 1, 2]
+    assert made.study.levels is None and OfMass.of({"study": {"levels": 2}}).study.levels == 2
 
 
 def test_what_older_sites_have_is_kept():

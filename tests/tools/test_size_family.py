@@ -1,4 +1,4 @@
-"""The family of slides whose balls were made smaller: its table, the growth that it tells, and two of it in small."""
+"""The family of slides whose balls were made smaller: how it is judged, and two of it in small."""
 import importlib.util
 import shutil
 import subprocess
@@ -8,48 +8,23 @@ import pytest
 from run_helpers import TOP
 from tiny_collapse import LMP
 
-from slope_tools.statistics import size_family
-
 spec = importlib.util.spec_from_file_location("family", TOP / "tests" / "size_family.py")
 family = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(family)
 
 
-def slides(*rows):
-    return size_family.read(["case,balls,remove,beyond,length", *rows])
-
-
-def test_the_growth_by_hand():
-    """Between two sizes in the logarithm of the balls; slides that are no finer tell nothing."""
-    three = slides("a,8,120,0,1", "a,2,100,0,1", "b,4,50,5,2", "b,16,100,10,2", "c,2,7,1,1")
-    found = size_family.growth(4.0, slides=three)
-    assert found == pytest.approx((0.5 * (120 / 110 + 2), 120 / 110, 2.0, 2, 16.0))
-    assert found.covered(30.0) == pytest.approx(60.0)
-    assert size_family.growth(8.0, slides=three) == pytest.approx((100 / 75, 100 / 75, 100 / 75, 1, 16.0))
-    assert size_family.growth(1.0, slides=three) == pytest.approx((1.2, 1.0, 2.0, 3, 16.0))     # as from the coarsest
-    assert size_family.growth(16.0, slides=three) is None
-    assert size_family.growth(4.0, "beyond_road_m3", three) == pytest.approx((2.0, 2.0, 2.0, 1, 16.0))      # a has none
-    # what became less is no reason to take something off
-    assert size_family.growth(2.0, slides=slides("a,2,100,1,1", "a,4,90,1,1")).covered(30.0) == 30.0
-
-
-def test_the_table_of_the_package():
-    for rows in size_family.family().values():
-        assert len(rows) > 1 and (rows["balls"][1:] > rows["balls"][:-1]).all() and (rows["remove"] > 0).all()
-    for quantity in size_family.QUANTITIES:
-        found = size_family.growth(4.0, quantity)
-        assert 0.5 < found.low <= found.median <= found.high < 4 and found.finest > 4
-
-
-def test_the_table_is_made_of_the_runs(tmp_path):
-    """Means of each case and size; what page 1 would have said of them by hand."""
+def test_each_slide_is_judged_by_the_others(tmp_path, capsys):
+    """By hand: the others say by which factor each grows."""
     runs = tmp_path / "size.csv"
-    number = {"thin": (100, 110, 130), "wide": (200, 240, 360)}
     runs.write_text(family.HEAD + "\n" + "".join(
-        f"{name},{finer},{seed},1,800,{2 * finer},{volumes[k] + 2 * (seed - 2)},0,5,9,1,1,800,1,1\n"
-        for name, volumes in number.items() for k, finer in enumerate((1, 2, 4)) for seed in (1, 2, 3)))
-    assert family.table(runs)[1:] == ["thin,2,100,5,9", "thin,4,110,5,9", "thin,8,130,5,9",
-                                      "wide,2,200,5,9", "wide,4,240,5,9", "wide,8,360,5,9"]
+        f"{name},{finer},1,1,800,{2 * finer},{1000 * grown ** k},500,500,90,1,1,9000,9000,1\n"
+        for name, grown in (("thin", 1.1), ("wide", 1.1), ("oval", 1.1), ("deep", 2.0))
+        for k, finer in enumerate((1, 2, 4))))
+    family.judge(runs)
+    lines = [line.split(",") for line in capsys.readouterr().out.splitlines()]
+    [deep] = [line for line in lines if line[:2] == ["remove", "deep"]]
+    assert deep[2:4] == ["1000", "1210"] and deep[6:] == ["4000", "False"]
+    assert ["remove: 3 of 4 within"] in lines and ["length: 4 of 4 within"] in lines
 
 
 @pytest.mark.parametrize("name, road", [("thin", 10.0), pytest.param("compact", 4.0, marks=pytest.mark.long)])

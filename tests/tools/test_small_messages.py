@@ -61,7 +61,7 @@ def test_the_number_of_balls_is_one_number():
     assert site_command.Request.__mro__ and any(
         f"--balls {site_budget.DEFAULT})" in vars(one).get("GROUP", "") for one in site_command.Request.__mro__)
     page = (TOP / "doc" / "src" / "tool_site.rst").read_text(encoding="ascii")
-    assert re.search(rf"Without a budget there are {site_budget.DEFAULT:,} balls", page)
+    assert f"coarsest ones of the study (:ref:`study_sizes`): {site_budget.DEFAULT:,}, or more" in page
     plugin = (TOP / "tools" / "qgis" / "slope" / "site.py").read_text(encoding="utf-8")
     assert f"Balls in the body (default: {site_budget.DEFAULT})" in plugin
 
@@ -76,7 +76,17 @@ def test_a_time_limit_is_no_estimate(monkeypatch):
         display = job_display.Display([job.run], [job.run], lambda: 1, halts)
         display.printed["a"], display.live = -1e9, None
         display.update([job], 0)
-    assert "6000 of 2418249" in said[1] and "at the latest" in said[1] and "ends by" in said[0]
+    assert "6000 of 2418249" in said[1] and " by " not in said[1] and "ends by" in said[0]
+
+
+def test_what_is_left_is_reckoned_by_size(monkeypatch):
+    """Of a size that no run has ended with, as the longest."""
+    todo = [SimpleNamespace(name=str(k), varied="", chosen={"d": d} if d else {}) for k, d in enumerate(
+        ("1", "1", "0.5", ""))]
+    display = job_display.Display(todo, todo, lambda: 2)
+    display.walls = {"1": [10.0, 20.0], "0.5": [100.0]}
+    assert display._ends(4) == pytest.approx((15 + 15 + 100 + 100) / 2)
+    assert display._ends(6) == pytest.approx((15 + 15 + 100 + 100 + 100) / 2)      # two are under way
 
 
 # --- lines and roads ---

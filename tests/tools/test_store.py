@@ -115,7 +115,7 @@ def times(folder):
 def test_an_analysis_takes_over_the_runs_of_another(slope):
     assert slope("study case/in.tiny --set rolling=0,0.1 --set steps=10 -o out")[0] == 0
     before = times("out")
-    status, out, err = slope("sensitivity case/in.tiny --set steps=10 --levels rolling=0.1,0.2 --of front_m "
+    status, out, err = slope("sensitivity case/in.tiny --set steps=10 --try rolling=0.1,0.2 --of front_m "
                              "-o out")
     assert status == 0 and "2 of 3 runs are finished already" in out, err
     assert {path: when for path, when in times("out").items() if path in before} == before and len(before) == 2

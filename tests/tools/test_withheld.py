@@ -100,8 +100,7 @@ def test_the_commands_are_ones_that_the_tools_take(case, changed):
 
 REASONS = [("terrain ends", {"share": 0.1, "path_m": 100.0}), ("no more runs", {"points": 8}), ("too few runs", {}),
            ("range ends", {"ends": {"friction": "20", "packing": "1"}}), ("range ends", {"ends": {}}),
-           *(("size of balls", {"run": run, "balls_thick": 2.0, "enough": 16.0, "growth": None})
-             for run in ("", "failed", "finished")),
+           *(("size of balls", {"sizes": sizes, "grown": grown}) for sizes, grown in ((1, None), (3, 0.3))),
            *(("rule", {"source": source, "rule": rule.value, "number": 5, "bound": 10}) for rule in Kind
              for source in ("paper", "ensemble"))]
 DECK_OF_ALL = ("variable  rolling  index 0.1  # 0 <= rolling\nvariable  friction index 30  # 0 <= friction < 90\n"
@@ -109,11 +108,11 @@ DECK_OF_ALL = ("variable  rolling  index 0.1  # 0 <= rolling\nvariable  friction
                "variable  duration index 60\n"
                "variable  spacing  index 0.8\nfix a all deposit/grid 1 1 cell 1 terrain a output a\n")
 ASKED = ["in.all --set rolling=0:0.2:0.1 --repeat packing=5,6 -o out --equally-good packing --road road.csv",
-         "in.all --set rolling=0,0.1 --set d=1,2 --road road.csv --road-width 7.5 --fine 2 --more-than 5,10 -o out",
+         "in.all --set rolling=0,0.1 --levels d=2,1 --road road.csv --road-width 7.5 --more-than 5,10 -o out",
          "in.all --sample 8 --vary friction=20:40 --vary packing=1:1000000 --set rolling=0 --road 'a road.csv' -o out",
          "in.all --sample 8 --vary friction=triangular:10:20:30 --vary rolling=0:0.2 --known rock_avalanches "
          "-o 'my out' --slurm=--time=1 --engine slurm --road road.csv", "'my site'", "'my site' --paper --np 2",
-         "'my site' --sample 8 --vary friction=5:30 --vary packing=1:1000000 --known own --fine no"]
+         "'my site' --sample 8 --vary friction=5:30 --vary packing=1:1000000 --known own --levels 2"]
 
 
 def typed_in(text):
@@ -214,10 +213,7 @@ def test_a_number_that_may_stand():
     best = judged(rows(90.0, 100, 110), events(400.0, 0.6))
     assert best.withheld == [] and best.volume_m3 > 110 and best.zero is None
     [first, *_] = combinations.describe(best)
-    assert first.startswith("volume to remove, not conservative: ")
-    assert "smaller balls would change is not known" in first
-    assert combinations.describe(replace(best, rounded={**best.rounded, "size_m3": 0.0}))[0].startswith(
-        "conservative volume to remove: ")
+    assert first.startswith("conservative volume to remove: ")
 
 
 def test_a_number_that_is_withheld_is_nowhere():

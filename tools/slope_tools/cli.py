@@ -51,7 +51,7 @@ IN_TESTS = {
 # older names of options: another command has the name for something else
 RENAMED = {
     "polygon": {"--crs": "--assign-crs"}, "release": {"--crs": "--assign-crs"}, "mobility": {"--crs": "--assign-crs"},
-    "calibrate": {"--volume": "--road-volume"}, "sensitivity": {"--vary": "--levels"},
+    "calibrate": {"--volume": "--road-volume"}, "sensitivity": {"--vary": "--try"},
     "report": {"--project": "--name"}, "bench": {"--repeat": "--runs"},
 }
 BY_KIND = {"study", "export", "report", "vtk"}     # see blocks/kinds.py

@@ -237,9 +237,10 @@ WORDS: Dict[str, Union[str, Words]] = {
                                             "ended.")),
     "rule": "{study}: withheld by the rule {rule}",
     # why it is a floor, and why no more runs were added
-    "known beyond runs": Words("no run goes beyond {longest}, where {far} of known events go on", client=(
-        "{far} of known events of this volume and height go farther than the longest run, which ends after "
-        "{longest}.")),
+    "known beyond runs": Words("no run goes beyond {longest}, where {far} of known events go on; no run leaves more "
+                               "than {most}", client=(
+                                   "{far} of known events of this volume and height go farther than the longest run, "
+                                   "which ends after {longest}; no run leaves more than {most} to remove.")),
     "road not reached": Words("no run reaches the road, {near} along the fall path ({ends}), but {shares} of known "
                               "events do", client="The road begins after {near} along the fall path, and {ends}."),
     "some runs reach": Words("{reach} runs bring balls to the road{left}", client=(
@@ -258,16 +259,12 @@ WORDS: Dict[str, Union[str, Words]] = {
         "{points} runs were added towards longer ones, and no more.")),
     "too few runs": Words("the runs are too few to tell which parameters go farther: take more points", client=(
         "The runs are too few to tell which settings go farther.")),
-    "size of balls": Words("the finest balls are {balls:.2g} over the thickness of the body: smaller ones, {enough:g} "
-                           "or more, may bring more{grown}", client=(
-                               "The finest of the model's balls are {balls:.2g} over the thickness of the body, and "
-                               "smaller ones, {enough:g} or more, may bring more{grown}.")),
-    "fine run failed": Words("the run with smaller balls, which may bring more, did not finish{grown}", client=(
-        "The run with smaller balls in the model, which may bring more, did not finish{grown}.")),
-    "no fine run": Words("what smaller balls bring is not known, as no run with them was made: the number is not "
-                         "conservative{grown}", client=(
-                             "What smaller balls in the model would bring is not known, as no run with them was made, "
-                             "so that the number cannot be called conservative{grown}.")),
+    "size of balls": Words("{sizes}: what finer ones would change is not known, three sizes tell it", client=(
+        "The model was run with {sizes}: what finer ones would change, three sizes tell.")),
+    "size of balls grows": Words("balls of half the diameter bring {grown} more than those before: finer ones may "
+                                 "bring much more", client=(
+                                     "Halving the model's balls still raised the volume by {grown}: finer ones may "
+                                     "bring much more.")),
     # caveats on the volume to remove
     "single run": Words("nothing was varied: it comes from a single run", NOTE),
     "end of range": Words("it lies at the end of the range of {variable}, {low:g} to {high:g}", NOTE),
@@ -320,8 +317,6 @@ WORDS: Dict[str, Union[str, Words]] = {
                               "more points (--sample)", NOTE),
     "more per year": Words("peaks above the hazard curve's last may add up to {per_year:.2g} per year to more than "
                            "{volume:,.6g} m3", NOTE),
-    "chain raised": Words("the volumes are raised by what smaller balls brought in a run with them, {added:,.6g} m3 of "
-                          "{volume:,.6g} m3", NOTE),
     "chain size": Words("smaller balls may bring more: the road is blocked at least so often", NOTE),
     # on a calibration
     "failed fits": Words("{failed} of {runs} runs failed and are left out: {which}", NOTE),

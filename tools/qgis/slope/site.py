@@ -41,7 +41,7 @@ class Site(Algorithm):
         of("site", "observed", "Mapped deposit, outline", kind="polygons"),
         of("site", "observed", "Mapped deposit, thickness (m)", kind="raster", key="OBSERVED_THICKNESS", advanced=True),
         *terrain.GROUND, *SCAR,
-        of("site", "balls", "Balls in the body (default: 2000)"),
+        of("site", "balls", "Balls in the body (default: 400)"),
         of("site", "minutes", "Minutes that the study may take"),
         of("site", "memory", "Memory that the study may take (GB)", advanced=True),
         of("site", "diameter", "Diameter of the balls (m)", advanced=True),

@@ -3,6 +3,7 @@
 Order of the work: plan the base run and those that differ from it by one variable, run them as `slope study` does
 (study.py, jobs.py), hold each against the mean of the equivalent runs. With --converge: size_study.py.
 """
+import argparse
 from dataclasses import dataclass
 from pathlib import Path
 from typing import List, Optional
@@ -22,7 +23,7 @@ units: metres, seconds, m3 of ground (bulk).
 
 example: what the size of the balls and the time step do, against the scatter over offsets of the lattice:
   tools/slope sensitivity inputs/20_embankment/in.embankment --road inputs/20_embankment/road.csv --local \\
-      --set d=2.5 --levels d=1.25 --levels step=0.5 --repeat xoffset=0.25,0.5,0.75 -o out
+      --set d=2.5 --try d=1.25 --try step=0.5 --repeat xoffset=0.25,0.5,0.75 -o out
 
 the effect of the size of the balls, with constant field balls: the value for small balls, the error of each size:
   tools/slope sensitivity inputs/20_embankment/in.embankment --road inputs/20_embankment/road.csv --local \\
@@ -37,12 +38,13 @@ chart DIR/sensitivity.png; with --converge DIR/converge.csv, DIR/converge_runs.c
 class Request(run_arguments.Repeats, run_arguments.Runs):
     deck: Path = positional(run_arguments.DECK, metavar="DECK")
     output: Path = option("the study's folder", "-o", metavar="DIR")
-    levels: List[str] = several(
+    tried: List[str] = several(
         "values of an index variable of the deck that are a choice, each in a run of its own; A:B:STEP stands for A, "
-        "A + STEP, ... up to B", metavar="NAME=V1,V2,...")
+        "A + STEP, ... up to B", "--try", metavar="NAME=V1,V2,...")
+    levels: List[str] = several(argparse.SUPPRESS)
     converge: Optional[str] = option(
         "sizes of the balls, or another variable that should tend to zero; fits a line and gives its value at 0; with "
-        "--repeat at each size, without --levels", metavar="NAME=V1,V2,...")
+        "--repeat at each size, without --try", metavar="NAME=V1,V2,...")
     set: List[str] = several("value of an index variable in the base run (default: the deck's)", metavar="NAME=VALUE")
     of: Optional[str] = option(
         f"quantities to examine (default {OF_ROAD}; {OF_TRAVEL} of --converge without a road), of "
@@ -51,18 +53,20 @@ class Request(run_arguments.Repeats, run_arguments.Runs):
 
 def run(args: Request) -> None:
     """Do the command; raises SlopeError on bad input, and after all other runs when one failed."""
-    base = one_value_each(check_settings(args.set, args.deck), "--set", "--levels, --repeat and --converge")
+    if args.levels:
+        raise SlopeError("--levels", "must not be given here: it is --try now (sizes of balls have --levels of slope "
+                         "study)", args.levels[0])
+    base = one_value_each(check_settings(args.set, args.deck), "--set", "--try, --repeat and --converge")
     repeated = check_settings(args.repeat, args.deck, "--repeat")
-    kinds = {"vary": check_settings(args.levels, args.deck, "--levels"), "repeat": repeated}
+    kinds = {"vary": check_settings(args.tried, args.deck, "--try"), "repeat": repeated}
     for name in kinds["vary"].keys() & repeated.keys():
-        raise SlopeError("--repeat", "must not name a variable of --levels", name)
+        raise SlopeError("--repeat", "must not name a variable of --try", name)
     repeats.check(list(repeated), args.equally_good)
     of = quantities(args.of, args.road is not None, args.converge is not None)
     setup = run_arguments.setup_of(args)
     if args.converge:
-        if args.levels:
-            raise SlopeError("--converge", "must be given without --levels: one kind of study at a time",
-                             args.levels[0])
+        if args.tried:
+            raise SlopeError("--converge", "must be given without --try: one kind of study at a time", args.tried[0])
         from ..studies import size_study
         return size_study.run(setup, args.converge, base, repeated, of)
     todo = plan(setup, base, kinds)

@@ -61,7 +61,7 @@ BESIDE = {"road", "roads", *road_arguments.OPTIONS, "cut_angle", "mesh", "line",
           "rolling", "largest_restitution", "name", "client", "author"}
 OTHERWISE = {"assigned": "--assign-crs", "roads": "--road"}     # options that are not called so
 # of each group, an option that is given replaces the others
-SIZES = ("diameter", "balls", "minutes", "memory")
+SIZES = ("diameter", "balls", "memory")
 OF_SHAPE = "depth", "volume", "curvature", "dip", "direction"
 ONE_OF = (("depth", "volume", "curvature"), SIZES)
 OF_SOIL = ("friction", "rolling", "spacing", "field_restitution", "density", "slip_friction")
@@ -206,10 +206,11 @@ class Model:
 @dataclass(frozen=True, kw_only=True)
 class Size:
     """Of the balls."""
-    GROUP = f"size of the balls: one of these (default: --balls {site_budget.DEFAULT})"
+    GROUP = f"the coarsest balls: one of --balls, --memory, --diameter (default: --balls {site_budget.DEFAULT})"
     balls: Optional[int] = option("number of balls in the body", metavar="N", one_of="size")
     minutes: Optional[float] = option(
-        "choose the size so that the study takes M minutes on this machine", metavar="M", one_of="size")
+        f"that the study may take on this machine (default {site_budget.MINUTES:g}), which decides how many points run "
+        "with finer balls", metavar="M")
     memory: Optional[float] = option(
         "choose the size so that the active runs together take this much memory", metavar="GB", one_of="size")
     diameter: Optional[float] = option("of the balls, m", metavar="D", one_of="size")

@@ -3,6 +3,7 @@
 Order of the work: check the deck and the settings, plan the runs (repeats.py), make their folders and run what is not
 finished (jobs.py), collect (results.py), evaluate (outcome.py); of a site one number of both studies (answered.py).
 """
+import argparse
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, Optional, Sequence
@@ -18,7 +19,7 @@ from ..sites.site_bodies import VARIABLE
 from ..sites.site_choices import Site
 from ..sites.site_sections import OfMass
 from ..statistics.answer import Source
-from ..studies import ahead, console, files, fine_runs, results, road_numbers, site_ground, site_study, study
+from ..studies import (ahead, console, files, results, road_numbers, site_ground, site_study, size_runs, study)
 from ..studies.road_numbers import Made
 from ..studies.study import OfAKind, RunsFailed, check_more_than, check_thresholds, perform
 from ..tables import answered, intensity, next_step, study_types
@@ -47,9 +48,6 @@ an ensemble: 64 runs with values drawn from distributions, the probability of a 
 
 the same, weighted so that the runs end where known events of this volume and height did:
   tools/slope study in.collapse --sample 64 --known rock_avalanches --vary friction=5:35 --vary rolling=0:0.2 -o out
-
-such an ensemble of a site that `slope site ... -o mine` made, with its road and report:
-  tools/slope study mine --sample 64 --known rock_avalanches
 
 the whole chain, from an earthquake to how often the road is blocked, of a site made with `slope site --slips`:
   tools/slope study mine --sample 64 --vary friction=25:35 --vary rolling=0:0.1 --fragility fragility --more-than 500
@@ -83,10 +81,14 @@ class Request(Sample, known_arguments.Known, Repeats, Intensity, Runs):
         "the road at a peak acceleration, and per year", metavar="FOLDER")
     paper: bool = flag(
         "of a site: the sweep alone, the largest volume over the rolling resistances")
-    fine: Optional[str] = option(
-        "one more run with balls so many times smaller, at the values in the middle, which tells what their size "
-        "changes; of a deck with a variable d (default no; of a site what site.yaml says, else 2)",
-        choices=("2", "3", "no"))
+    levels: Optional[str] = option(
+        "sizes of balls: of a site how many, each of half the diameter of the one before (default: as time allows); of "
+        "a deck diameters, d=D1,D2,...: all points run with the first, some with the others; results are of the last",
+        metavar="N|d=D1,D2,...")
+    minutes: Optional[float] = option(
+        "of a site: that the study may take on this machine, which decides how many points run with finer balls "
+        "(default: site.yaml's, else 10)", metavar="T")
+    fine: Optional[str] = option(argparse.SUPPRESS)
     exceed: Optional[str] = option("thicknesses of the maps of exceedance, m (default 0.1,0.5,1)", metavar="T1,T2,...")
     exceed_speed: Optional[str] = option(
         "speeds of the maps of exceedance of an ensemble, m/s (default 5)", metavar="V1,V2,...")
@@ -98,12 +100,16 @@ class Request(Sample, known_arguments.Known, Repeats, Intensity, Runs):
 
 def run(args: Request) -> None:
     """Do the command; raises SlopeError on bad input, and after all other runs when one failed."""
+    if args.fine is not None:
+        raise SlopeError("--fine", "must not be given any more: --levels says how many sizes of balls there are (1: "
+                         "one; of a deck --levels d=5,2.5,1.25)", args.fine)
     args = replace(args, given=args)
     if args.deck.is_dir() and (args.output is None or (args.deck / site_choices.NAME).exists()):
         with study.alone(args.deck, args.dry_run or not (args.deck / site_choices.NAME).is_file()):
             return run_folder(args)
-    if args.paper:
-        raise SlopeError("--paper", "must be given with the folder of a site", args.deck)
+    for name in ("paper", "minutes"):
+        if getattr(args, name):
+            raise SlopeError(f"--{name}", "must be given with the folder of a site", args.deck)
     run_deck(replace(args, around=site_choices.around(args.deck)))
 
 
@@ -155,21 +161,27 @@ def run_both(args: Request, asked: Site, points: int) -> Made:
     anew.
     """
     site, before = site_roads.results(asked), site_study.digests(asked)
-    paper = site_study.run(asked, setup_of(args), known_study.BESIDE, args.fine, args.roads, alone=False)
-    failed = paper.failed
+    planned = site_study.plan(asked, setup_of(args))
+    site_study.make(planned)
     if site_study.digests(asked) != before:
         raise SlopeError(asked.folder, f"must not change while its study is made: {site_deck.NAME} and its data are "
                          "not those of the runs so far; the same command again, with --anew")
+    beside = site_study.Beside(planned, site_study.wanted(asked, planned, sizes_of(args), points))
+    failed: Optional[Exception] = None
     try:
         weighted = run_deck(of_ensemble(replace(args, sample=points, known=None, weigh=True), asked,
-                                        known_study.WEIGHTED))
+                                        known_study.WEIGHTED), beside)
     except RunsFailed as error:     # the others count
         if error.found is None:
             raise SlopeError(asked.folder, "must have an ensemble for its number, --paper makes that of the paper's "
                              f"method alone: {error}") from None
-        failed, weighted = failed or error, error.found
-    if paper.about is None or weighted is None:         # of a dry run
+        failed, weighted = error, error.found
+    if args.dry_run or weighted is None:
         return Made((), None)
+    paper = site_study.collect(asked, planned, known_study.BESIDE, lambda _: beside.found, args.roads, alone=False,
+                               made=True)
+    failed = paper.failed or failed
+    assert paper.about
     made: Dict[str, study_types.Study] = {site_study.STUDY: paper.about, site_study.ENSEMBLE: weighted}
     found = answered.of_both(paper.about, weighted)
     governs = site_study.STUDY if found and found.source is Source.PAPER else site_study.ENSEMBLE
@@ -189,16 +201,20 @@ def run_both(args: Request, asked: Site, points: int) -> Made:
     return Made([made[governs], *(about for name, about in made.items() if name != governs)], failed)
 
 
+def sizes_of(args: Request) -> site_study.Asked:
+    return site_study.asked_of(args.levels, args.minutes)
+
+
 def say(args: Request, site: Site, method: str, points: int) -> None:
     """How the study of a site is made, what its grounds hold, which runs are there; points: of the ensemble."""
     if args.roads or site.road not in ("", *site_roads.names(site)[:1]):
         return      # said for the first road
     print("\n".join([method, *site_ground.lines(site, others=True),
-                     ahead.of_site(site, setup_of(args), points, args.fine).text]), flush=True)
+                     ahead.of_site(site, setup_of(args), points, sizes_of(args)).text]), flush=True)
 
 
-def run_deck(args: Request) -> Optional[study_types.Study]:
-    """The runs of a deck; what study.yaml says of them, None of a dry run."""
+def run_deck(args: Request, beside: Optional[site_study.Beside] = None) -> Optional[study_types.Study]:
+    """The runs of a deck; what study.yaml says of them, None of a dry run; beside: of an ensemble of a site."""
     if args.output is None and not args.deck.exists():
         raise SlopeError(args.deck, "must be a deck or the folder of a site, there is none of that name")
     if args.output is None:
@@ -211,25 +227,27 @@ def run_deck(args: Request) -> Optional[study_types.Study]:
     defaults = decks.index_variables(args.deck)
     many = args.sample is not None or bool(args.vary) or args.fit is not None
     check_fit(args)
-    args = replace(args, **of_a_kind(args).settled(sample=many)._asdict())
+    args = replace(args, **OfAKind(*(getattr(args, name) for name in OfAKind._fields)).settled(
+        sample=many)._asdict())
     check_more_than(args.more_than or (), args.intensity, settings, bool(args.road))
     condition = condition_of(args)
     if many:
-        return run_ensemble(args, settings, repeated, thresholds, defaults, condition, chain)
+        return run_ensemble(args, settings, repeated, thresholds, defaults, condition, chain, beside)
     if not settings:
         raise SlopeError("--set", "must be given, or --sample with --vary")
     todo = repeats.plan(args.output, settings, repeated, defaults)
     intensity.check(args.intensity, settings, bool(args.road))
     setup = setup_of(args)
-    fine = fine_runs.in_the_middle(setup, fine_runs.factor_of(args.fine), settings, defaults)
+    wanted = size_runs.of_deck(args.levels, args.deck, len(todo), [*settings, *repeated])
+    todo = size_runs.at_first(setup, todo, wanted)
     questions = results.Questions(settings, repeated, thresholds, None, args.intensity, args.more_than or (),
-                                  fine=fine[0] if fine else None, known=known_of(args))
-    return perform(setup, {**settings, **repeated}, [*todo, *fine],
-                   lambda _, work: results.collect(setup, questions, todo, work), first=fine)
+                                  known=known_of(args))
 
+    def collect(_, work):
+        at = size_runs.settle(setup, work, [one for one in todo if not one.error], wanted)
+        return results.collect(setup, questions._replace(sizes=at, notes=at.warnings), todo, work)
 
-def of_a_kind(args: Request) -> OfAKind:
-    return OfAKind(*(getattr(args, name) for name in OfAKind._fields))
+    return perform(setup, {**settings, **repeated, **(wanted.settings if wanted else {})}, todo, collect)
 
 
 def condition_of(args: Request) -> Optional[known_events.Condition]:
@@ -277,21 +295,21 @@ def chain_of(args: Request):
 
 def run_site(args: Request, site: Site, method: str) -> Made:
     """The standard study of a site's folder, and the report."""
-    done = site_study.run(site, setup_of(args), method, args.fine, args.roads)
+    done = site_study.run(site, setup_of(args), method, sizes_of(args), args.roads)
     if done.study and done.about:
         write_report(done.study, site_roads.results(site) / road_numbers.PAGE, done.about, site, quiet=args.quiet)
     return Made([done.about] if done.about else (), done.failed)
 
 
-def refuse(args: Request, names) -> None:
-    """Raise SlopeError if one of these options, which a site decides on, is given."""
+def refuse(args: Request, names, where="") -> None:
+    """Raise SlopeError if one of these options, which a site decides on, is given; where: with what, None may be."""
     for name in names:
         value = getattr(args, name)
         if value is not None and value is not False and value not in ("", []):
             first = value[0] if isinstance(value, list) else value
             raise SlopeError(OPTIONS.get(name, f"--{name.replace('_', '-')}"), "must not be given with "
-                             f"the folder of a site: {args.deck / 'site.yaml'} says what is run"
-                             + road_arguments.otherwise(args),
+                             + (where or f"the folder of a site: {args.deck / 'site.yaml'} says what is run"
+                                f"{road_arguments.otherwise(args)}"),
                              None if first is True else f"{first:g}" if isinstance(first, float) else first)
 
 
@@ -309,8 +327,14 @@ def write_report(folder: Path, page: Path, about: study_types.Study, site: Site,
 def run_site_ensemble(args: Request, site: Site) -> Made:
     """An ensemble of a site's deck with its road, in a folder of the site's, and the report."""
     site_study.check(site)
-    wanted = of_ensemble(args, site)
-    about = run_deck(wanted)
+    wanted, beside = of_ensemble(args, site), None
+    if args.fit or args.fragility:
+        refuse(args, ("levels", "minutes"), "--from or --fragility: their runs have balls of one size")
+    else:
+        assert args.sample is not None
+        beside = site_study.Beside(None, site_study.wanted(site, site_study.plan(site, setup_of(args)),
+                                                           sizes_of(args), args.sample, alone=True))
+    about = run_deck(wanted, beside)
     if about:
         assert wanted.output is not None
         write_report(wanted.output, site_roads.results(site) / PAGES[site_study.ENSEMBLE], about, site,
@@ -329,7 +353,6 @@ def of_ensemble(args: Request, asked: Site, method="") -> Request:
                          else [*known_study.VARY, chance])
     return replace(args, deck=site / site_deck.NAME, site=site, around=asked, method=method,
                    set=[*args.set, *not_varied(args, choices, vary)],
-                   fine=args.fine or str(choices.study.fine or "no"),
                    output=args.output or site_roads.results(asked) / site_study.ENSEMBLE,
                    wide={} if args.vary or args.fit or args.fragility else known_study.WIDE,
                    vary=vary, **road_arguments.of_site(asked))
@@ -350,12 +373,12 @@ def of_fragility(choices: OfMass) -> List[str]:
     return [f"rolling={min(rolling):.10g}:{max(rolling):.10g}"] * (min(rolling) < max(rolling))
 
 
-def run_ensemble(args: Request, settings, repeated, thresholds, defaults, condition,
-                 chain=None) -> Optional[study_types.Study]:
-    """The runs of --sample; what study.yaml says of them."""
-    from ..ensembles import ensemble, ensemble_maps, farther
+def run_ensemble(args: Request, settings, repeated, thresholds, defaults, condition, chain=None,
+                 beside: Optional[site_study.Beside] = None) -> Optional[study_types.Study]:
+    """The runs of --sample; what study.yaml says of them; beside: of a site, whose points have finer balls together."""
+    from ..ensembles import ensemble, ensemble_maps
     from ..fitting import calibrated
-    from ..studies import farther_runs
+    from ..studies import ensemble_study
     if args.sample is None and args.fit is None:
         raise SlopeError("--sample", "must be given with --vary: how many runs")
     fixed = one_value_each(settings, "--set", "--vary")
@@ -370,23 +393,7 @@ def run_ensemble(args: Request, settings, repeated, thresholds, defaults, condit
                                       check_thresholds(args.exceed_energy, "--exceed-energy", "energies"))
     of = ensemble.check_quantity(args.of, args.road is not None)
     setup = setup_of(args)
-    todo = sample.plan(setup.runs, plan, fixed, repeated, defaults)
-    sample.check_growth(setup.output, plan)
-    several = sample.settings_of(todo)
-    order = ensemble.Order(plan, of, levels, condition, condition and farther.read(setup.output, plan))
-    questions = results.Questions(several, repeated, thresholds, order, site=args.site, method=args.method,
-                                  chain=chain, known=known_of(args), roads=args.roads, alone=not args.weigh)
-
-    def collect(todo, work):
-        fine = fine_runs.of_median_length(setup, fine_runs.factor_of(args.fine), todo, defaults)
-        work.store.admit(fine)
-        made = order
-        if condition:
-            made = replace(order, added=farther_runs.make(
-                setup, order, fixed, repeats.chances_of(repeated, {**defaults, **fixed}), todo, work, fine))
-        work.do(fine)
-        return results.collect(setup, questions._replace(order=made, settings=sample.settings_of(todo),
-                                                         fine=fine[0] if fine else None), todo, work)
-
-    return perform(setup, {**sample.all_values(several, plan), **repeated}, todo, collect,
-                   begin=lambda: sample.keep(setup.output, plan))
+    questions = results.Questions({}, repeated, thresholds, ensemble.Order(plan, of, levels, condition), site=args.site,
+                                  method=args.method, chain=chain, known=known_of(args), roads=args.roads,
+                                  alone=not args.weigh)
+    return ensemble_study.run(setup, questions, fixed, defaults, args.levels, beside)

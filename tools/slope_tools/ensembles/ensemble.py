@@ -99,11 +99,11 @@ def emulate(order: Order, rows: Sequence[Row], mobility: Optional[Mobility]) -> 
     return Emulated(influence, known_events.emulate(order.sample, order.added, rows, mobility, main))
 
 
-def evaluate(order: Order, rows: Sequence[Row], mobility: Optional[Mobility],
-             emulated: Emulated) -> Optional[Evaluated]:
+def evaluate(order: Order, rows: Sequence[Row], mobility: Optional[Mobility], emulated: Emulated,
+             draw: Optional[known_events.Draw] = None) -> Optional[Evaluated]:
     """What an ensemble says, None where all runs failed.
 
-    rows: of study.csv; mobility: of an order with a condition; emulated: of emulate().
+    rows: of study.csv; mobility: of an order with a condition; emulated: of emulate(); draw: see known_events.
     """
     finished = finished_of(planned(rows))
     if not finished:
@@ -117,7 +117,7 @@ def evaluate(order: Order, rows: Sequence[Row], mobility: Optional[Mobility],
     if order.condition:
         assert order.added and mobility and emulated.known_events
         known = known_events.evaluate(order.condition, order.sample, order.added, rows, mobility, of_quantity,
-                                      emulated.known_events)
+                                      emulated.known_events, draw)
     about = ensemble_types.Ensemble(
         design=order.sample.about, runs=len(finished) + failed, finished=len(finished), failed=failed,
         points=len(set(point)), confidence=hazard.CONFIDENCE, of=order.of if order.of in curves else None,

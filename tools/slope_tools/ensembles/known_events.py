@@ -7,7 +7,7 @@ Order of the work: where known events end on the path of this mass (mobility), t
 import functools
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import Callable, Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from ..statistics import answer, emulator, hazard
 from ..statistics.entries import Analysis, KnownQuantile
 from ..survey.rasters import Place
 from ..tables import answer_words, combinations, ensemble_types, quantities
-from ..tables.rows import Row, finished_of
+from ..tables.rows import Finished, Row, finished_of
 from . import conditioned, farther, known_influence, known_maps
 from .ensemble_maps import Thresholds
 from .sample import Sample
@@ -32,6 +32,8 @@ LEAST_EFFECTIVE = 20    # runs; fewer say little
 LEFT = 0.01             # share of the released volume beyond the grid, from which on a run's length is not its own
 MIDDLE = 0.05, 0.5, 0.95        # quantiles of the parameters of the weighted runs
 REMOVE = "remove_m3"    # the volume of the headline
+TAILS = (1 - hazard.CONFIDENCE) / 2, (1 + hazard.CONFIDENCE) / 2
+Draw = Callable[[Sequence[Finished], str], np.ndarray]      # values (n, runs) of a column, as they may be
 NOT_FARTHER = "released_m3", "stop_time_s"      # columns that a mass that goes farther need not exceed; nor any angle
 
 
@@ -124,6 +126,13 @@ class Runs:
                                   self.sample.snap)
 
 
+def resting(runs: Runs) -> List[str]:
+    """Names of the runs on which the quantiles of the headline rest."""
+    values = runs.column(REMOVE)
+    found = (conditioned.within(values, runs.mass.share, share) for share in answer.shares(runs.weights.far))
+    return [runs.rows[int(np.abs(values - one).argmin())].run for one in found if one is not None]
+
+
 def weighs(found: exceedance.Mobility, runs: Runs) -> bool:
     """Whether known events weigh the runs."""
     return not found.outside and len(runs.rows) >= 2
@@ -157,11 +166,12 @@ def emulate(sample: Sample, added: farther.Added, rows: Sequence[Row], found: ex
 
 
 def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: Sequence[Row],
-             found: exceedance.Mobility, names: Mapping[str, Tuple[str, str]], emulated: Emulated) -> Evaluated:
+             found: exceedance.Mobility, names: Mapping[str, Tuple[str, str]], emulated: Emulated,
+             draw: Optional[Draw] = None) -> Evaluated:
     """What the weighted runs say.
 
     rows: of study.csv, finished and failed; found: the mass among known events; names: {column: (what, unit)} of the
-    quantities; emulated: of emulate().
+    quantities; emulated: of emulate(); draw: of runs that are transferred to the finest balls.
     """
     asked = condition.asked
     known = ensemble_types.Known(
@@ -182,7 +192,8 @@ def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: S
         path_m=found.end(longest), beyond_path=found.beyond_path(), added=added.about(),
         quantities={name: ensemble_types.OfKnown(*names[name], quantiles(curve, runs, name, hazard.SHARES))
                     for name, curve in curves.items()},
-        to_remove=quantiles(curves[REMOVE], runs, REMOVE, answer.shares(one.far)) if REMOVE in curves else None,
+        to_remove=transferred(quantiles(curves[REMOVE], runs, REMOVE, answer.shares(one.far)), runs, draw)
+        if REMOVE in curves else None,
         variables={name: variable(runs, k, emulated.main) for k, name in enumerate(sample.names)},
         influence=emulated.influence, weights=whole_weights(runs), maps=[],
         path_end_m=end if (end := float(found.path.length[-1])) < longest else None)
@@ -209,6 +220,24 @@ def quantiles(curve: hazard.Curve, runs: Runs, name: str, shares: Sequence[float
     found = conditioned.quantiles(curve, shares, runs.column(name), runs.mass)
     if len(set(runs.point)) == 1:       # one run has no bounds
         found = [one._replace(low=None, high=None) for one in found]
+    return found
+
+
+def transferred(several: Sequence[KnownQuantile], runs: Runs, draw: Optional[Draw]) -> List[KnownQuantile]:
+    """Quantiles of the volume to remove with what lengths and volumes of transferred runs may be: with each draw the
+    runs have other weights, too."""
+    if draw is None:
+        return list(several)
+    lengths, volumes = (draw(runs.rows, key) for key in ("length_m", REMOVE))
+    masses = [conditioned.masses(weights.of_lengths(one, np.asarray(runs.exceedance(one), float), runs.weights.ratio))
+              for one in lengths]
+    found = []
+    for one in several:
+        values = [conditioned.within(volume, mass.share, one.share) for volume, mass in zip(volumes, masses)]
+        ends = None if one.value is None else [
+            max(0.0, side * (float(end) - one.value)) for side, end in zip((-1, 1), np.quantile(
+                [volume.max() if value is None else value for value, volume in zip(values, volumes)], TAILS))]
+        found.append(one._replace(transfer=ends))
     return found
 
 

@@ -112,10 +112,9 @@ class Charts:
             return (float(best.set[name]), best.mean_m3, "governing mean, not usable"), []
         number = rounding.text(volume, best.place_m3)
         x = float(best.set[name])
-        if best.chance_m3 is None and best.size_m3 is None:
+        if best.chance_m3 is None:
             return (x, best.mean_m3, f"{best.kind.split(';')[0]}, {number} m3"), []
-        what = "conservative volume" if best.chance_m3 is not None else "with the size of the balls"
-        return (x, best.mean_m3, "governing mean"), [(f"{what}, {number} m3", best.volume_m3)]
+        return (x, best.mean_m3, "governing mean"), [(f"conservative volume, {number} m3", best.volume_m3)]
 
     def scatter_of(self, key):
         """The scatter of a run in a column; None without repeats."""

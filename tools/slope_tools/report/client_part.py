@@ -8,10 +8,10 @@ from .. import digits
 from ..deposits import travel_shares
 from ..digits import percent
 from ..findings import Finding
-from ..statistics import rounding, size_family
+from ..statistics import rounding
 from ..statistics.answer import SHARE, Code, Kind, Source
-from ..tables import answer_words, combinations, elastic, ensemble_types, fine_run, next_step, study_types
-from ..tables.quantities import ALL, DISTANCE, REMOVE as QUANTITY
+from ..tables import answer_words, combinations, elastic, ensemble_types, next_step, study_types
+from ..tables.quantities import ALL, DISTANCE
 from . import body, mobility_part, road_part, structures_part, warnings
 from .data import Data
 from .numbers import MainCard, Numbers, basis, farthest_of
@@ -36,8 +36,7 @@ def content(data: Data, ground, numbers: Numbers, answers: Sequence[Optional[Mai
     """
     main, spoken = next((one for one in answers if one), None), of_headline(data, numbers)
     return {"body": body.sentence(body.of_data(data, ground)),
-            "answer": spoken or (floored(data, of_answer(data, main), numbers) if main else
-                                 of_reach(data, numbers)),
+            "answer": spoken or (of_answer(data, main) if main else of_reach(data, numbers)),
             "basis": basis(data),
             "sentences": [*road_part.others(data), mobility_part.on_first_page(data, ground, numbers),
                           *sentences(data, ground, numbers, bool(main)),
@@ -53,9 +52,7 @@ def unsaid(data: Data, found: Sequence[Finding]) -> List[Finding]:
     return [one for one in found if one.kind not in said]
 
 
-# --- the number, from the headline of study.yaml: of both studies of a site ---
-# It is that of of_headline() where an ensemble stands beside, and governs or makes a floor; else the conservative
-# volume of numbers.answer(), by of_answer().
+# --- the number, from the headline of study.yaml ---
 
 REMOVE = "Volume to remove from the road"
 WHO = "known events of this volume and height"
@@ -64,17 +61,15 @@ ON_ROAD = "remove_on_road_m3"
 
 
 def of_headline(data: Data, numbers: Numbers) -> Optional[First]:
-    """That of both studies of a site; None without a headline, and where the paper's study says all, with its parts."""
+    """That of a study, or of both of a site; None without a headline."""
     about = data.study.headline if data.study else None
-    if not about or not about.ensemble:
+    if not about:
         return None
     kind = Kind(about.kind)
-    if kind is Kind.NUMBER and about.source == Source.PAPER.value:
-        return None
     found = {Kind.NUMBER: of_number, Kind.FLOOR: of_floor, Kind.WITHHELD: of_withheld, Kind.NOTHING: of_nothing}[kind](
         about, numbers)
     return found._replace(kind=kind.value, reasons=reasons(about), step=step_of(data),
-                          band=found.band + in_gap(data, about, numbers))
+                          band=found.band + of_runs(data) + in_gap(data, about, numbers))
 
 
 def step_of(data: Data) -> Optional[next_step.Step]:
@@ -83,17 +78,29 @@ def step_of(data: Data) -> Optional[next_step.Step]:
     return next_step.Step(**vars(said)) if said else None
 
 
+def of_runs(data: Data) -> str:
+    """What another run gives, where the number is of the paper's study and this is the one; else ""."""
+    best, about = data.of_study.conservative, data.of_study.headline
+    if not best or not best.volume_m3 or not about or about.source != Source.PAPER.value:
+        return ""
+    if best.chance_m3 is None:
+        return " No run was repeated, so that chance is not in it."
+    mean, chance = (best.rounded[key] or 0.0 for key in ("mean_m3", "chance_m3"))
+    low, high, middle = (rounding.text(value, best.place_m3)
+                         for value in (max(0.0, mean - chance), mean + chance, mean))
+    return (f" Another run gives {low} to {high} m3, in 95 % of cases; the mean is {middle} m3." +
+            "".join(f" {one[0].upper()}{one[1:]}." for one in combinations.starts(best)))
+
+
 def in_gap(data: Data, about: study_types.Headline, numbers: Numbers) -> str:
-    """A sentence, where the share's known events end between two runs; raised for smaller balls as the number is."""
+    """A sentence, where the share's known events end between two runs."""
     known = known_of(data)
     if about.source != Source.ENSEMBLE.value or not known:
         return ""
     gap = next((one.gap for one in known.to_remove or () if one.share == about.share), None)
     if not gap:
         return ""
-    effect = fine_run.read_effect(data.study.size if data.study else None, QUANTITY)
-    low, high = (numbers(f"{REMOVE.lower()}, {end} of the gap where no run ends", "m3",
-                         value + (effect.added(value) if effect else 0.0))
+    low, high = (numbers(f"{REMOVE.lower()}, {end} of the gap where no run ends", "m3", value)
                  for end, value in zip(("begin", "end"), gap))
     return f" No run ends where these known events do: between {low} m3 and {high} m3, of which the larger counts."
 
@@ -101,21 +108,24 @@ def in_gap(data: Data, about: study_types.Headline, numbers: Numbers) -> str:
 # --- what stands in the place of the number ---
 
 def of_number(about: study_types.Headline, numbers: Numbers) -> First:
-    share = percent(about.share or 0.0)
-    return First(f"{REMOVE}: {share} of known events stay within",
-                 numbers(f"{REMOVE.lower()}, {share} of known events", "m3", about.volume_m3),
+    return First(title_of(about), numbers(REMOVE.lower(), "m3", about.volume_m3),
                  band=bounds(about, numbers) + of_paper(about, numbers))
 
 
+def title_of(about: study_types.Headline) -> str:
+    """What the number is."""
+    if about.source == Source.PAPER.value:
+        return f"Conservative {REMOVE[0].lower()}{REMOVE[1:]}" if answer_words.is_conservative(about) else REMOVE
+    return f"{REMOVE}: {percent(about.share or 0.0)} of known events stay within"
+
+
 def bounds(about: study_types.Headline, numbers: Numbers) -> str:
-    """Its bounds, each with its unit."""
-    low, high = (None if value is None else numbers(f"{REMOVE.lower()}, {name} bound", "m3", value)
-                 for value, name in ((about.low_m3, "lower"), (about.high_m3, "upper")))
-    if low is None and high is None:
-        return "No bounds: the runs are too few for them."
-    if high is None:
-        return f"At least {low} m3 with 90 % confidence; an upper bound would need more runs."
-    return f"Between {low or 0} m3 and {high} m3, with 90 % confidence."
+    """Its bounds, each with its unit, and what they are made of."""
+    low, high = (numbers(f"{REMOVE.lower()}, {name} end", "m3", value)
+                 for value, name in ((about.low_m3 or 0.0, "lower"), (about.high_m3, "upper")))
+    parts = [f"{one.cause} -{digits.three(one.below_m3)} +{digits.three(one.above_m3)} m3" for one in about.band
+             if one.below_m3 or one.above_m3]
+    return f"Between {low} m3 and {high} m3, with 90 % confidence" + (f": {', '.join(parts)}." if parts else ".")
 
 
 def of_paper(about: study_types.Headline, numbers: Numbers) -> str:
@@ -131,27 +141,11 @@ def of_floor(about: study_types.Headline, numbers: Numbers) -> First:
     """At least so much; where no run reaches the road, how many known events do."""
     if not about.volume_m3:
         return not_reached(about)
-    text = numbers(f"{REMOVE.lower()}, at least", "m3", about.volume_m3)
-    share = about.share
-    if share:
-        band = f"{percent(share)} of {WHO} stay within {text} m3; what the others bring these runs do not show."
-    elif about.source == Source.PAPER.value:
-        band = ("A further run of the governing settings stays below, in 97.5 % of such studies; more mobile masses "
-                "may bring more.")
-    else:
-        band = ""
-    title = f"{REMOVE}, with {percent(share)}" if share else REMOVE
-    return First(title, f"at least {text}", band=band + by_family(about, numbers) + of_paper(about, numbers))
-
-
-def by_family(about: study_types.Headline, numbers: Numbers) -> str:
-    """What the number becomes by the largest factor that a slide of the family grew by with smaller balls."""
-    growth = [one["numbers"]["growth"] for one in about.reasons if one["numbers"].get("growth")]
-    if not growth:
-        return ""
-    most = max(size_family.Growth(**one).covered(about.volume_m3 or 0.0) for one in growth)
-    text = numbers(f"{REMOVE.lower()}, by the largest growth with smaller balls", "m3", most)
-    return f" With as much more by smaller balls as the slide that grew most, {text} m3."
+    band = "The lower end of what the runs give, with 90 % confidence; no number to design with."
+    if about.source == Source.ENSEMBLE.value and about.share:
+        band += f" It is of the volume that {percent(about.share)} of {WHO} stay within."
+    return First(REMOVE, f"at least {numbers(f'{REMOVE.lower()}, at least', 'm3', about.volume_m3)}",
+                 band=band + of_paper(about, numbers))
 
 
 def not_reached(about: study_types.Headline) -> First:
@@ -186,32 +180,11 @@ def reasons(about: study_types.Headline) -> List[str]:
 # --- the number of one study ---
 
 def of_answer(data: Data, answer: MainCard) -> First:
-    """Of an answer as the appendix has it."""
+    """Of an answer as the appendix has it: of an ensemble that no known events weigh."""
     if answer.withheld:
         return First(answer.title, None, kind=Kind.WITHHELD.value, reasons=[one.text for one in answer.withheld],
                      step=next_step.first_remedy(next_step.Made(data.of_study, data.folder)))
-    best = data.of_study.conservative
-    if answer.zero:
-        band = f"{answer.zero[0].upper()}{answer.zero[1:]}."
-    elif answer.band is not None:
-        band = answer.band
-    elif best is None or best.chance_m3 is None:
-        band = "No band: no run was repeated, so that chance is unknown."
-    else:
-        mean, chance = (best.rounded[key] or 0.0 for key in ("mean_m3", "chance_m3"))
-        low, high = (rounding.text(value, best.place_m3) for value in (max(0.0, mean - chance), mean + chance))
-        band = f"Another run gives {low} to {high} m3, in 95 % of cases; the mean is {answer.parts[0].number} m3."
-        band += "".join(f" {one[0].upper()}{one[1:]}." for one in combinations.starts(best))
-    return First(answer.title, answer.number, answer.unit, band)
-
-
-def floored(data: Data, first: First, numbers: Numbers) -> First:
-    """The same as a floor, where the headline of the one study says so."""
-    about = data.study.headline if data.study else None
-    if first.number is None or not about or about.ensemble or Kind(about.kind) is not Kind.FLOOR:
-        return first
-    return first._replace(kind=Kind.FLOOR.value, title=REMOVE, number=f"at least {first.number}",
-                          reasons=reasons(about), band=first.band + by_family(about, numbers), step=step_of(data))
+    return First(answer.title, answer.number, answer.unit, answer.band or "")
 
 
 def of_reach(data: Data, numbers: Numbers) -> First:
@@ -236,10 +209,16 @@ def reaches(data: Data) -> List[float]:
 # --- what else is found ---
 
 def sentences(data: Data, ground, numbers: Numbers, has_road_number: bool) -> List[str]:
-    """Three at most: how far, what lies on the road, what else."""
-    found = [mobility_part.mapped_sentence(data, numbers), distance(data, numbers, has_road_number),
+    """Four at most: the size of the balls, how far, what lies on the road, what else."""
+    found = [size(data), mobility_part.mapped_sentence(data, numbers), distance(data, numbers, has_road_number),
              road(data, numbers), structures(data, ground), thickness(data, numbers)]
-    return [text for text in found if text][:3]
+    return [text for text in found if text][:4]
+
+
+def size(data: Data) -> str:
+    """The sentence on the size of the balls, where there are several."""
+    about = data.study.size if data.study else None
+    return f"{about.text[0].upper()}{about.text[1:]}." if about else ""
 
 
 def span(numbers, key, values) -> str:
@@ -312,18 +291,8 @@ def road(data: Data, numbers: Numbers) -> str:
         text += f", over a length of up to {numbers.quantity('blocked_m', max(blocked))} m"
     beyond = [past for row in data.finished if row.road and (past := row.road.beyond_road_m3) is not None]
     if beyond and max(beyond) > 0:
-        text += f"; beyond it come to lie up to {numbers.quantity('beyond_road_m3', max(beyond))} m³" + finer(data)
+        text += f"; beyond it come to lie up to {numbers.quantity('beyond_road_m3', max(beyond))} m³"
     return f"{text}."
-
-
-def finer(data: Data) -> str:
-    """By how much what lies beyond the road grew with smaller balls in a family of slides; "" where nobody can tell."""
-    balls = data.study.study.balls_thick if data.study else None
-    grown = None if balls is None else size_family.told(balls, quantity="beyond_road_m3")
-    if grown is None:
-        return ""
-    return (f"; smaller balls in the model brought up to {digits.rounded(grown.high, 2)} times as much there in "
-            f"{grown.slides} other slides (median {digits.rounded(grown.median, 2)})")
 
 
 def structures(data: Data, ground) -> str:

@@ -14,7 +14,7 @@ from ..statistics import entries
 from ..tables import ensemble_types, quantities, study_types, withheld_words
 from .charts import AXIS
 from .data import Data, is_number
-from .numbers import CardPart, MainCard, Numbers, as_run
+from .numbers import CardPart, MainCard, Numbers
 from .sections import Cell, Figures, Picture, Section, Table, Text
 
 MOST_SCATTER = 4        # variables with a chart of the runs against them
@@ -103,7 +103,7 @@ class Ensemble:
                                          f"{self.entry.name} ({self.entry.unit})", title),
             title, f"The hazard curve: share of the runs in which the quantity is larger, with its "
             f"{100 * self.about.confidence:g} % bounds; dots: what 50, 90, 95 and 99 % of the runs stay within."
-            + as_run(self.data, self.of))
+           )
 
     def indices(self) -> List[Picture]:
         """A chart for each quantity whose emulator says something, the one that counts first, three at most."""
@@ -225,7 +225,7 @@ class KnownEvents:
         return Picture(uri, title, "The weighted hazard curve: share of known events in which the quantity is "
                        f"larger, with its {100 * self.confidence:g} % bounds. What the runs do not reach is not "
                        "shared out: known events beyond the longest run exceed every value. A line: no run ends where "
-                       "these known events do." + as_run(self.data, self.of))
+                       "these known events do.")
 
     def tables(self) -> List[Table]:
         """Quantiles of all quantities; which parameters the weighted runs have, and how the first depends on them."""

@@ -5,7 +5,7 @@ from ..plots import figure_charts
 from ..plots.figure_charts import Series
 from ..tables import study_types
 from .data import Data
-from .numbers import as_run, Numbers
+from .numbers import Numbers
 from .sections import Figures, Picture, Section, Table
 
 AXIS = {"peak": "peak acceleration (gal)", "pga": "peak acceleration (gal)"}
@@ -25,8 +25,7 @@ def section(data: Data, numbers: Numbers):
              *(f"P(V > {volume:,.6g})" for volume in about.more_than_m3)]
     return Section("intensity", "Volume on the road against the intensity", [
         Table("Volumes on the road, m3 of ground, and the probability that a volume is exceeded: the share of the "
-              f"equivalent runs, with its {percent(about.confidence)} confidence interval."
-              + as_run(data, about.quantity), heads,
+              f"equivalent runs, with its {percent(about.confidence)} confidence interval.", heads,
               rows(about, numbers), ()), Figures(pictures, "columns")])
 
 

@@ -102,7 +102,7 @@ def uncertainty(data: Data, numbers: Numbers) -> CONTENT:
     chance = [("Chance", " ".join(found))] if found else []
     size, step, most = (study.size, study.step, study.largest_restitution) if study else (None, None, None)
     chance.append(("Size of the balls", f"{size.text[0].upper()}{size.text[1:]}." if size else
-                   "What smaller balls change is not known (study --fine 2)."))
+                   "What smaller balls change is not known (study --levels)."))
     chance.append(("Time step", f"{step.text[0].upper()}{step.text[1:]}." if step else
                    "What half the time step changes was not tried (the study of a site does, or --set step=0.5)."))
     if step and (energy := step.energy):

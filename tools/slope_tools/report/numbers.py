@@ -6,13 +6,13 @@ from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence
 
 from .. import disk
 from ..deposits import rest, travel_shares
-from ..digits import measured, rounded, three
+from ..digits import measured, rounded
 from ..ensembles import known_study
 from ..findings import Finding
 from ..mobility.run_length import ON_PATH
 from ..statistics import rounding
 from ..statistics.answer import Source
-from ..tables import fine_run, named_run, study_types, withheld_words
+from ..tables import named_run, withheld_words
 from ..tables.quantities import ALL, KNOWN, LENGTH, REACH, written
 from ..tables.released import over_runs
 from .data import Data, is_number
@@ -137,11 +137,8 @@ def answer(data: Data, numbers: Numbers) -> Optional[MainCard]:
             f"{best.degrees_of_freedom:.3g} degrees of freedom", "+"))
     else:
         parts.append(CardPart(UNKNOWN, "chance", "no run was repeated (study --repeat seed=..., xoffset=...)", "+"))
-    parts.append(size_part(data.study.size, part("size_m3", best.size_m3)))
-    title = f"Volume to remove from the road: {best.kind}"
-    if predicted:
-        title = "Conservative volume to remove from the road" if best.size_m3 is not None else \
-            "Volume to remove from the road, not conservative: smaller balls may bring more"
+    title = "Conservative volume to remove from the road" if predicted else \
+        f"Volume to remove from the road: {best.kind}"
     return MainCard(title, part("volume_m3", best.volume_m3), parts=parts, predicted=predicted, road=road,
                     zero=best.zero.text if best.zero else None, below=below_ground(data, numbers),
                     ground=best.ground or "")
@@ -157,11 +154,6 @@ def below_ground(data: Data, numbers: Numbers):
              for what, value in (("to remove where the cut is below the ground", below), ("to remove", whole))]
     return (f"{texts[0]} m3 of the {texts[1]} m3 of the run {name} lie where the cut surface is below the ground "
             "before the collapse.")
-
-
-def size_part(size: Optional[study_types.Size], number: Optional[str]) -> CardPart:
-    """What smaller balls add; size: of study.yaml, None where none were tried."""
-    return CardPart(number or UNKNOWN, "size of the balls", size.text if size else "not tried (study --fine 2)", "+")
 
 
 def cards(data: Data, numbers: Numbers):
@@ -299,9 +291,8 @@ def rests_on(data: Data) -> str:
     assert best
     of = values_of(data, best.set)
     what = f"the mean of {best.repeats}" if best.repeats > 1 else "that of one"
-    added = [what for what, part in (("chance", best.chance_m3), ("smaller balls", best.size_m3))
-             if part is not None]
-    return f" The number is {what} of them{of and f' ({of})'}{f', with what {listed(added)} may add' if added else ''}."
+    added = ", with what chance may add" if best.chance_m3 is not None else ""
+    return f" The number is {what} of them{of and f' ({of})'}{added}."
 
 
 def is_own(data: Data) -> bool:
@@ -310,18 +301,6 @@ def is_own(data: Data) -> bool:
         return False
     own = Source.ENSEMBLE if data.study.ensemble else Source.PAPER
     return data.study.headline.source == own.value
-
-
-def as_run(data: Data, key: str) -> str:
-    """For a caption of numbers of runs, which the effect of size does not raise as it does the headline: what smaller
-    balls bring of this column; "" where they bring no more, or nobody knows.
-    """
-    effect = fine_run.read_effect(data.study.size if data.study else None, key)
-    if effect is None or not effect.added(1.0) > 0:
-        return ""
-    more = f"{rounded(effect.fine / effect.coarse, 3)} times as much" if effect.ratio else \
-        f"{three(effect.difference)} {ALL[key].unit} more"
-    return f" These are the runs' own numbers: smaller balls brought {more}, which is not in them."
 
 
 def shown_run(data: Data) -> str:

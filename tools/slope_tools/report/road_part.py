@@ -9,10 +9,9 @@ from ..sites.site_roads import FOLDER
 from ..studies import road_numbers
 from ..survey.roads import Asked
 from ..tables import ensemble_types, study_types
-from ..tables.quantities import REMOVE
 from .data import Data
 from .ensemble_part import ODDS
-from .numbers import as_run, Numbers
+from .numbers import Numbers
 from .sections import Cell, Figures, Picture, Section, Table
 
 # head, unit, number of tables.road_runs
@@ -46,7 +45,7 @@ def section(data: Data, numbers: Numbers, maps) -> Optional[Section]:
                         *(Cell(head, unit) for head, unit, _ in columns)]
     return Section("road", "Blocked stretches of the road", [
         Figures([shares(data, asked, about, runs, maps)], "tall"),
-        Table(caption(asked, about, runs) + as_run(data, REMOVE) + gaps(data, about), heads, lines, ())])
+        Table(caption(asked, about, runs) + gaps(data, about), heads, lines, ())])
 
 
 def of_all(data: Data) -> Optional[Section]:

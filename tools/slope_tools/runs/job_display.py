@@ -2,6 +2,7 @@
 import datetime
 import sys
 import time
+from typing import Dict, List
 
 from rich.console import Console
 from rich.live import Live
@@ -10,6 +11,7 @@ from rich.table import Table
 
 from .. import findings, streams
 
+DIAMETER = "d"          # variable of a deck: the size of the balls
 TELL = 30.0             # s between two lines about a run, where there is no terminal
 
 
@@ -17,12 +19,13 @@ class Display:
     """Shows how far the runs are: a table that renews itself on a terminal, else a line now and then."""
 
     def __init__(self, todo, waiting, at_a_time, halts=False):
-        """at_a_time(): how many runs may be active at a time; halts: most end before their last step, a time limit."""
-        self.total, self.waiting, self.at_a_time = len(todo), len(waiting), at_a_time
+        """waiting: runs to make, without those that were started; at_a_time(): how many runs may be active at a time;
+        halts: most end before their last step, a time limit, which says nothing of their end."""
+        self.total, self.waiting, self.at_a_time, self.queue = len(todo), len(waiting), at_a_time, waiting
         self.numbers = {one.name: i for i, one in enumerate(todo, 1)}
         self.ended_runs = self.failed = 0
-        self.walls = []
-        self.by = "at the latest by" if halts else "ends by"
+        self.walls: Dict[str, List[float]] = {}        # by the size of balls
+        self.halts = halts
         self.printed = {}      # name -> when the last line about it was printed
         self.live = None
         self.share = 0.0       # done, as it was said last
@@ -63,7 +66,7 @@ class Display:
     def ended(self, active):
         one, wall = active.run, time.monotonic() - active.began
         self.ended_runs += 1
-        self.walls.append(wall)
+        self.walls.setdefault(one.chosen.get(DIAMETER, ""), []).append(wall)
         self._say_share()
         if one.error:
             self.failed += 1
@@ -79,8 +82,11 @@ class Display:
         return "" if self.live or left <= 0 else f"; {left} to go, all by {clock(self._ends(left))}"
 
     def _ends(self, left):
-        """Seconds that so many runs take, as those before did."""
-        return sum(self.walls) / len(self.walls) * left / self.at_a_time()
+        """Seconds that so many runs take, as those before of their sizes did; of a size without one as the longest."""
+        means = {size: sum(walls) / len(walls) for size, walls in self.walls.items()}
+        waiting = [means.get(run.chosen.get(DIAMETER, ""), max(means.values())) for run in self.queue]
+        under_way = max(0, left - len(waiting)) * max(means.values()) / 2
+        return (sum(waiting) + under_way) / self.at_a_time()
 
     def update(self, active, waiting):
         if self.live:
@@ -90,7 +96,7 @@ class Display:
             if time.monotonic() - self.printed[job.run.name] > TELL:
                 self.printed[job.run.name] = time.monotonic()
                 _, text, end = self._progress(job)
-                self.say(f"{self.label(job.run)}: {text}" + (f", {self.by} {end}" if end else ""))
+                self.say(f"{self.label(job.run)}: {text}" + (f", ends by {end}" if end else ""))
         return None
 
     def _say_share(self, active=()):
@@ -103,9 +109,8 @@ class Display:
             findings.say_json("progress", share=share, runs=self.total, ended=self.done_before + self.ended_runs,
                               failed=self.failed)
 
-    @staticmethod
-    def _progress(job):
-        """Share done (None if unknown), a text for the user, and when its last step is due: it may rest before."""
+    def _progress(self, job):
+        """Share done (None if unknown), a text for the user, and when it ends, "" where it may rest before."""
         log = job.run.log
         if log.thermo == 0:
             return None, "setting up", ""
@@ -116,13 +121,13 @@ class Display:
             return None, text, ""
         share = (log.step - log.first) / (log.last - log.first)
         spent = time.monotonic() - job.began
-        return share, text, clock(spent * (1 - share) / share) if share > 0 else ""
+        return share, text, clock(spent * (1 - share) / share) if share > 0 and not self.halts else ""
 
     def _table(self, active, waiting):
         table = Table(box=None, padding=(0, 2, 0, 0))
         table.add_column("run", no_wrap=True)
         table.add_column("", no_wrap=True)
-        for head in ("step", self.by):
+        for head in ("step", "ends by"):
             table.add_column(head, no_wrap=True, min_width=8)
         for job in active:
             share, text, end = self._progress(job)
@@ -130,7 +135,7 @@ class Display:
                           ProgressBar(100, 100 * (share or 0), width=12), text, end)
         ends = ""
         if self.walls and waiting:
-            ends = clock(self._ends(waiting + len(active) / 2))
+            ends = clock(self._ends(waiting + len(active)))
         table.add_row(f"{self.done_before + self.ended_runs - self.failed} of {self.total} finished"
                       + (f", {self.failed} failed" if self.failed else ""), "", f"{waiting} waiting", ends,
                       style="dim")

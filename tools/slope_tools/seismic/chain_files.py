@@ -5,7 +5,7 @@ The mathematics are in chain.py; here are the checks, the tables, the entry of s
 import math
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import Any, Dict, Iterable, List, Mapping, NamedTuple, Sequence, Tuple
 
 import numpy as np
 
@@ -16,8 +16,7 @@ from ..findings import Finding, finding, texts
 from ..sites.site_bodies import VARIABLE
 from ..sites.site_found import SlipBody
 from ..statistics import hazard
-from ..statistics.size_effect import Effect
-from ..tables import fine_run, intensity, study_types
+from ..tables import intensity, study_types
 from ..tables.rows import Row, finished_of
 from . import chain
 from .fragility_files import Fragility
@@ -69,14 +68,8 @@ def options(asked: Chain) -> Tuple[List[str], List[str]]:
 
 # --- after them ---
 
-def left(asked: Chain, rows: Sequence[Row], effect: Optional[Effect] = None) -> List[chain.Left]:
-    """What each body leaves on the road; of those that never fail nothing.
-
-    effect: of smaller balls on it, by which each run is raised, up to the whole body.
-    """
-    def raised(volume: float, body: float) -> float:
-        return volume if effect is None else max(volume, min(volume + effect.added(volume), body))
-
+def left(asked: Chain, rows: Sequence[Row]) -> List[chain.Left]:
+    """What each body leaves on the road; of those that never fail nothing."""
     found = []
     for name in asked.fragility.bodies:
         if name not in asked.weights:
@@ -86,8 +79,7 @@ def left(asked: Chain, rows: Sequence[Row], effect: Optional[Effect] = None) -> 
         done = finished_of(mine)
         point = [tuple(row.set.values()) for row in done]
         known = {one: k for k, one in enumerate(dict.fromkeys(point))}
-        found.append(chain.left([raised(row.at_road.remove_on_road_m3, asked.volumes[name]) for row in done],
-                                [known[one] for one in point],
+        found.append(chain.left([row.at_road.remove_on_road_m3 for row in done], [known[one] for one in point],
                                 asked.volumes[name], len(mine) - len(done)))
     return found
 
@@ -98,11 +90,10 @@ class Evaluated(NamedTuple):
     tables: Dict[str, str]
 
 
-def evaluate(asked: Chain, rows: Sequence[Row], withheld: Sequence[Finding],
-             size: Optional[study_types.Size] = None) -> Evaluated:
-    """What the runs say; rows: of study.csv; withheld: why their volumes may not be used; size: of the fine run."""
-    effect = fine_run.read_effect(size, QUANTITY)
-    found, bodies = asked.fragility, left(asked, rows, effect)
+def evaluate(asked: Chain, rows: Sequence[Row], withheld: Sequence[Finding], sizes: bool) -> Evaluated:
+    """What the runs say; rows: of study.csv; withheld: why their volumes may not be used; sizes: whether several were
+    run."""
+    found, bodies = asked.fragility, left(asked, rows)
     seen = [row.at_road.remove_on_road_m3 for row in finished_of(rows)]
     more_than = list(asked.more_than) or intensity.round_volumes(max(seen)) or [0.0]
     largest = sum(float(one.value.volumes[1:].max(initial=0.0)) for one in bodies)
@@ -123,7 +114,8 @@ def evaluate(asked: Chain, rows: Sequence[Row], withheld: Sequence[Finding],
     about = study_types.Chain(
         found.folder.name, QUANTITY, hazard.CONFIDENCE, [of_body(asked, name, rows) for name in found.bodies],
         more_than, found.peaks.tolist(), curves, per_year, list(withheld), list(tables), [])
-    return Evaluated(replace(about, doubts=[*doubts(about, found.warnings), *of_size(size, effect, max(seen))]), tables)
+    coarse = [] if sizes else [Finding("chain size")]
+    return Evaluated(replace(about, doubts=[*doubts(about, found.warnings), *coarse]), tables)
 
 
 def write(found: Evaluated, output: Path) -> None:
@@ -156,16 +148,6 @@ def doubts(about: study_types.Chain, warnings: Sequence[Any]) -> List[Finding]:
               for one in about.bodies if one.weight > 0 and not one.finished),
             *(Finding("more per year", {"per_year": one.more_at_most, "volume": one.more_than_m3})
               for one in about.per_year or () if one.more_at_most > BEYOND * one.value)]
-
-
-def of_size(size: Optional[study_types.Size], effect: Optional[Effect], largest: float) -> List[Finding]:
-    """What the size of the balls does to the volumes; largest: of the runs, m3."""
-    found = []
-    if effect is not None and effect.added(largest) > 0:
-        found.append(Finding("chain raised", {"added": effect.added(largest), "volume": largest}))
-    if effect is None or size and size.open:
-        found.append(Finding("chain size"))
-    return found
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[float]]) -> str:

@@ -346,11 +346,12 @@ def trial_text(trial: Trial) -> str:
 def settled(choices: OfMass, parts: site_deck.Parts, found: release.Body, trial: Optional[Trial], machine: Machine,
             raster: Raster) -> Tuple[OfMass, Size]:
     """With what they leave open, and with it the size of the balls."""
-    model, balls = choices.model, site_budget.asked(choices.balls)
+    model, balls = choices.model, choices.balls
     duration = model.duration or site_budget.duration(trial)
     model = replace(model, speed=model.speed or max(site_budget.stiff_to(trial), model.least_speed or 0.0),
                     duration=duration, film=model.film or site_deck.frame(trial.typical if trial else duration / 3))
-    size = site_budget.size(choices, parts.body.volume, soil_of(model, parts), trial, machine.jobs, raster.z.size)
+    size = site_budget.size(choices, parts.body.volume, found.measures.mean_depth, soil_of(model, parts), trial,
+                            machine.jobs, raster.z.size)
     cell = model.cell or max(found.area.cell, site_budget.three_digits(size.diameter / 2))
     return replace(choices, model=replace(model, cell=cell), balls=replace(balls, diameter=size.diameter)), size
 

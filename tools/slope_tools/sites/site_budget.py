@@ -1,4 +1,6 @@
-"""How large the balls of a site are: from a budget, and two trial runs with coarse balls that measure this machine.
+"""How large the coarsest balls of a site are, how many of its points run with finer ones, and how long that takes.
+
+Two trial runs with coarse balls measure this machine.
 
 A run takes (steps) x ((time of a step) + (balls) x (time of a ball in it)). Two trial runs with different numbers of
 balls measure these, as processor time, the seconds until the mass is at rest at the lowest and the middle rolling
@@ -8,9 +10,8 @@ import math
 import re
 import resource
 import subprocess
-from dataclasses import replace
 from pathlib import Path
-from typing import Callable, List, Mapping, NamedTuple, Optional, Tuple
+from typing import Callable, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from .. import processes
 from ..case import last_words, logs, run_folders
@@ -19,8 +20,16 @@ from ..errors import SlopeError
 from ..releases import packing
 from .site_sections import Balls, OfMass
 
-DEFAULT = 2000          # balls, if no budget is given: 12 to 18 minutes on two cores for 6 million m3 of rock
-TRIAL = 800             # balls of the trial run
+DEFAULT = 400           # of the coarsest balls, if nothing is given
+THIN = 1.3              # of these over the mean thickness of the body, at least, unless they are
+MANY = 2000             # more than so many, of a thin body
+MINUTES = 10.0          # that a study may take, if nothing is given
+SIZES = 3               # of balls, where nobody knows how long they take: fewer give no number
+MOST_SIZES = 5
+PAIRS = 12, 5           # points with the next finer balls, and with those after, where no time decides
+LEAST = 8, 4            # of them, at least: fewer say too little of what is between two sizes
+ENOUGH = 24, 8          # at most: more time is for finer balls
+TRIAL = 400             # balls of the trial run
 OTHER = 3               # times as many balls has the second trial run for a budget of time, otherwise as few
 FINER_SHARE = 0.2       # of that budget, which it takes at most
 LEAST_SHARE = 0.3       # of the time of the second trial's balls is that of the balls, not of the steps
@@ -86,6 +95,7 @@ class Size(NamedTuple):
     most: Optional[float]       # with all runs that may be added to it
     gigabytes: float            # of all runs that are active at a time
     text: str                   # the runs in words
+    finest: float               # diameter of the finest balls, m
 
 
 class Soil(NamedTuple):
@@ -123,10 +133,9 @@ def trial_diameter(balls: Balls, volume: float) -> float:
 
 
 def other_diameter(balls: Balls, trial: Trial) -> Optional[float]:
-    """Of the balls of a second trial run (m): finer where a budget of time allows it; None with too few balls."""
-    minutes = balls.minutes
-    if minutes and not balls.diameter and not balls.number and \
-            trial.seconds * OTHER ** (4 / 3) <= FINER_SHARE * 60 * minutes:
+    """Of the balls of a second trial run (m): finer where time allows it; None with too few balls."""
+    if not balls.diameter and not balls.number and \
+            trial.seconds * OTHER ** (4 / 3) <= FINER_SHARE * 60 * (balls.minutes or MINUTES):
         return three_digits(trial.diameter * OTHER ** (-1 / 3))
     return three_digits(trial.diameter * OTHER ** (1 / 3)) if trial.balls >= OTHER * FEWEST else None
 
@@ -190,14 +199,15 @@ def measure(folder: Path, deck: str, lmp: Path, values: Mapping[str, float]) -> 
 
 class Plan(NamedTuple):
     """The runs that `slope study` makes of a site."""
-    parts: List[Tuple[float, int]]      # of the paper's study: diameter as a factor of the site's, number of runs
+    paper: int                          # runs of the paper's study, on which its number rests
+    elastic: int                        # those with the largest restitution
     half_step: bool                     # and one with half the time step, which is compared by the volume to remove
     points: int                         # of the ensemble, which may become twice as many
     text: str
 
     @property
     def runs(self) -> int:
-        return sum(runs for _, runs in self.parts) + self.points
+        return self.paper + self.elastic + self.points
 
 
 def plan(choices: OfMass) -> Plan:
@@ -205,41 +215,78 @@ def plan(choices: OfMass) -> Plan:
     study, points, grounds = choices.study, choices.study.points, choices.other_grounds
     each = 1 + len(study.packing)
     elastic = each if study.largest_restitution else 0
-    parts = [(1.0, each * len(study.rolling) + len(grounds) + elastic)]
-    if study.finer > 1:     # one of the paper's study, one of the ensemble
-        parts.append((1 / study.finer, 1 + (points > 0)))
-    text = (f"{sum(runs for _, runs in parts)} runs: {len(study.rolling)} rolling resistances x {each} "
-            "packings")
+    paper = each * len(study.rolling) + len(grounds)
+    text = f"{paper + elastic} runs: {len(study.rolling)} rolling resistances x {each} packings"
     if grounds:
         text += f", {len(grounds)} on other grounds"
     if elastic:
         text += f", {elastic} with the largest restitution"
-    if study.finer > 1:
-        text += f", {'2' if points else '1'} with balls of 1/{study.finer} of the diameter"
     if points:
         text += (f"; {points} runs weighted by known events, and up to as many more where these go farther (study "
                  "--paper leaves them out)")
-    return Plan(parts, bool(choices.road.file), points, text)
+    return Plan(paper, elastic, bool(choices.road.file), points, text)
 
 
-def study_seconds(d: float, volume: float, trial: Trial, soil: Soil, wanted: Plan, jobs: int) -> Tuple[float, float]:
-    """What a study takes on this machine, with balls of diameter d in a body of that volume (m3); and at most."""
+# --- finer balls ---
+
+def pairs(points: int, sizes: int) -> List[int]:
+    """How many of so many points run with each of the finer balls, where no time decides."""
+    return [min(points, PAIRS[min(k, 1)]) for k in range(sizes - 1)]
+
+
+def within(points: int, seconds: Callable[[int], float], left: float, asked: Optional[int] = None) -> List[int]:
+    """The same where time decides: seconds(k) of a run with balls of 1/2^k of the diameter, left (s) for all of these.
+
+    asked: so many sizes, whatever they take. First one size more with the least of points, then points of the finest.
+    """
+    def cost(numbers: List[int]) -> float:
+        return sum(number * seconds(k) for k, number in enumerate(numbers, 1))
+
+    def of(sizes: int, last: int) -> List[int]:
+        """So many points of the finest, three times as many of the first of several sizes."""
+        first = max(LEAST[0], min(ENOUGH[0], 3 * last))
+        return [min(points, first if k == 0 and sizes > 2 else last) for k in range(sizes - 1)]
+
+    sizes = asked or max([1, *(one for one in range(2, MOST_SIZES + 1) if cost(of(one, LEAST[1])) <= left)])
+    fits = [last for last in range(LEAST[1], ENOUGH[1] + 1) if cost(of(sizes, last)) <= left]
+    return of(sizes, max(fits, default=LEAST[1]))
+
+
+def finer(d: float, volume: float, trial: Optional[Trial], soil: Soil, wanted: Plan, jobs: int,
+          minutes: Optional[float], asked: Optional[int]) -> List[int]:
+    """Points of a site with each of the finer balls; d: of the coarsest; minutes, asked: None: not given."""
+    if trial is None:
+        return pairs(wanted.paper + wanted.points, asked or SIZES)
+    known = trial
+    whole = 60 * (minutes or MINUTES) - study_seconds(d, volume, trial, soil, wanted, jobs, ())[0]
+
+    def one(k: int) -> float:
+        return LONGER * known.run(d / 2 ** k, packing.number(volume, d / 2 ** k), soil) + COLLECT * jobs
+
+    return within(wanted.paper + wanted.points, one, whole * jobs, asked)
+
+
+def study_seconds(d: float, volume: float, trial: Trial, soil: Soil, wanted: Plan, jobs: int,
+                  numbers: Sequence[int]) -> Tuple[float, float]:
+    """What a study takes on this machine, with coarsest balls of diameter d in a body of that volume (m3); and at most.
+
+    numbers: of points with each of the finer balls.
+    """
     def run(size: float, longer: float = 1.0) -> float:
         return trial.run(size, packing.number(volume, size), soil, longer)
 
-    total = sum(runs * run(factor * d) for factor, runs in wanted.parts)
+    total = (wanted.paper + wanted.elastic) * run(d)
+    total += sum(number * run(d / 2 ** k, LONGER) for k, number in enumerate(numbers, 1))
     if wanted.half_step:
         total += run(d, 2 * LEDGER)
     points = wanted.points * (run(d, LONGER) / jobs + COLLECT)
-    least = total / jobs + COLLECT * (wanted.runs - wanted.points + wanted.half_step) + REPORT + points
+    least = total / jobs + COLLECT * (wanted.runs - wanted.points + wanted.half_step + sum(numbers)) + REPORT + points
     return least, least + points
 
 
-def gigabytes(d: float, volume: float, cells: int, jobs: int, wanted: Plan) -> float:
-    """The memory of all runs that are active at a time, of which one is the fine run."""
-    finest = min(factor for factor, _ in wanted.parts)
-    balls = packing.number(volume, d)
-    return jobs * (PER_RUN + PER_CELL * cells) + PER_BALL * balls * (jobs - 1 + finest ** -3)
+def gigabytes(d: float, volume: float, cells: int, jobs: int, sizes: int) -> float:
+    """The memory of all runs that are active at a time, with the finest balls; sizes: of balls."""
+    return jobs * (PER_RUN + PER_CELL * cells + PER_BALL * packing.number(volume, d / 2 ** (sizes - 1)))
 
 
 def fit(budget: float, cost: Callable[[float], float], volume: float, option: str, unit: str) -> float:
@@ -266,38 +313,34 @@ def duration(trial: Optional[Trial]) -> float:
     return max(LEAST_DURATION, 10.0 * math.ceil(PATIENCE * trial.rest / 10)) if trial else LONGEST
 
 
-def asked(balls: Balls) -> Balls:
-    """With a number where no size is asked for."""
-    given = balls.diameter or balls.number or balls.minutes or balls.memory
-    return balls if given else replace(balls, number=DEFAULT)
+def size(choices: OfMass, volume: float, depth: float, soil: Soil, trial: Optional[Trial], jobs: int,
+         cells: int) -> Size:
+    """The coarsest balls by the first of diameter, number, memory that is given; SlopeError if there are none such.
 
-
-def size(choices: OfMass, volume: float, soil: Soil, trial: Optional[Trial], jobs: int, cells: int) -> Size:
-    """The balls by the first of diameter, number, minutes, memory that is given; SlopeError if there are none such.
-
-    volume: of the body, m3; cells: of the terrain.
+    volume: of the body, m3; depth: its mean thickness, m; cells: of the terrain.
     """
-    balls, wanted = asked(choices.balls), plan(choices)
-
-    def seconds(d: float) -> Tuple[float, float]:
-        assert trial is not None
-        return study_seconds(d, volume, trial, soil, wanted, jobs)
-
+    balls, wanted, levels = choices.balls, plan(choices), choices.study.levels
     if balls.diameter:
         d = balls.diameter
     elif balls.number:
         d = three_digits(packing.diameter(volume, balls.number))
-    elif balls.minutes:
-        if trial is None:
-            raise SlopeError("--minutes", "needs a LAMMPS program (LMP, --lmp) to measure this machine, --balls "
-                             "does not", f"{balls.minutes:g}")
-        d = up(fit(balls.minutes, lambda one: seconds(one)[1] / 60, volume, "--minutes", "minutes"))
+    elif balls.memory:
+        d = up(fit(balls.memory, lambda one: gigabytes(one, volume, cells, jobs, levels or SIZES), volume, "--memory",
+                   "GB"))
     else:
-        assert balls.memory
-        d = up(fit(balls.memory, lambda one: gigabytes(one, volume, cells, jobs, wanted), volume, "--memory", "GB"))
-    least, most = seconds(d) if trial else (None, None)
-    return Size(d, number_of(balls, volume, d), wanted.runs, least, most, gigabytes(d, volume, cells, jobs, wanted),
-                wanted.text)
+        least, most = (packing.diameter(volume, number) for number in (MANY, DEFAULT))
+        d = three_digits(min(most, max(least, depth / THIN)))
+    numbers = finer(d, volume, trial, soil, wanted, jobs, balls.minutes, levels)
+    seconds = study_seconds(d, volume, trial, soil, wanted, jobs, numbers) if trial else (None, None)
+    return Size(d, number_of(balls, volume, d), wanted.runs, *seconds,
+                gigabytes(d, volume, cells, jobs, 1 + len(numbers)), wanted.text + finer_text(numbers),
+                d / 2 ** len(numbers))
+
+
+def finer_text(numbers: Sequence[int]) -> str:
+    """Of how many points run with finer balls, "" of none."""
+    parts = [f"{number} with balls of 1/{2 ** k} of the diameter" for k, number in enumerate(numbers, 1)]
+    return f"; of all points {', '.join(parts)}" if parts else ""
 
 
 def number_of(balls: Balls, volume: float, d: float) -> int:

@@ -48,7 +48,7 @@ LATER = (("ground", "file"), ("ground", "table"), ("model", "film"), ("structure
 OF_MODEL = (*DERIVED, ("model", "least_speed"), ("model", "least_thick"))
 
 # keys of study that older versions had, and that have no meaning any more
-DROPPED = ("sizes",)
+DROPPED = ("sizes", "fine")
 
 # sections that `slope study` and the report read when they run, except for files, of which the folder has copies
 READ_LATER = ("project", "road", "study", "known")

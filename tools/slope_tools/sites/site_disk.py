@@ -1,5 +1,6 @@
 """How much of the disk the study of a site takes: copies of its input, snapshots, restart files and rasters."""
 from pathlib import Path
+from typing import Sequence
 
 import numpy as np
 
@@ -22,8 +23,11 @@ RUN = 200e3             # of logs, and the volume on the road, with its map
 PAGES = 12e6            # of maps, reports and film
 
 
-def study(folder: Path, choices: OfMass, found: Found) -> float:
-    """Bytes of all runs of a study, without those that may be added, and of its pages; of a site that is made."""
+def study(folder: Path, choices: OfMass, found: Found, numbers: Sequence[int]) -> float:
+    """Bytes of all runs of a study, without those that may be added, and of its pages; of a site that is made.
+
+    numbers: of points with each of the finer balls.
+    """
     d, body, plan = choices.balls.diameter, found.body, site_budget.plan(choices)
     assert d and body and choices.model.duration and choices.model.film and choices.model.cell
     of_site = packing.number(body.volume, d)
@@ -35,8 +39,8 @@ def study(folder: Path, choices: OfMass, found: Found) -> float:
     def run(factor: float) -> float:
         balls = of_site / factor ** 3
         return inputs + RUN + CELL * cells + FILES * (BASE + RESTART * balls) + FRAME * balls * frames
-    others = plan.points + plan.half_step
-    return PAGES + sum(number * run(factor) for factor, number in plan.parts) + others * run(1.0)
+    return PAGES + (plan.runs + plan.half_step) * run(1.0) + sum(
+        number * run(0.5 ** k) for k, number in enumerate(numbers, 1))
 
 
 def reached(folder: Path) -> float:

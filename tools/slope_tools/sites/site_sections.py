@@ -174,14 +174,9 @@ class Study:
 class MassStudy(Study):
     spacing: Numbers
     packing: Tuple[int, ...]
-    fine: Union[int, str]
+    levels: Optional[int]
     largest_restitution: Optional[float]
     points: int
-
-    @property
-    def finer(self) -> int:
-        """How many times smaller the balls of the fine run are; 1: there is none."""
-        return 1 if self.fine in ("no", False) else int(self.fine)
 
 
 @dataclass(frozen=True)

@@ -46,7 +46,7 @@ FALLS = ("does not stand before it is shaken", "Lost atoms", "must be the body t
 def site_warnings(found: Measures, size: Size, trial: Optional[Trial]) -> List[Finding]:
     """Warnings on a body and its balls; trial: None where there is no LAMMPS program."""
     return [*of_trial(trial), *of_volume(found.volume),
-            *of_thickness(found.mean_depth / size.diameter, found.largest_depth / size.diameter)]
+            *of_thickness(found.mean_depth / size.finest, found.largest_depth / size.finest)]
 
 
 def of_trial(trial: Optional[Trial]) -> List[Finding]:
@@ -98,7 +98,7 @@ def of_angles(angles: Mapping[str, float]) -> List[Finding]:
 
 
 def of_thickness(mean: float, largest: float) -> List[Finding]:
-    """Whether the body is thick enough; mean and largest thickness in balls."""
+    """Whether the body is thick enough; mean and largest thickness in the finest balls."""
     if mean < ROUGH:
         return [Finding("thin", {"balls": mean, "limit": ROUGH})]
     if largest < THICK:

@@ -7,8 +7,8 @@ import math
 from enum import Enum
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
-from . import entries
-from .entries import AtRoad
+from . import entries, rounding
+from .entries import AtRoad, KnownQuantile, Share
 from .withheld import Kind as Rule
 
 SHARE = 0.95            # of the known events, which stay within the volume
@@ -89,6 +89,20 @@ class Road(NamedTuple):
                                     self.brought)
 
 
+class Cause(Enum):
+    """Of a share of a band."""
+    RUNS = "chance and parameters"
+    TRANSFER = "transfer to the finest balls"
+    SIZE = "finer balls"
+
+
+def low_high(value: float, band: Sequence[Share]) -> Tuple[float, float]:
+    """The ends of a number whose causes are independent: each side by the root of the sum of the squares."""
+    below, above = (math.sqrt(math.fsum(side ** 2 for side in sides))
+                    for sides in ([one.below_m3 for one in band], [one.above_m3 for one in band]))
+    return max(0.0, value - below), value + above
+
+
 class Withheld(NamedTuple):
     """A rule that a number breaks; see withheld."""
     rule: Rule
@@ -100,35 +114,55 @@ class Withheld(NamedTuple):
                                   "bound": self.bound})
 
 
+class Size(NamedTuple):
+    """What the size of the balls leaves open.
+
+    low, high: what finer ones would change, shares of a number; floor: why there is no more than a lower bound.
+    """
+    low: float = 0.0
+    high: float = 0.0
+    floor: Optional[Reason] = None
+
+    def share(self, value: float) -> Share:
+        return Share(Cause.SIZE.value, -self.low * value, self.high * value)
+
+
 class Paper(NamedTuple):
     """The conservative volume (m3) of the paper's study; None where it is withheld.
 
-    size: why smaller balls than those of its fine run may bring more; None: they do not, or none were tried.
+    least: m3, what runs lie above as well; None: chance is not known; transfer: m3 below and above.
     """
     volume: Optional[float]
     withheld: Sequence[Withheld] = ()
-    size: Optional[Reason] = None
+    least: Optional[float] = None
+    transfer: Sequence[float] = (0.0, 0.0)
+    size: Size = Size()
 
 
 class Ensemble(NamedTuple):
-    """A weighted ensemble: (value, low, high) of its quantiles (m3) by share, of shares().
+    """A weighted ensemble: quantiles (m3) of shares().
 
     far: share of the known events beyond all runs; longest: m; stopped: why no more runs were added, None: enough were.
-    size: as of Paper; path_end: m, of a fall path that ends before the longest run: far is the share beyond it.
+    most: m3, of a run; size: as of Paper; path_end: m, of a fall path that ends before the longest run: far is the
+    share beyond it.
     """
-    quantiles: Mapping[float, Tuple[Optional[float], Optional[float], Optional[float]]]
+    quantiles: Sequence[KnownQuantile]
     far: float
     longest: float
     withheld: Sequence[Withheld] = ()
     stopped: Optional[Reason] = None
-    size: Optional[Reason] = None
+    most: float = 0.0
+    size: Size = Size()
     path_end: Optional[float] = None
+
+    def at(self, share: float) -> Optional[KnownQuantile]:
+        return next((one for one in self.quantiles if one.share == share), None)
 
 
 def shares(far: float) -> List[float]:
     """Shares of the known events whose quantiles count; far: the share that lies beyond all runs.
 
-    SHARE; where the runs reach less, also what they reach, in whole per cents: its quantile is the floor.
+    SHARE; where the runs reach less, also what they reach, in whole per cents: the number is of that share then.
     """
     within = math.floor(100 * (1 - far) + 1e-10) / 100
     return [SHARE] if within >= SHARE else [SHARE, within]
@@ -146,6 +180,7 @@ class Answer(NamedTuple):
     ensemble: Optional[Ensemble]
     road: Optional[Road]
     reasons: List[Reason]
+    band: Sequence[Share] = ()
 
     def about(self) -> entries.Headline:
         """What study.yaml says of it."""
@@ -153,25 +188,26 @@ class Answer(NamedTuple):
         return entries.Headline(
             self.kind.value, self.volume, self.share, self.low, self.high, self.source.value if self.source else None,
             entries.PaperPart(paper.volume, [one.rule.value for one in paper.withheld]) if paper else None,
-            entries.EnsemblePart(ensemble.quantiles[SHARE][0], [one.rule.value for one in ensemble.withheld],
-                                 ensemble.far) if ensemble else None,
-            self.road.about() if self.road else None, [one.about() for one in self.reasons])
+            entries.EnsemblePart(at.value if (at := ensemble.at(SHARE)) else None,
+                                 [one.rule.value for one in ensemble.withheld], ensemble.far) if ensemble else None,
+            self.road.about() if self.road else None, [one.about() for one in self.reasons], list(self.band))
 
 
 class Part(NamedTuple):
-    """What one study says alone."""
+    """What one study says alone; band: of its number, of a floor too."""
     kind: Kind
     volume: Optional[float]
     share: Optional[float] = None
-    low: Optional[float] = None
-    high: Optional[float] = None
+    band: Sequence[Share] = ()
     reasons: Sequence[Reason] = ()
 
 
 def of_paper(one: Paper, beside: bool) -> Optional[Part]:
     """beside: an ensemble stands beside it, which makes up for HARMLESS rules; None: those alone withhold it."""
     if one.volume is not None:
-        return number(Part(Kind.NUMBER, one.volume), one.size)
+        below = 0.0 if one.least is None else max(0.0, one.volume - one.least)
+        band = [Share(Cause.RUNS.value, below, 0.0), Share(Cause.TRANSFER.value, *one.transfer)]
+        return number(Part(Kind.NUMBER, one.volume, None, band), one.size)
     grave = [rule for rule in one.withheld if not (beside and rule.rule in HARMLESS)]
     if not grave:
         return None
@@ -179,7 +215,7 @@ def of_paper(one: Paper, beside: bool) -> Optional[Part]:
 
 
 def of_ensemble(one: Ensemble, road: Optional[Road]) -> Part:
-    # that no run goes as far as half of the known events makes a floor
+    # that no run goes as far as half of the known events is said beside the number of those that the runs cover
     grave = [rule for rule in one.withheld if rule.rule is not Rule.MOBILITY]
     if grave:
         return Part(Kind.WITHHELD, None, reasons=[rule.reason(Source.ENSEMBLE) for rule in grave])
@@ -189,28 +225,41 @@ def of_ensemble(one: Ensemble, road: Optional[Road]) -> Part:
         if low > MANY:
             return Part(Kind.FLOOR, 0.0, 1 - high, reasons=[Reason(Code.NOT_REACHED, road.numbers()), *stopped])
         said = [Reason(Code.ONE_SCATTER, road.numbers())] if high > MANY else []
-        return Part(Kind.NUMBER, 0.0, SHARE, 0.0, 0.0, said)
-    share = max((share for share, (value, _, _) in one.quantiles.items() if value is not None), default=0.0)
-    value, low_m3, high_m3 = one.quantiles.get(share, (0.0, None, None))
-    if share == SHARE:
-        return number(Part(Kind.NUMBER, value, share, low_m3, high_m3), one.size)
-    return Part(Kind.FLOOR, value, share, low_m3, None,
-                [Reason(Code.BEYOND, {"far": one.far, "longest_m": one.longest, **(
-                    {} if one.path_end is None else {"path_end_m": one.path_end})}), *stopped])
+        return Part(Kind.NUMBER, 0.0, SHARE, reasons=said)
+    best = max((each for each in one.quantiles if each.value is not None), key=lambda each: each.share, default=None)
+    if best is None or best.value is None:
+        return Part(Kind.FLOOR, 0.0, 0.0, reasons=[beyond(one), *stopped])
+    high = max(best.value, one.most) if best.high is None else best.high        # what no run exceeded
+    band = [Share(Cause.RUNS.value, best.value - (best.low or 0.0), high - best.value),
+            Share(Cause.TRANSFER.value, *(best.transfer or (0.0, 0.0)))]
+    part = Part(Kind.NUMBER, best.value, best.share, band)
+    if best.share != SHARE:
+        # a terrain that ends behind the road is no reason against its number
+        ends = any(reason.code is Code.TERRAIN and not (road and road.far < reason.numbers["path_m"])
+                   for reason in stopped)
+        part = part._replace(kind=Kind.FLOOR if ends else Kind.NUMBER, reasons=[beyond(one), *stopped])
+    return number(part, one.size)
 
 
-def number(part: Part, size: Optional[Reason]) -> Part:
-    """A number, which is a floor where smaller balls may bring more; nothing stays nothing."""
-    if size is None or not part.volume:
+def beyond(one: Ensemble) -> Reason:
+    """That known events go beyond all runs."""
+    end = {} if one.path_end is None else {"path_end_m": one.path_end}
+    return Reason(Code.BEYOND, {"far": one.far, "longest_m": one.longest, "most_m3": one.most, **end})
+
+
+def number(part: Part, size: Size) -> Part:
+    """A number with what finer balls would change; a floor where that is not known; nothing stays nothing."""
+    if not part.volume:
         return part
-    return part._replace(kind=Kind.FLOOR, high=None, reasons=[size])
+    part = part._replace(band=[*part.band, size.share(part.volume)])
+    return part if size.floor is None else part._replace(kind=Kind.FLOOR, reasons=[*part.reasons, size.floor])
 
 
 def of(paper: Optional[Paper], ensemble: Optional[Ensemble], road: Optional[Road]) -> Optional[Answer]:
     """The larger of both; None without either.
 
     Where one of them is withheld for a reason that the other does not make up for, the other is a floor; so is 0 where
-    a run reaches the road.
+    a run reaches the road. A floor is the lower end of the number's band, rounded down.
     """
     parts: List[Tuple[Source, Part]] = []
     if paper and (mine := of_paper(paper, ensemble is not None)):
@@ -224,17 +273,20 @@ def of(paper: Optional[Paper], ensemble: Optional[Ensemble], road: Optional[Road
     if not known:
         return Answer(Kind.WITHHELD, None, None, None, None, None, paper, ensemble, road, reasons)
     source, best = max(known, key=lambda one: one[1].volume or 0.0)
-    some = []
-    if road and not best.volume:
+    volume, some = best.volume or 0.0, []
+    if road and not volume:
         if not road.missed:
             some = [road.some()]
         elif min(road.reached) > MANY and not any(one.code is Code.NOT_REACHED for one in reasons):
             some = [Reason(Code.NOT_REACHED, road.numbers())]
     open_ = bool(some) or any(
         part.kind is Kind.FLOOR or part.kind is Kind.WITHHELD and not few(part) for _, part in parts)
-    kind = Kind.FLOOR if open_ else Kind.NUMBER if best.volume else Kind.NOTHING
-    return Answer(kind, best.volume, best.share, best.low, None if open_ else best.high, source, paper, ensemble, road,
-                  [*some, *reasons])
+    kind = Kind.FLOOR if open_ else Kind.NUMBER if volume else Kind.NOTHING
+    low, high = low_high(volume, best.band)
+    if open_:
+        low = rounding.down(low, rounding.place_of_digits(low))
+    return Answer(kind, low if open_ else volume, best.share, low, None if open_ else high, source, paper, ensemble,
+                  road, [*some, *reasons], best.band)
 
 
 def few(part: Part) -> bool:

@@ -11,7 +11,7 @@ in m3 of ground (bulk); every function is pure.
 import functools
 import math
 from dataclasses import dataclass
-from typing import Callable, Dict, List, Optional, Sequence, Tuple
+from typing import Dict, List, Optional, Sequence, Tuple
 
 from scipy import stats
 
@@ -71,11 +71,10 @@ class Scatter:
 
 @dataclass(frozen=True)
 class ConservativeVolume:
-    """volume = mean + chance + size (m3); chance is None without repeats, size None without smaller balls."""
+    """volume = mean + chance (m3); chance is None without repeats."""
     volume: float
     mean: float
     chance: Optional[float]
-    size: Optional[float]
     combination: str
     repeats: int                    # runs of that combination
     runs: int                       # of all
@@ -97,9 +96,9 @@ class ConservativeVolume:
         return min(rounding.place(self.scatter.deviation), digits)
 
     def rounded(self) -> Dict[str, Optional[float]]:
-        """volume, mean, chance and size, each rounded up to what is known, so that the rounded parts add up."""
+        """volume, mean and chance, each rounded up to what is known, so that the rounded parts add up."""
         parts = {name: None if value is None else rounding.up(value, self.place)
-                 for name, value in (("mean", self.mean), ("chance", self.chance), ("size", self.size))}
+                 for name, value in (("mean", self.mean), ("chance", self.chance))}
         total = math.fsum(part for part in parts.values() if part is not None)
         return {"volume": rounding.nearest(total, self.place), **parts}
 
@@ -205,9 +204,8 @@ def odd_one(combinations: Sequence[Combination], name: str) -> Optional[Tuple[fl
 
 # --- the volume ---
 
-def predict(combinations: Sequence[Combination],
-            added: Optional[Callable[[float], float]] = None) -> ConservativeVolume:
-    """The volume that the next run stays below, and its parts; added: what smaller balls add to a volume (m3).
+def predict(combinations: Sequence[Combination]) -> ConservativeVolume:
+    """The volume that the next run stays below, and its parts.
 
     The combination with the largest sum of mean and chance governs; with equal numbers of runs that is the one with the
     largest mean. If several means are about the same, the largest is high by chance, so the volume is conservative
@@ -217,9 +215,7 @@ def predict(combinations: Sequence[Combination],
     for one in combinations:
         scatter = scatter_of(combinations, one)
         chance = scatter.chance(one.runs) if scatter else None
-        volume = one.mean + (chance or 0.0)
-        size = added(volume) if added else None
-        found.append(ConservativeVolume(volume + (size or 0.0), one.mean, chance, size, one.name, one.runs,
+        found.append(ConservativeVolume(one.mean + (chance or 0.0), one.mean, chance, one.name, one.runs,
                                         sum(other.runs for other in combinations), scatter))
     return max(found, key=lambda each: each.volume)
 

@@ -15,13 +15,14 @@ class KnownQuantile(NamedTuple):
     """That of known events, which may have no value at all.
 
     gap: the values if the events that end where no run does count as the runs on either side, where these differ; the
-    value is the larger of them then.
+    value is the larger of them then. transfer: how far the value may lie below and above, as runs are of several sizes.
     """
     share: float
     value: Optional[float]
     low: Optional[float]
     high: Optional[float]
     gap: Optional[Sequence[float]] = None
+    transfer: Optional[Sequence[float]] = None
 
 
 @dataclass(frozen=True)
@@ -112,6 +113,13 @@ class HeadlineRoad:
     brought: AtRoad
 
 
+class Share(NamedTuple):
+    """Of a band: how far (m3) the number may lie below and above for one cause (answer.Cause)."""
+    cause: str
+    below_m3: float
+    above_m3: float
+
+
 @dataclass(frozen=True)
 class Headline:
     """The number that counts (answer.Answer): see the page on `slope study`."""
@@ -125,3 +133,4 @@ class Headline:
     ensemble: Optional[EnsemblePart]
     road: Optional[HeadlineRoad]
     reasons: List[Dict[str, Any]]   # answer.Reason.about()
+    band: List[Share]

@@ -22,6 +22,11 @@ def up(value: float, step: float) -> float:
     return nearest(math.ceil(value / step - 1e-9) * step, step)
 
 
+def down(value: float, step: float) -> float:
+    """The same rounded down."""
+    return nearest(math.floor(value / step + 1e-9) * step, step)
+
+
 def nearest(value: float, step: float) -> float:
     """A value rounded to a multiple of a power of ten."""
     return round(value, -math.floor(math.log10(step) + 0.5))

@@ -1,16 +1,16 @@
 """What is ahead of the study of a site: which of its runs are there, how many are to be made, how long they take."""
 from pathlib import Path
-from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple
+from typing import List, NamedTuple, Optional, Sequence
 
 from .. import disk
 from ..case.data_files import data_files
 from ..ensembles import farther, known_study, sample
-from ..runs import dependencies, jobs, repeats, store
+from ..runs import dependencies, repeats, store
 from ..sites import site_budget, site_choices
-from ..sites.site_budget import Soil
 from ..sites.site_choices import Site
 from ..statistics import designs
-from . import fine_runs, site_study, study
+from ..tables.sizes import VARIABLE
+from . import site_study, size_runs, study
 from .setup import Setup
 
 SEED = 1        # of the design, as of `slope study --seed`
@@ -35,12 +35,12 @@ class Ahead(NamedTuple):
         return said + (f"; up to {self.more} more where known events go farther" if self.more else "")
 
 
-def of_site(site: Site, engine: Setup, points: int, asked: Optional[str] = None) -> Ahead:
-    """Of the study that site.yaml describes; points: of the ensemble, 0: the paper's study alone; asked: of --fine.
+def of_site(site: Site, engine: Setup, points: int, asked: site_study.Asked = site_study.Asked()) -> Ahead:
+    """Of the study that site.yaml describes; points: of the ensemble, 0: the paper's study alone.
 
     SlopeError on bad input, and if a run is there with other data and engine.anew does not ask for it again.
     """
-    planned = site_study.plan(site, engine, asked)
+    planned = site_study.plan(site, engine)
     setup = planned.setup
     files = data_files(setup.deck, {**planned.settings, **planned.repeated})
     depends = dependencies.Dependencies(setup.deck, {name: disk.sha256(path) for name, path in files.items()},
@@ -49,25 +49,26 @@ def of_site(site: Site, engine: Setup, points: int, asked: Optional[str] = None)
     runs.admit(planned.runs)
     once = store.once(planned.runs)
     wanted = [one for one in once if not one.finished]
-    there, more, fine = len(once) - len(wanted), 0, 0
+    there, more = len(once) - len(wanted), 0
     design: List[repeats.Repeat] = []
-    factor = fine_runs.factor_of(asked, planned.choices.study.finer)
+    points_at = [*planned.todo]
     if points:
         todo, more = points_of(planned, points)
         runs.admit(todo)
         once = store.once(todo)
         design = [one for one in once if not one.finished]
         there += len(once) - len(design)
-        if factor > 1:
-            fine = int(bool(design) or not any(fine_of(setup, runs, factor, todo, planned.variables)))
-            there += 1 - fine
-    new = len(wanted) + len(design) + fine
-    half, fines = (sum(one in several for one in wanted) for several in (planned.half, planned.fine))
-    parts = [(1.0, len(wanted) - half - fines)]
-    if fines + fine:
-        parts.append((1 / factor, fines + fine))
+        points_at += todo
+    finer = site_study.wanted(site, planned, asked, points)
+    made = [sum(size_runs.SizeRun(setup.runs, one, value).made(runs) for one in points_at)
+            for value in finer.values[1:]]
+    numbers = [max(0, number - done) for number, done in zip(finer.points, made)]
+    there += sum(min(number, done) for number, done in zip(finer.points, made))
+    new = len(wanted) + len(design) + sum(numbers)
+    half = sum(one in planned.half for one in wanted)
     known = new and setup.engine == "local"
-    return Ahead(there, new, seconds(site, planned, parts, half > 0, len(design)) if known else None, more)
+    return Ahead(there, new, seconds(site, planned, len(wanted) - half, half > 0, len(design), numbers)
+                 if known else None, more)
 
 
 def points_of(planned: site_study.Planned, points: int):
@@ -85,24 +86,13 @@ def points_of(planned: site_study.Planned, points: int):
     return todo, int(farther.MOST * points) - added.number
 
 
-def fine_of(setup: Setup, runs: store.Store, factor: int, todo: Sequence[repeats.Repeat], variables: Dict[str, str]):
-    """Whether there is a fine run at the values of each run of the ensemble."""
-    for one in todo:
-        found = fine_runs.smaller(setup.runs, one.combination, factor, variables[fine_runs.VARIABLE])
-        runs.admit(found)
-        yield found[0].finished
-
-
-def seconds(site: Site, planned: site_study.Planned, parts: List[Tuple[float, int]], half: bool,
-            points: int) -> Optional[float]:
-    """What runs take on this machine; parts, half, points: as of site_budget.Plan."""
+def seconds(site: Site, planned: site_study.Planned, paper: int, half: bool, points: int,
+            numbers: Sequence[int]) -> Optional[float]:
+    """What runs take on this machine; paper, half, points: as of site_budget.Plan; numbers: with finer balls."""
     found = site.found
     if found.trial is None or found.body is None:
         return None
-    d, density, thick, speed = (float(planned.variables[name]) for name in ("d", "density", "thick", "speed"))
-    setup, spacing = planned.setup, site.choices.model.spacing
-    closest = min([spacing, *(zone.values.get("spacing", spacing) for zone in found.zones)])
-    wanted = site_budget.plan(planned.choices)._replace(parts=parts, half_step=half, points=points)
-    soil = Soil(density, thick, speed, closest)
-    return site_budget.study_seconds(d, found.body.volume, found.trial, soil, wanted,
-                                     setup.jobs or max(1, jobs.cores() // setup.ranks))[0]
+    wanted = site_budget.plan(planned.choices)._replace(paper=paper, elastic=0, half_step=half, points=points)
+    return site_budget.study_seconds(float(planned.variables[VARIABLE]), found.body.volume, found.trial,
+                                     site_study.soil_of(site, planned), wanted, site_study.jobs_of(planned.setup),
+                                     numbers)[0]

@@ -6,18 +6,21 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
+import numpy as np
+
 from ..case.settings import as_number
 from ..deposits import travel_shares
 from ..ensembles import ensemble
+from ..ensembles.known_events import TAILS, Draw
 from ..findings import Finding, finding
 from ..mobility.exceedance import Mobility
 from ..runs import repeats
-from ..runs.repeats import Repeat
 from ..seismic import chain_files
 from ..statistics.conservative_volume import Scatter
-from ..tables import (answered, combinations, elastic, ensemble_types, fine_run, intensity, judged, quantities,
-                      road_runs, step_check, study_types, usable, withheld_words)
+from ..tables import (answered, combinations, elastic, ensemble_types, intensity, judged, quantities, road_runs,
+                      step_check, study_types, usable, withheld_words)
 from ..tables.rows import Finished, Row, finished_of
+from .size_runs import AtFinest
 
 # variables that calibrated values do not depend on: chance, time, what is written; of the size of the balls see LIKE
 OF_ITS_OWN = ("d", "duration", "step", "packing", "seed", "ground_seed", "xoffset", "yoffset", "film", "out",
@@ -35,7 +38,7 @@ class Questions(NamedTuple):
     more_than: Sequence[float] = ()                 # m3, volumes exceeded at each intensity
     notes: Sequence[Any] = ()                       # warnings of what was before the study, which go into its results
     site: Optional[Path] = None                     # folder of the site whose study it is
-    fine: Optional[Repeat] = None                   # the run with smaller balls; None: none was asked for
+    sizes: Optional[AtFinest] = None                # runs with finer balls; None: none were asked for
     step: Optional[step_check.Step] = None          # the run with half the time step
     most_elastic: Optional[elastic.Made] = None     # the runs with the largest restitution
     method: str = ""                                # of a site's study, in words
@@ -56,7 +59,8 @@ class Read(NamedTuple):
 
     rows: one for each run, finished or failed; road: whether there is one; events: what known events did of the mass;
     mobility: of the mass, for the weights of an ensemble; emulated: ensemble.emulate() of it; observed: the mapped
-    deposit, as study.yaml has it; fine: the run with smaller balls; elastic: those with the largest restitution;
+    deposit, as study.yaml has it; size: what balls of several sizes say; draw: values of
+    transferred runs as they may be, None of one size; elastic: those with the largest restitution;
     problem: why there are no maps over all runs; case: for the command that mends a reason, None where no run finished;
     balls_thick: over the thickness of the body; defaults: of the deck's variables.
     """
@@ -66,7 +70,8 @@ class Read(NamedTuple):
     mobility: Optional[Mobility]
     emulated: Optional[ensemble.Emulated]
     observed: Optional[study_types.Observed]
-    fine: Optional[fine_run.Fine]
+    size: Optional[study_types.Size]
+    draw: Optional[Draw]
     elastic: Optional[elastic.Runs]
     problem: Optional[str]
     case: Optional[withheld_words.Case]
@@ -100,26 +105,25 @@ def evaluate(questions: Questions, read: Read, header: study_types.Header) -> Ou
     keys = ["front_m", "thickness_m", "max_thickness_m", "max_speed_m_s"]
     keys += [key for key in (travel_shares.DISTANCE, "length_m") if key in names]
     warnings = warnings_of(questions, read)
-    size = fine_run.evaluate(read.fine) if read.fine and finished else None
     several = best = step = at_intensities = None
     if order:
         assert read.emulated is not None
-        several = ensemble.evaluate(order, rows, read.mobility, read.emulated)
+        several = ensemble.evaluate(order, rows, read.mobility, read.emulated, read.draw)
         if several:
             several = several._replace(about=replace(several.about, withheld=reasons(read)))
     elif read.road and finished:
-        best, step = conservative(questions, read, groups, size)
+        best, step = conservative(questions, read, groups)
     if finished and not order:      # drawn values have one run
         at_intensities = intensity.evaluate(questions.intensity, questions.more_than, questions.settings, read.road,
                                             groups)
     if at_intensities and best:
         best = replace(best, doubts=[*best.doubts, *intensity.doubts(at_intensities)])
-    chain = chain_files.evaluate(questions.chain, rows, reasons(read), size) \
+    chain = chain_files.evaluate(questions.chain, rows, reasons(read), read.size is not None) \
         if questions.chain and several and finished else None
     weighted = several.about if several else None
     about = study_types.Study(
         study=header, largest={key: largest(finished, key) for key in keys if finished},
-        farthest=travel_shares.farthest(finished).run if finished else None, conservative=best, size=size,
+        farthest=travel_shares.farthest(finished).run if finished else None, conservative=best, size=read.size,
         ensemble=weighted, step=step, largest_restitution=elastic.evaluate(read.elastic) if read.elastic else None,
         scatter={name: {"deviation": one.deviation, "degrees_of_freedom": one.degrees_of_freedom} if one else None
                  for name, one in scatters.items()},
@@ -175,17 +179,24 @@ def reasons(read: Read) -> List[Finding]:
     return usable.reasons_of_ensemble(read.rows, read.events, read.case._replace(sampled=True)) if read.road else []
 
 
-def conservative(questions: Questions, read: Read, groups: Sequence[combinations.Group],
-                 size: Optional[study_types.Size]) -> Tuple[study_types.Conservative, Optional[study_types.HalfStep]]:
-    """The entries of the conservative volume and of the run with half the time step; size: of the fine run."""
-    best = combinations.conservative(questions.settings, read.rows, groups,
-                                     fine_run.read_effect(size, quantities.REMOVE))
+def conservative(questions: Questions, read: Read, groups: Sequence[combinations.Group]) -> Tuple[
+        study_types.Conservative, Optional[study_types.HalfStep]]:
+    """The entries of the conservative volume and of the run with half the time step."""
+    best = combinations.conservative(questions.settings, read.rows, groups)
     doubts, step = [*best.doubts, *unseen(questions.repeated, read.defaults)], None
     if questions.step:
         step, more = step_check.compare(questions.step, groups)
         doubts += more
     assert read.case
-    return usable.judge(replace(best, doubts=doubts), read.rows, read.events, read.case), step
+    best = replace(best, doubts=doubts, transfer_m3=transfer(best, groups, read.draw) if read.draw else None)
+    return usable.judge(best, read.rows, read.events, read.case), step
+
+
+def transfer(best: study_types.Conservative, groups: Sequence[combinations.Group], draw: Draw) -> List[float]:
+    """How far (m3) the mean of the governing combination may lie below and above, as its runs are transferred."""
+    rows = next(group.rows for group in groups if group.name == best.combination)
+    low, high = np.quantile(draw(rows, quantities.REMOVE).mean(axis=1), TAILS)
+    return [max(0.0, best.mean_m3 - float(low)), max(0.0, float(high) - best.mean_m3)]
 
 
 def unseen(repeated: Mapping[str, Sequence[str]], defaults: Mapping[str, str]) -> List[Finding]:

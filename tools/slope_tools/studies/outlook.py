@@ -1,5 +1,4 @@
 """What the study of a site can say, before it takes its time: by fall path, known events, road, balls and disk."""
-import math
 from pathlib import Path
 from typing import List, Optional
 
@@ -12,12 +11,11 @@ from ..geometry import extent
 from ..mobility import body, known, results, road
 from ..mobility.exceedance import Mobility
 from ..mobility.fall_path import TERRAIN, FallPath
-from ..sites import site_choices, site_disk, site_roads
-from ..sites.site_found import Found
-from ..sites.site_sections import OfMass
-from ..statistics.size_effect import RESOLVED
+from ..sites import site_budget, site_choices, site_disk, site_roads
 from ..survey import roads
 from ..survey.rasters import Raster
+from . import site_study
+from .setup import Setup
 
 SIDES = (("west", "east"), ("south", "north"))
 FARTHEST = 20.0         # times as far as the path may the end of known events be looked for
@@ -44,8 +42,10 @@ def lines(folder: Path) -> List[str]:
                                     local=True).polygon
             said.append(road_text(counts, road.at_road(counts.path, lane), name))
         floors += [why] if (why := terrain_ends(counts, mass.raster)) else []
-    floors += [why] if (why := coarse(choices, found)) else []
-    said.append(f"the study takes about {site_disk.text(site_disk.study(folder, choices, found))} of disk")
+    numbers = site_study.wanted(site, site_study.plan(site, Setup(Path(), Path())), site_study.Asked(),
+                                choices.study.points).points
+    floors += [why] if (why := coarse(1 + len(numbers))) else []
+    said.append(f"the study takes about {site_disk.text(site_disk.study(folder, choices, found, numbers))} of disk")
     if floors:
         said.append(f"the number will be at best a floor, at least so much, because {'; and because '.join(floors)}")
     return said
@@ -93,13 +93,9 @@ def side_of(path: FallPath, raster: Raster) -> str:
     return " and the ".join(sorted(near, key=lambda name: name in SIDES[0]))
 
 
-def coarse(choices: OfMass, found: Found) -> Optional[str]:
-    """Why balls that are smaller than the finest may bring more, and how many would tell; None where they do not."""
-    depth = found.body and found.body.mean_depth
-    assert depth and choices.balls.diameter
-    thick = choices.study.finer * depth / choices.balls.diameter
-    if thick >= RESOLVED:
+def coarse(number: int) -> Optional[str]:
+    """Why so many sizes of balls are too few for a number; None where they are enough."""
+    if number >= site_budget.SIZES:
         return None
-    balls = math.ceil(found.balls * (RESOLVED / thick) ** 3)
-    return (f"the finest balls are {rounded(thick, 2)} over the mean thickness of the body, {RESOLVED:g} show what "
-            f"smaller ones bring (--balls {float(f'{balls:.2g}'):.0f})")
+    return (f"balls of {number} size{'s' * (number > 1)} are run, {site_budget.SIZES} show what finer ones bring "
+            f"(study --levels {site_budget.SIZES}, or more --minutes)")

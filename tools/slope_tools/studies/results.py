@@ -10,11 +10,10 @@ from ..ensembles import ensemble, known_events
 from ..mobility.exceedance import Mobility
 from ..runs import jobs
 from ..runs.repeats import Repeat
-from ..statistics import conservative_volume
 from ..survey import roads
-from ..tables import combinations, elastic, fine_run, next_step, study_maps, study_types, usable, withheld_words
+from ..tables import elastic, next_step, study_maps, study_types, usable, withheld_words
 from ..tables.rows import Finished, Row, finished_of
-from . import body_depth, console, files, mapped
+from . import body_depth, console, files, mapped, size_runs
 from .outcome import Questions, Read, evaluate
 from .run_rows import placed, prefix_of, rows_of, terrain_of, terrain_place
 from .setup import Road, Setup
@@ -25,12 +24,15 @@ def collect(setup: Setup, questions: Questions, todo: Sequence[Repeat], work: jo
     ensemble finished."""
     if questions.order and all(run.error for run in todo):
         return None     # study.perform says so
-    rows, done = rows_of(setup, todo), [run for run in todo if not run.error]
+    at = questions.sizes or size_runs.AtFinest(size_runs.Made(todo, {}), None)
+    todo = at.runs(todo)
+    raw, done = rows_of(setup, todo), [run for run in todo if not run.error]
+    rows = at.rows(raw)
     first = done[0] if done else None
     place = terrain_place(first) if first else None
     maps = study_maps.write([study_maps.Source(run.name, prefix_of(run), not run.batch) for run in done],
                             questions.thresholds, setup.output, place)
-    found = read(setup, questions, todo, rows, maps.problem, work.defaults)
+    found = read(setup, questions, todo, rows, maps.problem, work.defaults)._replace(draw=at.draw(raw))
     header = study_types.Header(
         deck=setup.deck.name, known=questions.among, set=listed(questions.settings), repeat=listed(questions.repeated),
         runs=len(found.rows), finished=len(found.finished), method=questions.method, ranks=work.ranks, jobs=work.jobs,
@@ -41,6 +43,7 @@ def collect(setup: Setup, questions: Questions, todo: Sequence[Repeat], work: jo
     outcome = evaluate(questions, found, header)
     made = next_step.Made(outcome.about, setup.output, given=setup.given)
     step = next_step.of_studies([made], outcome.about.headline)
+    size_runs.write(setup, at, questions.settings, questions.repeated, work.defaults)
     about = files.write(outcome, replace(outcome.about, envelope=maps.envelope, exceedance=maps.exceedance,
                                          next_step=step.about() if step else None), setup.output, place)
     console.tell(outcome, about, setup.output, setup.tell, setup.warn)
@@ -59,17 +62,16 @@ def read(setup: Setup, questions: Questions, todo: Sequence[Repeat], rows: Seque
                                     [terrain_of(run.folder, run.log) for run in todo])
     first, finished = next((run for run in todo if not run.error), None), finished_of(rows)
     row = finished[0] if finished else None
-    events = mobility = fine = None
+    events = mobility = None
     if first and row and setup.road:
         events = events_of(setup, first, row, questions.among)
     if row and questions.order and questions.order.condition:
         summary = run_folders.summary_of(setup.output, row.summary)
         mobility = known_events.mobility_of(questions.order.condition, summary.parent, summary)
     emulated = emulated_of(setup, questions.order, rows, mobility) if questions.order else None
-    if row and questions.fine:
-        fine = compared(setup, questions.fine, rows, None if questions.order else combinations.grouped(rows))
     most = elastic.read(questions.most_elastic, rows, setup.output) if row and questions.most_elastic else None
-    return Read(rows, setup.road is not None, events, mobility, emulated, observed, fine, most, problem,
+    size = size_runs.about(setup, questions.sizes) if row and questions.sizes else None
+    return Read(rows, setup.road is not None, events, mobility, emulated, observed, size, None, most, problem,
                 case_of(setup, questions, row) if row else None,
                 body_depth.in_balls(setup, finished), defaults)
 
@@ -81,28 +83,6 @@ def emulated_of(setup: Setup, order: ensemble.Order, rows: Sequence[Row],
                mobility and [mobility.outside, mobility.path.length, mobility.curves[mobility.chosen]]]
     return records.read(ensemble.Emulated, kept.value(setup.output / ".emulated.json", made_of, lambda: records.plain(
         ensemble.emulate(order, rows, mobility))))
-
-
-def compared(setup: Setup, fine: Repeat, rows: Sequence[Row],
-             groups: Optional[Sequence[combinations.Group]]) -> fine_run.Fine:
-    """The fine run beside the rows with the same values; groups: of a study with repeats, None of an ensemble."""
-    if fine.error:
-        return fine_run.Fine(None, (), 0.0, lambda key: None, f"{fine.name}: {fine.error}")
-    [row] = finished_of(rows_of(setup, [fine]))
-    coarse = [one for one in finished_of(rows) if all(row.variables[name] == one.variables[name]
-                                                      for name in one.set if name != fine_run.VARIABLE)]
-    same = next((group for group in groups or () if coarse and group.set == coarse[0].set), None)
-    coarse = same.rows if same else [one for one in coarse if not one.repeat]
-
-    def scatter(key: str) -> Optional[conservative_volume.Scatter]:
-        if same is None:
-            return None
-        mine = same.of(key)
-        parts = [mine, *(group.of(key) for group in groups or () if group is not same
-                         and all(row.value(key) is not None for row in group.rows))]
-        return conservative_volume.scatter_of(parts, mine) if mine.mean > 0 else conservative_volume.pooled(parts)
-
-    return fine_run.Fine(row, coarse, body_depth.mean(setup, row), scatter)
 
 
 def events_of(setup: Setup, run: Repeat, row: Finished, among: Mapping[str, Any]) -> Optional[usable.Events]:

@@ -69,7 +69,7 @@ def plan(setup: Setup, base: Mapping[str, str], kinds) -> List[Trial]:
                     continue
                 todo.append(Trial(setup.runs, {**base, name: value}, kind, name))
     if len(todo) == 1:
-        raise SlopeError("--levels, --repeat", "must give a value that is not the base's")
+        raise SlopeError("--try, --repeat", "must give a value that is not the base's")
     return todo
 
 

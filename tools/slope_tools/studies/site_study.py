@@ -1,29 +1,32 @@
-"""The standard study of a site: a fine run, half the step, rolling resistances, repeats, the mapped deposit.
+"""The standard study of a site: rolling resistances, repeats, half the step, finer balls, the mapped deposit.
 
-Order of the work: plan all runs, make them (study), what the fine run and half the step change, the study with both
-(results), the score of the run that the answer rests on. The same call resumes it.
+Order of the work: plan all runs, make them (study), then those with finer balls (size_runs), the study of all at the
+finest size (results), the score of the run that the answer rests on. The same call resumes it.
 """
+import contextlib
+import re
 import shutil
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from shlex import quote
-from typing import Any, Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence
+from typing import Any, Callable, Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence
 
 from .. import disk, schemas
 from ..case import decks, run_folders
 from ..case.settings import middle as middle_of
 from ..errors import SlopeError
 from ..findings import Finding, finding
-from ..runs import repeats
+from ..runs import jobs, repeats
 from ..schemas import FINDINGS
-from ..sites import ground, site_choices, site_deck, site_roads, site_warnings
+from ..sites import ground, site_budget, site_choices, site_deck, site_roads, site_warnings
 from ..sites.site_choices import Folder, Site
 from ..sites.site_layers import OBSERVED
 from ..sites.site_sections import PACKING, Choices, OfMass
 from ..tables import elastic, energy, named_run, study_types
 from ..tables.rows import Failed, finished_of
+from ..tables.sizes import VARIABLE
 from ..tables.step_check import Step, half_of
-from . import fine_runs, mapped, results, study
+from . import mapped, results, size_runs, study
 from .run_rows import rows_of
 from .setup import Road, Setup
 
@@ -36,6 +39,22 @@ THRESHOLDS = (0.1, 0.5, 1.0)        # m, of the maps of exceedance
 def words(numbers: Iterable[float]) -> List[str]:
     """Numbers as values of a deck's variable."""
     return [f"{value:.10g}" for value in numbers]
+
+
+class Asked(NamedTuple):
+    """Of the options of the command: sizes of balls, and the time of the study; None: as site.yaml says."""
+    levels: Optional[int] = None
+    minutes: Optional[float] = None
+
+
+def asked_of(levels: Optional[str], minutes: Optional[float]) -> Asked:
+    """Of the words of options; SlopeError if they are none."""
+    if levels is not None and not re.fullmatch(f"[1-{site_budget.MOST_SIZES}]", levels):
+        raise SlopeError(size_runs.OPTION, f"must be 1 to {site_budget.MOST_SIZES} for a site, how many sizes of balls",
+                         levels)
+    if minutes is not None and minutes <= 0:
+        raise SlopeError("--minutes", "must be > 0", f"{minutes:g}")
+    return Asked(int(levels) if levels else None, minutes)
 
 
 class Done(NamedTuple):
@@ -52,19 +71,31 @@ class Planned(NamedTuple):
     variables: Dict[str, str]               # of the deck
     settings: Dict[str, List[str]]
     repeated: Dict[str, List[str]]
-    middle: str                             # rolling resistance of the fine run and of half the step
+    middle: str                             # rolling resistance of half the step
     todo: List[repeats.Repeat]
-    fine: List[repeats.Repeat]
     half: List[repeats.Repeat]
     elastics: List[repeats.Repeat]          # with the largest restitution
 
     @property
     def runs(self) -> List[repeats.Repeat]:
-        return [*self.todo, *self.fine, *self.half, *self.elastics]
+        return [*self.todo, *self.half, *self.elastics]
 
 
-def plan(site: Site, engine: Setup, asked: Optional[str] = None) -> Planned:
-    """All runs of a site by the paper's method; asked: of --fine."""
+@dataclass
+class Beside:
+    """Of an ensemble of a site: its runs with finer balls, and the paper's study beside it, whose points share them."""
+    planned: Optional[Planned]
+    wanted: size_runs.Wanted
+    at: Optional[size_runs.AtFinest] = None     # once the ensemble has made them
+
+    @property
+    def found(self) -> size_runs.AtFinest:
+        assert self.at
+        return self.at
+
+
+def plan(site: Site, engine: Setup) -> Planned:
+    """All runs of a site by the paper's method, but for those with finer balls."""
     folder, choices = site.folder, site.choices
     deck, road, several = folder / site_deck.NAME, choices.road, choices.study
     setup = engine._replace(deck=deck, output=site_roads.results(site) / STUDY, site=folder, road=None)
@@ -81,35 +112,79 @@ def plan(site: Site, engine: Setup, asked: Optional[str] = None) -> Planned:
     todo = repeats.plan(setup.runs, settings, repeated, variables, others)
     if others:
         settings["spacing"] = list(dict.fromkeys([*settings["spacing"], *(one["spacing"] for one in others)]))
-    fine = fine_runs.in_the_middle(setup, fine_runs.factor_of(asked, several.finer), {"rolling": [middle]}, variables)
     half = half_steps(setup, middle, variables) if setup.road else []
     elastics = elastic_runs(setup, several.largest_restitution, settings["rolling"], repeated, variables)
-    return Planned(choices, setup, variables, settings, repeated, middle, todo, fine, half, elastics)
+    return Planned(choices, setup, variables, settings, repeated, middle, todo, half, elastics)
 
 
-def run(site: Site, engine: Setup, method: str, asked: Optional[str] = None,
-        roads: Sequence[Mapping[str, Any]] = (), alone: bool = True) -> Done:
-    """Make or continue all runs of a site, and their results.
+def wanted(site: Site, planned: Planned, asked: Asked, points=0, alone=False) -> size_runs.Wanted:
+    """The runs with finer balls; points: of the ensemble beside, or, alone, of one without the paper's study."""
+    found, levels = site.found, asked.levels or planned.choices.study.levels
+    plan_ = site_budget.plan(planned.choices)._replace(points=points)
+    if alone:
+        plan_ = plan_._replace(paper=0, elastic=0, half_step=False)
+    numbers = site_budget.finer(
+        float(planned.variables[VARIABLE]), found.body.volume, found.trial, soil_of(site, planned), plan_,
+        jobs_of(planned.setup), asked.minutes or planned.choices.balls.minutes, levels) if found.body else \
+        site_budget.pairs(plan_.paper + points, levels or site_budget.SIZES)
+    return size_runs.halved(planned.variables[VARIABLE], numbers)
 
-    engine: how the runs are made; its deck, output and road do not count; method: of the study, in words; asked: of
-    --fine; roads, alone: of Questions. Raises SlopeError on bad input, and if no run of the study finished.
+
+def soil_of(site: Site, planned: Planned) -> site_budget.Soil:
+    """What the step of a site's deck depends on."""
+    density, thick, speed = (float(planned.variables[name]) for name in ("density", "thick", "speed"))
+    spacing = site.choices.model.spacing
+    return site_budget.Soil(density, thick, speed, min(
+        [spacing, *(zone.values.get("spacing", spacing) for zone in site.found.zones)]))
+
+
+def jobs_of(setup: Setup) -> int:
+    """Runs at a time."""
+    return setup.jobs or max(1, jobs.cores() // setup.ranks)
+
+
+def make(planned: Planned) -> None:
+    """Make or continue the runs of a site with the coarsest balls; what failed is known by them."""
+    with contextlib.suppress(study.RunsFailed):     # collect() says so
+        study.perform(planned.setup, {**planned.settings, **planned.repeated}, planned.runs, lambda *_: None,
+                      first=planned.half)
+
+
+def run(site: Site, engine: Setup, method: str, asked: Asked, roads: Sequence[Mapping[str, Any]] = ()) -> Done:
+    """Make or continue all runs of a site by the paper's method, and their results.
+
+    engine: how the runs are made; its deck, output and road do not count; method: of the study, in words; roads: of
+    Questions. Raises SlopeError on bad input, and if no run of the study finished.
     """
-    folder, planned = site.folder, plan(site, engine, asked)
-    setup, todo, fine, half, variables = planned.setup, planned.todo, planned.fine, planned.half, planned.variables
+    planned = plan(site, engine)
 
-    def collect(_, work):
+    def finer(work: jobs.Work) -> size_runs.AtFinest:
+        return size_runs.settle(planned.setup, work, [one for one in planned.todo if not one.error],
+                                wanted(site, planned, asked))
+
+    return collect(site, planned, method, finer, roads)
+
+
+def collect(site: Site, planned: Planned, method: str, finer: Callable[[jobs.Work], size_runs.AtFinest],
+            roads: Sequence[Mapping[str, Any]] = (), alone: bool = True, made: bool = False) -> Done:
+    """The results of the runs of a site, which are made first, unless make() did it (made); finer: makes those with
+    finer balls and says what these tell; the others as of run() and Questions."""
+    folder, setup, todo, half = site.folder, planned.setup, planned.todo, planned.half
+
+    def results_of(_, work):
+        at = finer(work)
         questions = results.Questions(
-            planned.settings, planned.repeated, THRESHOLDS, notes=notes_of(site, roads), site=folder,
-            fine=fine[0] if fine else None, most_elastic=elastic_of(setup, planned.elastics),
-            step=step_of(setup, half[0], planned.middle, variables) if half else None, method=method,
+            planned.settings, planned.repeated, THRESHOLDS, notes=[*notes_of(site, roads), *at.warnings], site=folder,
+            sizes=at, most_elastic=elastic_of(setup, planned.elastics, at),
+            step=step_of(setup, half[0], planned.middle, planned.variables, at) if half else None, method=method,
             known=asdict(planned.choices.known), roads=roads, alone=alone)
         return results.collect(setup, questions, todo, work)
 
     failed: Optional[Exception] = None
     try:
         # the longest first: a long run that starts last leaves the other cores idle
-        about = study.perform(setup, {**planned.settings, **planned.repeated}, planned.runs, collect,
-                              first=[*fine, *half])
+        about = study.perform(setup, {**planned.settings, **planned.repeated}, planned.runs, results_of,
+                              first=half, made=made)
     except study.RunsFailed as error:
         about = error.found
         failed = study.failure(setup.output, todo)      # what is said of the others is with their results
@@ -180,9 +255,10 @@ def half_steps(setup: Setup, rolling: str, variables: Dict[str, str]) -> List[re
     return repeats.plan(setup.runs, settings, {}, variables)
 
 
-def step_of(setup: Setup, run_: repeats.Repeat, rolling: str, variables: Dict[str, str]) -> Step:
-    """What that run tells."""
-    [row] = rows_of(setup, [run_])
+def step_of(setup: Setup, run_: repeats.Repeat, rolling: str, variables: Dict[str, str],
+            at: size_runs.AtFinest) -> Step:
+    """What that run tells, at the finest size as the others."""
+    [row] = at.rows(rows_of(setup, [run_]))
     if isinstance(row, Failed):
         return Step(rolling, None, f"{run_.name}: {row.error}", step=float(run_.chosen["step"]))
     prefix = run_folders.prefix_of(run_folders.summary_of(setup.output, row.summary))
@@ -202,11 +278,11 @@ def elastic_runs(setup: Setup, largest: Optional[float], rolling: List[str], rep
     return repeats.plan(setup.runs, settings, repeated, variables)
 
 
-def elastic_of(setup: Setup, runs: List[repeats.Repeat]) -> Optional[elastic.Made]:
-    """What these runs tell, whatever the road; None: there are none."""
+def elastic_of(setup: Setup, runs: List[repeats.Repeat], at: size_runs.AtFinest) -> Optional[elastic.Made]:
+    """What these runs tell at the finest size, whatever the road; None: there are none."""
     if not runs:
         return None
-    rows = rows_of(setup._replace(road=None), runs)
+    rows = at.rows(rows_of(setup._replace(road=None), runs))
     return elastic.Made(float(runs[0].chosen[elastic.VARIABLES[0]]), runs[0].chosen["rolling"], rows)
 
 

@@ -14,7 +14,7 @@ from ..errors import SlopeError
 from ..findings import entries
 from ..runs import repeats
 from ..statistics import convergence, rounding
-from ..tables import combinations, fine_run, judged, study_table
+from ..tables import combinations, judged, sizes, study_table
 from ..tables.quantities import ALL
 from ..tables.rows import finished_of
 from . import body_depth, study
@@ -73,7 +73,7 @@ def collect(planned: Plan, of, work) -> None:
                 raise SlopeError("--of", f"must be known of every run; {name} is not of {row.run}")
     warnings = [*judged.of_runs(rows), *combinations.no_effect(groups)]
     finest = min(groups, key=lambda group: float(group.set[variable])).rows[0]
-    depth = body_depth.mean(setup, finest) if variable == fine_run.VARIABLE else None
+    depth = body_depth.mean(setup, finest) if variable == sizes.VARIABLE else None
     balls = [depth and depth / float(group.set[variable]) for group in groups]
     found = {name: convergence.compare([(float(group.set[variable]), list(group.of(name).volumes.values()))
                                         for group in groups], balls) for name in of}

@@ -21,12 +21,13 @@ from ..tables import intensity, study_types
 from .setup import Road, Setup
 
 
-def perform(setup: Setup, settings, todo, collect, begin=None, first=()):
+def perform(setup: Setup, settings, todo, collect, begin=None, first=(), made=False):
     """Run what is not finished of todo; gives what collect(todo, work) then finds, None of a dry run.
 
     RunsFailed, with the same, if a run failed.
 
-    begin: called once the folder is there, before the first run; first: runs of todo that are made before the others.
+    begin: called once the folder is there, before the first run; first: runs of todo that are made before the others;
+    made: they were made by this command, and are to be collected.
     """
     files = data_files(setup.deck, settings)
     if setup.road:
@@ -43,7 +44,8 @@ def perform(setup: Setup, settings, todo, collect, begin=None, first=()):
         if begin:
             begin()
         once = store.once(todo)     # of runs that share a folder the first in todo is made
-        work.do([*(run for run in first if run in once), *todo])
+        if not made:
+            work.do([*(run for run in first if run in once), *todo])
         found = collect(todo, work)
     error = failure(setup.output, todo)
     if error:

@@ -3,29 +3,45 @@ from typing import Any, Dict, Iterable, List, Mapping, Optional, Tuple
 
 from ..digits import metres, percent
 from ..findings import Finding
-from ..statistics.answer import Code, Kind, Reason, Source
+from ..statistics.answer import Cause, Code, Kind, Reason, Source
 from . import quantities, study_types
 
 OF = {Source.PAPER: "by the sweep", Source.ENSEMBLE: "by known events"}
-CONSERVATIVE = "the conservative volume of the sweep"       # what a floor may not be
+CONSERVATIVE = "the conservative volume of the sweep"       # what is only said where chance is in it
 STUDY = {Source.PAPER.value: "the sweep", Source.ENSEMBLE.value: "the runs weighted by known events"}
 
 
 def lines(about: study_types.Headline) -> List[str]:
     """The number, what it is of, and the reasons; a line each."""
-    return [f"headline: {number(about)}", *(f"  {text(one)}" for one in told(about))]
+    said = band(about)
+    return [f"headline: {number(about)}", *([f"  {said}"] if said else []), *(f"  {text(one)}" for one in told(about))]
 
 
 def number(about: study_types.Headline) -> str:
     """A sentence without its full stop."""
     if Kind(about.kind) is Kind.WITHHELD:
         return "withheld, neither study gives a number" if about.paper and about.ensemble else "withheld"
-    source = Source(about.source)
-    floor = Kind(about.kind) is Kind.FLOOR
-    volume = f"{quantities.number(about.volume_m3 or 0.0)} m3 to remove"
+    source, floor = Source(about.source), Kind(about.kind) is Kind.FLOOR
+    volume = f"{quantities.number(about.volume_m3 or 0.0)} m3"
+    if about.high_m3:
+        volume += f" ({quantities.number(about.low_m3 or 0.0)} to {quantities.number(about.high_m3)})"
     share = f", {percent(about.share)} of them stay within" if about.share else ""
-    of = OF[source] if floor or source is Source.ENSEMBLE else CONSERVATIVE
-    return f"{('at least ' if about.volume_m3 else 'more than ') * floor}{volume}, {of}{share}{beside(about, source)}"
+    of = CONSERVATIVE if is_conservative(about) and not floor else OF[source]
+    return (f"{('at least ' if about.volume_m3 else 'more than ') * floor}{volume} to remove, {of}{share}"
+            f"{beside(about, source)}")
+
+
+def is_conservative(about: study_types.Headline) -> bool:
+    """Whether it is the paper's volume, and what chance adds is in it."""
+    known = about.volume_m3 == 0 or any(one.cause == Cause.RUNS.value and one.below_m3 for one in about.band)
+    return about.source == Source.PAPER.value and known
+
+
+def band(about: study_types.Headline) -> str:
+    """What a band is made of, a sentence without its full stop; "" without one."""
+    parts = [f"{one.cause} -{quantities.number(one.below_m3)} +{quantities.number(one.above_m3)} m3"
+             for one in about.band if one.below_m3 or one.above_m3]
+    return f"90 % band: {', '.join(parts)}" if parts and about.high_m3 else ""
 
 
 def beside(about: study_types.Headline, source: Source) -> str:
@@ -71,6 +87,7 @@ def finding(reason: Reason) -> Finding:
     if code is Code.SIZE:
         return of_size(of)
     words = {"longest": lambda: metres(of["longest_m"]), "far": lambda: beyond(of["far"], of.get("path_end_m")),
+             "most": lambda: f"{quantities.number(of['most_m3'])} m3",
              "near": lambda: metres(of["near_m"]), "path": lambda: metres(of["path_m"]),
              "share": lambda: percent(of["share"]), "shares": lambda: shares((of["low"], of["high"])),
              "reach": lambda: f"{of['reach']} of {of['runs']}", "left": lambda: left(of),
@@ -79,26 +96,15 @@ def finding(reason: Reason) -> Finding:
 
 
 def of_size(of: Mapping[str, Any]) -> Finding:
-    """Why smaller balls may bring more, and how much they brought elsewhere."""
-    run, balls = of["run"], of["balls_thick"]
-    if run == "finished" and balls is not None:
-        return Finding(Code.SIZE.value, {"balls": balls, "enough": of["enough"], "grown": grown(of)})
-    return Finding("fine run failed" if run else "no fine run", {"grown": grown(of)})
-
-
-def grown(of: Mapping[str, Any]) -> str:
-    """By which factors slides of the family grew with smaller balls, "" where none tells."""
-    growth = of["growth"]
-    if not growth:
-        return ""
-    several = growth["slides"] > 1
-    factors = f"{growth['median']:.2f}" + several * f" (median; {growth['low']:.2f} to {growth['high']:.2f})"
-    return (f"; from {of['balls_thick']:.2g} to up to {growth['finest']:.2g} balls over the thickness "
-            f"{growth['slides'] if several else 'one'} slide{'s' * several} brought {factors} times as much")
+    """What the sizes of balls that were run leave open."""
+    number, grown = of["sizes"], of["grown"]
+    if number > 2 and grown is not None:
+        return Finding(f"{Code.SIZE.value} grows", {"grown": percent(grown)})
+    return Finding(Code.SIZE.value, {"sizes": "balls of one size" if number == 1 else f"balls of {number} sizes"})
 
 
 # of each code the words that its sentence takes
-TAKES = {Code.BEYOND: ("longest", "far"), Code.NOT_REACHED: ("near", "shares", "ends"),
+TAKES = {Code.BEYOND: ("longest", "far", "most"), Code.NOT_REACHED: ("near", "shares", "ends"),
          Code.ONE_SCATTER: ("near", "shares", "ends"), Code.TERRAIN: ("path", "share"), Code.RANGE: ("ends",),
          Code.RUNS: ("points",), Code.SOME: ("reach", "left")}
 

@@ -9,14 +9,15 @@ from .. import schemas
 from ..errors import SlopeError
 from ..findings import Finding
 from ..schemas import OBJECT, mapping
-from ..statistics import answer, size_family
-from ..statistics.answer import Answer, AtRoad, Code, Ensemble, Paper, Reason, Road, Withheld
-from ..statistics.size_effect import RESOLVED
+from ..statistics import answer
+from ..statistics.answer import Answer, AtRoad, Code, Ensemble, Paper, Reason, Road, Size, Withheld
 from ..statistics.withheld import Kind as Rule
-from . import ensemble_types, fine_run, study_types
+from . import ensemble_types, study_types
 from .quantities import REMOVE
+from .rows import finished_of
 
 STUDY = "study.yaml"
+GROWS = 0.25        # by the last halving of the balls: a number that grows by more is a floor
 INSIDE = "study", "ensemble"        # folders of a site: the paper's study, and the one of known events
 TITLE = "slope study: volumes in m3 of ground (bulk), lengths in m, times in s"
 SCHEMA = mapping({}, conservative=mapping({}, null=True), ensemble=mapping({}, null=True),
@@ -31,7 +32,10 @@ def of_study(about: study_types.Study, road: Optional[Road]) -> Optional[Answer]
 def paper_of(about: study_types.Study) -> Optional[Paper]:
     """Its conservative volume, if it has one, rounded up as it is shown."""
     best = about.conservative
-    return Paper(best.rounded["volume_m3"], rules(best.withheld), size_of(about)) if best else None
+    if not best:
+        return None
+    least = None if best.chance_m3 is None else best.mean_m3 - best.chance_m3
+    return Paper(best.rounded["volume_m3"], rules(best.withheld), least, best.transfer_m3 or (0.0, 0.0), size_of(about))
 
 
 def ensemble_of(about: study_types.Study) -> Optional[Ensemble]:
@@ -39,33 +43,25 @@ def ensemble_of(about: study_types.Study) -> Optional[Ensemble]:
     whole, one = about.ensemble, ensemble_types.weighted(about.ensemble)
     if not whole or not one or not one.to_remove:
         return None
-    stopped, effect = one.added.stopped, fine_run.read_effect(about.size, REMOVE)
-
-    def raised(value: Optional[float]) -> Optional[float]:
-        return value if value is None or effect is None else value + effect.added(value)
-
-    quantiles = {each.share: (raised(each.value), raised(each.low), raised(each.high))
-                 for each in one.to_remove}
-    return Ensemble(quantiles, one.far, one.longest_m, rules(whole.withheld),
-                    Reason.read(stopped) if stopped else None, size_of(about), one.path_end_m)
+    stopped = one.added.stopped
+    most = max((row.at_road.remove_m3 for row in finished_of(about.runs) if row.road), default=0.0)
+    return Ensemble(one.to_remove, one.far, one.longest_m, rules(whole.withheld),
+                    Reason.read(stopped) if stopped else None, most, size_of(about), one.path_end_m)
 
 
-def size_of(about: study_types.Study) -> Optional[Reason]:
-    """Why smaller balls may bring more than its number has; None: the fine run, or the study's own balls, are small
-
-    enough. run: how the fine run ended, "" where there is none; balls_thick: of it, else of the study; None: unknown.
-    """
-    size, balls = about.size, about.study.balls_thick
-    done = size is not None and size.run is not None
-    if size and done:
-        if not size.open:
-            return None
-        balls = size.balls_thick
-    elif not size and balls is not None and balls >= RESOLVED:
-        return None
-    grown = None if balls is None else size_family.told(balls)
-    return Reason(Code.SIZE, {"run": "finished" if done else "failed" if size else "", "balls_thick": balls,
-                              "enough": RESOLVED, "growth": grown and grown._asdict()})
+def size_of(about: study_types.Study) -> Size:
+    """What the size of the balls leaves open of the volume to remove: a floor with fewer than two halvings, or where
+    the last one grows by more than GROWS."""
+    size = about.size
+    if size is None:
+        return Size(floor=Reason(Code.SIZE, {"sizes": 1, "grown": None}))
+    effect = size.effects.get(REMOVE)
+    left = effect.left if effect else None
+    grown = left.grown if left else None
+    reason = Reason(Code.SIZE, {"sizes": len(size.sizes), "grown": grown})
+    if left is None:
+        return Size(floor=reason)
+    return Size(left.low, left.high, reason if left.grown > GROWS else None)
 
 
 def rules(reasons: Sequence[Finding]) -> List[Withheld]:

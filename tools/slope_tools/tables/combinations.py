@@ -10,7 +10,6 @@ from ..runs import jobs
 from ..runs.repeats import Settings, key_of
 from ..statistics import conservative_volume, rounding
 from ..statistics.conservative_volume import Combination, Scatter
-from ..statistics.size_effect import Effect
 from . import quantities, study_types, withheld_words
 from .rows import Finished, Row, finished_of
 
@@ -118,14 +117,10 @@ FEW = 0.05      # of the largest volume of runs that differ by chance alone: les
 STANDS = 0.1    # of the largest travel of the centroid among them: less, and the slope did not fail
 
 
-def conservative(settings: Settings, rows: Sequence[Row], groups: Sequence[Group],
-                 effect: Optional[Effect] = None) -> study_types.Conservative:
-    """The entry of the conservative volume in study.yaml: its parts, what it is based on, its caveats (doubts).
-
-    effect: of smaller balls on it.
-    """
+def conservative(settings: Settings, rows: Sequence[Row], groups: Sequence[Group]) -> study_types.Conservative:
+    """The entry of the conservative volume in study.yaml: its parts, what it is based on, its caveats (doubts)."""
     parts = [group.of("remove_m3") for group in groups]
-    best = conservative_volume.predict(parts, effect and effect.added)
+    best = conservative_volume.predict(parts)
     governing = next(group for group in groups if group.name == best.combination)
     largest = max(governing.rows, key=lambda row: row.at_road.remove_m3)
     volumes = [row.at_road.remove_m3 for row in governing.rows]
@@ -139,7 +134,7 @@ def conservative(settings: Settings, rows: Sequence[Row], groups: Sequence[Group
                                                   found.chance, found.clear))
     scatter = best.scatter
     return study_types.Conservative(
-        volume_m3=best.volume, mean_m3=best.mean, chance_m3=best.chance, size_m3=best.size,
+        volume_m3=best.volume, mean_m3=best.mean, chance_m3=best.chance,
         rounded={f"{name}_m3": value for name, value in best.rounded().items()}, place_m3=best.place,
         kind=best.kind, combination=best.combination, set=dict(governing.set), label=label(governing.set, settings),
         ground=ground(settings, governing), repeats=best.repeats, runs=best.runs, combinations=len(groups),
@@ -247,19 +242,13 @@ def describe(best: study_types.Conservative) -> List[str]:
 
     if best.withheld:
         return [*withheld_words.lines(best.withheld), *(f"caveat: {text}" for text in texts(best.doubts))]
-    parts = {name: best.rounded[f"{name}_m3"] for name in ("volume", "mean", "chance", "size")}
+    parts = {name: best.rounded[f"{name}_m3"] for name in ("volume", "mean", "chance")}
     if parts["chance"] is None:
-        text = f"{best.kind}: {number(parts['volume'])} m3 to remove"
-        if parts["size"] is not None:
-            text += f", of which {number(parts['size'])} for the size of the balls"
-        text += f"; run {best.run}"
+        text = f"{best.kind}: {number(parts['volume'])} m3 to remove; run {best.run}"
     else:
-        of = "conservative volume to remove" if parts["size"] is not None else "volume to remove, not conservative"
-        text = (f"{of}: {number(parts['volume'])} m3 = {number(parts['mean'])}, mean of "
+        text = (f"conservative volume to remove: {number(parts['volume'])} m3 = {number(parts['mean'])}, mean of "
                 f"{best.repeats} runs ({best.label or best.combination}) + {number(parts['chance'])}, chance "
                 f"(s {number(best.scatter_m3)}, {best.degrees_of_freedom:.3g} degrees of freedom)")
-        text += (f" + {number(parts['size'])}, size of the balls" if parts["size"] is not None
-                 else "; what smaller balls would change is not known")
     lines = [text, *starts(best), *([best.zero.text] if best.zero else []),
              *([best.ground] if best.ground else [])]
     for entry in best.differences:

@@ -123,8 +123,8 @@ KINDS = {"failed", "in motion", "moving", "lost much", "lost", "bulk factor", "b
 
 def limits(study: Optional[study_types.Study], repeats: bool) -> List[Finding]:
     """What no run of a study, or a run alone, can tell; repeats: whether runs were repeated."""
-    sampled, size = (study.ensemble, study.size) if study else (None, None)
+    sampled = study.ensemble if study else None
     found = [] if repeats or sampled else [Finding("no repeats")]
-    if not (size and size.run):
+    if not (study and study.size):
         found.append(Finding("no sizes"))
     return [*found, Finding("slip assumed")]

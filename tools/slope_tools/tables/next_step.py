@@ -13,9 +13,9 @@ from ..sites.site_budget import duration_text
 from ..statistics.answer import Code, Kind, Reason, Source
 from ..statistics.withheld import Kind as Rule
 from . import answer_words, study_types
-from .fine_run import VARIABLE
 from .rows import finished_of
-from .withheld_words import times_the_balls, two_digits
+from .sizes import VARIABLE
+from .withheld_words import times_the_balls
 
 MORE = 2            # times the runs, where more are needed
 PROGRAM = "tools/slope "
@@ -118,7 +118,7 @@ def step_of(made: Made, code: Code, of: Mapping[str, Any]) -> Optional[Step]:
     if code is Code.RANGE:
         return wider_ranges(made, of["ends"])
     if code is Code.SIZE:
-        return finer_balls(made) if of["run"] == "finished" else fine_run(made)
+        return more_sizes(made, of["sizes"])
     if code is not Code.RULE:
         return None
     rule = Rule(of["rule"])
@@ -171,28 +171,22 @@ def wider_ranges(made: Made, ends: Collection[str]) -> Optional[Step]:
                 ensemble(made, made.study.ensemble.design.points, wider), made.seconds)
 
 
-def finer_balls(made: Made) -> Optional[Step]:
-    """The study once more with balls of half the diameter; None where it is none of a site."""
-    site, whole = made.site, made.whole
-    rows = finished_of(made.study.runs)
-    if site is None or not rows:
-        return None
-    row = rows[0]
-    number = two_digits(8 * row.released_m3 / row.ball_m3)
-    return Step("smaller balls in the model", f"tools/slope site {quote(str(site))} --balls {number} && "
-                f"{study_anew(made)}", None if whole is None else 16 * whole)
-
-
-def fine_run(made: Made) -> Step:
-    """The same study with a run whose balls are smaller."""
-    rows = finished_of(made.study.runs)
-    if made.site is None and rows and not is_number(rows[0].variables.get(VARIABLE, "")):
-        command = f"a deck whose variable {VARIABLE} is the diameter of the balls, and the same command with --fine 2"
-    elif made.given:
-        command = again.command(made.given, fine="2")
+def more_sizes(made: Made, sizes: int) -> Step:
+    """The same study with one size of balls more, three at least; of a deck, halves of its diameter."""
+    levels, rows = str(max(3, sizes + 1)), finished_of(made.study.runs)
+    if made.site is None:
+        d = rows[0].variables.get(VARIABLE, "") if rows else ""
+        if not is_number(d):
+            return Step("finer balls in the model", f"a deck whose variable {VARIABLE} is the diameter of the balls, "
+                        f"and the same command with --levels {VARIABLE}=5,2.5,1.25", None)
+        coarsest = made.study.size.sizes[0].d if made.study.size else float(d)
+        levels = f"{VARIABLE}=" + ",".join(f"{coarsest / 2 ** k:.4g}" for k in range(int(levels)))
+    if made.given:
+        command = again.command(made.given, levels=levels)
     else:
-        command = (f"tools/slope study {quote(str(made.site))}" if made.site else "the same command with") + " --fine 2"
-    return Step("a run with smaller balls in the model", command, None)
+        command = (f"tools/slope study {quote(str(made.site))}" if made.site else "the same command with") + \
+            f" --levels {levels}"
+    return Step("finer balls in the model", command, None)
 
 
 def larger_terrain(made: Made, add: str = "") -> Tuple[str, str]:

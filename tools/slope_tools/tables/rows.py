@@ -116,6 +116,8 @@ class Finished(Run):
     lines: Mapping[str, Numbers]
     road: Optional[OnRoad] = None
     mapped: Optional[Mapped] = None
+    # {quantity: between which it lies with the finest balls, with 90 %} of a study with several sizes
+    bands: Optional[Mapping[str, Sequence[float]]] = None
 
     @property
     def at_road(self) -> OnRoad:

@@ -34,7 +34,8 @@ def table(settings, repeated, rows: Sequence[Row], defaults):
     def line(row: Row):
         cells = plain(row)
         cells.update({name: ANSWER.get(cells.get(name)) for name in ("moving", "at_rest")})
-        chosen = {**defaults, **row.set, **row.repeat}
+        own = row.variables if isinstance(row, Finished) else {}
+        chosen = {**defaults, **own, **row.set, **row.repeat}
         return [row.run, *(chosen[name] for name in (*settings, *more)), *(cells.get(key) for key in columns)]
 
     return disk.csv_text(["run", *settings, *more, *columns], map(line, rows))

@@ -5,7 +5,7 @@ type checker knows. What makes an entry is named beside it. None: there is none,
 default, study.yaml does not have the key then.
 """
 from dataclasses import dataclass
-from typing import Any, Dict, List, Mapping, Optional, Union
+from typing import Any, Dict, List, Mapping, Optional
 
 from ..findings import Finding
 from ..statistics.entries import Headline
@@ -75,8 +75,7 @@ class Conservative:
     volume_m3: Optional[float]      # None: withheld
     mean_m3: float
     chance_m3: Optional[float]
-    size_m3: Optional[float]
-    rounded: Dict[str, Optional[float]]         # the four above, to what is known
+    rounded: Dict[str, Optional[float]]         # the three above, to what is known
     place_m3: float                 # power of ten of the last digit that is known
     kind: str
     combination: str
@@ -96,37 +95,57 @@ class Conservative:
     doubts: List[Finding]
     withheld: List[Finding]         # why: withheld_words
     zero: Optional[Zero]
+    transfer_m3: Optional[List[float]] = None   # how far the mean may be below and above, as balls are of several sizes
 
 
 @dataclass(frozen=True)
-class Effect:
-    """What smaller balls change in a quantity (size_effect.Effect)."""
-    coarse: float
+class SizeRuns:
+    """The runs with balls of a diameter (m): balls in the body and over its thickness, and how many runs there are."""
+    d: float
+    balls: int
+    balls_thick: Optional[float]
     runs: int
-    fine: float
-    chance: Optional[float]
-    ratio: bool
-    difference: float
-    clear: Optional[bool]
+
+
+@dataclass(frozen=True)
+class SizeStep:
+    """From a size to one that is so many times finer: the factor of a quantity by so many pairs, the deviation of a
+    pair that was left out (of the logarithm), whether the factor depends on parameters; None: no pair has ten balls."""
+    finer: float
+    pairs: int
+    factor: Optional[float]
+    deviation: Optional[float]
+    on_parameters: bool
+
+
+@dataclass(frozen=True)
+class SizeLeft:
+    """What balls that are finer still would change (ball_sizes.Left), shares of a value."""
+    low: float
+    best: float
+    high: float
+    grown: float
+    order: float
+    observed: bool
+
+
+@dataclass(frozen=True)
+class SizeEffect:
+    """What the size of the balls changes in a quantity."""
+    steps: List[SizeStep]
+    left: Optional[SizeLeft]
 
 
 @dataclass(frozen=True)
 class Size:
-    """What the fine run says (fine_run.evaluate); of one that failed only that it is not known."""
-    run: Optional[str]
-    effects: Mapping[str, Effect]
-    open: bool                      # whether smaller balls still may bring more
-    balls_thick: Optional[float]
+    """What runs with balls of several sizes say (tables/sizes), the coarsest first; parameters: of steps.
+
+    text: a sentence without its full stop.
+    """
+    sizes: List[SizeRuns]
+    parameters: List[str]
+    effects: Dict[str, SizeEffect]
     text: str
-
-
-@dataclass(frozen=True)
-class Compared(Size):
-    """The same of one that finished."""
-    d: float
-    coarse_d: float
-    coarse_balls_thick: Optional[float]
-    coarse_runs: List[str]
 
 
 @dataclass(frozen=True)
@@ -294,7 +313,7 @@ class Study:
     largest: Dict[str, Largest]
     farthest: Optional[str]
     conservative: Optional[Conservative]
-    size: Optional[Union[Compared, Size]]
+    size: Optional[Size]            # None: of one size
     ensemble: Optional[Ensemble]
     step: Optional[HalfStep]
     largest_restitution: Optional[Elastic]

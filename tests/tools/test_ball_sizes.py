@@ -1,0 +1,149 @@
+"""Values at the finest size of balls, with their errors: the models of what halving the balls does."""
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from slope_tools.statistics import ball_sizes
+from slope_tools.statistics.ball_sizes import Finest, fit, transfer
+
+MEASURED = Path(__file__).with_name("ball_sizes.csv")
+
+
+def none(number):
+    """Places without parameters."""
+    return np.empty((number, 0))
+
+
+def test_a_factor_by_hand():
+    """The mean of the logarithms; the deviation is that of the left-out ones."""
+    changes = np.array([0.1, 0.2, 0.3, 0.4])
+    coarse = np.array([400.0, 800, 100, 200])
+    step = fit(coarse, coarse * np.exp(changes), none(4))
+    left_out = [0.1 - 0.3, 0.2 - 0.8 / 3, 0.3 - 0.7 / 3, 0.4 - 0.2]
+    assert step.ratio.constant == pytest.approx(0.25) and step.ratio.freedom == pytest.approx(3)
+    assert step.ratio.deviation == pytest.approx(math.sqrt(sum(one ** 2 for one in left_out) / 4))
+    found = transfer([step, step], 1000.0, ())
+    assert found.value == pytest.approx(1000 * math.exp(0.5))
+    assert found.deviation == pytest.approx(found.value * step.ratio.deviation * math.sqrt(2))
+    assert found.freedom == pytest.approx(6)
+    low, high = found.band
+    assert low * high == pytest.approx(found.value ** 2) and high / found.value == pytest.approx(
+        math.exp(1.943 * found.deviation / found.value), rel=1e-3)
+    assert transfer([], 1000.0, ()).band == (1000.0, 1000.0)        # of a run with the finest balls
+
+
+def test_few_balls_have_a_difference():
+    """Below ten coarse balls; what is nothing stays nothing, and what becomes nothing breaks nothing."""
+    step = fit([0, 20, 40, 500, 600], [0, 10, 50, 0.0, 660], none(5), ball=10)
+    assert step.least == 100 and step.small.number == 3 and step.ratio.number == 2
+    assert transfer([step], 50.0, ()).value == pytest.approx(50.0)
+    assert transfer([step], 50.0, ()).deviation == pytest.approx(step.small.deviation)
+    nothing = fit([0, 0, 0, 0], [0, 0, 0, 0], none(4), ball=10)
+    assert transfer([nothing], 0.0, ()) == Finest(0.0) and nothing.ratio is None
+    # of too few small pairs a difference scatters as a ratio at its end
+    few = fit([50, 200, 400, 800], [50, 220, 400, 860], none(4), ball=10)
+    assert transfer([few], 0.0, ()).deviation == pytest.approx(100 * few.ratio.deviation)
+    assert transfer([few], 0.0, ()).band[0] == 0
+
+
+def test_parameters_count_where_they_predict_better():
+    rng = np.random.default_rng(1)
+    at = rng.random((16, 2))
+    noise = 0.02 * rng.standard_normal(16)
+    coarse = 1000 * np.exp(rng.standard_normal(16))
+    with_slope = fit(coarse, coarse * np.exp(0.1 + 0.5 * at[:, 0] + noise), at)
+    without = fit(coarse, coarse * np.exp(0.1 + noise), at)
+    assert with_slope.ratio.slopes == pytest.approx([0.5, 0.0, 0.0], abs=0.1)
+    assert np.abs(without.ratio.slopes).max() < 0.02 and without.ratio.constant == pytest.approx(0.1, abs=0.02)
+    value = transfer([with_slope], 1000.0, (0.9, 0.5))
+    assert value.value == pytest.approx(1000 * math.exp(0.55), rel=0.03) and value.deviation < 50
+    # nothing is extrapolated: beyond the pairs it is that of the last of them
+    assert transfer([with_slope], 1.0, (5.0, 0.5)) == transfer([with_slope], 1.0, (at[:, 0].max(), 0.5))
+
+
+@pytest.mark.parametrize("pairs, few, scatter, finer, slope", [
+    (12, 4, 0.05, 0.03, 0.0), (12, 4, 0.05, 0.03, 0.2), (20, 6, 0.10, 0.08, 0.1), (8, 3, 0.10, 0.05, 0.0)])
+def test_bands_hold_what_was_not_run(pairs, few, scatter, finer, slope):
+    """Of many made-up studies nine tenths of the values, and not nearly all: they are no wider than they need be."""
+    rng, inside, others = np.random.default_rng(2), [], 10
+    for _ in range(150):
+        at = rng.random((pairs + others, 2))
+        coarse, noise = 10000 * np.exp(0.5 * rng.standard_normal(len(at))), rng.standard_normal((2, len(at)))
+        half = coarse * np.exp(-0.05 + slope * at[:, 0] + scatter * noise[0])
+        quarter = half * np.exp(0.03 + slope / 2 * at[:, 0] + finer * noise[1])
+        first = fit(coarse[:pairs], half[:pairs], at[:pairs], ball=80)
+        last = fit(half[:few], quarter[:few], at[:few], ball=10, before=first)
+        for k in range(pairs, len(at)):
+            low, high = transfer([first, last], coarse[k], at[k]).band
+            inside.append(low <= quarter[k] <= high)
+    assert 0.85 < np.mean(inside) < 0.97
+
+
+def test_draws_are_as_the_bands():
+    rng = np.random.default_rng(3)
+    coarse = np.array([1000.0, 2000, 3000, 4000, 5000, 6000, 7000, 8000])
+    step = fit(coarse, coarse * np.exp(0.1 * rng.standard_normal(8)), none(8), ball=10)
+    found = ball_sizes.draws([[step, step], [step], [], [step]], [900.0, 900.0, 900.0, 0.0], none(4), 2000)
+    for column, steps in zip(found.T[:2], ([step, step], [step])):
+        one = transfer(steps, 900.0, ())
+        assert np.quantile(column, (0.05, 0.95)) == pytest.approx(one.band, rel=0.06)
+    assert (found[:, 2] == 900).all() and (found[:, 3] >= 0).all()
+    again = ball_sizes.draws([[step, step], [step], [], [step]], [900.0, 900.0, 900.0, 0.0], none(4), 2000)
+    assert (again == found).all()
+
+
+def test_what_finer_balls_would_change():
+    """Order 1 leaves as much again as the last halving changed; the observed order where both changes are clear."""
+    coarse = np.array([1000.0, 1100, 1200, 1300])
+    noise = np.array([1, -1, 1, -1])
+
+    def steps(first, last, scatter):
+        half = coarse * np.exp(first + scatter * noise)
+        one = fit(coarse, half, none(4))
+        return [one, fit(half, half * np.exp(last + scatter * noise), none(4), before=one)]
+
+    clear = ball_sizes.left(steps(0.2, 0.1, 1e-4))
+    assert clear.observed and clear.order == pytest.approx(1.0, abs=0.01) and clear.low == 0
+    assert clear.best == pytest.approx(math.expm1(1.25 * 0.1), rel=0.01)
+    assert clear.grown == pytest.approx(math.expm1(0.1))
+    assert ball_sizes.left(steps(0.24, 0.08, 1e-4)).best == pytest.approx(math.expm1(1.25 * 0.08 / 2), rel=0.02)
+    unclear = ball_sizes.left(steps(-0.02, 0.01, 0.02))
+    assert not unclear.observed and unclear.order == 1 and unclear.low < 0 < unclear.best < unclear.high
+    assert ball_sizes.left(steps(-0.2, 0.1, 1e-4)).observed is False        # not of one sign
+    assert ball_sizes.left(steps(0.1, 0.1, 1e-4)[:1]) is None
+    assert ball_sizes.left([fit([0, 0], [0, 0], none(2), ball=1)] * 2) is None
+
+
+def test_points_of_finer_balls_are_spread_and_nested():
+    places = np.array([[0.0, 0], [1, 0], [0, 1], [1, 1], [0.5, 0.5], [0.1, 0]])
+    assert ball_sizes.spread(places, [0], 3) == ball_sizes.spread(places, [0], 5)[:3]
+    assert ball_sizes.spread(places, [0], 2) == [0, 3] and 5 not in ball_sizes.spread(places, [0], 5)
+    assert ball_sizes.spread(places, [], 1) == [4] and len(ball_sizes.spread(places, [], 9)) == 6
+
+
+def test_measured_pairs():
+    """Of ten points with 25,600 balls each from the other nine and its own run with 400."""
+    rows = np.genfromtxt(MEASURED, delimiter=",", names=True, dtype=None, encoding="ascii", skip_header=1)
+    at = {row["point"]: ((row["friction"] - 5) / 25, row["rolling"] / 0.15, (row["spacing"] - 0.3) / 0.65)
+          for row in rows}
+    inside, median, half = [], {}, {}
+    for quantity in ("remove", "on_road", "beyond", "length"):
+        values = {(row["point"], int(row["balls"])): float(row[quantity]) for row in rows}
+        ball, off, wide = 0.0 if quantity == "length" else 33885 / 400, [], []
+        for point in at:
+            others, steps = [one for one in at if one != point], []
+            for coarse, fine in ((400, 3200), (3200, 25600)):
+                steps.append(fit([values[one, coarse] for one in others], [values[one, fine] for one in others],
+                                 [at[one] for one in others], ball=ball * 400 / coarse,
+                                 before=steps[-1] if steps else None))
+            one, truth = transfer(steps, values[point, 400], at[point]), values[point, 25600]
+            low, high = one.band
+            inside.append(low <= truth <= high)
+            off.append(abs(one.value / truth - 1))
+            wide.append(math.log(high / low) / 2)
+        median[quantity], half[quantity] = np.median(off), np.median(wide)
+    assert np.mean(inside) >= 0.85
+    assert max(median["remove"], median["length"]) < 0.05 and median["beyond"] < 0.12
+    assert half["remove"] < 0.1 and half["length"] < 0.1 and half["beyond"] < 0.3

@@ -1,0 +1,254 @@
+"""The runs of points with finer balls: how many points, which, and their rows at the finest size (tables/sizes).
+
+All points run with the coarsest balls.  Of these some run with finer ones, too: those on which numbers rest, then such
+that parameters and lengths are spread; the points of a finer size are among those of the one before.
+"""
+import functools
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence
+
+import numpy as np
+
+from .. import disk
+from ..case.settings import as_number, check_settings
+from ..errors import SlopeError
+from ..findings import Finding
+from ..runs import jobs, store
+from ..runs.repeats import Repeat
+from ..sites import site_budget
+from ..statistics import ball_sizes
+from ..tables import combinations, judged, sizes, study_table, study_types
+from ..tables.quantities import REMOVE
+from ..tables.rows import Finished, Row, finished_of
+from ..tables.sizes import VARIABLE, Sizes
+from . import body_depth
+from .run_rows import rows_of
+from .setup import Setup
+
+OPTION = "--levels"
+FILE = "levels.csv"
+DRAWS = 200             # of the values of transferred runs, for the band of a number
+LONG = 2.0              # times the median of the time to rest: runs that take longer have no finer balls
+FINER = 1.5             # times, at least, from a size to the next one
+
+
+class Wanted(NamedTuple):
+    """values: diameters for the deck, the coarsest first; points: how many with each of the finer ones."""
+    values: Sequence[str]
+    points: Sequence[int]
+
+    @property
+    def settings(self) -> Dict[str, List[str]]:
+        """As a study of lists has it."""
+        return {VARIABLE: list(self.values)}
+
+
+class SizeRun(Repeat):
+    """The run of a point with balls of a diameter."""
+
+    def __init__(self, output: Path, point: Repeat, value: str):
+        super().__init__(output, point.combination, point.repeat)
+        self.batch = point.batch
+        self.chosen = {**self.chosen, VARIABLE: value}
+        self.move(Path(output) / jobs.name_of(self.chosen))
+        self.varied = f"{point.varied}, {VARIABLE} {value}"
+
+    def made(self, runs: store.Store) -> bool:
+        """Whether it is there."""
+        runs.admit([self])
+        return self.finished
+
+
+class Made(NamedTuple):
+    """Points, and those of their runs that have finer balls: {folder of a point: of each finer size, None: not run}."""
+    points: Sequence[Repeat]
+    finer: Dict[Path, List[Optional[Repeat]]]
+
+    def runs(self, point: Repeat) -> List[Optional[Repeat]]:
+        """Of a point, that finished, the coarsest first."""
+        return [run if run and run.finished and not run.error else None
+                for run in (point, *self.finer.get(point.folder, ()))]
+
+    def finest(self, points: Sequence[Repeat], levels: int) -> List[Repeat]:
+        """The finest run of each point that finished, of so many sizes; the point's own where none did."""
+        return [next((run for run in self.runs(one)[:levels][::-1] if run), one) for one in points]
+
+
+class AtFinest(NamedTuple):
+    """Runs of points, and what they say of sizes; sizes: None of one size."""
+    made: Made
+    sizes: Optional[Sizes]
+    warnings: Sequence[Finding] = ()
+
+    def runs(self, points: Sequence[Repeat]) -> List[Repeat]:
+        """The finest run of each point."""
+        return self.made.finest(points, len(self.sizes.diameters) if self.sizes else 1)
+
+    def rows(self, rows: Sequence[Row]) -> List[Row]:
+        """At the finest size."""
+        return [self.sizes.row(row) for row in rows] if self.sizes else list(rows)
+
+    def draw(self, raw: Sequence[Row]) -> Optional[Callable[[Sequence[Finished], str], np.ndarray]]:
+        """A function of rows() of these, as they were run, and a column: DRAWS values of each as they may be."""
+        by_name, found = {row.run: row for row in finished_of(raw)}, self.sizes
+        if found is None:
+            return None
+        return functools.partial(drawn, found, by_name)
+
+
+def drawn(found: Sizes, raw: Mapping[str, Finished], rows: Sequence[Finished], key: str) -> np.ndarray:
+    return found.draws([raw[row.run] for row in rows], key, DRAWS)
+
+
+# --- how many ---
+
+def of_deck(option: Optional[str], deck: Path, points: int, names: Sequence[str]) -> Optional[Wanted]:
+    """What --levels d=5,2.5,1.25 asks of so many points; None without it; names: of what the study varies or sets."""
+    if option is None:
+        return None
+    if "=" not in option:
+        raise SlopeError(OPTION, f"must give diameters for a deck, such as {VARIABLE}=5,2.5,1.25", option)
+    if VARIABLE in names:
+        raise SlopeError(OPTION, "must not name a variable that --set, --vary or --repeat names", VARIABLE)
+    [(name, values)] = check_settings([option], deck, OPTION).items()
+    numbers = [as_number(value) for value in values]
+    if name != VARIABLE:
+        raise SlopeError(OPTION, f"must name {VARIABLE}, the variable of the deck that is the diameter of the balls",
+                         name)
+    sizes_ = [one if isinstance(one, float) and one < math.inf else 0.0 for one in numbers]
+    for one, other in zip(sizes_, [*sizes_[1:], 0.0]):
+        if one <= 0 or one < (1 - 1e-9) * FINER * other:
+            raise SlopeError(OPTION, f"must give diameters > 0, each at most 1/{FINER:g} of the one before, such as "
+                             f"{VARIABLE}=5,2.5,1.25", ",".join(values))
+    return Wanted(values, site_budget.pairs(points, len(values)))
+
+
+def halved(diameter: str, numbers: Sequence[int]) -> Wanted:
+    """Diameters d, d/2, d/4 and so on."""
+    d = as_number(diameter)
+    if not (isinstance(d, float) and d > 0):
+        raise SlopeError(OPTION, f"must be of a deck whose variable {VARIABLE} is the diameter of the balls", diameter)
+    return Wanted([diameter, *(f"{d / 2 ** k:.10g}" for k in range(1, len(numbers) + 1))], numbers)
+
+
+# --- which, and making them ---
+
+def at_first(setup: Setup, todo: Sequence[Repeat], wanted: Optional[Wanted]) -> List[Repeat]:
+    """The points with the coarsest balls that are asked for."""
+    return [SizeRun(setup.runs, one, wanted.values[0]) for one in todo] if wanted else list(todo)
+
+
+class Pick(NamedTuple):
+    """Which points come first: names of those on which numbers rest; along: of each how far it goes, from 0 to 1."""
+    first: Sequence[str]
+    along: np.ndarray
+
+
+def lengths_of(rows: Sequence[Finished]) -> np.ndarray:
+    return np.array([row.length_m or 0.0 for row in rows])
+
+
+def pick_largest(rows: Sequence[Finished]) -> Pick:
+    """By the paper's method: of the combination that brings most the run with most, the longest one without a road."""
+    lengths = lengths_of(rows)
+    along = lengths / max(lengths.max(initial=0.0), 1e-9)
+    if not rows or not rows[0].road:
+        return Pick([rows[int(lengths.argmax())].run] if rows else [], along)
+    group = max(combinations.grouped(rows), key=lambda one: one.of(REMOVE).mean)
+    return Pick([max(group.rows, key=lambda row: row.at_road.remove_m3).run], along)
+
+
+def make(setup: Setup, work: jobs.Work, points: Sequence[Repeat], wanted: Optional[Wanted],
+         pick: Callable[[Sequence[Finished]], Pick] = pick_largest) -> Made:
+    """Make the runs with finer balls of points that ran with the coarsest ones, the longest first; pick: of the rows of
+    these."""
+    common = setup.road is not None and setup.road.name != ""       # studies of several roads have these runs in common
+    known = finished_of(rows_of(setup._replace(road=None) if common else setup, points)) \
+        if wanted and wanted.points else []
+    if not wanted or not known:
+        return Made(points, {})
+    chosen, names = pick(known), {one.name: one for one in points}
+    times = np.array([row.stop_time_s for row in known])
+    first = np.array([row.run in chosen.first for row in known])
+    quick = np.flatnonzero(first | (times <= LONG * np.median(times)))
+    order = [names[known[quick[k]].run] for k in ball_sizes.spread(
+        places_of(known, chosen.along)[quick], np.flatnonzero(first[quick]).tolist(), max(wanted.points))]
+    finer: Dict[Path, List[Optional[Repeat]]] = {}
+    for k, (value, number) in enumerate(zip(wanted.values[1:], wanted.points)):
+        for one in order[:number]:
+            several = finer.setdefault(one.folder, [None] * (len(wanted.values) - 1))
+            several[k] = SizeRun(setup.runs, one, value)
+    todo = sorted((run for several in finer.values() for run in several if run),
+                  key=lambda run: float(run.chosen[VARIABLE]))
+    work.store.admit(todo)
+    setup.tell(told(wanted, [one for one in todo if not one.finished]))
+    work.do(todo)
+    return Made(points, finer)
+
+
+def settle(setup: Setup, work: jobs.Work, points: Sequence[Repeat], wanted: Optional[Wanted],
+           pick: Callable[[Sequence[Finished]], Pick] = pick_largest) -> AtFinest:
+    """make(), then the finest runs of those on which numbers rest once all rows are at the finest size."""
+    at = at_finest(setup, make(setup, work, points, wanted, pick))
+    if not at.sizes or not wanted:
+        return at
+    k = len(at.sizes.diameters) - 1
+    rows = [replace(row, run=one.name) for one, row in zip(points, at.rows(rows_of(setup, at.runs(points))))]
+    first = pick(finished_of(rows)).first
+    more = [one for one in points if one.name in first and at.made.finest([one], k + 1) != at.made.runs(one)[k:k + 1]]
+    for one in more:
+        at.made.finer.setdefault(one.folder, [None] * (len(wanted.values) - 1))[k - 1] = SizeRun(
+            setup.runs, one, wanted.values[k])
+    todo = [run for one in more if (run := at.made.finer[one.folder][k - 1])]
+    work.store.admit(todo)
+    if todo:
+        work.do(todo)
+    return at_finest(setup, at.made) if todo else at
+
+
+def told(wanted: Wanted, todo: Sequence[Repeat]) -> str:
+    """Which runs with finer balls are made, in words."""
+    parts = [f"{number} points with balls of {float(value):.3g} m" for value, number in
+             zip(wanted.values[1:], wanted.points)]
+    return f"finer balls: {', '.join(parts)}; {len(todo)} of these runs to make"
+
+
+def places_of(rows: Sequence[Finished], along: np.ndarray) -> np.ndarray:
+    """Where points lie: their parameters, and twice as far apart as these how far they go."""
+    where = sizes.places_of(rows)
+    return np.column_stack([np.array([where.of(row) for row in rows]).reshape(len(rows), -1), 2 * along])
+
+
+def at_finest(setup: Setup, made: Made) -> AtFinest:
+    """What the runs of points say of sizes."""
+    if not made.finer:
+        return AtFinest(made, None)
+    failed = [run for several in made.finer.values() for run in several if run and run.error]
+    warnings = judged.failed([row for row in rows_of(setup, failed) if not isinstance(row, Finished)])
+    several = [[run and rows_of(setup, [run])[0] for run in made.runs(one)] for one in made.points]
+    points = [[row if isinstance(row, Finished) else None for row in one] for one in several]
+    return AtFinest(made, sizes.of(points), warnings)
+
+
+def write(setup: Setup, found: AtFinest, settings, repeated, defaults) -> None:
+    """levels.csv: all runs of points with several sizes, as they were run; none of one size."""
+    path = setup.output / FILE
+    if not found.sizes:
+        path.unlink(missing_ok=True)
+        return
+    runs = [run for one in found.made.points if one.folder in found.made.finer for run in found.made.runs(one) if run]
+    rows = [row for row in rows_of(setup, runs) if isinstance(row, Finished)]
+    disk.write(path, study_table.table({**settings, VARIABLE: []}, repeated, rows, defaults))
+
+
+def about(setup: Setup, found: AtFinest) -> Optional[study_types.Size]:
+    """The entry of study.yaml."""
+    if not found.sizes:
+        return None
+    finest = max((run for one in found.made.points for run in found.made.runs(one) if run),
+                 key=lambda run: -float(run.chosen.get(VARIABLE, "inf")))
+    [row] = finished_of(rows_of(setup._replace(road=None), [finest]))
+    of_run = row.released_m3 / row.ball_m3 * float(row.variables[VARIABLE]) ** 3
+    return sizes.about(found.sizes, body_depth.mean(setup, row), [of_run / d ** 3 for d in found.sizes.diameters])
