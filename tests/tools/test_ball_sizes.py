@@ -8,12 +8,14 @@ import numpy as np
 import pytest
 import yaml
 
+from made_rows import row
 from run_helpers import TOP
 from slope_tools import cli
 from slope_tools.deposits import deposit, volume
 from slope_tools.mobility import run_length
 from slope_tools.statistics import ball_sizes
 from slope_tools.statistics.ball_sizes import Finest, fit, transfer
+from slope_tools.tables import sizes
 
 MEASURED = Path(__file__).with_name("ball_sizes.csv")
 
@@ -53,6 +55,30 @@ def test_few_balls_have_a_difference():
     few = fit([50, 200, 400, 800], [50, 220, 400, 860], none(4), ball=10)
     assert transfer([few], 0.0, ()).deviation == pytest.approx(100 * few.ratio.deviation)
     assert transfer([few], 0.0, ()).band[0] == 0
+    # of what is no volume, nothing has a difference, too
+    hours = fit([0, 0, 10, 20], [4, 6, 11, 22], none(4))
+    assert transfer([hours], 0.0, ()).value == 5
+    assert (ball_sizes.draws([[hours]] * 2, [0.0, 10.0], none(2), 50) > 0).all()
+
+
+def test_a_single_pair_is_no_certainty():
+    """All of its change may be error."""
+    for coarse, fine in (([100, 0, 0], [130, 0, 0]), ([100], [130])):
+        step = fit(coarse, fine, none(len(coarse)), ball=1)
+        low, high = transfer([step], 500.0, ()).band
+        assert low < 500 and high > 1000
+
+
+def test_what_no_finer_run_has_is_unknown():
+    """As the length where all finer runs leave the terrain; the finer runs keep what they have."""
+    def one(d, length, lobes=None):
+        return row(variables={"d": str(d)}, remove_m3=100.0, distance_99_m=length, length_m=length,
+                   length_by_lobe_m=lobes, ball_m3=1.0)
+    coarse, fine = [one(2, 50.0, [60.0, 40.0]) for _ in range(4)], [one(1, None) for _ in range(2)]
+    found = sizes.of([*zip(coarse, fine), *([only] for only in coarse[2:])])
+    got = [found.row(each) for each in (coarse[3], fine[0])]
+    assert [each.distance_99_m for each in got] == [None, None] and [each.length_m for each in got] == [None, None]
+    assert got[0].road.remove_m3 == 100 and found.steps["distance_99_m"][0].known is False
 
 
 def test_parameters_count_where_they_predict_better():

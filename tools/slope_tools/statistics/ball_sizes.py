@@ -97,9 +97,14 @@ class Step(NamedTuple):
     ratio: Optional[Model]
     small: Optional[Model]
 
+    @property
+    def known(self) -> bool:
+        """Whether a pair tells of it."""
+        return bool(self.ratio or self.small)
+
     def apply(self, one: Finest, at: Any) -> Finest:
         """A value with the next finer balls."""
-        if one.value >= self.least and self.ratio:
+        if one.value >= self.least and one.value > 0 and self.ratio:
             factor = math.exp(float(self.ratio.change(with_own(at, one.value))))
             value = one.value * factor
             return joined(value, (one.deviation * factor, one.freedom),
@@ -118,7 +123,7 @@ class Step(NamedTuple):
     def draws(self, rng: np.random.Generator, values: np.ndarray, at: np.ndarray) -> np.ndarray:
         """Values as they may be with the next finer balls: of one draw of the model, with what each run has alone."""
         found, noise = values.astype(float), rng.standard_normal(len(values))
-        big = values >= self.least
+        big = (values >= self.least) & (values > 0)
         if self.ratio and big.any():
             drawn, deviation = self.ratio.draw(rng)
             changes = self.ratio.change(with_own(at[big], values[big]), drawn)
@@ -149,7 +154,7 @@ def fit(coarse: Sequence[float], fine: Sequence[float], at: Any, finer: float = 
     ball: volume of a coarse ball, 0 of lengths; before: the step from the size before, which tells of the scatter, too.
     """
     one, other, places = np.asarray(coarse, float), np.asarray(fine, float), np.asarray(at, float)
-    places = places.reshape(len(one), -1)
+    places = places.reshape(len(one), -1 if len(one) else 0)
     least = COUNTED * ball
     big = (one >= least) & (one > 0)
     floor = np.where(ball > 0, ball / COUNTED, 1e-3 * one[big])     # what became nothing became less than that
@@ -181,6 +186,8 @@ def model(changes: np.ndarray, at: np.ndarray, before: Optional[Model]) -> Optio
         if other[3] < few * best[3]:
             best, few = other, 1.0
     coefficients, unit, taken, squares = best
+    if number == 1:     # no other predicts it: all of its change is error
+        squares = float(changes[0]) ** 2
     freedom = number - taken
     variance = squares / max(number + 1 - taken, 1.0)       # chosen by these squares, a ridge has less of them
     if before is not None:
@@ -188,7 +195,7 @@ def model(changes: np.ndarray, at: np.ndarray, before: Optional[Model]) -> Optio
         variance = (max(freedom, 0.0) * variance + prior * before.deviation ** 2) / (max(freedom, 0.0) + prior)
         freedom = max(freedom, 0.0) + prior
     return Model(number, float(coefficients[0]), coefficients[1:], unit, whole.mean(axis=0), whole.min(axis=0),
-                 whole.max(axis=0), math.sqrt(variance), max(freedom, 0.5))
+                 whole.max(axis=0), math.sqrt(variance), max(freedom, 1.0))
 
 
 def ridge(changes: np.ndarray, at: np.ndarray, penalty: float) -> Tuple[np.ndarray, np.ndarray, float, float]:

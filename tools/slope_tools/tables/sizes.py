@@ -55,9 +55,12 @@ class Sizes:
         return self.steps.get(key, ())[k:]
 
     def value(self, row: Finished, key: str) -> Optional[Finest]:
-        """A quantity of a run at the finest size; None where it has none."""
-        value = row.value(key)
-        return None if value is None else ball_sizes.transfer(self.left(row, key), float(value), self.places.of(row))
+        """A quantity of a run at the finest size; None where it has none, and where no pair has one, as lengths where
+        finer balls leave the terrain."""
+        value, steps = row.value(key), self.left(row, key)
+        if value is None or not all(step.known for step in steps):
+            return None
+        return ball_sizes.transfer(steps, float(value), self.places.of(row))
 
     def row(self, row: Row) -> Row:
         """The same at the finest size, with the bands of BANDS; one that failed as it is."""
@@ -65,8 +68,9 @@ class Sizes:
             return row
         found = {key: one for key in self.steps if (one := self.value(row, key)) is not None}
         new: Dict[str, Any] = {key: one.value for key, one in found.items()}
+        new.update(dict.fromkeys(key for key in self.steps if key not in new and row.value(key) is not None))
         for key in PARTS:
-            if key in new:
+            if new.get(key) is not None:
                 new[key] = min(new[key], row.released_m3)
         road = row.road and replace(row.road, **{key: value for key, value in new.items() if hasattr(row.road, key)})
         if road and row.road:
@@ -74,7 +78,7 @@ class Sizes:
                            remove_beside_road_m3=max(0.0, road.remove_m3 - road.remove_on_road_m3),
                            stretches=[scaled(one, row, new) for one in row.road.stretches],
                            clearing=scaled(row.road.clearing, row, new))
-        if row.length_by_lobe_m and row.length_m:
+        if row.length_by_lobe_m and row.length_m and new.get(quantities.LENGTH) is not None:
             new["length_by_lobe_m"] = [one * new[quantities.LENGTH] / row.length_m for one in row.length_by_lobe_m]
         return replace(row, **{key: value for key, value in new.items() if hasattr(row, key)}, road=road,
                        bands={key: list(found[key].band) for key in BANDS if key in found})
