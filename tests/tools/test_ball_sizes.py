@@ -145,6 +145,10 @@ def test_what_finer_balls_would_change():
     unclear = ball_sizes.left(steps(-0.02, 0.01, 0.02))
     assert not unclear.observed and unclear.order == 1 and unclear.low < 0 < unclear.best < unclear.high
     assert ball_sizes.left(steps(-0.2, 0.1, 1e-4)).observed is False        # not of one sign
+    # changes that do not shrink leave no less than those that shrink slowly
+    slow = ball_sizes.left(steps(0.1, 0.07, 1e-4))
+    for first in (0.1, 0.07, 0.02):
+        assert ball_sizes.left(steps(first, 0.0708, 1e-4)).high > slow.high
     assert ball_sizes.left(steps(0.1, 0.1, 1e-4)[:1]) is None
     assert ball_sizes.left([fit([0, 0], [0, 0], none(2), ball=1)] * 2) is None
 

@@ -275,12 +275,15 @@ def left(steps: Sequence[Step]) -> Optional[Left]:
 
 
 def observed_order(before: Model, last: Model, finer: float) -> Optional[float]:
-    """By the changes of two steps of the same factor, where both are clear and of one sign; None where they are not."""
+    """By the changes of two steps of the same factor, where both are clear and of one sign; None where they are not.
+
+    Changes that hardly shrink, or grow, leave as much as the least order does.
+    """
     clear = [abs(one.constant) > 2 * one.error for one in (before, last)]
     if not all(clear) or before.constant * last.constant <= 0:
         return None
     order = math.log(before.constant / last.constant) / math.log(finer)
-    return order if ORDERS[0] <= order <= ORDERS[1] else None
+    return max(order, ORDERS[0]) if order <= ORDERS[1] else None
 
 
 def spread(places: np.ndarray, first: Sequence[int], number: int) -> List[int]:
