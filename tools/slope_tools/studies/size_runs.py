@@ -18,7 +18,7 @@ from ..findings import Finding
 from ..runs import jobs, store
 from ..runs.repeats import Repeat
 from ..sites import site_budget
-from ..statistics import ball_sizes
+from ..statistics import ball_sizes, conservative_volume
 from ..tables import combinations, judged, sizes, study_table, study_types
 from ..tables.quantities import REMOVE
 from ..tables.rows import Finished, Row, finished_of
@@ -31,6 +31,7 @@ OPTION = "--levels"
 FILE = "levels.csv"
 DRAWS = 200             # of the values of transferred runs, for the band of a number
 LONG = 2.0              # times the median of the time to rest: runs that take longer have no finer balls
+ROUNDS = 3              # of finest runs of points on which numbers rest
 FINER = 1.5             # times, at least, from a size to the next one
 
 
@@ -151,13 +152,15 @@ def lengths_of(rows: Sequence[Finished]) -> np.ndarray:
 
 
 def pick_largest(rows: Sequence[Finished]) -> Pick:
-    """By the paper's method: of the combination that brings most the run with most, the longest one without a road."""
+    """By the paper's method: of the combination that governs the run with most; without a road the longest one."""
     lengths = lengths_of(rows)
     along = lengths / max(lengths.max(initial=0.0), 1e-9)
     if not rows or not rows[0].road:
         return Pick([rows[int(lengths.argmax())].run] if rows else [], along)
-    group = max(combinations.grouped(rows), key=lambda one: one.of(REMOVE).mean)
-    return Pick([max(group.rows, key=lambda row: row.at_road.remove_m3).run], along)
+    groups = combinations.grouped(rows)
+    best = conservative_volume.predict([one.of(REMOVE) for one in groups]).combination
+    rows = next(one.rows for one in groups if one.name == best)
+    return Pick([max(rows, key=lambda row: row.at_road.remove_m3).run], along)
 
 
 def make(setup: Setup, work: jobs.Work, points: Sequence[Repeat], wanted: Optional[Wanted],
@@ -190,22 +193,26 @@ def make(setup: Setup, work: jobs.Work, points: Sequence[Repeat], wanted: Option
 
 def settle(setup: Setup, work: jobs.Work, points: Sequence[Repeat], wanted: Optional[Wanted],
            pick: Callable[[Sequence[Finished]], Pick] = pick_largest) -> AtFinest:
-    """make(), then the finest runs of those on which numbers rest once all rows are at the finest size."""
+    """make(), then the finest runs of those on which numbers rest once all rows are at the finest size; as these change
+    what others are there, ROUNDS times at most."""
     at = at_finest(setup, make(setup, work, points, wanted, pick))
-    if not at.sizes or not wanted:
-        return at
-    k = len(at.sizes.diameters) - 1
-    rows = [replace(row, run=one.name) for one, row in zip(points, at.rows(rows_of(setup, at.runs(points))))]
-    first = pick(finished_of(rows)).first
-    more = [one for one in points if one.name in first and at.made.finest([one], k + 1) != at.made.runs(one)[k:k + 1]]
-    for one in more:
-        at.made.finer.setdefault(one.folder, [None] * (len(wanted.values) - 1))[k - 1] = SizeRun(
-            setup.runs, one, wanted.values[k])
-    todo = [run for one in more if (run := at.made.finer[one.folder][k - 1])]
-    work.store.admit(todo)
-    if todo:
+    for _ in range(ROUNDS):
+        if not at.sizes or not wanted:
+            break
+        k, todo = len(at.sizes.diameters) - 1, []
+        rows = [replace(row, run=one.name) for one, row in zip(points, at.rows(rows_of(setup, at.runs(points))))]
+        first = pick(finished_of(rows)).first
+        for one in (each for each in points if each.name in first):
+            several = at.made.finer.setdefault(one.folder, [None] * (len(wanted.values) - 1))
+            if several[k - 1] is None:
+                todo.append(SizeRun(setup.runs, one, wanted.values[k]))
+                several[k - 1] = todo[-1]
+        if not todo:
+            break
+        work.store.admit(todo)
         work.do(todo)
-    return at_finest(setup, at.made) if todo else at
+        at = at_finest(setup, at.made)
+    return at
 
 
 def told(wanted: Wanted, todo: Sequence[Repeat]) -> str:
