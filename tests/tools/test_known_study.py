@@ -107,6 +107,7 @@ def test_other_grounds_at_both_ends_of_rolling(mine, capsys, monkeypatch):  # no
     ("mine --levels d=2,1", "--levels: must be 1 to 5 for a site, how many sizes of balls, got d=2,1"),
     ("mine --minutes 0", "--minutes: must be > 0, got 0"),
     ("mine/in.site --minutes 5 --set rolling=0 -o o", "--minutes: must be given with the folder of a site, got mine"),
+    ("mine/in.site --minutes 0 --set rolling=0 -o o", "--minutes: must be given with the folder of a site, got mine"),
     ("mine --vary friction=5:9", "--vary: must not be given with the folder of a site"),
     ("mine/in.site --paper --set rolling=0 -o o", "--paper: must be given with the folder of a site, got mine/in")])
 def test_refused(mine, capsys, monkeypatch, words, line):  # noqa: F811

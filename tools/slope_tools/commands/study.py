@@ -108,7 +108,7 @@ def run(args: Request) -> None:
         with study.alone(args.deck, args.dry_run or not (args.deck / site_choices.NAME).is_file()):
             return run_folder(args)
     for name in ("paper", "minutes"):
-        if getattr(args, name):
+        if all(getattr(args, name) is not none for none in (None, False)):
             raise SlopeError(f"--{name}", "must be given with the folder of a site", args.deck)
     run_deck(replace(args, around=site_choices.around(args.deck)))
 
