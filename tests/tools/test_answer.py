@@ -48,6 +48,10 @@ def test_the_larger_of_both():
     found = answer.of(Paper(1200.0), ensemble(), road(0.5, 0.6))
     assert (found.kind, found.volume, found.source, found.share, found.high) == (
         Kind.NUMBER, 1200.0, Source.PAPER, None, 1200.0)
+    # what the other one may be the number may be, too
+    found = answer.of(Paper(1000.0, transfer=(0.0, 20.0)), ensemble(), road(0.5, 0.6))
+    assert (found.volume, found.source, found.high) == (1000.0, Source.PAPER, pytest.approx(1045))
+    assert found.band[-1] == (Cause.OTHER.value, 0.0, pytest.approx((45 ** 2 - 20 ** 2) ** 0.5))
     assert answer.of(Paper(5.0), None, None)[:2] == (Kind.NUMBER, 5.0)
     assert answer.of(None, ensemble(), None)[:2] == (Kind.NUMBER, 950.0)
     assert answer.of(None, None, None) is None
@@ -77,6 +81,9 @@ def test_a_floor_is_the_lower_end_rounded_down():
         found = answer.of(paper, other, road(0.5, 0.6))
         assert (found.kind, found.volume, found.low, found.high) == (Kind.FLOOR, low, low, None)
         assert codes(found) == [Code.SIZE]
+    # what makes it one comes first, and its remedy with it: the terrain ends behind the road
+    found = answer.of(None, ensemble(0.08, stopped=STOPPED, size=few), road(0.5, 0.6))
+    assert (found.kind, codes(found)) == (Kind.FLOOR, [Code.SIZE, Code.BEYOND, Code.TERRAIN])
     assert answer.of(Paper(0.0, size=few), None, None).kind is Kind.NOTHING
     assert answer.of(Paper(None, [Withheld(Rule.LEFT)], size=few), None, None).kind is Kind.WITHHELD
 

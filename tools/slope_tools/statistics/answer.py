@@ -94,6 +94,7 @@ class Cause(Enum):
     RUNS = "chance and parameters"
     TRANSFER = "transfer to the finest balls"
     SIZE = "finer balls"
+    OTHER = "the other study"       # whose upper end is higher
 
 
 def low_high(value: float, band: Sequence[Share]) -> Tuple[float, float]:
@@ -252,11 +253,15 @@ def number(part: Part, size: Size) -> Part:
     if not part.volume:
         return part
     part = part._replace(band=[*part.band, size.share(part.volume)])
-    return part if size.floor is None else part._replace(kind=Kind.FLOOR, reasons=[*part.reasons, size.floor])
+    if size.floor is None:
+        return part
+    # what makes it a floor comes first
+    reasons = [*part.reasons, size.floor] if part.kind is Kind.FLOOR else [size.floor, *part.reasons]
+    return part._replace(kind=Kind.FLOOR, reasons=reasons)
 
 
 def of(paper: Optional[Paper], ensemble: Optional[Ensemble], road: Optional[Road]) -> Optional[Answer]:
-    """The larger of both; None without either.
+    """The larger of both, with the higher of their upper ends; None without either.
 
     Where one of them is withheld for a reason that the other does not make up for, the other is a floor; so is 0 where
     a run reaches the road. A floor is the lower end of the number's band, rounded down.
@@ -283,10 +288,14 @@ def of(paper: Optional[Paper], ensemble: Optional[Ensemble], road: Optional[Road
         part.kind is Kind.FLOOR or part.kind is Kind.WITHHELD and not few(part) for _, part in parts)
     kind = Kind.FLOOR if open_ else Kind.NUMBER if volume else Kind.NOTHING
     low, high = low_high(volume, best.band)
+    band, most = best.band, max(low_high(part.volume or 0.0, part.band)[1] for _, part in known)
+    if most > high and not open_:
+        band = [*band, Share(Cause.OTHER.value, 0.0, math.sqrt((most - volume) ** 2 - (high - volume) ** 2))]
+        high = most
     if open_:
         low = rounding.down(low, rounding.place_of_digits(low))
     return Answer(kind, low if open_ else volume, best.share, low, None if open_ else high, source, paper, ensemble,
-                  road, [*some, *reasons], best.band)
+                  road, [*some, *reasons], band)
 
 
 def few(part: Part) -> bool:
