@@ -25,8 +25,9 @@ def test_where_the_terrain_ends_and_what_is_to_be_added(inside, gis):  # noqa: F
     """With as much level ground as it asks for, hardly any event goes beyond the terrain."""
     out = inside(f"--terrain dem.tif {STANDARD} -o first").out
     share, length, metres = re.search(
-        r"at best a floor, at least so much, because (\d+) % of known events go beyond the terrain, which the fall "
-        r"path leaves after ([\d.]+) m: add about ([\d.]+) m of terrain in the west", out).groups()
+        r"(\d+) % of known events go beyond the terrain, which the fall path leaves after ([\d.]+) m: add about "
+        r"([\d.]+) m of terrain in the west", out).groups()
+    assert "at best a floor" not in out     # it ends behind the road
     assert float(share) > 20 and 85 < float(length) < 95 and f"fall path of {length} m" in out
     assert re.search(r"^69 known events, translational_slides:all: .*50 % beyond [\d.]+ m.*; beyond the terrain: "
                      rf"{share} %$", out, re.MULTILINE)
@@ -39,6 +40,16 @@ def test_where_the_terrain_ends_and_what_is_to_be_added(inside, gis):  # noqa: F
     out = inside(f"--terrain larger.tif {STANDARD} -o second").out
     assert "go beyond the terrain" not in out
     assert "at best a floor" not in out
+
+
+def test_a_terrain_that_ends_on_a_road_makes_a_floor(mine, monkeypatch):  # noqa: F811
+    met = outlook.road.at_road
+    for add, said in ((0.0, False), (60.0, True)):
+        monkeypatch.setattr(outlook.road, "at_road", lambda *given: (
+            one := met(*given))._replace(passed=one.passed + add))
+        found = outlook.lines(mine)
+        assert any("at best a floor" in line and "beyond the terrain" in line for line in found) is said
+        assert any("go beyond the terrain" in line for line in found)
 
 
 def test_a_site_with_too_few_sizes_of_balls_can_have_no_more_than_a_floor(mine):  # noqa: F811

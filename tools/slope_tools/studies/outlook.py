@@ -37,11 +37,14 @@ def lines(folder: Path) -> List[str]:
         length, fall = (rounded(float(values[-1]), 4) for values in (counts.path.length, counts.path.fall))
         said += [f"fall path of {length} m, down to {fall} m below the crown, {counts.path.end}",
                  events_text(counts, asked)]
-        for name in site_roads.names(site) or [""] * bool(choices.road.file):
-            lane = roads.read_local(folder / site_roads.file_name(name), mass.raster, choices.road.asked,
-                                    local=True).polygon
-            said.append(road_text(counts, road.at_road(counts.path, lane), name))
-        floors += [why] if (why := terrain_ends(counts, mass.raster)) else []
+        met = {name: road.at_road(counts.path, roads.read_local(
+            folder / site_roads.file_name(name), mass.raster, choices.road.asked, local=True).polygon)
+            for name in site_roads.names(site) or [""] * bool(choices.road.file)}
+        said += [road_text(counts, one, name) for name, one in met.items()]
+        if why := terrain_ends(counts, mass.raster):
+            # behind all roads it is no reason against their numbers
+            behind = met and all(one.passed < counts.path.length[-1] for one in met.values())
+            (said if behind else floors).append(why)
     numbers = site_study.wanted(site, site_study.plan(site, Setup(Path(), Path())), site_study.Asked(),
                                 choices.study.points).points
     floors += [why] if (why := coarse(1 + len(numbers))) else []
