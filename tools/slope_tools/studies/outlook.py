@@ -25,7 +25,8 @@ def lines(folder: Path) -> List[str]:
     """In words: what is known without a run, what the study takes, and whether it can be more than a floor."""
     site = site_choices.load(folder)
     choices, found = site.choices, site.found
-    said, floors = [], []
+    said: List[str] = []
+    floors: List[str] = []
     try:
         mass = body.of_site(folder)
         asked = known.choice(choices.known.set, (), choices.known.confined)
