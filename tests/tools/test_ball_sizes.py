@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import yaml
 
-from made_rows import row
+import made_rows
 from run_helpers import TOP
 from slope_tools import cli
 from slope_tools.deposits import deposit, volume
@@ -72,8 +72,9 @@ def test_a_single_pair_is_no_certainty():
 def test_what_no_finer_run_has_is_unknown():
     """As the length where all finer runs leave the terrain; the finer runs keep what they have."""
     def one(d, length, lobes=None):
-        return row(variables={"d": str(d)}, remove_m3=100.0, distance_99_m=length, length_m=length,
-                   length_by_lobe_m=lobes, ball_m3=1.0)
+        return made_rows.row(variables={"d": str(d)}, remove_m3=100.0, distance_99_m=length, length_m=length,
+                             length_by_lobe_m=lobes, ball_m3=1.0)
+
     coarse, fine = [one(2, 50.0, [60.0, 40.0]) for _ in range(4)], [one(1, None) for _ in range(2)]
     found = sizes.of([*zip(coarse, fine), *([only] for only in coarse[2:])])
     got = [found.row(each) for each in (coarse[3], fine[0])]
