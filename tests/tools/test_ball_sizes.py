@@ -82,6 +82,13 @@ def test_what_no_finer_run_has_is_unknown():
     assert got[0].road.remove_m3 == 100 and found.steps["distance_99_m"][0].known is False
 
 
+def test_no_more_is_removed_than_was_released():
+    coarse, fine = ([made_rows.row(variables={"d": d}, remove_m3=remove, released_m3=1000.0, ball_m3=1.0)
+                     for remove in volumes] for d, volumes in (("2", (500.0, 600.0, 950.0)), ("1", (700.0, 840.0))))
+    found = sizes.of([*zip(coarse, fine), coarse[2:]])
+    assert found.row(coarse[2]).road.remove_m3 == 1000 and found.row(coarse[0]).road.remove_m3 == pytest.approx(700)
+
+
 def test_parameters_count_where_they_predict_better():
     rng = np.random.default_rng(1)
     at = rng.random((16, 2))

@@ -21,7 +21,7 @@ from .rows import Finished, Row
 VARIABLE = "d"                  # of a deck: the diameter of the balls, m
 VOLUMES = {"m3"}                # units of quantities of which ten balls count
 NOT = {"released_m3", "on_grid_m3", "stop_time_s"}      # columns that the size does not change, or that tell of a run
-PARTS = "before_road_m3", "on_road_m3", "beyond_road_m3"        # of what was released
+PARTS = quantities.REMOVE, "before_road_m3", "on_road_m3", "beyond_road_m3"      # of what was released
 FEWEST = 2              # pairs of two sizes; fewer tell nothing of the finer one
 BANDS = quantities.REMOVE, "remove_on_road_m3", "beyond_road_m3", quantities.LENGTH     # that a row has
 # of stretches and their sums: of which column they are a part
