@@ -288,3 +288,11 @@ def test_an_older_result_is_not_merged_where_all_runs_failed(tmp_path, monkeypat
         study.run_both(asked, site, 4)
         assert {yaml.safe_load(path.read_text())["study"]["governs"] for path in files} == {"ensemble"}
     assert len(calls) == merged
+
+
+def test_no_number_exceeds_what_was_released():
+    """Neither its upper end, where chance or finer balls would take it there."""
+    found = answer.of(Paper(900.0, least=850.0, size=Size(0.0, 0.5), released=1000.0), None, None)
+    assert (found.kind, found.volume, found.high) == (Kind.NUMBER, 900.0, 1000.0)
+    found = answer.of(Paper(1200.0, least=1100.0, size=Size(0.0, 0.1), released=1000.0), None, None)
+    assert (found.volume, found.high) == (1000.0, 1000.0) and found.low <= 1000

@@ -131,20 +131,23 @@ class Size(NamedTuple):
 class Paper(NamedTuple):
     """The conservative volume (m3) of the paper's study; None where it is withheld.
 
-    least: m3, what runs lie above as well; None: chance is not known; transfer: m3 below and above.
+    least: m3, what runs lie above as well; None: chance is not known; transfer: m3 below and above; released: m3, of
+    the largest body, more than which is not to be removed.
     """
     volume: Optional[float]
     withheld: Sequence[Withheld] = ()
     least: Optional[float] = None
     transfer: Sequence[float] = (0.0, 0.0)
     size: Size = Size()
+    released: float = math.inf
 
 
 class Ensemble(NamedTuple):
     """A weighted ensemble: quantiles (m3) of shares().
 
     far: share of the known events beyond all runs; longest: m; stopped: why no more runs were added, None: enough were.
-    most: m3, of a run; size: as of Paper; path_end: m, of a fall path that ends before the longest run: far is the
+    most: m3, of a run; size, released: as of Paper; path_end: m, of a fall path that ends before the longest run:
+    far is the
     share beyond it.
     """
     quantiles: Sequence[KnownQuantile]
@@ -155,6 +158,7 @@ class Ensemble(NamedTuple):
     most: float = 0.0
     size: Size = Size()
     path_end: Optional[float] = None
+    released: float = math.inf
 
     def at(self, share: float) -> Optional[KnownQuantile]:
         return next((one for one in self.quantiles if one.share == share), None)
@@ -292,6 +296,8 @@ def of(paper: Optional[Paper], ensemble: Optional[Ensemble], road: Optional[Road
     if most > high and not open_:
         band = [*band, Share(Cause.OTHER.value, 0.0, math.sqrt((most - volume) ** 2 - (high - volume) ** 2))]
         high = most
+    released = min(one.released for one in (paper, ensemble) if one)
+    volume, low, high = (min(one, released) for one in (volume, low, high))
     if open_:
         low = rounding.down(low, rounding.place_of_digits(low))
     return Answer(kind, low if open_ else volume, best.share, low, None if open_ else high, source, paper, ensemble,

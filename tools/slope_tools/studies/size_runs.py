@@ -210,6 +210,7 @@ def settle(setup: Setup, work: jobs.Work, points: Sequence[Repeat], wanted: Opti
         if not todo:
             break
         work.store.admit(todo)
+        setup.tell(f"on these points the numbers rest: {len(todo)} more with balls of {float(wanted.values[k]):.3g} m")
         work.do(todo)
         at = at_finest(setup, at.made)
     return at

@@ -1,6 +1,7 @@
 """The headline of study.yaml (statistics.answer): of what a study says, and of both studies of a site."""
 import datetime
 import functools
+import math
 from pathlib import Path
 from shlex import quote
 from typing import Any, List, Mapping, Optional, Sequence
@@ -35,7 +36,8 @@ def paper_of(about: study_types.Study) -> Optional[Paper]:
     if not best:
         return None
     least = None if best.chance_m3 is None else best.mean_m3 - best.chance_m3
-    return Paper(best.rounded["volume_m3"], rules(best.withheld), least, best.transfer_m3 or (0.0, 0.0), size_of(about))
+    return Paper(best.rounded["volume_m3"], rules(best.withheld), least, best.transfer_m3 or (0.0, 0.0), size_of(about),
+                 released_of(about))
 
 
 def ensemble_of(about: study_types.Study) -> Optional[Ensemble]:
@@ -46,7 +48,13 @@ def ensemble_of(about: study_types.Study) -> Optional[Ensemble]:
     stopped = one.added.stopped
     most = max((row.at_road.remove_m3 for row in finished_of(about.runs) if row.road), default=0.0)
     return Ensemble(one.to_remove, one.far, one.longest_m, rules(whole.withheld),
-                    Reason.read(stopped) if stopped else None, most, size_of(about), one.path_end_m)
+                    Reason.read(stopped) if stopped else None, most, size_of(about), one.path_end_m,
+                    released_of(about))
+
+
+def released_of(about: study_types.Study) -> float:
+    """m3 of the largest body; infinite without a run."""
+    return max((row.released_m3 for row in finished_of(about.runs)), default=math.inf)
 
 
 def size_of(about: study_types.Study) -> Size:
