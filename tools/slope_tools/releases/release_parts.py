@@ -14,7 +14,7 @@ from .release_area import Area
 from .release_bodies import slbl_shape
 
 LITTLE = 0.75   # share of a polygon; a body that takes less of it is a doubtful one
-LISTED = 12     # polygons that are told one by one
+LISTED = 12     # polygons that are named one by one
 
 
 class Size(NamedTuple):

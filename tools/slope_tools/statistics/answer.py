@@ -147,8 +147,7 @@ class Ensemble(NamedTuple):
 
     far: share of the known events beyond all runs; longest: m; stopped: why no more runs were added, None: enough were.
     most: m3, of a run; size, released: as of Paper; path_end: m, of a fall path that ends before the longest run:
-    far is the
-    share beyond it.
+    far is the share beyond it.
     """
     quantiles: Sequence[KnownQuantile]
     far: float

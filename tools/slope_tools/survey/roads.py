@@ -20,7 +20,7 @@ from ..geometry import extent, numbers
 from . import features, lines, network, polygons, vectors
 
 ARCS = 45       # pieces of a quarter of a circle, outside of bends
-SHOWN = 3       # places where roads meet, that are told
+SHOWN = 3       # places where roads meet, that are printed
 SLACK = 1e-5    # m, beyond the terrain; written coordinates are rounded
 
 

@@ -58,7 +58,7 @@ def of_other(what: str, volume: Optional[float]) -> str:
 # --- why ---
 
 def told(about: study_types.Headline) -> List[Reason]:
-    """The reasons as they are told, each once: of a rule that both studies break, of the one that decides."""
+    """The reasons as they are printed, each once: of a rule that both studies break, of the one that decides."""
     found: Dict[Tuple[Code, Any], Reason] = {}
     for one in map(Reason.read, about.reasons):
         found.setdefault((one.code, one.numbers.get("rule")), one)
