@@ -44,8 +44,8 @@ def test_a_factor_by_hand():
 
 
 def test_few_balls_have_a_difference():
-    """Below ten coarse balls; what is nothing stays nothing, and what becomes nothing breaks nothing."""
-    step = fit([0, 20, 40, 500, 600], [0, 10, 50, 0.0, 660], none(5), ball=10)
+    """Below ten coarse balls; what is nothing stays nothing."""
+    step = fit([0, 20, 40, 500, 600], [0, 10, 50, 500, 660], none(5), ball=10)
     assert step.least == 100 and step.small.number == 3 and step.ratio.number == 2
     assert transfer([step], 50.0, ()).value == pytest.approx(50.0)
     assert transfer([step], 50.0, ()).deviation == pytest.approx(step.small.deviation)
@@ -159,6 +159,29 @@ def test_what_finer_balls_would_change():
         assert ball_sizes.left(steps(first, 0.0708, 1e-4)).high > slow.high
     assert ball_sizes.left(steps(0.1, 0.1, 1e-4)[:1]) is None
     assert ball_sizes.left([fit([0, 0], [0, 0], none(2), ball=1)] * 2) is None
+
+
+def test_the_largest_values_decide_what_finer_balls_leave():
+    """A last halving that raises the largest by 40 % and the others by less is none that raises all by 20 %."""
+    coarse = np.geomspace(1000.0, 8000.0, 8)
+    half = coarse * 1.4
+    grows = np.linspace(0.0, math.log(1.4), 8)
+    before = fit(coarse, half, none(8))
+    found = ball_sizes.left([before, fit(half, half * np.exp(grows), none(8), before=before)])
+    assert found.grown == pytest.approx(0.4, abs=0.05) and found.high > found.best == pytest.approx(
+        math.expm1(1.25 * grows.mean()), rel=0.02)
+    steady = ball_sizes.left([before, fit(half, half * 1.2, none(8), before=before)])
+    assert steady.grown == pytest.approx(0.2, abs=0.01)
+
+
+def test_a_pair_that_becomes_nothing_drags_no_other():
+    coarse = np.array([100.0, 400, 1000, 2000, 4000])
+    step = fit(coarse, [0.0, 404, 1010, 2020, 4040], none(5), ball=1)
+    assert transfer([step], 1500.0, ()).value == pytest.approx(1515)
+    assert transfer([step], 90.0, ()).band[0] == 0
+    mixed = fit([*coarse, 5, 8], [0.0, 404, 1010, 2020, 4040, 5, 8], none(7), ball=1)
+    assert transfer([mixed], 7.0, ()).value == pytest.approx(7) and transfer([mixed], 7.0, ()).band[1] > 50
+    assert fit([1.0, 5, 6], [0.0, 5, 6], none(3)).least > 1         # a length has none either
 
 
 def test_points_of_finer_balls_are_spread_and_nested():

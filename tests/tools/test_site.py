@@ -27,12 +27,13 @@ from slope_tools.commands import study as study_command
 from slope_tools.deposits import volume_files
 from slope_tools.ensembles import farther
 from slope_tools.releases import release_chart
+from slope_tools.runs import jobs
 from slope_tools.sites import site_budget, site_choices, site_deck, site_warnings
 from slope_tools.sites.site_sections import OfMass, sections
 from slope_tools.sites.site import numbers as site_numbers
 from slope_tools.errors import SlopeError
 from slope_tools.plots import site_map
-from slope_tools.studies import study
+from slope_tools.studies import size_runs, study
 from slope_tools.tables import answer_words, answered, elastic, named_run
 from slope_tools.tables.study_file import load_study
 
@@ -310,6 +311,7 @@ def test_a_site_has_one_number_of_three_sizes_of_balls(tmp_path, monkeypatch, ca
     monkeypatch.setenv("LMP", LMP)
     monkeypatch.setattr(volume_files, "draw", lambda path, *_: path.touch())
     monkeypatch.setattr(study_command, "write_report", lambda *_, **__: None)
+    monkeypatch.setattr(jobs, "busy", lambda: 99)        # no run has two ranks: other tests run beside this one
     monkeypatch.setattr(farther, "MOST", 0.0)
     monkeypatch.setattr(site_budget, "LEAST", (4, 2))
     monkeypatch.setattr(site_budget, "ENOUGH", (4, 2))
@@ -328,7 +330,7 @@ def test_a_site_has_one_number_of_three_sizes_of_balls(tmp_path, monkeypatch, ca
     abouts = {name: yaml.safe_load((mine / name / "study.yaml").read_text()) for name in ("study", "ensemble")}
     made = [path.name for path in runs_in(mine / "runs")]
     finer = sum("_d_" in name for name in made)
-    assert len(made) == 4 + 1 + 8 + finer and 4 + 2 < finer <= 4 + 2 + 9      # and those on which numbers rest then
+    assert len(made) == 4 + 1 + 8 + finer and 4 + 2 < finer <= 4 + 2 + size_runs.ROUNDS   # on which numbers rest then
     assert abouts["study"]["size"]["effects"] == abouts["ensemble"]["size"]["effects"]
     assert [one["runs"] for one in abouts["study"]["size"]["sizes"]] == [12, 4, finer - 4]
     points = [row for about in abouts.values() for row in about["runs"]]
@@ -600,15 +602,17 @@ def test_the_size_of_the_balls_comes_from_the_budget():
 
 
 def test_the_run_time_in_the_deck_is_that_of_one_run():
-    """Set-up, and what steps and balls cost: 15 s in steps of 1.5 quarters of sqrt(m/k), of 1 on close ground."""
+    """Set-up, steps and balls: 15 s in steps of 1.5 quarters of sqrt(m/k), of 1 on close ground; more balls
+    than stay in the cache save nothing of a step's own time."""
     choices = OfMass.of({"terrain": {"files": ["dem.tif"]}})
     trial = site_budget.Trial(800, 3.5, 15.0, True, 13.0, 1e-7, 0.5, 2.0, 0.0, step=3e-5)
     size = budget(number=2240)
+    each = size.balls * (3e-5 / site_budget.CACHED + 1e-7)
     step = 1.5 * 0.25 * 0.05 * size.diameter / 60.0     # at 60 m/s a contact overlaps by a twentieth of the diameter
     found = site_numbers(choices, SOIL._replace(speed=60.0), trial, size)
-    assert found.run_seconds == pytest.approx(0.5 + 15 / step * (3e-5 + size.balls * 1e-7))
+    assert found.run_seconds == pytest.approx(0.5 + 15 / step * each)
     found = site_numbers(choices, SOIL._replace(speed=60.0, spacing=0.35), trial, size)
-    assert found.run_seconds == pytest.approx(0.5 + 1.5 * 15 / step * (3e-5 + size.balls * 1e-7))
+    assert found.run_seconds == pytest.approx(0.5 + 1.5 * 15 / step * each)
 
 
 @pytest.mark.parametrize("d, thick, number", [(1.0, 7.0, 2e4), (0.5, 3.0, 2e4), (1.0, 14.0, 4e4), (0.5, 14.0, 8e4)])
@@ -637,6 +641,20 @@ def test_no_speed_is_below_that_of_the_trial_run():
     trial = site_budget.Trial(800, 3.5, 15.0, True, 0.0, 1e-7, 0.5, 2.0, 0.0)
     assert site_budget.stiff_to(trial) == site_budget.SLOW > 0
     assert site_budget.stiff_to(trial._replace(speed=13.0)) == 16.0
+
+
+def test_the_finest_points_are_as_many_as_time_allows():
+    """By how long the coarse runs of these points took; as many sizes as were planned."""
+    trial = site_budget.Trial(800, 3.5, 15.0, True, 13.0, 1e-7, 0.5, 2.0, 0.0)
+    wanted = site_budget.Plan(20, 0, False, 0, "")
+    time = site_budget.time_of(3.5, 3e4, trial, SOIL, wanted, 2, 40.0)
+    planned = size_runs.halved("3.5", site_budget.finer(20, time, 40.0, 3), time)
+    as_planned, longer, endless = (planned.fitted([rest * time.typical] * 20).points for rest in (1, 2, 99))
+    assert as_planned == planned.points and longer[1] < as_planned[1] and endless[1] == site_budget.LEAST[1]
+    assert sum(number * time.one(k, 2 * time.typical) for k, number in enumerate(longer, 1)) <= time.whole
+    # where no time is given there are as many sizes as a number needs
+    slow = site_budget.time_of(3.5, 3e4, trial._replace(cost=1e-4), SOIL, wanted, 2, None)
+    assert len(site_budget.finer(20, slow, None, None)) == 2 > len(site_budget.finer(20, slow, 10.0, None))
 
 
 def test_a_second_trial_tells_how_long_most_runs_take():

@@ -1,4 +1,5 @@
 """tools/slope study: the product of variables, resuming, failing runs; table and maps against the runs' own files."""
+import functools
 import os
 import pty
 import re
@@ -19,9 +20,9 @@ from shapely.geometry import Polygon
 from run_helpers import called, examples
 from tiny_collapse import LMP, TOP, edit, processes_in, read_asc, rows_of, serial, write_case
 
-from slope_tools.case import decks, logs, settings
+from slope_tools.case import decks, logs, run_folders, settings
 from slope_tools.releases import release_toe
-from slope_tools.runs import job_display
+from slope_tools.runs import job_display, jobs
 from slope_tools.statistics import rounding
 from slope_tools.studies import body_depth, study
 from slope_tools.survey import rasters
@@ -724,6 +725,24 @@ exec {LMP} "$@"
     assert "its launch failed once: [host:4711]" in out and (here / "count").read_text() == "2\n"
     sessions = (here / "sessions").read_text().split()
     assert len(set(sessions)) == 2 and not any(Path(one).exists() for one in sessions)
+
+
+@pytest.mark.parametrize("busy, program, ranks", [
+    (0, "", 2), (1, "", 1), (0, "[ $OMPI_COMM_WORLD_SIZE ] && exit 1", 1)])
+def test_a_run_that_is_alone_has_all_cores(slope, here, monkeypatch, busy, program, ranks):
+    """Unless others want them, or the program cannot have them."""
+    if serial():
+        pytest.skip("the program has no MPI")
+    (here / "lmp").write_text(f'#!/bin/sh\n{program}\nexec {LMP} "$@"\n')
+    (here / "lmp").chmod(0o755)
+    monkeypatch.setenv("LMP", str(here / "lmp"))
+    for name, value in (("busy", busy), ("cores", 2)):
+        monkeypatch.setattr(jobs, name, lambda value=value: value)
+    monkeypatch.setattr(jobs.Work, "do", functools.partialmethod(jobs.Work.do, share=True))
+    status, _, err = slope("case/in.tiny --set rolling=0 --set steps=20 -o out")
+    assert status == 0, err
+    [made] = (here / "out").rglob(run_folders.VARIABLES)
+    assert run_folders.begun(made.parent)["ranks"] == ranks
 
 
 def test_a_program_that_fails_by_itself_is_not_started_again(slope, here, monkeypatch):

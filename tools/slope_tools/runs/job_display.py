@@ -1,5 +1,6 @@
 """How far the runs of a study are: a table that renews itself on a terminal, else a line now and then."""
 import datetime
+import math
 import sys
 import time
 from typing import Dict, List
@@ -10,6 +11,7 @@ from rich.progress_bar import ProgressBar
 from rich.table import Table
 
 from .. import findings, streams
+from ..case.settings import as_number
 
 DIAMETER = "d"          # variable of a deck: the size of the balls
 TELL = 30.0             # s between two lines about a run, where there is no terminal
@@ -24,7 +26,7 @@ class Display:
         self.total, self.waiting, self.at_a_time, self.queue = len(todo), len(waiting), at_a_time, waiting
         self.numbers = {one.name: i for i, one in enumerate(todo, 1)}
         self.ended_runs = self.failed = 0
-        self.walls: Dict[str, List[float]] = {}        # by the size of balls
+        self.walls: Dict[float, List[float]] = {}      # by the diameter of balls
         self.halts = halts
         self.printed = {}      # name -> when the last line about it was printed
         self.live = None
@@ -66,7 +68,7 @@ class Display:
     def ended(self, active):
         one, wall = active.run, time.monotonic() - active.began
         self.ended_runs += 1
-        self.walls.setdefault(one.chosen.get(DIAMETER, ""), []).append(wall)
+        self.walls.setdefault(diameter(one), []).append(wall)
         self._say_share()
         if one.error:
             self.failed += 1
@@ -82,11 +84,15 @@ class Display:
         return "" if self.live or left <= 0 else f"; {left} to go, all by {clock(self._ends(left))}"
 
     def _ends(self, left):
-        """Seconds that so many runs take, as those before of their sizes did; of a size without one as the longest."""
-        means = {size: sum(walls) / len(walls) for size, walls in self.walls.items()}
-        waiting = [means.get(run.chosen.get(DIAMETER, ""), max(means.values())) for run in self.queue]
-        under_way = max(0, left - len(waiting)) * max(means.values()) / 2
+        """Seconds that so many runs take, as those before of their sizes did."""
+        waiting = [self._wall(diameter(run)) for run in self.queue]
+        under_way = max(0, left - len(waiting)) * max(map(self._wall, self.walls)) / 2
         return (sum(waiting) + under_way) / self.at_a_time()
+
+    def _wall(self, d):
+        """Of a run with balls of a diameter; half of it makes 8 times the balls, and twice the steps."""
+        like = min(self.walls, key=lambda one: abs(math.log(one / d)))
+        return sum(self.walls[like]) / len(self.walls[like]) * (like / d) ** 4
 
     def update(self, active, waiting):
         if self.live:
@@ -140,6 +146,12 @@ class Display:
                       + (f", {self.failed} failed" if self.failed else ""), "", f"{waiting} waiting", ends,
                       style="dim")
         return table
+
+
+def diameter(run):
+    """Of the balls of a run, m; 1 where its values do not say it."""
+    value = as_number(run.chosen.get(DIAMETER, ""))
+    return value if isinstance(value, float) and 0 < value < math.inf else 1.0
 
 
 def duration(seconds):

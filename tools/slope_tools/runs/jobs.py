@@ -28,6 +28,12 @@ def cores():
     return len(os.sched_getaffinity(0))
 
 
+def busy():
+    """Processes of this machine that want a core now, without this one."""
+    with open("/proc/loadavg", encoding="ascii") as file:
+        return int(file.read().split()[3].partition("/")[0]) - 1
+
+
 def slots():
     """What mpirun takes as its number of slots: in a job of Slurm its tasks on this node, else physical cores."""
     tasks = re.match(r"\d+", os.environ.get("SLURM_TASKS_PER_NODE", ""))
@@ -55,6 +61,7 @@ class Run:
         self.restart = None         # step and path of the restart file from which it continues
         self.refused = set()        # restart files that LAMMPS could not read
         self.unlaunched: Optional[str] = None       # what was said when it failed before LAMMPS began
+        self.share = 1              # times as many ranks as the others
         self.output_before = 0              # bytes of screen output of its earlier parts
 
     def move(self, folder: Path):
@@ -150,13 +157,15 @@ class Work:
     def of(self, run) -> "Work":
         return self.parts.get(run.folder.parent, self)
 
-    def do(self, todo):
+    def do(self, todo, share=False):
         """Run what is not finished. On an interruption, end the runs under way and leave their folders unfinished.
 
-        Runs of one folder are one: it is made as the first of them.
+        Runs of one folder are one: it is made as the first of them. share: cores among fewer runs than at a time.
         """
         once = store.once(todo)
         waiting = [run for run in once if not run.finished]
+        for run in waiting:
+            run.share = self.share_of(len(waiting)) if share else 1
         with Display(once, waiting, self.at_a_time, self.halts) as display:
             try:
                 while waiting or self.active:
@@ -184,6 +193,15 @@ class Work:
         """How many runs may be active at a time."""
         return self.jobs
 
+    def share_of(self, number):
+        """How many times the ranks of a run each of so many can have: ranks that wait for a core hold up the others."""
+        idle = min(self.jobs, (cores() - busy()) // self.ranks)
+        return max(1, idle // number) if launcher.able(self.start) else 1
+
+    def ranks_of(self, run):
+        """MPI ranks of a run."""
+        return run.share * self.ranks
+
     def _begin(self, waiting):
         """Start what may run now, taking it from waiting; (run, line for the user) of each."""
         while waiting and len(self.active) < self.jobs:
@@ -193,7 +211,8 @@ class Work:
     def _again(self, active):
         """Whether a run that ended is to be started once more."""
         return (self._refused(active.run, active.process.returncode)
-                or self._unlaunched(active.run, active.process.returncode))
+                or self._unlaunched(active.run, active.process.returncode)
+                or self._unshared(active.run, active.process.returncode))
 
     def _shown(self):
         """The runs that the display shows as under way."""
@@ -238,7 +257,7 @@ class Work:
 
     def _line(self, run):
         """The whole command of a run."""
-        return [*launcher.words(self.start, self.ranks, slots()), str(self.lmp), *self.command(run)]
+        return [*launcher.words(self.start, self.ranks_of(run), slots()), str(self.lmp), *self.command(run)]
 
     def _last_restart(self, run):
         """Step and path of the restart file from which an unfinished run can continue, or None; and why it cannot."""
@@ -257,8 +276,8 @@ class Work:
     def _reopen_folder(self, run):
         """Prepare the folder of an interrupted run for its continuation."""
         before, (step, path) = run_folders.begun(run.folder), run.restart
-        about = {**before, "ranks": self.ranks, "continued": [*before.get("continued", ()), {
-            "step": step, "restart": str(path.relative_to(run.folder)), "ranks": self.ranks,
+        about = {**before, "ranks": self.ranks_of(run), "continued": [*before.get("continued", ()), {
+            "step": step, "restart": str(path.relative_to(run.folder)), "ranks": self.ranks_of(run),
             "started": provenance.now()}]}
         disk.write(run.folder / run_folders.VARIABLES, yaml.safe_dump(about, sort_keys=False))
         if run.log.path.exists():
@@ -283,6 +302,18 @@ class Work:
         run.unlaunched = run.screen().launcher
         return run.unlaunched is not None
 
+    def _unshared(self, run, status):
+        """Whether a run with a share of the cores failed, as that of a program without MPI does: it is made anew
+        without."""
+        if run.share == 1 or status in KILLED:
+            return False
+        if status == 0 and [run_folders.load_summary(one)["ranks"] for one in run_folders.summaries(run.folder)] == [
+                self.ranks_of(run)]:
+            return False
+        shutil.rmtree(run.folder)
+        run.share = 1
+        return True
+
     def _make_folder(self, run):
         """Make the folder with all input of the run, in place of that of an unfinished run."""
         new = run.folder.with_name(f".{run.name}.new")
@@ -293,7 +324,7 @@ class Work:
         run.log = logs.Log(run.log.path)        # what was read so far belongs to the old run
         state = self.depends.now(run)
         about = {"deck": self.deck.name, "set": run.chosen, "variables": {**self.defaults, **run.chosen},
-                 "command": " ".join([self.lmp.name, *self.command(run)]), "ranks": self.ranks,
+                 "command": " ".join([self.lmp.name, *self.command(run)]), "ranks": self.ranks_of(run),
                  "package": self.package, "lmp_sha256": state.program["LAMMPS program"],
                  "started": provenance.now(), "program": state.program, "environment": state.environment,
                  "inputs": {**state.files, **self.digests}}
@@ -311,8 +342,9 @@ class Work:
             return run.fail(status)
         try:
             summary = run_folders.load_summary(summaries[0])
-            if summary["ranks"] != self.ranks:
-                raise SlopeError(self.lmp, f"must be built with MPI to run on {self.ranks} ranks", summary["ranks"])
+            if summary["ranks"] != self.ranks_of(run):
+                raise SlopeError(self.lmp, f"must be built with MPI to run on {self.ranks_of(run)} ranks",
+                                 summary["ranks"])
         except SlopeError as error:
             run.error = str(error)
             return None

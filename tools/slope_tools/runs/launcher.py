@@ -24,10 +24,15 @@ def words(start: Optional[str], ranks: int, slots: int) -> List[str]:
     return ["mpirun", "-np", str(ranks), "--bind-to", "none", *(["--oversubscribe"] if ranks > slots else [])]
 
 
+def able(start: Optional[str]) -> bool:
+    """Whether runs can have several ranks."""
+    return start is not None or shutil.which("mpirun") is not None
+
+
 def check(start: Optional[str], ranks: int) -> None:
     """Raise SlopeError unless the launcher is there."""
     if start is None:
-        if ranks > 1 and not shutil.which("mpirun"):
+        if ranks > 1 and not able(start):
             raise SlopeError("--np", "needs mpirun, which is not on the PATH, unless it is 1 (or --launcher)", ranks)
         return
     try:

@@ -174,6 +174,10 @@ class Work(jobs.Work):
         """As many as the cluster lets run, which is not known before the first of them do."""
         return max(1, self.running)
 
+    def share_of(self, number):
+        """All tasks of an array have as many ranks."""
+        return 1
+
     def _begin(self, waiting):
         """Submit all that waits as one array, or as several where sbatch refuses one of that size."""
         while waiting and (room := self._room(len(waiting))) > 0:

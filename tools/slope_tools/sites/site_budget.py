@@ -15,6 +15,7 @@ from typing import Callable, List, Mapping, NamedTuple, Optional, Sequence, Tupl
 
 from .. import processes
 from ..case import last_words, logs, run_folders
+from ..case.settings import as_number
 from ..digits import rounded
 from ..errors import SlopeError
 from ..releases import packing
@@ -29,6 +30,7 @@ MOST_SIZES = 5
 PAIRS = 12, 5           # points with the next finer balls, and with those after, where no time decides
 LEAST = 8, 4            # of them, at least: fewer say too little of what is between two sizes
 ENOUGH = 24, 8          # at most: more time is for finer balls
+LATE = 2                # of the finest, on which numbers rest once all values are at the finest size
 TRIAL = 400             # balls of the trial run
 OTHER = 3               # times as many balls has the second trial run for a budget of time, otherwise as few
 FINER_SHARE = 0.2       # of that budget, which it takes at most
@@ -41,6 +43,7 @@ PER_CELL = 16e-9        # GB, two terrains of doubles; the deposit's rasters onl
 COLLECT = 1.5           # s of a run's volume and maps: after all runs, one after the other
 REPORT = 15.0           # s of the report
 LONGER = 1.2            # times as many steps takes a run of the ensemble, whose ground may be smooth
+CACHED = 1200           # balls whose contacts stay in the cache
 LEDGER = 1.4            # times as long takes a run that keeps account of its energy: that with half the step
 SPEED = 47.0            # m/s, where no trial run tells
 SLOW = 1.0              # m/s, least speed; that of the trial run, which has the stiffness that the weight needs
@@ -82,8 +85,13 @@ class Trial(NamedTuple):
 
     def run(self, d: float, balls: float, soil: "Soil", longer: float = 1.0) -> float:
         """s of a core that a run with balls of diameter d (m) takes."""
-        steps = longer * self.typical / time_step(d, soil)
-        return self.setup + steps * (self.step + balls * self.cost)
+        return self.run_of(d, balls, soil, longer * self.typical)
+
+    def run_of(self, d: float, balls: float, soil: "Soil", rest: float) -> float:
+        """The same of a run whose collapse takes so long (s)."""
+        # what more balls save of a step's own time is lost again where they leave the cache
+        own = self.step * max(1.0, balls / CACHED)
+        return self.setup + rest / time_step(d, soil) * (own + balls * self.cost)
 
 
 class Size(NamedTuple):
@@ -113,6 +121,12 @@ def time_step(d: float, soil: Soil) -> float:
     by_weight = STIFFNESS_NUMBER * max(1.0, thick / (LAYERS * d)) * density * packing.SOLID * GRAVITY * thick * d
     by_speed = mass * (speed / (OVERLAP * d)) ** 2
     return (STEP if spacing >= CLOSE else 1.0) * 0.25 * math.sqrt(mass / max(by_weight, by_speed))
+
+
+def in_steps(rest: float, spacing: Optional[str]) -> float:
+    """The time (s) of a collapse, longer where it has more steps; spacing: of the ground's balls, a deck's variable."""
+    close = as_number(spacing or "")
+    return rest * (STEP if isinstance(close, float) and close < CLOSE else 1.0)
 
 
 def three_digits(value: float) -> float:
@@ -234,10 +248,12 @@ def pairs(points: int, sizes: int) -> List[int]:
     return [min(points, PAIRS[min(k, 1)]) for k in range(sizes - 1)]
 
 
-def within(points: int, seconds: Callable[[int], float], left: float, asked: Optional[int] = None) -> List[int]:
+def within(points: int, seconds: Callable[[int], float], left: float, asked: Optional[int] = None,
+           least: int = 1) -> List[int]:
     """The same where time decides: seconds(k) of a run with balls of 1/2^k of the diameter, left (s) for all of these.
 
-    asked: so many sizes, whatever they take. First one size more with the least of points, then points of the finest.
+    asked: so many sizes, and least: so many at least, whatever they take. First one size more with the least of points,
+    then points of the finest.
     """
     def cost(numbers: List[int]) -> float:
         return sum(number * seconds(k) for k, number in enumerate(numbers, 1))
@@ -247,23 +263,39 @@ def within(points: int, seconds: Callable[[int], float], left: float, asked: Opt
         first = max(LEAST[0], min(ENOUGH[0], 3 * last))
         return [min(points, first if k == 0 and sizes > 2 else last) for k in range(sizes - 1)]
 
-    sizes = asked or max([1, *(one for one in range(2, MOST_SIZES + 1) if cost(of(one, LEAST[1])) <= left)])
+    sizes = asked or max([least, *(one for one in range(2, MOST_SIZES + 1) if cost(of(one, LEAST[1])) <= left)])
     fits = [last for last in range(LEAST[1], ENOUGH[1] + 1) if cost(of(sizes, last)) <= left]
     return of(sizes, max(fits, default=LEAST[1]))
 
 
-def finer(d: float, volume: float, trial: Optional[Trial], soil: Soil, wanted: Plan, jobs: int,
-          minutes: Optional[float], asked: Optional[int]) -> List[int]:
-    """Points of a site with each of the finer balls; d: of the coarsest; minutes, asked: None: not given."""
-    if trial is None:
-        return pairs(wanted.paper + wanted.points, asked or SIZES)
-    known = trial
+class Time(NamedTuple):
+    """That runs with finer balls may take: one(k, rest) s of a core of a run with balls of 1/2^k of the diameter whose
+    collapse takes rest (s); typical: rest of most; whole: of all of these runs."""
+    one: Callable[[int, float], float]
+    typical: float
+    whole: float
+
+
+def time_of(d: float, volume: float, trial: Trial, soil: Soil, wanted: Plan, jobs: int,
+            minutes: Optional[float]) -> Time:
+    """What a study of so many minutes, None: not given, leaves them; d: of the coarsest balls."""
     whole = 60 * (minutes or MINUTES) - study_seconds(d, volume, trial, soil, wanted, jobs, ())[0]
 
-    def one(k: int) -> float:
-        return LONGER * known.run(d / 2 ** k, packing.number(volume, d / 2 ** k), soil) + COLLECT * jobs
+    def one(k: int, rest: float) -> float:
+        return trial.run_of(d / 2 ** k, packing.number(volume, d / 2 ** k), soil, rest) + COLLECT * jobs
 
-    return within(wanted.paper + wanted.points, one, whole * jobs, asked)
+    return Time(one, LONGER * trial.typical, whole * jobs)
+
+
+def finer(points: int, time: Optional[Time], minutes: Optional[float], asked: Optional[int]) -> List[int]:
+    """How many of so many points run with each of the finer balls; minutes, asked: None: not given.
+
+    Where no time is given, as many sizes as a number needs.
+    """
+    if time is None:
+        return pairs(points, asked or SIZES)
+    one, typical = time.one, time.typical
+    return within(points, lambda k: one(k, typical), time.whole, asked, 1 if minutes else SIZES)
 
 
 def study_seconds(d: float, volume: float, trial: Trial, soil: Soil, wanted: Plan, jobs: int,
@@ -330,7 +362,8 @@ def size(choices: OfMass, volume: float, depth: float, soil: Soil, trial: Option
     else:
         least, most = (packing.diameter(volume, number) for number in (MANY, DEFAULT))
         d = three_digits(min(most, max(least, depth / THIN)))
-    numbers = finer(d, volume, trial, soil, wanted, jobs, balls.minutes, levels)
+    time = time_of(d, volume, trial, soil, wanted, jobs, balls.minutes) if trial else None
+    numbers = finer(wanted.paper + wanted.points, time, balls.minutes, levels)
     seconds = study_seconds(d, volume, trial, soil, wanted, jobs, numbers) if trial else (None, None)
     return Size(d, number_of(balls, volume, d), wanted.runs, *seconds,
                 gigabytes(d, volume, cells, jobs, 1 + len(numbers)), wanted.text + finer_text(numbers),

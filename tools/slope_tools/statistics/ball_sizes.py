@@ -10,6 +10,7 @@ What balls that are finer still would change follows from the last step (grid co
 Engineering, 116, 405 (1994); ASME V&V 20-2009, section 2).  All functions are pure.
 """
 import math
+from dataclasses import dataclass
 from typing import Any, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
@@ -19,6 +20,7 @@ COUNTED = 10.0          # balls: a volume of fewer has no ratio
 CONFIDENCE = 0.9        # of a band: 5 % beyond either end
 RIDGES = 1.0, 3.0, 10.0, 30.0       # in units of the parameters' own variance and one pair
 BETTER = 0.9            # of the constant's squares of left-out pairs, which a model with parameters must stay below
+EVEN = 0.5              # of these with an error that is a share of the value, for one that is the same for all values
 FEWEST = 5              # pairs more than parameters that such a model needs
 FEW = 3                 # pairs of few balls, whose scatter is known no better than that of ratios
 PRIOR = 3.0             # pairs' worth says the step before of the scatter of this one: coarser balls scatter no less
@@ -51,7 +53,9 @@ class Model(NamedTuple):
     """Of a change by its pairs: constant + slopes . (at - centre); number: of pairs.
 
     unit: covariance of constant and slopes over the variance of a pair; deviation: of a pair that was left out;
-    freedom: of it; low, high: of the places of the pairs, beyond which nothing is extrapolated.
+    freedom: of it; power: 0, it is that of all values, 1, that at the value whose logarithm is typical, and half of it
+    at twice the value, where all are so many m3 off, between the logarithms ends; low, high: of the places of the
+    pairs, beyond which nothing is extrapolated.
     """
     number: int
     constant: float
@@ -62,6 +66,13 @@ class Model(NamedTuple):
     high: np.ndarray
     deviation: float
     freedom: float
+    typical: float = 0.0
+    power: int = 0
+    ends: Tuple[float, float] = (0.0, 0.0)
+
+    def relative(self, values: Any) -> np.ndarray:
+        """The deviation at values (> 0) over that at the typical one."""
+        return np.exp(self.power * (self.typical - np.clip(np.log(values), *self.ends)))
 
     def change(self, at: Any, drawn: Optional[np.ndarray] = None) -> np.ndarray:
         """At places (..., p); drawn: other coefficients, of draw()."""
@@ -80,6 +91,11 @@ class Model(NamedTuple):
         if self.slopes.any():
             drawn[1:] = rng.multivariate_normal(drawn[1:], deviation ** 2 * self.unit[1:, 1:], method="eigh")
         return drawn, deviation
+
+    @property
+    def of_largest(self) -> float:
+        """The change of the largest value of a pair, where it depends on the value (with_own); else that on average."""
+        return self.constant + float(((self.high - self.centre) * self.slopes)[-1:].sum())
 
     @property
     def error(self) -> float:
@@ -108,7 +124,7 @@ class Step(NamedTuple):
             factor = math.exp(float(self.ratio.change(with_own(at, one.value))))
             value = one.value * factor
             return joined(value, (one.deviation * factor, one.freedom),
-                          (value * self.ratio.deviation, self.ratio.freedom))
+                          (value * self.ratio.deviation * float(self.ratio.relative(one.value)), self.ratio.freedom))
         mine, freedom = self.of_small()
         change = self.small.constant if self.small else 0.0
         return joined(max(0.0, one.value + change), (one.deviation, one.freedom), (mine, freedom))
@@ -127,7 +143,7 @@ class Step(NamedTuple):
         if self.ratio and big.any():
             drawn, deviation = self.ratio.draw(rng)
             changes = self.ratio.change(with_own(at[big], values[big]), drawn)
-            found[big] = values[big] * np.exp(changes + deviation * noise[big])
+            found[big] = values[big] * np.exp(changes + deviation * self.ratio.relative(values[big]) * noise[big])
         else:
             big = np.zeros(len(values), bool)
         change = self.small.constant if self.small else 0.0
@@ -156,11 +172,18 @@ def fit(coarse: Sequence[float], fine: Sequence[float], at: Any, finer: float = 
     one, other, places = np.asarray(coarse, float), np.asarray(fine, float), np.asarray(at, float)
     places = places.reshape(len(one), -1 if len(one) else 0)
     least = COUNTED * ball
+    gone = (one >= least) & (one > 0) & (other <= (ball / COUNTED if ball > 0 else 1e-3 * one))
+    if gone.any():      # what becomes nothing has no factor, nor have values up to it
+        least = float(np.nextafter(one[gone].max(), np.inf))
     big = (one >= least) & (one > 0)
-    floor = np.where(ball > 0, ball / COUNTED, 1e-3 * one[big])     # what became nothing became less than that
-    logs = np.log(np.maximum(other[big], floor) / one[big])
-    return Step(finer, least, model(logs, with_own(places[big], one[big]), before.ratio if before else None),
-                model((other - one)[~big], np.empty((int((~big).sum()), 0)), None))
+    logs = np.log(np.maximum(other[big], ball / COUNTED if ball > 0 else 1e-3 * one[big]) / one[big])
+    few = (other - one)[~big & ~gone] if (~big & ~gone).any() else (other - one)[gone]
+    small = model(few, np.empty((len(few), 0)), None)
+    if small and gone.any():        # it says how far others may fall, not how far they do
+        squares = (other - one)[gone] ** 2
+        small = small._replace(deviation=math.sqrt((len(few) * small.deviation ** 2 + squares.sum()) /
+                                                   (len(few) + len(squares))))
+    return Step(finer, least, model(logs, with_own(places[big], one[big]), before.ratio if before else None), small)
 
 
 def with_own(at: Any, values: Any) -> np.ndarray:
@@ -172,52 +195,74 @@ def with_own(at: Any, values: Any) -> np.ndarray:
 def model(changes: np.ndarray, at: np.ndarray, before: Optional[Model]) -> Optional[Model]:
     """Of changes (n) at places (n, p) of with_own(): the constant, or a ridge on the value itself or on the others, by
     the left-out pairs; None without a pair."""
-    number = len(changes)
+    number, parameters = at.shape
     if not number:
         return None
-    whole, parameters = at, at.shape[1]
-    best, few = ridge(changes, at, math.inf), BETTER
+    own = at[:, -1] if parameters else np.zeros(number)
+    best = of_power(changes, at, before.power if before and parameters else 0)
+    if parameters and number >= FEWEST and (other := of_power(changes, at, 1 - best.power)).squares < \
+            EVEN * best.squares:
+        best = other
+    ends = before.ends if before and best.power else ()
+    squares = best.squares
+    if number == 1:     # no other predicts it: all of its change is error
+        squares = float(changes[0]) ** 2
+    freedom = number - best.taken
+    variance = squares / max(number + 1 - best.taken, 1.0)      # chosen by these squares, a ridge has less of them
+    if before is not None:
+        prior, deviation = min(PRIOR, before.freedom), before.deviation * float(before.relative(np.exp(own.mean())))
+        variance = (max(freedom, 0.0) * variance + prior * deviation ** 2) / (max(freedom, 0.0) + prior)
+        freedom = max(freedom, 0.0) + prior
+    return Model(number, best.constant, best.slopes, best.unit, best.centre, at.min(axis=0), at.max(axis=0),
+                 math.sqrt(variance), max(freedom, 1.0), float(own.mean()), best.power,
+                 (min([own.min(), *ends[:1]]), max([own.max(), *ends[1:]])))
+
+
+def of_power(changes: np.ndarray, at: np.ndarray, power: int) -> "Ridge":
+    """The best of the models whose error has this power (Model)."""
+    number, parameters = at.shape
+    own = at[:, -1] if parameters else np.zeros(number)
+    weights = np.exp(2 * power * (own - own.mean()))    # of a geometric mean of 1: squares can be compared
+    best, few = ridge(changes, at, math.inf, weights, power), BETTER
     for used in ([parameters - 1], range(parameters - 1)) if parameters else ():
         mask = np.isin(np.arange(parameters), used) & (np.ptp(at, axis=0) > 0)
         if not mask.any() or number < FEWEST + mask.sum():
             continue
-        others = [ridge(changes, np.where(mask, at, at.mean(axis=0)), penalty) for penalty in RIDGES]
-        other = min(others, key=lambda one: one[3])
-        if other[3] < few * best[3]:
+        other = min((ridge(changes, np.where(mask, at, at.mean(axis=0)), penalty, weights, power)
+                     for penalty in RIDGES), key=lambda one: one.squares)
+        if other.squares < few * best.squares:
             best, few = other, 1.0
-    coefficients, unit, taken, squares = best
-    if number == 1:     # no other predicts it: all of its change is error
-        squares = float(changes[0]) ** 2
-    freedom = number - taken
-    variance = squares / max(number + 1 - taken, 1.0)       # chosen by these squares, a ridge has less of them
-    if before is not None:
-        prior = min(PRIOR, before.freedom)
-        variance = (max(freedom, 0.0) * variance + prior * before.deviation ** 2) / (max(freedom, 0.0) + prior)
-        freedom = max(freedom, 0.0) + prior
-    return Model(number, float(coefficients[0]), coefficients[1:], unit, whole.mean(axis=0), whole.min(axis=0),
-                 whole.max(axis=0), math.sqrt(variance), max(freedom, 1.0))
+    return best
 
 
-def ridge(changes: np.ndarray, at: np.ndarray, penalty: float) -> Tuple[np.ndarray, np.ndarray, float, float]:
-    """Coefficients, their covariance over the variance, parameters in effect, squares of the left-out residuals.
+class Ridge(NamedTuple):
+    """taken: parameters in effect; squares: of the left-out residuals, weighted; power: of Model."""
+    constant: float
+    slopes: np.ndarray
+    unit: np.ndarray
+    centre: np.ndarray
+    taken: float
+    squares: float
+    power: int
 
-    The constant is not shrunk; an infinite penalty leaves it alone.
-    """
-    number, parameters = at.shape
-    centred = at - at.mean(axis=0)
+
+def ridge(changes: np.ndarray, at: np.ndarray, penalty: float, weights: np.ndarray, power: int = 0) -> Ridge:
+    """The constant is not shrunk; an infinite penalty leaves it alone."""
+    parameters, whole = at.shape[1], weights.sum()
+    centre, constant = weights @ at / whole, float(weights @ changes / whole)
+    centred = at - centre
     unit = np.zeros((parameters + 1, parameters + 1))
-    unit[0, 0] = 1 / number
-    slopes, hat = np.zeros(parameters), np.full((number, number), 1 / number)
+    unit[0, 0] = 1 / whole
+    slopes, hat = np.zeros(parameters), weights / whole
     if math.isfinite(penalty):
         scale = np.where(centred.std(axis=0) > 0, centred.std(axis=0), 1.0)
-        inverse = np.linalg.inv(centred.T @ centred + penalty * np.diag(scale ** 2))
-        slopes = inverse @ centred.T @ changes
-        hat = hat + centred @ inverse @ centred.T
+        inverse = np.linalg.inv((weights[:, None] * centred).T @ centred + penalty * np.diag(scale ** 2))
+        slopes = inverse @ centred.T @ (weights * changes)
+        hat = hat + weights * np.einsum("ij,jk,ik->i", centred, inverse, centred)
         unit[1:, 1:] = inverse
-    found = np.concatenate([[changes.mean()], slopes])
-    residuals = changes - changes.mean() - centred @ slopes
-    left_out = residuals / np.maximum(1 - np.diag(hat), 1e-9)
-    return found, unit, float(np.trace(hat)), float(left_out @ left_out)
+    residuals = changes - constant - centred @ slopes
+    left_out = residuals / np.maximum(1 - hat, 1e-9)
+    return Ridge(constant, slopes, unit, centre, float(hat.sum()), float(weights @ left_out ** 2), power)
 
 
 def transfer(steps: Sequence[Step], value: float, at: Any) -> Finest:
@@ -243,10 +288,12 @@ def draws(steps: Sequence[Sequence[Step]], values: Sequence[float], at: Any, num
 
 # --- balls that are finer still ---
 
-class Left(NamedTuple):
+@dataclass(frozen=True)
+class Left:
     """What finer balls would change, as shares of a value: from low (<= 0) to high (>= 0), best between them.
 
-    grown: by how much the last step raised it, a share; order: of convergence, observed: whether two steps agree on it.
+    grown: by how much the last step raised it, on average or the largest value, a share; order: of convergence,
+    observed: whether two steps agree on it.
     """
     low: float
     best: float
@@ -269,9 +316,9 @@ def left(steps: Sequence[Step]) -> Optional[Left]:
     order = observed_order(before, last, steps[-1].finer) if before else None
     share = SAFETY / (steps[-1].finer ** (order or ORDER) - 1)
     half = float(stats.t.ppf((1 + CONFIDENCE) / 2, last.freedom)) * last.error
-    best, low, high = (math.expm1(share * change) for change in
-                       (last.constant, last.constant - half, last.constant + half))
-    return Left(min(low, 0.0), best, max(high, 0.0), math.expm1(last.constant), order or ORDER, order is not None)
+    least, most = sorted([last.constant, last.of_largest])
+    best, low, high = (math.expm1(share * change) for change in (last.constant, least - half, most + half))
+    return Left(min(low, 0.0), best, max(high, 0.0), math.expm1(most), order or ORDER, order is not None)
 
 
 def observed_order(before: Model, last: Model, finer: float) -> Optional[float]:

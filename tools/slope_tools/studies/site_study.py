@@ -123,11 +123,12 @@ def wanted(site: Site, planned: Planned, asked: Asked, points=0, alone=False) ->
     plan_ = site_budget.plan(planned.choices)._replace(points=points)
     if alone:
         plan_ = plan_._replace(paper=0, elastic=0, half_step=False)
-    numbers = site_budget.finer(
-        float(planned.variables[VARIABLE]), found.body.volume, found.trial, soil_of(site, planned), plan_,
-        jobs_of(planned.setup), asked.minutes or planned.choices.balls.minutes, levels) if found.body else \
-        site_budget.pairs(plan_.paper + points, levels or site_budget.SIZES)
-    return size_runs.halved(planned.variables[VARIABLE], numbers)
+    minutes, time = asked.minutes or planned.choices.balls.minutes, None
+    if found.body and found.trial:
+        time = site_budget.time_of(float(planned.variables[VARIABLE]), found.body.volume, found.trial,
+                                   soil_of(site, planned), plan_, jobs_of(planned.setup), minutes)
+    numbers = site_budget.finer(plan_.paper + plan_.points, time, minutes, levels)
+    return size_runs.halved(planned.variables[VARIABLE], numbers, time)
 
 
 def soil_of(site: Site, planned: Planned) -> site_budget.Soil:

@@ -30,15 +30,26 @@ from .setup import Setup
 OPTION = "--levels"
 FILE = "levels.csv"
 DRAWS = 200             # of the values of transferred runs, for the band of a number
-LONG = 2.0              # times the median of the time to rest: runs that take longer have no finer balls
-ROUNDS = 3              # of finest runs of points on which numbers rest
+ROUNDS = 4              # of finest runs of points on which numbers rest once all values are at the finest size
+LONG = 1.5              # times the median of the time to rest: others that take longer have no finer balls
 FINER = 1.5             # times, at least, from a size to the next one
 
 
 class Wanted(NamedTuple):
-    """values: diameters for the deck, the coarsest first; points: how many with each of the finer ones."""
+    """values: diameters for the deck, the coarsest first; points: how many with each of the finer ones; time: that
+    these may take, None: not known."""
     values: Sequence[str]
     points: Sequence[int]
+    time: Optional[site_budget.Time] = None
+
+    def fitted(self, rests: Sequence[float]) -> "Wanted":
+        """With as many points as time allows; rests: of all that may be, in their order, the coarse runs' times."""
+        if not self.time or not self.points:
+            return self
+        means = [float(np.mean([self.time.one(k, rest) for rest in rests[:number]]))
+                 for k, number in enumerate(self.points, 1)]
+        return self._replace(points=site_budget.within(
+            len(rests), lambda k: means[k - 1], self.time.whole, len(self.values)))
 
     @property
     def settings(self) -> Dict[str, List[str]]:
@@ -63,14 +74,23 @@ class SizeRun(Repeat):
 
 
 class Made(NamedTuple):
-    """Points, and those of their runs that have finer balls: {folder of a point: of each finer size, None: not run}."""
+    """Points, and those of their runs that have finer balls: {folder of a point: of each finer size, None: not run}.
+
+    next: points that have none of the finest, in the order in which they come; late: how many of these may.
+    """
     points: Sequence[Repeat]
     finer: Dict[Path, List[Optional[Repeat]]]
+    next: Sequence[Repeat] = ()
+    late: int = 0
 
     def runs(self, point: Repeat) -> List[Optional[Repeat]]:
         """Of a point, that finished, the coarsest first."""
         return [run if run and run.finished and not run.error else None
                 for run in (point, *self.finer.get(point.folder, ()))]
+
+    def has(self, point: Repeat, k: int) -> bool:
+        """Whether the run of a point with the k-th of the finer balls was wanted."""
+        return point.folder in self.finer and self.finer[point.folder][k] is not None
 
     def finest(self, points: Sequence[Repeat], levels: int) -> List[Repeat]:
         """The finest run of each point that finished, of so many sizes; the point's own where none did."""
@@ -126,12 +146,12 @@ def of_deck(option: Optional[str], deck: Path, points: int, names: Sequence[str]
     return Wanted(values, site_budget.pairs(points, len(values)))
 
 
-def halved(diameter: str, numbers: Sequence[int]) -> Wanted:
+def halved(diameter: str, numbers: Sequence[int], time: Optional[site_budget.Time] = None) -> Wanted:
     """Diameters d, d/2, d/4 and so on."""
     d = as_number(diameter)
     if not (isinstance(d, float) and d > 0):
         raise SlopeError(OPTION, f"must be of a deck whose variable {VARIABLE} is the diameter of the balls", diameter)
-    return Wanted([diameter, *(f"{d / 2 ** k:.10g}" for k in range(1, len(numbers) + 1))], numbers)
+    return Wanted([diameter, *(f"{d / 2 ** k:.10g}" for k in range(1, len(numbers) + 1))], numbers, time)
 
 
 # --- which, and making them ---
@@ -173,54 +193,66 @@ def make(setup: Setup, work: jobs.Work, points: Sequence[Repeat], wanted: Option
     if not wanted or not known:
         return Made(points, {})
     chosen, names = pick(known), {one.name: one for one in points}
-    times = np.array([row.stop_time_s for row in known])
+    times = np.array([site_budget.in_steps(row.stop_time_s, row.variables.get("spacing")) for row in known])
     first = np.array([row.run in chosen.first for row in known])
     quick = np.flatnonzero(first | (times <= LONG * np.median(times)))
-    order = [names[known[quick[k]].run] for k in ball_sizes.spread(
-        places_of(known, chosen.along)[quick], np.flatnonzero(first[quick]).tolist(), max(wanted.points))]
-    finer: Dict[Path, List[Optional[Repeat]]] = {}
-    for k, (value, number) in enumerate(zip(wanted.values[1:], wanted.points)):
-        for one in order[:number]:
-            several = finer.setdefault(one.folder, [None] * (len(wanted.values) - 1))
-            several[k] = SizeRun(setup.runs, one, value)
-    todo = sorted((run for several in finer.values() for run in several if run),
-                  key=lambda run: float(run.chosen[VARIABLE]))
+    # one on which a number rests and such as spread out: others may come once all values are at the finest size
+    order = quick[ball_sizes.spread(places_of(known, chosen.along)[quick], np.flatnonzero(first[quick])[:1].tolist(),
+                                    len(quick))]
+    rests, places = times[order].tolist(), [names[known[k].run] for k in order]
+    wanted = wanted.fitted(rests)
+    late = min(site_budget.LATE, max(0, wanted.points[-1] - sizes.FEWEST))
+    made = Made(points, {}, places, late)
+    missing = [(k, rest) for k, number in enumerate(wanted.points) for one, rest in zip(places[:number], rests)
+               if not SizeRun(setup.runs, one, wanted.values[k + 1]).made(work.store)]
+    setup.tell(told(wanted, len(missing), wanted.time and sum(
+        wanted.time.one(k + 1, rest) for k, rest in missing) / work.jobs))
+    numbers = [*wanted.points[:-1], wanted.points[-1] - late]
+    todo = [add(setup, made, wanted, one, k) for k, number in enumerate(numbers) for one in places[:number]][::-1]
     work.store.admit(todo)
-    setup.tell(told(wanted, [one for one in todo if not one.finished]))
     work.do(todo)
-    return Made(points, finer)
+    return made
+
+
+def add(setup: Setup, made: Made, wanted: Wanted, point: Repeat, k: int) -> SizeRun:
+    """The run of a point with the k-th of the finer balls."""
+    run = SizeRun(setup.runs, point, wanted.values[k + 1])
+    made.finer.setdefault(point.folder, [None] * len(wanted.points))[k] = run
+    return run
 
 
 def settle(setup: Setup, work: jobs.Work, points: Sequence[Repeat], wanted: Optional[Wanted],
            pick: Callable[[Sequence[Finished]], Pick] = pick_largest) -> AtFinest:
-    """make(), then the finest runs of those on which numbers rest once all rows are at the finest size; as these change
-    what others are there, ROUNDS times at most."""
-    at = at_finest(setup, make(setup, work, points, wanted, pick))
+    """make(), then the finest runs of those on which numbers rest once all rows are at the finest size, as these change
+    what others are there; at last of others, so that there are as many as were wanted."""
+    made = make(setup, work, points, wanted, pick)
+    at, left = at_finest(setup, made), made.late
     for _ in range(ROUNDS):
         if not at.sizes or not wanted:
             break
-        k, todo = len(at.sizes.diameters) - 1, []
         rows = [replace(row, run=one.name) for one, row in zip(points, at.rows(rows_of(setup, at.runs(points))))]
         first = pick(finished_of(rows)).first
-        for one in (each for each in points if each.name in first):
-            several = at.made.finer.setdefault(one.folder, [None] * (len(wanted.values) - 1))
-            if several[k - 1] is None:
-                todo.append(SizeRun(setup.runs, one, wanted.values[k]))
-                several[k - 1] = todo[-1]
-        if not todo:
+        without = [one for one in dict.fromkeys([*points, *made.next]) if not made.has(one, -1)]
+        now = [one for one in without if one.name in first][:max(left, 1)] or \
+            [one for one in made.next if one in without][:left]
+        if not now:
             break
+        left = max(0, left - len(now))
+        todo = [add(setup, made, wanted, one, k) for k in range(len(wanted.points))[::-1] for one in now
+                if not made.has(one, k)]
         work.store.admit(todo)
-        setup.tell(f"on these points the numbers rest: {len(todo)} more with balls of {float(wanted.values[k]):.3g} m")
-        work.do(todo)
-        at = at_finest(setup, at.made)
+        setup.tell(f"{len(now)} more with balls of {float(wanted.values[-1]):.3g} m, as the values so far ask for")
+        work.do(todo, share=True)
+        at = at_finest(setup, made)
     return at
 
 
-def told(wanted: Wanted, todo: Sequence[Repeat]) -> str:
-    """Which runs with finer balls are made, in words."""
+def told(wanted: Wanted, number: int, seconds: Optional[float]) -> str:
+    """Which runs with finer balls are made, so many of them now, in how many seconds, in words."""
     parts = [f"{number} points with balls of {float(value):.3g} m" for value, number in
              zip(wanted.values[1:], wanted.points)]
-    return f"finer balls: {', '.join(parts)}; {len(todo)} of these runs to make"
+    took = f", about {site_budget.duration_text(seconds)}" if seconds else ""
+    return f"finer balls: {', '.join(parts)}; {number} of these runs to make{took}"
 
 
 def places_of(rows: Sequence[Finished], along: np.ndarray) -> np.ndarray:

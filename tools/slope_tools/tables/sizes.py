@@ -161,14 +161,12 @@ def about(found: Sizes, depth: Optional[float], balls: Sequence[float]) -> study
 
 def effect(steps: Sequence[Step]) -> study_types.SizeEffect:
     """What study.yaml says of the steps of a quantity."""
-    still = ball_sizes.left(steps)
     return study_types.SizeEffect(
         [study_types.SizeStep(step.finer, step.ratio.number if step.ratio else 0,
                               step.ratio and float(np.exp(step.ratio.constant)),
                               step.ratio and step.ratio.deviation, bool(step.ratio and step.ratio.slopes.any()))
          for step in steps],
-        study_types.SizeLeft(still.low, still.best, still.high, still.grown, still.order, still.observed)
-        if still else None)
+        ball_sizes.left(steps))
 
 
 def words(one: study_types.Size) -> str:

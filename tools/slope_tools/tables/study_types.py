@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any, Dict, List, Mapping, Optional
 
 from ..findings import Finding
+from ..statistics.ball_sizes import Left
 from ..statistics.entries import Headline
 from .ensemble_types import Ensemble, MapEntry
 from .rows import Row
@@ -119,21 +120,10 @@ class SizeStep:
 
 
 @dataclass(frozen=True)
-class SizeLeft:
-    """What balls that are finer still would change (ball_sizes.Left), shares of a value."""
-    low: float
-    best: float
-    high: float
-    grown: float
-    order: float
-    observed: bool
-
-
-@dataclass(frozen=True)
 class SizeEffect:
     """What the size of the balls changes in a quantity."""
     steps: List[SizeStep]
-    left: Optional[SizeLeft]
+    left: Optional[Left]
 
 
 @dataclass(frozen=True)
