@@ -20,7 +20,8 @@ from tiny_collapse import LMP, rows_of
 from slope_tools import digits
 from slope_tools.blocks import files, kinds, outcome, page, runs, site as of_blocks
 from slope_tools.case import decks
-from slope_tools.deposits import road_sides
+from slope_tools.deposits import passed, road_sides
+from slope_tools.deposits.gone import Gone
 from slope_tools.plots import site_map
 from slope_tools.sites import site_choices, site_deck
 from slope_tools.sites.site_sections import OfBlocks, OfMass
@@ -373,8 +374,9 @@ def test_a_road_is_ahead_of_a_block_that_leaves_unless_it_is_behind_or_was_passe
     sides = road_sides.divide(Polygon([(5, 10), (35, 10), (35, 12), (5, 12)]), None, raster, released)
     ends = {(20, 40): False, (30, 40): False, (40, 31): True, (0, 20): True, (20, 0): False, (40, 11): True}
     start, end = np.full((len(ends), 2), (20.0, 30.0)), np.array(list(ends), float)
-    assert runs.road_ahead(np.ones(len(ends), bool), start, end, sides).tolist() == list(ends.values())
-    assert not runs.road_ahead(np.zeros(len(ends), bool), start, end, sides).any()
+    assert runs.road_ahead(start, end, sides).tolist() == list(ends.values())
+    left = Gone(np.ones(len(ends)), end, start, np.zeros(len(ends)), "table")
+    assert passed.beside(left, sides).ahead.tolist() == list(ends.values())      # of a mass, too
 
 
 def test_beyond_the_road():

@@ -174,6 +174,17 @@ def test_a_ball_between_two_looks_may_have_left_before_the_road():
         assert passed.of_mass(ground, sides, balls((442, 600, 100, 300), within=within))["left"]["road_ahead"] == ahead
 
 
+@pytest.mark.parametrize("within", [0.0, 50.0])
+def test_what_leaves_over_the_summit_has_no_road_ahead(within):
+    """The road lies east of the mass: what left in the west, and in the north-west, does not come to it."""
+    ground, sides = ground_of(np.zeros((ROWS, COLUMNS)), lost=8.0), sides_of(ROADS["divides"][0])
+    left = balls((0, 300, 100, 300), (0, 380, 100, 300), (100, 600, 100, 300), (50, 600, 100, 300), within=within)
+    about = passed.of_mass(ground, sides, left)["left"]
+    assert about["before"] == 8.0 and about["road_ahead"] == 4.0
+    assert {(one["side"], one["where"]): one["volume"] for one in about["sides"]} == {
+        ("west", "away from it"): 4.0, ("north", "before"): 4.0}
+
+
 def test_sides_of_a_terrain_that_is_no_rectangle():
     known = np.ones((ROWS, COLUMNS), bool)
     known[:, 75:] = known[10:14, 30:34] = known[55:, :40] = False       # a hole at x 300 to 340, y 460 to 500

@@ -5,9 +5,6 @@ from typing import Dict, NamedTuple, Optional
 
 import numpy as np
 from shapely.geometry import LineString, Point
-from shapely.geometry.base import BaseGeometry
-from shapely.ops import nearest_points, unary_union
-from shapely.prepared import prep
 
 from ..case import run_folders
 from ..deposits import dumps, road_sides
@@ -25,7 +22,6 @@ AT_ROAD = "road"        # the name of its near edge among the lines
 QUANTITIES = {"energy": "J", "speed": "m/s", "height": "m"}     # at a line
 CROSSING = "ball", "direction", "x", "y", *QUANTITIES      # columns of a line's file
 SLOW = 0.05             # m/s: slow of the deck
-BEHIND = -0.5           # cosine: what lies more than 120 degrees off its way is behind a block that left the terrain
 Columns = Dict[str, np.ndarray]
 
 
@@ -91,15 +87,17 @@ def read(name: str, folder: Path, chosen: Dict[str, str], terrain: Terrain) -> R
     if "halt" not in str(summary["stop"]["reason"]):
         moving[there] = np.linalg.norm(last[:, heads.index("vx"):heads.index("vx") + 3], axis=1) > SLOW
     at = {line: largest(table_of(Path(f"{prefix}.{line}.line.csv"), CROSSING), diameter) for line in terrain.lines}
-    ahead = {line: before(left, first[:, 2:4], end, one) for line, one in terrain.lines.items()}
+    start = first[:, 2:4]
+    ahead = {line: spread(left, road_sides.not_behind(start[left], end[left], one))
+             for line, one in terrain.lines.items()}
     if terrain.sides:
         parts = [table_of(path, CROSSING) for path in sorted(folder.glob(f"{PREFIX}.{EDGE}_*.line.csv"))]
         crossed = {key: np.concatenate([part[key] for part in parts]) for key in parts[0]}
         at[AT_ROAD] = largest({key: value[crossed["direction"] > 0] for key, value in crossed.items()}, diameter)
         reached = np.isfinite(at[AT_ROAD]["energy"])
         passed = reached & beyond_road(crossed, end, terrain.sides)
-        ahead[AT_ROAD] = road_ahead(left, first[:, 2:4], end, terrain.sides)
-    way = end - first[:, 2:4]
+        ahead[AT_ROAD] = spread(left, road_ahead(start[left], end[left], terrain.sides))
+    way = end - start
     travel = {"distance": np.hypot(*way.T), "along": way @ terrain.down,
               "across": way @ np.array([-terrain.down[1], terrain.down[0]])}
     return Run(name, folder, chosen["rolling"], int(chosen["ground"]), diameter, first[:, 2:5], end, left, moving,
@@ -125,20 +123,14 @@ def beyond_road(crossed: Columns, end: np.ndarray, sides: road_sides.Sides) -> n
     return found
 
 
-def before(left: np.ndarray, start: np.ndarray, end: np.ndarray, line: BaseGeometry) -> np.ndarray:
-    """Of blocks that left the terrain, whether a line is not behind them, seen along the way from start to end."""
-    found = left.copy()
-    for k in np.flatnonzero(left):
-        way, there = end[k] - start[k], nearest_points(line, Point(end[k]))[0].coords[0] - end[k]
-        found[k] = way @ there >= BEHIND * np.hypot(*way) * np.hypot(*there)
-    return found
+def spread(left: np.ndarray, found: np.ndarray) -> np.ndarray:
+    """What was found of those that left the terrain, of all blocks."""
+    every = np.zeros(len(left), bool)
+    every[left] = found
+    return every
 
 
-def road_ahead(left: np.ndarray, start: np.ndarray, end: np.ndarray, sides: road_sides.Sides) -> np.ndarray:
+def road_ahead(start: np.ndarray, end: np.ndarray, sides: road_sides.Sides) -> np.ndarray:
     """Of blocks that left the terrain, whether they did so on a road, or with one ahead: with its ends prolonged."""
-    whole, part = unary_union([sides.before, sides.road, sides.past]).envelope, sides.of_places(end)
-    roads_ = unary_union([one for barrier in sides.barriers for one in (barrier.road, *barrier.lines)])
-    another = prep(sides.ahead)
-    return before(left, start, end, roads_.intersection(whole)) & (part != road_sides.PAST) | left & np.array([
-        one == road_sides.ON or one == road_sides.PAST and another.intersects(Point(place))
-        for one, place in zip(part, end)], bool)
+    part = sides.of_places(end)
+    return (part == road_sides.ON) | sides.ahead_of(start, end, part)

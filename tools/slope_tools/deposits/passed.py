@@ -15,6 +15,7 @@ from .gone import Gone, Ground
 from .road_sides import BEFORE, ON, PAST, Sides, divide
 
 AROUND = "past its end"      # beyond the road, but not across it
+AWAY = "away from it"        # before the road, which is behind
 PARTS = BEFORE, ON, PAST
 ROUNDING = 1e-9              # of the mass: less is what areas and sums round off
 
@@ -82,22 +83,21 @@ def rim(known: np.ndarray) -> np.ndarray:
 
 def beside(left: Gone, sides: Sides) -> Left:
     part = sides.of_places(left.place)
-    road, ahead, before = prep(sides.road), prep(sides.ahead), sides.before
+    road, before = prep(sides.road), sides.before
     points = [Point(place) for place in left.place]
-    in_ahead = np.array([one == BEFORE or one == PAST and ahead.intersects(point) for one, point in zip(part, points)],
-                        bool)
+    ahead = sides.ahead_of(left.start, left.place, part)
     # of a frame of dumps: it may have left before the road
-    near = np.array([within > 0 and before.distance(point) <= within for within, point in zip(left.within, points)],
-                    bool)
+    near = np.array([one != BEFORE and within > 0 and before.distance(point) <= within
+                     for one, within, point in zip(part, left.within, points)], bool)
     around = np.array([one == PAST and not road.intersects(LineString([start, place]))
                        for one, start, place in zip(part, left.start, left.place)], bool)
-    return Left(part, in_ahead | near, around, np.array([sides.road.distance(point) for point in points]))
+    return Left(part, ahead | near, around, np.array([sides.road.distance(point) for point in points]))
 
 
 def of_balls(left: Gone, balls: Left, ground: Ground) -> Dict[str, Any]:
     def volume(mask) -> float:
         return float(left.volume[mask].sum())
-    where = np.where(balls.around, AROUND, balls.part)
+    where = np.where(balls.around, AROUND, np.where((balls.part == BEFORE) & ~balls.ahead, AWAY, balls.part))
     return {"source": left.source, "volume": volume(slice(None)), "balls": len(left.volume),
             **{name: volume(balls.part == name) for name in PARTS}, "past_end": volume(balls.around),
             "road_ahead": volume(balls.ahead), "within": float(left.within.max(initial=0.0)),

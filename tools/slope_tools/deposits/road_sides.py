@@ -11,7 +11,7 @@ from typing import FrozenSet, List, NamedTuple, Optional, Sequence, Tuple
 import numpy as np
 from shapely.geometry import LineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
-from shapely.ops import polygonize, unary_union
+from shapely.ops import nearest_points, polygonize, unary_union
 from shapely.prepared import prep
 
 from .. import geometry
@@ -25,6 +25,7 @@ AHEAD = 0.5             # cosine: pieces in the direction of each other's ends f
 ON_EDGE = 1e-9          # of the terrain's width: places on its edge are rounded
 SLIVER = 1e-9           # of the terrain's area: rounding
 BEFORE, ON, PAST = "before", "on", "past"
+BEHIND = -0.5           # cosine: what lies more than 120 degrees off its way is behind what left the terrain
 
 
 class End(NamedTuple):
@@ -61,6 +62,27 @@ class Sides(NamedTuple):
         road, past = prep(self.road), prep(self.past)
         return np.array([ON if road.intersects(one) else PAST if past.intersects(one) else BEFORE
                          for one in map(Point, places)], object)
+
+    def ahead_of(self, start: np.ndarray, places: np.ndarray, part: np.ndarray) -> np.ndarray:
+        """Of what began in start and left the terrain in places (n, 2), beside the roads: whether one is ahead of it.
+
+        part: of_places(). A road, with the lines that prolong it, is ahead unless it was passed or is behind.
+        """
+        whole, another = unary_union([self.before, self.road, self.past]).envelope, prep(self.ahead)
+        roads = unary_union([one for barrier in self.barriers for one in (barrier.road, *barrier.lines)])
+        found = (part == PAST) & np.array([another.intersects(Point(place)) for place in places], bool)
+        mine = part == BEFORE
+        found[mine] = not_behind(start[mine], places[mine], roads.intersection(whole))
+        return found
+
+
+def not_behind(start: np.ndarray, places: np.ndarray, line: BaseGeometry) -> np.ndarray:
+    """Of what began in start and left the terrain in places (n, 2): whether a line is not behind it."""
+    found = np.zeros(len(places), bool)
+    for k, (begin, place) in enumerate(zip(start, places)):
+        way, there = place - begin, nearest_points(line, Point(place))[0].coords[0] - place
+        found[k] = way @ there >= BEHIND * np.hypot(*way) * np.hypot(*there)
+    return found
 
 
 def divide(road: BaseGeometry, line: Optional[LineString], raster: Raster, released: np.ndarray) -> Sides:
