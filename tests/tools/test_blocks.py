@@ -11,14 +11,14 @@ import pytest
 import rasterio
 import yaml
 from affine import Affine
-from shapely.geometry import LineString, Polygon
+from shapely.geometry import LineString, Polygon, box
 
 from run_helpers import EAST, NORTH, called, write_tif
 from test_site import write_layer
 from tiny_collapse import LMP, rows_of
 
 from slope_tools import digits
-from slope_tools.blocks import files, kinds, outcome, page, runs, site as of_blocks
+from slope_tools.blocks import ditch, files, kinds, outcome, page, runs, site as of_blocks
 from slope_tools.case import decks
 from slope_tools.deposits import passed, road_sides
 from slope_tools.deposits.gone import Gone
@@ -243,6 +243,25 @@ def test_the_smaller_resistance_governs(made):
     assert of.hardest(runs.AT_ROAD, "energy").rolling == "0.1"
 
 
+def test_a_ditch_at_the_foot_keeps_what_ends_on_the_slope_or_near_it(made):
+    """The foot is at x = 40, the road begins at 33: by hand from blocks.csv, along the ways of the blocks."""
+    of = made.known.outcome
+    rows = rows_of(made.folder / "study" / files.RETAINED)
+    assert [float(row["ditch_m"]) for row in rows if row["rolling"] == "0.1"] == list(of.widths)
+    for run in made.known.runs:
+        way = run.end - run.start[:, :2]
+        by_hand = np.maximum(0, (TOE - run.end[:, 0]) / np.maximum(-way[:, 0], 1e-9) * np.hypot(*way.T))
+        assert run.travel["beyond_foot"] == pytest.approx(by_hand, abs=CELL)
+    assert of.to_road == pytest.approx(TOE - 33, abs=1.5)
+    ended = [row for row in rows_of(made.folder / "study" / files.BLOCKS) if row["rolling"] == "0.1"]
+    assert not any(int(row["moving"]) for row in ended)
+    for row in rows[:len(of.widths):3]:
+        kept = np.mean([not int(one["left"]) and float(one["beyond_foot_m"]) <= float(row["ditch_m"]) + 1e-6
+                        for one in ended])
+        assert float(row["retained_percent"]) == pytest.approx(100 * kept)      # none left over the summit
+        assert float(row["low"]) <= float(row["retained_percent"]) <= float(row["high"])
+
+
 def test_files(made):
     about = yaml.safe_load((made.folder / "study" / files.RESULTS).read_text())
     assert about["best"] == "0.1" and about["results"][0]["reach"]["blocks"] == 30
@@ -311,9 +330,10 @@ def a_run(ground, reached, left=None, rolling="0.1", ahead=True):
     zeros = np.zeros(n)
     reached, left = np.array(reached, bool), np.zeros(n, bool) if left is None else np.array(left, bool)
     at = {runs.AT_ROAD: {name: np.where(reached, 1.0, np.nan) for name in runs.QUANTITIES}}
-    travel = {name: np.arange(n) + ground for name in ("distance", "along", "across")}
+    travel = {name: np.arange(n) + ground for name in ("distance", "along", "across", "beyond_foot")}
     return runs.Run("a", None, rolling, ground, zeros, np.zeros((n, 3)), np.zeros((n, 2)), left, zeros.astype(bool),
-                    reached, reached, {runs.AT_ROAD: left & ahead}, at, travel, 0.1)
+                    reached, reached, left & (not ahead), {runs.AT_ROAD: left & ahead}, at, travel,
+                    np.full(n, 4.0), 0.1)
 
 
 def test_none_that_reaches_is_never_certain():
@@ -359,6 +379,31 @@ def test_blocks_that_left_make_it_at_least():
     assert none.text.startswith("up to ") and none.high > 0.25
 
 
+def test_what_left_is_not_retained_unless_no_road_was_ahead():
+    """Four blocks that end 0 to 3 m beyond the foot, the second of which left the terrain."""
+    for ahead, shares in ((True, [1 / 4, 1 / 4, 2 / 4, 3 / 4]), (False, [2 / 4, 2 / 4, 3 / 4, 1])):
+        of = outcome.evaluate([a_run(0, [0] * 4, [0, 1, 0, 0], ahead=ahead)])
+        one = of.best
+        by_width = dict(zip(of.widths, one.retained))
+        assert [by_width[width].share for width in range(4)] == shares
+        assert one.width(0.5, of.widths) == (2 if ahead else 0) and one.width(1, of.widths) == (None if ahead else 3)
+        assert by_width[0].open == int(ahead) and of.to_road == 4
+    assert outcome.widths_to(0.0) == [0.0] and outcome.widths_to(41) == [2.0 * k for k in range(22)]
+
+
+def test_the_foot_is_above_the_road_and_below_benches():
+    """A bench on the way, and a steep slope below the road; blocks that end on the bench, beyond the foot, below."""
+    x = np.arange(100) + 0.5
+    steep = (x < 20) | (x > 24) & (x < 40) | (x > 60)
+    raster = Raster(np.tile(100 - np.cumsum(np.where(steep, 0.8, 0.05)), (9, 1)), Affine(1, 0, 0, 0, -1, 9), None)
+    end = np.array([[23.0, 4.0], [46.0, 4.0], [90.0, 4.0], [2.0, 4.0]])
+    start = np.tile([2.0, 4.0], (4, 1))
+    found = ditch.feet(raster, start, end, np.array([1.0, 0.0]), box(50, 0, 58, 9))
+    assert found.beyond == pytest.approx([0, 6, 50, 0], abs=1) and found.road == pytest.approx([10] * 4, abs=1)
+    found = ditch.feet(raster, start[:2], end[:2], np.array([1.0, 0.0]), None)
+    assert found.beyond == pytest.approx([0, 6], abs=1) and np.isnan(found.road).all()
+
+
 def test_blocks_that_stay_where_they_begin_are_counted():
     """Two of the four blocks of ground 0 and one of ground 1 go less than two diameters."""
     grounds = [replace(a_run(ground, [0] * 4, [0] * 4), diameter=np.ones(4)) for ground in range(3)]
@@ -374,7 +419,7 @@ def test_a_road_is_ahead_of_a_block_that_leaves_unless_it_is_behind_or_was_passe
     sides = road_sides.divide(Polygon([(5, 10), (35, 10), (35, 12), (5, 12)]), None, raster, released)
     ends = {(20, 40): False, (30, 40): False, (40, 31): True, (0, 20): True, (20, 0): False, (40, 11): True}
     start, end = np.full((len(ends), 2), (20.0, 30.0)), np.array(list(ends), float)
-    assert runs.road_ahead(start, end, sides).tolist() == list(ends.values())
+    assert sides.ahead_of(start, end, sides.of_places(end)).tolist() == list(ends.values())
     left = Gone(np.ones(len(ends)), end, start, np.zeros(len(ends)), "table")
     assert passed.beside(left, sides).ahead.tolist() == list(ends.values())      # of a mass, too
 

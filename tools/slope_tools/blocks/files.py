@@ -16,7 +16,7 @@ from .runs import PREFIX, QUANTITIES, Run
 from .site import SHOWN
 
 LARGEST = {"max_speed": "m/s", "max_energy": "J"}       # rasters, over all runs
-RESULTS, BLOCKS, GIS = "blocks.yaml", "blocks.csv", "blocks.gpkg"
+RESULTS, BLOCKS, RETAINED, GIS = "blocks.yaml", "blocks.csv", "retained.csv", "blocks.gpkg"
 NAMES = [*(f"{name}.tif" for name in LARGEST), GIS]
 
 
@@ -25,6 +25,9 @@ def write(folder: Path, known) -> None:
     with disk.complete(folder, RESULTS) as new:
         columns, rows = table(known.runs)
         disk.write(new / BLOCKS, disk.csv_text(columns, rows))
+        disk.write(new / RETAINED, disk.csv_text(("rolling", "ditch_m", "retained_percent", "low", "high"), (
+            [one.rolling, width, *(100 * value for value in (share.share, share.low, share.high))]
+            for one in known.outcome.results for width, share in zip(known.outcome.widths, one.retained))))
         write_gis(new, known)
         disk.write_yaml(new / RESULTS, {"slope_version": provenance.version(), "made": provenance.now(),
                                         **known.outcome.about(), "warnings": entries(known.doubts)},

@@ -4,6 +4,7 @@ Blocks of one run share its ground: bounds (90 %) count how many of them are wor
 differences between the grounds. What a block that left the terrain with the road ahead, or still moves, would have done
 is not known: in a lower bound it does not do it, in an upper one it does.
 """
+import math
 from dataclasses import asdict, dataclass, replace
 from typing import Any, Dict, List, Optional, Sequence
 
@@ -17,6 +18,8 @@ from .runs import AT_ROAD, QUANTITIES, Run
 SHARES = 0.5, 0.95      # of the quantiles
 STILL = 2.0             # diameters: a block that goes less far stays where it begins
 DEEP = 0.2              # radii: contacts that overlap by more were too soft for the speed
+DITCH = "beyond_foot"   # of what is travelled: by this a ditch keeps a block
+WIDTHS = 40             # of ditches, at most
 
 
 @dataclass(frozen=True)
@@ -73,6 +76,11 @@ class Result:
     crossed: Dict[str, Share]
     travel: Dict[str, Quantity]
     at: Dict[str, Dict[str, Optional[Quantity]]]        # of the lines and the road
+    retained: Sequence[Share]                           # by ditches of Outcome.widths
+
+    def width(self, share: float, widths: Sequence[float]) -> Optional[float]:
+        """m, of the narrowest ditch that keeps a share; None: none does."""
+        return next((width for width, one in zip(widths, self.retained) if one.share >= share), None)
 
     @property
     def at_least(self) -> str:
@@ -87,6 +95,8 @@ class Outcome:
     best: Result
     another: float          # probability, at most, that one more ground brings something larger than all of these
     overlap: float          # the deepest contact, in radii
+    widths: Sequence[float]     # m, of ditches at the slope's foot
+    to_road: Optional[float]    # m, from there to the road, the median of the blocks whose way leads to it
 
     def hardest(self, place: str, quantity: str) -> Result:
         """The result with the largest 95 % of a quantity at a place, to which blocks come."""
@@ -107,29 +117,41 @@ class Outcome:
         return [one for holds, one in found if holds]
 
     def about(self) -> Dict[str, Any]:
-        """For a file."""
-        return {**asdict(self), "best": self.best.rolling}
+        """For a file, without what has a table of its own."""
+        about = {**asdict(self), "best": self.best.rolling}
+        for one in (about, *about["results"]):
+            one.pop("widths", None), one.pop("retained", None)
+        return about
 
 
 def evaluate(runs: Sequence[Run]) -> Outcome:
     """Of finished runs."""
-    results = [result_of([one for one in runs if one.rolling == rolling])
+    widths = widths_to(max(float(one.travel[DITCH].max()) for one in runs))
+    ditch = np.concatenate([one.ditch for one in runs])
+    results = [result_of([one for one in runs if one.rolling == rolling], widths)
                for rolling in dict.fromkeys(one.rolling for one in runs)]
     best = max(results, key=lambda one: (one.reach.share if one.reach else 0.0, one.left - one.away,
                                          one.travel["distance"].most))
     return Outcome(results, best, withheld.exceeded_at_most(min(one.grounds for one in results)),
-                   max(one.overlap for one in runs))
+                   max(one.overlap for one in runs), widths,
+                   None if np.isnan(ditch).all() else float(np.nanmedian(ditch)))
 
 
-def result_of(runs: Sequence[Run]) -> Result:
+def widths_to(most: float) -> List[float]:
+    """Round widths (m), at most WIDTHS steps up to the first one that is not below the most."""
+    step = next(one for power in range(-1, 6) for one in (10.0 ** power, 2 * 10.0 ** power, 5 * 10.0 ** power)
+                if WIDTHS * one >= most)
+    return [round(k * step, 6) for k in range(math.ceil(most / step - 1e-9) + 1)]
+
+
+def result_of(runs: Sequence[Run], widths: Sequence[float]) -> Result:
     def joined(get) -> np.ndarray:
         return np.concatenate([get(one) for one in runs])
     ground = np.repeat([one.ground for one in runs], [len(one.left) for one in runs])
     left, moving = joined(lambda one: one.left), joined(lambda one: one.moving)
 
-    def share(seen: np.ndarray, place: str) -> Share:
-        ahead = joined(lambda one: one.ahead[place])
-        unknown, number = int(((ahead | moving) & ~seen).sum()), int(seen.sum())
+    def share(seen: np.ndarray, may: np.ndarray) -> Share:
+        unknown, number = int((may & ~seen).sum()), int(seen.sum())
         low, high = hazard.share_bounds(number, len(seen) - unknown, unknown, hazard.effect_of(seen, ground))
         # a few say little of how alike blocks of a ground are: chance leaves no less than if none had been seen
         none = np.zeros(len(seen), bool)
@@ -143,15 +165,20 @@ def result_of(runs: Sequence[Run]) -> Result:
             if several else None
 
     at = {place: {name: joined(lambda one: one.at[place][name]) for name in QUANTITIES} for place in runs[0].at}
-    crossed = {place: share(np.isfinite(values["energy"]), place) for place, values in at.items()}
+    ahead = {place: joined(lambda one: one.ahead[place]) | moving for place in at}
+    crossed = {place: share(np.isfinite(values["energy"]), ahead[place]) for place, values in at.items()}
     reach, past = crossed.pop(AT_ROAD, None), None
     if reach:       # what passes has reached it
-        past = share(joined(lambda one: one.passed), AT_ROAD)
+        past = share(joined(lambda one: one.passed), ahead[AT_ROAD])
         reach, past = replace(reach, low=max(reach.low, past.low)), replace(past, high=min(reach.high, past.high))
     travel = {name: quantity(joined(lambda one: one.travel[name])) for name in runs[0].travel}
     still = joined(lambda one: one.travel["distance"] < STILL * one.diameter) & ~left
-    away = int((left & ~joined(lambda one: one.ahead[AT_ROAD])).sum()) if reach else 0
+    away = int((left & ~ahead[AT_ROAD]).sum()) if reach else 0
+    behind, beyond = joined(lambda one: one.behind), joined(lambda one: one.travel[DITCH])
+    open_ = (left | moving) & ~behind
+    retained = [share(behind | ~open_ & (beyond <= width + 1e-9), open_) for width in widths]
     return Result(runs[0].rolling, len(ground), len(runs), int(left.sum()), away, int(moving.sum()),
                   int(still.sum()), reach, past, crossed,
                   {name: one for name, one in travel.items() if one},
-                  {place: {name: quantity(values) for name, values in of.items()} for place, of in at.items()})
+                  {place: {name: quantity(values) for name, values in of.items()} for place, of in at.items()},
+                  retained)

@@ -22,12 +22,13 @@ from ..sites.site_sections import OfBlocks
 from ..survey import polygons
 from ..survey.rasters import crs_name
 from . import files
-from .outcome import Quantity, Result
+from .outcome import DITCH, Quantity, Result
 from .runs import AT_ROAD, QUANTITIES, Run
 from .site import sizes_of
 
 NAME = "report.html"
 POINTS = 60             # of a curve
+KEPT = 0.5, 0.8, 0.9, 0.95, 0.99
 # what is travelled, and the quantities at a line
 TITLES = {"distance": "Travelled distance in plan, from start to end",
           "along": "Along the fall line of the release area", "across": "Across it, to the left",
@@ -94,9 +95,10 @@ def tables(known) -> Iterator[Section]:
                 [zone.name, f"{100 * zone.share:.3g}",
                  *(f"{value:.3g}" for value in site_zones.now(zone, model, variables).values())]
                 for zone in site_zones.with_rest(zones)])])
-    yield Section("travel", "How far they go", [Figures([curve(known)]), *(Table(
+    yield Section("travel", "How far they go", [Figures([farther(known), retained(known)], "columns"), *(Table(
         TITLES[name], heads, [[one.rolling, *cells(one.travel[name], "m", one.at_least * (name != "across"))]
-                              for one in results], (), marks) for name in results[0].travel)])
+                              for one in results], (), marks) for name in results[0].travel if name != DITCH),
+                                                    widths(known, marks)])
     for place in results[0].at:
         yield Section(f"at_{place}", "At the road's near edge" if place == AT_ROAD else f"At the line {place}", [
             Text("Of the blocks that come there, each with its largest value. Heights count from the tops of the "
@@ -106,17 +108,43 @@ def tables(known) -> Iterator[Section]:
                     marks) for name, unit in QUANTITIES.items())])
 
 
-def curve(known) -> Picture:
+def farther(known) -> Picture:
     """Which share goes farther."""
     series = []
     for one in known.outcome.results:
         distance = np.concatenate([run.travel["distance"] for run in known.runs if run.rolling == one.rolling])
         x = np.linspace(0, distance.max(), POINTS)
-        series.append(figure_charts.Series(f"rolling resistance {one.rolling}", x.tolist(),
-                                           [100 * float(np.mean(distance > at)) for at in x]))
-    return Picture(figure_charts.chart(series, "travelled distance in plan (m)", "blocks that go farther (%)",
-                                       "Travelled distance"), "Share of the blocks that go farther than a distance",
-                   "Share of the blocks that go farther; one that left the terrain ends where it left it.")
+        series.append((one.rolling, x.tolist(), [100 * float(np.mean(distance > at)) for at in x]))
+    return curve(series, "travelled distance in plan (m)", "blocks that go farther (%)", "Travelled distance",
+                 "Share of the blocks that go farther; one that left the terrain ends where it left it.")
+
+
+def retained(known) -> Picture:
+    """Which share a ditch keeps."""
+    of = known.outcome
+    to_road = f" The road begins {number(of.to_road, 'm')} beyond the foot (median)." if of.to_road is not None else ""
+    return curve([(one.rolling, of.widths, [100 * share.share for share in one.retained]) for one in of.results],
+                 "width of a ditch at the slope's foot (m)", "blocks retained (%)", "Retained by a ditch",
+                 "Share of the blocks that end on the slope or within so far of its foot, below which the ground falls "
+                 f"less than 1 : 4; a level ditch, no barrier.{to_road} All numbers: study/{files.RETAINED}.")
+
+
+def curve(series, x_label: str, y_label: str, title: str, caption: str) -> Picture:
+    """series: of each a rolling resistance, x and y."""
+    return Picture(figure_charts.chart([figure_charts.Series(f"rolling resistance {rolling}", x, y)
+                                        for rolling, x, y in series], x_label, y_label, title), title, caption)
+
+
+def widths(known, marks: List[str]) -> Table:
+    """How wide a ditch must be."""
+    of = known.outcome
+
+    def width(one: Result, share: float) -> str:
+        found = one.width(share, of.widths)
+        return f"> {of.widths[-1]:g} m" if found is None else f"{found:g} m"
+    return Table("Width of a ditch at the foot of the slope that retains so many blocks, to a step of the curve.",
+                 ["rolling resistance", *(f"{100 * share:g} %" for share in KEPT)],
+                 [[one.rolling, *(width(one, share) for share in KEPT)] for one in of.results], (), marks)
 
 
 def maps(known, data: Data, ground: Ground) -> Dict[str, Picture]:

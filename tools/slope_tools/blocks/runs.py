@@ -15,6 +15,7 @@ from ..sites.site_sections import OfBlocks
 from ..survey import rasters, roads
 from ..survey.rasters import Raster
 from ..tables.structures import table_of
+from . import ditch
 from .site import EDGE, touched
 
 PREFIX = "site"         # of a run's files: out of the deck
@@ -48,9 +49,11 @@ class Run:
     moving: np.ndarray      # at the end of the run
     reached: np.ndarray     # the road
     passed: np.ndarray
+    behind: np.ndarray      # bool: the road, of those that left the terrain before it
     ahead: Columns          # {line: of those that left the terrain, which may come to it beyond}
     at: Dict[str, Columns]  # {line: {quantity: the largest of a block, NaN of one that does not come there}}
-    travel: Columns         # m, from start to end in plan: distance; along and across the fall line
+    travel: Columns         # m, in plan: distance from start to end; along and across the fall line; beyond the foot
+    ditch: np.ndarray       # m, from the slope's foot to the road, NaN of a block whose way does not lead to it
     overlap: float          # the deepest of a contact, in radii
 
 
@@ -78,7 +81,7 @@ def read(name: str, folder: Path, chosen: Dict[str, str], terrain: Terrain) -> R
     summary = run_folders.load_summary(f"{prefix}.summary.yaml")
     (_, first), (heads, last) = (dumps.frames(folder / f"{when}.dump")[0] for when in ("start", "end"))
     diameter, end, left = first[:, 1], first[:, 2:4].copy(), np.ones(len(first), bool)
-    moving, reached, passed = np.zeros((3, len(first)), bool)
+    moving, reached, passed, behind = np.zeros((4, len(first)), bool)
     gone, there = table_of(Path(f"{prefix}.left.csv"), ("ball", "x", "y")), last[:, 0].astype(int) - 1
     left[there] = False
     end[there] = last[:, 1:3]
@@ -96,12 +99,15 @@ def read(name: str, folder: Path, chosen: Dict[str, str], terrain: Terrain) -> R
         at[AT_ROAD] = largest({key: value[crossed["direction"] > 0] for key, value in crossed.items()}, diameter)
         reached = np.isfinite(at[AT_ROAD]["energy"])
         passed = reached & beyond_road(crossed, end, terrain.sides)
-        ahead[AT_ROAD] = spread(left, road_ahead(start[left], end[left], terrain.sides))
-    way = end - start
+        part = terrain.sides.of_places(end[left])
+        ahead[AT_ROAD] = spread(left, (part == road_sides.ON) | terrain.sides.ahead_of(start[left], end[left], part))
+        behind = spread(left, part == road_sides.BEFORE) & ~ahead[AT_ROAD]
+    way, feet = end - start, ditch.feet(terrain.raster, start, end, terrain.down,
+                                        terrain.road and terrain.road.polygon)
     travel = {"distance": np.hypot(*way.T), "along": way @ terrain.down,
-              "across": way @ np.array([-terrain.down[1], terrain.down[0]])}
+              "across": way @ np.array([-terrain.down[1], terrain.down[0]]), "beyond_foot": feet.beyond}
     return Run(name, folder, chosen["rolling"], int(chosen["ground"]), diameter, first[:, 2:5], end, left, moving,
-               reached, passed, ahead, at, travel, float(summary["guards"]["largest_overlap"]))
+               reached, passed, behind, ahead, at, travel, feet.road, float(summary["guards"]["largest_overlap"]))
 
 
 def largest(crossings: Columns, diameter: np.ndarray) -> Columns:
@@ -128,9 +134,3 @@ def spread(left: np.ndarray, found: np.ndarray) -> np.ndarray:
     every = np.zeros(len(left), bool)
     every[left] = found
     return every
-
-
-def road_ahead(start: np.ndarray, end: np.ndarray, sides: road_sides.Sides) -> np.ndarray:
-    """Of blocks that left the terrain, whether they did so on a road, or with one ahead: with its ends prolonged."""
-    part = sides.of_places(end)
-    return (part == road_sides.ON) | sides.ahead_of(start, end, part)
