@@ -52,6 +52,7 @@ def make(folder, shape, cell, bodies, y_road=50.0, points=None, **given):
                        for low, high in ranges]
             rows.append(made_rows.row(
                 run=f"run_{k}", set={"rolling": str(k)}, remove_on_road_m3=10.0 * k, stretches=entries,
+                by_10_m=[[20.0, 5.0 * k], [50.0, 4.0 * number]],
                 summary=f"../runs/run_{k}/run.summary.yaml",
                 clearing={"road_width": 8.0, "blocked_length": sum(b - a for a, b in ranges),
                           "remove": sum(one["remove"] for one in entries)}))

@@ -4,6 +4,7 @@ import shutil
 from dataclasses import replace
 from pathlib import Path
 
+import fiona
 import numpy as np
 import pytest
 import yaml
@@ -92,6 +93,20 @@ def test_the_chain_of_two_bodies(mine, capsys):
         assert all(f"{text}\n" in out for text in chain_files.sentences(said))
     assert "the road is blocked by more than" in chain_files.sentences(said)[0]
     shown_in_the_report(of)
+
+    # which body brings most, and what both leave: by hand from the runs
+
+    along = of["stretches"]["bodies"]
+    for one in along:
+        means = {name: np.mean([dict(row["by_10_m"]).get(one["from_m"], 0.0) for row in of["runs"]
+                                if row["set"]["body"] == name]) for name in "12"}
+        assert one["body"] == max(means, key=means.get) and one["mean_m3"] == pytest.approx(max(means.values()))
+    assert [float(row["from_m"]) for row in rows_of("mine/ensemble/bodies_along.csv")] == [
+        one["from_m"] for one in along] != []
+    for row in of["runs"]:
+        assert sum(volume for _, volume in row["by_10_m"]) == pytest.approx(row["remove_on_road_m3"], rel=0.01)
+    with fiona.open("mine/ensemble/bodies_along.gpkg") as layer:
+        assert len(layer) == len(along)
 
     # the same again takes the runs that are there, other volumes are another question
 

@@ -284,6 +284,11 @@ def test_stretches_add_up_with_mesh_and_total(cleared):
     assert total["remove"] == pytest.approx(about["volume"]["remove"], rel=1e-9)
     own = math.fsum(one["remove_lane"] for one in stretches)
     assert own - total["remove_lane_twice"] == pytest.approx(total["remove_lane"], rel=1e-9)
+    # of each 10 m what lies on it, within a cell; all of it is what lies on the road
+    by_part = dict(about["by_10_m"])
+    assert math.fsum(by_part.values()) == pytest.approx(about["volume"]["remove_on_road"], rel=1e-6)
+    assert list(by_part) == [3000, 3010, 3020, 3040, 3050, 3060] and all(one % 10 == 0 for one in by_part)
+    assert by_part[3050] == pytest.approx(8 * 10 * 1.5, rel=0.03)
     assert total["remove_lane_twice"] > 1       # the cuts of the first two meet
     with open("out/volume.csv", newline="", encoding="ascii") as lines:
         mesh = [float(row["remove_lane"]) for row in csv.DictReader(lines)]

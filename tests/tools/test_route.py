@@ -34,6 +34,7 @@ from slope_tools.seismic import chain, fragility
 from slope_tools.seismic.fragility_files import Fragility
 from slope_tools.statistics import hazard
 from slope_tools.survey import geopackage
+from slope_tools.tables import road_runs
 
 LMP = os.environ.get("LMP")
 needs_lmp = pytest.mark.skipif(not LMP, reason="needs the LAMMPS program (LMP)")
@@ -249,7 +250,25 @@ def test_who_hits_what(two):
         assert layer.crs["init"] == "epsg:6677" if "init" in layer.crs else True
     assert dict(word.split(":") for word in hit["shares"].split()) == {
         str(one): f"{value:g}" for one, value in shares_at(folder, 72.5, 62.5).items() if value}
-    assert fiona.listlayers(folder / results.LAYERS) == ["road", "stretches", "bodies", "hits"]
+    assert fiona.listlayers(folder / results.LAYERS) == ["road", "stretches", "bodies", "bodies_along", "hits"]
+
+
+def test_which_body_brings_most_to_each_ten_metres(two):
+    """Means of 0, 5, 10, 15 m3 of each body, of which the first comes first; and of 4 and 8 m3."""
+    found, ground = made(*two)
+    wanted = [("20.0", "30.0", "1", 7.5, "1:7.5 2:7.5"), ("50.0", "60.0", "2", 8.0, "1:4 2:8")]
+    assert [(row["from_m"], row["to_m"], row["body"], float(row["mean_m3"]), row["bodies"])
+            for row in rows_of(two[0] / results.ALONG)] == wanted
+    with fiona.open(two[0] / results.LAYERS, layer="bodies_along") as layer:
+        first, second = layer
+        assert first["properties"]["body"] == "1" and shape(second["geometry"]).length == pytest.approx(10)
+        x, y = shape(second["geometry"]).centroid.coords[0]
+        assert (x - run_helpers.EAST, y - run_helpers.NORTH) == pytest.approx((CELL + 55, 50))
+    route_page.write(choices.read(two[0]), ground, two[0], found, lambda said: None)
+    assert "Which body brings most" in (two[0] / route_page.PAGE).read_text()
+    # of runs that count differently, and of a body that is left behind
+    one, other = road_runs.by_body({"a": [(3.0, [[0.0, 4.0]]), (1.0, [])], "b": [(0.5, [[0.0, 2.9], [10.0, 1.0]])]})
+    assert (one["body"], one["mean_m3"], other["body"], other["to_m"]) == ("a", 3.0, "b", 20.0)
 
 
 def shares_at(folder, x, y):
@@ -290,7 +309,7 @@ def test_a_year_of_a_stretch(two, capacity, monkeypatch):
     said = []
     route_page.write(choices.read(two[0]), ground, two[0], found, said.append)
     page = (two[0] / route_page.PAGE).read_text()
-    assert page.count("<figure>") == 1 and "0.020 to 0.080" in page and f"{year['counts']:.2g}" in page
+    assert page.count("<figure>") == 2 and "0.020 to 0.080" in page and f"{year['counts']:.2g}" in page
     assert any("--sample" in one for one in said)
 
 

@@ -32,7 +32,8 @@ bodies that are known, polygons with an attribute depth (m) or volume (m3):
   tools/slope route known --terrain dem.tif --road axis.geojson --road-width 8 --corridor 200 --bodies slides.gpkg \\
       --cohesion 9e3 --friction 30 --density 1900
 
-Writes FOLDER/route.html, results.yaml, stretches.csv, bodies.csv, pieces.csv, governing.tif and route.gpkg.
+Writes FOLDER/route.html, results.yaml, stretches.csv, bodies.csv, pieces.csv, bodies_along.csv,
+governing.tif and route.gpkg.
 FOLDER/bodies/N is a site of its own: `slope study FOLDER/bodies/N`, `slope report FOLDER/bodies/N`.
 """
 

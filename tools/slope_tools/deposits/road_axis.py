@@ -12,6 +12,7 @@ from ..errors import SlopeError
 from ..survey.lines import lines_of
 from .axis import SAME, Axis, Span, merged
 
+EACH = 10.0            # m of chainage, whose volumes on the road are told apart
 STATIONS = 500         # cross sections of a curved road
 STRAIGHT = 0.98        # share of the centre line of a straight road that lies in the road
 
@@ -96,6 +97,24 @@ def axes_of(axis, asked):
         found.append(Axis(line.coords, start))
         start += line.length
     return found
+
+
+def by_chainage(run_, road, axes):
+    """[from (m), m3 on the road] of each EACH m of chainage on which a deposit lies: cells by their middles.
+
+    road: polygons in the grid; axes: of axes_of().
+    """
+    raster = run_.raster
+    lines = (np.arange(number + 1.0) for number in raster.z.shape[::-1])
+    volume = geometry.coverage(geometry.to_index(road, raster), *lines)[0] * raster.z * run_.cell ** 2
+    row, column = np.nonzero(volume > 0)
+    if not len(row):
+        return []
+    s, n = np.array([axis.locate(*(raster.transform * (column + 0.5, row + 0.5))) for axis in axes]).swapaxes(0, 1)
+    s = np.minimum(s, [[axis.s[-1] - SAME] for axis in axes])
+    part = np.floor(s[np.abs(n).argmin(axis=0), np.arange(len(row))] / EACH).astype(int)
+    found, inverse = np.unique(part, return_inverse=True)
+    return [[EACH * at, held] for at, held in zip(found.tolist(), np.bincount(inverse, volume[row, column]).tolist())]
 
 
 def along(axis, run_, removed, asked, road=None):

@@ -17,7 +17,7 @@ from ..survey import rasters, roads
 from ..survey.lines import read_local
 from ..survey.rasters import crs_name
 from . import clearing, cut, deposit, passed, stretch_files, volume_files
-from .road_axis import along, axes_of, axis_of, in_grid_of, stretches, width_of
+from .road_axis import along, axes_of, axis_of, by_chainage, in_grid_of, stretches, width_of
 
 CUT_ANGLE = 30.0       # degrees
 MOST_SAMPLES = 32
@@ -83,14 +83,16 @@ def of_run(prefix, wanted: Wanted, terrain=None, tell: Callable[[str], None] = l
     try:
         result = evaluate(run, road, wanted.cut_angle, mesh, wanted.samples)
         profile = along(axis, run, result.removed, asked, road if wanted.axis else None)
-        cleared = clearing.of_road(run, result, profile, axes_of(axis, asked), width,
+        axes = axes_of(axis, asked)
+        cleared = clearing.of_road(run, result, profile, axes, width,
                                    road if given.line is None else None, asked, mesh, wanted.cut_angle, wanted.samples)
     except cut.NoGround as error:
         x, y = run.raster.transform * error.args[0]
         raise SlopeError(wanted.road, "ground at the edge of the road must have a height, it has none at",
                          f"{x:.3f} {y:.3f} (local metres)") from None
     about = totals(wanted, run, mesh, result, profile, source)
-    about.update(clearing=cleared.totals, stretches=cleared.entries, **passed.of_run(run, road, given.line))
+    about.update(clearing=cleared.totals, stretches=cleared.entries, by_10_m=by_chainage(run, road, axes),
+                 **passed.of_run(run, road, given.line))
     if result.unknown > 0:
         warn(Finding("no ground", {"volume": float(result.unknown)}))
         about["volume"]["unknown"] = result.unknown

@@ -306,3 +306,20 @@ def bars(names, values, y_label, title, width=FULL):
         sheet.bottom += TICKS
         sheet.write(y_label, left, sheet.bottom, LABEL)
         return figures.data_uri(sheet.finish(), "svg")
+
+
+def along(parts, x_label, y_label, title):
+    """Bars side by side, coloured by their names; parts: of each from, to, value, name."""
+    names = list(dict.fromkeys(name for *_, name in parts))
+    with pictures.settings(STYLE):
+        figure, axes = pictures.subplots(figsize=(FULL, 1.9))
+        for k, name in enumerate(names):
+            low, high, value = np.array([one[:3] for one in parts if one[3] == name], float).T
+            axes.bar(low, value, high - low, align="edge", color=COLOURS[k % len(COLOURS)], label=f"body {name}")
+        axes.set_xlabel(x_label)
+        axes.set_ylabel(y_label)
+        axes.set_title(title, loc="left")
+        axes.spines[["top", "right"]].set_visible(False)
+        if names:
+            figures.legend_above(axes)
+        return figures.data_uri(figure, "svg")

@@ -1,14 +1,15 @@
 """What a report shows of a road: its blocked stretches over the runs, the lane and the hours."""
-from typing import Any, List, Optional
+from typing import Any, List, Mapping, Optional, Sequence
 
 from ..deposits.axis import Span
 from ..deposits.road_axis import axes_of, axis_of
 from ..geometry import box_of
-from ..plots import figure_maps, known_reach
+from ..plots import figure_charts, figure_maps, known_reach
 from ..sites.site_roads import FOLDER
 from ..studies import road_numbers
 from ..survey.roads import Asked
 from ..tables import ensemble_types, study_types
+from ..tables.road_runs import BODIES
 from .data import Data
 from .ensemble_part import ODDS
 from .numbers import Numbers
@@ -41,11 +42,21 @@ def section(data: Data, numbers: Numbers, maps) -> Optional[Section]:
     if len(lines) > 1:
         lines.append(["all", "", *cells(about.totals, "all stretches")])
     runs = "known events" if about.of_known_events else "runs"
+    along = [Figures([bodies_along(about.bodies)])] if about.bodies else []
     heads: List[Any] = ["stretch", Cell("chainage", "m"), Cell("blocked in", f"% of {runs}"),
                         *(Cell(head, unit) for head, unit, _ in columns)]
     return Section("road", "Blocked stretches of the road", [
-        Figures([shares(data, asked, about, runs, maps)], "tall"),
+        Figures([shares(data, asked, about, runs, maps)], "tall"), *along,
         Table(caption(asked, about, runs) + gaps(data, about), heads, lines, ())])
+
+
+def bodies_along(entries: Sequence[Mapping[str, Any]]) -> Picture:
+    """Which of several bodies brings most to each 10 m of the road: entries of road_runs.by_body()."""
+    title = "Which body brings most"
+    return Picture(figure_charts.along([(one["from_m"], one["to_m"], one["mean_m3"], one["body"]) for one in entries],
+                                       "chainage (m)", "m3 on 10 m of the road", title), title,
+                   "Of each 10 m of the road, the body whose runs leave most on it on the mean, given that it fails, "
+                   f"and how much. All bodies: {BODIES}.csv.")
 
 
 def of_all(data: Data) -> Optional[Section]:

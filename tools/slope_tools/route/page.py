@@ -11,8 +11,8 @@ from shapely.ops import substring
 from .. import digits, disk, provenance
 from ..deposits.axis import Axis, Span
 from ..drawing import figures, maps, palettes, pictures
-from ..report import document
-from ..report.sections import Picture, Section, Table
+from ..report import document, road_part
+from ..report.sections import Figures, Picture, Section, Table
 from ..statistics import hazard
 from ..survey.rasters import crs_name
 from .choices import Choices
@@ -51,7 +51,8 @@ def write(choices: Choices, corridor: Corridor, folder: Path, found: Mapping[str
         "made": provenance.now(), "mark": document.mark(folder), "how": how(choices),
         "sentences": [f"{text[0].upper()}{text[1:]}." for text in sentences(found)],
         "warnings": list(doubts(choices, found)), "maps": list(drawn(corridor, found, yearly)),
-        "sections": [stretches(found, yearly), bodies(found, yearly), left_out(found)],
+        "sections": [*([along(found)] if len(found["bodies"]) > 1 else []), stretches(found, yearly),
+                     bodies(found, yearly), left_out(found)],
         "footer": f"{document.MADE_BY.replace('report', 'route')}, SLOPE {provenance.version()}; all numbers: "
                   "results.yaml, stretches.csv, bodies.csv, pieces.csv; who hits what: governing.tif, route.gpkg"}
     for line in content["warnings"]:
@@ -140,6 +141,10 @@ def often(one: Mapping[str, Any], yearly: bool) -> List[str]:
 
 def share(one: Mapping[str, Any], name: str) -> List[str]:
     return [f"{100 * one[name]:.0f} %", f"{100 * one['share_low']:.0f} to {100 * one['share_high']:.0f} %"]
+
+
+def along(found: Mapping[str, Any]) -> Section:
+    return Section("along", "Which body brings most", [Figures([road_part.bodies_along(found["along"])])])
 
 
 def stretches(found: Mapping[str, Any], yearly: bool) -> Section:

@@ -26,7 +26,8 @@ from .yearly import Yearly
 
 RESULTS, MAP, LAYERS = "results.yaml", "governing.tif", "route.gpkg"
 STRETCHES, BODIES, PIECES = "stretches.csv", "bodies.csv", "pieces.csv"
-FILES = (RESULTS, MAP, LAYERS, STRETCHES, BODIES, PIECES)
+ALONG = f"{road_runs.BODIES}.csv"
+FILES = (RESULTS, MAP, LAYERS, STRETCHES, BODIES, PIECES, ALONG)
 NUMBERS = ("length", "passable_width", *road_runs.SUMS)
 
 
@@ -85,6 +86,7 @@ def make(choices: Choices, corridor: Corridor, folder: Path, table: Mapping[str,
         "collected": provenance.now(), "chainage_m": [corridor.start, corridor.start + corridor.axis.length],
         "blocked_above_m": choices.blocked, "fragility": choices.fragility and Path(choices.fragility).name,
         "route": route(bodies, yearly), "pieces": pieces(bodies, yearly),
+        "along": road_runs.by_body({one.number: [(1.0, row.at_road.by_10_m) for row in one.rows] for one in bodies}),
         "stretches": [stretch(number, span, bodies, yearly) for number, span in enumerate(spans, 1)],
         "bodies": [of_body(one, yearly) for one in bodies], "left_out": table["left_out"]}
     hits = reached.of([one.source for one in bodies], corridor.raster, "max_thickness", choices.blocked)
@@ -97,6 +99,7 @@ def make(choices: Choices, corridor: Corridor, folder: Path, table: Mapping[str,
             ((one["stretch"], one["from"], one["to"], *year(one), by["body"], by["factor"], by["share"],
               *(value for name in NUMBERS for value in by.get(name, [None] * len(road_runs.SHARES))))
              for one in about["stretches"] for by in one["bodies"])))
+        disk.write(new / ALONG, road_runs.table_of_bodies(about["along"]))
         heads = [name for name in about["bodies"][0] if name != "per_year"]
         disk.write(new / BODIES, disk.csv_text([*heads, "fails_per_year", "blocks_per_year"], (
             [*(one[name] for name in heads), *((one["per_year"] or {}).get(key) for key in ("fails", "blocks"))]
@@ -218,4 +221,5 @@ def write_layers(path: Path, corridor: Corridor, folder: Path, about: Mapping[st
             (line(one), {"stretch": one["stretch"], **values(one)}) for one in about["stretches"])),
         "bodies": Layer("MultiPolygon", {"body": "int", "name": "str", "factor": "float", "volume_m3": "float",
                                          "why_not": "str", "share": "float"}, bodies()),
+        road_runs.BODIES: road_runs.layer_of_bodies(about["along"], [axis]),
         "hits": Layer("Polygon", of_hits, hit())}, corridor.raster)

@@ -24,6 +24,8 @@ def write(outcome: Outcome, about: study_types.Study, output: Path,
     if stretches := about.stretches:
         head, *lines = road_runs.rows(stretches)
         disk.write(output / road_runs.FILE, disk.csv_text(head, lines))
+        write_or_remove(output / f"{road_runs.BODIES}.csv",
+                        road_runs.table_of_bodies(stretches.bodies) if stretches.bodies else None)
     if outcome.chain:
         chain_files.write(outcome.chain, output)
     write_or_remove(output / intensity.FILE, intensity.table(about.intensity) if about.intensity else None)

@@ -4,7 +4,7 @@ Files, console and pages are made of it side by side (files, console, report); r
 """
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from ..findings import Finding, finding
 from ..mobility.exceedance import Mobility
 from ..runs import repeats
 from ..seismic import chain_files
+from ..sites.site_bodies import VARIABLE
 from ..statistics.conservative_volume import Scatter
 from ..tables import (answered, combinations, elastic, ensemble_types, intensity, judged, quantities, road_runs,
                       step_check, study_types, usable, withheld_words)
@@ -211,7 +212,11 @@ def stretches(rows: Sequence[Finished], known: Optional[Mapping[str, float]]) ->
     weights = known or {row.run: 1.0 for row in rows if not row.batch}
     found = road_runs.evaluate([road_runs.Run(weights[row.run], row.at_road.stretches, row.at_road.clearing)
                                 for row in rows if row.run in weights])
-    return replace(found, of_known_events=bool(known))
+    bodies: Dict[str, List[Any]] = {}
+    for row in rows:
+        if row.run in weights and VARIABLE in row.variables:
+            bodies.setdefault(row.variables[VARIABLE], []).append((weights[row.run], row.at_road.by_10_m))
+    return replace(found, of_known_events=bool(known), bodies=road_runs.by_body(bodies) if len(bodies) > 1 else None)
 
 
 def largest(rows: Sequence[Finished], key: str) -> study_types.Largest:

@@ -6,12 +6,14 @@ from typing import Any, Dict, Mapping, Optional, Sequence
 
 from .. import kept, provenance, records
 from ..case import run_folders
+from ..deposits.road_axis import axes_of, axis_of
 from ..ensembles import ensemble, known_events
+from ..geometry import as_multi, box_of
 from ..mobility.exceedance import Mobility
 from ..runs import jobs
 from ..runs.repeats import Repeat
-from ..survey import roads
-from ..tables import elastic, next_step, study_maps, study_types, usable, withheld_words
+from ..survey import geopackage, roads
+from ..tables import elastic, next_step, road_runs, study_maps, study_types, usable, withheld_words
 from ..tables.rows import Finished, Row, finished_of
 from . import body_depth, console, files, mapped, size_runs
 from .outcome import Questions, Read, evaluate
@@ -46,6 +48,11 @@ def collect(setup: Setup, questions: Questions, todo: Sequence[Repeat], work: jo
     size_runs.write(setup, at, questions.settings, questions.repeated, work.defaults)
     about = files.write(outcome, replace(outcome.about, envelope=maps.envelope, exceedance=maps.exceedance,
                                          next_step=step.about() if step else None), setup.output, place)
+    bodies_along = setup.output / f"{road_runs.BODIES}.gpkg"
+    if about.stretches and about.stretches.bodies and setup.road and first:
+        write_bodies(bodies_along, setup.road, first, about.stretches.bodies)
+    else:
+        bodies_along.unlink(missing_ok=True)        # of a study before this one
     console.tell(outcome, about, setup.output, setup.tell, setup.warn)
     return about
 
@@ -97,6 +104,15 @@ def events_of(setup: Setup, run: Repeat, row: Finished, among: Mapping[str, Any]
 def case_of(setup: Setup, questions: Questions, row: Finished) -> withheld_words.Case:
     return withheld_words.Case(setup.deck, questions.site, row.variables, round(row.released_m3 / row.ball_m3),
                                given=setup.given)
+
+
+def write_bodies(path: Path, road: Road, run: Repeat, entries: Sequence[Mapping[str, Any]]) -> None:
+    """Which body brings most to which part of the road, for a GIS."""
+    raster = placed(run_folders.load_raster(prefix_of(run), "thickness"), run)
+    given = road.read(raster)
+    axis, *_ = axis_of(given.lines, as_multi(given.polygon.intersection(box_of(raster))), road.asked)
+    geopackage.write(path, {
+        road_runs.BODIES: road_runs.layer_of_bodies(entries, axes_of(axis, road.asked))}, raster)
 
 
 def write_road(output: Path, road: Road, run: Repeat) -> Dict[str, Any]:

@@ -3,17 +3,23 @@
 A stretch of a study is a largest range of chainages each of which a run blocks. A run that does not block it takes
 nothing there. Quantiles are of the runs, by their weights: the value that 5, 50 or 95 % of them stay within.
 """
-from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Sequence
+from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Sequence, Tuple
 
 import numpy as np
+from shapely.geometry import MultiLineString
 
-from ..deposits.axis import SAME, Span, merged
+from .. import disk
+from ..deposits.axis import SAME, Axis, Span, merged
+from ..deposits.road_axis import EACH
 from ..statistics.hazard import weighted
+from ..survey.geopackage import Layer
 from . import study_types
 
 SHARES = (0.05, 0.5, 0.95)
 SUMS = ("remove", "remove_lane", "hours", "hours_lane")     # of the stretches of a run
 FILE = "stretches.csv"
+BODIES = "bodies_along"                                     # .csv, and a layer
+OF_BODIES = {"from_m": "float", "to_m": "float", "body": "str", "mean_m3": "float", "bodies": "str"}
 
 
 class Run(NamedTuple):
@@ -63,6 +69,36 @@ def shares(blocked: Sequence[np.ndarray], weights: np.ndarray) -> List[List[floa
         elif share > 0:
             found.append([float(low), float(high), share])
     return found
+
+
+def by_body(bodies: Mapping[Any, Sequence[Tuple[float, Sequence[Sequence[float]]]]]) -> List[Dict[str, Any]]:
+    """OF_BODIES of each 10 m of the road: the body whose runs leave most on it, on the mean, given that it fails.
+
+    bodies: of each the weights of its runs and what each leaves, as rows.OnRoad has it.
+    """
+    means: Dict[float, Dict[Any, float]] = {}
+    for body, several in bodies.items():
+        whole = sum(weight for weight, _ in several)
+        for weight, parts in several:
+            for start, volume in parts:
+                here = means.setdefault(start, {})
+                here[body] = here.get(body, 0.0) + volume * weight / whole
+    return [{"from_m": start, "to_m": start + EACH, "body": str(max(here, key=lambda body: here[body])),
+             "mean_m3": max(here.values()), "bodies": " ".join(f"{body}:{mean:.4g}" for body, mean in here.items())}
+            for start, here in sorted(means.items())]
+
+
+def table_of_bodies(entries: Sequence[Mapping[str, Any]]) -> str:
+    """As CSV."""
+    return disk.csv_text(OF_BODIES, ([one[name] for name in OF_BODIES] for one in entries))
+
+
+def layer_of_bodies(entries: Sequence[Mapping[str, Any]], axes: Sequence[Axis]) -> Layer:
+    """For a GIS."""
+    def lines(one: Mapping[str, Any]) -> MultiLineString:
+        spans = [(axis, Span(max(one["from_m"], axis.s[0]), min(one["to_m"], axis.s[-1]))) for axis in axes]
+        return MultiLineString([axis.line(span) for axis, span in spans if span.high - span.low > SAME])
+    return Layer("MultiLineString", OF_BODIES, ((lines(one), one) for one in entries))
 
 
 def rows(about: study_types.Stretches) -> Iterator[List[Any]]:

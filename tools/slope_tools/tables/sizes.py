@@ -16,7 +16,7 @@ from ..statistics.ball_sizes import Finest, Step
 from . import quantities, study_types
 from .quantities import On
 from .road_runs import SUMS
-from .rows import Finished, Row
+from .rows import Finished, OnRoad, Row
 
 VARIABLE = "d"                  # of a deck: the diameter of the balls, m
 VOLUMES = {"m3"}                # units of quantities of which ten balls count
@@ -77,7 +77,8 @@ class Sizes:
             road = replace(road, remove_on_road_m3=min(road.remove_on_road_m3, road.remove_m3),
                            remove_beside_road_m3=max(0.0, road.remove_m3 - road.remove_on_road_m3),
                            stretches=[scaled(one, row, new) for one in row.road.stretches],
-                           clearing=scaled(row.road.clearing, row, new))
+                           clearing=scaled(row.road.clearing, row, new),
+                           by_10_m=scaled_parts(row.road, road.remove_on_road_m3))
         if row.length_by_lobe_m and row.length_m and new.get(quantities.LENGTH) is not None:
             new["length_by_lobe_m"] = [one * new[quantities.LENGTH] / row.length_m for one in row.length_by_lobe_m]
         return replace(row, **{key: value for key, value in new.items() if hasattr(row, key)}, road=road,
@@ -93,6 +94,12 @@ def scaled(part: Mapping[str, Any], row: Finished, new: Mapping[str, Any]) -> Di
     """A stretch, or the sums of a road, in proportion to the columns whose part it is."""
     factors = {name: new[key] / old for name, key in OF_SUMS.items() if key in new and (old := row.value(key))}
     return {name: value * factors[name] if name in factors else value for name, value in part.items()}
+
+
+def scaled_parts(road: OnRoad, on_road: float) -> List[List[float]]:
+    """Volumes on the road by chainage, in proportion to all of it (m3)."""
+    factor = on_road / road.remove_on_road_m3 if road.remove_on_road_m3 else 0.0
+    return [[start, factor * volume] for start, volume in road.by_10_m]
 
 
 # --- of the runs ---

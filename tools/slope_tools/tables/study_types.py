@@ -294,6 +294,7 @@ class Stretches:
     stretches: List[Dict[str, Any]]
     shares: List[List[float]]
     of_known_events: Optional[bool] = None
+    bodies: Optional[List[Dict[str, Any]]] = None       # of a site with several (road_runs.by_body)
 
 
 @dataclass(frozen=True)
