@@ -407,6 +407,25 @@ def test_beside_the_zones_runs_may_not_tell(two, capsys, capacity, monkeypatch):
     assert about["unreached_at_most"] == pytest.approx(1 - math.exp(-most))
 
 
+def test_a_point_says_which_body_governs_each_part_of_a_zone(two, capsys):
+    """Both bodies lie side by side: what governs is by hand from the rasters, at each point and in all of its part."""
+    folder = two[0]
+    assert zones_of(folder, capsys, "--zones", "0.4,0.2", "--thicker", "0.5")[0] == 0
+    areas, points = ([(shape(one["geometry"]), one["properties"]) for one in fiona.open(
+        folder / "zones/zones.gpkg", layer=name)] for name in (zones.LAYER, zones.PROCESS))
+    assert {(one["body"], one["probability"]) for _, one in points} == {(1, 0.4), (1, 0.2), (2, 0.2)}    # 4 of 4, 3 of 4
+    for at, one in points:
+        x, y = at.x - run_helpers.EAST, at.y - run_helpers.NORTH
+        shares = shares_at(folder, x, y)
+        assert one["body"] == max(shares, key=shares.get) and one["known_events"] == "landslides"
+        assert (one["quantity"], one["exceeds"], one["return_period"]) == ("thickness", 0.5, None)
+        assert any(area.contains(at) for area, zone in areas
+                   if zone["class"] == zones.AT_LEAST and zone["probability"] == one["probability"])
+    for p in (0.4, 0.2):
+        assert sum(one["area_m2"] for _, one in points if one["probability"] == p) == pytest.approx(sum(
+            zone["area_m2"] for _, zone in areas if (zone["class"], zone["probability"]) == (zones.AT_LEAST, p)))
+
+
 def test_zones_have_a_style(two, capsys):
     assert zones_of(two[0], capsys, "--zones", "0.9,0.4")[0] == 0
     with fiona.open(two[0] / "zones/zones.gpkg", layer=geopackage.STYLES) as layer:

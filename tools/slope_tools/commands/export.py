@@ -81,7 +81,7 @@ def run_zones(args: Request, zones_: str) -> None:
     several = [zones.of(ground, limit, wanted) for limit in limits]
     about: Dict[str, Any] = {"of": args.prefix, "asked": asked, **zones.about(ground, several, wanted)}
     with disk.complete(folder, "zones.yaml") as new:
-        geopackage.write(new / "zones.gpkg", {zones.LAYER: zones.layer(ground, several, wanted)}, ground.raster,
+        geopackage.write(new / "zones.gpkg", zones.layers(ground, several, wanted), ground.raster,
                          {zones.LAYER: zones.style(several, wanted, about["per_year"])})
         disk.write_yaml(new / "zones.yaml", about, "slope export --zones: m2; probabilities per year, or of the runs")
     for one in about["zones"]:

@@ -65,6 +65,12 @@ def combined(sources: Sequence[Source], shares_: Sequence[float], yearly: Option
         "low": yearly.of(numbers, low).least, "high": yearly.of(numbers, high).most})
 
 
+def of_set(one: Sequence[Tuple[int, float]], sources: Sequence[Source], yearly: Optional[Yearly]) -> Optional[Combined]:
+    """What the bodies and shares of a set of Reached do together; None of no body."""
+    by_number = {source.body: source for source in sources}
+    return combined([by_number[number] for number, _ in one], [share for _, share in one], yearly) if one else None
+
+
 class Reached(NamedTuple):
     """codes: of each cell, an index of sets; sets: ((body, share), ...), the first one of no body."""
     codes: np.ndarray

@@ -178,11 +178,9 @@ def of_body(one: BodyRuns, yearly: Optional[Yearly]) -> Dict[str, Any]:
 
 def governs(one, bodies: Sequence[BodyRuns], yearly: Optional[Yearly]):
     """Governing body, its share, how many bodies reach the cells of a set, how often per year; NaN where none does."""
-    if not one:
+    found = reached.of_set(one, [body.source for body in bodies], yearly)
+    if found is None:
         return np.nan, np.nan, np.nan, np.nan
-    by_number = {body.number: body.source for body in bodies}
-    numbers, each = zip(*one)
-    found = reached.combined([by_number[number] for number in numbers], each, yearly)
     return found.body, found.share, len(one), (found.per_year or {}).get("counts", np.nan)
 
 

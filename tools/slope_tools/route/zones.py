@@ -7,11 +7,11 @@ cell, which moves the edge by less than that.
 """
 import math
 from pathlib import Path
-from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple
+from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 from rasterio.features import shapes
-from shapely.geometry import Polygon, shape
+from shapely.geometry import Point, Polygon, shape
 
 from ..case import run_folders
 from ..deposits import deposit
@@ -27,17 +27,20 @@ from .yearly import Yearly
 
 QUANTITIES = {"thickness": ("max_thickness", "m"), "speed": ("max_speed", "m/s"), "energy": ("max_energy", "J")}
 AT_LEAST, UNSURE = "at least", "runs cannot tell"
-PROPERTIES = {"quantity": "str", "exceeds": "float", "unit": "str", "probability": "float", "return_period": "float",
-              "class": "str", "cells": "int", "area_m2": "float"}
-LAYER = "zones"
+ASKED = {"quantity": "str", "exceeds": "float", "unit": "str", "probability": "float", "return_period": "float"}
+PROPERTIES = {**ASKED, "class": "str", "cells": "int", "area_m2": "float"}
+LAYER, PROCESS = "zones", "governing_process"
+OF_PROCESS = {"process": "str", "body": "int", "known_events": "str", **ASKED, "area_m2": "float"}
+PROCESS_OF_MASS = "collapse of a slope"     # the only one that is modelled
 COLOURS = ("215,48,39", "252,141,89", "254,224,139", "217,239,139", "145,191,219")      # of the probabilities
 
 
 class Ground(NamedTuple):
-    """Where the zones are."""
+    """Where the zones are; like: {body: the known events with which it is compared}."""
     raster: Raster
     sources: Sequence[Source]
     yearly: Optional[Yearly]
+    like: Mapping[int, str]
 
 
 class Limit(NamedTuple):
@@ -85,11 +88,12 @@ def ground_of(name: str, warn) -> Ground:
         table = search.table_of(folder)
         return Ground(corridor.read(asked, folder).raster,
                       [results.read_body(folder, about).source for about in table["bodies"]],
-                      results.yearly_of(asked, folder, table["bodies"]))
+                      results.yearly_of(asked, folder, table["bodies"]),
+                      {about["body"]: about["known_law"] for about in table["bodies"]})
     study = answered.study_in(folder, weighted=True)
     if study is None and not (folder / "site.yaml").is_file():
         run = deposit.read(named_run.read(name).prefix, None, warn)
-        return Ground(run.raster, [Source(1, [Path(run.prefix)], np.ones(1), 0, run.raster.offset)], None)
+        return Ground(run.raster, [Source(1, [Path(run.prefix)], np.ones(1), 0, run.raster.offset)], None, {})
     study = study or folder
     about = load_study(study / answered.STUDY)
     weighted = ensemble_types.weighted(about.ensemble)
@@ -102,7 +106,8 @@ def ground_of(name: str, warn) -> Ground:
     run = deposit.read(str(prefixes[0]), None, warn)
     failed = sum(isinstance(row, Failed) and bool(known or not row.batch) for row in about.runs)
     effect = 1.0 if known else len(rows) / len({str(row.set) for row in rows})
-    return Ground(run.raster, [Source(1, prefixes, weights / weights.sum(), failed, run.raster.offset, effect)], None)
+    return Ground(run.raster, [Source(1, prefixes, weights / weights.sum(), failed, run.raster.offset, effect)], None,
+                  {1: weighted.set} if weighted else {})
 
 
 def check(ground: Ground, wanted: Sequence[float], name: object, text: str = "") -> None:
@@ -129,25 +134,20 @@ def check(ground: Ground, wanted: Sequence[float], name: object, text: str = "")
 
 
 class Zones(NamedTuple):
-    """Of one limit: classes, of each probability an array of the cells: 1 in the zone, 2 the runs cannot tell, 0."""
+    """Of one limit: classes, of each probability an array of the cells: 1 in the zone, 2 the runs cannot tell, 0; body:
+    which one governs in each, 0 where none comes."""
     limit: Limit
     classes: List[np.ndarray]
+    body: np.ndarray
 
 
 def of(ground: Ground, limit: Limit, wanted: Sequence[float]) -> Zones:
     hits = reached.of(ground.sources, ground.raster, QUANTITIES[limit.quantity][0], limit.value)
-    low, high = np.array([bounds(one, ground) for one in hits.sets]).T
+    found = [reached.of_set(one, ground.sources, ground.yearly) for one in hits.sets]
+    low, high = np.array([probable(one) if one else (0.0, 0.0) for one in found]).T
+    bodies = np.array([one.body if one else 0 for one in found], np.int32)
     return Zones(limit, [np.where(low >= one, 1, np.where(high >= one, 2, 0)).astype(np.uint8)[hits.codes]
-                         for one in wanted])
-
-
-def bounds(one, ground: Ground) -> Tuple[float, float]:
-    """Of the probability of a set of bodies and shares."""
-    if not one:
-        return 0.0, 0.0
-    by_number = {source.body: source for source in ground.sources}
-    found = reached.combined([by_number[number] for number, _ in one], [share for _, share in one], ground.yearly)
-    return probable(found)
+                         for one in wanted], bodies[hits.codes])
 
 
 def unreached(ground: Ground) -> float:
@@ -179,14 +179,30 @@ def features(ground: Ground, zones: Zones, wanted: Sequence[float]) -> Iterator[
         for part, kind in shapes(classes, classes > 0, connectivity=4, transform=ground.raster.transform):
             area = shape(part)
             yield smoothed(area, cell), {
-                "quantity": zones.limit.quantity, "exceeds": zones.limit.value,
-                "unit": QUANTITIES[zones.limit.quantity][1], "probability": probability,
-                "return_period": 1 / probability if ground.yearly else None, "class": AT_LEAST if kind == 1 else UNSURE,
+                **asked_of(ground, zones.limit, probability), "class": AT_LEAST if kind == 1 else UNSURE,
                 "cells": round(area.area / cell ** 2), "area_m2": area.area}
 
 
-def layer(ground: Ground, several: Sequence[Zones], wanted: Sequence[float]) -> Layer:
-    return Layer("Polygon", PROPERTIES, (one for zones in several for one in features(ground, zones, wanted)))
+def asked_of(ground: Ground, limit: Limit, probability: float) -> Dict[str, Any]:
+    """The values of ASKED."""
+    return {"quantity": limit.quantity, "exceeds": limit.value, "unit": QUANTITIES[limit.quantity][1],
+            "probability": probability, "return_period": 1 / probability if ground.yearly else None}
+
+
+def points(ground: Ground, zones: Zones, wanted: Sequence[float]) -> Iterator[Tuple[Point, Dict[str, Any]]]:
+    """A point, with the values of OF_PROCESS, in each part of a zone in which one body governs."""
+    for probability, classes in reversed(list(zip(wanted, zones.classes))):
+        governs = np.where(classes == 1, zones.body, 0)
+        for part, body in shapes(governs, governs > 0, connectivity=4, transform=ground.raster.transform):
+            area = shape(part)
+            yield area.representative_point(), {
+                "process": PROCESS_OF_MASS, "body": int(body), "known_events": ground.like.get(int(body), ""),
+                **asked_of(ground, zones.limit, probability), "area_m2": area.area}
+
+
+def layers(ground: Ground, several: Sequence[Zones], wanted: Sequence[float]) -> Dict[str, Layer]:
+    return {LAYER: Layer("Polygon", PROPERTIES, (one for zones in several for one in features(ground, zones, wanted))),
+            PROCESS: Layer("Point", OF_PROCESS, (one for zones in several for one in points(ground, zones, wanted)))}
 
 
 def asked(ground: Ground, text: str, several: Sequence[Limit]) -> str:
