@@ -14,7 +14,7 @@ USUAL = {
     "release": RELEASE, "log_warnings": [], "wall_s": None, "summary": "one/site.summary.yaml", "slope_version": "1",
     "lammps_version": "1", "structures": {}, "lines": {}}
 OF_PART = {"road": {"road_on_body_m2": 0.0, "remove_m3": 0.0, "remove_on_road_m3": 0.0, "remove_beside_road_m3": 0.0,
-                    "blocked_m": 0.0, "stretches": [], "clearing": {}, "road_warnings": []},
+                    "blocked_m": 0.0, "stretches": [], "clearing": {}, "road_warnings": [], "by_10_m": []},
            "mapped": {"overlap": 0.5}}
 FAILED = {"run": "one", "set": {}, "repeat": {}, "batch": 0, "error": "it diverged"}
 

@@ -1,6 +1,7 @@
 """slope site FOLDER --scenario: a whole site beside another, with its balls and at least as stiff; the page of all."""
 import re
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ import yaml
 from affine import Affine
 from shapely.geometry import LineString
 
+import made_rows
 import made_study
 from test_site import gis, make_mine, told, work_in, write_dem, write_files, write_layer  # noqa: F401
 from test_site_anew import edit, inside  # noqa: F401
@@ -18,10 +20,12 @@ from tiny_collapse import LMP
 from slope_tools import cli
 from slope_tools.case import decks
 from slope_tools.commands import study as study_command
-from slope_tools.scenarios import compare, page
+from slope_tools.ensembles import known_study
+from slope_tools.scenarios import compare, method, page
 from slope_tools.sites import site_budget, site_choices, site_scenarios
 from slope_tools.studies.road_numbers import Made
 from slope_tools.survey.rasters import Raster
+from slope_tools.tables import study_file
 
 KEPT = ("d", "cell", "duration", "film", "density", "spacing", "friction")
 FILES = ("release.depth.asc", "release.slip.asc", "release.csv", "terrain.asc", "road.csv")
@@ -201,6 +205,80 @@ def test_what_differs_is_said(here, capsys):
     ({"kind": "nothing", "volume_m3": 0.0}, "0")])
 def test_the_number_of_a_scenario(headline, shown):
     assert page.to_remove(headline and made_study.headline(**headline)) == shown
+
+
+def study_of(number, source, said=3000.0, **entries):
+    """Of a site's sweep, or of its ensemble; said: the number of its first page, of either."""
+    rows = [made_rows.row(run=f"{source} {k}", remove_m3=number, length_m=10.0 * k + number / 100, stretches=[])
+            for k in range(2)]
+    most = {name: {"value": number / 10, "run": rows[0].run} for name in ("distance_99_m", "front_m")}
+    header = {"runs": 2, "finished": 2, "method": known_study.WEIGHTED, "governs": "ensemble",
+              "road": {"cut_angle": 30, "mesh": 10, "local": "road.csv"}}
+    return made_study.study(header, runs=rows, largest=most, headline=made_study.headline(volume_m3=said), **entries)
+
+
+def sweep_of(number, said=3000.0):
+    return study_of(number, "paper", said, conservative=made_study.conservative(number, run="paper 0"))
+
+
+BOTH = {"study": sweep_of(1000.0), "ensemble": study_of(3000.0, "ensemble", ensemble=made_study.ensemble({}))}
+
+
+def of_roads(tmp_path, **roads):
+    return method.Studied(roads or {"": BOTH}, tmp_path / "ensemble")
+
+
+def test_numbers_side_by_side_are_of_the_studies_that_all_have(tmp_path):
+    both, sweep = of_roads(tmp_path), of_roads(tmp_path, **{"": {"study": BOTH["study"]}})
+    folders = {"mine": Path("mine"), "half": Path("mine/scenarios/half")}
+    assert method.common([both, None, both]) == ["study", "ensemble"]
+    assert method.difference({"mine": both, "half": both}, folders) == ""
+    assert method.headline_of(BOTH, ["study", "ensemble"]).volume_m3 == 3000
+    names = method.common([both, sweep])
+    said = method.difference({"mine": both, "half": sweep, "cut": None}, folders)
+    assert names == ["study"] and "half" in said and "slope study mine/scenarios/half" in said and "mine," not in said
+    # that of the sweep alone is what it says itself: of one size, at least so much
+    found = method.headline_of(BOTH, names)
+    assert (found.source, found.kind, found.volume_m3) == ("paper", "floor", 1000)
+    assert (method.farthest(BOTH, names), method.farthest(BOTH, ["study", "ensemble"])) == (100, 300)
+    assert len(method.rows_of(BOTH, names)) == 2 and len(method.rows_of(BOTH, ["study", "ensemble"])) == 4
+    known = of_roads(tmp_path, **{"": {"ensemble": BOTH["ensemble"]}})
+    said = method.difference({"mine": known, "half": sweep}, folders)
+    assert method.common([known, sweep]) == [] and "mine: runs that are weighted" in said and "half: a sweep" in said
+
+
+def test_every_road_has_a_column(here, tmp_path):
+    mine = compare.read(Path("mine"))[0]
+    one = mine._replace(studied=of_roads(tmp_path, upper=BOTH, lower=BOTH))
+    half = {road: {"study": sweep_of(number, number)} for road, number in (("upper", 500.0), ("lower", 10.0))}
+    other = mine._replace(name="half", studied=of_roads(tmp_path, **half))
+    table = page.table([one, other, mine._replace(name="new")])
+    assert [head.text for head in table.heads[5:7]] == ["to remove from upper", "to remove from lower"]
+    assert [row[5:] for row in table.rows] == [["at least 1,000", "at least 1,000", "2 of 2"],
+                                               ["500", "10.0", "2 of 2"],
+                                               ["-", "-", "not studied as it is"]]
+
+
+def test_studies_are_read_of_each_road(here, monkeypatch):
+    """Both where one command made them, else the one that governs."""
+    site = compare.read(Path("mine"))[0].site
+    monkeypatch.setattr(method.outdated, "changed", lambda *_: None)
+    for folder in ("mine", "mine/roads/a", "mine/roads/b"):
+        for name, about in BOTH.items():
+            place = Path(folder, name)
+            place.mkdir(parents=True)
+            (place / "study.yaml").write_text(yaml.safe_dump(study_file.plain(about)))
+    assert method.read(site).names == ["study", "ensemble"] and method.read(site).governs.name == "ensemble"
+    several = replace(site, found=replace(site.found, roads=("a", "b")))
+    assert list(method.read(several).roads) == ["a", "b"]
+    path = Path("mine/roads/b/study/study.yaml")
+    about = yaml.safe_load(path.read_text())
+    about["study"].update(method=known_study.ASKED, governs="study")
+    path.write_text(yaml.safe_dump(about))
+    shutil.rmtree("mine/roads/b/ensemble")
+    assert method.read(several).names == ["study"]
+    monkeypatch.setattr(method.outdated, "changed", lambda *_: "deck")
+    assert method.read(several) is None
 
 
 def test_an_outline_lies_where_it_is_on_the_ground():

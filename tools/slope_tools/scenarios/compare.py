@@ -1,7 +1,7 @@
 """A site and its scenarios: what each releases, what its study says, and in what its choices and its model differ."""
 import os
 from pathlib import Path
-from typing import Any, Iterator, List, Mapping, NamedTuple, Optional
+from typing import Any, Iterator, List, Mapping, NamedTuple, Optional, Sequence
 
 from .. import disk
 from ..case import decks, run_folders
@@ -9,9 +9,9 @@ from ..errors import SlopeError
 from ..sites import site_choices, site_deck, site_folder, site_scenarios
 from ..sites.site_choices import FILES, Site
 from ..sites.site_sections import sections
-from ..studies import outdated, site_ground
-from ..tables import named_run, study_types
-from ..tables.study_file import load_study
+from ..studies import site_ground
+from ..tables import named_run
+from . import method
 
 # of the model: what stiffness depends on, and what the ground is
 STIFFNESS = {"speed": ("the stiffness is for a speed of", "m/s"), "thick": ("the stiffness is for a thickness of", "m"),
@@ -24,14 +24,12 @@ BALLS = {"d": ("balls of", "m"), "cell": ("cells of", "m"), "duration": ("runs o
 class One(NamedTuple):
     """A site of those that are compared.
 
-    variables: of its deck, none where the site could not be made; about: what its study.yaml says, None without a
-    study of the site as it is now; run: prefix of the output of its governing run.
+    variables: of its deck, none where the site could not be made; studied: None without a study of it as it is now.
     """
     name: str
     site: Site
     variables: Mapping[str, str]
-    about: Optional[study_types.Study]
-    run: Optional[Path]
+    studied: Optional[method.Studied]
 
 
 def read(folder: Path) -> List[One]:
@@ -42,15 +40,19 @@ def read(folder: Path) -> List[One]:
 
 def one(folder: Path, name: str) -> One:
     site = site_choices.load(folder)
-    deck, study = folder / site_deck.NAME, named_run.study_in(folder)
-    variables = decks.index_variables(deck) if deck.is_file() else {}
-    if study is None or outdated.changed(folder, study):
-        return One(name, site, variables, None, None)
-    about = load_study(study / named_run.STUDY)
+    deck = folder / site_deck.NAME
+    return One(name, site, decks.index_variables(deck) if deck.is_file() else {}, method.read(site))
+
+
+def run_of(studied: method.Studied, names: Sequence[str]) -> Path:
+    """Prefix of the output of the run that represents the number by the studies that count (method.common)."""
+    study = studied.governs
+    if names and study.name not in names:
+        study = study.parent / names[0]
     inside = run_folders.summaries(named_run.governing_run(study)[1])
     if len(inside) != 1:
         raise SlopeError(study, "must hold the governing run of the study, with its summary")
-    return One(name, site, variables, about, run_folders.prefix_of(inside[0]))
+    return run_folders.prefix_of(inside[0])
 
 
 def choices_that_differ(mine: Site, other: Site) -> List[str]:

@@ -7,21 +7,20 @@ import numpy as np
 
 from .. import digits, disk, provenance
 from ..case import run_folders
-from ..deposits import travel_shares
 from ..drawing import figures, maps, pictures
 from ..errors import SlopeError
 from ..plots import figure_maps, sheets
 from ..report import document
-from ..report.sections import Cell, Figures, Listing, Picture, Section, Table
+from ..report.sections import Cell, Figures, Listing, Picture, Section, Table, Text
 from ..sites.site_folder import BODY as NAME_OF_BODY, TERRAIN
 from ..sites.site_roads import ROAD
 from ..statistics.answer import Kind
 from ..statistics.entries import Headline
-from ..studies import road_numbers
 from ..survey import rasters, roads
 from ..survey.rasters import Raster, crs_name
-from ..tables.rows import finished_of
-from .compare import One, choices_that_differ, differences, read
+from ..tables import usable
+from . import method
+from .compare import One, choices_that_differ, differences, read, run_of
 
 PAGE = "scenarios.html"
 BODY = f"{NAME_OF_BODY}.depth.asc"
@@ -49,15 +48,18 @@ def write(folder: Path, output: Path, overwrite: bool) -> str:
     """Write the page of a site's folder beside its report; a line for the user."""
     disk.check_standing(output, [output], [document.MADE_BY], overwrite, f"slope report {quote(str(folder))}")
     several = read(folder)
+    said = method.difference({one.name: one.studied for one in several},
+                             {one.name: one.site.folder for one in several})
     content = {
         "title": several[0].name, "client": several[0].site.choices.project.client,
         "author": several[0].site.choices.project.author, "made": provenance.now(),
         "mark": document.mark(folder),
-        "sections": [Section("scenarios", "Side by side", [table(several), Figures([drawn(several)], "two-thirds")]),
+        "sections": [Section("scenarios", "Side by side", [
+            *([Text(said, "caveat")] if said else []), table(several), Figures([drawn(several)], "two-thirds")]),
                      Section("models", "In what the models differ", [Listing(list(models(several)))])],
         "footer": f"{document.MADE_BY}, SLOPE {provenance.version()}; each scenario has a report of its own."}
     disk.write(output, document.render(content, Path(__file__).with_name("scenarios.html.j2")))
-    return f"{output}: the site and its {len(several) - 1} scenarios"
+    return f"{output}: the site and its {len(several) - 1} scenarios" + (f". {said}" if said else "")
 
 
 def refresh(site: Path) -> str:
@@ -79,28 +81,32 @@ def models(several: Sequence[One]) -> Iterator[str]:
 # --- the table ---
 
 def table(several: Sequence[One]) -> Table:
+    names = method.common([one.studied for one in several])
+    roads = list(dict.fromkeys(road for one in several for road in (one.studied.roads if one.studied else ())))
     rows = [[one.name, "" if one is several[0] else "; ".join(choices_that_differ(several[0].site, one.site))
-             or "nothing else", *numbers(one)] for one in several]
+             or "nothing else", *numbers(one, names, roads)] for one in several]
     return Table("Released: of the body. 99 %: the distance within which so much of the volume stays, the largest of "
                  "all runs, in plan from the highest point of the body. Length: along the fall path, of the longest "
-                 "run. To remove: the number of the first page of each report.",
+                 "run. To remove: the number of the first page of each report, where all have the same studies.",
                  ["", "with", Cell("released", "m3"), Cell("99 % within", "m"), Cell("length", "m"),
-                  Cell("to remove", "m3"), "runs"], rows, (0, 1))
+                  *(Cell(f"to remove{road and f' from {road}'}", "m3") for road in roads or [""]), "runs"],
+                 rows, (0, 1))
 
 
-def numbers(one: One) -> List[str]:
-    """Of a row: what is released, how far it goes, what is to be removed, how many runs finished."""
-    body = one.site.found.body
+def numbers(one: One, names: Sequence[str], roads: Sequence[str]) -> List[str]:
+    """Of a row: what is released, how far it goes, what is to be removed from each road, how many runs finished.
+
+    names: of the studies that count (method.common)."""
+    body, studied = one.site.found.body, one.studied
     released = digits.rounded(body.volume, 4) if body else "-"
-    if one.about is None:
-        return [released, "-", "-", "-", "not studied as it is"]
-    finished = finished_of(one.about.runs)
-    largest = one.about.largest.get(travel_shares.DISTANCE)
-    far = largest.value if largest else None
-    worst = "".join(f", {one.road}" for one in road_numbers.read(one.about)[:1])
-    lengths = [row.length_m for row in finished if row.length_m is not None]
-    return [released, "unknown" if far is None else digits.three(far), digits.three(max(lengths)) if lengths else "-",
-            to_remove(one.about.headline) + worst, f"{len(finished)} of {len(one.about.runs)}"]
+    if studied is None:
+        return [released, "-", "-", *["-"] * max(1, len(roads)), "not studied as it is"]
+    first = next(iter(studied.roads.values()))
+    finished, far = method.rows_of(first, names), method.farthest(first, names)
+    length = usable.longest(finished)
+    return [released, "unknown" if far is None else digits.three(far), "-" if length is None else digits.three(length),
+            *(to_remove(method.headline_of(studied.roads[road], names)) if road in studied.roads else "-"
+              for road in roads), f"{len(finished)} of {sum(len(about.runs) for about in method.taken(first, names))}"]
 
 
 def to_remove(headline: Optional[Headline]) -> str:
@@ -121,10 +127,11 @@ def to_remove(headline: Optional[Headline]) -> str:
 def drawn(several: Sequence[One]) -> Optional[Picture]:
     """The outlines of the deposits of the governing runs; None where there are none."""
     mine, shown = several[0].site, []
+    names = method.common([one.studied for one in several])
     for one in several:
-        if one.run:
-            by = origin(one) - origin(several[0])
-            shown.append(Shown(one.name, outline(run_folders.load_raster(one.run, "thickness"), by),
+        if one.studied:
+            by, run = origin(one) - origin(several[0]), run_of(one.studied, names)
+            shown.append(Shown(one.name, outline(run_folders.load_raster(run, "thickness"), by),
                                outline(rasters.read_asc_local(one.site.folder / BODY, heights=False), by)))
     boxes = [each.box for one in shown for each in (one.deposit, one.body) if each]
     if not boxes:
