@@ -3,13 +3,15 @@ import math
 
 import numpy as np
 import pytest
+import rasterio
 from affine import Affine
-from shapely.geometry import LineString, box
+from scipy.ndimage import map_coordinates
+from shapely.geometry import LineString, Polygon, box
 
 from run_helpers import write_asc, write_run
 from test_mobility_path import STEEP
 
-from slope_tools.deposits import deposit as deposits
+from slope_tools.deposits import deposit as deposits, scar
 from slope_tools.deposits.deposit import Deposit
 from slope_tools.mobility import body, fall_path, offices, run_length
 from slope_tools.report import run_part
@@ -158,3 +160,71 @@ def test_pressures_at_the_edge_of_a_road():
     assert row == ["3.00", "8.00", "115", "53.0"]
     assert [value for *_, value in numbers.rows[2:]] == pytest.approx([1.8 * 64, 1.8 * 9.80665 * 3])
     assert run_part.at_edge(edge, None, Numbers()).rows[0][2:] == [UNKNOWN, UNKNOWN]
+
+
+def by_hand(road, density):
+    """The table for offices from the written rasters alone, on ground whose fall line is straight."""
+    rasters = {}
+    for name in ("terrain", "run.surface", "run.thickness", "run.max_thickness", "run.max_speed"):
+        with rasterio.open(f"{name}.asc") as source:
+            rasters[name], at = source.read(1).astype(float), source.transform
+    ground, _, thickness, largest, speed = rasters.values()
+    rows, columns = np.indices(ground.shape)
+    x, y = at * (columns + 0.5, rows + 0.5)
+    depth = np.maximum(ground - (rasters["run.surface"] - thickness), 0)
+    body_ = depth > 0.01
+    crown = np.argmax(np.where(body_, ground, 0))
+    plane = np.column_stack([x[body_], y[body_], np.ones(body_.sum())])
+    down = -np.linalg.lstsq(plane, ground[body_], rcond=None)[0][:2]
+    down /= np.hypot(*down)
+    centre = np.array([np.average(one[body_], weights=depth[body_]) for one in (x, y)])
+    begin = centre - ((centre - [x.flat[crown], y.flat[crown]]) @ down) * down
+    along = np.arange(0, 1500, 0.1)
+    places = np.array(~at * (begin[:, None] + along * down[:, None])) - 0.5
+    toe = along[map_coordinates(depth, places[::-1], order=1) > 0.01 * depth.max()].max()
+    height = ground.flat[crown] - map_coordinates(ground, places[::-1, along == toe], order=1)[0]
+    far = np.hypot(x - begin[0], y - begin[1])[thickness > 0]
+    order = np.argsort(far)
+    held = np.cumsum(thickness[thickness > 0][order])
+    found = {"height of the slope": height, "2 H": 2 * height, "2 H, at most 50 m": min(2 * height, 50)}
+    for share in (50, 90, 99):
+        reach = far[order][np.searchsorted(held, share / 100 * held[-1])]
+        for name, value in (("reach", reach), ("from the toe", reach - toe)):
+            found[f"{share} % of the volume: {name}"] = value
+            found[f"{share} % of the volume: {name} over height"] = value / height
+    edge = np.array([[road.exterior.intersects(box(*at * (column, row + 1), *at * (column + 1, row)))
+                      for column in range(ground.shape[1])] for row in range(ground.shape[0])])
+    deep, fast = largest[edge].max(), speed[edge].max()
+    return {**found, "depth at the road's edge": deep, "speed at the road's edge": fast,
+            "pressure of movement, rho v^2": density * fast ** 2 / 1e3,
+            "pressure of the deposit, rho g h": density * 9.80665 * deep / 1e3}
+
+
+def test_the_table_for_offices_is_found_by_hand_from_the_rasters(here):
+    """Within 1 %, on a slope that falls obliquely to the grid; the toe lies between two points of the path."""
+    x, y = np.meshgrid(CELL * (np.arange(100) + 0.5), CELL * (ROWS - 0.5 - np.arange(ROWS)))
+    ground = 600 - 0.5 * x - 0.15 * y
+    away = (x - 200) * 0.958 + (y - 250) * 0.287, (y - 250) * 0.958 - (x - 200) * 0.287
+    depth = 12 * np.clip(1 - (away[0] / 80) ** 2 - (away[1] / 60) ** 2, 0, None)
+    thickness = 5 * np.exp(-((away[0] - 350) / 120) ** 2 - (away[1] / 50) ** 2)
+    thickness[thickness < 0.02] = 0
+    write_asc("terrain.asc", ground, CELL)
+    write_run(thickness, ground - depth, CELL, travel={"top": [125.0, 225.0, 520.0]})
+    write_asc("run.max_thickness.asc", thickness * (1 + x / 2000), CELL)
+    write_asc("run.max_speed.asc", np.where(thickness > 0, 20 - 0.02 * x, 0), CELL)
+    road = Polygon([(480, 5), (520, 5), (560, 595), (520, 595)])
+    run = deposits.read("run", None, lambda text: None)
+    before, slip = scar.before(run.raster, run.base, here / "terrain.asc")
+    mass, way = body.of_arrays(run.raster._replace(z=before), slip, "a"), run_length.path_of(run, here / "terrain.asc")
+    numbers = Numbers()
+    run_part.over_height(offices.slope(mass, way), offices.distances(run, way), numbers)
+    most = [rasters_of(f"run.max_{name}.asc") for name in ("thickness", "speed")]
+    run_part.at_edge(offices.at_edge(road, run.raster, *most), 1786.0, numbers)
+    ours, hand = {what: value for what, *_, value in numbers.rows}, by_hand(road, 1786.0)
+    assert ours.keys() == hand.keys()
+    assert {name: ours[name] / value for name, value in hand.items()} == pytest.approx(dict.fromkeys(hand, 1), rel=0.01)
+
+
+def rasters_of(path):
+    with rasterio.open(path) as source:
+        return source.read(1)
