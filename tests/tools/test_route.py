@@ -413,7 +413,7 @@ def test_a_point_says_which_body_governs_each_part_of_a_zone(two, capsys):
     assert zones_of(folder, capsys, "--zones", "0.4,0.2", "--thicker", "0.5")[0] == 0
     areas, points = ([(shape(one["geometry"]), one["properties"]) for one in fiona.open(
         folder / "zones/zones.gpkg", layer=name)] for name in (zones.LAYER, zones.PROCESS))
-    assert {(one["body"], one["probability"]) for _, one in points} == {(1, 0.4), (1, 0.2), (2, 0.2)}    # 4 of 4, 3 of 4
+    assert {(one["body"], one["probability"]) for _, one in points} == {(1, 0.4), (1, 0.2), (2, 0.2)}
     for at, one in points:
         x, y = at.x - run_helpers.EAST, at.y - run_helpers.NORTH
         shares = shares_at(folder, x, y)
