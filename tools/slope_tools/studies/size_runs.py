@@ -13,6 +13,7 @@ import numpy as np
 
 from .. import disk
 from ..case.settings import as_number, check_settings
+from ..deposits import travel_shares
 from ..errors import SlopeError
 from ..findings import Finding
 from ..runs import jobs, store
@@ -172,11 +173,11 @@ def lengths_of(rows: Sequence[Finished]) -> np.ndarray:
 
 
 def pick_largest(rows: Sequence[Finished]) -> Pick:
-    """By the paper's method: of the combination that governs the run with most; without a road the longest one."""
+    """By the paper's method: of the combination that governs the run with most; without a road the farthest one."""
     lengths = lengths_of(rows)
     along = lengths / max(lengths.max(initial=0.0), 1e-9)
     if not rows or not rows[0].road:
-        return Pick([rows[int(lengths.argmax())].run] if rows else [], along)
+        return Pick([travel_shares.farthest(rows).run] if rows else [], along)
     groups = combinations.grouped(rows)
     best = conservative_volume.predict([one.of(REMOVE) for one in groups]).combination
     rows = next(one.rows for one in groups if one.name == best)
