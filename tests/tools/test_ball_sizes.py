@@ -89,6 +89,13 @@ def test_no_more_is_removed_than_was_released():
     assert found.row(coarse[2]).road.remove_m3 == 1000 and found.row(coarse[0]).road.remove_m3 == pytest.approx(700)
 
 
+def test_a_page_shows_a_run_of_the_finest_balls_where_one_is_about_as_large():
+    rows = [made_rows.row(run=run, variables={"d": d}, remove_m3=remove, ball_m3=1.0)
+            for run, d, remove in (("a", "2", 500.0), ("b", "1", 520.0), ("c", "1", 700.0), ("d", "2", 900.0))]
+    shown = [sizes.nearest(rows, "remove_m3", value).run for value in (500.0, 690.0, 890.0)]
+    assert shown == ["b", "c", "d"]
+
+
 def test_parameters_count_where_they_predict_better():
     rng = np.random.default_rng(1)
     at = rng.random((16, 2))
@@ -120,6 +127,22 @@ def test_bands_hold_what_was_not_run(pairs, few, scatter, finer, slope):
             low, high = transfer([first, last], coarse[k], at[k]).band
             inside.append(low <= quarter[k] <= high)
     assert 0.85 < np.mean(inside) < 0.97
+
+
+def test_an_error_in_m3_is_none_of_the_largest():
+    """As small as it is of the largest values; a further step with few pairs goes on with it, and draws have it."""
+    rng = np.random.default_rng(2)
+    coarse = np.geomspace(1000.0, 16000.0, 12)
+    step = fit(coarse, coarse + 400 * rng.standard_normal(12), none(12), ball=1)
+    small, large = (transfer([step], value, ()) for value in (1500.0, 15000.0))
+    assert step.ratio.power == 1 and small.deviation == pytest.approx(large.deviation, rel=0.2) and \
+        200 < large.deviation < 700
+    further = fit(coarse[-2:], coarse[-2:] * 1.01, none(2), ball=1, before=step)
+    assert further.ratio.power == 1 and 0.7 < transfer([further], 1500.0, ()).deviation / small.deviation < 1.3
+    drawn = ball_sizes.draws([[step]] * 2, [1500.0, 15000.0], none(2), 4000)
+    assert np.quantile(drawn[:, 1], (0.05, 0.95)) == pytest.approx(large.band, rel=0.04)
+    shares = fit(coarse, coarse * np.exp(0.1 * rng.standard_normal(12)), none(12), ball=1)
+    assert shares.ratio.power == 0
 
 
 def test_draws_are_as_the_bands():

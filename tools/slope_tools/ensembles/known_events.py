@@ -21,7 +21,7 @@ from ..mobility import body, exceedance, known, run_length, weights
 from ..statistics import answer, emulator, hazard
 from ..statistics.entries import Analysis, KnownQuantile
 from ..survey.rasters import Place
-from ..tables import answer_words, combinations, ensemble_types, quantities
+from ..tables import answer_words, combinations, ensemble_types, quantities, sizes
 from ..tables.rows import Finished, Row, finished_of
 from . import conditioned, farther, known_influence, known_maps
 from .ensemble_maps import Thresholds
@@ -130,7 +130,7 @@ def resting(runs: Runs) -> List[str]:
     """Names of the runs on which the quantiles of the headline rest."""
     values = runs.column(REMOVE)
     found = (conditioned.within(values, runs.mass.share, share) for share in answer.shares(runs.weights.far))
-    return [runs.rows[int(np.abs(values - one).argmin())].run for one in found if one is not None]
+    return [sizes.nearest(runs.rows, REMOVE, one).run for one in found if one is not None]
 
 
 def weighs(found: exceedance.Mobility, runs: Runs) -> bool:

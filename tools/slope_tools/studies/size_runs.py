@@ -32,7 +32,7 @@ OPTION = "--levels"
 FILE = "levels.csv"
 DRAWS = 200             # of the values of transferred runs, for the band of a number
 ROUNDS = 4              # of finest runs of points on which numbers rest once all values are at the finest size
-LONG = 1.5              # times the median of the time to rest: others that take longer have no finer balls
+LONG = 1.5              # times the median of the time to rest, twice it where numbers rest: longer ones stay coarse
 FINER = 1.5             # times, at least, from a size to the next one
 
 
@@ -77,7 +77,7 @@ class SizeRun(Repeat):
 class Made(NamedTuple):
     """Points, and those of their runs that have finer balls: {folder of a point: of each finer size, None: not run}.
 
-    next: points that have none of the finest, in the order in which they come; late: how many of these may.
+    next: points that may have them, in the order in which they come; late: how many of these later.
     """
     points: Sequence[Repeat]
     finer: Dict[Path, List[Optional[Repeat]]]
@@ -196,7 +196,7 @@ def make(setup: Setup, work: jobs.Work, points: Sequence[Repeat], wanted: Option
     chosen, names = pick(known), {one.name: one for one in points}
     times = np.array([site_budget.in_steps(row.stop_time_s, row.variables.get("spacing")) for row in known])
     first = np.array([row.run in chosen.first for row in known])
-    quick = np.flatnonzero(first | (times <= LONG * np.median(times)))
+    quick = np.flatnonzero(times <= LONG * np.median(times) * np.where(first, 2, 1))
     # one on which a number rests and such as spread out: others may come once all values are at the finest size
     order = quick[ball_sizes.spread(places_of(known, chosen.along)[quick], np.flatnonzero(first[quick])[:1].tolist(),
                                     len(quick))]
@@ -233,9 +233,8 @@ def settle(setup: Setup, work: jobs.Work, points: Sequence[Repeat], wanted: Opti
             break
         rows = [replace(row, run=one.name) for one, row in zip(points, at.rows(rows_of(setup, at.runs(points))))]
         first = pick(finished_of(rows)).first
-        without = [one for one in dict.fromkeys([*points, *made.next]) if not made.has(one, -1)]
-        now = [one for one in without if one.name in first][:max(left, 1)] or \
-            [one for one in made.next if one in without][:left]
+        without = [one for one in made.next if not made.has(one, -1)]
+        now = [one for one in without if one.name in first][:max(left, 1)] or without[:left]
         if not now:
             break
         left = max(0, left - len(now))

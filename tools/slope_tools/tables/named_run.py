@@ -8,7 +8,7 @@ from ..deposits import travel_shares
 from ..errors import SlopeError
 from ..sites import site_choices
 from ..statistics.entries import KnownQuantile, Quantile
-from . import ensemble_types, study_types
+from . import ensemble_types, sizes, study_types
 from .answered import STUDY, study_in, without_study
 from .rows import Finished, finished_of
 from .study_file import load_study
@@ -43,7 +43,7 @@ def governing(about: study_types.Study) -> str:
         having = [row for row in rows if row.value(of) is not None]      # others lost it
         if at is None:      # events beyond the runs decide
             return max(having, key=lambda row: row.value(of)).run
-        return nearest(having, of, at).run
+        return sizes.nearest(having, of, at).run
     return best.run if best else travel_shares.farthest(rows).run
 
 
@@ -60,12 +60,7 @@ def of_headline(about: study_types.Study, rows: Sequence[Finished]) -> Optional[
         return max(long, key=lambda row: row.length_m or 0.0).run if long else None
     at = next((one.value for one in known.to_remove or () if one.share == number.share), None) \
         if known else None
-    return None if at is None else nearest(rows, "remove_m3", at).run
-
-
-def nearest(rows: Sequence[Finished], key: str, value: float) -> Finished:
-    """The run whose quantity is nearest to a value."""
-    return min(rows, key=lambda row: abs(row.value(key) - value))
+    return None if at is None else sizes.nearest(rows, "remove_m3", at).run
 
 
 def governing_run(study: Path) -> Tuple[str, Path]:

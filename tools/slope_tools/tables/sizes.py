@@ -22,6 +22,7 @@ VARIABLE = "d"                  # of a deck: the diameter of the balls, m
 VOLUMES = {"m3"}                # units of quantities of which ten balls count
 NOT = {"released_m3", "on_grid_m3", "stop_time_s"}      # columns that the size does not change, or that tell of a run
 PARTS = quantities.REMOVE, "before_road_m3", "on_road_m3", "beyond_road_m3"      # of what was released
+SAME = 0.05             # of a value: another is it as far as a page with its maps is concerned
 FEWEST = 2              # pairs of two sizes; fewer tell nothing of the finer one
 BANDS = quantities.REMOVE, "remove_on_road_m3", "beyond_road_m3", quantities.LENGTH     # that a row has
 # of stretches and their sums: of which column they are a part
@@ -88,6 +89,17 @@ class Sizes:
         """Values (number, n) of runs as they may be at the finest size; rows: as they were run."""
         return ball_sizes.draws([self.left(row, key) for row in rows], [float(row.value(key)) for row in rows],
                                 [self.places.of(row) for row in rows], number)
+
+
+def nearest(rows: Sequence[Finished], key: str, value: float) -> Finished:
+    """The run whose quantity is nearest to a value; rather one with the finest balls, whose is the SAME."""
+    def off(row: Finished) -> float:
+        return abs(row.value(key) - value)
+
+    best = min(rows, key=off)
+    d = {row.run: float(row.variables[VARIABLE]) for row in rows if VARIABLE in row.variables}
+    fine = [row for row in rows if d and d.get(row.run) == min(d.values()) and off(row) <= SAME * abs(value)]
+    return min(fine, key=off, default=best)
 
 
 def scaled(part: Mapping[str, Any], row: Finished, new: Mapping[str, Any]) -> Dict[str, Any]:
