@@ -54,11 +54,10 @@ WORDS: Dict[str, Union[str, Words]] = {
                         "No run was repeated: how much chance changes the numbers, usually several percent, is "
                         "unknown."),
     "no sizes": Words("the effect of smaller balls is unknown", LIMIT,
-                      "What smaller balls in the model would change is unknown."),
+                      "What a finer model would change is unknown."),
     "few balls high": Words("{name} is {height:#.3g} m high, {balls:.2g} of the model's balls: the loads on it are "
                             "those of single balls, and rough", LIMIT,
-                            "{name} is {balls:.2g} of the model's balls high: the forces on it are those of single "
-                            "balls, and rough."),
+                            "{name} is low for so coarse a model: the forces on it are rough."),
     "cut below ground": Words("{percent:.0f} % of it ({volume:,.6g} m3 in the run {run}) lies where the cut surface is "
                               "below the ground before the collapse. The hillside is about as steep as the cut of "
                               "{angle:g} degrees there, or steeper, so that all of the deposit on it is counted; a "
@@ -67,22 +66,11 @@ WORDS: Dict[str, Union[str, Words]] = {
                               "or steeper: a steeper cut gives less."),
     "thin": Words("the body is {balls:.1f} balls thick on average, below {limit:g}: the numbers will be rough; use "
                   "more balls (--balls, --minutes)", client=(
-                      "The body is only {balls:.1f} of the model's balls thick on average: the numbers are rough.")),
+                      "The model is coarse for so thin a body: the numbers are rough.")),
     "lost": Words(LEFT, NOTE, LOST),
     "slip assumed": Words("the slip surface is given, not computed", LIMIT,
                           "The slip surface is an assumption: whether, and how likely, the slope fails is not said "
                           "here."),
-    # of the first page alone
-    "dry": Words("dry: no water, no pore pressure, no liquefaction", LIMIT, client=(
-        "The model is dry: water in the mass or on its way, with which it goes farther, is not in these numbers.")),
-    "two answers": Words("by the runs {runs} along the fall path; by known events ({curve}) half go beyond {half}, "
-                         "nine tenths beyond {near}, a tenth beyond {far}", LIMIT, client=(
-                             "How far along the fall path: by the runs {runs}; by known events of this volume and "
-                             "height half go beyond {half}, nine tenths beyond {near}, a tenth beyond {far} "
-                             "({curve}).")),
-    "answers differ": Words("the two differ by more than their bands: {farther} go farther", NOTE, client=(
-        "The two differ by more than their bands: {farther} go farther, and the farther of the two is to be reckoned "
-        "with.")),
     # of runs
     "balance": Words("the volume in the thickness raster differs from released - off the grid - lost by {share:.1e} of "
                      "the released volume", NOTE),
@@ -224,7 +212,7 @@ WORDS: Dict[str, Union[str, Words]] = {
     "no effect": Words("{which} has no effect{on}, to the last digit: {then}", NOTE),
     # why the number of a study is withheld
     "balls on the road": Words("on the road lies the volume of {balls}, fewer than {bound:g}", client=(
-        "Fewer than ten of the model's balls come to lie on the road, which are single blocks and no volume.")),
+        "So little comes to lie on the road that it is single blocks, and no volume.")),
     "known events": Words("no run reaches {bound} m, as half of known events of this volume and height do; {longest}",
                           client="No run goes as far as half of known events of this volume and height."),
     "left the terrain": Words("{percent:.2g} % of the released volume left the terrain before or beside the road, more "
@@ -237,34 +225,24 @@ WORDS: Dict[str, Union[str, Words]] = {
                                             "ended.")),
     "rule": "{study}: withheld by the rule {rule}",
     # why it is a floor, and why no more runs were added
-    "known beyond runs": Words("no run goes beyond {longest}, where {far} of known events go on; no run leaves more "
-                               "than {most}", client=(
-                                   "{far} of known events of this volume and height go farther than the longest run, "
-                                   "which ends after {longest}; no run leaves more than {most} to remove.")),
-    "road not reached": Words("no run reaches the road, {near} along the fall path ({ends}), but {shares} of known "
-                              "events do", client="The road begins after {near} along the fall path, and {ends}."),
-    "some runs reach": Words("{reach} runs bring balls to the road{left}", client=(
-        "{reach} runs bring something to the road{left}.")),
-    "one scatter reaches": Words("no run reaches the road, {near} along the fall path ({ends}), but {shares} of known "
-                                 "events do, by one of the two scatters that are known of them", client=(
-                                     "{shares} of them reach the road, as their scatter is taken: only the larger of "
-                                     "two estimates says more than 10 %.")),
+    "known beyond runs": "{far} of known events of this volume and height go farther than all {runs} runs that they "
+                         "weigh, and may leave more; none of these runs leaves more than {most} to remove",
+    "road not reached": "known events reach the road and no run does: how much they leave these runs do not show",
+    "some runs reach": "{reach} runs bring something to the road{left}",
+    "one scatter reaches": "{shares} of them reach the road, as their scatter is taken: only the larger of two "
+                           "estimates says more than 10 %",
     "terrain ends": Words("the terrain shows the first {path} of the way, and {share} of known events go on: take a "
                           "larger terrain", client=(
-                              "The elevation model shows the first {path} of the way, where {share} of known events go "
-                              "on.")),
+                              "The elevation model ends where {share} of known events go on.")),
     "range ends": Words("no values within the ranges{ends} are expected to go farther: give wider ranges", client=(
         "No values within the ranges that were tried are expected to go farther.")),
     "no more runs": Words("{points} runs were added towards longer ones; a larger --sample allows more", client=(
         "{points} runs were added towards longer ones, and no more.")),
     "too few runs": Words("the runs are too few to tell which parameters go farther: take more points", client=(
         "The runs are too few to tell which settings go farther.")),
-    "size of balls": Words("{sizes}: what finer ones would change is not known, three sizes tell it", client=(
-        "The model was run with {sizes}: what finer ones would change, three sizes tell.")),
-    "size of balls grows": Words("balls of half the diameter bring {grown} more than those before: finer ones may "
-                                 "bring much more", client=(
-                                     "Halving the model's balls still raised the volume by {grown}: finer ones may "
-                                     "bring much more.")),
+    "size of balls": "what a finer model would change is not known: this one has {sizes}, and three tell it",
+    "size of balls grows": "the last refinement of the model raised the volume by {grown}: a finer one may bring much "
+                           "more",
     # caveats on the volume to remove
     "single run": Words("nothing was varied: it comes from a single run", NOTE),
     "end of range": Words("it lies at the end of the range of {variable}, {low:g} to {high:g}", NOTE),

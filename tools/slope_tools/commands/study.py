@@ -189,14 +189,14 @@ def run_both(args: Request, asked: Site, points: int) -> Made:
     step = next_step.of_studies([next_step.Made(about, site / name, given=args.given) for name, about in made.items()],
                                 number)
     made = {name: replace(about, study=replace(about.study, governs=governs), headline=number,
-                          next_step=step.about() if step else None,
+                          next_step=step.about() if step else None, reach=paper.about.reach,
                           largest_restitution=paper.about.largest_restitution) for name, about in made.items()}
     files.write_abouts({site / name: about for name, about in made.items()})
     for name, about in made.items():
         if name != governs:
             write_report(site / name, site / PAGES[name], about, asked, film=False, quiet=args.quiet)
-    if number and not args.quiet:
-        print("\n".join(console.tell_headline(made[governs])))
+    if not args.quiet:
+        print("\n".join(console.tell_letter(made[governs])))
     write_report(site / governs, site / road_numbers.PAGE, made[governs], asked, quiet=args.quiet)
     return Made([made[governs], *(about for name, about in made.items() if name != governs)], failed)
 

@@ -2,6 +2,7 @@
 from typing import Any, Dict, NamedTuple, Optional
 
 from .. import digits
+from ..releases import packing
 from ..statistics import rounding
 from ..survey.rasters import crs_name
 from .data import Data
@@ -37,7 +38,9 @@ def of_data(data: Data, ground) -> Body:
                        "a slip surface from a raster" if release.get("scar") else "a given slip surface")
     crs = ground.raster.crs
     ball, factor = data.result.log.density, data.result.summary["bulk_factor"]
-    return Body(data.largest_release(), area, depth, found.get("mean_slope"), shape, ball and ball / factor,
+    given = (site.get("model") or {}).get("density")     # a run has that of its own balls, a lattice cut off at the rim
+    density = given / packing.BULK if given else ball and ball / factor
+    return Body(data.largest_release(), area, depth, found.get("mean_slope"), shape, density,
                 crs_name(crs) if crs is not None else None, is_assigned(site), release.get("polygon"))
 
 
@@ -49,12 +52,12 @@ def is_assigned(site: Dict[str, Any]) -> bool:
 
 def sentence(body: Body) -> str:
     """It, for a client."""
-    about = [f"The body has {volume(body.volume)}"]
+    about = [f"{volume(body.volume)} of ground come down"]
     if body.depth and body.area:
-        about.append(f", is up to {digits.three(body.depth)} m deep and covers {digits.three(body.area)} m² in plan")
+        about.append(f", up to {digits.three(body.depth)} m deep and of {digits.three(body.area)} m² in plan")
     about.append(f", above {body.shape}")
     if body.slope is not None:
-        about.append(f" on ground of {body.slope:.0f} degrees on average")
+        about.append(f", on ground of {body.slope:.0f} degrees on average")
     text = "".join(about) + "."
     if body.density:
         text += f" Its bulk density is {whole(body.density)} kg/m³."

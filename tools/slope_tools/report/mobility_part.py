@@ -2,15 +2,10 @@
 
 The lengths of both are along the fall path, from crown to tip (mobility.run_length).
 """
-import math
 from typing import Any, List, NamedTuple, Optional, Sequence, Tuple
 
-import numpy as np
-
 from ..digits import percent
-from ..findings import Finding
 from ..mobility import exceedance
-from ..mobility.fall_path import TERRAIN
 from ..mobility.landslides import NOT_OF_ROADS, Row
 from ..studies.mapped import mass, of_rows
 from ..tables.quantities import BEYOND_MAPPED as BEYOND, LENGTH, OVERLAP
@@ -20,7 +15,6 @@ from .numbers import Numbers
 from .sections import Cell, Section, Table, Text
 
 WHAT = "Known events"
-SHARES = {"half": 0.5, "near": 0.9, "far": 0.1}      # of known events, which go beyond
 
 
 class Lies(NamedTuple):
@@ -36,54 +30,6 @@ def content(data: Data, ground, numbers: Numbers) -> List[Tuple[str, str]]:
     if found.mobility is None:
         return [(WHAT, found.why)]
     return [(WHAT, sentence(found, numbers, data.label(data.result)))]
-
-
-# --- the first page: how far, by the runs and by known events ---
-
-def on_first_page(data: Data, ground, numbers: Numbers) -> str:
-    """Both answers, and whether they differ by more than their bands; why there is but one."""
-    lengths, known, why = where_lie(data, ground)
-    if known is None:
-        return why
-    if not known.in_range:
-        text = "; ".join(known.outside)
-        return f"{text[0].upper()}{text[1:]}."
-    ends = list(dict.fromkeys(numbers.quantity(LENGTH, length) for length in (lengths[0], lengths[-1])))
-    said = {"runs": f"{' to '.join(ends)} m", "curve": exceedance.WORDS[known.chosen],
-            **{name: beyond(known, share, numbers) for name, share in SHARES.items()}}
-    text = Finding("two answers", said).client()
-    farther = differ(lengths, known)
-    return text if farther is None else f"{text} {Finding('answers differ', {'farther': farther}).client()}"
-
-
-def beyond(known: exceedance.Mobility, share: float, numbers: Numbers) -> str:
-    """What a share of known events goes beyond."""
-    low, high = bounds(known, share)
-    if math.isinf(high):
-        return f"the end of the {'elevation model' if known.path.end == TERRAIN else 'fall path'}"
-    length = numbers(f"length that {percent(share)} of known events go beyond", "m", high)
-    return f"{length} m{' or less' * (low < high)}"
-
-
-def bounds(known: exceedance.Mobility, share: float) -> Tuple[float, float]:
-    """Between which lengths (m) that lies which a share of known events goes beyond; twice the same where it is known.
-    """
-    most, length = known.at_most(share), known.length_at(share)
-    if most is not None:
-        return 0.0, most
-    return (float(known.path.length[-1]), math.inf) if length is None else (length, length)
-
-
-def differ(lengths: Sequence[float], known: exceedance.Mobility) -> Optional[str]:
-    """Who goes farther, where the middle of each lies outside of the other's band; None where it does not.
-
-    The bands: from the shortest to the longest run; from what nine tenths to what a tenth of known events go beyond.
-    """
-    middle = float(np.median(lengths))
-    near, half, far = (bounds(known, SHARES[name]) for name in ("near", "half", "far"))
-    if half[0] > lengths[-1] and near[0] > middle:
-        return "known events"
-    return "the runs" if half[1] < lengths[0] and far[1] < middle else None
 
 
 # --- the table of limits ---

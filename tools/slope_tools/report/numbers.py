@@ -7,7 +7,6 @@ from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence
 from .. import disk
 from ..deposits import rest, travel_shares
 from ..digits import measured, rounded
-from ..ensembles import known_study
 from ..findings import Finding
 from ..mobility.run_length import ON_PATH
 from ..statistics import rounding
@@ -255,44 +254,6 @@ WORDS = {"rolling": "the rolling resistance", "friction": "the friction", "d": "
          "pga": "the strength of the earthquake", "depth": "the depth of the body", "body": "the body",
          "slip": "the friction of the slip surface", "step": "the time step", "packing": CHANCE, "seed": CHANCE,
          "xoffset": CHANCE, "yoffset": CHANCE, "zoffset": CHANCE}
-
-
-def basis(data: Data) -> str:
-    """What the numbers come from, of a data.Data, and which of it the number is of."""
-    if not data.study:
-        return "One run of a computer model of equal balls."
-    varied = [name for name, values in data.settings.items() if len(values) > 1]
-    known = list(dict.fromkeys(WORDS[name] for name in varied if name in WORDS and WORDS[name] != CHANCE))
-    unknown = sum(name not in WORDS for name in varied)
-    if unknown:
-        known.append(f"{unknown} other setting{'s' * (unknown > 1)}")
-    runs = len(data.finished)
-    text = f"{runs} run{'s' * (runs != 1)} of a computer model of equal balls"
-    if known:
-        text += f", which differ in {listed(known)}"
-    if data.repeats or any(WORDS.get(name) == CHANCE for name in varied):
-        text += f"{' and' if known else ', which differ'}, by chance, in {CHANCE}"
-    method = data.study.study.method      # of a site's study
-    if method.startswith(known_study.PAPER) and method != known_study.BESIDE:
-        why = method.removeprefix(known_study.PAPER).removeprefix("; ")
-        text += ". Known events of this size do not count in them" + ("" if method == known_study.ASKED else f": {why}")
-    return f"{text}.{rests_on(data)}"
-
-
-def rests_on(data: Data) -> str:
-    """A sentence on the runs that the number is of; "" without a number."""
-    number, best = (data.study.headline, data.study.conservative) if data.study else (None, None)
-    if not number or not number.volume_m3:
-        return ""
-    if not is_own(data):
-        return " The number is of the other study of this site."
-    if number.source == Source.ENSEMBLE.value:
-        return " Each counts as often as known events of this volume and height end where it does."
-    assert best
-    of = values_of(data, best.set)
-    what = f"the mean of {best.repeats}" if best.repeats > 1 else "that of one"
-    added = ", with what chance may add" if best.chance_m3 is not None else ""
-    return f" The number is {what} of them{of and f' ({of})'}{added}."
 
 
 def is_own(data: Data) -> bool:

@@ -73,15 +73,6 @@ def of_all(data: Data) -> Optional[Section]:
         ["road", "to remove", "runs that reach it", "its page"], rows, (0, 1, 2, 3))])
 
 
-def others(data: Data) -> List[str]:
-    """What is to be removed from the other roads of a site: a sentence in a list; none of a single road."""
-    several = road_numbers.read(data.study) if data.study else []
-    if not several:
-        return []
-    found = "; ".join(f"\u201c{one.road}\u201d: {one.text}" for one in several[1:])
-    return [f"Of {len(several)} roads this is the worst, \u201c{several[0].road}\u201d; {found}."]
-
-
 def gaps(data: Data, about: study_types.Stretches) -> str:
     """Where known events end and no run does."""
     known = ensemble_types.weighted(data.of_study.ensemble) if about.of_known_events else None

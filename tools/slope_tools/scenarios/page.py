@@ -14,11 +14,10 @@ from ..report import document
 from ..report.sections import Cell, Figures, Listing, Picture, Section, Table, Text
 from ..sites.site_folder import BODY as NAME_OF_BODY, TERRAIN
 from ..sites.site_roads import ROAD
-from ..statistics.answer import Kind
 from ..statistics.entries import Headline
 from ..survey import rasters, roads
 from ..survey.rasters import Raster, crs_name
-from ..tables import usable
+from ..tables import answer_words, usable
 from . import method
 from .compare import One, choices_that_differ, differences, read, run_of
 
@@ -111,15 +110,7 @@ def numbers(one: One, names: Sequence[str], roads: Sequence[str]) -> List[str]:
 
 def to_remove(headline: Optional[Headline]) -> str:
     """The number of a headline, as page 1 has it."""
-    if not headline:
-        return "-"
-    kind = Kind(headline.kind)
-    if kind is Kind.WITHHELD:
-        return "not usable"
-    volume = headline.volume_m3
-    if kind is not Kind.FLOOR:
-        return digits.three(volume or 0.0)
-    return f"at least {digits.three(volume)}" if volume else "more than 0"
+    return answer_words.volume(headline.kind, headline.volume_m3) if headline else "-"
 
 
 # --- the map ---

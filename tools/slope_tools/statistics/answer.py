@@ -21,6 +21,7 @@ class Kind(Enum):
     """What the number is."""
     NUMBER = "number"
     FLOOR = "floor"             # at least so much
+    OPEN = "open"               # that of the runs, and neither an upper nor a lower bound
     WITHHELD = "withheld"
     NOTHING = "nothing"         # 0: no run of any study reaches the road, and no more than MANY of the known events
 
@@ -124,6 +125,11 @@ class Size(NamedTuple):
     high: float = 0.0
     floor: Optional[Reason] = None
 
+    @property
+    def known(self) -> bool:
+        """Whether it is known what finer ones would change, without which nothing is a bound."""
+        return self.floor is None or self.floor.numbers["grown"] is not None
+
     def share(self, value: float) -> Share:
         return Share(Cause.SIZE.value, -self.low * value, self.high * value)
 
@@ -140,13 +146,14 @@ class Paper(NamedTuple):
     transfer: Sequence[float] = (0.0, 0.0)
     size: Size = Size()
     released: float = math.inf
+    runs: int = 0
 
 
 class Ensemble(NamedTuple):
     """A weighted ensemble: quantiles (m3) of shares().
 
     far: share of the known events beyond all runs; longest: m; stopped: why no more runs were added, None: enough were.
-    most: m3, of a run; size, released: as of Paper; path_end: m, of a fall path that ends before the longest run:
+    most: m3, of a run; size, released, runs: as of Paper; path_end: m, of a fall path that ends before the longest run:
     far is the share beyond it.
     """
     quantiles: Sequence[KnownQuantile]
@@ -158,6 +165,7 @@ class Ensemble(NamedTuple):
     size: Size = Size()
     path_end: Optional[float] = None
     released: float = math.inf
+    runs: int = 0
 
     def at(self, share: float) -> Optional[KnownQuantile]:
         return next((one for one in self.quantiles if one.share == share), None)
@@ -191,27 +199,29 @@ class Answer(NamedTuple):
         paper, ensemble = self.paper, self.ensemble
         return entries.Headline(
             self.kind.value, self.volume, self.share, self.low, self.high, self.source.value if self.source else None,
-            entries.PaperPart(paper.volume, [one.rule.value for one in paper.withheld]) if paper else None,
-            entries.EnsemblePart(at.value if (at := ensemble.at(SHARE)) else None,
-                                 [one.rule.value for one in ensemble.withheld], ensemble.far) if ensemble else None,
+            entries.PaperPart(paper.volume, [one.rule.value for one in paper.withheld], paper.runs) if paper else None,
+            entries.EnsemblePart(at.value if (at := ensemble.at(SHARE)) else None, [
+                one.rule.value for one in ensemble.withheld], ensemble.runs, ensemble.far) if ensemble else None,
             self.road.about() if self.road else None, [one.about() for one in self.reasons], list(self.band))
 
 
 class Part(NamedTuple):
-    """What one study says alone; band: of its number, of a floor too."""
+    """What one study says alone; band: of its number, of a floor too; bound: whether its lower end is one."""
     kind: Kind
     volume: Optional[float]
     share: Optional[float] = None
     band: Sequence[Share] = ()
     reasons: Sequence[Reason] = ()
+    bound: bool = True
 
 
 def of_paper(one: Paper, beside: bool) -> Optional[Part]:
     """beside: an ensemble stands beside it, which makes up for HARMLESS rules; None: those alone withhold it."""
     if one.volume is not None:
-        below = 0.0 if one.least is None else max(0.0, one.volume - one.least)
-        band = [Share(Cause.RUNS.value, below, 0.0), Share(Cause.TRANSFER.value, *one.transfer)]
-        return number(Part(Kind.NUMBER, one.volume, None, band), one.size)
+        known = one.least is not None       # chance
+        band = [Share(Cause.RUNS.value, max(0.0, one.volume - one.least), 0.0)] if one.least is not None else []
+        return number(Part(Kind.NUMBER, one.volume, None, [*band, Share(Cause.TRANSFER.value, *one.transfer)],
+                           bound=known), one.size)
     grave = [rule for rule in one.withheld if not (beside and rule.rule in HARMLESS)]
     if not grave:
         return None
@@ -236,7 +246,7 @@ def of_ensemble(one: Ensemble, road: Optional[Road]) -> Part:
     high = max(best.value, one.most) if best.high is None else best.high        # what no run exceeded
     band = [Share(Cause.RUNS.value, best.value - (best.low or 0.0), high - best.value),
             Share(Cause.TRANSFER.value, *(best.transfer or (0.0, 0.0)))]
-    part = Part(Kind.NUMBER, best.value, best.share, band)
+    part = Part(Kind.NUMBER, best.value, best.share, band, bound=best.low is not None)
     if best.share != SHARE:
         # a terrain that ends behind the road is no reason against its number
         ends = any(reason.code is Code.TERRAIN and not (road and road.far < reason.numbers["path_m"])
@@ -248,14 +258,14 @@ def of_ensemble(one: Ensemble, road: Optional[Road]) -> Part:
 def beyond(one: Ensemble) -> Reason:
     """That known events go beyond all runs."""
     end = {} if one.path_end is None else {"path_end_m": one.path_end}
-    return Reason(Code.BEYOND, {"far": one.far, "longest_m": one.longest, "most_m3": one.most, **end})
+    return Reason(Code.BEYOND, {"far": one.far, "longest_m": one.longest, "most_m3": one.most, "runs": one.runs, **end})
 
 
 def number(part: Part, size: Size) -> Part:
     """A number with what finer balls would change; a floor where that is not known; nothing stays nothing."""
     if not part.volume:
         return part
-    part = part._replace(band=[*part.band, size.share(part.volume)])
+    part = part._replace(band=[*part.band, size.share(part.volume)], bound=part.bound and size.known)
     if size.floor is None:
         return part
     # what makes it a floor comes first
@@ -267,7 +277,8 @@ def of(paper: Optional[Paper], ensemble: Optional[Ensemble], road: Optional[Road
     """The larger of both, with the higher of their upper ends; None without either.
 
     Where one of them is withheld for a reason that the other does not make up for, the other is a floor; so is 0 where
-    a run reaches the road. A floor is the lower end of the number's band, rounded down.
+    a run reaches the road. A floor is the lower end of the number's band, rounded down; where this end is no bound, as
+    chance or what finer balls would change is not known, or is 0, the number stays open.
     """
     parts: List[Tuple[Source, Part]] = []
     if paper and (mine := of_paper(paper, ensemble is not None)):
@@ -289,18 +300,22 @@ def of(paper: Optional[Paper], ensemble: Optional[Ensemble], road: Optional[Road
             some = [Reason(Code.NOT_REACHED, road.numbers())]
     open_ = bool(some) or any(
         part.kind is Kind.FLOOR or part.kind is Kind.WITHHELD and not few(part) for _, part in parts)
-    kind = Kind.FLOOR if open_ else Kind.NUMBER if volume else Kind.NOTHING
     low, high = low_high(volume, best.band)
+    kind = Kind.NUMBER if volume else Kind.NOTHING
+    if open_:
+        kind = Kind.FLOOR if not volume or best.bound and low else Kind.OPEN
     band, most = best.band, max(low_high(part.volume or 0.0, part.band)[1] for _, part in known)
     if most > high and not open_:
         band = [*band, Share(Cause.OTHER.value, 0.0, math.sqrt((most - volume) ** 2 - (high - volume) ** 2))]
         high = most
     released = min(one.released for one in (paper, ensemble) if one)
     volume, low, high = (min(one, released) for one in (volume, low, high))
-    if open_:
-        low = rounding.down(low, rounding.place_of_digits(low))
-    return Answer(kind, low if open_ else volume, best.share, low, None if open_ else high, source, paper, ensemble,
-                  road, [*some, *reasons], band)
+    if kind is Kind.OPEN:
+        return Answer(kind, volume, best.share, None, None, source, paper, ensemble, road, reasons, band)
+    if kind is Kind.FLOOR:
+        low = volume = rounding.down(low, rounding.place_of_digits(low))
+    return Answer(kind, volume, best.share, low, None if open_ else high, source, paper, ensemble, road,
+                  [*some, *reasons], band)
 
 
 def few(part: Part) -> bool:

@@ -95,6 +95,7 @@ class AtRoad(NamedTuple):
 class PaperPart:
     volume_m3: Optional[float]
     withheld: List[str]
+    runs: int
 
 
 @dataclass(frozen=True)

@@ -4,9 +4,8 @@ from typing import Any, Callable, List
 
 from ..ensembles import ensemble, known_study
 from ..seismic import chain_files
-from ..tables import (answer_words, combinations, intensity, next_step, road_runs, structures, study_table,
-                      study_types)
-from . import mapped
+from ..tables import combinations, intensity, next_step, road_runs, structures, study_table, study_types
+from . import letter, letter_words, mapped
 from .outcome import Outcome
 
 SHOWN = 20              # runs of an ensemble whose table is printed
@@ -41,16 +40,16 @@ def tell(outcome: Outcome, about: study_types.Study, output: Path, say: Callable
         say("\n".join(mapped.describe(about.observed, rows)))
     if about.chain:
         say("\n".join(chain_files.describe(about.chain, output)))
-    if about.headline and asked.method not in known_study.OF_BOTH:
-        say("\n".join(tell_headline(about)))
+    if finished and asked.method not in known_study.OF_BOTH:
+        say("\n".join(tell_letter(about)))
     for entry in [*(about.envelope or {}).values(), *(about.exceedance or ())]:
         say(f"{output / entry['file']}: {entry['what']}")
 
 
-def tell_headline(about: study_types.Study) -> List[str]:
-    """The number, why it is no more than that, and the next step, as the first page has them; a line each."""
-    step, number = about.next_step, about.headline
-    return [*(answer_words.lines(number) if number else []), *([str(next_step.Step(**vars(step)))] if step else [])]
+def tell_letter(about: study_types.Study) -> List[str]:
+    """What the first page begins with; a line each."""
+    step = about.next_step
+    return [*letter_words.lines(letter.of_study(about)), *([str(next_step.Step(**vars(step)))] if step else [])]
 
 
 def tell_numbers(about: study_types.Study, output: Path, say: Callable[[Any], Any]) -> None:
@@ -59,8 +58,6 @@ def tell_numbers(about: study_types.Study, output: Path, say: Callable[[Any], An
         say("\n".join(combinations.describe(about.conservative)))
         if about.step:
             say(about.step.text)
-    if about.size:
-        say(f"size of the balls: {about.size.text}")
     if about.largest_restitution:
         say(about.largest_restitution.text)
     if about.ensemble:

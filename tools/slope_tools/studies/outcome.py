@@ -13,10 +13,12 @@ from ..deposits import travel_shares
 from ..ensembles import ensemble
 from ..ensembles.known_events import TAILS, Draw
 from ..findings import Finding, finding
+from ..mobility import known
 from ..mobility.exceedance import Mobility
 from ..runs import repeats
 from ..seismic import chain_files
 from ..sites.site_bodies import VARIABLE
+from ..statistics.answer import Source
 from ..statistics.conservative_volume import Scatter
 from ..tables import (answered, combinations, elastic, ensemble_types, intensity, judged, quantities, road_runs,
                       step_check, study_types, usable, withheld_words)
@@ -58,7 +60,8 @@ class Questions(NamedTuple):
 class Read(NamedTuple):
     """What was read of the runs of a study.
 
-    rows: one for each run, finished or failed; road: whether there is one; events: what known events did of the mass;
+    rows: one for each run, finished or failed; road: whether there is one; among: the mass among known events; events:
+    what these did at the road;
     mobility: of the mass, for the weights of an ensemble; emulated: ensemble.emulate() of it; observed: the mapped
     deposit, as study.yaml has it; size: what balls of several sizes say; draw: values of
     transferred runs as they may be, None of one size; elastic: those with the largest restitution;
@@ -67,6 +70,7 @@ class Read(NamedTuple):
     """
     rows: List[Row]
     road: bool
+    among: known.Known
     events: Optional[usable.Events]
     mobility: Optional[Mobility]
     emulated: Optional[ensemble.Emulated]
@@ -122,6 +126,7 @@ def evaluate(questions: Questions, read: Read, header: study_types.Header) -> Ou
     chain = chain_files.evaluate(questions.chain, rows, reasons(read), read.size is not None) \
         if questions.chain and several and finished else None
     weighted = several.about if several else None
+    source = Source.ENSEMBLE if order else Source.PAPER
     about = study_types.Study(
         study=header, largest={key: largest(finished, key) for key in keys if finished},
         farthest=travel_shares.farthest(finished).run if finished else None, conservative=best, size=read.size,
@@ -130,6 +135,7 @@ def evaluate(questions: Questions, read: Read, header: study_types.Header) -> Ou
                  for name, one in scatters.items()},
         combinations=combinations.entries(groups, names), envelope=None, exceedance=None, observed=read.observed,
         roads=[dict(one) for one in questions.roads], warnings=warnings, runs=rows, headline=None,
+        reach=usable.reach(finished, source, read.among),
         stretches=stretches(finished, known_weights(weighted)) if read.road and finished else None,
         chain=chain.about if chain else None, intensity=at_intensities, next_step=None)
     said = answered.of_study(about, read.events and read.events.road(finished))

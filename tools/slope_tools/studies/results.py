@@ -9,6 +9,7 @@ from ..case import run_folders
 from ..deposits.road_axis import axes_of, axis_of
 from ..ensembles import ensemble, known_events
 from ..geometry import as_multi, box_of
+from ..mobility import known
 from ..mobility.exceedance import Mobility
 from ..runs import jobs
 from ..runs.repeats import Repeat
@@ -70,15 +71,20 @@ def read(setup: Setup, questions: Questions, todo: Sequence[Repeat], rows: Seque
     first, finished = next((run for run in todo if not run.error), None), finished_of(rows)
     row = finished[0] if finished else None
     events = mobility = None
-    if first and row and setup.road:
-        events = events_of(setup, first, row, questions.among)
+    among = known.Known(None, "")
+    if first and row:
+        prefix = run_folders.prefix_of(run_folders.summary_of(setup.output, row.summary))
+        among = usable.known_of(prefix, terrain_of(first.folder, first.log), questions.among, setup.body)
+        if setup.road:
+            raster = placed(run_folders.load_raster(prefix, "thickness"), first)
+            events = usable.known_events(among.found, setup.road.read(raster).polygon)
     if row and questions.order and questions.order.condition:
         summary = run_folders.summary_of(setup.output, row.summary)
         mobility = known_events.mobility_of(questions.order.condition, summary.parent, summary)
     emulated = emulated_of(setup, questions.order, rows, mobility) if questions.order else None
     most = elastic.read(questions.most_elastic, rows, setup.output) if row and questions.most_elastic else None
     size = size_runs.about(setup, questions.sizes) if row and questions.sizes else None
-    return Read(rows, setup.road is not None, events, mobility, emulated, observed, size, None, most, problem,
+    return Read(rows, setup.road is not None, among, events, mobility, emulated, observed, size, None, most, problem,
                 case_of(setup, questions, row) if row else None,
                 body_depth.in_balls(setup, finished), defaults)
 
@@ -90,15 +96,6 @@ def emulated_of(setup: Setup, order: ensemble.Order, rows: Sequence[Row],
                mobility and [mobility.outside, mobility.path.length, mobility.curves[mobility.chosen]]]
     return records.read(ensemble.Emulated, kept.value(setup.output / ".emulated.json", made_of, lambda: records.plain(
         ensemble.emulate(order, rows, mobility))))
-
-
-def events_of(setup: Setup, run: Repeat, row: Finished, among: Mapping[str, Any]) -> Optional[usable.Events]:
-    """What known events did of the mass of a run, of its row."""
-    summary = run_folders.summary_of(setup.output, row.summary)
-    raster = placed(run_folders.load_raster(run_folders.prefix_of(summary), "thickness"), run)
-    road = setup.road.read(raster).polygon if setup.road else None
-    return usable.known_events(run_folders.prefix_of(summary), terrain_of(run.folder, run.log), road, among,
-                               setup.body)
 
 
 def case_of(setup: Setup, questions: Questions, row: Finished) -> withheld_words.Case:

@@ -14,7 +14,7 @@ from ..errors import SlopeError
 from ..sites import site_roads
 from ..sites.site_choices import Site
 from ..statistics.answer import Kind
-from ..tables import study_types
+from ..tables import answer_words, study_types
 from ..tables.quantities import OF_ROAD
 from ..tables.rows import finished_of
 
@@ -59,13 +59,9 @@ class Number(NamedTuple):
     @property
     def text(self) -> str:
         """The number with its unit, as the first page of the road has it."""
-        if self.kind == Kind.WITHHELD.value:
-            return "not usable"
-        if self.volume_m3 is None:
+        if self.volume_m3 is None and self.kind != Kind.WITHHELD.value:
             return f"no number, up to {digits.three(self.most_m3)} m3 in a run"
-        if self.kind != Kind.FLOOR.value:
-            return f"{digits.three(self.volume_m3)} m3"
-        return f"at least {digits.three(self.volume_m3)} m3" if self.volume_m3 else "more than 0 m3"
+        return answer_words.volume(self.kind, self.volume_m3, "m3")
 
 
 def of_all(site: Site, several: bool, tell: Callable[[Any], Any],

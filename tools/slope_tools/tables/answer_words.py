@@ -1,58 +1,23 @@
-"""The headline of study.yaml in words, for the console."""
+"""The reasons of the headline of study.yaml in words, and its number for tables; its sentence: studies/letter_words."""
 from typing import Any, Dict, Iterable, List, Mapping, Optional, Tuple
 
-from ..digits import metres, percent
+from ..digits import metres, percent, three
 from ..findings import Finding
-from ..statistics.answer import Cause, Code, Kind, Reason, Source
+from ..statistics.answer import Code, Kind, Reason, Source
 from . import quantities, study_types
 
-OF = {Source.PAPER: "by the sweep", Source.ENSEMBLE: "by known events"}
-CONSERVATIVE = "the conservative volume of the sweep"       # what is only said where chance is in it
 STUDY = {Source.PAPER.value: "the sweep", Source.ENSEMBLE.value: "the runs weighted by known events"}
+CLIENT = {Source.PAPER.value: "runs with chosen settings", Source.ENSEMBLE.value: "runs weighted by known events"}
 
 
-def lines(about: study_types.Headline) -> List[str]:
-    """The number, what it is of, and the reasons; a line each."""
-    said = band(about)
-    return [f"headline: {number(about)}", *([f"  {said}"] if said else []), *(f"  {text(one)}" for one in told(about))]
-
-
-def number(about: study_types.Headline) -> str:
-    """A sentence without its full stop."""
-    if Kind(about.kind) is Kind.WITHHELD:
-        return "withheld, neither study gives a number" if about.paper and about.ensemble else "withheld"
-    source, floor = Source(about.source), Kind(about.kind) is Kind.FLOOR
-    volume = f"{quantities.number(about.volume_m3 or 0.0)} m3"
-    if about.high_m3:
-        volume += f" ({quantities.number(about.low_m3 or 0.0)} to {quantities.number(about.high_m3)})"
-    share = f", {percent(about.share)} of them stay within" if about.share else ""
-    of = CONSERVATIVE if is_conservative(about) and not floor else OF[source]
-    return (f"{('at least ' if about.volume_m3 else 'more than ') * floor}{volume} to remove, {of}{share}"
-            f"{beside(about, source)}")
-
-
-def is_conservative(about: study_types.Headline) -> bool:
-    """Whether it is the paper's volume, and what chance adds is in it."""
-    known = about.volume_m3 == 0 or any(one.cause == Cause.RUNS.value and one.below_m3 for one in about.band)
-    return about.source == Source.PAPER.value and known
-
-
-def band(about: study_types.Headline) -> str:
-    """What a band is made of, a sentence without its full stop; "" without one."""
-    parts = [f"{one.cause} -{quantities.number(one.below_m3)} +{quantities.number(one.above_m3)} m3"
-             for one in about.band if one.below_m3 or one.above_m3]
-    return f"90 % band: {', '.join(parts)}" if parts and about.high_m3 else ""
-
-
-def beside(about: study_types.Headline, source: Source) -> str:
-    """What the other study gives."""
-    if source is Source.ENSEMBLE:
-        return of_other("the sweep", about.paper.volume_m3 if about.paper else None)
-    return of_other("95 % of known events", about.ensemble.volume_m3 if about.ensemble else None)
-
-
-def of_other(what: str, volume: Optional[float]) -> str:
-    return "" if volume is None else f"; {what}: {quantities.number(volume)} m3"
+def volume(kind: str, value: Optional[float], unit: str = "") -> str:
+    """A number and what it is, for tables."""
+    text = f"{three(value or 0.0)} {unit}".strip()
+    if kind == Kind.WITHHELD.value:
+        return "not usable"
+    if kind == Kind.FLOOR.value:
+        return f"at least {text}" if value else f"more than {text}"
+    return f"{text} (no bound)" if kind == Kind.OPEN.value else text
 
 
 # --- why ---
@@ -74,9 +39,9 @@ def client(reason: Reason) -> str:
     """The same for the first page of a report."""
     code, of = reason.code, reason.numbers
     if code is not Code.RULE:
-        return finding(reason).client().rstrip(".")
-    return Finding(of["rule"]).client().rstrip(".") + (
-        "" if of["source"] == Source.PAPER.value else " (runs weighted by known events)")
+        found = finding(reason)
+        return found.client().rstrip(".") or found.text
+    return f"{Finding(of['rule']).client().rstrip('.')} ({CLIENT[of['source']]})"
 
 
 def finding(reason: Reason) -> Finding:
@@ -86,12 +51,11 @@ def finding(reason: Reason) -> Finding:
         return Finding("rule", {"study": STUDY[of["source"]], "rule": of["rule"]})
     if code is Code.SIZE:
         return of_size(of)
-    words = {"longest": lambda: metres(of["longest_m"]), "far": lambda: beyond(of["far"], of.get("path_end_m")),
-             "most": lambda: f"{quantities.number(of['most_m3'])} m3",
-             "near": lambda: metres(of["near_m"]), "path": lambda: metres(of["path_m"]),
+    words = {"far": lambda: percent(of["far"]), "most": lambda: f"{quantities.number(of['most_m3'])} m3",
+             "runs": lambda: f"{of['runs']}", "path": lambda: metres(of["path_m"]),
              "share": lambda: percent(of["share"]), "shares": lambda: shares((of["low"], of["high"])),
-             "reach": lambda: f"{of['reach']} of {of['runs']}", "left": lambda: left(of),
-             "ends": lambda: ends(of), "points": lambda: f"{of['points']:g}"}
+             "reach": lambda: f"{of['reach']} of {of['runs']}", "left": lambda: left(of), "ends": lambda: ends(of),
+             "points": lambda: f"{of['points']:g}"}
     return Finding(code.value, {name: words[name]() for name in TAKES.get(code, ())})
 
 
@@ -100,13 +64,12 @@ def of_size(of: Mapping[str, Any]) -> Finding:
     number, grown = of["sizes"], of["grown"]
     if number > 2 and grown is not None:
         return Finding(f"{Code.SIZE.value} grows", {"grown": percent(grown)})
-    return Finding(Code.SIZE.value, {"sizes": "balls of one size" if number == 1 else f"balls of {number} sizes"})
+    return Finding(Code.SIZE.value, {"sizes": "one size" if number == 1 else f"{number} sizes"})
 
 
 # of each code the words that its sentence takes
-TAKES = {Code.BEYOND: ("longest", "far", "most"), Code.NOT_REACHED: ("near", "shares", "ends"),
-         Code.ONE_SCATTER: ("near", "shares", "ends"), Code.TERRAIN: ("path", "share"), Code.RANGE: ("ends",),
-         Code.RUNS: ("points",), Code.SOME: ("reach", "left")}
+TAKES = {Code.BEYOND: ("far", "runs", "most"), Code.ONE_SCATTER: ("shares",), Code.TERRAIN: ("path", "share"),
+         Code.RANGE: ("ends",), Code.RUNS: ("points",), Code.SOME: ("reach", "left")}
 
 
 def beyond(far: float, path_end: Optional[float]) -> str:
@@ -121,13 +84,9 @@ def left(of: Mapping[str, Any]) -> str:
 
 
 def ends(of: Mapping[str, Any]) -> str:
-    """Where the longest run ends, or where the ranges do."""
-    if "ends" in of:
-        # text: of older versions
-        ranges = of["ends"] if isinstance(of["ends"], str) else ", ".join(map(" ".join, of["ends"].items()))
-        return f", which end at {ranges}," if ranges else ""
-    return "no run leaves a deposit" if of["longest_m"] is None else \
-        f"the longest run ends after {metres(of['longest_m'])}"
+    """Where the ranges do."""
+    ranges = ", ".join(map(" ".join, of["ends"].items()))
+    return f", which end at {ranges}," if ranges else ""
 
 
 def shares(several: Iterable[float]) -> str:

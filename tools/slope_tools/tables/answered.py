@@ -37,7 +37,7 @@ def paper_of(about: study_types.Study) -> Optional[Paper]:
         return None
     least = None if best.chance_m3 is None else best.mean_m3 - best.chance_m3
     return Paper(best.rounded["volume_m3"], rules(best.withheld), least, best.transfer_m3 or (0.0, 0.0), size_of(about),
-                 released_of(about))
+                 released_of(about), len(finished_of(about.runs)))
 
 
 def ensemble_of(about: study_types.Study) -> Optional[Ensemble]:
@@ -49,7 +49,7 @@ def ensemble_of(about: study_types.Study) -> Optional[Ensemble]:
     most = max((row.at_road.remove_m3 for row in finished_of(about.runs) if row.road), default=0.0)
     return Ensemble(one.to_remove, one.far, one.longest_m, rules(whole.withheld),
                     Reason.read(stopped) if stopped else None, most, size_of(about), one.path_end_m,
-                    released_of(about))
+                    released_of(about), one.runs)
 
 
 def released_of(about: study_types.Study) -> float:

@@ -94,7 +94,7 @@ def of_studies(studies: Sequence[Made], about: Optional[study_types.Headline]) -
 
     studies: one, or both of a site: each reason is of one of them.
     """
-    if not about or Kind(about.kind) not in (Kind.FLOOR, Kind.WITHHELD):
+    if not about or Kind(about.kind) not in (Kind.FLOOR, Kind.OPEN, Kind.WITHHELD):
         return None
     if len(studies) == 2:
         one, other = studies
@@ -126,7 +126,7 @@ def step_of(made: Made, code: Code, of: Mapping[str, Any]) -> Optional[Step]:
     if rule is Rule.LEFT:
         add = mine.numbers.get("add") if mine else ""
         return Step(*larger_terrain(made, add or ""), made.whole)
-    words = {Rule.BALLS: "smaller balls in the model", Rule.RUNS: "more time for the mass to come to rest",
+    words = {Rule.BALLS: "a finer model", Rule.RUNS: "more time for the mass to come to rest",
              Rule.MOBILITY: "runs with less resistance"}
     return Step(words[rule], mine.remedy, times(made, rule, of)) if mine else None
 
@@ -177,7 +177,7 @@ def more_sizes(made: Made, sizes: int) -> Step:
     if made.site is None:
         d = rows[0].variables.get(VARIABLE, "") if rows else ""
         if not is_number(d):
-            return Step("finer balls in the model", f"a deck whose variable {VARIABLE} is the diameter of the balls, "
+            return Step("a finer model", f"a deck whose variable {VARIABLE} is the diameter of the balls, "
                         f"and the same command with --levels {VARIABLE}=5,2.5,1.25", None)
         coarsest = made.study.size.sizes[0].d if made.study.size else float(d)
         levels = f"{VARIABLE}=" + ",".join(f"{coarsest / 2 ** k:.4g}" for k in range(int(levels)))
@@ -186,7 +186,7 @@ def more_sizes(made: Made, sizes: int) -> Step:
     else:
         command = (f"tools/slope study {quote(str(made.site))}" if made.site else "the same command with") + \
             f" --levels {levels}"
-    return Step("finer balls in the model", command, None)
+    return Step("a finer model", command, None)
 
 
 def larger_terrain(made: Made, add: str = "") -> Tuple[str, str]:

@@ -27,6 +27,7 @@ FEWEST = 2              # pairs of two sizes; fewer tell nothing of the finer on
 BANDS = quantities.REMOVE, "remove_on_road_m3", "beyond_road_m3", quantities.LENGTH     # that a row has
 # of stretches and their sums: of which column they are a part
 OF_SUMS = dict(zip(SUMS, (quantities.REMOVE, "remove_lane_m3", "clear_hours", "lane_hours")))
+UNKNOWN = "; what finer ones would change is not known"
 Point = Sequence[Optional[Finished]]    # its runs by size, the coarsest first; None: not run, or failed
 
 
@@ -194,9 +195,14 @@ def words(one: study_types.Size) -> str:
     said = f"computed with up to {one.sizes[-1].balls:,} balls"
     still = one.effects[key].left if key else None
     if not key or not still:
-        return f"{said}; what finer ones would change is not known"
+        return said + UNKNOWN
     what = "the volume" if key == quantities.REMOVE else f"the {quantities.ALL[key].name}"
     return f"{said}; finer ones would change {what} by {percents(still.low, still.high)}"
+
+
+def alone(balls: float) -> str:
+    """The same of one size."""
+    return f"computed with {balls:,.0f} balls{UNKNOWN}"
 
 
 def percents(low: float, high: float) -> str:

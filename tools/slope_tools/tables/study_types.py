@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any, Dict, List, Mapping, Optional
 
 from ..findings import Finding
+from ..mobility.how_far import Reach
 from ..statistics.ball_sizes import Left
 from ..statistics.entries import Headline
 from .ensemble_types import Ensemble, MapEntry
@@ -317,6 +318,7 @@ class Study:
     warnings: List[Finding]
     runs: List[Row]
     headline: Optional[Headline]
+    reach: Optional[Reach]          # None: no run left a deposit
     stretches: Optional[Stretches]              # None without a road
     chain: Optional[Chain]
     intensity: Optional[Intensity]

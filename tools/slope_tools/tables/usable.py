@@ -1,13 +1,15 @@
 """Whether the number of a study may be used: the Facts that withheld looks at, from its rows."""
+import math
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
-from ..deposits import deposit, left_words, scar
+from ..deposits import deposit, left_words, scar, travel_shares
 from ..deposits.road_sides import BEFORE
 from ..findings import Finding
-from ..mobility import known
+from ..mobility import how_far, known
 from ..mobility.road import at_road
+from ..mobility.run_length import ON_PATH
 from ..statistics import answer, withheld
 from ..statistics.withheld import Facts
 from . import study_types, withheld_words
@@ -33,15 +35,24 @@ class Events(NamedTuple):
         return answer.Road(self.near, self.far, self.reached, self.passed, longest(rows), at_the_road(rows))
 
 
-def known_events(prefix: Path, terrain: Optional[Path], road: Any, about: Mapping[str, Any],
-                 site: Optional[Path] = None) -> Optional[Events]:
-    """Those of a run; None where it has no fall path.
-
-    prefix: of its deposit; terrain: the ground before it; road: polygons in local metres; about: of the events, see
-    known.of_about(); site: see known.of_mass().
-    """
+def known_of(prefix: Path, terrain: Optional[Path], about: Mapping[str, Any],
+             site: Optional[Path] = None) -> known.Known:
+    """The mass of a run among known events; prefix: of its deposit; terrain: the ground before it; about: of the
+    events, see known.of_about(); site: see known.of_mass()."""
     read = deposit.read(prefix, terrain, lambda text: None)
-    found = known.of_mass(read.raster, *scar.before(read.raster, read.base, terrain), about, site).found
+    return known.of_mass(read.raster, *scar.before(read.raster, read.base, terrain), about, site)
+
+
+def reach(rows: Sequence[Finished], source: Optional[answer.Source], among: known.Known) -> Optional[how_far.Reach]:
+    """How far the mass of runs goes, without those that were added for their length; source: None of a run alone."""
+    mine = [row for row in rows if row.length_m is not None and not row.batch]
+    lengths = [math.inf if travel_shares.lost(row) else row.length_m or 0.0 for row in mine]
+    return how_far.pool(lengths, among.found and among.found.decides, source.value if source else None,
+                        mine[0].length_is or ON_PATH if mine else ON_PATH, among.why)
+
+
+def known_events(found: Optional[known.Found], road: Any) -> Optional[Events]:
+    """What they did at a road, polygons in local metres; None where the mass has no fall path."""
     if found is None:
         return None
     one, median = found.decides, found.strict and found.strict.length_at(0.5)

@@ -1,0 +1,223 @@
+"""The words of a letter: a sentence for each of its parts, for page, console and files alike."""
+from typing import Callable, List, NamedTuple, Optional
+
+from ..digits import percent, three
+from ..mobility.how_far import TAIL, Reach
+from ..statistics.answer import Cause, Code, Kind, Source
+from ..statistics.entries import Headline, HeadlineRoad, PaperPart
+from ..tables import answer_words
+from ..tables.study_types import Study
+from .letter import Letter
+from .road_numbers import Number
+
+Write = Callable[[str, str, float], str]        # a number of what, in which unit, as text
+ALIKE = {Source.PAPER.value: "with chosen settings", Source.ENSEMBLE.value: "with drawn settings"}
+OF = {**ALIKE, Source.ENSEMBLE.value: "weighted by known events"}
+EVENTS = "known events of this volume and height"
+CAUSES = {Cause.RUNS.value: "chance and parameters", Cause.TRANSFER.value: "transfer to the finest model",
+          Cause.SIZE.value: "a still finer model", Cause.OTHER.value: "the other runs"}
+LACKS = {"no repeats": "what chance changes, as no run was repeated",
+         "slip assumed": "whether, and how likely, the slope fails"}
+DRY = "water in the mass or on its way, with which it goes farther"
+TOLD = Code.NOT_REACHED,       # reasons that are said with the road
+REMOVE = "volume to remove from the road"
+
+
+class Said(NamedTuple):
+    """Sentences; empty where there is nothing to say."""
+    down: str
+    clear: str
+    basis: str          # of which runs the number is, and what makes its band
+    far: str
+    roads: str
+    change: str
+    lacks: str
+    size: str
+
+
+def plain(_: str, __: str, value: float) -> str:
+    """A number on the console."""
+    return three(value)
+
+
+def say(one: Letter, write: Write = plain) -> Said:
+    number = one.number
+    return Said(f"{one.released:,.0f} m3 of ground come down.", clear(number, write) if number else "",
+                basis(number, one, write) if number else "", far(one.reach, write), roads(one, write),
+                change(number) if number else "",
+                f"Not in it: {'; '.join([DRY, *(LACKS[kind] for kind in one.lacks if kind in LACKS)])}.",
+                capital(one.size))
+
+
+def lines(one: Letter) -> List[str]:
+    """For the console."""
+    return ["for a letter:", *(f"  {text}" for text in say(one) if text)]
+
+
+def capital(text: str) -> str:
+    """A sentence of a text without its full stop."""
+    return f"{text[0].upper()}{text[1:]}." if text else ""
+
+
+def runs_of(number: Headline, source: Source) -> str:
+    """How many runs of a study there are, and what kind of them."""
+    part = number.paper if source is Source.PAPER else number.ensemble
+    return counted(part.runs if part else 0, OF[source.value])
+
+
+def counted(runs: int, which: str = "") -> str:
+    return f"{runs} run{'s' * (runs != 1)} {which}".strip()
+
+
+# --- what must be cleared ---
+
+def clear(number: Headline, write: Write) -> str:
+    """The sentence with the number, or what stands in its place."""
+    return {Kind.NUMBER: of_number, Kind.FLOOR: of_floor, Kind.OPEN: of_open, Kind.WITHHELD: of_withheld,
+            Kind.NOTHING: of_nothing}[Kind(number.kind)](number, write)
+
+
+def of_number(number: Headline, write: Write) -> str:
+    low, high = (write(f"{REMOVE}, {name} end", "m3", value or 0.0)
+                 for value, name in ((number.low_m3, "lower"), (number.high_m3, "upper")))
+    how = "with 90 % confidence" if has_chance(number) else "without chance, as no run was repeated,"
+    return (f"{write(REMOVE, 'm3', number.volume_m3 or 0.0)} m3 must be cleared from the road; {how} between {low} and "
+            f"{high} m3.")
+
+
+def has_chance(number: Headline) -> bool:
+    """Whether what chance changes is in the band."""
+    return any(one.cause == Cause.RUNS.value for one in number.band)
+
+
+def of_floor(number: Headline, write: Write) -> str:
+    if number.volume_m3:
+        return (f"At least {write(f'{REMOVE}, at least', 'm3', number.volume_m3)} m3 must be cleared from the road, "
+                "the lower end of what the runs give, with 90 % confidence: no number to design with.")
+    return "More than 0 m3 must be cleared from the road; how much is not known."
+
+
+def of_open(number: Headline, write: Write) -> str:
+    return (f"{write(f'{REMOVE}, of these runs', 'm3', number.volume_m3 or 0.0)} m3 must be cleared from the road by "
+            "these runs, which is neither an upper nor a lower bound: no number to design with.")
+
+
+def of_withheld(_: Headline, __: Write) -> str:
+    return "How much must be cleared from the road is not known."
+
+
+def of_nothing(number: Headline, write: Write) -> str:
+    return f"{write(REMOVE, 'm3', 0.0)} m3 must be cleared from the road: in no run does anything come to lie on it."
+
+
+def basis(number: Headline, one: Letter, write: Write) -> str:
+    """Of which runs it is, what the others give, and what makes its band."""
+    if not number.volume_m3 or not number.source:
+        return ""
+    source = Source(number.source)
+    runs = runs_of(number, source)
+    beside: Optional[PaperPart]
+    if source is Source.ENSEMBLE:
+        text = f"{percent(number.share or 0.0)} of {EVENTS} leave no more, by {runs}"
+        other, beside = Source.PAPER, number.paper
+    else:
+        text = f"By the worst settings among {runs}" + ", with what chance may add" * has_chance(number)
+        other, beside = Source.ENSEMBLE, number.ensemble
+    if beside and beside.volume_m3 is not None:
+        text += f"; {runs_of(number, other)} give {write(f'{REMOVE}, other runs', 'm3', beside.volume_m3)} m3"
+    if one.gap:
+        low, high = (write(f"{REMOVE}, {end} of the gap where no run ends", "m3", value)
+                     for end, value in zip(("begin", "end"), one.gap))
+        text += f"; no run ends where these events do, between {low} and {high} m3, of which the larger counts"
+    parts = shares(number) if number.high_m3 is not None else ""
+    return f"{text}." + (f" The band: {parts}." if parts else "")
+
+
+def shares(number: Headline) -> str:
+    """What makes the band."""
+    return ", ".join(f"{CAUSES.get(one.cause, one.cause)} -{three(one.below_m3)} +{three(one.above_m3)} m3"
+                     for one in number.band if one.below_m3 or one.above_m3)
+
+
+def change(number: Headline) -> str:
+    """Why there is no number, or what would change the one that there is."""
+    reasons = [capital(answer_words.client(one)) for one in answer_words.told(number) if one.code not in TOLD]
+    if Kind(number.kind) in (Kind.NUMBER, Kind.NOTHING):
+        parts = [one for one in number.band if one.below_m3 or one.above_m3]
+        if not reasons and parts:
+            most = max(parts, key=lambda one: max(one.below_m3, one.above_m3))
+            reasons = [f"{capital(CAUSES.get(most.cause, most.cause))}"]
+        return f"What would change it: {' '.join(reasons)}" if reasons else ""
+    return f"Why: {' '.join(reasons)}" if reasons else ""
+
+
+# --- how far ---
+
+def far(reach: Optional[Reach], write: Write) -> str:
+    """One sentence on how far, and by what rule."""
+    if reach is None:
+        return "How far it goes is not known: no run leaves a deposit."
+    runs = counted(reach.runs, ALIKE.get(reach.source or "", ""))
+    rule = f"by {runs}"
+    if reach.events:
+        rule = f"{runs} and {EVENTS} count half each; {percent(TAIL)} end before these bounds, {percent(TAIL)} beyond"
+    text = f"{distances(reach, write)} {reach.along} from the crown: {rule}."
+    if reach.farther:
+        text += f" The two differ by more than their bands: {reach.farther} go farther."
+    return text + ("" if reach.events or not reach.why else f" {capital(reach.why)}")
+
+
+def distances(reach: Reach, write: Write) -> str:
+    near, middle, last = (
+        beyond(reach, write) if value is None else length(reach, value, write, name)
+        for value, name in ((reach.near_m, "near end"), (reach.middle_m, "middle"), (reach.far_m, "far end")))
+    if near == last:
+        return f"It goes {middle}"
+    if reach.middle_m is None:
+        return f"It goes {near} or more, in half of all cases {middle},"
+    return f"It goes about {middle} ({near} to {last})"
+
+
+def beyond(reach: Reach, write: Write) -> str:
+    end = f" {write('how far, end of the elevation model', 'm', reach.end_m)} m that" if reach.end_m else " way that"
+    return f"beyond the{end} the elevation model shows"
+
+
+def length(reach: Reach, value: float, write: Write, name: str) -> str:
+    """Nearer than the events tell anything it may be less."""
+    text = write(f"how far, {name}", "m", max(value, reach.least_m))
+    return f"{text} m{' or less' * (value <= reach.least_m)}"
+
+
+def roads(one: Letter, write: Write) -> str:
+    """What that means for the road, or for each."""
+    road = one.number.road if one.number else None
+    text = at_road(road, write) if road else ""
+    if not one.roads:
+        return text
+    others = "; ".join(map(of_road, one.roads[1:]))
+    return f"{text} Of {len(one.roads)} roads this is the worst, {quoted(one.roads[0].road)}; {others}.".strip()
+
+
+def at_road(road: HeadlineRoad, write: Write) -> str:
+    some = f"{road.brought.reach or 'none'} of {counted(road.brought.runs)}"
+    return (f"The road begins after {write('road, near edge', 'm', road.near_m)} m: {some} and "
+            f"{answer_words.shares(road.reached)} of {EVENTS} reach it.")
+
+
+def of_road(one: Number) -> str:
+    events = f" and {percent(one.reached)} of known events" if one.reached else ""
+    return f"{quoted(one.road)}: {one.text}, {one.reaching or 'none'} of {one.runs} runs{events} reach it"
+
+
+def quoted(name: str) -> str:
+    return f'"{name}"'
+
+
+def titles(about: Study) -> str:
+    """The runs of a page, for its title."""
+    number = about.headline
+    if not number:
+        return counted(about.study.finished)
+    return " and ".join(runs_of(number, source) for source in Source
+                        if (number.paper if source is Source.PAPER else number.ensemble))
