@@ -10,16 +10,21 @@ import made_study
 from slope_tools import disk, records
 from slope_tools.commands import study
 from slope_tools.errors import SlopeError
-from slope_tools.report import client_part
-from slope_tools.report.numbers import Numbers
 from slope_tools.sites import site_choices
 from slope_tools.sites.site_sections import OfMass
 from slope_tools.statistics import answer
 from slope_tools.statistics.answer import AtRoad, Cause, Code, Ensemble, Kind, Paper, Road, Size, Source, Withheld
 from slope_tools.statistics.entries import KnownQuantile
 from slope_tools.statistics.withheld import Kind as Rule
-from slope_tools.studies import site_study
+from slope_tools.studies import letter_words, site_study
+from slope_tools.studies.letter import Letter
 from slope_tools.tables import answer_words, answered, next_step
+
+
+def sentences(headline, reach=None):
+    """Of a letter with this number."""
+    return letter_words.say(Letter(5000.0, headline, None, reach, (), (), "computed"))
+
 
 STOPPED = answer.Reason(Code.TERRAIN, {"share": 0.12, "path_m": 900.0})
 
@@ -68,14 +73,17 @@ def test_a_band_has_shares_that_add_as_squares():
     found = answer.of(None, ensemble()._replace(quantiles=of, size=Size(0.0, 0.1)), None)
     assert (found.low, found.high) == pytest.approx((950 - (95 ** 2 + 50 ** 2) ** 0.5,
                                                      950 + (95 ** 2 + 60 ** 2 + 95 ** 2) ** 0.5))
-    said = found.about()
-    assert "810" not in answer_words.number(said) and f"({843:,} to 1,100)" in answer_words.number(said)
-    assert "transfer" in answer_words.band(said) and "-50 +60" in answer_words.band(said)
+    said = sentences(found.about())
+    assert "between 843 and 1,100 m3" in said.clear and "90 %" in said.clear
+    assert "transfer" in said.basis and "-50.0 +60.0" in said.basis and "--" not in said.basis
+    # without repeats nobody knows what chance adds: no confidence is named
+    said = sentences(answer.of(Paper(1000.0, transfer=(80.0, 40.0)), None, None).about())
+    assert "between 920 and 1,040 m3" in said.clear and "90 %" not in said.clear and "without chance" in said.clear
 
 
 def test_a_floor_is_the_lower_end_rounded_down():
     """Of either study, where sizes of balls are too few; nothing stays nothing, and what is withheld stays so."""
-    few = Size(floor=answer.Reason(Code.SIZE, {"sizes": 1, "grown": None}))
+    few = Size(floor=answer.Reason(Code.SIZE, {"sizes": 3, "grown": 0.3}))
     for paper, other, low in ((Paper(1200.0, least=1177.0, size=few), ensemble(), 1170.0),
                               (Paper(700.0), ensemble(size=few), 855.0)):
         found = answer.of(paper, other, road(0.5, 0.6))
@@ -85,6 +93,23 @@ def test_a_floor_is_the_lower_end_rounded_down():
     found = answer.of(None, ensemble(0.08, stopped=STOPPED, size=few), road(0.5, 0.6))
     assert (found.kind, codes(found)) == (Kind.FLOOR, [Code.SIZE, Code.BEYOND, Code.TERRAIN])
     assert answer.of(Paper(0.0, size=few), None, None).kind is Kind.NOTHING
+    assert answer.of(Paper(1200.0, size=few), None, None).kind is Kind.OPEN         # chance may be less
+    assert answer.of(Paper(1200.0, least=0.0, size=few), None, None).kind is Kind.OPEN      # 0 is no bound
+
+
+def test_what_finer_balls_may_undercut_is_no_lower_bound():
+    """Of one size or two nobody knows what finer ones bring: the number stands, without a bound on either side."""
+    for sizes in (1, 2):
+        few = Size(floor=answer.Reason(Code.SIZE, {"sizes": sizes, "grown": None}))
+        for paper, other, of, volume in ((Paper(1200.0, least=1177.0, size=few), None, None, 1200.0),
+                                         (Paper(700.0), ensemble(size=few), road(0.5, 0.6), 950.0),
+                                         (Paper(0.0), ensemble(0.08, stopped=STOPPED, size=few),
+                                          road(0.5, 0.6)._replace(far=901.0), 920.0)):
+            found = answer.of(paper, other, of)
+            assert (found.kind, found.volume, found.low, found.high) == (Kind.OPEN, volume, None, None)
+            said = sentences(found.about())
+            assert "neither" in said.clear and "least" not in said.clear and "90 %" not in said.clear
+            assert answer_words.volume(found.kind.value, volume, "m3").endswith("m3 (no bound)")
     assert answer.of(Paper(None, [Withheld(Rule.LEFT)], size=few), None, None).kind is Kind.WITHHELD
 
 
@@ -100,15 +125,15 @@ def sized(*grown):
 
 
 @pytest.mark.parametrize("size, kind, words", [
-    (None, Kind.FLOOR, "one size"), (sized(0.1), Kind.FLOOR, "2 sizes"), (sized(0.4, 0.26), Kind.FLOOR, "26 %"),
+    (None, Kind.OPEN, "one size"), (sized(0.1), Kind.OPEN, "2 sizes"), (sized(0.4, 0.26), Kind.FLOOR, "26 %"),
     (sized(0.4, 0.24), Kind.NUMBER, "")])
-def test_fewer_than_two_halvings_or_one_that_grows_make_a_floor(size, kind, words):
+def test_fewer_than_two_halvings_make_no_bound_and_one_that_grows_a_floor(size, kind, words):
     """Of both studies; what is to be done next is one size more."""
     quantile = {"share": 0.95, "value": 1200.0, "low": 1000.0, "high": 1400.0}
     about = made_study.study(conservative=made_study.conservative(1200.0, chance_m3=50.0), size=size)
     other = made_study.study(ensemble=made_study.ensemble({"to_remove": [quantile]}), size=size)
     for found in (answer.of(answered.paper_of(about), None, None), answer.of(None, answered.ensemble_of(other), None)):
-        assert found.kind is kind and [one.code for one in found.reasons] == [Code.SIZE] * (kind is Kind.FLOOR)
+        assert found.kind is kind and [one.code for one in found.reasons] == [Code.SIZE] * (kind is not Kind.NUMBER)
         assert all(words in text(one) for one in found.reasons for text in (answer_words.text, answer_words.client))
         step = next_step.of_studies([next_step.Made(about, Path("out"))], found.about())
         assert (step is None) == (kind is Kind.NUMBER) and (step is None or "--levels" in step.command)
@@ -123,16 +148,18 @@ def test_where_known_events_lie_beyond_the_runs_the_number_is_of_those_within():
     found = answer.of(Paper(0.0), ensemble(0.08, stopped=STOPPED), road(0.5, 0.6)._replace(far=901.0))
     assert (found.kind, found.volume, found.share, found.high) == (Kind.FLOOR, 828.0, 0.92, None)
     assert codes(found) == [Code.BEYOND, Code.TERRAIN]
-    assert found.reasons[0].numbers == {"far": 0.08, "longest_m": 800.0, "most_m3": 0.0}
+    assert found.reasons[0].numbers == {"far": 0.08, "longest_m": 800.0, "most_m3": 0.0, "runs": 0}
     other = answer.Reason(Code.RUNS, {"points": 8})
     found = answer.of(Paper(0.0), ensemble(0.08, stopped=other), road(0.5, 0.6))
     assert (found.kind, found.volume, found.share, found.high) == (Kind.NUMBER, 920.0, 0.92, pytest.approx(1012))
     assert codes(found) == [Code.BEYOND, Code.RUNS]
     found = answer.of(Paper(0.0), ensemble(0.7), road(0.5, 0.6))
     assert (found.kind, found.volume, found.share) == (Kind.NUMBER, 300.0, 0.3)
-    [reason] = answer.of(Paper(0.0), ensemble(0.3, path_end=161.2)._replace(longest=165.9), road(0.5, 0.6)).reasons
-    assert all("30 %" in words(reason) and "161 m" in words(reason) and "166 m" in words(reason)
-               for words in (answer_words.text, answer_words.client))
+    [reason] = answer.of(Paper(0.0), ensemble(0.3, path_end=161.2, most=77.0, runs=24), road(0.5, 0.6)).reasons
+    assert reason.numbers["path_end_m"] == 161.2
+    # only of its own runs is known what they leave, and how far others go is said once, by one ruler
+    assert all(words in answer_words.client(reason) for words in ("30 %", "24 runs", "77 m3")) and \
+        "161" not in answer_words.client(reason)
     # without an upper bound it is what no run exceeded
     several = [KnownQuantile(0.95, None, 9.0, None), KnownQuantile(0.9, 7.0, 5.0, None)]
     found = answer.of(None, Ensemble(several, 0.08, 800.0, most=11.0), None)
@@ -177,7 +204,7 @@ def test_a_road_that_no_run_reaches(low, high, kind, said):
 def test_a_road_that_known_events_reach_and_no_run_does(reached, paper, rules, kind, said):
     """0 m3 is nothing only where few known events reach it, whatever study stands beside it; rules: of an ensemble."""
     beside = None if rules is None else ensemble(values=0.0, rules=rules)
-    found = answer.of(Paper(paper, [Withheld(Rule.LEFT)] * (paper is None)), beside, road(*reached, 0.0))
+    found = answer.of(Paper(paper, [Withheld(Rule.LEFT)] * (paper is None), paper), beside, road(*reached, 0.0))
     assert (found.kind, found.volume, codes(found)) == (kind, paper or 0.0, said)
 
 
@@ -191,11 +218,9 @@ def test_nothing_is_said_only_where_no_run_brings_a_ball(rules, reached):
         assert (found.kind, found.volume, found.high) == (Kind.FLOOR, 0.0, None)
         assert found.reasons[0] == (Code.SOME, {"runs": 32, "reach": 2, "least_m3": 530.0, "most_m3": 614.0})
         said = found.about()
-        assert answer_words.number(said).startswith("more than 0 m3") and all(
-            "2 of 32" in words(found.reasons[0]) and "530 to 614" in words(found.reasons[0])
-            for words in (answer_words.text, answer_words.client))
-        first = client_part.of_floor(said, Numbers())
-        assert first.number == "more than 0" and "No run" not in first.title + first.band
+        first = sentences(said)
+        assert first.clear.startswith("More than 0 m3") and "no run" not in (first.clear + first.basis).lower()
+        assert "2 of 32" in first.change and "530 to 614" in first.change and "2 of 32 runs" in first.roads
     found = answer.of(Paper(0.0), ensemble(values=0.0), Road(151.0, 158.0, (0.0, 0.05), (0.0, 0.0), 120.0, AtRoad(
         26, 0, 0, 3.0, 0.4)))
     assert found.kind is Kind.NOTHING
@@ -210,8 +235,9 @@ def test_rules_that_withhold_one_of_both():
     found = answer.of(Paper(None, [left]), ensemble(), road(0.5, 0.6))
     assert (found.kind, found.volume, found.high, codes(found)) == (Kind.FLOOR, 855.0, None, [Code.RULE])
     assert found.reasons[0].numbers["source"] == "paper" and found.reasons[0].numbers["rule"] == Rule.LEFT.value
-    found = answer.of(Paper(70.0), ensemble(rules=[Rule.LEFT]), road(0.5, 0.6))
-    assert (found.kind, found.volume, found.source) == (Kind.FLOOR, 70.0, Source.PAPER)
+    found = answer.of(Paper(70.0, least=65.0), ensemble(rules=[Rule.LEFT]), road(0.5, 0.6))
+    assert (found.kind, found.volume, found.source) == (Kind.FLOOR, 65.0, Source.PAPER)
+    assert answer.of(Paper(70.0), ensemble(rules=[Rule.LEFT]), road(0.5, 0.6)).kind is Kind.OPEN
     found = answer.of(Paper(70.0), ensemble(rules=[Rule.BALLS]), road(0.5, 0.6))     # its largest is less than balls
     assert (found.kind, found.volume) == (Kind.NUMBER, 70.0)
     found = answer.of(Paper(None, [left]), ensemble(rules=[Rule.RUNS]), road(0.5, 0.6))
@@ -223,8 +249,8 @@ def test_what_study_yaml_says():
     about = records.plain(about)
     assert disk.plain(about) == about and list(about) == ["kind", "volume_m3", "share", "low_m3", "high_m3", "source",
                                                           "paper", "ensemble", "road", "reasons", "band"]
-    assert about["paper"] == {"volume_m3": 700.0, "withheld": []}
-    assert about["ensemble"] == {"volume_m3": None, "far": 0.08, "withheld": []}
+    assert about["paper"] == {"volume_m3": 700.0, "withheld": [], "runs": 0}
+    assert about["ensemble"] == {"volume_m3": None, "far": 0.08, "withheld": [], "runs": 0}
     assert about["road"]["reached"] == [0.5, 0.6] and about["reasons"][1] == {
         "code": "terrain ends", "numbers": {"share": 0.12, "path_m": 900.0}}
 
@@ -277,7 +303,7 @@ def test_an_older_result_is_not_merged_where_all_runs_failed(tmp_path, monkeypat
     monkeypatch.setattr(study, "of_ensemble", lambda *_: None)
     monkeypatch.setattr(study, "write_report", lambda *_, **__: None)
     monkeypatch.setattr(study.answered, "of_both", lambda *several: calls.append(several))
-    asked, site = study.Request(deck=tmp_path), site_choices.unread(OfMass.of({}), tmp_path)
+    asked, site = study.Request(deck=tmp_path, quiet=True), site_choices.unread(OfMass.of({}), tmp_path)
     files = [tmp_path / name / "study.yaml" for name in ("study", "ensemble")]
     before = [path.read_bytes() for path in files]
     if fails:

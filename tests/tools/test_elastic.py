@@ -8,11 +8,8 @@ import pytest
 from affine import Affine
 
 import made_rows
-import made_study
 from made_rows import changed
 
-from slope_tools.report import client_part
-from slope_tools.report.numbers import Numbers
 from slope_tools.runs import jobs
 from slope_tools.studies import site_study
 from slope_tools.survey import rasters
@@ -76,8 +73,6 @@ def test_what_left_the_terrain_is_no_distance(tmp_path, rows):
     about = evaluated(tmp_path, [changed(one, distance_99_m=None) for one in most(tmp_path)], rows)
     assert "how far the mass goes is not known, as more than 1 % of it left the terrain; the deposit" in about.text
     assert elastic.far(about) is None
-    assert first_page(about) == (" With the most elastic rock, a restitution of 0.9, more than 1 % of it leaves the "
-                                 "terrain.")
 
 
 def test_failed_and_moving_runs_are_said(tmp_path, rows):
@@ -86,19 +81,9 @@ def test_failed_and_moving_runs_are_said(tmp_path, rows):
     about = evaluated(tmp_path, made, rows)
     assert about.text.endswith("; 1 failed; 2 had not come to rest") and about.runs == ["e2", "e3"]
     none = evaluated(tmp_path, made[:1], rows)
-    assert none.text == "not known: e1 failed" and first_page(none) == ""
+    assert none.text == "not known: e1 failed"
     alone = evaluated(tmp_path, made[1:], [])        # none of the usual ones finished
     assert "instead of" not in alone.text and alone.quantities["distance_99_m"].usual is None
-
-
-def first_page(about):
-    return client_part.most_elastic(SimpleNamespace(study=made_study.study(largest_restitution=about)), Numbers())
-
-
-def test_the_first_page_has_the_farthest(tmp_path, rows):
-    about = evaluated(tmp_path, most(tmp_path), rows)
-    assert first_page(about) == " With the most elastic rock, a restitution of 0.9, within 120 m."
-    assert client_part.most_elastic(SimpleNamespace(study=made_study.study()), Numbers()) == ""
 
 
 @pytest.mark.parametrize("largest, variables, expected", [

@@ -1,4 +1,5 @@
 """What a report says of known events: where its runs lie, or that no set covers them."""
+import math
 from types import SimpleNamespace
 from typing import Any, Dict, NamedTuple
 
@@ -10,13 +11,13 @@ import made_rows
 from test_mobility_path import SET, disc, hillside
 
 from slope_tools.digits import three
-from slope_tools.mobility import exceedance, known as known_events
+from slope_tools.mobility import exceedance, how_far, known as known_events
 from slope_tools.mobility.fall_path import TERRAIN
-from slope_tools.mobility.known import Found, Known
 from slope_tools.mobility.results import percent
 from slope_tools.plots import known_reach
 from slope_tools.report import mobility_part
 from slope_tools.report.numbers import Numbers
+from slope_tools.studies import letter_words
 
 
 def case(lengths, volume=0.78e6, study=True, scar=1, **about):
@@ -141,28 +142,50 @@ class Lengths(NamedTuple):
 def test_both_answers_differ_by_more_than_their_bands(runs, near, half, far, farther):
     known_ = Lengths({share: (None, None) if length is None else (length, None) if length > 0 else (1.0, -length)
                       for share, length in ((0.9, near), (0.5, half), (0.1, far))})
-    assert mobility_part.differ(runs, known_) == farther
+    assert how_far.farther(runs, known_) == farther
 
 
-def test_the_first_page_has_both_answers(known):
-    """By the runs, and by known events: what half, nine tenths and a tenth go beyond, or why there is but one."""
-    ground = SimpleNamespace(known=Known(Found(known, known), ""))
-    half, near, far = (three(known.length_at(share)) for share in (0.5, 0.9, 0.1))
-    for lengths, differs in (((0.9 * known.length_at(0.5), known.length_at(0.5)), False),
-                             ((0.5 * known.length_at(0.9), 0.9 * known.length_at(0.9)), True)):
-        data = SimpleNamespace(study={}, finished=[
-            made_rows.row(length_m=length) for length in (*lengths, None)])
-        data.study = {"ensemble": None}
-        text = mobility_part.on_first_page(data, ground, Numbers())
-        runs = f"{three(lengths[0])} to {three(lengths[1])} m"
-        assert text.startswith(f"How far along the fall path: by the runs {runs}; by known events of this volume and "
-                               f"height half go beyond {half} m, nine tenths beyond {near} m, a tenth beyond {far} m "
-                               "(confined or not, as often as known events).")
-        assert ("The two differ by more than their bands: known events go farther" in text) == differs
+def test_how_far_is_a_pool_of_runs_and_known_events(known):
+    """Each counts half: quantiles lie between those of both, and grow with the share, whatever the runs do."""
+    half = known.length_at(0.5)
+    for lengths in ([half] * 4, [0.5 * half, 0.6 * half, 0.7 * half], [3 * half, 4 * half], [0.9 * half, math.inf]):
+        one = how_far.pool(lengths, known, "paper")
+        ends = [math.inf if end is None else end for end in (one.near_m, one.middle_m, one.far_m)]
+        assert ends == sorted(ends) and one.events and one.runs == len(lengths)
+        middle = float(np.median(lengths))
+        assert min(half, middle) * 0.999 <= ends[1] <= max(half, middle) * 1.001
+        for share, end in zip((how_far.TAIL, 0.5, 1 - how_far.TAIL), ends):
+            # by hand: of runs and of events, half each, so many end there or before
+            if math.isfinite(end):
+                before = [(np.mean(np.array(lengths) <= at) + 1 - known.exceedance(at)) / 2 for at in
+                          (end * (1 - 1e-9) - 1e-9, end)]
+                assert before[0] - 1e-6 <= share <= before[1] + 1e-6
+    assert how_far.pool([3 * half, 4 * half], known, "paper").farther in (None, "the runs")
+
+
+def test_how_far_without_known_events(known):
+    """The runs alone, and why; one that left the terrain goes beyond all that is known."""
     outside = known._replace(outside=["the set of known events does not cover this volume"])
-    assert mobility_part.on_first_page(data, SimpleNamespace(known=Known(Found(outside, outside), "")), Numbers()) == (
-        "The set of known events does not cover this volume.")
-    assert mobility_part.on_first_page(data, SimpleNamespace(known=Known(None, "No path")), Numbers()) == "No path."
+    one = how_far.pool([60.0, 70.0, 80.0], outside, "ensemble")
+    assert (one.near_m, one.middle_m, one.far_m, one.events) == (60.0, 70.0, 80.0, False)
+    said = letter_words.far(one, letter_words.plain)
+    assert "70.0 m (60.0 m to 80.0 m)" in said and "does not cover this volume" in said and "3 runs" in said
+    one = how_far.pool([60.0, math.inf, math.inf], None, "paper", why="No path")
+    assert (one.near_m, one.middle_m, one.far_m, one.end_m) == (60.0, None, None, 60.0)
+    assert letter_words.far(one, letter_words.plain).startswith("It goes 60.0 m or more")
+    assert how_far.pool([], known) is None
+
+
+def test_nearer_than_events_tell_the_distance_may_be_less(known):
+    """The curve falls at its first point of which they say something."""
+    said, curve = np.zeros(len(known.path.length), bool), np.ones(len(known.path.length))
+    k = len(said) // 2
+    said[k:], curve[k:] = True, np.linspace(0.8, 0.0, len(said) - k)
+    dropped = known._replace(said=said, curves={**known.curves, known.chosen: curve})
+    least = known.path.length[k]
+    one = how_far.pool([2 * least], dropped)
+    assert one.least_m == least >= one.near_m and one.middle_m > least
+    assert f"({three(least)} m or less to " in letter_words.far(one, letter_words.plain)
 
 
 # --- on maps and section ---

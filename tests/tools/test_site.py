@@ -33,8 +33,8 @@ from slope_tools.sites.site_sections import OfMass, sections
 from slope_tools.sites.site import numbers as site_numbers
 from slope_tools.errors import SlopeError
 from slope_tools.plots import site_map
-from slope_tools.studies import size_runs, study
-from slope_tools.tables import answer_words, answered, elastic, named_run
+from slope_tools.studies import letter, letter_words, size_runs, study
+from slope_tools.tables import answered, elastic, named_run
 from slope_tools.tables.study_file import load_study
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
@@ -171,7 +171,7 @@ def test_two_commands_lead_from_gis_files_to_a_report(done):
     best = study["conservative"]
     assert best["kind"] == "prediction" and best["mean_m3"] > 0
     assert study["size"] is None and [one["code"] for one in study["headline"]["reasons"]] == ["size of balls"]
-    assert study["headline"]["volume_m3"] <= max(0.0, best["mean_m3"] - best["chance_m3"])
+    assert study["headline"]["volume_m3"] == best["rounded"]["volume_m3"]
     assert study["step"]["volume_m3"] > 0 and study["step"]["text"] in second
     assert study["step"]["step"] == 0.75        # half of the deck's own
     # of the mass that a lattice of so few balls makes of the body
@@ -181,7 +181,7 @@ def test_two_commands_lead_from_gis_files_to_a_report(done):
     assert spent["gravity"] > spent["sliding"] > 0
     assert abs(spent["residual"]) < 1e-3 * spent["gravity"] and abs(spent["begin_end"]) < 0.02 * spent["gravity"]
     assert spent["text"] in (mine / "report.html").read_text()
-    assert best["withheld"] == [] and best["volume_m3"] > 0 and study["headline"]["kind"] == "floor"
+    assert best["withheld"] == [] and best["volume_m3"] > 0 and study["headline"]["kind"] == "open"
     assert "report.html" in second and "conservative" in second
     assert (mine / "report.mp4").exists() == bool(shutil.which("ffmpeg"))
     assert not list(folder.glob(".mine*"))
@@ -206,7 +206,7 @@ def test_both_studies_give_one_number(done, tmp_path, monkeypatch, capsys):
     monkeypatch.setenv("LMP", LMP)
     assert cli.main(["study", "mine", "--levels", "1"]) == 0
     out = capsys.readouterr().out
-    assert "17 of 17 runs are finished already" in out and "headline: " in out
+    assert "17 of 17 runs are finished already" in out and "for a letter:" in out
     paper, both = (yaml.safe_load((mine / name / "study.yaml").read_text()) for name in ("study", "ensemble"))
     about = both["ensemble"]["known_events"]
     assert about["set"] == "translational_slides:all" and about["events"] == 69 and about["runs"] == 8
@@ -222,13 +222,14 @@ def test_both_studies_give_one_number(done, tmp_path, monkeypatch, capsys):
     [quantile] = [one for one in about["to_remove"] if one["share"] == 0.95]
     assert found["ensemble"]["volume_m3"] == quantile["value"] and both["size"] is None
     volumes = [one for one in (found["paper"]["volume_m3"], quantile["value"]) if one is not None]
-    assert found["kind"] == "floor" and found["volume_m3"] == found["low_m3"] <= max(volumes)
+    assert found["kind"] == "open" and found["volume_m3"] == max(volumes) and found["low_m3"] is None
+    assert paper["reach"] == both["reach"] and paper["reach"]["source"] == "paper" and paper["reach"]["runs"] == 13
     assert answered.governing(mine / "study", mine / "ensemble").name == ("study" if found["source"] == "paper" else
                                                                           "ensemble")
     step, = (line.removeprefix("next step: ") for line in out.splitlines() if line.startswith("next step: "))
     assert paper["next_step"] == both["next_step"] and step.startswith(both["next_step"]["text"]) and step.endswith(
         both["next_step"]["command"])
-    words = answer_words.lines(load_study(mine / "study" / "study.yaml").headline)
+    words = letter_words.lines(letter.of_study(load_study(mine / "study" / "study.yaml")))
     assert [line for line in out.splitlines() if line in words] == words
     governs, other = ("study", "ensemble") if found["source"] == "paper" else ("ensemble", "study")
     assert pages == [(other, {"study": "paper.html", "ensemble": "ensemble.html"}[other], False),

@@ -6,7 +6,7 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 from .. import digits
 from ..findings import Finding
-from ..statistics.answer import Kind, Source
+from ..statistics.answer import Kind
 from ..studies import letter, letter_words
 from ..studies.letter import Letter
 from ..tables import judged, next_step, sizes, usable
@@ -68,9 +68,8 @@ def table(data: Data, ground, numbers: Numbers, kind: str) -> Pairs:
     cleared = road_part.on_first_page(data, numbers, kind == Kind.WITHHELD.value)
     rows = [*on_road(data, numbers), *(("clearing", text) for text in cleared), *moving(data, numbers),
             *structures(data, ground), *mapped(data, numbers)]
-    source = (Source.ENSEMBLE if data.study.ensemble else Source.PAPER).value if data.study else ""
-    runs = letter_words.counted(len(data.finished) or 1, letter_words.ALIKE.get(source, ""))
-    return Pairs(rows, caption=f"From the least to the most of {runs}, each counted alike.")
+    runs = f"From the least to the most of {letter_words.alike(data.study)}, each counted alike." if data.study else ""
+    return Pairs(rows, caption=runs)
 
 
 def span(numbers, key, values) -> str:

@@ -59,6 +59,11 @@ def capital(text: str) -> str:
     return f"{text[0].upper()}{text[1:]}." if text else ""
 
 
+def alike(about: Study) -> str:
+    """The runs of a study, where each counts as much."""
+    return counted(about.study.finished, ALIKE[(Source.ENSEMBLE if about.ensemble else Source.PAPER).value])
+
+
 def runs_of(number: Headline, source: Source) -> str:
     """How many runs of a study there are, and what kind of them."""
     part = number.paper if source is Source.PAPER else number.ensemble
@@ -135,7 +140,7 @@ def basis(number: Headline, one: Letter, write: Write) -> str:
 
 def shares(number: Headline) -> str:
     """What makes the band."""
-    return ", ".join(f"{CAUSES.get(one.cause, one.cause)} -{three(one.below_m3)} +{three(one.above_m3)} m3"
+    return ", ".join(f"{CAUSES.get(one.cause, one.cause)} -{three(abs(one.below_m3))} +{three(one.above_m3)} m3"
                      for one in number.band if one.below_m3 or one.above_m3)
 
 
@@ -161,7 +166,7 @@ def far(reach: Optional[Reach], write: Write) -> str:
     rule = f"by {runs}"
     if reach.events:
         rule = f"{runs} and {EVENTS} count half each; {percent(TAIL)} end before these bounds, {percent(TAIL)} beyond"
-    text = f"{distances(reach, write)} {reach.along} from the crown: {rule}."
+    text = f"{distances(reach, write)} {reach.along} from the crown. {capital(rule)}"
     if reach.farther:
         text += f" The two differ by more than their bands: {reach.farther} go farther."
     return text + ("" if reach.events or not reach.why else f" {capital(reach.why)}")
@@ -218,6 +223,6 @@ def titles(about: Study) -> str:
     """The runs of a page, for its title."""
     number = about.headline
     if not number:
-        return counted(about.study.finished)
+        return alike(about)
     return " and ".join(runs_of(number, source) for source in Source
                         if (number.paper if source is Source.PAPER else number.ensemble))

@@ -85,7 +85,8 @@ def left(of: Mapping[str, Any]) -> str:
 
 def ends(of: Mapping[str, Any]) -> str:
     """Where the ranges do."""
-    ranges = ", ".join(map(" ".join, of["ends"].items()))
+    # text: of older versions
+    ranges = of["ends"] if isinstance(of["ends"], str) else ", ".join(map(" ".join, of["ends"].items()))
     return f", which end at {ranges}," if ranges else ""
 
 
