@@ -22,7 +22,7 @@ FARTHEST = 20.0         # times as far as the path may the end of known events b
 
 
 def lines(folder: Path) -> List[str]:
-    """In words: what is known without a run, what the study takes, and whether it can be more than a floor."""
+    """In words: what is known without a run, what the study takes, and what kind of number it can be."""
     site = site_choices.load(folder)
     choices, found = site.choices, site.found
     said: List[str] = []
@@ -48,9 +48,10 @@ def lines(folder: Path) -> List[str]:
             (said if behind else floors).append(why)
     numbers = site_study.wanted(site, site_study.plan(site, Setup(Path(), Path())), site_study.Asked(),
                                 choices.study.points).points
-    floors += [why] if (why := coarse(1 + len(numbers))) else []
     said.append(f"the study takes about {site_disk.text(site_disk.study(folder, choices, found, numbers))} of disk")
-    if floors:
+    if why := coarse(1 + len(numbers)):
+        said.append(f"the number will have neither a lower nor an upper bound, because {why}")
+    elif floors:
         said.append(f"the number will be at best a floor, at least so much, because {'; and because '.join(floors)}")
     return said
 
