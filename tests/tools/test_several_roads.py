@@ -1,5 +1,6 @@
 """Several roads of a site: each is studied as if it were alone, over the same runs; the worst stands for the site."""
 import csv
+import html
 import json
 import math
 import shutil
@@ -12,6 +13,7 @@ from shapely.ops import substring
 from test_site import BALLS, EAST, NORTH, ROAD, gis, inside, make, told, write_files, write_layer  # noqa: F401
 from tiny_collapse import LMP
 
+from slope_tools import digits
 from slope_tools.commands import study as study_command
 from slope_tools.deposits import volume_files
 from slope_tools.errors import SlopeError
@@ -129,8 +131,10 @@ def test_the_worst_stands_for_the_site(done):
     assert plain(whole) == plain(about_in(mine / "roads" / first.road / "study"))
     assert (mine / "road.csv").read_text() == (mine / f"{first.road}.road.csv").read_text()
     assert named_run.read(str(mine)).study == mine / "study"
-    page = (mine / "report.html").read_text(encoding="utf-8")
-    assert f"Of 3 roads this is the worst, \u201c{first.road}\u201d; \u201c" in page
+    page = html.unescape((mine / "report.html").read_text(encoding="utf-8"))
+    assert f'Of 3 roads this is the worst, "{first.road}"; "' in page
+    for one in others:
+        assert f'"{one.road}": {digits.typeset(one.text)}, {one.reaching} of {one.runs} runs' in page
     for one in (first, *others):
         assert f"roads/{one.road}/report.html" in page and (mine / "roads" / one.road / "report.html").is_file()
         assert one.text.removesuffix(" m3") in page and one.text in said

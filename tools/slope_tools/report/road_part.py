@@ -67,8 +67,8 @@ def of_all(data: Data) -> Optional[Section]:
     rows = [[one.road, one.text, f"{one.reaching} of {one.runs}", f"{FOLDER}/{one.road}/{one.page}"]
             for one in several]
     return Section("roads", "The roads", [Table(
-        "To remove: the number of the first page on each road, which is in the site's folder; runs: of the study of "
-        f"this number. This page is of the worst, {several[0].road}: a number counts as its volume, also where at "
+        "To remove: the number of the first page on each road, which is in the site's folder; runs: of both studies. "
+        f"This page is of the worst, {several[0].road}: a number counts as its volume, also where at "
         "least so much is to be removed; a road without one as the largest of its runs.",
         ["road", "to remove", "runs that reach it", "its page"], rows, (0, 1, 2, 3))])
 

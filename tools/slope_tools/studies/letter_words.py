@@ -126,7 +126,7 @@ def basis(number: Headline, one: Letter, write: Write) -> str:
         text = f"{percent(number.share or 0.0)} of {EVENTS} leave no more, by {runs}"
         other, beside = Source.PAPER, number.paper
     else:
-        text = f"By the worst settings among {runs}" + ", with what chance may add" * has_chance(number)
+        text = f"By those of {runs} that leave most" + ", with what chance may add" * has_chance(number)
         other, beside = Source.ENSEMBLE, number.ensemble
     if beside and beside.volume_m3 is not None:
         text += f"; {runs_of(number, other)} give {write(f'{REMOVE}, other runs', 'm3', beside.volume_m3)} m3"
@@ -180,7 +180,7 @@ def distances(reach: Reach, write: Write) -> str:
         return f"It goes {middle}"
     if reach.middle_m is None:
         return f"It goes {near} or more, in half of all cases {middle},"
-    return f"It goes about {middle} ({near} to {last})"
+    return f"It goes about {middle} ({near.removesuffix(' m') if last.endswith(' m') else near} to {last})"
 
 
 def beyond(reach: Reach, write: Write) -> str:
@@ -211,7 +211,7 @@ def at_road(road: HeadlineRoad, write: Write) -> str:
 
 
 def of_road(one: Number) -> str:
-    events = f" and {percent(one.reached)} of known events" if one.reached else ""
+    events = f" and up to {percent(one.reached)} of known events" if one.reached else ""
     return f"{quoted(one.road)}: {one.text}, {one.reaching or 'none'} of {one.runs} runs{events} reach it"
 
 

@@ -34,8 +34,8 @@ class Made(NamedTuple):
 class Number(NamedTuple):
     """Of a road; kind: of its headline (statistics.answer), None without one; volume_m3: of it; most_m3: of a run.
 
-    reaching, runs: how many runs bring something onto it, and how many finished; reached: the share of known events
-    that does, the larger probability, 0 where nobody knows; page: in its folder.
+    reaching, runs: how many runs of both studies bring something onto it, and how many finished; reached: the share of
+    known events that does, the larger probability, 0 where nobody knows; page: in its folder.
     """
     road: str
     kind: Any
@@ -94,8 +94,8 @@ def number(road: str, made: Made) -> Number:
     on_road = [row.at_road.remove_on_road_m3 for row in rows]
     most = max((row.at_road.remove_m3 for each in made.abouts for row in finished_of(each.runs)), default=0.0)
     kind, volume, at = (said.kind, said.volume_m3, said.road) if said else (None, None, None)
-    return Number(road, kind, volume, most, sum(one > 0 for one in on_road), len(rows),
-                  max(at.reached if at else [0.0]), made.page)
+    reaching, runs = (at.brought.reach, at.brought.runs) if at else (sum(one > 0 for one in on_road), len(rows))
+    return Number(road, kind, volume, most, reaching, runs, max(at.reached if at else [0.0]), made.page)
 
 
 def in_order(numbers: Sequence[Number]) -> List[Number]:

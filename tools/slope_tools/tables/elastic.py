@@ -135,9 +135,3 @@ def name_of(key: str, about: study_types.Elastic) -> Tuple[str, str]:
     if key == AREA:
         return f"area under more than {about.thicker_than_m:g} m", "m2"
     return ALL[key].name, ALL[key].unit
-
-
-def far(about: study_types.Elastic) -> Optional[float]:
-    """The largest distance that 99 % of the volume stay within, m; None where it is not known. about: the entry."""
-    one = about.quantities.get(DISTANCE)
-    return one.high if one else None
