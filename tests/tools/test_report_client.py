@@ -109,17 +109,19 @@ SAID = {"number": ("35,800 m³ must be cleared from the road; with 90 % confiden
         "within": ("12,000 m³ must be cleared", "between 9,000 and 15,000 m³", "88 % of known events",
                    "What would change it: 12 % of known events of this volume and height go farther than all 24 runs "
                    "that they weigh, and may leave more; none of these runs leaves more than 15,000 m³ to remove."),
-        "floor": ("At least 12,000 m³", "lower end of what the runs give, with 90 % confidence",
+        "floor": ("At least 12,000 m³", "It is the lower end, with 90 % confidence, of what 90 % of known events",
                   "Why: 12 % of known events of this volume and height go farther", "Next step: a larger "
                   "elevation model"),
         "open": ("12,000 m³ must be cleared from the road by these runs, which is neither an upper nor a lower "
                  "bound",
                  "Why: What a finer model would change is not known: this one has one size", "Next step: a finer "
                  "model"),
-        "not reached": ("More than 0 m³", "The road begins after 2,400 m: none of 6 runs and 20 % to 30 % of known "
+        "not reached": ("More than 0 m³ must be cleared from the road, where the mass reaches it",
+                        "The road begins after 2,400 m: none of 6 runs and 20 % to 30 % of known "
                         "events of this volume and height reach it.", "Next step: a larger elevation model"),
-        "withheld": ("How much must be cleared from the road is not known.", "Why: More than a tenth of the runs "
-                     "failed, or had not come to rest when they ended (runs with chosen settings).",
+        "withheld": ("come down, up to", "It goes about", "The road begins", "How much must be cleared from the road "
+                     "is not known. More than a tenth of the runs failed, or had not come to rest when they ended "
+                     "(runs with chosen settings).",
                      "Next step: more time for the mass to come to rest, about"),
         "nothing": ("0 m³ must be cleared from the road: in no run does anything come to lie on it.",
                     "none of 6 runs and 2 % to 7 % of known events of this volume and height reach it.")}
@@ -274,7 +276,7 @@ def test_the_first_page_in_order(slope, here):
         "floor", volume_m3=12.0, source="paper", ensemble=None, reasons=[size])}))
     assert slope("repeated")[0] == 0
     text = " ".join(client(here / "repeated" / "report.html").split())
-    wanted = ["come down", "At least 12.0 m³ must be cleared", "By those of 13 runs with chosen settings", "It goes",
+    wanted = ["come down", "At least 12.0 m³ must be cleared", "of what those of 13 runs with chosen settings leave that", "It goes",
               "count half each", "The road begins", "raised the volume by 31 %", "Not in it: water", "Computed with",
               "Next step: a larger elevation model, about 60 s", "Final thickness", "The run on which the number rests",
               "on the road itself", "The appendix has"]

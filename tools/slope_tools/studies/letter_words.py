@@ -97,9 +97,11 @@ def has_chance(number: Headline) -> bool:
 
 def of_floor(number: Headline, write: Write) -> str:
     if number.volume_m3:
-        return (f"At least {write(f'{REMOVE}, at least', 'm3', number.volume_m3)} m3 must be cleared from the road, "
-                "the lower end of what the runs give, with 90 % confidence: no number to design with.")
-    return "More than 0 m3 must be cleared from the road; how much is not known."
+        return (f"At least {write(f'{REMOVE}, at least', 'm3', number.volume_m3)} m3 must be cleared from the road: no "
+                "number to design with.")
+    reached = number.road and number.road.brought.reach
+    where = "" if reached else ", where the mass reaches it as known events do and no run does"
+    return f"More than 0 m3 must be cleared from the road{where}; how much is not known."
 
 
 def of_open(number: Headline, write: Write) -> str:
@@ -108,7 +110,7 @@ def of_open(number: Headline, write: Write) -> str:
 
 
 def of_withheld(_: Headline, __: Write) -> str:
-    return "How much must be cleared from the road is not known."
+    return ""       # page 1 begins with what is known: see change()
 
 
 def of_nothing(number: Headline, write: Write) -> str:
@@ -119,14 +121,16 @@ def basis(number: Headline, one: Letter, write: Write) -> str:
     """Of which runs it is, what the others give, and what makes its band."""
     if not number.volume_m3 or not number.source:
         return ""
-    source = Source(number.source)
-    runs = runs_of(number, source)
+    source, lower = Source(number.source), "It is the lower end, with 90 % confidence, of what"
+    runs, floor = runs_of(number, source), Kind(number.kind) is Kind.FLOOR
     beside: Optional[PaperPart]
     if source is Source.ENSEMBLE:
-        text = f"{percent(number.share or 0.0)} of {EVENTS} leave no more, by {runs}"
+        events = f"{percent(number.share or 0.0)} of {EVENTS}"
+        text = f"{lower} {events} stay within, by {runs}" if floor else f"{events} leave no more, by {runs}"
         other, beside = Source.PAPER, number.paper
     else:
-        text = f"By those of {runs} that leave most" + ", with what chance may add" * has_chance(number)
+        text = f"{lower} those of {runs} leave that leave most" if floor else \
+            f"By those of {runs} that leave most" + ", with what chance may add" * has_chance(number)
         other, beside = Source.ENSEMBLE, number.ensemble
     if beside and beside.volume_m3 is not None:
         text += f"; {runs_of(number, other)} give {write(f'{REMOVE}, other runs', 'm3', beside.volume_m3)} m3"
@@ -151,9 +155,10 @@ def change(number: Headline) -> str:
         parts = [one for one in number.band if one.below_m3 or one.above_m3]
         if not reasons and parts:
             most = max(parts, key=lambda one: max(one.below_m3, one.above_m3))
-            reasons = [f"{capital(CAUSES.get(most.cause, most.cause))}"]
+            return f"What would change it most: {CAUSES.get(most.cause, most.cause)}."
         return f"What would change it: {' '.join(reasons)}" if reasons else ""
-    return f"Why: {' '.join(reasons)}" if reasons else ""
+    why = "How much must be cleared from the road is not known." if Kind(number.kind) is Kind.WITHHELD else "Why:"
+    return f"{why} {' '.join(reasons)}" if reasons else ""
 
 
 # --- how far ---
