@@ -444,7 +444,7 @@ def test_every_example_of_the_page_runs(qgis, inside, place):
     assert where(site["DEPTH_LAYER"]) == where(site["TERRAIN_LAYER"]) == HERE
     assert study["THICKNESS"].startswith("mine/study/")
     conservative = yaml.safe_load(Path("mine/study/study.yaml").read_text())["conservative"]
-    assert study["CONSERVATIVE"] == conservative["rounded"]["volume_m3"]        # as page 1 says it
+    assert study["NO_BOUND"] == conservative["rounded"]["volume_m3"]        # as page 1 says it
     assert study["REPORT"] == "mine/report.html" and "<html" in Path(study["REPORT"]).read_text()[:300]
     numbers = {name: yaml.safe_load(Path(path).read_text()) for name, path in (
         ("score", "score/score.yaml"), ("calibrate", "fit/calibrate.yaml"), ("mobility", "known/mobility.yaml"),

@@ -12,6 +12,7 @@ from .volume import CLEARING, CUT_ANGLE, MESH
 DECK = Option("DECK", "", "file", "Deck, or site.yaml of a site", needed=True)
 RANKS = of("study", "np", "MPI ranks of each run", key="RANKS")
 JOBS = of("study", "jobs", "Runs at a time (default: as many as the cores allow)")
+NOT_CONSERVATIVE = {"floor": "AT_LEAST", "open": "NO_BOUND"}     # kinds of numbers
 WITH_A_SITE = ("RANKS", "JOBS")     # all other choices are in its site.yaml
 
 
@@ -43,7 +44,9 @@ class Study(Algorithm):
     outputs = (("raster", "THICKNESS", "Largest final thickness over all runs (m)"),
                ("raster", "MAX_THICKNESS", "Largest thickness over all runs and times (m)"),
                ("number", "CONSERVATIVE", "Conservative volume to remove (m3)"),
-               ("number", "AT_LEAST", "Volume to remove, at least (m3)"), ("file", "TABLE", "Table of all runs"),
+               ("number", "AT_LEAST", "Volume to remove, at least (m3)"),
+               ("number", "NO_BOUND", "Volume to remove by these runs, no bound (m3)"),
+               ("file", "TABLE", "Table of all runs"),
                ("file", "REPORT", "Report of a site"))
 
     def site(self, asked):
@@ -93,9 +96,8 @@ def show(folder, results):
     for kind, one in (about["envelope"] or {}).items():
         results.layer(kind.upper(), place(folder, one), "thickness", one["what"])
     number = about.get("headline") or about.get("conservative") or {}
-    floor = number.get("kind") == "floor"       # which is not conservative
     results.put(OUTPUT=str(folder), TABLE=str(folder / "study.csv"),
-                **{"AT_LEAST" if floor else "CONSERVATIVE": number.get("volume_m3")})
+                **{NOT_CONSERVATIVE.get(number.get("kind"), "CONSERVATIVE"): number.get("volume_m3")})
 
 
 def place(folder, one):
