@@ -13,11 +13,14 @@ from test_mobility_path import SET, disc, hillside
 from slope_tools.digits import three
 from slope_tools.mobility import exceedance, how_far, known as known_events
 from slope_tools.mobility.fall_path import TERRAIN
+from slope_tools.mobility.known import Known
 from slope_tools.mobility.results import percent
 from slope_tools.plots import known_reach
 from slope_tools.report import mobility_part
 from slope_tools.report.numbers import Numbers
+from slope_tools.statistics.answer import Source
 from slope_tools.studies import letter_words
+from slope_tools.tables import usable
 
 
 def case(lengths, volume=0.78e6, study=True, scar=1, **about):
@@ -174,6 +177,15 @@ def test_how_far_without_known_events(known):
     assert (one.near_m, one.middle_m, one.far_m, one.end_m) == (60.0, None, None, 60.0)
     assert letter_words.far(one, letter_words.plain).startswith("It goes 60.0 m or more")
     assert how_far.pool([], known) is None
+
+
+def test_of_which_runs_the_reach_is():
+    """Not of those that were added for their length, nor of one without a deposit; one that lost mass goes beyond."""
+    rows = [made_rows.row(length_m=60.0), made_rows.row(length_m=None), made_rows.row(length_m=99.0, batch=1),
+            made_rows.row(length_m=70.0, released_m3=100.0, lost_m3=1.5)]
+    one = usable.reach(rows, Source.PAPER, Known(None, "no path"))
+    assert (one.runs, one.near_m, one.far_m, one.source, one.why) == (2, 60.0, None, "paper", "no path")
+    assert usable.reach(rows[1:3], None, Known(None, "")) is None
 
 
 def test_nearer_than_events_tell_the_distance_may_be_less(known):

@@ -52,11 +52,12 @@ def test_a_terrain_that_ends_on_a_road_makes_a_floor(mine, monkeypatch):  # noqa
         assert any("go beyond the terrain" in line for line in found)
 
 
-def test_a_site_with_too_few_sizes_of_balls_can_have_no_more_than_a_floor(mine):  # noqa: F811
+def test_a_site_with_too_few_sizes_of_balls_has_no_bound(mine):  # noqa: F811
     path = mine / "site.yaml"
     for levels, said in ((2, True), (3, False)):
         path.write_text(re.sub(r"  levels: \w+", f"  levels: {levels}", path.read_text()))
-        assert any("balls of 2 sizes are run, 3 show" in line for line in outlook.lines(mine)) is said
+        found = outlook.lines(mine)
+        assert any("balls of 2 sizes are run, 3 show" in line and "neither" in line for line in found) is said
 
 
 @pytest.mark.parametrize("side, x, y", [("west", 0.5, 40.0), ("east", 119.5, 40.0), ("south", 60.0, 0.5),

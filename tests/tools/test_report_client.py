@@ -117,14 +117,14 @@ SAID = {"number": ("35,800 m³ must be cleared from the road; with 90 % confiden
                  "Why: What a finer model would change is not known: this one has one size", "Next step: a finer "
                  "model"),
         "not reached": ("More than 0 m³ must be cleared from the road, where the mass reaches it",
-                        "The road begins after 2,400 m: none of 6 runs and 20 % to 30 % of known "
+                        "The road begins after 2,400 m: none of 6 runs of both kinds and 20 % to 30 % of known "
                         "events of this volume and height reach it.", "Next step: a larger elevation model"),
         "withheld": ("come down, up to", "It goes about", "The road begins", "How much must be cleared from the road "
                      "is not known. More than a tenth of the runs failed, or had not come to rest when they ended "
                      "(runs with chosen settings).",
                      "Next step: more time for the mass to come to rest, about"),
         "nothing": ("0 m³ must be cleared from the road: in no run does anything come to lie on it.",
-                    "none of 6 runs and 2 % to 7 % of known events of this volume and height reach it.")}
+                    "none of 6 runs of both kinds and 2 % to 7 % of known events of this volume and height reach it.")}
 
 
 @pytest.mark.parametrize("case", HEADLINES)

@@ -57,7 +57,7 @@ def step_of(data: Data) -> Optional[next_step.Step]:
 def of_card(main: MainCard) -> str:
     """An answer as the appendix has it, in a sentence."""
     if main.withheld:
-        return f"{main.title}: {'; '.join(one.text for one in main.withheld)}."
+        return f"{main.title}: {' '.join(one.client() for one in main.withheld)}"
     return f"{main.title}: {main.number} {main.unit}. {main.band or ''}".strip()
 
 

@@ -202,15 +202,16 @@ def length(reach: Reach, value: float, write: Write, name: str) -> str:
 def roads(one: Letter, write: Write) -> str:
     """What that means for the road, or for each."""
     road = one.number.road if one.number else None
-    text = at_road(road, write) if road else ""
+    both = " of both kinds" * bool(one.number and one.number.paper and one.number.ensemble)
+    text = at_road(road, both, write) if road else ""
     if not one.roads:
         return text
     others = "; ".join(map(of_road, one.roads[1:]))
     return f"{text} Of {len(one.roads)} roads this is the worst, {quoted(one.roads[0].road)}; {others}.".strip()
 
 
-def at_road(road: HeadlineRoad, write: Write) -> str:
-    some = f"{road.brought.reach or 'none'} of {counted(road.brought.runs)}"
+def at_road(road: HeadlineRoad, both: str, write: Write) -> str:
+    some = f"{road.brought.reach or 'none'} of {counted(road.brought.runs)}{both}"
     return (f"The road begins after {write('road, near edge', 'm', road.near_m)} m: {some} and "
             f"{answer_words.shares(road.reached)} of {EVENTS} reach it.")
 
