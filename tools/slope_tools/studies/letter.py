@@ -31,6 +31,7 @@ def of_study(about: study_types.Study) -> Letter:
     known = ensemble_types.weighted(about.ensemble)
     gap = next((one.gap for one in known.to_remove or () if one.share == number.share), None) \
         if known and number and number.source == "ensemble" else None
-    return Letter(max(row.released_m3 for row in rows), number, gap, about.reach, read(about),
+    return Letter(max((row.released_m3 for row in rows), default=0.0), number, gap, about.reach, read(about),
                   [one.kind for one in judged.limits(about, bool(about.study.repeat))],
-                  about.size.text if about.size else sizes.alone(max(row.released_m3 / row.ball_m3 for row in rows)))
+                  about.size.text if about.size else sizes.alone(max(
+                      (row.released_m3 / row.ball_m3 for row in rows), default=0.0)))
