@@ -3,7 +3,6 @@ import re
 import shutil
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,7 +12,6 @@ from shapely.geometry import LineString
 
 import made_rows
 import made_study
-from made_rows import row
 from test_site import gis, make_mine, told, work_in, write_dem, write_files, write_layer  # noqa: F401
 from test_site_anew import edit, inside  # noqa: F401
 from test_site_lists import measure
@@ -206,9 +204,7 @@ def test_what_differs_is_said(here, capsys):
     ({"kind": "floor", "volume_m3": 20120.0}, "at least 20,100"), ({"kind": "floor", "volume_m3": 0.0}, "more than 0"),
     ({"kind": "open", "volume_m3": 20120.0}, "20,100 (no bound)"), ({"kind": "nothing", "volume_m3": 0.0}, "0")])
 def test_the_number_of_a_scenario(headline, shown):
-    about = made_study.study(runs=[row()], headline=headline)
-    one = SimpleNamespace(about=about, site=SimpleNamespace(found=SimpleNamespace(body=None)))
-    assert page.numbers(one)[3] == shown
+    assert page.to_remove(headline and made_study.headline(**headline)) == shown
 
 
 def study_of(number, source, said=3000.0, **entries):
