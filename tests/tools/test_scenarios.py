@@ -237,9 +237,9 @@ def test_numbers_side_by_side_are_of_the_studies_that_all_have(tmp_path):
     names = method.common([both, sweep])
     said = method.difference({"mine": both, "half": sweep, "cut": None}, folders)
     assert names == ["study"] and "half" in said and "slope study mine/scenarios/half" in said and "mine," not in said
-    # that of the sweep alone is what it says itself: of one size, at least so much
+    # that of the sweep alone is what it says itself: of one size, no bound
     found = method.headline_of(BOTH, names)
-    assert (found.source, found.kind, found.volume_m3) == ("paper", "floor", 1000)
+    assert (found.source, found.kind, found.volume_m3) == ("paper", "open", 1000)
     assert (method.farthest(BOTH, names), method.farthest(BOTH, ["study", "ensemble"])) == (100, 300)
     assert len(method.rows_of(BOTH, names)) == 2 and len(method.rows_of(BOTH, ["study", "ensemble"])) == 4
     known = of_roads(tmp_path, **{"": {"ensemble": BOTH["ensemble"]}})
@@ -254,7 +254,7 @@ def test_every_road_has_a_column(here, tmp_path):
     other = mine._replace(name="half", studied=of_roads(tmp_path, **half))
     table = page.table([one, other, mine._replace(name="new")])
     assert [head.text for head in table.heads[5:7]] == ["to remove from upper", "to remove from lower"]
-    assert [row[5:] for row in table.rows] == [["at least 1,000", "at least 1,000", "2 of 2"],
+    assert [row[5:] for row in table.rows] == [["1,000 (no bound)", "1,000 (no bound)", "2 of 2"],
                                                ["500", "10.0", "2 of 2"],
                                                ["-", "-", "not studied as it is"]]
 
