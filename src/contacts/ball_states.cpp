@@ -6,11 +6,8 @@
 #include "ball_states.h"
 
 #include "atom.h"
-#include "contact_force.h"
-#include "continuation.h"
 #include "force.h"
 #include "lammps_compat.h"
-#include "update.h"
 
 #include <climits>
 #include <cstring>
@@ -19,8 +16,7 @@ using namespace LAMMPS_NS;
 using namespace Slope;
 
 /* ----------------------------------------------------------------------
-   The velocities of the middle of the step, and a part of what the last step's force adds to them until
-   its end. At the set-up of a new run those of the end are known, and the force is not.
+   At the set-up of a new run the velocities of the end of the step are known, and the force is not.
 ------------------------------------------------------------------------- */
 
 void BallStates::begin_step(Continuation &last, bool repeat, bool exact, bool held)
@@ -31,20 +27,22 @@ void BallStates::begin_step(Continuation &last, bool repeat, bool exact, bool he
   else
     last.forget_half_step();
 
-  const int nlocal = atom->nlocal, nall = nlocal + atom->nghost;
-  counts.clear(nall);
-  shared = held;
-  fixed.assign(shared ? nall : nlocal, FixedContacts());
+  counts.clear(atom->nlocal + atom->nghost);
+  clear_fixed(held);
   ahead_known = exact && (!last.v.empty() || !repeat);
-  if (!ahead_known) return;
-  const Vector *const v = last.v.empty() ? vectors(atom->v) : last.v.data();
-  if (static_cast<int>(ahead.size()) <= nall)
-    ahead.resize(atom->nmax + 1);    // read beyond the last: see PairLists::build()
-  for (int i = 0; i < nlocal; i++) {
-    const double *f = last.before[i];
-    const double a = AHEAD * update->dt / atom->rmass[i];
-    ahead[i] = {v[i].x + a * f[0], v[i].y + a * f[1], v[i].z + a * f[2]};
-  }
+}
+
+// Most balls lie on none: only those that did in the last step have a sum
+
+void BallStates::clear_fixed(bool held)
+{
+  for (int k = 0; k < on_fixed.size; k++) fixed[on_fixed.numbers[k]] = FixedContacts();
+  on_fixed.size = 0;
+  if (held || shared) fixed.clear();
+  shared = held;
+  fixed.resize(atom->nlocal + (shared ? atom->nghost : 0));
+  numbers_on_fixed.resize(atom->nlocal);
+  on_fixed.numbers = numbers_on_fixed.data();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -59,7 +57,7 @@ int BallStates::pack_forward(int n, const int *list, double *buf) const
 {
   int m = counts.pack_forward(n, list, buf);
   for (int k = 0; k < n && ahead_known; k++, m += 3)
-    memcpy(&buf[m], &ahead[list[k]], sizeof(Vector));
+    memcpy(&buf[m], &continuation->ahead()[list[k]], sizeof(Vector));
   for (int k = 0; k < n && shared; k++, m += 4)
     memcpy(&buf[m], &fixed[list[k]], sizeof(FixedContacts));
   return m;
@@ -70,7 +68,7 @@ void BallStates::unpack_forward(int n, int begin, const double *buf)
   counts.unpack_forward(n, begin, buf);
   buf += n;
   if (ahead_known) {
-    memcpy(&ahead[begin], buf, n * sizeof(Vector));
+    memcpy(&continuation->ahead()[begin], buf, n * sizeof(Vector));
     buf += 3 * n;
   }
   if (shared) memcpy(&fixed[begin], buf, n * sizeof(FixedContacts));
@@ -110,9 +108,10 @@ MovingBalls BallStates::balls()
           atom->rmass,
           vectors(atom->f),
           vectors(atom->torque),
-          ahead_known ? ahead.data() : v,
+          ahead_known ? continuation->ahead() : v,
           counts.now.data(),
-          fixed.data()};
+          fixed.data(),
+          shared ? nullptr : &on_fixed};
 }
 
 MovingPartners BallStates::partners(const MovingBalls &balls) const
@@ -123,5 +122,5 @@ MovingPartners BallStates::partners(const MovingBalls &balls) const
 double BallStates::memory_usage() const
 {
   return counts.now.capacity() + fixed.capacity() * sizeof(FixedContacts) +
-      ahead.capacity() * sizeof(Vector);
+      numbers_on_fixed.capacity() * sizeof(int);
 }

@@ -14,6 +14,7 @@
 
 #include "contact_balls.h"
 #include "contact_counts.h"
+#include "continuation.h"
 
 #include <vector>
 
@@ -22,12 +23,12 @@ namespace LAMMPS_NS {
 class BallStates : protected Pointers {
  public:
   explicit BallStates(LAMMPS *lmp) :
-      Pointers(lmp), continuation(nullptr), shared(false), ahead_known(false)
+      Pointers(lmp), continuation(nullptr), shared(false), on_fixed{nullptr, 0}, ahead_known(false)
   {
   }
 
   // of this step; repeat: of the last one, once more, at a set-up. exact: dashpots look ahead; held: some balls are
-  void begin_step(class Continuation &, bool repeat, bool exact, bool held);
+  void begin_step(Continuation &, bool repeat, bool exact, bool held);
   void share_counts(class Pair *);    // when this rank has counted; collective
 
   Slope::MovingBalls balls();
@@ -43,19 +44,16 @@ class BallStates : protected Pointers {
   double memory_usage() const;
 
  private:
-  const Continuation *continuation;
+  void clear_fixed(bool held);
+
+  Continuation *continuation;
   Slope::ContactCounts counts;
   std::vector<Slope::FixedContacts> fixed;    // of ghosts, too, if ranks share them:
   bool shared;                                // where balls are held, which may be another's
-  std::vector<Slope::Vector> ahead;           // velocities that normal dashpots act on, if they are
-  bool ahead_known;                           // others than those of the middle of the step
+  std::vector<int> numbers_on_fixed;
+  Slope::BallsOnFixed on_fixed;               // whose sums are to be cleared
+  bool ahead_known;    // the velocities that normal dashpots act on are others than those of the middle of the step
 };
-
-// LAMMPS keeps the rows of such an array one after the other
-inline Slope::Vector *vectors(double **array)
-{
-  return reinterpret_cast<Slope::Vector *>(array ? array[0] : nullptr);
-}
 
 }    // namespace LAMMPS_NS
 

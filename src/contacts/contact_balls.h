@@ -21,6 +21,12 @@ struct FixedContacts {
   double number;
 };
 
+// which balls have a fixed contact: those whose sums are not 0; room for all
+struct BallsOnFixed {
+  int *numbers;
+  int size;
+};
+
 // all that moves; positions in m, velocities at the middle of the step in m/s and rad/s
 struct MovingBalls {
   const Vector *x, *v, *omega;
@@ -29,6 +35,7 @@ struct MovingBalls {
   const Vector *ahead;     // velocities that normal dashpots act on: see contact_force.h
   unsigned char *count;    // contacts of each ball now; up to 255
   FixedContacts *fixed;    // of each ball of this rank
+  BallsOnFixed *on_fixed;  // nullptr: not asked for
 };
 
 // The partners of the moving balls: other moving balls ...

@@ -109,6 +109,8 @@ class ContactPasses : ContactView {
     const double scale =
         sign / (balls.radius[e.i] + partners.radius(e.j));    // nearly the distance
     FixedContacts &sum = balls.fixed[ball];
+    BallsOnFixed *const noted = balls.on_fixed;
+    if (noted && sum.number == 0.0) noted->numbers[noted->size++] = ball;
     sum.normals.x += scale * (x.x - from.x);
     sum.normals.y += scale * (x.y - from.y);
     sum.normals.z += scale * (x.z - from.z);

@@ -7,6 +7,7 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "contact_force.h"
 #include "fix.h"
 #include "lammps_compat.h"
 #include "memory.h"
@@ -21,18 +22,19 @@ using Slope::Vector;
 
 static constexpr double ROUNDING = 1.0e-10;    // of the largest force
 static constexpr int ALL = 63;                 // velocities and spins, by bits
+static constexpr double CAME = HUGE_VAL;       // in place of a velocity ahead: of a ball that came in this step
 
 /* ---------------------------------------------------------------------- */
 
 Continuation::Continuation(LAMMPS *lmp) :
-    Pointers(lmp), before(nullptr), force(nullptr), step(-1), dt(0.0), guided(false)
+    Pointers(lmp), force(nullptr), ahead_now(nullptr), looked(-1), step(-1), dt(0.0), guided(false)
 {
 }
 
 Continuation::~Continuation()
 {
   memory->destroy(force);
-  memory->destroy(before);
+  memory->destroy(ahead_now);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -51,6 +53,7 @@ void Continuation::keep_forces()
   }
   step = update->ntimestep;
   dt = update->dt;
+  keep_ahead();
 }
 
 /* ----------------------------------------------------------------------
@@ -105,35 +108,91 @@ void Continuation::find_half_step()
   if (!forces_known()) return;
 
   const int nlocal = atom->nlocal, nall = nlocal + atom->nghost;
-  Vector *const now = reinterpret_cast<Vector *>(nall ? atom->v[0] : nullptr);
-  Vector *const spin = reinterpret_cast<Vector *>(nall ? atom->omega[0] : nullptr);
   v.reserve(nall + 1);    // contacts are read 32 bytes at a time, 8 beyond a vector
   omega.reserve(nall + 1);
-  v.assign(now, now + nall);
-  omega.assign(spin, spin + nall);
-  for (Fix *fix : compat::fixes_of_style(lmp, "ground/motion"))
-    dynamic_cast<Kick *>(fix)->take_back_kick();
+  ahead_again.reserve(nall + 1);
+  take_back_half_step();
+  ahead_again.resize(nall);
   for (int i = 0; i < nlocal; i++) {
-    const double *f = force[i];
-    const double a = 0.5 * dt / atom->rmass[i];
-    const double b = a / (0.4 * atom->radius[i] * atom->radius[i]);
-    const int bits = static_cast<int>(f[CHANGED]);
-    double *const velocity[] = {&now[i].x, &now[i].y, &now[i].z};
-    double *const rotation[] = {&spin[i].x, &spin[i].y, &spin[i].z};
-    for (int d = 0; d < 3; d++) {
-      if (bits >> d & 1) *velocity[d] -= a * f[d];
-      if (bits >> d & 8) *rotation[d] -= b * f[3 + d];
-    }
+    const double *const u = atom->v[i], *const beyond = &force[i][BEYOND];
+    ahead_again[i] = {u[0] + beyond[0], u[1] + beyond[1], u[2] + beyond[2]};
   }
   comm->forward_comm();    // to the ghosts
-  std::swap_ranges(now, now + nall, v.begin());
-  std::swap_ranges(spin, spin + nall, omega.begin());
+  swap_velocities();
 }
 
 void Continuation::forget_half_step()
 {
   v.clear();
   omega.clear();
+  ahead_again.clear();
+}
+
+// v and omega: what LAMMPS has; then LAMMPS has those of the middle, of this rank's balls
+
+void Continuation::take_back_half_step()
+{
+  const int nlocal = atom->nlocal, nall = nlocal + atom->nghost;
+  v.assign(vectors(atom->v), vectors(atom->v) + nall);
+  omega.assign(vectors(atom->omega), vectors(atom->omega) + nall);
+  for (Fix *fix : compat::fixes_of_style(lmp, "ground/motion"))
+    dynamic_cast<Kick *>(fix)->take_back_kick();
+  for (int i = 0; i < nlocal; i++) {
+    const double *const f = force[i];
+    const double a = 0.5 * dt / atom->rmass[i];
+    const double b = a / (0.4 * atom->radius[i] * atom->radius[i]);
+    const int bits = static_cast<int>(f[CHANGED]);
+    for (int d = 0; d < 3; d++) {
+      if (bits >> d & 1) atom->v[i][d] -= a * f[d];
+      if (bits >> d & 8) atom->omega[i][d] -= b * f[3 + d];
+    }
+  }
+}
+
+void Continuation::swap_velocities()
+{
+  std::swap_ranges(v.begin(), v.end(), vectors(atom->v));
+  std::swap_ranges(omega.begin(), omega.end(), vectors(atom->omega));
+}
+
+/* ---------------------------------------------------------------------- */
+
+void Continuation::look_ahead()
+{
+  const double part = Slope::AHEAD * update->dt;
+  const Vector *const u = vectors(atom->v), *const f = vectors(atom->f);
+  Vector *const to = vectors(ahead_now);
+  for (int i = 0; i < atom->nlocal; i++) {
+    const double a = part / atom->rmass[i];
+    to[i] = {u[i].x + a * f[i].x, u[i].y + a * f[i].y, u[i].z + a * f[i].z};
+  }
+  looked = update->ntimestep;
+}
+
+void Continuation::look_ahead_of_new_balls()
+{
+  for (int i = 0; i < atom->nlocal; i++)
+    if (ahead_now[i][0] == CAME) std::copy_n(atom->v[i], 3, ahead_now[i]);
+}
+
+Vector *Continuation::ahead()
+{
+  return v.empty() ? vectors(ahead_now) : ahead_again.data();
+}
+
+// In a step that has looked ahead. Velocities may be changed until the set-up: what they are more than others is kept.
+
+void Continuation::keep_ahead()
+{
+  if (looked != step) {
+    for (int i = 0; i < atom->nlocal; i++) std::fill_n(&force[i][BEYOND], 3, 0.0);
+    return;
+  }
+  take_back_half_step();
+  for (int i = 0; i < atom->nlocal; i++)
+    for (int d = 0; d < 3; d++) force[i][BEYOND + d] = ahead_now[i][d] - atom->v[i][d];
+  swap_velocities();
+  forget_half_step();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -156,7 +215,6 @@ void Continuation::begin_step()
     memcpy(atom->f[i], force[i], 3 * sizeof(double));
     memcpy(atom->torque[i], &force[i][3], 3 * sizeof(double));
   }
-  if (atom->nlocal) memcpy(before[0], atom->f[0], atom->nlocal * BEFORE * sizeof(double));
 }
 
 /* ----------------------------------------------------------------------
@@ -166,31 +224,31 @@ void Continuation::begin_step()
 void Continuation::grow(int nmax)
 {
   memory->grow(force, nmax, KEPT, "continuation:force");
-  memory->grow(before, nmax, BEFORE, "continuation:before");
+  memory->grow(ahead_now, nmax, 3, "continuation:ahead");
 }
 
 void Continuation::copy(int from, int to)
 {
   memcpy(force[to], force[from], KEPT * sizeof(double));
-  memcpy(before[to], before[from], BEFORE * sizeof(double));
+  memcpy(ahead_now[to], ahead_now[from], 3 * sizeof(double));
 }
 
 void Continuation::clear(int i)
 {
   memset(force[i], 0, KEPT * sizeof(double));
-  memset(before[i], 0, BEFORE * sizeof(double));
+  ahead_now[i][0] = CAME;
 }
 
 int Continuation::pack(int i, double *buf) const
 {
   memcpy(buf, force[i], KEPT * sizeof(double));
-  memcpy(buf + KEPT, before[i], BEFORE * sizeof(double));
+  memcpy(buf + KEPT, ahead_now[i], 3 * sizeof(double));
   return STORED;
 }
 
 int Continuation::unpack(int i, const double *buf)
 {
   memcpy(force[i], buf, KEPT * sizeof(double));
-  memcpy(before[i], buf + KEPT, BEFORE * sizeof(double));
+  memcpy(ahead_now[i], buf + KEPT, 3 * sizeof(double));
   return STORED;
 }

@@ -21,7 +21,8 @@ namespace LAMMPS_NS {
 // the middle, and with these the set-up finds the forces of the last step once more, but for rounding.
 // Before the first step those that were kept take their place. If they differ by more, something has been
 // changed in between, and those of the set-up stand. Where others than fix nve/sphere move balls, as fix move does, a force
-// may change nothing: what it changed in the last step is kept, too.
+// may change nothing: what it changed in the last step is kept, too. So is by how much the velocities that normal dashpots
+// acted on differed from those of the middle.
 class Continuation : protected Pointers {
  public:
   explicit Continuation(class LAMMPS *);
@@ -38,11 +39,17 @@ class Continuation : protected Pointers {
 
   void note_half_step();    // in the middle of each step
   void begin_step();        // the first one takes the forces back
-  double **before;    // force (3) on each ball in the step before the last one, for scheme exact
+
+  // Velocities that normal dashpots act on, of scheme exact (AHEAD of contact_force.h): those of the middle of the step, and
+  // a part of what the last step's force adds to them until its end. look_ahead() finds them while LAMMPS still has that
+  // force, before balls change ranks; balls that come after that have no such force. At a set-up they are the last step's.
+  void look_ahead();
+  void look_ahead_of_new_balls();    // when the balls of the step are known
+  Slope::Vector *ahead();            // room for ghosts, which others fill
 
   // --- storage by atom ---
 
-  static constexpr int STORED = 10;    // numbers of each ball
+  static constexpr int STORED = 13;    // numbers of each ball
   void grow(int nmax);
   void copy(int from, int to);
   void clear(int i);
@@ -56,16 +63,28 @@ class Continuation : protected Pointers {
   }
 
  private:
-  static constexpr int FORCE = 6, CHANGED = FORCE, KEPT = FORCE + 1, BEFORE = 3;
-  double **force;    // and torque, on each ball in the last step; what they changed: changed()
+  static constexpr int FORCE = 6, CHANGED = FORCE, BEYOND = FORCE + 1, KEPT = BEYOND + 3;
+  double **force;    // and torque, on each ball in the last step; what they changed: changed(); velocities ahead of the middle's
+  double **ahead_now;                              // of this step
+  std::vector<Slope::Vector> ahead_again;          // of the last step, at a set-up
+  bigint looked;                                   // step that ahead_now is of
   bigint step;       // the step that they belong to
   double dt;         // and its length
   bool guided;       // some balls may be moved by others than fix nve/sphere
   std::vector<Slope::Vector> v_half, omega_half;    // then, in the middle of this step
 
   bool others_move() const;
+  void take_back_half_step();
+  void swap_velocities();    // v and omega with LAMMPS'
+  void keep_ahead();
   int changed(int i) const;
 };
+
+// LAMMPS keeps the rows of such an array one after the other
+inline Slope::Vector *vectors(double **array)
+{
+  return reinterpret_cast<Slope::Vector *>(array ? array[0] : nullptr);
+}
 
 // what changes velocities in the second half of a step beside the forces; a class, as the style that does so is in a room
 // above

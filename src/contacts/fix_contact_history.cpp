@@ -28,7 +28,7 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 
 static constexpr int STORED = Continuation::STORED;
-static constexpr int VERSION = 3;    // of what restart files hold
+static constexpr int VERSION = 4;    // of what restart files hold
 static const std::string CALLER = "Pair gran/restitution";
 
 /* ---------------------------------------------------------------------- */
@@ -79,6 +79,7 @@ void FixContactHistory::post_neighbor()
   FixNeighHistory::post_neighbor();
   pair->beyond_contact = 0;
   lists_new = true;
+  continuation.look_ahead_of_new_balls();
   owner->run_guards().energy.begin_list();
   owner->run_guards().growth.begin_list();
 }
@@ -136,7 +137,7 @@ void FixContactHistory::unpack_forward_comm(int n, int first, double *buf)
 
 int FixContactHistory::setmask()
 {
-  return FixNeighHistory::setmask() | INITIAL_INTEGRATE | END_OF_STEP;
+  return FixNeighHistory::setmask() | INITIAL_INTEGRATE | POST_INTEGRATE | END_OF_STEP;
 }
 
 void FixContactHistory::init()
@@ -202,6 +203,11 @@ void FixContactHistory::initial_integrate(int)
 {
   owner->run_guards().begin_step();
   continuation.begin_step();
+}
+
+void FixContactHistory::post_integrate()
+{
+  continuation.look_ahead();
 }
 
 /* ----------------------------------------------------------------------

@@ -27,6 +27,7 @@ class FixContactHistory : public FixNeighHistory {
   void init() override;
   void setup(int) override;
   void initial_integrate(int) override;
+  void post_integrate() override;
   void reset_dt() override;
   void pre_exchange() override;
   void setup_post_neighbor() override;
