@@ -63,6 +63,23 @@ struct Columns {
   }
 };
 
+// the same of as many rows as T has lanes
+template <class T> struct ColumnsOf;
+template <> struct ColumnsOf<Four> : Columns {
+  SLOPE_INLINE explicit ColumnsOf(const Four *rows) : Columns(rows[0], rows[1], rows[2], rows[3]) {}
+};
+
+// a[0] b[0] a[2] b[2] and so on; and of the odd lanes
+SLOPE_INLINE Four even_pairs(Four a, Four b)
+{
+  return SLOPE_SHUFFLE(a, b, 0, 4, 2, 6);
+}
+
+SLOPE_INLINE Four odd_pairs(Four a, Four b)
+{
+  return SLOPE_SHUFFLE(a, b, 1, 5, 3, 7);
+}
+
 // a everywhere
 template <class T> SLOPE_INLINE T all(double a)
 {
@@ -108,6 +125,17 @@ SLOPE_INLINE double choose(bool which, double a, double b)
   return which ? a : b;
 }
 
+// a / sqrt(b): root and division do not wait for each other; and sqrt(b), where 1 / sqrt(b) is known
+template <class T> SLOPE_INLINE T over_root(T a, T b)
+{
+  return a / b * root(b);
+}
+
+template <class T> SLOPE_INLINE T root_by(T b, T /*inverse*/)
+{
+  return root(b);
+}
+
 // eight at a time, where the processor has registers for them: two fours
 
 #ifdef __AVX512F__
@@ -125,28 +153,86 @@ SLOPE_INLINE Eight choose(EightFlags which, Eight a, Eight b)
   return which ? a : b;
 }
 
-SLOPE_INLINE void join(const Four *fours, Eight &a)
+// Eight roots and divisions keep the divider busy for 40 cycles: from a root that is right to 2^-14, by Newton's steps
+SLOPE_INLINE Eight over_root(Eight a, Eight b)
 {
-  a = _mm512_insertf64x4(_mm512_castpd256_pd512(fours[0]), fours[1], 1);
+  Eight inverse = _mm512_rsqrt14_pd(b);
+  for (int k = 0; k < 2; k++) inverse += 0.5 * inverse * (1.0 - b * inverse * inverse);
+  return a * inverse;
 }
 
-SLOPE_INLINE Four four_of(Eight a, int which)
+SLOPE_INLINE Eight root_by(Eight b, Eight inverse)
 {
-  return which ? _mm512_extractf64x4_pd(a, 1) : _mm512_castpd512_pd256(a);
+  return b * inverse;
 }
+
+SLOPE_INLINE Eight even_pairs(Eight a, Eight b)
+{
+  return _mm512_unpacklo_pd(a, b);
+}
+
+SLOPE_INLINE Eight odd_pairs(Eight a, Eight b)
+{
+  return _mm512_unpackhi_pd(a, b);
+}
+
+template <> struct ColumnsOf<Eight> {
+  Eight x, y, z, w;
+
+  SLOPE_INLINE explicit ColumnsOf(const Four *rows)
+  {
+    const Eight a = join(rows[0], rows[2]), b = join(rows[1], rows[3]);
+    const Eight c = join(rows[4], rows[6]), d = join(rows[5], rows[7]);
+    const Eight ab_even = even_pairs(a, b), ab_odd = odd_pairs(a, b);
+    const Eight cd_even = even_pairs(c, d), cd_odd = odd_pairs(c, d);
+    x = _mm512_shuffle_f64x2(ab_even, cd_even, 0x88);    // pairs 0 and 2 of both
+    y = _mm512_shuffle_f64x2(ab_odd, cd_odd, 0x88);
+    z = _mm512_shuffle_f64x2(ab_even, cd_even, 0xdd);    // pairs 1 and 3
+    w = _mm512_shuffle_f64x2(ab_odd, cd_odd, 0xdd);
+  }
+
+ private:
+  SLOPE_INLINE static Eight join(Four low, Four high)
+  {
+    return _mm512_insertf64x4(_mm512_castpd256_pd512(low), high, 1);
+  }
+};
 #else
 typedef Four Widest;
 #endif
 
-SLOPE_INLINE void join(const Four *fours, Four &a)
+// the numbers of two columns side by side: row m
+template <class T> struct PairsOf {
+  T even, odd;
+
+  SLOPE_INLINE PairsOf(T a, T b) : even(even_pairs(a, b)), odd(odd_pairs(a, b)) {}
+  SLOPE_INLINE TwoThere pair(int m) const
+  {
+    const T &rows = m % 2 ? odd : even;
+    return TwoThere{rows[m & ~1], rows[m | 1]};
+  }
+};
+
+// four columns as rows to where those are
+SLOPE_INLINE void scatter(const Four *columns, double *const *to)
 {
-  a = fours[0];
+  const Columns rows(columns[0], columns[1], columns[2], columns[3]);
+  four(to[0]) = rows.x;
+  four(to[1]) = rows.y;
+  four(to[2]) = rows.z;
+  four(to[3]) = rows.w;
 }
 
-SLOPE_INLINE Four four_of(Four a, int)
+#ifdef __AVX512F__
+SLOPE_INLINE void scatter(const Eight *columns, double *const *to)
 {
-  return a;
+  const PairsOf<Eight> first(columns[0], columns[1]), last(columns[2], columns[3]);
+  for (int m = 0; m < 8; m++) {
+    two_at(to[m]) = first.pair(m);
+    two_at(to[m] + 2) = last.pair(m);
+  }
 }
+#endif
 
 // the second one if one of them is not a number
 template <class T> SLOPE_INLINE T larger(T a, T b)

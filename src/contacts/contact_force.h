@@ -203,7 +203,7 @@ SLOPE_INLINE void limited_spring(N k, T c, T relax, T limit, const T *n, const T
   const T fy = k * sy + c * u[1];
   const T fz = k * sz + c * u[2];
   const T f2 = fx * fx + fy * fy + fz * fz;
-  const T a = smaller(T(limit / f2 * root(f2)), all<T>(1.0));    // 1, too, if f2 = 0
+  const T a = smaller(over_root(limit, f2), all<T>(1.0));    // 1, too, if f2 = 0
   const T back = (1.0 - a) * relax;
   f[0] = -a * fx;
   f[1] = -a * fy;
@@ -343,27 +343,35 @@ SLOPE_INLINE void add_rolling(const ContactStepOf<N> &step, const ContactOf<T, N
 }
 
 // Force of one contact. history: the springs, updated.
-// ROLLING = false leaves out the rolling resistance, for laws that have none.
-template <bool ROLLING = true, class T, class N>
+// ROLLING = false leaves out the rolling resistance, for laws that have none; WHOLE: of a contact that touches for the whole
+// step, follow_whole_step().
+template <bool ROLLING = true, bool WHOLE = false, class T, class N>
 SLOPE_INLINE void contact_force(const ContactStepOf<N> &step, const ContactOf<T, N> &c,
                                 const CompanyOf<T> &company, T *history, ContactForceOf<T> &out)
 {
   const T *n = c.n;
   const T vn = normal_velocity(c), zero = T();
-  const T elastic = spring_force(step, T(larger(c.overlap, zero) + c.beyond));
+  const T pressed = larger(c.overlap, zero);
+  const T elastic = spring_force(step, WHOLE ? pressed : T(pressed + c.beyond));
   const T cn = step.cn * company.normal;
   const T ahead = choose(crowded(step, c.along), vn, c.ahead);
-  const T own =
-      1.0 + AHEAD * c.first * c.weight * step.taken_n;    // its force is not in c.ahead yet
-  const T fn = larger(T(elastic - cn * c.weight * (ahead + c.turn) / own), all<T>(step.fn_least));
+  T damping = cn * ahead, limited = damping;
+  if (!WHOLE) {
+    const T own =
+        1.0 + AHEAD * c.first * c.weight * step.taken_n;    // its force is not in c.ahead yet
+    damping = cn * c.weight * (ahead + c.turn) / own;
+    limited = cn * ahead / own;
+  }
+  const T fn = larger(T(elastic - damping), all<T>(step.fn_least));
 
   // friction and rolling are limited by a force without the weight, or they would depend on when in a step
   // contacts begin
 
-  const T pressing = c.touches * larger(T(elastic - cn * ahead / own), zero);
+  const T pressing = c.touches * larger(T(elastic - limited), zero);
   T vt[3], ft[3];
   sliding_velocity(c, vn, vt);
-  const T ct = c.touches * step.ct * company.sliding + step.kt * c.early;
+  T ct = c.touches * step.ct * company.sliding;
+  if (!WHOLE) ct += step.kt * c.early;
   limited_spring(step.kt, ct, T(ct * step.per_kt), T(step.friction * pressing), n, vt,
                  T(step.grow * c.grown), history, ft);
 

@@ -121,6 +121,13 @@ class ContactPasses : ContactView {
   template <class N> struct Sizes {
     N radius_i, radius_j;
     ContactStepOf<N> step;
+    N reach, rolling_radius;
+
+    SLOPE_INLINE void add_up(const ContactLaw &law)
+    {
+      reach = touching(radius_i, radius_j);
+      rolling_radius = law.rolling_factor * radius_i * radius_j / (radius_i + radius_j);
+    }
   };
 
   // of a T
@@ -144,8 +151,11 @@ class ContactPasses : ContactView {
     const ContactLaw law = law_in;    // copies: no store below can change them
     const MovingBalls balls = balls_in;
     const Partners partners = partners_in;
-    const Sizes<double> same = {
-        radius_i, radius_j, step_of(moves, law, dt, repeat, radius_i, radius_j, mass_i, mass_j)};
+    Sizes<double> same;
+    same.radius_i = radius_i;
+    same.radius_j = radius_j;
+    same.step = step_of(moves, law, dt, repeat, radius_i, radius_j, mass_i, mass_j);
+    same.add_up(law);
     fill_companies(same.step);
     Batch lasting, changing;    // the second: those that begin or end in the step
     auto evaluate_four = [&](bool changes, const int *k, int count) {
@@ -322,14 +332,12 @@ class ContactPasses : ContactView {
   // vectors row(m), of several contacts m, by component
   template <class T, class Row> SLOPE_INLINE static void gather(Row row, T *components)
   {
-    Four parts[3][lanes<T>() / 4];
-    for (int h = 0; h < lanes<T>() / 4; h++) {
-      const Columns c(row(4 * h), row(4 * h + 1), row(4 * h + 2), row(4 * h + 3));
-      parts[0][h] = c.x;
-      parts[1][h] = c.y;
-      parts[2][h] = c.z;
-    }
-    for (int d = 0; d < 3; d++) join(parts[d], components[d]);
+    Four rows[lanes<T>()];
+    for (int m = 0; m < lanes<T>(); m++) rows[m] = row(m);
+    const ColumnsOf<T> c(rows);
+    components[0] = c.x;
+    components[1] = c.y;
+    components[2] = c.z;
   }
 
   template <class T, class Partners>
@@ -356,17 +364,17 @@ class ContactPasses : ContactView {
       h[m] = histories[k[m]];
     }
     Sizes<N> sizes;
-    find_sizes(k, e, same, balls, partners, sizes);
+    find_sizes(k, e, law, same, balls, partners, sizes);
     const N ri = sizes.radius_i, rj = sizes.radius_j;
 
     ContactOf<T, N> c;
-    c.rolling_radius = law.rolling_factor * ri * rj / (ri + rj);
+    c.rolling_radius = sizes.rolling_radius;
 
     T delta[3];
     find_distances(e, balls, partners, delta);
     const T rsq = delta[0] * delta[0] + delta[1] * delta[1] + delta[2] * delta[2];
-    const T r = root(rsq), rinv = 1.0 / rsq * r;
-    const N reach = touching(ri, rj);
+    const T rinv = over_root(all<T>(1.0), rsq), r = root_by(rsq, rinv);
+    const N reach = sizes.reach;
     c.overlap = reach - r;
     for (int d = 0; d < 3; d++) c.n[d] = delta[d] * rinv;
     find_velocities(e, ri, rj, balls, partners, c);
@@ -387,7 +395,7 @@ class ContactPasses : ContactView {
     T history[6];
     load(h, history);
     ContactForceOf<T> out;
-    contact_force<ROLLING>(sizes.step, c, company, history, out);
+    contact_force<ROLLING, !CHANGES>(sizes.step, c, company, history, out);
     if (!repeat) store<ROLLING>(h, history);    // otherwise it is what the step has left
 
     T ti[3], tj[3];
@@ -395,25 +403,25 @@ class ContactPasses : ContactView {
       ti[d] = out.m[d] - ri * out.t[d];
       tj[d] = out.m[d] + rj * out.t[d];
     }
-    for (int m = 0; m < lanes<T>(); m += 4) {
-      const Columns f = vectors(out.f, m / 4), on_i = vectors(ti, m / 4), on_j = vectors(tj, m / 4);
-      give(e[m], f.x, on_i.x, on_j.x, balls, partners);
-      if (count > m + 1) give(e[m + 1], f.y, on_i.y, on_j.y, balls, partners);
-      if (count > m + 2) give(e[m + 2], f.z, on_i.z, on_j.z, balls, partners);
-      if (count > m + 3) give(e[m + 3], f.w, on_i.w, on_j.w, balls, partners);
-    }
+    const VectorsOf<T> f(out.f), on_i(ti), on_j(tj);
+    for (int m = 0; m < lanes<T>(); m++)
+      if (m == 0 || m < count) give(m, e[m], f, on_i, on_j, balls, partners);
     if (TALLY)
       for (int m = 0; m < count; m++)
         add_to(*tally, e[m], Vector{out.f[0][m], out.f[1][m], out.f[2][m]},
                Vector{delta[0][m], delta[1][m], delta[2][m]});
   }
 
-  // the vectors of four contacts from their components
-  template <class T> SLOPE_INLINE static Columns vectors(const T *components, int which)
-  {
-    return Columns(four_of(components[0], which), four_of(components[1], which),
-                   four_of(components[2], which), Four());
-  }
+  // the vectors of several contacts from their components
+  template <class T> struct VectorsOf {
+    PairsOf<T> xy;
+    T z;
+
+    SLOPE_INLINE explicit VectorsOf(const T *components) :
+        xy(components[0], components[1]), z(components[2])
+    {
+    }
+  };
 
   template <class T, class N, class Partners>
   SLOPE_INLINE static void find_velocities(const Entry *e, const N &ri, const N &rj,
@@ -473,23 +481,14 @@ class ContactPasses : ContactView {
   SLOPE_INLINE void look_up(const Entry *e, const MovingBalls &balls, T &along,
                             CompanyOf<T> &company) const
   {
-    Four parts[4][lanes<T>() / 4];
-    for (int h = 0; h < lanes<T>() / 4; h++) {
-      const double *row[4];
-      for (int m = 0; m < 4; m++) {
-        const Entry &contact = e[4 * h + m];
-        row[m] = companies + 4 * (balls.count[contact.i] + balls.count[contact.j]);
-      }
-      const Columns c(four(row[0]), four(row[1]), four(row[2]), four(row[3]));
-      parts[0][h] = c.x;
-      parts[1][h] = c.y;
-      parts[2][h] = c.z;
-      parts[3][h] = c.w;
-    }
-    join(parts[0], along);
-    join(parts[1], company.normal);
-    join(parts[2], company.sliding);
-    join(parts[3], company.rolling);
+    Four rows[lanes<T>()];
+    for (int m = 0; m < lanes<T>(); m++)
+      rows[m] = four(companies + 4 * (balls.count[e[m].i] + balls.count[e[m].j]));
+    const ColumnsOf<T> c(rows);
+    along = c.x;
+    company.normal = c.y;
+    company.sliding = c.z;
+    company.rolling = c.w;
   }
 
   template <class T, class N, class Partners>
@@ -584,30 +583,21 @@ class ContactPasses : ContactView {
   template <bool ROLLING, class T>
   SLOPE_INLINE static void store(double *const *h, const T *springs)
   {
-    for (int m = 0; m < lanes<T>(); m += 4) {
-      const Columns rows(four_of(springs[0], m / 4), four_of(springs[1], m / 4),
-                         four_of(springs[2], m / 4), four_of(springs[3], m / 4));
-      four(h[m]) = rows.x;
-      four(h[m + 1]) = rows.y;
-      four(h[m + 2]) = rows.z;
-      four(h[m + 3]) = rows.w;
-    }
-    if (ROLLING)
-      for (int m = 0; m < lanes<T>(); m++) {
-        h[m][4] = springs[4][m];
-        h[m][5] = springs[5][m];
-      }
+    scatter(springs, h);
+    if (!ROLLING) return;
+    const PairsOf<T> last(springs[4], springs[5]);
+    for (int m = 0; m < lanes<T>(); m++) two_at(h[m] + 4) = last.pair(m);
   }
 
   template <class Partners>
-  SLOPE_INLINE void find_sizes(const int *, const Entry *, const Sizes<double> &same,
-                               const MovingBalls &, const Partners &, Sizes<double> &sizes) const
+  SLOPE_INLINE void find_sizes(const int *, const Entry *, const ContactLaw &,
+                               const Sizes<double> &same, const MovingBalls &, const Partners &, Sizes<double> &sizes) const
   {
     sizes = same;
   }
   template <class Partners>
-  SLOPE_INLINE void find_sizes(const int *k, const Entry *e, const Sizes<double> &same,
-                               const MovingBalls &balls, const Partners &partners,
+  SLOPE_INLINE void find_sizes(const int *k, const Entry *e, const ContactLaw &law,
+                               const Sizes<double> &same, const MovingBalls &balls, const Partners &partners,
                                Sizes<Four> &sizes) const
   {
     sizes.radius_i = sizes.radius_j = Four();
@@ -616,33 +606,35 @@ class ContactPasses : ContactView {
       sizes.radius_j[m] = partners.radius(e[m].j);
     }
     sizes.step = load_rows(*this, k, same.step);
+    sizes.add_up(law);
   }
 
   SLOPE_INLINE static double lane(double same, int) { return same; }
   SLOPE_INLINE static double lane(Four several, int m) { return several[m]; }
 
-  // force f on i, minus f on j; torque ti on i, minus tj on j
-  template <class Partners>
-  SLOPE_INLINE static void give(const Entry &e, Four f, Four ti, Four tj, const MovingBalls &balls,
-                                const Partners &partners)
+  // of contact m, force f on i, minus f on j; torque ti on i, minus tj on j
+  template <class T, class Partners>
+  SLOPE_INLINE static void give(int m, const Entry &e, const VectorsOf<T> &f,
+                                const VectorsOf<T> &ti, const VectorsOf<T> &tj,
+                                const MovingBalls &balls, const Partners &partners)
   {
-    add(balls.f[e.i], f);
-    add(balls.torque[e.i], ti);
+    add(balls.f[e.i], f, m);
+    add(balls.torque[e.i], ti, m);
     if (partners.gets_force(e.j)) {
-      subtract(balls.f[e.j], f);
-      subtract(balls.torque[e.j], tj);
+      subtract(balls.f[e.j], f, m);
+      subtract(balls.torque[e.j], tj, m);
     }
   }
 
-  SLOPE_INLINE static void add(Vector &sum, Four f)
+  template <class T> SLOPE_INLINE static void add(Vector &sum, const VectorsOf<T> &f, int m)
   {
-    two_at(&sum.x) += TwoThere{f[0], f[1]};
-    sum.z += f[2];
+    two_at(&sum.x) += f.xy.pair(m);
+    sum.z += f.z[m];
   }
-  SLOPE_INLINE static void subtract(Vector &sum, Four f)
+  template <class T> SLOPE_INLINE static void subtract(Vector &sum, const VectorsOf<T> &f, int m)
   {
-    two_at(&sum.x) -= TwoThere{f[0], f[1]};
-    sum.z -= f[2];
+    two_at(&sum.x) -= f.xy.pair(m);
+    sum.z -= f.z[m];
   }
 };
 
