@@ -17,16 +17,6 @@
 namespace Slope {
 inline namespace SLOPE_INSTRUCTIONS {
 
-// the law for balls of these radii (m) and masses (kg), time step dt (s); repeat as for contact_step()
-template <class N>
-SLOPE_INLINE ContactStepOf<N> step_of(const Sides &moves, const ContactLaw &law, double dt,
-                                      bool repeat, N ri, N rj, N mi, N mj)
-{
-  return contact_step(
-      law, N(moves.i / mi), N(moves.j / mj), N(moves.mass_factor(law) / moves.inverse_mass(mi, mj)),
-      moves.inverse_rolling(law, ri, rj, mi, mj), N(ri * rj / (ri + rj)), dt, repeat);
-}
-
 // of the centres, m
 template <class Partners>
 SLOPE_INLINE double distance(const MovingBalls &balls, const Partners &partners, int i, int j)

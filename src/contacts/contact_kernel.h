@@ -14,7 +14,7 @@
 #define SLOPE_CONTACT_KERNEL_H
 
 #include "contact_balls.h"
-#include "contact_law.h"
+#include "contact_step.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -92,7 +92,8 @@ struct ContactTally {
   void *visitor;
 };
 
-// the passes compiled for one instruction set, for each kind of partners
+// The passes compiled for one instruction set, for each kind of partners: find_contacts() and apply_contacts() of
+// contact_passes.h
 struct ContactKernel {
   template <class Partners>
   using Find = void (*)(const ContactView &, bool repeat, const MovingBalls &, const Partners &);
@@ -100,36 +101,31 @@ struct ContactKernel {
   using Apply = void (*)(const ContactView &, const ContactLaw &, double dt, bool repeat,
                          const MovingBalls &, const Partners &, ContactTally *);
 
-  Find<MovingPartners> find_moving;
-  Find<FixedPartners> find_fixed;
-  Apply<MovingPartners> apply_moving;
-  Apply<FixedPartners> apply_fixed;
+  Find<MovingPartners> find_contacts_of_moving;
+  Find<FixedPartners> find_contacts_of_fixed;
+  Apply<MovingPartners> apply_contacts_of_moving;
+  Apply<FixedPartners> apply_contacts_of_fixed;
 
   // whether one of n numbers differs from what it was by more than that
-  bool (*moved)(const double *now, const double *was, size_t n, double most);
+  bool (*any_moved)(const double *now, const double *was, size_t n, double most);
 
   // First pass: which contacts touch, as bits, and the balls' numbers of contacts. repeat: what touched in
   // the step that has just ended.
-  void find(const ContactView &v, bool repeat, const MovingBalls &b, const MovingPartners &p) const
+  Find<MovingPartners> find_contacts(const MovingPartners &) const
   {
-    find_moving(v, repeat, b, p);
+    return find_contacts_of_moving;
   }
-  void find(const ContactView &v, bool repeat, const MovingBalls &b, const FixedPartners &p) const
-  {
-    find_fixed(v, repeat, b, p);
-  }
+  Find<FixedPartners> find_contacts(const FixedPartners &) const { return find_contacts_of_fixed; }
 
   // Second pass: adds the forces to the balls, whose numbers of contacts are complete. tally: nullptr
   // if not needed
-  void apply(const ContactView &v, const ContactLaw &law, double dt, bool repeat,
-             const MovingBalls &b, const MovingPartners &p, ContactTally *tally) const
+  Apply<MovingPartners> apply_contacts(const MovingPartners &) const
   {
-    apply_moving(v, law, dt, repeat, b, p, tally);
+    return apply_contacts_of_moving;
   }
-  void apply(const ContactView &v, const ContactLaw &law, double dt, bool repeat,
-             const MovingBalls &b, const FixedPartners &p, ContactTally *tally) const
+  Apply<FixedPartners> apply_contacts(const FixedPartners &) const
   {
-    apply_fixed(v, law, dt, repeat, b, p, tally);
+    return apply_contacts_of_fixed;
   }
 };
 

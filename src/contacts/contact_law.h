@@ -5,7 +5,8 @@
 ------------------------------------------------------------------------- */
 
 /* What one pair of atom types needs of the contact law, and what a contact remembers from step to
-   step. The forces are in contact_force.h. No LAMMPS. Derivations: doc/src/theory.rst.
+   step. ContactCoeffs::law() fills it from the words of pair_coeff; contact_step() of contact_step.h makes of it what
+   contact_force() of contact_force.h evaluates. No LAMMPS. Derivations: doc/src/theory.rst.
 
    Units are SI: m, kg, s, N, rad. */
 
@@ -99,25 +100,6 @@ template <class N> SLOPE_INLINE N touching(N ri, N rj)
 {
   return ri + rj - 4.0e-7 * ri * rj / (ri + rj);
 }
-
-// What a step makes of the law, in two parts: what depends on the sizes of the balls, and is kept for each
-// contact where they differ (contact_rows.h), N's alone; and what all contacts share. See contact_step() of
-// contact_force.h.
-template <class N> struct ContactOwnOf {
-  N cn, kt, ct, kr, cr;           // N/m, N s/m: as velocity Verlet needs them
-  N taken_n, taken_t, taken_r;    // share of a motion that its dashpot takes in a step; 0: plain
-  N per_kt, per_kr;               // 1 / kt, 1 / kr; 0 without a spring
-  N spring_n;                     // kn dt^2 over the contact's mass; 0: plain
-  N share_i;    // of the ball in the inverse of the contact's mass; 1 - share_i: of the partner
-};
-struct ContactShared {
-  double dt, grow;    // s; grow: what the springs grow by, 0 at set-up
-  double kn;          // N/m
-  double friction, rolling, fn_least;
-};
-template <class N> struct ContactStepOf : ContactShared, ContactOwnOf<N> {
-};
-using ContactStep = ContactStepOf<double>;
 
 // The normal spring at an overlap (m): its force, N, and what it holds, J. Law: NormalSpring, or a step.
 template <class Law, class T> SLOPE_INLINE T spring_force(const Law &law, T overlap)

@@ -7,7 +7,7 @@
 /* Contacts of one law: what may touch until the next neighbor list, and what does. A step has two passes,
    each over the lists of all styles: find() tells from the distances which contacts touch and counts
    those of each ball; apply() evaluates the law and hands out the forces. Pair gran/restitution and the wall
-   fixes use it. The work is done by the kernels. No LAMMPS. */
+   fixes use it. The work is done by the kernels, contact_passes.h. No LAMMPS. */
 
 #ifndef SLOPE_CONTACT_LIST_H
 #define SLOPE_CONTACT_LIST_H
@@ -123,14 +123,14 @@ class ContactList : public ContactSizes {
     }
   }
 
-  // First pass of a step: see ContactKernel
+  // First pass of a step: find_contacts() of contact_passes.h, compiled for this processor
   template <class Partners>
   void find(bool repeat, const MovingBalls &balls, const Partners &partners)
   {
     if (entries.empty()) return;
     ContactView v = view();
     if (!Partners::MOVE && watched > 0 && !repeat) look_near(v, balls.x);
-    ContactKernels::current().find(v, repeat, balls, partners);
+    ContactKernels::current().find_contacts(partners)(v, repeat, balls, partners);
   }
 
   void store_flags() const
@@ -138,14 +138,15 @@ class ContactList : public ContactSizes {
     for (size_t k = 0; k < flags.size(); k++) *flags[k] = has_history(k);
   }
 
-  // Second pass: see ContactKernel
+  // Second pass: apply_contacts() of contact_passes.h
   template <class Partners>
   void apply(const ContactLaw &law, double dt, bool repeat, const MovingBalls &balls,
              const Partners &partners, ContactTally *tally = nullptr)
   {
     if (entries.empty()) return;
     if (!equal) make_rows(dt);
-    ContactKernels::current().apply(view(), law, dt, repeat, balls, partners, tally);
+    ContactKernels::current().apply_contacts(partners)(view(), law, dt, repeat, balls, partners,
+                                                       tally);
   }
 
  private:
@@ -170,7 +171,7 @@ class ContactList : public ContactSizes {
     static constexpr double COORDINATE = 0.57;    // of a way, < 1/sqrt(3)
     const size_t numbers = 3 * static_cast<size_t>(watched);
     const bool noted = !seen.empty() &&
-        !ContactKernels::current().moved(&x->x, &seen[0].x, numbers, COORDINATE * room);
+        !ContactKernels::current().any_moved(&x->x, &seen[0].x, numbers, COORDINATE * room);
     if (!noted) note_anew(x);
     steps++;
     v.look = noted ? ContactView::NOTED : ContactView::NOTE;

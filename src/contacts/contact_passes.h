@@ -137,8 +137,9 @@ class ContactPasses : ContactView {
   struct Batch {
     int found[2 * BLOCK + FETCHED + 3], count = 0;
 
-    void drop(int done)
+    SLOPE_INLINE void drop(int done)
     {
+      if (done == 0) return;
       count -= done;
       std::copy(found + done, found + done + count, found);
     }

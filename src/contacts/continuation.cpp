@@ -7,7 +7,7 @@
 
 #include "atom.h"
 #include "comm.h"
-#include "contact_force.h"
+#include "contact_step.h"
 #include "fix.h"
 #include "lammps_compat.h"
 #include "memory.h"

@@ -40,7 +40,7 @@ class Continuation : protected Pointers {
   void note_half_step();    // in the middle of each step
   void begin_step();        // the first one takes the forces back
 
-  // Velocities that normal dashpots act on, of scheme exact (AHEAD of contact_force.h): those of the middle of the step, and
+  // Velocities that normal dashpots act on, of scheme exact (AHEAD of contact_step.h): those of the middle of the step, and
   // a part of what the last step's force adds to them until its end. look_ahead() finds them while LAMMPS still has that
   // force, before balls change ranks; balls that come after that have no such force. At a set-up they are the last step's.
   void look_ahead();

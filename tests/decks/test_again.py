@@ -177,3 +177,37 @@ def test_pieces_of_a_run_with_balls_that_are_guided(tmp_path, guide, newton):
     assert last(tmp_path, **settings, first="run 20\nrun 5\nwrite_restart at.restart") == whole
     if guide != "variable":    # whose variable holds the place from the first step on
         assert last(tmp_path, **settings, begin=AGAIN, first="run 5") == whole
+
+
+def test_velocities_that_are_changed_between_runs_count(tmp_path):
+    """Two balls in a hard-damped impact are stopped between runs: what is left is the force of the spring."""
+    log = run_deck("""
+units si
+atom_style sphere
+atom_modify map array
+boundary f f f
+comm_modify vel yes
+region box block -1 3 -1 1 -1 1 units box
+create_box 1 box
+create_atoms 1 single 0 0 0 units box
+create_atoms 1 single 0.99 0 0 units box
+set group all diameter 1.0 density 2000
+velocity all set 0.5 0 0
+group second id 2
+velocity second set -0.5 0 0
+pair_style gran/restitution
+pair_coeff 1 1 stiffness 1e7 1e7 restitution 0.1
+timestep 1e-5
+fix move all nve/sphere
+variable f equal -fx[1]
+variable spring equal 1e7*(1-x[2]+x[1])
+thermo_style custom step v_f v_spring
+run 200
+velocity all set 0 0 0
+run 1
+""", tmp_path)
+    rows = re.findall(r"^ *(\d+) +([-+.0-9e]+) +([-+.0-9e]+) *$", log, re.MULTILINE)
+    moving, stopped = numpy.array(rows, dtype=float)[1:3]
+    assert moving[0] == stopped[0] == 200
+    assert moving[1] > 1.2 * moving[2]
+    assert stopped[1] == pytest.approx(stopped[2], rel=0.05)

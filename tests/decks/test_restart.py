@@ -48,6 +48,9 @@ def same_files(tmp_path, one="out", two="again"):
     assert filecmp.cmp(tmp_path / f"{one}.left.csv", tmp_path / f"{two}.left.csv", shallow=False)
     a, b = summary(tmp_path, one), summary(tmp_path, two)
     assert a.pop("change_rate") == pytest.approx(b.pop("change_rate"), rel=1e-12)
+    # a difference of sums, whose rounding depends on the order of the balls on their ranks
+    rounding = 1e-12 * a["volume"]["released"]
+    assert a["volume"].pop("residual") == pytest.approx(b["volume"].pop("residual"), abs=rounding)
     for key in ("step", "time", "balls", "volume", "travel", "motion", "largest"):
         assert a[key] == b[key], key
 
