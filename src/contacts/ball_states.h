@@ -51,8 +51,8 @@ class BallStates : protected Pointers {
   std::vector<Slope::FixedContacts> fixed;    // of ghosts, too, if ranks share them:
   bool shared;                                // where balls are held, which may be another's
   std::vector<int> numbers_on_fixed;
-  Slope::BallsOnFixed on_fixed;               // whose sums are to be cleared
-  bool ahead_known;    // the velocities that normal dashpots act on are others than those of the middle of the step
+  Slope::BallsOnFixed on_fixed;    // whose sums are to be cleared
+  bool ahead_known;                // normal dashpots act on velocities of their own
 };
 
 }    // namespace LAMMPS_NS

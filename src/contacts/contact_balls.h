@@ -32,10 +32,10 @@ struct MovingBalls {
   const Vector *x, *v, *omega;
   const double *radius, *mass;
   Vector *f, *torque;
-  const Vector *ahead;     // velocities that normal dashpots act on: see contact_step.h
-  unsigned char *count;    // contacts of each ball now; up to 255
-  FixedContacts *fixed;    // of each ball of this rank
-  BallsOnFixed *on_fixed;  // nullptr: not asked for
+  const Vector *ahead;       // velocities that normal dashpots act on: see contact_step.h
+  unsigned char *count;      // contacts of each ball now; up to 255
+  FixedContacts *fixed;      // of each ball of this rank
+  BallsOnFixed *on_fixed;    // nullptr: not asked for
 };
 
 // The partners of the moving balls: other moving balls ...

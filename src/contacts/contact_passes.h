@@ -592,14 +592,15 @@ class ContactPasses : ContactView {
 
   template <class Partners>
   SLOPE_INLINE void find_sizes(const int *, const Entry *, const ContactLaw &,
-                               const Sizes<double> &same, const MovingBalls &, const Partners &, Sizes<double> &sizes) const
+                               const Sizes<double> &same, const MovingBalls &, const Partners &,
+                               Sizes<double> &sizes) const
   {
     sizes = same;
   }
   template <class Partners>
   SLOPE_INLINE void find_sizes(const int *k, const Entry *e, const ContactLaw &law,
-                               const Sizes<double> &same, const MovingBalls &balls, const Partners &partners,
-                               Sizes<Four> &sizes) const
+                               const Sizes<double> &same, const MovingBalls &balls,
+                               const Partners &partners, Sizes<Four> &sizes) const
   {
     sizes.radius_i = sizes.radius_j = Four();
     for (int m = 0; m < 4; m++) {

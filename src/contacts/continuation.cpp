@@ -6,6 +6,7 @@
 #include "continuation.h"
 
 #include "atom.h"
+#include "ball_sweep.h"
 #include "comm.h"
 #include "contact_step.h"
 #include "fix.h"
@@ -22,7 +23,7 @@ using Slope::Vector;
 
 static constexpr double ROUNDING = 1.0e-10;    // of the largest force
 static constexpr int ALL = 63;                 // velocities and spins, by bits
-static constexpr double CAME = HUGE_VAL;       // in place of a velocity ahead: of a ball that came in this step
+static constexpr double CAME = HUGE_VAL;       // for a velocity ahead: the ball came in this step
 
 /* ---------------------------------------------------------------------- */
 
@@ -161,9 +162,14 @@ void Continuation::look_ahead()
 {
   const double part = Slope::AHEAD * update->dt;
   const Vector *const u = vectors(atom->v), *const f = vectors(atom->f);
+  const double *const mass = atom->rmass;
   Vector *const to = vectors(ahead_now);
-  for (int i = 0; i < atom->nlocal; i++) {
-    const double a = part / atom->rmass[i];
+  const int n = atom->nlocal;
+  int i = 0;
+  for (; i + 4 <= n; i += 4)
+    Slope::sum_four(&to[i].x, &u[i].x, Slope::OfComponents(part / Slope::four(&mass[i])), &f[i].x);
+  for (; i < n; i++) {
+    const double a = part / mass[i];
     to[i] = {u[i].x + a * f[i].x, u[i].y + a * f[i].y, u[i].z + a * f[i].z};
   }
   looked = update->ntimestep;

@@ -64,13 +64,14 @@ class Continuation : protected Pointers {
 
  private:
   static constexpr int FORCE = 6, CHANGED = FORCE, BEYOND = FORCE + 1, KEPT = BEYOND + 3;
-  double **force;    // and torque, on each ball in the last step; what they changed: changed(); velocities ahead of the middle's
-  double **ahead_now;                              // of this step
-  std::vector<Slope::Vector> ahead_again;          // of the last step, at a set-up
-  bigint looked;                                   // step that ahead_now is of
-  bigint step;       // the step that they belong to
-  double dt;         // and its length
-  bool guided;       // some balls may be moved by others than fix nve/sphere
+  double **force;        // and torque, on each ball in the last step; what they changed: changed();
+                         // velocities that dashpots acted on, less those of the middle
+  double **ahead_now;    // of this step
+  std::vector<Slope::Vector> ahead_again;    // of the last step, at a set-up
+  bigint looked;                             // step that ahead_now is of
+  bigint step;                               // the step that they belong to
+  double dt;                                 // and its length
+  bool guided;    // some balls may be moved by others than fix nve/sphere
   std::vector<Slope::Vector> v_half, omega_half;    // then, in the middle of this step
 
   bool others_move() const;

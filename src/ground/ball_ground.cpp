@@ -200,7 +200,7 @@ Slope::NodeGrid BallGround::grid() const
   return around;
 }
 
-Slope::Surface BallGround::surface() const
+Slope::GroundHeights BallGround::surface() const
 {
   // beyond the rectangle of the plan, which a turned grid overlaps, nothing is known
 
@@ -209,7 +209,7 @@ Slope::Surface BallGround::surface() const
     turn(x, y);
     return x >= plan.xlo && x <= plan.xhi && y >= plan.ylo && y <= plan.yhi;
   };
-  Slope::Surface s;
+  Slope::GroundHeights s;
   s.height = [=](double x, double y, double &z) {
     return in_plan(x, y) && height(x, y, z);
   };
@@ -227,9 +227,9 @@ Slope::Surface BallGround::surface() const
   return s;
 }
 
-Slope::Surface BallGround::looked_at() const
+Slope::GroundHeights BallGround::looked_at() const
 {
-  Slope::Surface s = surface();
+  Slope::GroundHeights s = surface();
   if (sunk && arguments.side == RegionSurface::UPPER)
     s.height = [this](double x, double y, double &z) {
       turn(x, y);
@@ -267,9 +267,9 @@ std::vector<double> BallGround::spacings() const
   return all;
 }
 
-Slope::Surface BallGround::surface_of(double wanted) const
+Slope::GroundHeights BallGround::surface_of(double wanted) const
 {
-  Slope::Surface s = surface();
+  Slope::GroundHeights s = surface();
   const auto whole = s.keep;
   s.keep = [=](double x, double y) {
     return spacing(x, y) == wanted && (!whole || whole(x, y));

@@ -40,13 +40,14 @@ class BallGround : protected Pointers {
   // columns of ball centres; any rank alone
   bool keep(double x, double y) const;
   int zone(double x, double y) const;    // from 1, 0: in none
-  Slope::Surface surface() const;
-  Slope::Surface looked_at() const;    // the same for marks: an upper boundary before it is sunk
+  Slope::GroundHeights surface() const;
+  Slope::GroundHeights
+  looked_at() const;    // the same for marks: an upper boundary before it is sunk
 
   // spacings of the balls, first that of what is in no zone; the surface where it is one of these
   std::vector<double> spacings() const;
   double spacing(double x, double y) const;
-  Slope::Surface surface_of(double spacing) const;
+  Slope::GroundHeights surface_of(double spacing) const;
 
   // whether the regions are those of the constructor; if not, which one is not
   bool stands(std::string &changed) const;

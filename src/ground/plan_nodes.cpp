@@ -46,7 +46,7 @@ static int exponent(int tile)
 
 /* ---------------------------------------------------------------------- */
 
-PlanNodes::PlanNodes(const NodeGrid &g, const Surface &s, int tile_in) :
+PlanNodes::PlanNodes(const NodeGrid &g, const GroundHeights &s, int tile_in) :
     grid(g), surface(s), tile(tile_in), shift(exponent(tile_in)), known(0), nothing{NaN, false}
 {
   if (!(g.spacing > 0.0)) throw std::invalid_argument("the spacing must be > 0");

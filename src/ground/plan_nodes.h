@@ -10,35 +10,16 @@
 #ifndef SLOPE_PLAN_NODES_H
 #define SLOPE_PLAN_NODES_H
 
+#include "ground_heights.h"
+
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <vector>
 
 namespace Slope {
 
-// square plan grid: nodes at origin + integers * spacing, those inside the rectangle
-struct NodeGrid {
-  double xlo, xhi, ylo, yhi;
-  double spacing;
-  double xorigin, yorigin;
-};
-
 // number of nodes of the plan grid; a double, because it may be beyond any integer
 double count_nodes(const NodeGrid &grid);
-
-// the surface, column by column; called only inside the rectangle of the plan grid
-struct Surface {
-  // height of the surface at x,y; false where there is none
-  std::function<bool(double x, double y, double &z)> height;
-
-  // true where balls are wanted; empty: everywhere
-  std::function<bool(double x, double y)> keep;
-
-  // Where keep() is false: height of the ground that other balls make there, below height();
-  // false where unknown. The vertical gap at the rim of keep() is closed. Empty: leave it.
-  std::function<bool(double x, double y, double &z)> scar;
-};
 
 // Cell i,j of the plan grid has its corners at the nodes i,j i+1,j i,j+1 i+1,j+1. Cells that
 // reach over the edge of the rectangle have corners outside: i and j run from -1 to nx and ny.
@@ -51,10 +32,10 @@ class PlanNodes {
 
   // Needs a spacing > 0 and a rectangle that is not empty (else std::invalid_argument), fewer
   // than 2^31 nodes (else std::length_error).
-  PlanNodes(const NodeGrid &grid, const Surface &surface, int tile = TILE);
+  PlanNodes(const NodeGrid &grid, const GroundHeights &surface, int tile = TILE);
 
   const NodeGrid grid;
-  const Surface surface;
+  const GroundHeights surface;
   const int tile, shift;    // 1 << shift is the tile
   int nx, ny, tiles_x, tiles_y;
   double xfirst, yfirst;    // node 0,0

@@ -27,7 +27,7 @@ static uint64_t mix(uint64_t x)
 
 /* ---------------------------------------------------------------------- */
 
-ScatteredLattice::ScatteredLattice(const NodeGrid &g, const Surface &s, uint64_t seed_in,
+ScatteredLattice::ScatteredLattice(const NodeGrid &g, const GroundHeights &s, uint64_t seed_in,
                                    int64_t before_in) :
     spacing(g.spacing),
     cell(g.spacing / FINER), glance(GLANCE), grid(g), surface(s), seed(mix(seed_in)),

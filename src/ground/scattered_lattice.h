@@ -37,7 +37,8 @@ class ScatteredLattice {
 
   // As PlanNodes, of whose grid the spacing and the origin of the lattice are taken. Numbers of balls begin
   // with those of the cell before.
-  ScatteredLattice(const NodeGrid &grid, const Surface &surface, uint64_t seed, int64_t before = 0);
+  ScatteredLattice(const NodeGrid &grid, const GroundHeights &surface, uint64_t seed,
+                   int64_t before = 0);
 
   const double spacing, cell;
   int64_t first[2];    // cell of the corner of the plan
@@ -72,7 +73,7 @@ class ScatteredLattice {
   static constexpr int GLANCE = 4;
 
   const NodeGrid grid;
-  const Surface surface;
+  const GroundHeights surface;
   const uint64_t seed;
   const int64_t before;
 

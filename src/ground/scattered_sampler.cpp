@@ -18,7 +18,7 @@ static constexpr size_t MOST = 1 << 18;     // candidates of 48 bytes that are r
 
 /* ---------------------------------------------------------------------- */
 
-ScatteredSampler::ScatteredSampler(const NodeGrid &g, const Surface &s, uint64_t seed_in,
+ScatteredSampler::ScatteredSampler(const NodeGrid &g, const GroundHeights &s, uint64_t seed_in,
                                    int tile) :
     grid(g),
     seed(seed_in), side(tile * ScatteredLattice::FINER), plan(0.0, 0.0, tile * g.spacing, 0, 0)
@@ -31,7 +31,7 @@ ScatteredSampler::ScatteredSampler(const NodeGrid &g, const Surface &s, uint64_t
   plan.ny = static_cast<int>((all.n[1] + tile - 1) / tile);
 }
 
-void ScatteredSampler::add(double spacing, const Surface &s)
+void ScatteredSampler::add(double spacing, const GroundHeights &s)
 {
   NodeGrid other = grid;
   other.spacing = spacing;

@@ -31,10 +31,11 @@ class ScatteredSampler : public BallSampler {
   static constexpr double WIDEST = 0.95;
 
   // As ScatteredLattice. The size of tiles, in spacings, is for tests.
-  ScatteredSampler(const NodeGrid &grid, const Surface &surface, uint64_t seed, int tile = 32);
+  ScatteredSampler(const NodeGrid &grid, const GroundHeights &surface, uint64_t seed,
+                   int tile = 32);
 
   // balls of another spacing, before any are made: no place may be kept by two surfaces
-  void add(double spacing, const Surface &surface);
+  void add(double spacing, const GroundHeights &surface);
 
   TilePlan tiles() const override { return plan; }
   void sample(int tile, std::vector<PlacedBall> &balls, SurfaceCounts &counts) override;

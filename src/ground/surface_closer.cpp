@@ -173,7 +173,7 @@ SurfaceCloser::Rim SurfaceCloser::find_rim(int i, int j, const Point &on, const 
 
   // a scar is a cut into the ground: what hovers above the ground leaves none
 
-  const Surface &surface = nodes.surface;
+  const GroundHeights &surface = nodes.surface;
   Point &foot = rim.foot;
   double z;
   if (surface.scar && column_height(i, j, foot.x, foot.y, z) && surface.height(foot.x, foot.y, z) &&

@@ -22,7 +22,7 @@ static constexpr size_t LEAST_KNOWN = 1024;    // tiles whose nodes are remember
 
 /* ---------------------------------------------------------------------- */
 
-SurfaceSampler::SurfaceSampler(const NodeGrid &grid, double radius, const Surface &surface,
+SurfaceSampler::SurfaceSampler(const NodeGrid &grid, double radius, const GroundHeights &surface,
                                int tile) :
     nodes(grid, surface, tile),
     closer(nodes, radius)

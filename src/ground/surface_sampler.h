@@ -26,7 +26,7 @@ namespace Slope {
 class SurfaceSampler : public BallSampler {
  public:
   // As PlanNodes; radius > 0, else std::invalid_argument. The size of tiles is for tests.
-  SurfaceSampler(const NodeGrid &grid, double radius, const Surface &surface,
+  SurfaceSampler(const NodeGrid &grid, double radius, const GroundHeights &surface,
                  int tile = PlanNodes::TILE);
 
   TilePlan tiles() const override;

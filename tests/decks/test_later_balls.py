@@ -1,5 +1,6 @@
 """Balls that come or change in a run, a step that changes, empty groups: what is wrong with them is told, once."""
 import math
+import re
 
 import numpy
 import pytest
@@ -197,3 +198,12 @@ def test_two_sub_styles(tmp_path):
     for wall in ("", "unfix wall\n"):
         balls(wall + hybrid + "run 10", tmp_path,
               expect_error="needs one pair_style gran/restitution, got 2 in pair_style hybrid")
+
+
+def test_a_ball_that_touches_in_its_first_step(tmp_path):
+    """Its dashpots act on the velocity that it comes with: no force has changed that yet."""
+    log = balls("molecule small small.mol\nregion spot block -1e-4 1e-4 -1e-4 1e-4 1.59998 1.59999\n"
+                "fix in soil deposit 1 0 10 4321 region spot mol small vz -1 -1\n"
+                "thermo_style custom step atoms ke\nthermo 1\nrun 12", tmp_path)
+    energies = [float(row[1]) for row in re.findall(r"^ +\d+ +(17) +(\S+) *$", log, re.MULTILINE)]
+    assert 1.0 < energies[0] < 0.5 * 10.0 * 1.0 ** 2

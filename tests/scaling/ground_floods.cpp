@@ -38,7 +38,7 @@ static std::vector<double> places(BallSampler &&sampler)
   return xyz;
 }
 
-static void flood(const std::string &what, const Surface &s, uint64_t seed, const Surface *below = nullptr)
+static void flood(const std::string &what, const GroundHeights &s, uint64_t seed, const GroundHeights *below = nullptr)
 {
   const double spacing = ScatteredSampler::WIDEST * 2.0 * R;
   std::vector<double> xyz = places(ScatteredSampler({0.0, SIDE, 0.0, SIDE, spacing, 0.3, 0.1}, s, seed));
@@ -66,7 +66,7 @@ static void shapes(uint64_t seed)
     flood("a plane of " + std::to_string(degrees), plane(degrees, 360.0 * unit(random)), seed);
   const double g = std::tan((30.0 + 50.0 * unit(random)) * PI / 180.0), x0 = 7.0 + unit(random), high = 12.0 * unit(random);
   const double across = unit(random);
-  Surface cone, pit, cliff, field, slip;
+  GroundHeights cone, pit, cliff, field, slip;
   cone.height = [=](double x, double y, double &z) {
     z = -g * std::hypot(x - x0, y - 7.2);
     return true;
@@ -111,7 +111,7 @@ int main(int narg, char **arg)
     for (int seed = 1; seed <= n; seed++) {
       const double d = grid.cell * std::pow(10.0, -0.5 + unit(random));
       const double x0 = grid.xlo + unit(random) * (wide - SIDE * d), y0 = grid.ylo + unit(random) * (high - SIDE * d);
-      Surface s;    // in diameters
+      GroundHeights s;    // in diameters
       s.height = [&grid, d, x0, y0](double x, double y, double &z) {
         z = grid.height(x0 + d * x, y0 + d * y) / d;
         return z == z;

@@ -14,7 +14,7 @@ struct SurfaceBalls : SurfaceCounts {
   int64_t nodes = 0;
 };
 
-inline SurfaceBalls sample_surface(const NodeGrid &grid, double radius, const Surface &surface)
+inline SurfaceBalls sample_surface(const NodeGrid &grid, double radius, const GroundHeights &surface)
 {
   SurfaceSampler sampler(grid, radius, surface);
   SurfaceBalls all;

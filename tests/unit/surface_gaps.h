@@ -73,7 +73,7 @@ class Nearest {
 // the largest distance of a point of the surface to the nearest ball, over columns so close that
 // neighboring points are no farther apart than 0.07 R on a slope of this gradient
 
-inline double worst_gap(const Surface &surface, const Nearest &nearest, double xlo, double xhi, double ylo,
+inline double worst_gap(const GroundHeights &surface, const Nearest &nearest, double xlo, double xhi, double ylo,
                  double yhi, double gradient = 0.0)
 {
   const double pitch = 0.07 * R / std::sqrt(1.0 + gradient * gradient);
@@ -87,10 +87,10 @@ inline double worst_gap(const Surface &surface, const Nearest &nearest, double x
   return worst;
 }
 
-inline Surface plane(double degrees, double azimuth)
+inline GroundHeights plane(double degrees, double azimuth)
 {
   const double g = std::tan(degrees * PI / 180.0), a = azimuth * PI / 180.0;
-  Surface s;
+  GroundHeights s;
   s.height = [=](double x, double y, double &z) {
     z = g * (std::cos(a) * x + std::sin(a) * y);
     return true;

@@ -28,9 +28,9 @@ constexpr double R = 0.5, SIDE = 90.0;
 
 // waves with steep flanks, a hole, and a filter with a wedge that is narrower than the spacing
 
-Surface waves()
+GroundHeights waves()
 {
-  Surface s;
+  GroundHeights s;
   s.height = [](double x, double y, double &z) {
     z = 0.7 * x + 4.0 * std::sin(0.5 * x) * std::cos(0.4 * y);
     return std::hypot(x - 60.0, y - 20.0) > 7.0;

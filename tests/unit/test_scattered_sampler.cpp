@@ -41,13 +41,13 @@ std::vector<double> places(BallSampler &sampler)
   return xyz;
 }
 
-std::vector<double> scatter(double side, double spacing, const Surface &surface, uint64_t seed = 1)
+std::vector<double> scatter(double side, double spacing, const GroundHeights &surface, uint64_t seed = 1)
 {
   ScatteredSampler sampler({0.0, side, 0.0, side, spacing, 0.3, 0.1}, surface, seed);
   return places(sampler);
 }
 
-double middle_of(const Surface &s, double side)
+double middle_of(const GroundHeights &s, double side)
 {
   double z;
   s.height(0.5 * side, 0.5 * side, z);
@@ -56,7 +56,7 @@ double middle_of(const Surface &s, double side)
 
 // a box around the middle of a surface, over its whole height there: is it a way for a ball?
 
-bool gets_through(const std::vector<double> &xyz, const Surface &s, double side)
+bool gets_through(const std::vector<double> &xyz, const GroundHeights &s, double side)
 {
   double zlo = HUGE_VAL, zhi = -HUGE_VAL, z;
   for (double x = 1.0; x <= side - 1.0; x += 0.1)
@@ -92,7 +92,7 @@ TEST(ScatteredSampler, no_two_are_near_and_no_point_of_the_surface_is_far)
   for (double degrees : {0.0, 35.0, 60.0, 75.0, 80.0})
     for (double azimuth : {0.0, 30.0, 45.0}) {
       const double side = degrees < 60.0 ? 16.0 : 7.0;
-      const Surface s = plane(degrees, azimuth);
+      const GroundHeights s = plane(degrees, azimuth);
       const std::vector<double> xyz = scatter(side, WIDEST, s, 5);
       for (size_t a = 0; a < xyz.size(); a += 3)
         for (size_t b = 0; b < a; b += 3)
@@ -122,7 +122,7 @@ TEST(ScatteredSampler, has_no_order)
       }
     return most;
   };
-  const Surface level = plane(0.0, 0.0);
+  const GroundHeights level = plane(0.0, 0.0);
   EXPECT_LT(strongest(scatter(40.0, 1.0, level)), 30.0);
   SurfaceSampler on_grid({0.0, 40.0, 0.0, 40.0, 1.0, 0.0, 0.0}, R, level);
   EXPECT_GT(strongest(places(on_grid)), 1000.0);
@@ -130,7 +130,7 @@ TEST(ScatteredSampler, has_no_order)
 
 TEST(ScatteredSampler, seeds_differ_and_the_plan_does_not_matter)
 {
-  const Surface s = plane(40.0, 20.0);
+  const GroundHeights s = plane(40.0, 20.0);
   const std::vector<double> one = scatter(20.0, 0.9, s, 1), two = scatter(20.0, 0.9, s, 2);
   EXPECT_NE(one, two);
   int same = 0, inside = 0;    // of a larger rectangle, those away from the rim of the smaller one
@@ -159,10 +159,10 @@ struct Zones {
   }
 };
 
-std::vector<double> scatter_zones(double side, const Zones &zones, const Surface &s, int tile = 32)
+std::vector<double> scatter_zones(double side, const Zones &zones, const GroundHeights &s, int tile = 32)
 {
   auto part = [&](double spacing) {
-    Surface its = s;
+    GroundHeights its = s;
     its.keep = [=](double x, double y) {
       return zones.of(x, y) == spacing;
     };
@@ -180,7 +180,7 @@ TEST(ScatteredSampler, at_a_seam_none_are_nearer_and_no_gap_is_larger_than_in_th
   for (double degrees : {0.0, 40.0})
     for (const Zones &zones : {Zones{WIDEST, 0.5, 0.7}, Zones{0.4, WIDEST, 0.5}, Zones{WIDEST, 0.94, 0.3},
                                Zones{WIDEST, 0.5, 0.94}}) {
-      const Surface s = plane(degrees, 25.0);
+      const GroundHeights s = plane(degrees, 25.0);
       const std::vector<double> xyz = scatter_zones(side, zones, s);
       auto spacing = [&](size_t k) {
         return zones.of(xyz[k], xyz[k + 1]);
@@ -204,7 +204,7 @@ TEST(ScatteredSampler, at_a_seam_none_are_nearer_and_no_gap_is_larger_than_in_th
 
 TEST(ScatteredSampler, zones_have_the_places_of_their_spacing_whatever_the_tiles)
 {
-  const Surface s = plane(30.0, 25.0);
+  const GroundHeights s = plane(30.0, 25.0);
   const Zones zones = {0.9, 0.5, 0.7};
   auto sorted = [](const std::vector<double> &xyz) {
     std::vector<std::array<double, 3>> all;
@@ -232,11 +232,11 @@ TEST(ScatteredSampler, zones_have_the_places_of_their_spacing_whatever_the_tiles
 
 TEST(ScatteredSampler, refuses_what_makes_no_plan)
 {
-  const Surface s = plane(0.0, 0.0);
+  const GroundHeights s = plane(0.0, 0.0);
   EXPECT_THROW(ScatteredSampler({0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0}, s, 1), std::invalid_argument);
   EXPECT_THROW(ScatteredSampler({1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0}, s, 1), std::invalid_argument);
   EXPECT_THROW(ScatteredSampler({0.0, 1e9, 0.0, 1e9, 1.0, 0.0, 0.0}, s, 1), std::length_error);
-  Surface cliff;
+  GroundHeights cliff;
   cliff.height = [](double x, double, double &z) {
     z = x < 5.0 ? 0.0 : 3000.0;
     return true;
@@ -253,10 +253,10 @@ TEST(ScatteredSampler, no_way_through_planes)
   for (int degrees = 0; degrees <= 80; degrees += 10)
     for (double azimuth : {0.0, 22.5, 45.0, 77.0}) {
       const double side = degrees < 60 ? 14.0 : 8.0;
-      const Surface s = plane(degrees, azimuth);
+      const GroundHeights s = plane(degrees, azimuth);
       EXPECT_FALSE(gets_through(scatter(side, WIDEST, s, 1 + degrees), s, side)) << degrees << " " << azimuth;
     }
-  const Surface level = plane(0.0, 0.0);    // the flood would notice
+  const GroundHeights level = plane(0.0, 0.0);    // the flood would notice
   EXPECT_TRUE(gets_through(scatter(14.0, 1.4 * WIDEST, level), level, 14.0));
 }
 
@@ -264,7 +264,7 @@ TEST(ScatteredSampler, no_way_through_cones_pits_cliffs_and_waves)
 {
   const double side = 12.0;
   for (uint64_t seed = 1; seed <= 6; seed++) {
-    Surface cone, pit, cliff, waves;
+    GroundHeights cone, pit, cliff, waves;
     const double g = std::tan((55.0 + 4.0 * seed) * PI / 180.0);
     cone.height = [=](double x, double y, double &z) {
       z = -g * std::hypot(x - 6.1, y - 5.8);
@@ -282,7 +282,7 @@ TEST(ScatteredSampler, no_way_through_cones_pits_cliffs_and_waves)
       z = 0.7 * x + 4.0 * std::sin(0.5 * x + seed) * std::cos(0.9 * y);
       return true;
     };
-    for (const Surface &s : {cone, pit, cliff, waves})
+    for (const GroundHeights &s : {cone, pit, cliff, waves})
       EXPECT_FALSE(gets_through(scatter(side, WIDEST, s, seed), s, side)) << seed;
   }
 }
@@ -300,7 +300,7 @@ TEST(ScatteredSampler, no_way_past_the_scarp_of_a_release)
       z = 0.3 * x - 3.0;
       return in_polygon(corner, x, y) && z <= ground(x, y);
     };
-    Surface field, bottom;
+    GroundHeights field, bottom;
     field.height = [=](double x, double y, double &z) {
       z = ground(x, y);
       return true;
@@ -329,7 +329,7 @@ TEST(ScatteredSampler, no_way_past_the_scarp_of_a_release)
 
 TEST(ScatteredSampler, a_hole_in_the_data_is_closed_up_to_its_rim)
 {
-  Surface s = plane(35.0, 10.0);
+  GroundHeights s = plane(35.0, 10.0);
   const auto whole = s.height;
   s.height = [=](double x, double y, double &z) {
     return whole(x, y, z) && !(x > 3.3 && x < 6.8 && y > 4.1 && y < 5.9);
@@ -343,7 +343,7 @@ TEST(ScatteredSampler, a_hole_in_the_data_is_closed_up_to_its_rim)
 
 TEST(ScatteredSampler, small_pieces_of_ground_have_a_ball_each)
 {
-  Surface s = plane(20.0, 30.0);
+  GroundHeights s = plane(20.0, 30.0);
   const auto whole = s.height;
   s.height = [=](double x, double y, double &z) {
     return whole(x, y, z) && std::hypot(std::remainder(x - 1.05, 2.1), std::remainder(y - 1.05, 2.1)) < 0.24;
@@ -353,7 +353,7 @@ TEST(ScatteredSampler, small_pieces_of_ground_have_a_ball_each)
 
 TEST(ScatteredSampler, no_curtain_up_to_a_region_above_the_ground)
 {
-  Surface s = plane(0.0, 0.0);
+  GroundHeights s = plane(0.0, 0.0);
   s.keep = [](double x, double y) {
     return std::hypot(x - 5.0, y - 5.0) > 2.5;
   };

@@ -361,7 +361,7 @@ Ground place(const Bed &bed, const Height &ground, double half, double d, double
              bool goes_on = true)
 {
   const SunkSurface sunk(bed, sink, std::min(std::max(sink, d) / 8.0, 0.5 * sink));
-  Surface below, around;
+  GroundHeights below, around;
   below.height = [&](double x, double y, double &z) {
     if (!sunk.height(x, y, z) || z >= ground(x, y)) return false;
     double bottom;

@@ -27,7 +27,7 @@ namespace {
 constexpr double S = 2.0 * R;     // the paper's spacing of the ground
 constexpr double LIMIT = 1.93;    // in radii: cover radius and sampling
 
-Surface level()
+GroundHeights level()
 {
   return plane(0.0, 0.0);
 }
@@ -47,7 +47,7 @@ TEST(SurfaceSampler, planes_of_any_slope_are_closed)
     for (double azimuth : {0.0, 22.5, 45.0, 77.0, 180.0})
       for (double degrees : {0.0, 30.0, 45.0, 50.0, 54.7, 60.0, 66.0, 70.0, 75.0, 80.0, 85.0}) {
         const double side = degrees < 75.0 ? 6.0 * S : 2.0 * S;
-        const Surface s = plane(degrees, azimuth);
+        const GroundHeights s = plane(degrees, azimuth);
         const SurfaceBalls balls = sample_surface(square(side, spacing), R, s);
         const double gap =
             worst_gap(s, Nearest(balls.xyz), 0.0, side, 0.0, side, std::tan(degrees * PI / 180.0));
@@ -61,7 +61,7 @@ TEST(SurfaceSampler, without_the_extra_balls_a_ball_passes_above_54_7_degrees)
   // along the slope a plan cell is 2R by 2R/cos: its middle is R sqrt(1 + 1/cos^2) from a node
 
   for (double degrees : {50.0, 54.0, 55.5, 60.0, 70.0}) {
-    const Surface s = plane(degrees, 0.0);
+    const GroundHeights s = plane(degrees, 0.0);
     const SurfaceBalls balls = sample_surface(square(6.0 * S), R, s);
     const double cosine = std::cos(degrees * PI / 180.0);
     const double gap = worst_gap(s, Nearest(balls.xyz, balls.base), S, 5.0 * S, S, 5.0 * S,
@@ -92,7 +92,7 @@ TEST(SurfaceSampler, extra_balls_are_few)
 
 TEST(SurfaceSampler, balls_lie_on_the_surface)
 {
-  const Surface s = plane(75.0, 30.0);
+  const GroundHeights s = plane(75.0, 30.0);
   const SurfaceBalls balls = sample_surface({0.0, 5.3, -2.1, 4.4, S, 0.2, 0.3}, R, s);
   ASSERT_EQ(balls.xyz.size(), 3 * static_cast<size_t>(balls.base + balls.extra));
   EXPECT_GT(balls.extra, 0);
@@ -124,7 +124,7 @@ TEST(SurfaceSampler, round_off_loses_no_row_at_the_edge)
 {
   // 3 * 0.1 > 0.3 and the surface ends there
 
-  Surface s;
+  GroundHeights s;
   s.height = [](double x, double y, double &z) {
     z = 0.0;
     return x >= 0.0 && x <= 0.3 && y >= 0.0 && y <= 0.3;
@@ -137,7 +137,7 @@ TEST(SurfaceSampler, round_off_loses_no_row_at_the_edge)
 
 TEST(SurfaceSampler, the_strip_beyond_the_last_node_is_closed)
 {
-  const Surface s = plane(30.0, 20.0);
+  const GroundHeights s = plane(30.0, 20.0);
   const SurfaceBalls balls = sample_surface({0.0, 5.9, 0.0, 5.9, S, 0.0, 0.0}, R, s);
   EXPECT_EQ(balls.base, 36);
   EXPECT_LT(worst_gap(s, Nearest(balls.xyz), 0.0, 5.9, 0.0, 5.9, 0.6), LIMIT);
@@ -150,7 +150,7 @@ TEST(SurfaceSampler, wide_spacing_is_left_alone_on_almost_level_ground)
   EXPECT_EQ(gentle.extra, 0);
   EXPECT_GT(cover_radius(3.0 * R, R), 2.0 * R);    // what callers warn of
 
-  const Surface steep = plane(60.0, 0.0);
+  const GroundHeights steep = plane(60.0, 0.0);
   const SurfaceBalls balls = sample_surface(square(15.0 * R, 3.0 * R), R, steep);
   EXPECT_LT(R * worst_gap(steep, Nearest(balls.xyz), 0.0, 15.0 * R, 0.0, 15.0 * R, 1.74),
             cover_radius(3.0 * R, R) + sampling_slack(R));
@@ -169,7 +169,7 @@ TEST(SurfaceSampler, refuses_what_makes_no_grid)
 
 TEST(SurfaceSampler, same_balls_every_time)
 {
-  const Surface s = plane(72.0, 33.0);
+  const GroundHeights s = plane(72.0, 33.0);
   const SurfaceBalls a = sample_surface(square(8.0 * S), R, s);
   const SurfaceBalls b = sample_surface(square(8.0 * S), R, s);
   EXPECT_EQ(a.xyz, b.xyz);
@@ -184,7 +184,7 @@ TEST(SurfaceSampler, vertical_step_is_closed)
   // the surface between the nodes on both sides of the step is the chord from foot to top
 
   const double top = 9.0, edge = 3.2;
-  Surface step, chord;
+  GroundHeights step, chord;
   step.height = [=](double x, double, double &z) {
     z = x < edge ? 0.0 : top;
     return true;
@@ -208,7 +208,7 @@ TEST(SurfaceSampler, vertical_step_is_closed)
 
 TEST(SurfaceSampler, enormous_step_takes_no_enormous_time)
 {
-  Surface s;
+  GroundHeights s;
   s.height = [](double x, double, double &z) {
     z = x < 1.5 ? 0.0 : 3000.0;
     return true;
@@ -221,7 +221,7 @@ TEST(SurfaceSampler, enormous_step_takes_no_enormous_time)
 TEST(SurfaceSampler, cone_is_closed)
 {
   const double g = std::tan(70.0 * PI / 180.0);
-  Surface cone;
+  GroundHeights cone;
   cone.height = [=](double x, double y, double &z) {
     z = -g * std::hypot(x - 6.1, y - 5.8);
     return true;
@@ -230,7 +230,7 @@ TEST(SurfaceSampler, cone_is_closed)
 
   // between the nodes the sampler closes the patches, which cut off up to S^2/(8 r) of the curve
 
-  Surface outer = cone;
+  GroundHeights outer = cone;
   outer.keep = [](double x, double y) {
     return std::hypot(x - 6.1, y - 5.8) > 3.0;
   };
@@ -242,7 +242,7 @@ TEST(SurfaceSampler, bowl_is_closed_up_to_its_rim)
   // a slip sphere of 24 R, cut by a ground that rises at 20 degrees; columns beyond have no surface
 
   const double r = 24.0 * R, c = 8.0 * R;
-  Surface bowl;
+  GroundHeights bowl;
   bowl.height = [=](double x, double y, double &z) {
     const double under = r * r - x * x - y * y;
     if (under < 0.0) return false;
@@ -262,7 +262,7 @@ TEST(SurfaceSampler, bowl_is_closed_up_to_its_rim)
 TEST(SurfaceSampler, bowl_with_vertical_rim_is_closed)
 {
   const double r = 12.0 * R;
-  Surface bowl;
+  GroundHeights bowl;
   bowl.height = [=](double x, double y, double &z) {
     const double under = r * r - x * x - y * y;
     z = -std::sqrt(std::max(under, 0.0));
@@ -283,7 +283,7 @@ TEST(SurfaceSampler, bowl_with_vertical_rim_is_closed)
 
 TEST(SurfaceSampler, hole_in_the_data_is_closed_up_to_its_rim)
 {
-  Surface s = plane(35.0, 10.0);
+  GroundHeights s = plane(35.0, 10.0);
   const auto ground = s.height;
   s.height = [=](double x, double y, double &z) {
     return ground(x, y, z) && !(x > 3.3 && x < 6.8 && y > 4.1 && y < 5.9);
@@ -302,7 +302,7 @@ TEST(SurfaceSampler, hole_in_the_data_is_closed_up_to_its_rim)
 TEST(SurfaceSampler, filter_keeps_whole_columns_and_is_closed_up_to_its_rim)
 {
   for (bool inside : {true, false}) {
-    Surface s = plane(40.0, 70.0);
+    GroundHeights s = plane(40.0, 70.0);
     s.keep = [=](double x, double y) {
       return (std::hypot(x - 6.0, y - 6.0) < 3.7) == inside;
     };
@@ -322,7 +322,7 @@ TEST(SurfaceSampler, filter_keeps_the_sharp_corner_between_nodes)
 {
   // a wedge whose tip lies in a cell that has no node inside
 
-  Surface s = level();
+  GroundHeights s = level();
   s.keep = [](double x, double y) {
     return y > 4.0 && y < 8.9 && std::fabs(x - 2.5) < 0.3 * (8.9 - y);
   };
@@ -360,7 +360,7 @@ TEST(SurfaceSampler, wall_of_a_scar_is_closed)
       {{5.0, 1.5}, {9.6, 5.5}, {6.0, 10.2}, {1.7, 6.0}},
       {{1.95, 5.5}, {10.0, 2.9}, {10.0, 8.1}}};    // pointed, between nodes
   for (const auto &corner : scars) {
-    Surface s = plane(std::atan(g) * 180.0 / PI, 0.0);
+    GroundHeights s = plane(std::atan(g) * 180.0 / PI, 0.0);
     s.keep = [=](double x, double y) {
       return !in_polygon(corner, x, y);
     };
@@ -382,7 +382,7 @@ TEST(SurfaceSampler, no_scarp_where_the_scar_ends_at_the_ground)
 {
   // a slip plane that comes out of the ground at x = 5
 
-  Surface s = level();
+  GroundHeights s = level();
   s.keep = [](double x, double) {
     return x > 5.3;
   };
@@ -396,7 +396,7 @@ TEST(SurfaceSampler, no_scarp_where_the_scar_ends_at_the_ground)
 
 TEST(SurfaceSampler, no_curtain_up_to_a_region_above_the_ground)
 {
-  Surface s = level();
+  GroundHeights s = level();
   s.keep = [](double x, double y) {
     return std::hypot(x - 5.0, y - 5.0) > 2.5;
   };
@@ -417,7 +417,7 @@ static void expect_closed(const std::function<double(double, double)> &ground,
                           double zhi, bool needs_scarp)
 {
   const double side = 12.0;
-  Surface field, bottom;
+  GroundHeights field, bottom;
   field.height = [=](double x, double y, double &z) {
     z = ground(x, y);
     return true;
@@ -490,7 +490,7 @@ TEST(SurfaceSampler, ground_for_smaller_balls_leaves_them_no_way)
   const double small = 0.55 * R, contact = small + R, side = 5.0;
   for (double degrees : {45.0, 52.0, 60.0, 72.0})
     for (double azimuth : {0.0, 30.0, 45.0}) {
-      const Surface s = plane(degrees, azimuth);
+      const GroundHeights s = plane(degrees, azimuth);
       double middle;
       s.height(0.5 * side, 0.5 * side, middle);
       const double high = side * std::tan(degrees * PI / 180.0);

@@ -49,7 +49,16 @@ SLOPE_INLINE void add_four(double *to, const OfComponents &factor, const double 
   four(to + 8) += factor.third * four(by + 8);
 }
 
-// the same for one ball
+// sum = to + factor * by
+SLOPE_INLINE void sum_four(double *sum, const double *to, const OfComponents &factor,
+                           const double *by)
+{
+  four(sum) = four(to) + factor.first * four(by);
+  four(sum + 4) = four(to + 4) + factor.second * four(by + 4);
+  four(sum + 8) = four(to + 8) + factor.third * four(by + 8);
+}
+
+// to += factor * by, for one ball
 SLOPE_INLINE void add_one(double *to, double factor, const double *by)
 {
   for (int d = 0; d < 3; d++) to[d] += factor * by[d];
