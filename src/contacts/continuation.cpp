@@ -158,8 +158,19 @@ void Continuation::swap_velocities()
 
 /* ---------------------------------------------------------------------- */
 
+Vector *Continuation::to_look_ahead()
+{
+  return vectors(ahead_now);
+}
+
+void Continuation::note_looked()
+{
+  looked = update->ntimestep;
+}
+
 void Continuation::look_ahead()
 {
+  if (looked == update->ntimestep) return;
   const double part = Slope::AHEAD * update->dt;
   const Vector *const u = vectors(atom->v), *const f = vectors(atom->f);
   const double *const mass = atom->rmass;
@@ -206,7 +217,7 @@ void Continuation::keep_ahead()
 void Continuation::begin_step()
 {
   const bool kept = step == update->ntimestep - 1 && step == update->firststep;
-  step = -1;                            // a step of this number may come again: reset_timestep
+  step = looked = -1;                   // a step of this number may come again: reset_timestep
   double mine[4] = {}, most[4] = {};    // largest force, torque; differences
   for (int i = 0; i < atom->nlocal && kept; i++)
     for (int d = 0; d < 3; d++) {

@@ -44,6 +44,9 @@ class Continuation : protected Pointers {
   // a part of what the last step's force adds to them until its end. look_ahead() finds them while LAMMPS still has that
   // force, before balls change ranks; balls that come after that have no such force. At a set-up they are the last step's.
   void look_ahead();
+  Slope::Vector *
+  to_look_ahead();    // where a style that goes through all balls may put them; then:
+  void note_looked();
   void look_ahead_of_new_balls();    // when the balls of the step are known
   Slope::Vector *ahead();            // room for ghosts, which others fill
 

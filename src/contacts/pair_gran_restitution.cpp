@@ -253,6 +253,11 @@ PairGranRestitution *PairGranRestitution::of(LAMMPS *lmp)
   return dynamic_cast<PairGranRestitution *>(lmp->force->pair_match("gran/restitution", 1));
 }
 
+Continuation *PairGranRestitution::continuation() const
+{
+  return fix_history ? &fix_history->continuation : nullptr;
+}
+
 /* ---------------------------------------------------------------------- */
 
 void PairGranRestitution::announce_wall(ContactHolder *wall, int type,

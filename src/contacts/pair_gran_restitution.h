@@ -66,7 +66,8 @@ class PairGranRestitution : public Pair, public ContactHistoryOwner {
   void announce_wall(class ContactHolder *wall, int wall_type, const std::vector<int> &other_types,
                      int groupbit, const char *style);
   Slope::MovingBalls moving_balls() { return states.balls(); }
-  bool sizes_vary = false;    // between two neighbor lists, by fix adapt
+  class Continuation *continuation() const;    // nullptr before init()
+  bool sizes_vary = false;                     // between two neighbor lists, by fix adapt
   ContactGuards guards;
   Slope::ContactWorks works;    // of fix energy/ledger, walls included
 

@@ -20,11 +20,14 @@ namespace LAMMPS_NS {
 class FixNVESphereSlope : public FixNVESphere {
  public:
   using FixNVESphere::FixNVESphere;
+  void init() override;
   void initial_integrate(int) override;
   void final_integrate() override;
 
  private:
-  template <bool MOVE> void integrate();
+  class Continuation *contacts = nullptr;    // whose velocities ahead this fix finds on its way
+
+  template <bool MOVE, bool LOOK> void integrate();
 };
 
 }    // namespace LAMMPS_NS
