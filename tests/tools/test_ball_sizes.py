@@ -83,9 +83,11 @@ def test_what_no_finer_run_has_is_unknown():
 
 
 def test_no_more_is_removed_than_was_released():
-    coarse, fine = ([made_rows.row(variables={"d": d}, remove_m3=remove, released_m3=1000.0, ball_m3=1.0)
-                     for remove in volumes] for d, volumes in (("2", (500.0, 600.0, 950.0)), ("1", (700.0, 840.0))))
+    coarse, fine = ([made_rows.row(variables={"d": d}, remove_m3=remove, released_m3=1000.0, ball_m3=1.0,
+                                   blocked_m=remove / 10, axis_m=104.0) for remove in volumes]
+                    for d, volumes in (("2", (500.0, 600.0, 950.0)), ("1", (700.0, 840.0))))
     found = sizes.of([*zip(coarse, fine), coarse[2:]])
+    assert found.row(coarse[2]).road.blocked_m == 104       # nor is more of a road blocked than there is
     assert found.row(coarse[2]).road.remove_m3 == 1000 and found.row(coarse[0]).road.remove_m3 == pytest.approx(700)
 
 

@@ -102,10 +102,10 @@ HEADLINES = {
                            road={**ROAD, "reached": [0.02, 0.07]})}
 HEADLINES["open"] = {**HEADLINES["floor"], "kind": "open", "low_m3": None, "reasons": [
     {"code": "size of balls", "numbers": {"sizes": 1, "grown": None}}]}
-SAID = {"number": ("35,800 m³ must be cleared from the road; with 90 % confidence between 21,000 and 48,200 m³.",
-                   "95 % of known events of this volume and height leave no more, by 24 runs weighted by known events; "
-                   "13 runs with chosen settings give 1,200 m³. The band: chance and parameters -14,000 +12,000 m³, a "
-                   "still finer model -400 +0 m³."),
+SAID = {"number": ("35,800 m³ must be cleared from the road; this figure lies, with 90 % confidence within the "
+                   "model, between 21,000 and 48,200 m³.", " of this volume and height leave no more, by 24 runs ",
+                   "13 runs with chosen settings give 1,200 m³. The band, as the root of the squares: chance and "
+                   "parameters -14,000 +12,000 m³, a still more detailed model -400 m³."),
         "within": ("12,000 m³ must be cleared", "between 9,000 and 15,000 m³", "88 % of known events",
                    "What would change it: 12 % of known events of this volume and height go farther than all 24 runs "
                    "that they weigh, and may leave more; none of these runs leaves more than 15,000 m³ to remove."),
@@ -117,14 +117,15 @@ SAID = {"number": ("35,800 m³ must be cleared from the road; with 90 % confiden
                  "Why: What a finer model would change is not known: this one has one size", "Next step: a finer "
                  "model"),
         "not reached": ("More than 0 m³ must be cleared from the road, where the mass reaches it",
-                        "The road begins after 2,400 m: none of 6 runs of both kinds and 20 % to 30 % of known "
-                        "events of this volume and height reach it.", "Next step: a larger elevation model"),
+                        "The road begins after 2,400 m: 20 % to 30 % of known events of this volume and height, and "
+                        "none of 6 runs of both kinds, reach it.", "Next step: a larger elevation model"),
         "withheld": ("come down, up to", "It goes about", "The road begins", "How much must be cleared from the road "
                      "is not known. More than a tenth of the runs failed, or had not come to rest when they ended "
                      "(runs with chosen settings).",
                      "Next step: more time for the mass to come to rest, about"),
         "nothing": ("0 m³ must be cleared from the road: in no run does anything come to lie on it.",
-                    "none of 6 runs of both kinds and 2 % to 7 % of known events of this volume and height reach it.")}
+                    "2 % to 7 % of known events of this volume and height, and none of 6 runs of both kinds, reach "
+                    "it.")}
 
 
 @pytest.mark.parametrize("case", HEADLINES)
@@ -279,7 +280,7 @@ def test_the_first_page_in_order(slope, here):
     wanted = ["come down", "At least 12.0 m³ must be cleared", "of what those of 13 runs with chosen settings",
               "It goes",
               "count half each", "The road begins", "raised the volume by 31 %", "Not in it: water", "Computed with",
-              "Next step: a larger elevation model, about 60 s", "Final thickness", "The run on which the number rests",
+              "Next step: a larger elevation model, about 60 s", "Final thickness", "A run that leaves about as much",
               "on the road itself", "The appendix has"]
     places = [text.find(words) for words in wanted]
     assert -1 not in places and places == sorted(places), (places, text)
@@ -512,7 +513,7 @@ BEST = {"set": {"rolling": "0.1", "spacing": "0.5"}, "chance_m3": 3.0, "repeats"
 
 
 @pytest.mark.parametrize("best, headline, own, shown", [
-    (BEST, {"source": "paper"}, "b", " The run on which the number rests, 2 of the appendix: rolling resistance 0.1."),
+    (BEST, {"source": "paper"}, "b", " A run that leaves about as much, 2 of the appendix: rolling resistance 0.1."),
     ({**BEST, "chance_m3": None, "repeats": 1}, {"source": "paper"}, "a",
      " Run 1 of the appendix: rolling resistance 0.05."),
     (BEST, {"source": "ensemble"}, "b", " Run 2 of the appendix: rolling resistance 0.1."),

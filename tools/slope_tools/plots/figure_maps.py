@@ -34,12 +34,14 @@ TINTS = LinearSegmentedColormap.from_list(
 class Exceeded(NamedTuple):
     """The share of whom a deposit is thicker than `thick` (m) at each cell; its OUTLINES are drawn.
 
-    far: the share that goes beyond all runs, nobody knows how far: a line of no more than that has no place.
+    far: the share that goes beyond all runs, nobody knows how far: a line of no more than that has no place; short:
+    that which ends before all of them.
     """
     share: np.ndarray
     whom: str
     thick: float
     far: float = 0.0
+    short: float = 0.0
 
     @property
     def drawn(self) -> List[float]:

@@ -306,7 +306,8 @@ def exceeded(data: Data) -> Optional[figure_maps.Exceeded]:
         return None
     least = min(shown_maps, key=lambda one: one["threshold"])
     whom = "known events" if known else "runs"
-    return figure_maps.Exceeded(data.read_map(least["file"]), whom, least["threshold"], known.far if known else 0.0)
+    return figure_maps.Exceeded(data.read_map(least["file"]), whom, least["threshold"],
+                                *((known.far, known.short) if known else ()))
 
 
 def draw(data: Data, several: Sequence[study_types.MapEntry], maps) -> List[Picture]:

@@ -113,6 +113,8 @@ class Maps:
             return ""
         shares = " and ".join(f"{100 * one:g} %" for one in exceeded.drawn)
         beyond = f"; {digits.percent(exceeded.far)} go beyond all runs" if exceeded.far else ""
+        if exceeded.short:
+            beyond += f"; {digits.percent(exceeded.short)} end before all runs, and count as the shortest"
         return (f" Black lines: where the deposit is thicker than {exceeded.thick:g} m in {shares} of {exceeded.whom}"
                 f"{beyond}.")
 

@@ -244,7 +244,7 @@ def rest_card(data: Data):
             "note": ends[0].end + (", ended by its rest criterion" if worst is None else "")}
 
 
-# --- on which runs the number rests, and which of them the map shows ---
+# --- on which runs the number rests, and which run the map shows ---
 
 CHANCE = "how the balls lie at the start"
 WORDS = {"rolling": "the rolling resistance", "friction": "the friction", "d": "the size of the model's balls",
@@ -272,7 +272,7 @@ def shown_run(data: Data) -> str:
     number, of = data.number(one.name), values_of(data, row.set)
     said = data.study.headline
     rests = said and said.volume_m3 and is_own(data) and one.name == named_run.governing(data.study)
-    text = f"The run on which the number rests, {number} of the appendix" if rests else f"Run {number} of the appendix"
+    text = f"A run that leaves about as much, {number} of the appendix" if rests else f"Run {number} of the appendix"
     return f" {text}{of and f': {of}'}."
 
 

@@ -3,6 +3,7 @@ from typing import Any, List, Mapping, Optional, Sequence
 
 from ..deposits.axis import Span
 from ..deposits.road_axis import axes_of, axis_of
+from ..digits import percent
 from ..geometry import box_of
 from ..plots import figure_charts, figure_maps, known_reach
 from ..sites.site_roads import FOLDER
@@ -76,8 +77,10 @@ def of_all(data: Data) -> Optional[Section]:
 def gaps(data: Data, about: study_types.Stretches) -> str:
     """Where known events end and no run does."""
     known = ensemble_types.weighted(data.of_study.ensemble) if about.of_known_events else None
-    return "".join(f" {one.text[0].upper()}{one.text[1:]}." for one in (known.doubts if known else ())
-                   if one.kind == "gap")
+    text = f" {percent(known.short)} of known events end before all runs and count as the shortest: fewer may block " \
+        "it." if known and known.short else ""
+    return text + "".join(f" {one.text[0].upper()}{one.text[1:]}." for one in (known.doubts if known else ())
+                          if one.kind == "gap")
 
 
 def caption(asked: Asked, about: study_types.Stretches, runs: str) -> str:

@@ -13,6 +13,7 @@ class Letter(NamedTuple):
     """Volumes in m3 of ground, lengths in m along the fall path.
 
     released: what comes down; number: what must be cleared, None without a road; gap: of it, see entries.KnownQuantile;
+    cut: degrees, of the road's edges, above which is removed; events: how many known events weigh the runs, None: none;
     reach: how far; roads: of a site with several, the worst first; lacks: kinds of findings, of what is not in it;
     size: what the size of the balls would change, a sentence without its full stop.
     """
@@ -23,6 +24,8 @@ class Letter(NamedTuple):
     roads: Sequence[Number]
     lacks: Sequence[str]
     size: str
+    cut: Optional[float] = None
+    events: Optional[int] = None
 
 
 def of_study(about: study_types.Study) -> Letter:
@@ -34,4 +37,5 @@ def of_study(about: study_types.Study) -> Letter:
     return Letter(max((row.released_m3 for row in rows), default=0.0), number, gap, about.reach, read(about),
                   [one.kind for one in judged.limits(about, bool(about.study.repeat))],
                   about.size.text if about.size else sizes.alone(max(
-                      (row.released_m3 / row.ball_m3 for row in rows), default=0.0)))
+                      (row.released_m3 / row.ball_m3 for row in rows), default=0.0)),
+                  about.study.road["cut_angle"] if about.study.road else None, known.events if known else None)

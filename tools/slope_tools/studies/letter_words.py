@@ -14,11 +14,13 @@ Write = Callable[[str, str, float], str]        # a number of what, in which uni
 ALIKE = {Source.PAPER.value: "with chosen settings", Source.ENSEMBLE.value: "with drawn settings"}
 OF = {**ALIKE, Source.ENSEMBLE.value: "weighted by known events"}
 EVENTS = "known events of this volume and height"
-CAUSES = {Cause.RUNS.value: "chance and parameters", Cause.TRANSFER.value: "transfer to the finest model",
-          Cause.SIZE.value: "a still finer model", Cause.OTHER.value: "the other runs"}
+CAUSES = {Cause.RUNS.value: "chance and parameters", Cause.TRANSFER.value: "from the coarse to the detailed model",
+          Cause.SIZE.value: "a still more detailed model", Cause.OTHER.value: "the other runs"}
+NARROWS = {Cause.RUNS.value: "more runs, or a past event for calibration", Cause.TRANSFER.value:
+           "more runs of the detailed model", Cause.SIZE.value: "a more detailed model"}
 LACKS = {"no repeats": "what chance changes, as no run was repeated",
-         "slip assumed": "whether, and how likely, the slope fails"}
-DRY = "water in the mass or on its way, with which it goes farther"
+         "slip assumed": "whether, and how likely, the slope fails, and with which slip surface"}
+DRY = "water in the mass or on its way, with which it would go farther"
 TOLD = Code.NOT_REACHED,       # reasons that are said with the road
 REMOVE = "volume to remove from the road"
 
@@ -42,11 +44,12 @@ def plain(_: str, __: str, value: float) -> str:
 
 def say(one: Letter, write: Write = plain) -> Said:
     number = one.number
-    return Said(f"{one.released:,.0f} m3 of ground come down.", clear(number, write) if number else "",
+    return Said(f"If the slope fails, {three(one.released)} m3 of ground come down.",
+                clear(number, write) + taken(one) if number else "",
                 basis(number, one, write) if number else "", far(one.reach, write), roads(one, write),
                 change(number) if number else "",
                 f"Not in it: {'; '.join([DRY, *(LACKS[kind] for kind in one.lacks if kind in LACKS)])}.",
-                capital(one.size))
+                capital(one.size) + " The band has it." * bool(number and number.high_m3 and one.size))
 
 
 def lines(one: Letter) -> List[str]:
@@ -76,6 +79,12 @@ def counted(runs: int, which: str = "") -> str:
 
 # --- what must be cleared ---
 
+def taken(one: Letter) -> str:
+    """What to clear means."""
+    return "" if one.cut is None or not (one.number and one.number.volume_m3) else (
+        f" That is what lies on it, and what beside it would slide onto it, above {one.cut:g} degrees from its edges.")
+
+
 def clear(number: Headline, write: Write) -> str:
     """The sentence with the number, or what stands in its place."""
     return {Kind.NUMBER: of_number, Kind.FLOOR: of_floor, Kind.OPEN: of_open, Kind.WITHHELD: of_withheld,
@@ -86,8 +95,8 @@ def of_number(number: Headline, write: Write) -> str:
     low, high = (write(f"{REMOVE}, {name} end", "m3", value or 0.0)
                  for value, name in ((number.low_m3, "lower"), (number.high_m3, "upper")))
     how = "with 90 % confidence" if has_chance(number) else "without chance, as no run was repeated,"
-    return (f"{write(REMOVE, 'm3', number.volume_m3 or 0.0)} m3 must be cleared from the road; {how} between {low} and "
-            f"{high} m3.")
+    return (f"{write(REMOVE, 'm3', number.volume_m3 or 0.0)} m3 must be cleared from the road; this figure lies, {how} "
+            f"within the model, between {low} and {high} m3.")
 
 
 def has_chance(number: Headline) -> bool:
@@ -125,8 +134,12 @@ def basis(number: Headline, one: Letter, write: Write) -> str:
     runs, floor = runs_of(number, source), Kind(number.kind) is Kind.FLOOR
     beside: Optional[PaperPart]
     if source is Source.ENSEMBLE:
-        events = f"{percent(number.share or 0.0)} of {EVENTS}"
+        many = "" if one.events is None else f"{one.events} recorded landslides, "
+        events = f"{percent(number.share or 0.0)} of {many}{EVENTS}" + "," * bool(many)
         text = f"{lower} {events} stay within, by {runs}" if floor else f"{events} leave no more, by {runs}"
+        if number.ensemble and number.ensemble.far and all(
+                reason.code is not Code.BEYOND for reason in answer_words.told(number)):
+            text += f"; {percent(number.ensemble.far)} go beyond all runs and may leave more than any of these"
         other, beside = Source.PAPER, number.paper
     else:
         text = f"{lower} those of {runs} leave that leave most" if floor else \
@@ -139,12 +152,13 @@ def basis(number: Headline, one: Letter, write: Write) -> str:
                      for end, value in zip(("begin", "end"), one.gap))
         text += f"; no run ends where these events do, between {low} and {high} m3, of which the larger counts"
     parts = shares(number) if number.high_m3 is not None else ""
-    return f"{text}." + (f" The band: {parts}." if parts else "")
+    return f"{text}." + (f" The band, as the root of the squares: {parts}." if parts else "")
 
 
 def shares(number: Headline) -> str:
     """What makes the band."""
-    return ", ".join(f"{CAUSES.get(one.cause, one.cause)} -{three(abs(one.below_m3))} +{three(one.above_m3)} m3"
+    return ", ".join(CAUSES.get(one.cause, one.cause) + f" -{three(abs(one.below_m3))}" * bool(one.below_m3) +
+                     f" +{three(one.above_m3)}" * bool(one.above_m3) + " m3"
                      for one in number.band if one.below_m3 or one.above_m3)
 
 
@@ -155,7 +169,7 @@ def change(number: Headline) -> str:
         parts = [one for one in number.band if one.below_m3 or one.above_m3]
         if not reasons and parts:
             most = max(parts, key=lambda one: max(one.below_m3, one.above_m3))
-            return f"What would change it most: {CAUSES.get(most.cause, most.cause)}."
+            return f"What would narrow the band most: {NARROWS[most.cause]}." if most.cause in NARROWS else ""
         return f"What would change it: {' '.join(reasons)}" if reasons else ""
     why = "How much must be cleared from the road is not known." if Kind(number.kind) is Kind.WITHHELD else "Why:"
     return f"{why} {' '.join(reasons)}" if reasons else ""
@@ -212,8 +226,8 @@ def roads(one: Letter, write: Write) -> str:
 
 def at_road(road: HeadlineRoad, both: str, write: Write) -> str:
     some = f"{road.brought.reach or 'none'} of {counted(road.brought.runs)}{both}"
-    return (f"The road begins after {write('road, near edge', 'm', road.near_m)} m: {some} and "
-            f"{answer_words.shares(road.reached)} of {EVENTS} reach it.")
+    return (f"The road begins after {write('road, near edge', 'm', road.near_m)} m: "
+            f"{answer_words.shares(road.reached)} of {EVENTS}, and {some}, reach it.")
 
 
 def of_road(one: Number) -> str:

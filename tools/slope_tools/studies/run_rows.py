@@ -112,7 +112,7 @@ def measured_on(road: Road, run: Repeat, row: Finished) -> Dict[str, Any]:
             "blocked_m": total["blocked_length"], "axis_thickness_m": about["axis"]["largest_thickness"],
             "remove_lane_m3": total.get("remove_lane"), "lane_hours": total.get("hours_lane"),
             "clear_hours": total.get("hours"), "stretches": about["stretches"], "clearing": total,
-            "by_10_m": about["by_10_m"],
+            "axis_m": about["axis"]["length"], "by_10_m": about["by_10_m"],
             # what it says of the summary is in the table
             "road_warnings": entries(in_folder(one, run.folder) for one in found.warnings
                                      if one.kind not in OF_SUMMARY)}

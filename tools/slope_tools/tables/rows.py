@@ -50,6 +50,7 @@ class OnRoad:
     stretches: Sequence[Mapping[str, float]]        # of the axis that are blocked, see deposits.clearing
     clearing: Mapping[str, float]                   # their sums
     road_warnings: Sequence[Finding]
+    axis_m: Optional[float] = None                  # length of the road
     by_10_m: Sequence[Sequence[float]] = ()         # [from, m3 on the road] of each 10 m of it that has any
 
 

@@ -74,6 +74,8 @@ class Sizes:
         for key in PARTS:
             if new.get(key) is not None:
                 new[key] = min(new[key], row.released_m3)
+        if row.road and row.road.axis_m is not None and new.get("blocked_m") is not None:
+            new["blocked_m"] = min(new["blocked_m"], row.road.axis_m)
         road = row.road and replace(row.road, **{key: value for key, value in new.items() if hasattr(row.road, key)})
         if road and row.road:
             road = replace(road, remove_on_road_m3=min(road.remove_on_road_m3, road.remove_m3),
@@ -192,7 +194,9 @@ def effect(steps: Sequence[Step]) -> study_types.SizeEffect:
 def words(one: study_types.Size) -> str:
     """How many balls were computed, and what finer ones would change, a sentence without its full stop."""
     key = next((key for key in (quantities.REMOVE, quantities.LENGTH, quantities.DISTANCE) if key in one.effects), None)
-    said = f"computed with up to {one.sizes[-1].balls:,} balls"
+    said = f"computed with {one.sizes[0].balls:,} balls"
+    if len(one.sizes) > 1:
+        said += f", some runs with up to {one.sizes[-1].balls:,}, after which the others are corrected"
     still = one.effects[key].left if key else None
     if not key or not still:
         return said + UNKNOWN
