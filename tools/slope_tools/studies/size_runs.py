@@ -196,7 +196,8 @@ def make(setup: Setup, work: jobs.Work, points: Sequence[Repeat], wanted: Option
     chosen, names = pick(known), {one.name: one for one in points}
     times = np.array([site_budget.in_steps(row.stop_time_s, row.variables.get("spacing")) for row in known])
     first = np.array([row.run in chosen.first for row in known])
-    quick = np.flatnonzero(times <= LONG * np.median(times) * np.where(first, 2, 1))
+    usual = np.median([one for one, row in zip(times, known) if not row.batch])     # without those added as longer ones
+    quick = np.flatnonzero(times <= LONG * usual * np.where(first, 2, 1))
     # one on which a number rests and such as spread out: others may come once all values are at the finest size
     order = quick[ball_sizes.spread(places_of(known, chosen.along)[quick], np.flatnonzero(first[quick])[:1].tolist(),
                                     len(quick))]
