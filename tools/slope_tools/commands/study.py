@@ -139,7 +139,7 @@ def check_kind(args: Request) -> None:
 
 
 def run_site_of(args: Request, site: Site) -> Made:
-    """The study of a site, of the road that is asked: by the paper's method, and weighted by known events."""
+    """The study of a site, of the road that is asked: a sweep, and an ensemble weighted by known events."""
     if args.sample is not None or args.fit is not None:
         return run_site_ensemble(args, site)
     site_study.check(site)
@@ -173,8 +173,8 @@ def run_both(args: Request, asked: Site, points: int) -> Made:
                                         known_study.WEIGHTED), beside)
     except RunsFailed as error:     # the others count
         if error.found is None:
-            raise SlopeError(asked.folder, "must have an ensemble for its number, --paper makes that of the paper's "
-                             f"method alone: {error}") from None
+            raise SlopeError(asked.folder, "must have an ensemble for its number, --paper makes the sweep alone: "
+                             f"{error}") from None
         failed, weighted = error, error.found
     if args.dry_run or weighted is None:
         return Made((), None)

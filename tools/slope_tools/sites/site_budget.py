@@ -213,7 +213,7 @@ def measure(folder: Path, deck: str, lmp: Path, values: Mapping[str, float]) -> 
 
 class Plan(NamedTuple):
     """The runs that `slope study` makes of a site."""
-    paper: int                          # runs of the paper's study, on which its number rests
+    paper: int                          # runs of the sweep, on which its number rests
     elastic: int                        # those with the largest restitution
     half_step: bool                     # and one with half the time step, which is compared by the volume to remove
     points: int                         # of the ensemble, which may become twice as many
@@ -225,7 +225,7 @@ class Plan(NamedTuple):
 
 
 def plan(choices: OfMass) -> Plan:
-    """Of the study by the paper's method, and the ensemble that is weighted by known events."""
+    """Of the sweep, and of the ensemble that is weighted by known events."""
     study, points, grounds = choices.study, choices.study.points, choices.other_grounds
     each = 1 + len(study.packing)
     elastic = each if study.largest_restitution else 0

@@ -1,6 +1,6 @@
-"""The number of a study that a client reads, or what stands in its place: the larger of the paper's and an ensemble's.
+"""The number of a study that a client reads, or what stands in its place: the larger of a sweep's and an ensemble's.
 
-The paper's study gives a conservative volume, an ensemble that is weighted by known events the volume that 95 % of
+A sweep gives a conservative volume, an ensemble that is weighted by known events the volume that 95 % of
 them stay within. A record of kinds, codes and numbers; words are made of it elsewhere.
 """
 import math
@@ -135,7 +135,7 @@ class Size(NamedTuple):
 
 
 class Paper(NamedTuple):
-    """The conservative volume (m3) of the paper's study; None where it is withheld.
+    """The conservative volume (m3) of a sweep; None where it is withheld.
 
     least: m3, what runs lie above as well; None: chance is not known; transfer: m3 below and above; released: m3, of
     the largest body, more than which is not to be removed.

@@ -36,7 +36,7 @@ class Ahead(NamedTuple):
 
 
 def of_site(site: Site, engine: Setup, points: int, asked: site_study.Asked = site_study.Asked()) -> Ahead:
-    """Of the study that site.yaml describes; points: of the ensemble, 0: the paper's study alone.
+    """Of the study that site.yaml describes; points: of the ensemble, 0: the sweep alone.
 
     SlopeError on bad input, and if a run is there with other data and engine.anew does not ask for it again.
     """

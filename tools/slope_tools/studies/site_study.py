@@ -65,7 +65,7 @@ class Done(NamedTuple):
 
 
 class Planned(NamedTuple):
-    """The runs of the paper's study."""
+    """The runs of the sweep."""
     choices: OfMass
     setup: Setup
     variables: Dict[str, str]               # of the deck
@@ -83,7 +83,7 @@ class Planned(NamedTuple):
 
 @dataclass
 class Beside:
-    """Of an ensemble of a site: its runs with finer balls, and the paper's study beside it, whose points share them."""
+    """Of an ensemble of a site: its runs with finer balls, and the sweep beside it, whose runs share them."""
     planned: Optional[Planned]
     wanted: size_runs.Wanted
     at: Optional[size_runs.AtFinest] = None     # once the ensemble has made them
@@ -95,7 +95,7 @@ class Beside:
 
 
 def plan(site: Site, engine: Setup) -> Planned:
-    """All runs of a site by the paper's method, but for those with finer balls."""
+    """All runs of the sweep of a site, but for those with finer balls."""
     folder, choices = site.folder, site.choices
     deck, road, several = folder / site_deck.NAME, choices.road, choices.study
     setup = engine._replace(deck=deck, output=site_roads.results(site) / STUDY, site=folder, road=None)
@@ -118,7 +118,7 @@ def plan(site: Site, engine: Setup) -> Planned:
 
 
 def wanted(site: Site, planned: Planned, asked: Asked, points=0, alone=False) -> size_runs.Wanted:
-    """The runs with finer balls; points: of the ensemble beside, or, alone, of one without the paper's study."""
+    """The runs with finer balls; points: of the ensemble beside, or, alone, of one without a sweep."""
     found, levels = site.found, asked.levels or planned.choices.study.levels
     plan_ = site_budget.plan(planned.choices)._replace(points=points)
     if alone:
@@ -152,7 +152,7 @@ def make(planned: Planned) -> None:
 
 
 def run(site: Site, engine: Setup, method: str, asked: Asked, roads: Sequence[Mapping[str, Any]] = ()) -> Done:
-    """Make or continue all runs of a site by the paper's method, and their results.
+    """Make or continue the sweep of a site, and its results.
 
     engine: how the runs are made; its deck, output and road do not count; method: of the study, in words; roads: of
     Questions. Raises SlopeError on bad input, and if no run of the study finished.

@@ -173,7 +173,7 @@ def lengths_of(rows: Sequence[Finished]) -> np.ndarray:
 
 
 def pick_largest(rows: Sequence[Finished]) -> Pick:
-    """By the paper's method: of the combination that governs the run with most; without a road the farthest one."""
+    """Of a sweep: of the combination that governs the run with most; without a road the farthest one."""
     lengths = lengths_of(rows)
     along = lengths / max(lengths.max(initial=0.0), 1e-9)
     if not rows or not rows[0].road:

@@ -19,7 +19,7 @@ from .rows import finished_of
 
 STUDY = "study.yaml"
 GROWS = 0.25        # by the last halving of the balls: a number that grows by more is a floor
-INSIDE = "study", "ensemble"        # folders of a site: the paper's study, and the one of known events
+INSIDE = "study", "ensemble"        # folders of a site: the sweep, and the ensemble of known events
 TITLE = "slope study: volumes in m3 of ground (bulk), lengths in m, times in s"
 SCHEMA = mapping({}, conservative=mapping({}, null=True), ensemble=mapping({}, null=True),
                  headline=mapping({}, null=True, road=mapping({}, null=True)), study=OBJECT)
