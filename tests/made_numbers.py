@@ -6,7 +6,9 @@
 inputs/NN_case/numbers.yaml holds what runs gave; `slope verify` writes one for each case into DIR/numbers, for which
 this script puts what is new into the file, and inputs/20_embankment/paper_table.py those of that case. In the text a
 number has its name: NN.name or NN.name:format, NN being that of the case, the format Python's (default .5g); of a claim
-NN.claim and NN.claim.control.
+NN.claim and NN.claim.control. A table of the case gives NN.TABLE.row.column, a row having the name of its first two
+words; reference.yaml NN.reference.series.x, NN.reference.series.over (its largest over the level) and
+NN.reference.level; seen() of a script of the case what its data have.
 
     Markdown    <!--01.restitution_0.25-->0.24873<!--/-->           the comments are not shown
     pages       :made:`0.24873<01.restitution_0.25>`                a role of doc/src/conf.py
@@ -14,6 +16,8 @@ NN.claim and NN.claim.control.
 
 doc/src/verification.rst is made as a whole. tests/tools/test_made_numbers.py fails where text and file differ.
 """
+import csv
+import importlib.util
 import re
 import sys
 from pathlib import Path
@@ -36,17 +40,59 @@ SERIES = re.compile(r"(?P<start>\{)(?P<shown>[^}]*)(?P<end>\}\s+# (?P<case>\d\d)
 
 
 def kept(case):
-    """What runs of a case (NN) gave: {name: number or word}."""
-    path, = INPUTS.glob(f"{case}_*/{verify.NUMBERS}.yaml")
-    found = yaml.safe_load(path.read_text(encoding="utf-8"))
+    """What runs of a case (NN) gave, and its tables have: {name: number or word}."""
+    folder, = INPUTS.glob(f"{case}_*")
+    found = loaded(folder / f"{verify.NUMBERS}.yaml")
     claims = found.get("claims", {})
-    return {**{name: one["got"] for name, one in claims.items()},
-            **{f"{name}.control": one["control"] for name, one in claims.items()}, **found.get("seen", {})}
+    known = {**{name: one["got"] for name, one in claims.items()},
+             **{f"{name}.control": one["control"] for name, one in claims.items()}, **found.get("seen", {})}
+    for path in folder.glob("*.csv"):
+        known.update(table(path))
+    for path in folder.glob("*.py"):
+        if "\ndef seen():" in path.read_text(encoding="utf-8"):
+            known.update(seen(path))
+    return {**known, **reference(loaded(folder / "reference.yaml"))}
+
+
+def loaded(path):
+    return yaml.safe_load(path.read_text(encoding="utf-8")) if path.is_file() else {}
+
+
+def table(path):
+    """Of a CSV file with a head, as its words; of a polygon nothing."""
+    with open(path, encoding="utf-8", newline="") as file:
+        head, *rows = csv.reader(file)
+    return {".".join((path.stem, *row[:2], name)): value for row in rows for name, value in zip(head[2:], row[2:])}
+
+
+def seen(path):
+    """What seen() of a script gives."""
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    script = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(script)
+    return script.seen()
+
+
+def reference(about):
+    """Of a file of reference values."""
+    known = {}
+    for one in about.get("quantities", {}).values():
+        level, = one["levels"].values()
+        for name, series in one["series"].items():
+            known.update({f"reference.{name}.{float(x):g}": value for x, value in series.items()})
+            known[f"reference.{name}.over"] = max(series.values()) / level
+        known.update({f"reference.{name}": value for name, value in one["levels"].items()})
+    return {name.replace(" ", "_").replace(",", ""): value for name, value in known.items()}
 
 
 def worded(got, form):
-    """A number as the text has it."""
-    return got if isinstance(got, str) else format(got, form or ".5g")
+    """A number as the text has it: 3e-6, and a chance that would be rounded to 0 as less than the last digit."""
+    if isinstance(got, str):
+        return got
+    text = re.sub(r"e([-+])0(?=\d)", r"e\1", format(got, form or ".5g"))
+    if text.endswith("%") and got > 0 and float(text[:-1]) == 0:
+        return "less than " + re.sub(r"0(?=%)", "1", text)
+    return text
 
 
 def filled(text, numbers=None):

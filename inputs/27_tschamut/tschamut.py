@@ -29,6 +29,16 @@ def measured():
     return rows[:, :2], rows[:, 2:]
 
 
+def seen():
+    """What the README has of the measured distances, for tests/made_numbers.py."""
+    start, end = measured()
+    distance = np.hypot(*(end - start).T)
+    stone = np.loadtxt(HERE / "trajectories.csv", str, delimiter=",", skiprows=1, usecols=1)
+    return {**{f"measured.{share:g}": round(float(np.quantile(distance, share)), 1) for share in SHARES},
+            **{f"stone.{one}": round(float(np.median(distance[stone == one])), 1) for one in np.unique(stone)},
+            "stones": len(distance), "beyond": int((distance > CUT).sum()), "shortest": round(float(distance.min()), 1)}
+
+
 def area():
     """The outline of the releases."""
     return MultiPoint(measured()[0]).convex_hull.buffer(ASIDE)

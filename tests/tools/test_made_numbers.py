@@ -1,5 +1,7 @@
 """Numbers of pages that are made, not typed: tests/made_numbers.py. What decks give now: test_verification.py."""
+import csv
 import importlib.util
+import re
 import sys
 
 import pytest
@@ -23,10 +25,10 @@ def test_a_page_has_the_numbers_of_its_file(path):
     assert made_numbers.filled(text) == text
 
 
-def test_the_cases_of_the_paper_are_filled():
-    shown = {str(path.relative_to(TOP)) for path in MARKED}
-    assert {f"inputs/{name}/README.md" for name in ("01_restitution", "04_rolling_resistance", "06_oblique_impact",
-                                                    "08_collisions")} <= shown
+def test_the_cases_with_kept_numbers_are_filled():
+    shown = {path.parent.name for path in MARKED}
+    kept = {path.parent.name for path in made_numbers.INPUTS.glob(f"*/{verify.NUMBERS}.yaml")}
+    assert kept | {"21_earthquake", "22_structures", "25_authume", "27_tschamut"} <= shown
 
 
 def test_the_page_on_verification_is_made_of_all_claims():
@@ -45,6 +47,39 @@ def test_the_page_on_verification_is_made_of_all_claims():
     ("no <!-- comment --> 0.25", "no <!-- comment --> 0.25")])
 def test_a_mark_gets_its_number(was, now):
     assert made_numbers.filled(was, dict(KNOWN)) == now == made_numbers.filled(now, dict(KNOWN))
+
+
+def test_tables_and_data_of_a_case_give_numbers():
+    predicted, stones, paper = (made_numbers.kept(case) for case in ("25", "27", "20"))
+    assert predicted["prediction_P2.across.0.05.lowest_seed_m"] == "-6.0"
+    assert stones["stones"] == 80 and stones["measured.0.5"] == pytest.approx(101.7)
+    assert paper["reference.company_I.0.1"] == 14490
+    assert paper["reference.company_J.over"] == pytest.approx(26009 / 14225)
+
+
+@pytest.mark.parametrize("got, form, text", [
+    (3.1e-6, ".0e", "3e-6"), (4e6, ".0e", "4e+6"), (2e-10, ".0e", "2e-10"), (2.1e-5, ".2%", "less than 0.01%"),
+    (0.0, ".0%", "0%"), (0.004, ".0%", "less than 1%"), (-0.001, ".0%", "-0%"), ("-6.0", ".0f", "-6.0")])
+def test_a_number_is_worded(got, form, text):
+    assert made_numbers.worded(got, form) == text
+
+
+def test_the_page_has_the_stop_angles_of_their_table():
+    with open(TOP / "tools" / "slope_tools" / "sites" / "stop_angles.csv", encoding="ascii", newline="") as file:
+        known = {(row["pattern"], *(float(row[name]) for name in ("spacing_d", "layers", "friction_deg", "rolling"))):
+                 float(row["stop_angle_deg"]) for row in csv.DictReader(file) if row["restitution"] == "0.3"}
+    lines = (TOP / "doc" / "src" / "choosing_parameters.rst").read_text(encoding="utf-8").splitlines()
+    first, = (i for i, line in enumerate(lines) if line.lstrip().startswith("spacing, d "))
+    columns = [match.span() for match in re.finditer("=+", lines[first + 1])]
+    singles = lines[first - 1].rindex(" ---")       # the second of two heads
+    shown = {}
+    for line in lines[first + 2:lines.index(lines[first + 1], first + 2)]:
+        for column in columns[1:]:
+            if value := line[slice(*column)].strip():
+                grounds = tuple(map(float, lines[first][slice(*column)].split(",")))
+                shown["scattered", float(line[slice(*columns[0])]), 0.3 if column[0] > singles else 3.0, *grounds] = \
+                    float(value)
+    assert len(shown) > 60 and shown == {key: known[key] for key in shown}
 
 
 def test_the_pages_show_the_number_alone():
