@@ -79,7 +79,7 @@ def numbers(folder):
 
 
 def rows_of(body, runs):
-    """The lines of a body: by cut and by bulk factor (that of the body, and that of the paper's ball, 6/pi)."""
+    """The lines of a body: by cut and by bulk factor (that of the body, and 6/pi, a cube as wide as the ball)."""
     for cut in CUTS:
         for bulk in ("body", "ball"):
             factor = [1.0 if bulk == "body" else 6 / math.pi / one[4] for one in runs]

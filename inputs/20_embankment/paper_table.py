@@ -26,7 +26,7 @@ from slope_tools.deposits import dumps, volume  # noqa: E402
 from slope_tools.errors import SlopeError  # noqa: E402
 from slope_tools.tables.study_file import Study  # noqa: E402
 
-PAPER_BULK = 6 / math.pi
+CUBE_BULK = 6 / math.pi
 CUT = 30.0      # degrees
 MESH = 5.0      # m
 WHAT = "released", "to remove", "on the road", "beyond"
@@ -142,7 +142,7 @@ def main():
     try:
         study = Study.read(args.study)
         for bulk, name, key in ((None, "of the runs, the whole body", "body"),
-                                (PAPER_BULK, "6/pi, a ball counts d^3", "ball")):
+                                (CUBE_BULK, "6/pi, a ball counts d^3", "ball")):
             made = read(study, bulk, args.over)
             print(f"bulk factor {name}:", *table(made), "", sep="\n")
             if args.name:

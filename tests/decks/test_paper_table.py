@@ -33,7 +33,7 @@ def runs(tmp_path_factory):
 def test_another_bulk_factor_is_that_of_the_deck(script, runs):
     """From one run: what the deck gives by the other factor, which is no multiple of its volumes."""
     expected = script.volumes(runs["ball"] / "embankment")
-    found = script.volumes(runs["body"] / "embankment", script.PAPER_BULK)
+    found = script.volumes(runs["body"] / "embankment", script.CUBE_BULK)
     usual = script.volumes(runs["body"] / "embankment")
     assert found == pytest.approx(expected, rel=1e-3) and usual["released"] == pytest.approx(48858, rel=1e-3)
     factor = found["released"] / usual["released"]

@@ -12,7 +12,7 @@ CASE = "10_tochigi"
 ROCKS = Run("10_tochigi/in.tochigi")
 SEEDS = tuple(ROCKS(seed=seed) for seed in range(1, 11))
 FIGURE = "paper, axes of Figures 2 and 3"
-HELD = "rolling resistance 0.1, which the simulation of the paper has not", (ROCKS(seed=1, rolling=0.1),)
+HELD = "rolling resistance 0.1, which this case has not", (ROCKS(seed=1, rolling=0.1),)
 
 
 def at_rest(results):
