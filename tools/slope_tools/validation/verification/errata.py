@@ -22,8 +22,8 @@ def errata():
     true = dashpot(0.48, STIFFNESS, MASS / 2)
     return [
         Erratum("Restitution between soil balls: 0.344, not 0.48",
-                "With Table 4's dashpot, 1.19e6, \"the restitution coefficients both between soil/soil balls (blue) and "
-                "between soil/slip surface balls (red) are 0.48\".",
+                "With Table 4's dashpot, 1.19e6, \"the restitution coefficients both between soil/soil balls (blue) "
+                "and between soil/slip surface balls (red) are 0.48\".",
                 f"The dashpot follows from 0.48 with the mass of one ball ({soil:.3g} N s/m), so it holds for a ball "
                 f"on a fixed ball. Two moving balls have half of that mass: {moving:.3f}. A true 0.48 between them "
                 f"needs {true:.3g} N s/m. Pair gran/restitution takes the right mass for each pair (mass pair); the "
