@@ -103,7 +103,9 @@ HEADLINES = {
 HEADLINES["open"] = {**HEADLINES["floor"], "kind": "open", "low_m3": None, "reasons": [
     {"code": "size of balls", "numbers": {"sizes": 1, "grown": None}}]}
 SAID = {"number": ("35,800 m³ must be cleared from the road; this figure lies, with 90 % confidence within the "
-                   "model, between 21,000 and 48,200 m³.", " of this volume and height leave no more, by 24 runs ",
+                   "model, between 21,000 and 48,200 m³. That is what lies on it, and what beside it would slide "
+                   "onto it, above 30 degrees from its edges.", "; 3 % go beyond all runs and may leave more than any "
+                   "of these; ", " of this volume and height leave no more, by 24 runs ",
                    "13 runs with chosen settings give 1,200 m³. The band, as the root of the squares: chance and "
                    "parameters -14,000 +12,000 m³, a still more detailed model -400 m³."),
         "within": ("12,000 m³ must be cleared", "between 9,000 and 15,000 m³", "88 % of known events",
