@@ -89,6 +89,9 @@ def test_a_floor_is_the_lower_end_rounded_down():
         found = answer.of(paper, other, road(0.5, 0.6))
         assert (found.kind, found.volume, found.low, found.high) == (Kind.FLOOR, low, low, None)
         assert codes(found) == [Code.SIZE]
+    # of two lower bounds the larger counts, whoever has the larger number
+    found = answer.of(Paper(900.0, least=890.0, size=few), ensemble(size=few), road(0.5, 0.6))
+    assert (found.volume, found.source) == (890.0, Source.PAPER)
     # what makes it one comes first, and its remedy with it: the terrain ends behind the road
     found = answer.of(None, ensemble(0.08, stopped=STOPPED, size=few), road(0.5, 0.6))
     assert (found.kind, codes(found)) == (Kind.FLOOR, [Code.SIZE, Code.BEYOND, Code.TERRAIN])
@@ -244,11 +247,21 @@ def test_rules_that_withhold_one_of_both():
     assert (found.kind, found.volume, found.source, codes(found)) == (Kind.WITHHELD, None, None, [Code.RULE, Code.RULE])
 
 
+def test_what_only_runs_bound_is_said_so():
+    """As where the known events beyond all runs leave the quantile without an upper end."""
+    of = [one._replace(high=None) for one in ensemble().quantiles]
+    for quantiles, ends in ((of, ("95 %", "above 855", "as far as these runs go")),
+                            (ensemble().quantiles, ("90 %", "between 855"))):
+        said = sentences(answer.of(None, ensemble()._replace(quantiles=quantiles, most=1200.0), None).about()).clear
+        assert all(one in said for one in ends)
+
+
 def test_what_study_yaml_says():
     about = answer.of(Paper(700.0), ensemble(0.08, stopped=STOPPED), road(0.5, 0.6)).about()
     about = records.plain(about)
     assert disk.plain(about) == about and list(about) == ["kind", "volume_m3", "share", "low_m3", "high_m3", "source",
-                                                          "paper", "ensemble", "road", "reasons", "band"]
+                                                          "paper", "ensemble", "road", "reasons", "band",
+                                                          "open_above"]
     assert about["paper"] == {"volume_m3": 700.0, "withheld": [], "runs": 0}
     assert about["ensemble"] == {"volume_m3": None, "far": 0.08, "withheld": [], "runs": 0}
     assert about["road"]["reached"] == [0.5, 0.6] and about["reasons"][1] == {

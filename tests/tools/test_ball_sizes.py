@@ -69,6 +69,13 @@ def test_a_single_pair_is_no_certainty():
         assert low < 500 and high > 1000
 
 
+def test_draws_leave_no_more_than_was_released():
+    rows = [[made_rows.row(variables={"d": d}, remove_m3=remove, released_m3=2500.0, ball_m3=1.0)
+             for remove in volumes] for d, volumes in (("2", (1000.0, 2000.0)), ("1", (1500.0, 2100.0)))]
+    drawn = sizes.of([*zip(*rows)]).draws(rows[0], "remove_m3", 200)
+    assert drawn.max() == 2500 and drawn.min() < 1500
+
+
 def test_what_no_finer_run_has_is_unknown():
     """As the length where all finer runs leave the terrain; the finer runs keep what they have."""
     def one(d, length, lobes=None):
@@ -109,8 +116,14 @@ def test_parameters_count_where_they_predict_better():
     assert np.abs(without.ratio.slopes).max() < 0.02 and without.ratio.constant == pytest.approx(0.1, abs=0.02)
     value = transfer([with_slope], 1000.0, (0.9, 0.5))
     assert value.value == pytest.approx(1000 * math.exp(0.55), rel=0.03) and value.deviation < 50
-    # nothing is extrapolated: beyond the pairs it is that of the last of them
-    assert transfer([with_slope], 1.0, (5.0, 0.5)) == transfer([with_slope], 1.0, (at[:, 0].max(), 0.5))
+    # nothing is extrapolated: beyond the pairs it is that of the last of them, and what the slope says is an error
+    beyond, last = (transfer([with_slope], 1000.0, (one, 0.5)) for one in (1.5, at[:, 0].max()))
+    assert beyond.value == last.value
+    assert beyond.deviation == pytest.approx(
+        beyond.value * with_slope.ratio.slopes[0] * (1.5 - at[:, 0].max()), rel=0.1)
+    # smaller values than those of all pairs have an error of as many m3
+    small, least = (transfer([without], one, (0.5, 0.5)).deviation for one in (coarse.min() / 2, coarse.min()))
+    assert small == pytest.approx(least, rel=0.01)
 
 
 @pytest.mark.parametrize("pairs, few, scatter, finer, slope", [

@@ -648,7 +648,7 @@ def test_the_finest_points_are_as_many_as_time_allows():
     wanted = site_budget.Plan(20, 0, False, 0, "")
     time = site_budget.time_of(3.5, 3e4, trial, SOIL, wanted, 2, 40.0)
     planned = size_runs.halved("3.5", site_budget.finer(20, time, 40.0, 3), time)
-    as_planned, longer, endless = (planned.fitted([rest * time.typical] * 20).points for rest in (1, 2, 99))
+    as_planned, longer, endless = (planned.fitted([[rest * time.typical] * 20] * 2).points for rest in (1, 2, 99))
     assert as_planned == planned.points and longer[1] < as_planned[1] and endless[1] == site_budget.LEAST[1]
     assert sum(number * time.one(k, 2 * time.typical) for k, number in enumerate(longer, 1)) <= time.whole
     # where no time is given there are as many sizes as a number needs
@@ -687,13 +687,15 @@ def test_the_second_trial_has_other_balls():
 
 @pytest.mark.parametrize("order", [1, -1])
 def test_two_trials_tell_what_a_step_costs_and_what_a_ball(order):
-    """A step of 30 us and 50 ns for each ball in it: a run with 16,000 balls takes 830 us a step."""
+    """A step of 30 us and 50 ns for each ball in it: a run with 1,000 balls takes 80 us a step, one with 12,000, which
+    are ten times as many as stay in the cache, 900."""
     first, second = (site_budget.Trial(n, 3.6, 45.0, True, 21.0, 30e-6 / n + 50e-9, 0.5, 2.0, 0.0)
                      for n in (800, 266)[::order])
     both = site_budget.joined(first, second)
     assert (both.balls, both.step, both.cost) == (800, pytest.approx(30e-6), pytest.approx(50e-9))
     steps = 45.0 / site_budget.time_step(1.0, SOIL)
-    assert both.run(1.0, 16000, SOIL) == pytest.approx(0.5 + steps * 830e-6)
+    assert both.run(1.0, 1000, SOIL) == pytest.approx(0.5 + steps * 80e-6)
+    assert both.run(1.0, 12000, SOIL) == pytest.approx(0.5 + steps * 900e-6)
     same = site_budget.joined(first, second._replace(cost=first.cost / 2 if order > 0 else first.cost * 2))
     assert same.step >= 0 and same.cost > 0         # noise: nothing is below 0
 

@@ -234,10 +234,12 @@ def transferred(several: Sequence[KnownQuantile], runs: Runs, draw: Optional[Dra
     found = []
     for one in several:
         values = [conditioned.within(volume, mass.share, one.share) for volume, mass in zip(volumes, masses)]
-        ends = None if one.value is None else [
-            max(0.0, side * (float(end) - one.value)) for side, end in zip((-1, 1), np.quantile(
-                [volume.max() if value is None else value for value, volume in zip(values, volumes)], TAILS))]
-        found.append(one._replace(transfer=ends))
+        low, high = np.quantile([volume.max() if value is None else value
+                                 for value, volume in zip(values, volumes)], TAILS).tolist()
+        if one.value is not None:       # errors of runs raise a high quantile: it is no lower than it is with them
+            value = max(one.value, low)
+            one = one._replace(value=value, transfer=[value - min(value, low), max(value, high) - value])
+        found.append(one)
     return found
 
 

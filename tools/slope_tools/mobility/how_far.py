@@ -45,7 +45,7 @@ def pool(lengths: Sequence[float], known: Optional[Mobility], source: Optional[s
     near, middle, far = (quantile(lengths, known, share) for share in (TAIL, 0.5, 1 - TAIL))
     finite = [one for one in lengths if np.isfinite(one)]
     longest = max(finite, default=0.0)
-    return Reach(near, middle, far, known.end(longest) if known else longest or None, said_from(known), len(lengths),
+    return Reach(near, middle, far, known.end(longest) if known else None, said_from(known), len(lengths),
                  source, along, known is not None, why, farther(lengths, known) if known else None)
 
 

@@ -193,6 +193,7 @@ class Answer(NamedTuple):
     road: Optional[Road]
     reasons: List[Reason]
     band: Sequence[Share] = ()
+    open: bool = False
 
     def about(self) -> entries.Headline:
         """What study.yaml says of it."""
@@ -202,17 +203,20 @@ class Answer(NamedTuple):
             entries.PaperPart(paper.volume, [one.rule.value for one in paper.withheld], paper.runs) if paper else None,
             entries.EnsemblePart(at.value if (at := ensemble.at(SHARE)) else None, [
                 one.rule.value for one in ensemble.withheld], ensemble.runs, ensemble.far) if ensemble else None,
-            self.road.about() if self.road else None, [one.about() for one in self.reasons], list(self.band))
+            self.road.about() if self.road else None, [one.about() for one in self.reasons], list(self.band),
+            self.open)
 
 
 class Part(NamedTuple):
-    """What one study says alone; band: of its number, of a floor too; bound: whether its lower end is one."""
+    """What one study says alone; band: of its number, of a floor too; bound: whether its lower end is one; open: nothing
+    but its runs bounds it from above."""
     kind: Kind
     volume: Optional[float]
     share: Optional[float] = None
     band: Sequence[Share] = ()
     reasons: Sequence[Reason] = ()
     bound: bool = True
+    open: bool = False
 
 
 def of_paper(one: Paper, beside: bool) -> Optional[Part]:
@@ -246,7 +250,7 @@ def of_ensemble(one: Ensemble, road: Optional[Road]) -> Part:
     high = max(best.value, one.most) if best.high is None else best.high        # what no run exceeded
     band = [Share(Cause.RUNS.value, best.value - (best.low or 0.0), high - best.value),
             Share(Cause.TRANSFER.value, *(best.transfer or (0.0, 0.0)))]
-    part = Part(Kind.NUMBER, best.value, best.share, band, bound=best.low is not None)
+    part = Part(Kind.NUMBER, best.value, best.share, band, bound=best.low is not None, open=best.high is None)
     if best.share != SHARE:
         # a terrain that ends behind the road is no reason against its number
         ends = any(reason.code is Code.TERRAIN and not (road and road.far < reason.numbers["path_m"])
@@ -301,6 +305,9 @@ def of(paper: Optional[Paper], ensemble: Optional[Ensemble], road: Optional[Road
     open_ = bool(some) or any(
         part.kind is Kind.FLOOR or part.kind is Kind.WITHHELD and not few(part) for _, part in parts)
     low, high = low_high(volume, best.band)
+    if open_ and volume:        # of lower bounds the largest counts
+        lows = [(low_high(part.volume, part.band)[0], each, part) for each, part in known if part.bound and part.volume]
+        low, source, best = max([(low if best.bound else 0.0, source, best), *lows], key=lambda one: one[0])
     kind = Kind.NUMBER if volume else Kind.NOTHING
     if open_:
         kind = Kind.FLOOR if not volume or best.bound and low else Kind.OPEN
@@ -315,7 +322,7 @@ def of(paper: Optional[Paper], ensemble: Optional[Ensemble], road: Optional[Road
     if kind is Kind.FLOOR:
         low = volume = rounding.down(low, rounding.place_of_digits(low))
     return Answer(kind, volume, best.share, low, None if open_ else high, source, paper, ensemble, road,
-                  [*some, *reasons], band)
+                  [*some, *reasons], band, best.open)
 
 
 def few(part: Part) -> bool:

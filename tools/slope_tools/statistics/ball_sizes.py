@@ -71,8 +71,14 @@ class Model(NamedTuple):
     ends: Tuple[float, float] = (0.0, 0.0)
 
     def relative(self, values: Any) -> np.ndarray:
-        """The deviation at values (> 0) over that at the typical one."""
-        return np.exp(self.power * (self.typical - np.clip(np.log(values), *self.ends)))
+        """The deviation at values (> 0) over that at the typical one; below all pairs it is as many m3."""
+        own = np.log(values)
+        return np.exp(self.power * (self.typical - np.clip(own, *self.ends)) + np.maximum(0.0, self.ends[0] - own))
+
+    def beyond(self, at: Any) -> np.ndarray:
+        """The error that places (..., p) have as they lie beyond all pairs: what the slopes would change there."""
+        places = np.asarray(at, float)
+        return np.abs((places - np.clip(places, self.low, self.high)) @ self.slopes)
 
     def change(self, at: Any, drawn: Optional[np.ndarray] = None) -> np.ndarray:
         """At places (..., p); drawn: other coefficients, of draw()."""
@@ -121,10 +127,12 @@ class Step(NamedTuple):
     def apply(self, one: Finest, at: Any) -> Finest:
         """A value with the next finer balls."""
         if one.value >= self.least and one.value > 0 and self.ratio:
-            factor = math.exp(float(self.ratio.change(with_own(at, one.value))))
+            place = with_own(at, one.value)
+            factor = math.exp(float(self.ratio.change(place)))
             value = one.value * factor
-            return joined(value, (one.deviation * factor, one.freedom),
-                          (value * self.ratio.deviation * float(self.ratio.relative(one.value)), self.ratio.freedom))
+            return joined(value, (one.deviation * factor, one.freedom), (value * math.hypot(
+                self.ratio.deviation * float(self.ratio.relative(one.value)), float(self.ratio.beyond(place))),
+                self.ratio.freedom))
         mine, freedom = self.of_small()
         change = self.small.constant if self.small else 0.0
         return joined(max(0.0, one.value + change), (one.deviation, one.freedom), (mine, freedom))
@@ -142,8 +150,9 @@ class Step(NamedTuple):
         big = (values >= self.least) & (values > 0)
         if self.ratio and big.any():
             drawn, deviation = self.ratio.draw(rng)
-            changes = self.ratio.change(with_own(at[big], values[big]), drawn)
-            found[big] = values[big] * np.exp(changes + deviation * self.ratio.relative(values[big]) * noise[big])
+            place = with_own(at[big], values[big])
+            mine = np.hypot(deviation * self.ratio.relative(values[big]), self.ratio.beyond(place))
+            found[big] = values[big] * np.exp(self.ratio.change(place, drawn) + mine * noise[big])
         else:
             big = np.zeros(len(values), bool)
         change = self.small.constant if self.small else 0.0

@@ -135,3 +135,4 @@ class Headline:
     road: Optional[HeadlineRoad]
     reasons: List[Dict[str, Any]]   # answer.Reason.about()
     band: List[Share]
+    open_above: bool = False        # nothing but the runs bounds it from above

@@ -49,7 +49,8 @@ def say(one: Letter, write: Write = plain) -> Said:
                 basis(number, one, write) if number else "", far(one.reach, write), roads(one, write),
                 change(number) if number else "",
                 f"Not in it: {'; '.join([DRY, *(LACKS[kind] for kind in one.lacks if kind in LACKS)])}.",
-                capital(one.size) + " The band has it." * bool(number and number.high_m3 and one.size))
+                capital(one.size) + " The band has it." * bool(
+                    one.size and number and number.kind == Kind.NUMBER.value))
 
 
 def lines(one: Letter) -> List[str]:
@@ -95,8 +96,11 @@ def of_number(number: Headline, write: Write) -> str:
     low, high = (write(f"{REMOVE}, {name} end", "m3", value or 0.0)
                  for value, name in ((number.low_m3, "lower"), (number.high_m3, "upper")))
     how = "with 90 % confidence" if has_chance(number) else "without chance, as no run was repeated,"
+    ends = f"between {low} and {high} m3"
+    if number.open_above and has_chance(number):
+        how, ends = "with 95 % confidence", f"above {low} m3, and below {high} m3 as far as these runs go"
     return (f"{write(REMOVE, 'm3', number.volume_m3 or 0.0)} m3 must be cleared from the road; this figure lies, {how} "
-            f"within the model, between {low} and {high} m3.")
+            f"within the model, {ends}.")
 
 
 def has_chance(number: Headline) -> bool:
@@ -167,7 +171,7 @@ def change(number: Headline) -> str:
     reasons = [capital(answer_words.client(one)) for one in answer_words.told(number) if one.code not in TOLD]
     if Kind(number.kind) in (Kind.NUMBER, Kind.NOTHING):
         parts = [one for one in number.band if one.below_m3 or one.above_m3]
-        if not reasons and parts:
+        if not reasons and parts and number.volume_m3:
             most = max(parts, key=lambda one: max(one.below_m3, one.above_m3))
             return f"What would narrow the band most: {NARROWS[most.cause]}." if most.cause in NARROWS else ""
         return f"What would change it: {' '.join(reasons)}" if reasons else ""

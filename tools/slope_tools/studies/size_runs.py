@@ -32,7 +32,8 @@ OPTION = "--levels"
 FILE = "levels.csv"
 DRAWS = 200             # of the values of transferred runs, for the band of a number
 ROUNDS = 4              # of finest runs of points on which numbers rest once all values are at the finest size
-LONG = 1.5              # times the median of the time to rest, twice it where numbers rest: longer ones stay coarse
+LONG = 1.5              # times the usual time to rest: points that take longer have none of the finest balls,
+SLOW = 4.0              # and, as those on which numbers rest of these, none finer than the coarsest
 FINER = 1.5             # times, at least, from a size to the next one
 
 
@@ -43,14 +44,15 @@ class Wanted(NamedTuple):
     points: Sequence[int]
     time: Optional[site_budget.Time] = None
 
-    def fitted(self, rests: Sequence[float]) -> "Wanted":
-        """With as many points as time allows; rests: of all that may be, in their order, the coarse runs' times."""
+    def fitted(self, rests: Sequence[Sequence[float]]) -> "Wanted":
+        """With as many points as time allows; rests: for each finer size, of all that may be, in their order, the times
+        of their coarse runs."""
         if not self.time or not self.points:
             return self
-        means = [float(np.mean([self.time.one(k, rest) for rest in rests[:number]]))
-                 for k, number in enumerate(self.points, 1)]
+        means = [float(np.mean([self.time.one(k, rest) for rest in several[:number]]))
+                 for k, (several, number) in enumerate(zip(rests, self.points), 1)]
         return self._replace(points=site_budget.within(
-            len(rests), lambda k: means[k - 1], self.time.whole, len(self.values)))
+            len(rests[-1]), lambda k: means[k - 1], self.time.whole, len(self.values)))
 
     @property
     def settings(self) -> Dict[str, List[str]]:
@@ -197,22 +199,31 @@ def make(setup: Setup, work: jobs.Work, points: Sequence[Repeat], wanted: Option
     times = np.array([site_budget.in_steps(row.stop_time_s, row.variables.get("spacing")) for row in known])
     first = np.array([row.run in chosen.first for row in known])
     usual = np.median([one for one, row in zip(times, known) if not row.batch])     # without those added as longer ones
-    quick = np.flatnonzero(times <= LONG * usual * np.where(first, 2, 1))
-    # one on which a number rests and such as spread out: others may come once all values are at the finest size
-    order = quick[ball_sizes.spread(places_of(known, chosen.along)[quick], np.flatnonzero(first[quick])[:1].tolist(),
-                                    len(quick))]
-    rests, places = times[order].tolist(), [names[known[k].run] for k in order]
-    wanted = wanted.fitted(rests)
+    where = places_of(known, chosen.along)
+
+    def ordered(limits, start: Sequence[int]) -> List[int]:
+        """Of the points that rest by then these, and then such as spread out."""
+        inside = np.flatnonzero(times <= limits * usual)
+        return inside[ball_sizes.spread(where[inside], [int(k) for k in np.searchsorted(inside, start)],
+                                        len(inside))].tolist()
+
+    # the finest: one on which a number rests and such as spread out; others may come once all values are at this size
+    quick = np.where(first, SLOW, LONG)
+    fine = ordered(quick, np.flatnonzero(first & (times <= SLOW * usual))[:1].tolist())
+    last = wanted.points[-1] if len(wanted.points) > 1 else 1
+    orders = [ordered(np.maximum(quick, SLOW), fine[:last]), *[fine] * (len(wanted.points) - 1)]
+    wanted = wanted.fitted([times[order].tolist() for order in orders])
     late = min(site_budget.LATE, max(0, wanted.points[-1] - sizes.FEWEST))
-    made = Made(points, {}, places, late)
-    missing = [(k, rest) for k, number in enumerate(wanted.points) for one, rest in zip(places[:number], rests)
-               if not SizeRun(setup.runs, one, wanted.values[k + 1]).made(work.store)]
+    made = Made(points, {}, [names[known[k].run] for k in fine], late)
+    planned = [(k, each) for k, (order, number) in enumerate(zip(orders, wanted.points)) for each in order[:number]]
+    missing = [(k, times[each]) for k, each in planned
+               if not SizeRun(setup.runs, names[known[each].run], wanted.values[k + 1]).made(work.store)]
     setup.tell(told(wanted, len(missing), wanted.time and sum(
         wanted.time.one(k + 1, rest) for k, rest in missing) / work.jobs))
-    numbers = [*wanted.points[:-1], wanted.points[-1] - late]
-    todo = [add(setup, made, wanted, one, k) for k, number in enumerate(numbers) for one in places[:number]][::-1]
-    work.store.admit(todo)
-    work.do(todo)
+    todo = {(j, each) for k, each in planned[:len(planned) - late] for j in range(k + 1)}      # each is a pair
+    runs = [add(setup, made, wanted, names[known[each].run], k) for k, each in sorted(todo, reverse=True)]
+    work.store.admit(runs)
+    work.do(runs)
     return made
 
 

@@ -90,8 +90,9 @@ class Sizes:
 
     def draws(self, rows: Sequence[Finished], key: str, number: int) -> np.ndarray:
         """Values (number, n) of runs as they may be at the finest size; rows: as they were run."""
-        return ball_sizes.draws([self.left(row, key) for row in rows], [float(row.value(key)) for row in rows],
-                                [self.places.of(row) for row in rows], number)
+        found = ball_sizes.draws([self.left(row, key) for row in rows], [float(row.value(key)) for row in rows],
+                                 [self.places.of(row) for row in rows], number)
+        return np.minimum(found, [row.released_m3 for row in rows]) if key in PARTS else found
 
 
 def nearest(rows: Sequence[Finished], key: str, value: float) -> Finished:
