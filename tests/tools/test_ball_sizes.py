@@ -3,6 +3,7 @@ import math
 import os
 import subprocess
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,9 +13,11 @@ import made_rows
 from run_helpers import TOP
 from slope_tools import cli
 from slope_tools.deposits import deposit, volume
+from slope_tools.ensembles import known_events
 from slope_tools.mobility import run_length
 from slope_tools.statistics import ball_sizes
 from slope_tools.statistics.ball_sizes import Finest, fit, transfer
+from slope_tools.statistics.entries import KnownQuantile
 from slope_tools.tables import sizes
 
 MEASURED = Path(__file__).with_name("ball_sizes.csv")
@@ -96,6 +99,22 @@ def test_no_more_is_removed_than_was_released():
     found = sizes.of([*zip(coarse, fine), coarse[2:]])
     assert found.row(coarse[2]).road.blocked_m == 104       # nor is more of a road blocked than there is
     assert found.row(coarse[2]).road.remove_m3 == 1000 and found.row(coarse[0]).road.remove_m3 == pytest.approx(700)
+
+
+def test_a_quantile_is_no_lower_than_errors_of_runs_make_it():
+    """Independent errors of many runs raise a high quantile: the number lies between the ends of its own draws."""
+    rng, number = np.random.default_rng(4), 100
+    lengths = np.linspace(50.0, 150.0, number)
+
+    def draw(_, key):
+        return np.tile(lengths, (50, 1)) if key == "length_m" else 1000 * np.exp(0.1 * rng.standard_normal((50, number)))
+
+    runs = SimpleNamespace(rows=[], exceedance=lambda one: 1.0 - (np.asarray(one) - 40) / 120,
+                           weights=SimpleNamespace(ratio=None))
+    [found] = known_events.transferred([KnownQuantile(0.8, 1000.0, 950.0, None)], runs, draw)
+    assert 1040 < found.value < 1200 and found.transfer[0] == 0 < found.transfer[1]
+    [same] = known_events.transferred([KnownQuantile(0.8, 1100.0, 950.0, None)], runs, draw)
+    assert same.value == pytest.approx(1100, abs=40)
 
 
 def test_a_page_shows_a_run_of_the_finest_balls_where_one_is_about_as_large():
