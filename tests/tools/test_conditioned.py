@@ -16,12 +16,12 @@ from tiny_collapse import read_asc, rows_of
 
 from slope_tools import cli
 from slope_tools.deposits import travel_shares
-from slope_tools.ensembles import conditioned, known_events, known_maps
+from slope_tools.ensembles import conditioned, known_events
 from slope_tools.mobility import weights
+from slope_tools.quantiles import within
 from slope_tools.report import ensemble_part
 from slope_tools.report.numbers import Numbers
 from slope_tools.sites import site_warnings
-from slope_tools.statistics.hazard import weighted
 from slope_tools.statistics.entries import KnownQuantile
 from slope_tools.tables import named_run
 
@@ -179,10 +179,10 @@ def test_ranks_and_quantiles_are_weighted():
     share = np.bincount(twice)
     assert known_events.rank(x, y, share) == pytest.approx(stats.spearmanr(x[twice], y[twice])[0])
     assert known_events.rank(x, np.ones(50), share) is None
-    assert weighted(x, share, (0.2, 0.5)) == pytest.approx(
+    assert within(x, share, (0.2, 0.5)) == pytest.approx(
         np.quantile(x[twice], (0.2, 0.5), method="inverted_cdf"))
     block = rng.random((50, 7))
-    for one, wanted in zip(known_maps.quantiles(block, share, (0.1, 0.9)), (0.1, 0.9)):
+    for one, wanted in zip(within(block, share, (0.1, 0.9)), (0.1, 0.9)):
         assert one == pytest.approx(np.quantile(block[twice], wanted, axis=0, method="inverted_cdf"))
 
 

@@ -29,7 +29,6 @@ from slope_tools.deposits.axis import Axis, Span, longest_gap, merged
 from slope_tools.report import road_part
 from slope_tools.report.numbers import Numbers
 from slope_tools.statistics import rounding
-from slope_tools.statistics.hazard import weighted
 from slope_tools.survey import rasters, roads
 from slope_tools.survey.rasters import Raster
 from slope_tools.tables import road_runs
@@ -213,7 +212,6 @@ def test_ranges():
     assert merged(spans) == [(0, 2), (3, 5)] and merged(spans, 1) == [(0, 5)]
     assert longest_gap(spans, Span(-1, 8)) == 3 and longest_gap(spans, Span(0, 2)) == 0
     assert longest_gap([], Span(-1, 8)) == 9
-    assert weighted(np.array([5.0, 1.0, 3.0]), np.array([0.2, 0.5, 0.3]), (0.05, 0.5, 0.6, 0.95)) == [1, 1, 3, 5]
 
 
 def test_an_axis_with_bends_is_divided_without_gaps_and_overlaps():

@@ -6,20 +6,22 @@ import pytest
 
 
 from slope_tools.deposits import reach
+from slope_tools.quantiles import within
 
 
 def test_within_by_hand():
     values, weights = [3.0, 1.0, 2.0, 9.0], [1, 1, 1, 1]
-    assert [reach.within(values, weights, share) for share in (0.01, 0.25, 0.26, 0.5, 0.75, 0.76, 1)] == [
+    assert [within(values, weights, share) for share in (0.01, 0.25, 0.26, 0.5, 0.75, 0.76, 1)] == [
         1, 1, 2, 2, 3, 9, 9]
-    assert reach.within(values, [0, 5, 0, 0], 0.99) == 1
-    assert math.isnan(reach.within([], [], 0.5)) and math.isnan(reach.within(values, [0] * 4, 0.5))
+    assert within([5.0, 1.0, 3.0], [0.2, 0.5, 0.3], (0.05, 0.5, 0.6, 0.95)).tolist() == [1, 1, 3, 5]
+    assert within(values, [0, 5, 0, 0], 0.99) == 1 and within(values, weights, [0.5, 0.9], 4).tolist() == [9, math.inf]
+    assert math.isnan(within([], [], 0.5)) and math.isnan(within(values, [0] * 4, 0.5))
 
 
 @pytest.mark.parametrize("weight", np.linspace(0.001, 0.1, 34))
 def test_nine_of_ten_equal_weights_are_nine_tenths(weight):
     """However the sums are rounded."""
-    assert reach.within(np.arange(10.0), np.full(10, weight), 0.9) == 8
+    assert within(np.arange(10.0), np.full(10, weight), 0.9) == 8
 
 
 def test_quantiles_are_those_of_the_volume():

@@ -15,6 +15,7 @@ from scipy import ndimage, sparse
 from scipy.sparse import csgraph
 from shapely.geometry import LineString
 
+from .. import quantiles
 from ..errors import SlopeError
 from . import dumps
 
@@ -104,9 +105,7 @@ class Bands:
         beyond = reached & (self.distances > 0) & (weight > 0)
         if not (beyond.any() and mass[reached].sum() > 0):
             return
-        order = np.argsort(self.distances[reached])
-        within = np.cumsum(mass[reached][order])
-        longest = self.distances[reached][order][np.searchsorted(within, WITHIN * within[-1])]
+        longest = quantiles.within(self.distances[reached], mass[reached], WITHIN)
         bands = min(BANDS, int(longest / (2 * ground.cell * step)))
         if bands < 2:
             return

@@ -1,8 +1,9 @@
 """How far shares of a mass went: distance in plan and reach angle from the highest released ball, by volume."""
-import math
 from typing import List, NamedTuple
 
 import numpy as np
+
+from ..quantiles import within
 
 SHARES = 0.5, 0.9, 0.95, 0.99    # as fix deposit/grid tells them
 
@@ -12,21 +13,6 @@ class Quantile(NamedTuple):
     share: float            # 0 to 1
     distance: float         # m, in plan
     reach_angle: float      # degrees below the horizontal: the share is seen at this angle or a steeper one
-
-
-def within(values, weights, share, lost=0.0):
-    """The smallest of values that a share of their weights lies at or below; NaN without weight.
-
-    lost: weight of what lies beyond all of them; infinite if the share does, too.
-    """
-    order = np.argsort(values, kind="stable")
-    below = np.cumsum(np.asarray(weights, float)[order])
-    if not len(below) or not below[-1] > 0:
-        return math.nan
-    wanted = share * (below[-1] + lost)
-    if wanted > below[-1] * (1 + 1e-9):         # all that is there counts, whatever the rounding
-        return math.inf
-    return float(np.asarray(values)[order][np.searchsorted(below, min(wanted, below[-1]) * (1 - 1e-12))])
 
 
 def quantiles(places, top, volumes, lost=0.0) -> List[Quantile]:

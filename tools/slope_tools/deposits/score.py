@@ -7,6 +7,7 @@ import numpy as np
 from .. import disk, geometry
 from ..errors import SlopeError
 from ..geometry import coverage, extent
+from ..quantiles import within
 from ..survey import beside, polygons
 from ..survey.crs import same_crs
 from ..survey.rasters import HIGHEST, Raster, crs_name, is_raster
@@ -167,7 +168,7 @@ def quantiles(run_, simulated, observed, place):
     distance = np.hypot(x - place[0], y - place[1])
     found = []
     for share in reach.SHARES:
-        near, far = (round(reach.within(distance[of > 0], of[of > 0], share), 9) for of in (ours, theirs))
+        near, far = (round(within(distance[of > 0], of[of > 0], share), 9) for of in (ours, theirs))
         found.append({"share": share, "simulated": near, "observed": far, "difference": round(near - far, 9)})
     return found
 

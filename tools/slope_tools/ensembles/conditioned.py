@@ -21,6 +21,7 @@ import numpy as np
 from scipy import linalg, stats
 
 from ..mobility import weights
+from ..quantiles import within
 from ..statistics import designs, hazard
 from ..statistics.entries import KnownQuantile
 
@@ -153,23 +154,16 @@ def quantiles(found: hazard.Curve, shares: Sequence[float] = hazard.SHARES, valu
     if mass is None or mass.either is None:
         return several
     given = np.asarray(values, float)
-    return [in_gap(one, *(within(given, side, one.share) for side in mass.either)) for one in several]
+    return [in_gap(one, *(within(given, side, one.share, mass.far) for side in mass.either)) for one in several]
 
 
-def in_gap(one: KnownQuantile, before: Optional[float], after: Optional[float]) -> KnownQuantile:
-    """A quantile, given its values with the events in gaps on either side."""
-    if one.value is None or before is None or after is None or before == after:
+def in_gap(one: KnownQuantile, before: float, after: float) -> KnownQuantile:
+    """A quantile, given its values with the events in gaps on either side; infinite beyond the runs."""
+    if one.value is None or not np.isfinite([before, after]).all() or before == after:
         return one
     low, high = sorted((before, after))
     return one._replace(value=high, gap=(low, high), low=None if one.low is None else min(one.low, low),
                         high=None if one.high is None else max(one.high, high))
-
-
-def within(values: np.ndarray, share: np.ndarray, wanted: float) -> Optional[float]:
-    """The value that a share of the known events stays within; None where it goes beyond the runs."""
-    order = np.argsort(values, kind="stable")
-    at = np.flatnonzero(np.cumsum(share[order]) >= wanted - 1e-12)
-    return float(values[order][at[0]]) if len(at) else None
 
 
 def first_within(values: np.ndarray, share: np.ndarray, left: float) -> Optional[float]:

@@ -18,6 +18,7 @@ from ..digits import metres, percent, three_at_least
 from ..errors import SlopeError
 from ..findings import Finding, texts
 from ..mobility import body, exceedance, known, run_length, weights
+from ..quantiles import within
 from ..statistics import answer, emulator, hazard
 from ..statistics.entries import Analysis, KnownQuantile
 from ..survey.rasters import Place
@@ -128,9 +129,8 @@ class Runs:
 
 def resting(runs: Runs) -> List[str]:
     """Names of the runs on which the quantiles of the headline rest."""
-    values = runs.column(REMOVE)
-    found = (conditioned.within(values, runs.mass.share, share) for share in answer.shares(runs.weights.far))
-    return [sizes.nearest(runs.rows, REMOVE, one).run for one in found if one is not None]
+    found = within(runs.column(REMOVE), runs.mass.share, answer.shares(runs.weights.far), runs.mass.far)
+    return [sizes.nearest(runs.rows, REMOVE, one).run for one in found if np.isfinite(one)]
 
 
 def weighs(found: exceedance.Mobility, runs: Runs) -> bool:
@@ -233,9 +233,8 @@ def transferred(several: Sequence[KnownQuantile], runs: Runs, draw: Optional[Dra
               for one in lengths]
     found = []
     for one in several:
-        values = [conditioned.within(volume, mass.share, one.share) for volume, mass in zip(volumes, masses)]
-        low, high = np.quantile([volume.max() if value is None else value
-                                 for value, volume in zip(values, volumes)], TAILS).tolist()
+        low, high = np.quantile([np.fmin(within(volume, mass.share, one.share, mass.far), volume.max())
+                                 for volume, mass in zip(volumes, masses)], TAILS).tolist()
         if one.value is not None:       # errors of runs raise a high quantile: it is no lower than it is with them
             value = max(one.value, low)
             one = one._replace(value=value, transfer=[value - min(value, low), max(value, high) - value])
@@ -254,7 +253,7 @@ def variable(runs: Runs, k: int, main: Sequence[str]) -> ensemble_types.KnownVar
     places = runs.places[:, k]
     one = runs.sample.variables[k]
     return ensemble_types.KnownVariable(
-        [one.value(place) for place in hazard.weighted(places, runs.mass.share, MIDDLE)],
+        [one.value(place) for place in within(places, runs.mass.share, MIDDLE)],
         {name: rank(places, runs.column(name), runs.mass.share) for name in main})
 
 

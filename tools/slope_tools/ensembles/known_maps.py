@@ -9,6 +9,7 @@ from typing import Any, Dict, List, Sequence, Tuple
 import numpy as np
 
 from ..case import run_folders
+from ..quantiles import within
 from ..statistics import hazard
 from ..survey import rasters
 from . import conditioned
@@ -42,7 +43,7 @@ def of_kind(folder: Path, kind: Kind, stack: Stack, grid, mass: Masses, several:
     cells, full = math.prod(stack.shape), conditioned.whole(mass)
     levels = [0.0, *(threshold for threshold in thresholds if threshold > 0)]
     exceeded = {(level, side): np.zeros(cells) for level in levels for side in SIDES}
-    within = {share: np.full(cells, np.nan) for share in hazard.SHARES}
+    kept = {share: np.full(cells, np.nan) for share in hazard.SHARES}
     for start in range(0, cells, BLOCK):
         part = slice(start, start + BLOCK)
         block = stack.values[:, part]
@@ -51,11 +52,11 @@ def of_kind(folder: Path, kind: Kind, stack: Stack, grid, mass: Masses, several:
             _, low, high = conditioned.estimate(exceeding, mass, several=several, failed=failed)
             exceeded[level, "value"][part] = full @ exceeding
             exceeded[level, "low"][part], exceeded[level, "high"][part] = low, np.minimum(high + mass.far, 1)
-        for share, values in zip(hazard.SHARES, quantiles(-block if kind.early else block, full, hazard.SHARES)):
-            within[share][part] = -values if kind.early else values
+        for share, values in zip(hazard.SHARES, within(-block if kind.early else block, full, hazard.SHARES)):
+            kept[share][part] = -values if kind.early else values
     bands: Dict[str, np.ndarray] = {}
     central: List[Tuple[Dict[str, Any], str, str, str]] = []
-    for share, z in within.items():
+    for share, z in kept.items():
         text = quantile_text(kind, share)
         bands[text] = np.where(np.isfinite(z), z, np.nan).reshape(stack.shape)
         central.append(({"quantile": share}, f"q{100 * share:g}", f"{text}, {kind.unit}", text))
@@ -74,15 +75,6 @@ def of_kind(folder: Path, kind: Kind, stack: Stack, grid, mass: Masses, several:
         found.append({"file": f"{folder.name}/{path.name}", "raster": kind.name, "what": what, "unit": kind.unit,
                       **about, "bounds": f"{folder.name}/{kind.name}.tif" if "threshold" in about else None})
     return found
-
-
-def quantiles(block: np.ndarray, share: np.ndarray, wanted: Sequence[float]) -> List[np.ndarray]:
-    """Of each column the values that shares of the weight stay within."""
-    order = np.argsort(block, axis=0, kind="stable")
-    upto = np.cumsum(share[order], axis=0)
-    ordered = np.take_along_axis(block, order, axis=0)
-    at = [np.argmax(upto >= one * upto[-1] * (1 - 1e-12), axis=0) for one in wanted]
-    return [np.take_along_axis(ordered, one[None], axis=0)[0] for one in at]
 
 
 def quantile_text(kind: Kind, share: float) -> str:

@@ -13,8 +13,9 @@ from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple
 import numpy as np
 
 from ..case import run_folders
-from ..deposits import connected, deposit, reach, score, travel_shares
+from ..deposits import connected, deposit, score, travel_shares
 from ..errors import SlopeError
+from ..quantiles import within
 from ..statistics.backanalysis import Target
 from ..survey import rasters, vectors
 from ..tables.rows import Finished
@@ -145,11 +146,11 @@ class Observations:
             of = distance[weight > 0], weight[weight > 0]
             for share in SHARES[outline]:
                 relative(f"{100 * share:g} % of the {'area' if outline else 'volume'} within", "m",
-                         reach.within(*of, share))
+                         within(*of, share))
             if outline:
                 relative("area", "m2", float(weight.sum()) * run_.cell ** 2 + mapped.outside)
             else:
-                self.edges = np.array([reach.within(*of, k / ZONES) for k in range(1, ZONES)])
+                self.edges = np.array([within(*of, k / ZONES) for k in range(1, ZONES)])
                 total = float(weight.sum()) * run_.cell ** 2
                 for k, volume in enumerate(self._zones(weight, run_.cell)):
                     relative(f"volume in zone {k + 1}", "m3", volume, total)
@@ -167,7 +168,7 @@ class Observations:
         outputs = [1 - (overlap["jaccard"] or 0.0)]
         there = weight > 0
         for share in SHARES[outline]:
-            outputs.append(reach.within(self.distance[there], weight[there], share) if there.any() else 0.0)
+            outputs.append(within(self.distance[there], weight[there], share) if there.any() else 0.0)
         if outline:
             return [*outputs, overlap["simulated"]]
         return [*outputs, *self._zones(weight, run_.cell)]

@@ -9,6 +9,7 @@ from rasterio.features import geometry_mask
 from shapely.geometry.base import BaseGeometry
 
 from ..deposits.deposit import Deposit
+from ..quantiles import within
 from ..survey.rasters import Raster
 from ..survey.resampling import sample
 from . import fall_path, run_length
@@ -54,9 +55,7 @@ def distances(deposit: Deposit, path: FallPath) -> List[float]:
     rows, columns = np.nonzero(deposit.raster.z > 0)
     places = np.column_stack(deposit.raster.transform * np.array([columns + 0.5, rows + 0.5]))
     far, _ = run_length.lengths_of(places, path, deposit)
-    order = np.argsort(far)
-    held = np.cumsum(deposit.raster.z[rows, columns][order])
-    return [float(far[order][np.searchsorted(held, share * held[-1])]) for share in SHARES]
+    return within(far, deposit.raster.z[rows, columns], SHARES).tolist()
 
 
 def at_edge(road: BaseGeometry, raster: Raster, thickness: np.ndarray, speed: np.ndarray) -> Edge:

@@ -142,11 +142,3 @@ def table(curves: Mapping[str, Curve]) -> str:
         rows += [[name, *(f"{value:.9g}" for value in row)]
                  for row in list(zip(one.values, one.share, one.low, one.high))[first:]]
     return disk.csv_text(["quantity", "value", "exceeded", "low", "high"], rows)
-
-
-def weighted(values: np.ndarray, weights: np.ndarray, wanted: Sequence[float]) -> List[float]:
-    """The values that shares of the weight lie at or below."""
-    order = np.argsort(values, kind="stable")
-    upto = np.cumsum(weights[order])
-    return [float(values[order][min(int(np.searchsorted(upto, one * upto[-1] * (1 - 1e-12))), len(order) - 1)])
-            for one in wanted]

@@ -11,7 +11,7 @@ from shapely.geometry import MultiLineString
 from .. import disk
 from ..deposits.axis import SAME, Axis, Span, merged
 from ..deposits.road_axis import EACH
-from ..statistics.hazard import weighted
+from ..quantiles import within
 from ..survey.geopackage import Layer
 from . import study_types
 
@@ -54,7 +54,7 @@ def stretch(span: Span, runs: Sequence[Run], weights: np.ndarray) -> Dict[str, A
 
 def quantiles(numbers: Sequence[Mapping[str, float]], weights: np.ndarray) -> Dict[str, List[float]]:
     """Of each number of the runs, in the order of SHARES."""
-    return {name: weighted(np.array([one[name] for one in numbers]), weights, SHARES) for name in numbers[0]}
+    return {name: within([one[name] for one in numbers], weights, SHARES).tolist() for name in numbers[0]}
 
 
 def shares(blocked: Sequence[np.ndarray], weights: np.ndarray) -> List[List[float]]:

@@ -14,6 +14,7 @@ from rich.table import Table
 
 from .. import disk, schemas
 from ..errors import SlopeError
+from ..quantiles import within
 from .rows import Finished
 
 WINDOW = 0.5            # s, of the mean force: single impacts are those of the model's balls, what lasts is the mass's
@@ -132,23 +133,17 @@ def of_line(folder: Path, prefix: str) -> Dict[str, Any]:
     numbers["first_s"] = float(times.min()) if len(times) else None
     for name, unit in (("speed", "m_s"), ("height", "m"), ("energy", "j")):
         values = found[name][mine]
-        values = np.sort(values[np.isfinite(values)])
+        values = values[np.isfinite(values)]
         for share in SHARES:
-            numbers[f"{name}_{100 * share:.0f}_{unit}"] = quantile(values, share)
-        numbers[f"largest_{name}_{unit}"] = float(values[-1]) if len(values) else None
+            numbers[f"{name}_{100 * share:.0f}_{unit}"] = within(values, np.ones(len(values)), share) if len(values) \
+                else None
+        numbers[f"largest_{name}_{unit}"] = float(values.max()) if len(values) else None
     return numbers
 
 
 def in_direction(found: Mapping[str, np.ndarray], main: str) -> np.ndarray:
     """Mask of the crossings forward, or back."""
     return found["direction"] * (1 if main == "forward" else -1) > 0
-
-
-def quantile(ordered, share):
-    """The smallest value that this share of them stays at or below, as in the fix's own summary; None of nothing."""
-    if not len(ordered):
-        return None
-    return float(ordered[max(0, int(np.ceil(share * len(ordered) - 1e-9)) - 1)])
 
 
 def of_run(folder, settings: Sequence[str]) -> Dict[str, Dict[str, Dict[str, Any]]]:
