@@ -15,7 +15,7 @@ near the source they may leave more), so that in an upper bound they exceed ever
 beyond the longest exceed every value, in a lower bound none; in places the longest run stands for them, see whole().
 """
 from dataclasses import dataclass
-from typing import Callable, List, Optional, Sequence, Tuple
+from typing import Callable, ClassVar, List, Optional, Sequence, Tuple
 
 import numpy as np
 from scipy import linalg, stats
@@ -113,6 +113,24 @@ def estimate(exceeding: np.ndarray, mass: Masses, factor=1.0, several: float = 1
     early = mass.early @ exceeding
     low, high = np.maximum(inside * low - early, 0.0), inside * high + mass.early.sum() - early
     return part, low * (1 - failed), high + failed * (1 - high)
+
+
+@dataclass(frozen=True)
+class Standing:
+    """Runs that count as the known events that they stand for, in maps (as ensemble_maps.Alike); several, failed: see
+    estimate(). Those beyond the longest run: see whole(); in an upper bound they are everywhere."""
+    mass: Masses
+    several: float
+    failed: float
+    whose: ClassVar[str] = "known events"
+    at_a_time: ClassVar[int] = 20_000
+
+    def within(self, block: np.ndarray) -> np.ndarray:
+        return within(block, whole(self.mass), hazard.SHARES)[:, None]
+
+    def above(self, exceeding: np.ndarray) -> Sequence[np.ndarray]:
+        _, low, high = estimate(exceeding, self.mass, several=self.several, failed=self.failed)
+        return whole(self.mass) @ exceeding, low, np.minimum(high + self.mass.far, 1)
 
 
 def curve(values: hazard.Values, mass: Masses, effect: Optional[Sequence[hazard.Values]] = None,

@@ -137,7 +137,8 @@ def write(found: Evaluated, levels: ensemble_maps.Thresholds, output: Path, plac
     disk.write(output / HAZARD, hazard.table(found.curves))
     disk.write(output / INFLUENCE, influence_table(found.about.influence))
     prefixes = [run_folders.prefix_of(run_folders.summary_of(output, row.summary)) for row in found.finished]
-    maps = [] if grids else ensemble_maps.write(output / MAPS, prefixes, found.points, found.failed, levels, place)
+    alike = ensemble_maps.Alike(found.failed, max(1.0, len(prefixes) / found.points))
+    maps = [] if grids else ensemble_maps.write(output / MAPS, prefixes, alike, levels, place)
     known = known_events.write(found.known, levels, output, place, grids) if found.known else None
     return replace(found.about, maps=maps, known_events=known)
 

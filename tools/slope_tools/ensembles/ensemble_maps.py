@@ -1,9 +1,9 @@
-"""The maps over all runs of an ensemble: quantiles and exceedance of each raster of fix deposit/grid, with bounds."""
-import functools
+"""The maps over the runs of an ensemble: quantiles and exceedance of each raster of fix deposit/grid, with bounds."""
 import math
 import tempfile
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence
+from typing import Any, ClassVar, Dict, List, NamedTuple, Sequence, Union
 
 import numpy as np
 
@@ -11,11 +11,9 @@ from .. import kept
 from ..case import run_folders
 from ..statistics import hazard
 from ..survey import rasters
+from . import conditioned
 
 IN_MEMORY = 5e8         # bytes of a raster of all runs; more go to a file
-BLOCK = 200_000         # cells that are sorted at a time
-
-
 SIDES = ("value", "low", "high")        # fields of hazard.Places
 BOUND = {"value": "", "low": ", lower bound", "high": ", upper bound"}
 BOUND_EARLY = {"value": "", "low": ", later bound", "high": ", earlier bound"}
@@ -44,41 +42,53 @@ class Thresholds(NamedTuple):
         return {"max_speed": self.speed, "max_energy": self.energy, "arrival": ()}.get(kind.name, self.thickness)
 
 
-def once(make: Callable[..., List[Dict[str, Any]]]) -> Callable[..., List[Dict[str, Any]]]:
-    """make(folder, prefixes, ...) writes maps of runs to a folder: not again while all that they are made of, and the
-    maps, are as they were."""
-    @functools.wraps(make)
-    def write(folder: Path, prefixes: Sequence[Path], *asked: Any) -> List[Dict[str, Any]]:
-        runs = [(prefix.parent.name, run_folders.stamps(prefix, [kind.name for kind in KINDS])) for prefix in prefixes]
-        return kept.value(folder / ".maps.json", [runs, asked], lambda: make(folder, prefixes, *asked),
-                          lambda: sorted(maps_in(folder)))
-    return write
+@dataclass(frozen=True)
+class Alike:
+    """Runs that count alike. failed: further runs that gave none; effect: how many are worth one independent run."""
+    failed: int
+    effect: float
+    whose: ClassVar[str] = "the runs"
+    at_a_time: ClassVar[int] = 200_000      # cells
+
+    def within(self, block: np.ndarray) -> np.ndarray:
+        """What hazard.SHARES stay within in each column of values (runs, cells), and perhaps bounds, NaN where there is
+        none: an array (shares, SIDES, cells)."""
+        ordered, nothing = np.sort(block, axis=0).astype(float), np.full(block.shape[1], np.nan)
+        places = (hazard.places(share, len(block), self.failed, self.effect) for share in hazard.SHARES)
+        return np.array([[nothing if at is None else ordered[at] for at in (one.value, one.low, one.high)]
+                         for one in places])
+
+    def above(self, exceeding: np.ndarray) -> Sequence[np.ndarray]:
+        """The share of the runs for which truths (runs, cells) hold, by column: SIDES."""
+        number = exceeding.sum(axis=0)
+        return number / len(exceeding), *hazard.share_bounds(number, len(exceeding), self.failed, self.effect)
 
 
-@once
-def write(folder: Path, prefixes: Sequence[Path], points: int, failed: int, thresholds: Thresholds,
-          place) -> List[Dict]:
-    """Write all maps of finished runs (their PREFIXes) to a folder; a dict for each, as study.yaml has it.
+Counts = Union[Alike, conditioned.Standing]
 
-    points: of the design that they are of; place: CRS and offset of the runs (rasters.Place) or None.
+
+def write(folder: Path, prefixes: Sequence[Path], counts: Counts, thresholds: Thresholds,
+          place) -> List[Dict[str, Any]]:
+    """Write all maps of finished runs (their PREFIXes) to a folder; a dict for each, as study.yaml has it. Not again
+    while all that they are made of, and the maps, are as they were.
+
+    place: CRS and offset of the runs (rasters.Place) or None.
     """
-    emptied(folder)
-    effect = max(1.0, len(prefixes) / points)
-    found = []
-    for kind in rasters.progress(KINDS, "maps over all runs"):
-        grid = run_folders.load_raster(prefixes[0], kind.name, heights=False)
-        if place:
-            grid = grid._replace(crs=place.crs, offset=place.offset)
-        stack = Stack(kind, prefixes, grid.z.shape, folder)
-        found += of_kind(folder, kind, stack, grid, failed, effect, thresholds.of(kind))
-    return found
+    def make() -> List[Dict[str, Any]]:
+        folder.mkdir(exist_ok=True)
+        for old in maps_in(folder):
+            old.unlink()
+        found = []
+        for kind in rasters.progress(KINDS, f"maps of {counts.whose}"):
+            grid = run_folders.load_raster(prefixes[0], kind.name, heights=False)
+            if place:
+                grid = grid._replace(crs=place.crs, offset=place.offset)
+            stack = Stack(kind, prefixes, grid.z.shape, folder)
+            found += of_kind(folder, kind, stack, grid, counts, thresholds.of(kind))
+        return found
 
-
-def emptied(folder: Path) -> None:
-    """Make the folder of maps, without those of a study before."""
-    folder.mkdir(exist_ok=True)
-    for old in maps_in(folder):
-        old.unlink()
+    runs = [(prefix.parent.name, run_folders.stamps(prefix, [kind.name for kind in KINDS])) for prefix in prefixes]
+    return kept.value(folder / ".maps.json", [runs, counts, thresholds, place], make, lambda: sorted(maps_in(folder)))
 
 
 def maps_in(folder: Path) -> List[Path]:
@@ -101,61 +111,46 @@ class Stack:
             z = run_folders.load_raster(prefix, kind.name, heights=False).z
             self.values[i] = np.where(np.isfinite(z), z, math.inf if kind.early else 0.0).ravel()
 
-    def sorted_blocks(self):
-        """(slice of the cells, their values of all runs, the harmless ones first)."""
-        for start in range(0, self.values.shape[1], BLOCK):
-            part = slice(start, start + BLOCK)
-            block = np.sort(self.values[:, part], axis=0)
-            yield part, block[::-1] if self.kind.early else block
 
-
-def of_kind(folder: Path, kind: Kind, stack: Stack, grid, failed: int, effect: float,
+def of_kind(folder: Path, kind: Kind, stack: Stack, grid, counts: Counts,
             thresholds: Sequence[float]) -> List[Dict[str, Any]]:
     """The maps of one raster: central ones as .asc, all of them with their bounds as bands of a GeoTIFF."""
-    n, cells = stack.runs, math.prod(stack.shape)
-    at = {share: hazard.places(share, n, failed, effect) for share in hazard.SHARES}
     levels = [0.0, *(threshold for threshold in thresholds if threshold > 0)]
-    of_quantiles = {(share, side): np.full(cells, np.nan) for share in hazard.SHARES for side in SIDES}
-    above = {level: np.zeros(cells) for level in levels}
-    for part, block in stack.sorted_blocks():
-        for share, places in at.items():
-            for side in SIDES:
-                i: Optional[int] = getattr(places, side)
-                if i is not None:
-                    of_quantiles[share, side][part] = block[i]
-        for level in levels:
-            above[level][part] = (np.isfinite(block) if kind.early else block > level).sum(axis=0)
+    harmless_first = -1 if kind.early else 1
+    within, above = [], []
+    for start in range(0, stack.values.shape[1], counts.at_a_time):
+        block = stack.values[:, start:start + counts.at_a_time]
+        within.append(harmless_first * counts.within(harmless_first * block))
+        above.append([counts.above(np.isfinite(block) if kind.early else block > level) for level in levels])
+    file = f"{folder.name}/{kind.name}.tif"
     bands, central = {}, []
-    for share in hazard.SHARES:
-        text = quantile_text(kind, share)
-        for side in SIDES:
-            z = of_quantiles[share, side].reshape(stack.shape)
-            bands[f"{text}{(BOUND_EARLY if kind.early else BOUND)[side]}"] = np.where(np.isfinite(z), z, np.nan)
-        central.append(({"quantile": share, "bounded": at[share].high is not None}, f"q{100 * share:g}", text))
-    for level in levels:
-        text = f"share of the runs with a {kind.what} > {level:g} {kind.unit}" if not kind.early else \
-            "share of the runs that arrive"
-        low, high = hazard.share_bounds(above[level], n, failed, effect)
-        for side, z in (("value", above[level] / n), ("low", low), ("high", high)):
-            bands[f"{text}{BOUND[side]}"] = z.reshape(stack.shape)
-        central.append(({"threshold": level}, f"above_{level:g}" if not kind.early else "reached", text))
+    for share, several in zip(hazard.SHARES, np.concatenate(within, axis=-1)):
+        text, bounded = quantile_text(kind, share, counts.whose), len(several) > 1
+        for side, z in zip(SIDES, several):
+            bands[text + (BOUND_EARLY if kind.early else BOUND)[side]] = np.where(np.isfinite(z), z, np.nan)
+        about: Dict[str, Any] = {"quantile": share}
+        if bounded:
+            about["bounded"] = not np.isnan(several[-1]).all()
+        central.append((about, f"q{100 * share:g}", text, f"{text}, {kind.unit}", file if bounded else None))
+    for level, several in zip(levels, np.concatenate(above, axis=-1)):
+        text = f"share of {counts.whose} " + ("that arrive" if kind.early else
+                                              f"with a {kind.what} > {level:g} {kind.unit}")
+        bands.update({text + BOUND[side]: z for side, z in zip(SIDES, several)})
+        central.append(({"threshold": level}, "reached" if kind.early else f"above_{level:g}", text, text, file))
+    bands = {text: z.reshape(stack.shape) for text, z in bands.items()}
     rasters.write_geotiff(folder / f"{kind.name}.tif", bands, grid)
     found = []
-    for about, name, text in central:
-        z = bands[text]
-        path = folder / f"{kind.name}_{name}.asc"
-        entry: Dict[str, Any] = {
-            "file": f"{folder.name}/{path.name}", "raster": kind.name,
-            "what": f"{text}, {kind.unit}" if "quantile" in about else text, "unit": kind.unit, **about,
-            "bounds": f"{folder.name}/{kind.name}.tif"}
-        if not np.isfinite(z).any():        # so many runs never arrive anywhere
+    for about, name, text, what, bounds in central:
+        if not np.isfinite(bands[text]).any():      # so many never arrive anywhere
             continue
-        rasters.write_asc_local(path, grid._replace(z=z), {"what": entry["what"]})
-        found.append(entry)
+        path = folder / f"{kind.name}_{name}.asc"
+        rasters.write_asc_local(path, grid._replace(z=bands[text]), {"what": what})
+        found.append({"file": f"{folder.name}/{path.name}", "raster": kind.name, "what": what, "unit": kind.unit,
+                      **about, "bounds": bounds})
     return found
 
 
-def quantile_text(kind: Kind, share: float) -> str:
+def quantile_text(kind: Kind, share: float, whose: str) -> str:
     if kind.early:
-        return f"{kind.what}: {100 * (1 - share):.3g} % of the runs are earlier"
-    return f"{kind.what} that {100 * share:.3g} % of the runs stay within"
+        return f"{kind.what}: {100 * (1 - share):.3g} % of {whose} are earlier"
+    return f"{kind.what} that {100 * share:.3g} % of {whose} stay within"

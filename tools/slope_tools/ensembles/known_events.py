@@ -2,7 +2,7 @@
 
 Order of the work: where known events end on the path of this mass (mobility), the weights that make the runs end there
 (mobility.weights), curves and quantiles of the weighted runs (conditioned), the parameters that they have, maps
-(known_maps). The numbers of the ensemble as its distributions have it are not touched.
+(ensemble_maps). The numbers of the ensemble as its distributions have it are not touched.
 """
 import functools
 from dataclasses import dataclass, replace
@@ -24,8 +24,7 @@ from ..statistics.entries import Analysis, KnownQuantile
 from ..survey.rasters import Place
 from ..tables import answer_words, combinations, ensemble_types, quantities, sizes
 from ..tables.rows import Finished, Row, finished_of
-from . import conditioned, farther, known_influence, known_maps
-from .ensemble_maps import Thresholds
+from . import conditioned, ensemble_maps, farther, known_influence
 from .sample import Sample
 
 FOLDER, HAZARD, WEIGHTS = "known_events", "hazard_known_events.csv", "weights.csv"
@@ -200,7 +199,7 @@ def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: S
     return Evaluated(replace(about, doubts=doubts(about, runs)), runs, curves)
 
 
-def write(one: Evaluated, levels: Thresholds, output: Path, place: Optional[Place],
+def write(one: Evaluated, levels: ensemble_maps.Thresholds, output: Path, place: Optional[Place],
           grids: Optional[str]) -> ensemble_types.Known:
     """Tables and maps; what study.yaml says, with the entries of the maps. levels, place, grids: see ensemble.write."""
     runs = one.runs
@@ -211,8 +210,8 @@ def write(one: Evaluated, levels: Thresholds, output: Path, place: Optional[Plac
     disk.write(output / HAZARD, hazard.table(one.curves))
     disk.write(output / WEIGHTS, weights_table(runs))
     prefixes = [run_folders.prefix_of(run_folders.summary_of(output, row.summary)) for row in runs.rows]
-    return replace(one.about, maps=[] if grids else known_maps.write(
-        output / FOLDER, prefixes, runs.mass, runs.several, runs.failed_share, levels, place))
+    return replace(one.about, maps=[] if grids else ensemble_maps.write(
+        output / FOLDER, prefixes, conditioned.Standing(runs.mass, runs.several, runs.failed_share), levels, place))
 
 
 def quantiles(curve: hazard.Curve, runs: Runs, name: str, shares: Sequence[float]) -> List[KnownQuantile]:
