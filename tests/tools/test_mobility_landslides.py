@@ -12,7 +12,7 @@ from test_mobility_path import RADIUS, STEEP, disc, hillside, terrain
 
 from slope_tools.digits import three
 from slope_tools.errors import SlopeError
-from slope_tools.mobility import body, exceedance, fall_path, known, landslides, lucas, results, road
+from slope_tools.mobility import body, exceedance, fall_path, known, landslides, lucas, offices, results, road
 from slope_tools.releases import release
 from slope_tools.survey import rasters
 
@@ -79,8 +79,9 @@ def test_the_line_from_the_crown_comes_out_where_a_slope_and_a_flat_have_it():
     """100 m down at 45 degrees, then a flat: H / mu; steeper than the slope at the toe; beyond the path nowhere."""
     length = np.linspace(0, 400, 401)
     path = fall_path.FallPath(length, 0 * length, length, np.minimum(length, 100.0), fall_path.TERRAIN, (0, 0, 100))
-    assert lucas.reach(path, 20, 0.4) == pytest.approx(250) and lucas.reach(path, 20, 0.33) == pytest.approx(100 / 0.33)
-    assert lucas.reach(path, 20, 1.1) == 20 and lucas.reach(path, 20, 0.2) is None
+    path = path._replace(length=length[20:], fall=path.fall[20:])
+    assert lucas.reach(path, 0.4) == pytest.approx(250) and lucas.reach(path, 0.33) == pytest.approx(100 / 0.33)
+    assert lucas.reach(path, 1.1) == 20 and lucas.reach(path, 0.2) is None
 
 
 @pytest.mark.parametrize("moved, farther", [(0.0, None), (-1.2, "the events"), (1.2, "that law's masses")])
@@ -109,8 +110,11 @@ def test_it_begins_at_the_toe_and_never_rises():
     found = known.of_body(mass, known.choice())
     assert found.decides is found.by_row and found.by_set is not None and not found.by_set.in_range
     one, path = found.by_row, found.by_row.path
-    toe = fall_path.toe(mass, path)
-    assert path.x[toe] == pytest.approx(260 + RADIUS, abs=15)
+    beyond = fall_path.from_toe(mass, path)
+    toe = int(np.searchsorted(path.length, beyond.length[0]))
+    assert path.length[toe - 1] < beyond.length[0] < path.length[toe] and (beyond.length[1:] == path.length[toe:]).all()
+    assert beyond.x[0] == pytest.approx(260 + RADIUS, abs=15) and path.fall[toe - 1] < beyond.fall[0] < path.fall[toe]
+    assert beyond.length[0] == lucas.opinion(mass, path).toe == offices.slope(mass, path).toe       # one for all
     for kind, curve in one.curves.items():
         assert (curve[:toe] == 1).all() and (np.diff(curve) <= 0).all()
         raw = ROW.beyond(kind, path.length[toe:], one.volume, path.fall[toe:])

@@ -132,10 +132,9 @@ def path_of(body: Body, laws: Sequence[Law]) -> FallPath:
 
 
 def on(body: Body, path: FallPath, law: Law, chosen: str) -> Mobility:
-    volume, toe = body.volume / 1e6, fall_path.toe(body, path)
+    volume, toe = body.volume / 1e6, fall_path.from_toe(body, path).length[0]
     low, high = law.falls
-    said = (path.fall >= low) & (path.fall <= high) & (path.fall > 0) & (path.length > 0)
-    said[:toe] = False
+    said = (path.fall >= low) & (path.fall <= high) & (path.fall > 0) & (path.length > 0) & (path.length >= toe)
     curves = {}
     for kind in law.kinds:
         share = np.ones(len(path.length))

@@ -25,6 +25,7 @@ LEAST = 1e-5            # a gradient below is none
 SHORTEST = 8            # a step that does not descend is halved, down to this part of it
 MOST_POINTS = 4000      # of a path
 RIM = 0.01              # of a body's largest depth
+PARTS = 50              # of a step of the path, at the toe
 TERRAIN, EVENTS, LINE = "where the terrain ends", "where hardly any known event arrives", "where the given line ends"
 
 
@@ -86,11 +87,23 @@ def on(body: Body, line: LineString, end: str) -> FallPath:
     return FallPath(x, y, length, np.nan_to_num(fall), end, crown)
 
 
-def toe(body: Body, path: FallPath) -> int:
-    """Index of the last point of a path on the body; 0 where none is. Its rim has no depth: rounding would decide."""
-    depth = sample(body.raster._replace(z=body.depth), path.x, path.y)
-    within = np.flatnonzero(depth > RIM * body.depth.max())
-    return int(within[-1]) if len(within) else 0
+def from_toe(body: Body, path: FallPath) -> FallPath:
+    """A path from the body's toe on, its last place on the body, between two points; all of it where none is.
+
+    A body's rim has no depth: rounding would decide.
+    """
+    def last_on(x: np.ndarray, y: np.ndarray) -> int:
+        within = np.flatnonzero(sample(body.raster._replace(z=body.depth), x, y) > RIM * body.depth.max())
+        return int(within[-1]) if len(within) else 0
+
+    k = last_on(path.x, path.y)
+    at = np.linspace(k, min(k + 1, len(path.length) - 1), PARTS + 1)
+    x, y, length = (np.interp(at, np.arange(len(path.length)), values) for values in (path.x, path.y, path.length))
+    toe = last_on(x, y)
+    fall = max(path.crown[2] - float(sample(body.raster, x[toe], y[toe])), 0.0)
+    x, y, length, falls = (np.append(first, rest[k + 1:]) for first, rest in zip(
+        (x[toe], y[toe], length[toe], fall), (path.x, path.y, path.length, path.fall)))
+    return path._replace(x=x, y=y, length=length, fall=falls)
 
 
 class Smooth:

@@ -47,27 +47,27 @@ def friction(volume: float, share: float = 0.5) -> float:
     return float(10 ** (EXPONENT * math.log10(volume) + stats.norm.ppf(share) * DEVIATION))
 
 
-def reach(path: FallPath, toe: int, slope: float) -> Optional[float]:
-    """Length (m) at which a line of a slope from the crown comes out of the ground, at the toe (index of a point) or
-    beyond; None: the path ends before."""
-    above = path.fall[toe:] - slope * path.length[toe:]
+def reach(path: FallPath, slope: float) -> Optional[float]:
+    """Length (m) at which a line of a slope from the crown comes out of the ground on a path that begins at the toe;
+    None: it ends before."""
+    above = path.fall - slope * path.length
     below = np.flatnonzero(above < 0)
     if not len(below):
         return None
     k = int(below[0])
     if k == 0:
-        return float(path.length[toe])
+        return float(path.length[0])
     share = above[k - 1] / (above[k - 1] - above[k])
-    return float(path.length[toe + k - 1] + share * (path.length[toe + k] - path.length[toe + k - 1]))
+    return float(path.length[k - 1] + share * (path.length[k] - path.length[k - 1]))
 
 
 def opinion(mass: Body, path: FallPath) -> Opinion:
     """Of a body on its fall path."""
-    toe = fall_path.toe(mass, path)
+    beyond_toe = fall_path.from_toe(mass, path)
     slopes = [friction(mass.volume, share) for share in (0.5, *ENDS[::-1])]
     angle, steep, flat = (math.degrees(math.atan(one)) for one in slopes)
-    middle, near, far = (reach(path, toe, one) for one in slopes)
-    return Opinion(angle, steep, flat, middle, near, far, float(path.length[toe]))
+    middle, near, far = (reach(beyond_toe, one) for one in slopes)
+    return Opinion(angle, steep, flat, middle, near, far, float(beyond_toe.length[0]))
 
 
 def differ(said: Opinion, counts: Mobility) -> Optional[Band]:

@@ -11,14 +11,12 @@ from shapely.geometry.base import BaseGeometry
 from ..deposits.deposit import Deposit
 from ..quantiles import within
 from ..survey.rasters import Raster
-from ..survey.resampling import sample
 from . import fall_path, run_length
 from .body import Body
 from .fall_path import FallPath
 
 SHARES = 0.5, 0.9, 0.99         # of the volume
 HEIGHTS, MOST = 2.0, 50.0       # from the toe, in heights, and m at most: Japan's Sediment Disaster Act, steep slopes
-PARTS = 50                      # of a step of the path, at the toe
 GRAVITY = 9.80665               # m/s2
 
 
@@ -40,14 +38,9 @@ class Edge(NamedTuple):
 
 
 def slope(mass: Body, path: FallPath) -> Optional[Slope]:
-    """None of a body whose toe is not below its crown. The toe lies between two points of the path, by its depth."""
-    toe = fall_path.toe(mass, path)
-    at = np.linspace(toe, min(toe + 1, len(path.length) - 1), PARTS + 1)
-    x, y, length = (np.interp(at, np.arange(len(path.length)), values) for values in (path.x, path.y, path.length))
-    within = sample(mass.raster._replace(z=mass.depth), x, y) > fall_path.RIM * mass.depth.max()
-    last = int(np.flatnonzero(within)[-1]) if within.any() else 0
-    fall = path.crown[2] - float(sample(mass.raster, x[last], y[last]))
-    return Slope(fall, float(length[last])) if fall > 0 else None
+    """None of a body whose toe is not below its crown."""
+    beyond = fall_path.from_toe(mass, path)
+    return Slope(float(beyond.fall[0]), float(beyond.length[0])) if beyond.fall[0] > 0 else None
 
 
 def distances(deposit: Deposit, path: FallPath) -> List[float]:

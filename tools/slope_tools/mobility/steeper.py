@@ -25,10 +25,10 @@ def below(body: Body) -> Below:
     """
     rows, columns = body.raster.z.shape
     path = fall_path.trace(body, math.hypot(rows, columns) * body.cell)
-    toe = fall_path.toe(body, path)
+    beyond = fall_path.from_toe(body, path)
     width = max(body.volume ** (1 / 3), body.cell)
-    middle = 0.5 * (path.length[toe:-1] + path.length[toe + 1:])
+    middle = 0.5 * (beyond.length[:-1] + beyond.length[1:])
     ends = [np.clip(middle + part * width, 0, path.length[-1]) for part in (-0.5, 0.5)]
     falls = [np.interp(end, path.length, path.fall) for end in ends]
     angle = np.degrees(np.arctan2(falls[1] - falls[0], ends[1] - ends[0]))
-    return Below(np.maximum(np.diff(path.fall[toe:]), 0.0), angle)
+    return Below(np.maximum(np.diff(beyond.fall), 0.0), angle)
