@@ -151,7 +151,7 @@ def test_without_a_gap_there_is_no_either():
 def test_words_of_a_quantile_in_a_gap(gap):
     """Console, card, table and numbers have both ends, and no single value."""
     one = KnownQuantile(0.5, 2950.0, 1500.0, 3100.0, gap)
-    line = known_events.quantile_text(one, "m")
+    line = known_events.quantile_text(one, "m", "known events")
     assert ("between 1,890 and 2,950 m" in line) == bool(gap) and ("stay within" in line) != bool(gap)
     assert ensemble_part.cell_of(one) == ("1,890 to 2,950" if gap else "2,950")
     about = made_study.ensemble({"quantities": {"length_m": {"name": "length", "unit": "m", "quantiles": [one]}}},

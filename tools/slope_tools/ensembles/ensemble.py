@@ -16,7 +16,7 @@ from ..errors import SlopeError
 from ..findings import Finding, texts
 from ..mobility.exceedance import Mobility
 from ..statistics import emulator, hazard
-from ..statistics.entries import Analysis, Check, Influence, Quantile
+from ..statistics.entries import Analysis, Check, Influence, KnownQuantile
 from ..survey.rasters import Place
 from ..tables import combinations, ensemble_types, quantities, withheld_words
 from ..tables.quantities import On
@@ -226,18 +226,11 @@ def describe(about: ensemble_types.Ensemble) -> List[str]:
     if of:
         entry = about.quantities[of]
         if not about.withheld:
-            shares = (quantile_text(one, entry.unit) for one in entry.quantiles)
-            lines.append(f"{entry.name}: " + "; ".join(shares))
+            lines.append(f"{entry.name}: " + "; ".join(
+                known_events.quantile_text(KnownQuantile(*one), entry.unit, "the runs") for one in entry.quantiles))
         lines.append(f"{entry.name} depends on " + dependence_text(about.influence[of]))
     lines += [f"caveat: {text}" for text in texts(about.doubts)]
     return lines + known_events.describe(about)
-
-
-def quantile_text(one: Quantile, unit: str) -> str:
-    number = quantities.number
-    low = "?" if one.low is None else number(one.low)
-    high = "?" if one.high is None else number(one.high)
-    return f"{100 * one.share:g} % of the runs stay within {number(one.value)} {unit} ({low} to {high})"
 
 
 def dependence_text(entry: Analysis) -> str:

@@ -316,7 +316,8 @@ def describe(one: ensemble_types.Ensemble) -> List[str]:
         lines = ["known events: " + summary(about)]
         if of and of in about.quantities:
             entry = about.quantities[of]
-            lines.append(f"{entry.name}: " + "; ".join(quantile_text(one, entry.unit) for one in entry.quantiles))
+            lines.append(f"{entry.name}: " + "; ".join(
+                quantile_text(one, entry.unit, "known events") for one in entry.quantiles))
     return lines + [f"caveat: known events: {text}" for text in texts(known.doubts if known else ())]
 
 
@@ -339,9 +340,9 @@ def by_lobe(about: ensemble_types.Weighted) -> str:
     return f" (with lobes of {least} {' and '.join(shares)})"
 
 
-def quantile_text(one: KnownQuantile, unit: str) -> str:
+def quantile_text(one: KnownQuantile, unit: str, whose: str) -> str:
     """A quantile with its bounds; without a value, what is known instead."""
-    share = f"{100 * one.share:g} % of known events"
+    share = f"{100 * one.share:g} % of {whose}"
     if one.value is None:
         return f"{share}: unknown, they go beyond the runs"
     low, high = ("?" if side is None else quantities.number(side) for side in (one.low, one.high))

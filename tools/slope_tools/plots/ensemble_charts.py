@@ -20,12 +20,10 @@ class Bar(NamedTuple):
     total_error: float
 
 
-def hazard_curve(values, share, low, high, quantiles: Sequence[KnownQuantile], x_label: str, title: str,
-                 what: str = "runs") -> str:
-    """Share of the runs above each value (arrays, values ascending), with its bounds and the quantiles.
-
-    what: it is a share of.
+def hazard_curve(points, quantiles: Sequence[KnownQuantile], x_label: str, title: str, what: str) -> str:
+    """The share of what is above values, with its bounds and the quantiles; points: values (they rise), share, bounds.
     """
+    values, share, low, high = points
     with pictures.settings(STYLE):
         figure, axes = pictures.subplots(figsize=(figures.WIDE, 2.7))
         end = values[-1] + 0.04 * (values[-1] - values[0] or 1)
@@ -40,7 +38,7 @@ def hazard_curve(values, share, low, high, quantiles: Sequence[KnownQuantile], x
                 axes.plot([one.value], [1 - one.share], "o", ms=4, color=COLOURS[1])
             axes.annotate(f"{100 * one.share:g} %", (one.value, 1 - one.share), xytext=(4, 3),
                           textcoords="offset points", fontsize=6)
-        axes.set(xlim=(values[0], end), ylim=(0, 1.02), xlabel=x_label, ylabel=f"share of the {what} above")
+        axes.set(xlim=(values[0], end), ylim=(0, 1.02), xlabel=x_label, ylabel=f"share of {what} above")
         finish(axes, title)
         axes.yaxis.set_major_formatter(PercentFormatter(1, 0))
         axes.legend(loc="upper right")

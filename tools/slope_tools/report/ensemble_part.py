@@ -1,6 +1,7 @@
 """What a report shows of an ensemble, by its distributions and as known events weigh it: curves, tables, maps."""
 import csv
-from typing import Any, List, Optional, Sequence
+from pathlib import Path
+from typing import Any, Callable, List, Optional, Sequence
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from .sections import Cell, Figures, Picture, Section, Table, Text
 MOST_SCATTER = 4        # variables with a chart of the runs against them
 ODDS = [0.0, 0.05, 0.2, 0.4, 0.6, 0.8, 1.0]
 IN_GAP = "In a gap: no run ends where these known events do."
+EVENTS = "known events"
 SHARES = ("50 %", "90 %", "95 %", "99 %")
 
 
@@ -55,20 +57,10 @@ class Ensemble:
         entry = self.entry
         if not entry:
             return None
-        what, unit = entry.name, entry.unit
         if self.about.withheld:
-            return MainCard(withheld_words.UNUSABLE.capitalize(), None, unit, withheld=self.about.withheld,
+            return MainCard(withheld_words.UNUSABLE.capitalize(), None, entry.unit, withheld=self.about.withheld,
                             note=self.design())
-        parts = []
-        for one in entry.quantiles:
-            bounds = [None if side is None else self.number(f"{100 * one.share:g} % {name}", unit, side)
-                      for name, side in (("low", one.low), ("high", one.high))]
-            note = band(bounds, unit, self.about.confidence)
-            share = f"{100 * one.share:g} % of the runs stay within"
-            parts.append(CardPart(self.number(share, unit, one.value), share, note))
-        shown = next((part for part, one in zip(parts, entry.quantiles) if one.share == 0.9), parts[-1])
-        return MainCard(f"{what[0].upper()}{what[1:]}: 90 % of the runs stay within", shown.number, unit, parts,
-                        band=shown.note, note=self.design())
+        return card(entry, "the runs", self.about.confidence, self.number, self.design())
 
     def number(self, what, unit, value):
         return self.numbers(f"{self.entry.name if self.entry else ''}: {what}", unit, value)
@@ -93,17 +85,10 @@ class Ensemble:
         """The hazard curve, from hazard.csv."""
         if not self.entry or not self.of:
             return None
-        points = read_curve(self.data.folder / ensemble.HAZARD, self.of)
-        if points is None:
-            return None
-        quantiles = [entries.KnownQuantile(*one) for one in self.entry.quantiles]
-        title = f"Hazard curve: {self.entry.name}"
-        return Picture(
-            ensemble_charts.hazard_curve(points[0], points[1], points[2], points[3], quantiles,
-                                         f"{self.entry.name} ({self.entry.unit})", title),
-            title, f"The hazard curve: share of the runs in which the quantity is larger, with its "
-            f"{100 * self.about.confidence:g} % bounds; dots: what 50, 90, 95 and 99 % of the runs stay within."
-           )
+        return hazard_curve(
+            self.data.folder / ensemble.HAZARD, self.of, self.entry, f"Hazard curve: {self.entry.name}", "the runs",
+            f"The hazard curve: share of the runs in which the quantity is larger, with its "
+            f"{100 * self.about.confidence:g} % bounds; dots: what 50, 90, 95 and 99 % of the runs stay within.")
 
     def indices(self) -> List[Picture]:
         """A chart for each quantity whose emulator says something, the one that counts first, three at most."""
@@ -183,49 +168,24 @@ class KnownEvents:
     def number(self, what: str, unit: str, value: Optional[float]) -> str:
         return "unknown" if value is None else self.numbers(f"known events: {what}", unit, value)
 
-    def quantile(self, share: str, unit: str, one: entries.KnownQuantile) -> str:
-        """The value, or the two between which it is."""
-        gap = one.gap
-        if not gap:
-            return self.number(share, unit, one.value)
-        return " to ".join(self.number(f"{share}, {end} of the gap where no run ends", unit, value)
-                           for end, value in zip(("begin", "end"), gap))
-
     def answer(self) -> Optional[MainCard]:
         """For the card on top, instead of that of the runs as their distributions have them."""
         if not self.entry or not self.about:
             return None
-        what, unit = self.entry.name, self.entry.unit
-        parts = []
-        for one in self.entry.quantiles:
-            share = f"{100 * one.share:g} % of known events stay within"
-            bounds = [None if side is None else self.number(f"{share}, {name}", unit, side)
-                      for name, side in (("low", one.low), ("high", one.high))]
-            note = band(bounds, unit, self.confidence)
-            if one.gap:
-                note = f"{IN_GAP} {note}"
-            parts.append(CardPart(self.quantile(share, unit, one), share, note, unit="" if one.value is None else unit))
-        shown = next((part for part, one in zip(parts, self.entry.quantiles) if one.share == 0.9), parts[-1])
-        return MainCard(f"{what[0].upper()}{what[1:]}: 90 % of known events stay within", shown.number,
-                        shown.unit or "", parts, band=shown.note,
-                        note=f"The runs reach {percent(self.about.reached or 0.0)} of the known events of this volume "
-                             f"and height, and weighted by them say as much as {self.about.effective:.0f} runs.")
+        return card(self.entry, EVENTS, self.confidence, self.number,
+                    f"The runs reach {percent(self.about.reached or 0.0)} of the known events of this volume and "
+                    f"height, and weighted by them say as much as {self.about.effective:.0f} runs.")
 
     def curve(self):
         """The weighted hazard curve."""
         if not self.entry or not self.of:
             return None
-        points = read_curve(self.data.folder / known_events.HAZARD, self.of)
-        if points is None:
-            return None
-        named = [one for one in self.entry.quantiles if one.value is not None]
-        title = f"Hazard curve by known events: {self.entry.name}"
-        uri = ensemble_charts.hazard_curve(points[0], points[1], points[2], points[3], named,
-                                           f"{self.entry.name} ({self.entry.unit})", title, "known events")
-        return Picture(uri, title, "The weighted hazard curve: share of known events in which the quantity is "
-                       f"larger, with its {100 * self.confidence:g} % bounds. What the runs do not reach is not "
-                       "shared out: known events beyond the longest run exceed every value. A line: no run ends where "
-                       "these known events do.")
+        return hazard_curve(
+            self.data.folder / known_events.HAZARD, self.of, self.entry,
+            f"Hazard curve by known events: {self.entry.name}", EVENTS, "The weighted hazard curve: share of known "
+            f"events in which the quantity is larger, with its {100 * self.confidence:g} % bounds. What the runs do "
+            "not reach is not shared out: known events beyond the longest run exceed every value. A line: no run ends "
+            "where these known events do.")
 
     def tables(self) -> List[Table]:
         """Quantiles of all quantities; which parameters the weighted runs have, and how the first depends on them."""
@@ -259,6 +219,31 @@ def cell_of(one: entries.KnownQuantile) -> str:
 
 
 # --- of both ---
+
+def card(entry: Any, whose: str, confidence: float, number: Callable[[str, str, Any], str], note: str) -> MainCard:
+    """The card of the quantiles of a quantity; whose share stays within; number: writes and keeps one."""
+    parts, unit = [], entry.unit
+    for one in entry.quantiles:
+        share = f"{100 * one.share:g} % of {whose} stay within"
+        bounds = [None if side is None else number(f"{share}, {name}", unit, side)
+                  for name, side in (("low", one.low), ("high", one.high))]
+        gap = getattr(one, "gap", None)
+        value = number(share, unit, one.value) if not gap else " to ".join(number(
+            f"{share}, {end} of the gap where no run ends", unit, side) for end, side in zip(("begin", "end"), gap))
+        parts.append(CardPart(value, share, f"{IN_GAP} " * bool(gap) + band(bounds, unit, confidence),
+                              unit="" if one.value is None else unit))
+    shown = next((part for part, one in zip(parts, entry.quantiles) if one.share == 0.9), parts[-1])
+    return MainCard(f"{entry.name[0].upper()}{entry.name[1:]}: 90 % of {whose} stay within", shown.number,
+                    shown.unit or "", parts, band=shown.note, note=note)
+
+
+def hazard_curve(path: Path, of: str, entry: Any, title: str, whose: str, text: str) -> Optional[Picture]:
+    """The curve of a quantity in a file of hazard.table(); None where it has none."""
+    points = read_curve(path, of)
+    named = [entries.KnownQuantile(*one) for one in entry.quantiles if one.value is not None]
+    return None if points is None else Picture(
+        ensemble_charts.hazard_curve(points, named, f"{entry.name} ({entry.unit})", title, whose), title, text)
+
 
 def band(bounds: Sequence[Optional[str]], unit: str, confidence: float) -> str:
     """The lower and the upper bound (None: unknown), each with its unit."""
