@@ -113,14 +113,10 @@ def of_failures(capacity: np.ndarray, rate: Hazard, low: float, high: float) -> 
     At the curve's last peak counts what is above it, too. Each place is a body in the order of failure, with those
     that have failed before it, until the next one does.
     """
-    first, last = rate.peaks[0], rate.peaks[-1]
     order = np.argsort(capacity, axis=-1)
     ordered = np.take_along_axis(capacity, order, axis=-1)
     failed = np.cumsum(np.int64(1) << order, axis=-1)
-    to = 0.0 if high > last else float(rate.at(high))
-    with np.errstate(invalid="ignore"):
-        counted = np.where(ordered < last, rate.at(np.clip(ordered, max(low, first), last)), 0.0)
-    counted = np.maximum(counted - to, 0.0)
+    counted = rate.exceeds(ordered, low, high)
     return failed, counted - np.concatenate([counted[..., 1:], np.zeros_like(counted[..., :1])], axis=-1)
 
 

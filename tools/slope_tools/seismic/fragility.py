@@ -204,10 +204,13 @@ class Hazard(NamedTuple):
         with np.errstate(divide="ignore"):
             return np.exp(np.interp(np.log(peak), np.log(self.peaks), np.log(self.rates)))
 
-    def exceeds(self, capacity: np.ndarray) -> np.ndarray:
-        """How often a peak exceeds each capacity: those below the first one never, those above the last one as it."""
+    def exceeds(self, capacity: np.ndarray, low: float = 0.0, high: float = np.inf) -> np.ndarray:
+        """How often a peak between two exceeds each capacity: those below the first point never, those above the last
+        one as it."""
+        first, last = self.peaks[0], self.peaks[-1]
         with np.errstate(invalid="ignore"):
-            return np.where(capacity < self.peaks[-1], self.at(np.clip(capacity, self.peaks[0], self.peaks[-1])), 0.0)
+            found = np.where(capacity < last, self.at(np.clip(capacity, max(low, first), last)), 0.0)
+        return np.maximum(found - (0.0 if high > last else float(self.at(high))), 0.0)
 
 
 class Frequency(NamedTuple):
@@ -224,9 +227,6 @@ def frequency(capacity: np.ndarray, hazard: Hazard, peaks: np.ndarray) -> Freque
     """
     first, last = hazard.peaks[0], hazard.peaks[-1]
     total = banded(replicates(hazard.exceeds(capacity)).reshape(REPLICATES, -1).mean(axis=1))
-    ends = np.unique(np.concatenate([[first], peaks[(peaks > first) & (peaks < last)], [last]]))
-    parts = [(float(a), float(b), float((hazard.at(np.clip(capacity, a, b)) - hazard.at(b)).mean()))
-             for a, b in zip(ends[:-1], ends[1:])]
-    fails = float((capacity < last).mean())
-    parts.append((float(last), np.inf, float(fails * hazard.rates[-1])))
-    return Frequency(total, parts, float((1 - fails) * hazard.rates[-1]))
+    ends = np.unique(np.concatenate([[first], peaks[(peaks > first) & (peaks < last)], [last, np.inf]]))
+    parts = [(float(a), float(b), float(hazard.exceeds(capacity, a, b).mean())) for a, b in zip(ends[:-1], ends[1:])]
+    return Frequency(total, parts, float((1 - (capacity < last).mean()) * hazard.rates[-1]))
