@@ -5,14 +5,15 @@ differences between the grounds. What a block that left the terrain with the roa
 is not known: in a lower bound it does not do it, in an upper one it does.
 """
 import math
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from typing import Any, Dict, List, Optional, Sequence
 
 import numpy as np
 
-from .. import digits
+from .. import digits, records
 from ..findings import Finding
 from ..statistics import hazard, withheld
+from ..statistics.entries import Quantile
 from .runs import AT_ROAD, QUANTITIES, Run
 
 SHARES = 0.5, 0.95      # of the quantiles
@@ -41,19 +42,10 @@ class Share:
 
 
 @dataclass(frozen=True)
-class Value:
-    """A quantile; None: so many blocks do not bound it."""
-    share: float
-    value: float
-    low: Optional[float]
-    high: Optional[float]
-
-
-@dataclass(frozen=True)
 class Quantity:
     """Of the blocks that have it."""
     blocks: int
-    quantiles: Sequence[Value]
+    quantiles: Sequence[Quantile]
     largest: float
 
     @property
@@ -118,7 +110,7 @@ class Outcome:
 
     def about(self) -> Dict[str, Any]:
         """For a file, without what has a table of its own."""
-        about = {**asdict(self), "best": self.best.rolling}
+        about = {**records.plain(self), "best": self.best.rolling}
         for one in (about, *about["results"]):
             one.pop("widths", None), one.pop("retained", None)
         return about
@@ -160,9 +152,8 @@ def result_of(runs: Sequence[Run], widths: Sequence[float]) -> Result:
 
     def quantity(values: np.ndarray) -> Optional[Quantity]:
         there = np.isfinite(values)
-        several = hazard.quantiles(values[there], ground[there], shares=SHARES) if there.any() else ()
-        return Quantity(int(there.sum()), [Value(*one) for one in several], float(values[there].max())) \
-            if several else None
+        return Quantity(int(there.sum()), hazard.quantiles(values[there], ground[there], shares=SHARES),
+                        float(values[there].max())) if there.any() else None
 
     at = {place: {name: joined(lambda one: one.at[place][name]) for name in QUANTITIES} for place in runs[0].at}
     ahead = {place: joined(lambda one: one.ahead[place]) | moving for place in at}
