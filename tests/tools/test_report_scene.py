@@ -19,7 +19,8 @@ from tiny_collapse import LMP, TOP, height, read_asc, write_case, write_stl
 
 from slope_tools import cli
 from slope_tools.animation import film, frames, scene, view
-from slope_tools.plots.ground import Ground, box_of
+from slope_tools.geometry import extent_of
+from slope_tools.plots.ground import Ground
 from slope_tools.report.data import Data
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
@@ -246,7 +247,7 @@ def test_the_ground_that_is_shown_reaches_to_structures_nearby(ran):
     """Near is what is no farther than the mass is long; what lies beyond the terrain does not count."""
     ground = Ground(Data(ran))
     alone = scene.shown(ground, {})
-    box = box_of(ground.raster, ground.touched | ground.source)
+    box = extent_of(ground.raster.transform, ground.touched | ground.source)
     size = max(box[2] - box[0], box[3] - box[1])
 
     def post(x):

@@ -17,6 +17,13 @@ def extent(raster):
     return xlo, ylo, xhi, yhi
 
 
+def extent_of(transform, mask):
+    """The same of the cells of a mask, of which there must be one."""
+    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
+    (xlo, yhi), (xhi, ylo) = transform * (columns[0], rows[0]), transform * (columns[-1] + 1, rows[-1] + 1)
+    return xlo, ylo, xhi, yhi
+
+
 def box_of(raster):
     """The grid of a north-up raster as a polygon in local metres."""
     return shapely.geometry.box(*extent(raster))

@@ -13,8 +13,7 @@ from matplotlib import colormaps
 from matplotlib.colors import to_hex
 
 from ..drawing import figures, palettes
-from ..geometry import polygons_of
-from ..plots.ground import box_of
+from ..geometry import extent_of, polygons_of
 from ..survey import rasters
 from ..survey.resampling import sample
 from ..tables import structures
@@ -116,7 +115,7 @@ def packed_structure(name, corners):
 def shown(ground, walls):
     """Local xlo, ylo, xhi, yhi of the ground that is shown: what the mass touched, the road beside it, structures that
     are no farther from that than it is long, and room."""
-    box = np.array(box_of(ground.raster, ground.touched | ground.source))
+    box = np.array(extent_of(ground.raster.transform, ground.touched | ground.source))
     size = max(box[2:] - box[:2])
     for corners in walls.values():
         places = corners[..., :2].reshape(-1, 2)

@@ -8,6 +8,7 @@ from .. import digits, disk, provenance
 from ..animation import frames, view
 from ..case import decks
 from ..drawing import figures, palettes
+from ..geometry import extent_of
 from ..plots import figure_charts, figure_maps
 from ..plots.ground import Ground
 from ..plots.section import Section as Profile
@@ -151,10 +152,8 @@ def maps(known, data: Data, ground: Ground) -> Dict[str, Picture]:
     """The largest energy and speed over all runs."""
     raster, crs, found = ground.raster, ground.raster.crs, {}
     several = {name: files.largest(known.runs, name, raster).z for name in files.LARGEST}
-    rows, columns = np.nonzero(several["max_speed"] > 0)
-    (west, east), (south, north) = raster.transform * np.array([[columns.min(), columns.max() + 1],
-                                                                [rows.max() + 1, rows.min()]])
-    shown = ground.window((west, south, east, north), *([data.road.bounds] if data.road else []))
+    shown = ground.window(extent_of(raster.transform, several["max_speed"] > 0),
+                          *([data.road.bounds] if data.road else []))
     release = release_area.nodes_inside(raster, polygons.read_local(known.site.folder / f"{BODY}.csv", raster, True))
     layers = figure_maps.Layers(raster, ground.before, shown, release, data.road, None,
                                 figures.contour_interval(ground.before), {}, {

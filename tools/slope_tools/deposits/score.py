@@ -253,12 +253,7 @@ def draw(path, run_, simulated, observed, about):
 
     raster = run_.raster
     kind = np.where(simulated, np.where(observed.share >= 0.5, 1, 2), np.where(observed.share >= 0.5, 3, 0))
-    row, column = np.nonzero(kind > 0)
-    bounds: List[Tuple] = []
-    if len(row):
-        t = raster.transform
-        bounds.append((t.c + column.min() * t.a, t.f + (row.max() + 1) * t.e, t.c + (column.max() + 1) * t.a,
-                       t.f + row.min() * t.e))
+    bounds: List[Tuple] = [geometry.extent_of(raster.transform, kind > 0)] if kind.any() else []
     if observed.polygon is not None:
         bounds.append(geometry.as_multi(observed.polygon.intersection(geometry.box_of(raster))).bounds)
     bounds.append((*about["runout"]["from"], *about["runout"]["from"]))

@@ -13,7 +13,7 @@ import numpy as np
 
 from .. import disk
 from ..case import logs, run_folders
-from ..deposits import deposit
+from ..deposits import deposit, scar
 from ..digits import metres, percent, three_at_least
 from ..errors import SlopeError
 from ..findings import Finding, texts
@@ -72,8 +72,8 @@ def found_of(condition: Condition, folder: Path, summary: Path) -> known.Found:
         raise SlopeError(folder, "must have a deck with region terrain, for the ground before the collapse")
     prefix = run_folders.prefix_of(summary)
     found = deposit.read(prefix, terrain, lambda text: None)
-    mass = body.of_ground(found.raster, found.base, terrain, str(prefix))
-    return known.of_body(mass, condition.asked)
+    before, depth = scar.before(found.raster, found.base, terrain)
+    return known.of_body(body.of_arrays(found.raster._replace(z=before), depth, str(prefix)), condition.asked)
 
 
 # --- evaluation ---

@@ -9,9 +9,6 @@ from ..releases import release, release_area
 from ..sites import site_folder
 from ..survey import rasters
 from ..survey.rasters import Raster
-from ..survey.resampling import sample
-
-SCAR = 0.01             # m; ground that lies so much lower than before is the slip surface
 
 
 class Body(NamedTuple):
@@ -66,21 +63,7 @@ def of_arrays(raster: Raster, depth: np.ndarray, where: str) -> Body:
 
 
 def of_release(found: release.Body, where: str) -> Body:
-    depth = np.zeros(found.raster.z.shape)
-    row, column = found.area.corner
-    rows, columns = found.slip.shape
-    depth[row:row + rows, column:column + columns] = np.nan_to_num(found.area.z - found.slip)
-    return of_arrays(found.raster, depth, where)
-
-
-def of_ground(raster: Raster, base: np.ndarray, terrain: Path, where: str) -> Body:
-    """The body between the ground before (of terrain, an ESRI ASCII grid) and the base (m) on the grid of raster."""
-    rows, columns = base.shape
-    x, y = raster.transform * np.meshgrid(np.arange(columns) + 0.5, np.arange(rows) + 0.5)
-    before = sample(rasters.read_asc_local(terrain), x, y)
-    before = np.where(np.isfinite(before), before, base)
-    depth = before - base
-    return of_arrays(raster._replace(z=before), np.where(depth > SCAR, depth, 0.0), where)
+    return of_arrays(found.raster, found.depth, where)
 
 
 def of_site(folder: Path) -> Body:

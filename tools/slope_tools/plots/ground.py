@@ -78,7 +78,8 @@ class Ground:
 
     def boxes(self):
         """Local xlo, ylo, xhi, yhi of what the mass touched, and of what else is shown and not far from it."""
-        found = [box_of(self.raster, self.touched if self.mapped is None else self.touched | (self.mapped.share > 0))]
+        found = [geometry.extent_of(self.raster.transform, self.touched if self.mapped is None else
+                                    self.touched | (self.mapped.share > 0))]
         far = max(found[0][2] - found[0][0], found[0][3] - found[0][1])
         near = geometry.box_of(self.raster).intersection(box(*found[0]).buffer(far))
         for one in (*self.obstacles.footprints.values(), *map(LineString, self.obstacles.lines.values()),
@@ -110,11 +111,3 @@ def closed(mask, cells):
                 grown |= np.roll(mask, (down, right), (0, 1))
         mask = ~grown
     return mask[cells:-cells, cells:-cells]
-
-
-def box_of(raster, mask):
-    """Local xlo, ylo, xhi, yhi of the cells of a mask."""
-    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
-    xlo, yhi = raster.transform * (columns[0], rows[0])
-    xhi, ylo = raster.transform * (columns[-1] + 1, rows[-1] + 1)
-    return xlo, ylo, xhi, yhi

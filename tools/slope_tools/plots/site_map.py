@@ -7,10 +7,10 @@ import numpy as np
 
 from ..drawing import figures, palettes, pictures
 from ..drawing.maps import outline, window
-from ..geometry import extent
+from ..geometry import extent, extent_of
 from ..mobility import known
 from ..sites.site_layers import Shown
-from ..survey.rasters import Raster, crs_name
+from ..survey.rasters import crs_name
 from . import figure_maps, known_reach, sheets
 from .figure_maps import LINE, WALL
 from .sheets import Entry
@@ -57,22 +57,14 @@ def reach_of(layers: Shown) -> known_reach.KnownReach:
 def boxes(layers: Shown) -> List:
     """The boxes of all that must be seen; parts beyond the terrain are cut off."""
     raster = layers.raster
-    row, column = np.nonzero(layers.depth > 0)
-    found = [cells_box(raster, row, column)] if len(row) else []
+    found = [extent_of(one.transform, mask) for one, mask in (
+        (raster, layers.depth > 0), *([(layers.reached, layers.reached.z > REACHED)] if layers.reached else []))
+        if mask.any()]
     found += [one.bounds for one in (layers.release, layers.road, layers.observed) if one is not None]
     found += [(*one.low[:2], *one.high[:2]) for one in layers.structures]
     found += [(*one.points.min(axis=0), *one.points.max(axis=0)) for one in layers.lines]
-    if layers.reached is not None:
-        row, column = np.nonzero(layers.reached.z > REACHED)
-        found += [cells_box(layers.reached, row, column)] if len(row) else []
     whole = extent(raster)
     return [(*np.clip(one[:2], whole[:2], whole[2:]), *np.clip(one[2:], whole[:2], whole[2:])) for one in found]
-
-
-def cells_box(raster: Raster, row: np.ndarray, column: np.ndarray):
-    xlo, yhi = raster.transform * (column.min(), row.min())
-    xhi, ylo = raster.transform * (column.max() + 1, row.max() + 1)
-    return xlo, ylo, xhi, yhi
 
 
 def draw_outlines(axes, layers: Shown) -> List[Entry]:

@@ -67,6 +67,15 @@ class Body(NamedTuple):
     warnings: List[Finding]
     made: List[release_parts.Made] = []     # in each of several polygons
 
+    @property
+    def depth(self) -> np.ndarray:
+        """m, on the grid of its terrain, 0 beside it."""
+        depth = np.zeros(self.raster.z.shape)
+        row, column = self.area.corner
+        rows, columns = self.slip.shape
+        depth[row:row + rows, column:column + columns] = np.nan_to_num(self.area.z - self.slip)
+        return depth
+
 
 def body_of(wanted: Wanted) -> Body:
     """The body; raises SlopeError on bad input."""

@@ -7,7 +7,6 @@ import numpy as np
 from .. import digits, geometry
 from ..drawing import figures, palettes
 from ..plots import figure_maps, known_reach
-from ..plots.ground import box_of
 from ..sites import site_zones
 from ..sites.site_found import Found
 from ..survey.rasters import crs_name
@@ -101,7 +100,7 @@ class Maps:
         if exceeded is None:
             return self.layers
         xlo, ylo, xhi, yhi = self.layers.shown
-        far = box_of(self.layers.raster, exceeded.share > min(exceeded.drawn, default=1.0))
+        far = geometry.extent_of(self.layers.raster.transform, exceeded.share > min(exceeded.drawn, default=1.0))
         boxes = [(xlo, ylo, xhi, yhi), *([far] if exceeded.drawn else [])]
         return self.layers._replace(exceeded=exceeded, shown=(
             *np.min(boxes, axis=0)[:2], *np.max(boxes, axis=0)[2:]))
@@ -135,8 +134,8 @@ class Maps:
         if data.removed is None or not data.removed[0].max() > 0:
             return None
         removed, mesh = data.removed
-        layers = self.layers._replace(shown=self.ground.window(box_of(self.layers.raster, removed > 0)),
-                                      reach=known_reach.NOTHING)
+        shown = self.ground.window(geometry.extent_of(self.layers.raster.transform, removed > 0))
+        layers = self.layers._replace(shown=shown, reach=known_reach.NOTHING)
         road = data.of_study.study.the_road
         uri, numbered = figure_maps.mesh_map(layers, removed, mesh, "Volume to remove", self.crs)
         squares = f", and its volume in m3 in squares of {mesh.transform.a:g} m" if numbered else ""

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..case import run_folders
 from ..errors import SlopeError
+from ..geometry import extent_of
 from ..statistics import hazard
 from ..survey.rasters import Raster
 from .yearly import Yearly
@@ -105,13 +106,11 @@ def shares(source: Source, ground: Raster, kind: str, limit: float):
                              "counted with those")
         total += weight * (np.nan_to_num(one.z) > limit)
     found = np.zeros((0, 0)) if total is None else total
-    row, column = np.nonzero(found)
-    if not len(row):
-        return (row, column), np.zeros(0)
+    if not found.any():
+        return np.nonzero(found), np.zeros(0)
     # the cells of the ground in the box of those, each of which has the value of the run's cell that its middle is in
     move = np.array(source.offset) - ground.offset
-    (xlo, yhi), (xhi, ylo) = (np.array(transform * ends) + move for ends in (
-        (column.min(), row.min()), (column.max() + 1, row.max() + 1)))
+    xlo, ylo, xhi, yhi = extent_of(transform, found) + np.tile(move, 2)
     (left, top), (right, bottom) = ~ground.transform * (xlo, yhi), ~ground.transform * (xhi, ylo)
     rows, columns = ground.z.shape
     rows_, columns_ = np.mgrid[max(0, int(top)):min(rows, int(np.ceil(bottom))),

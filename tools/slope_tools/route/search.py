@@ -16,6 +16,7 @@ from ..case import slip_deck
 from ..case.slip_deck import PREFIX, Strength
 from ..digits import cents
 from ..errors import SlopeError
+from ..geometry import extent_of
 from ..findings import Finding
 from ..mobility import body as falling
 from ..mobility import known, road
@@ -221,11 +222,7 @@ def bishop_factor(choices: Choices, raster, path: Path, without: np.ndarray) -> 
 
 def settled(choices: Choices, corridor: Corridor, place: Path, one: Slip, number: int) -> Dict[str, Any]:
     """Write the folder of a body; what bodies.yaml says of it."""
-    row, column = np.nonzero(one.mask)
-    transform = corridor.clip(one.window).transform
-    (xlo, yhi), (xhi, ylo) = (transform * ends for ends in ((column.min(), row.min()),
-                                                            (column.max() + 1, row.max() + 1)))
-    window, line, start = around(corridor, xlo, ylo, xhi, yhi)
+    window, line, start = around(corridor, *extent_of(corridor.clip(one.window).transform, one.mask))
     raster, base = corridor.clip(window), np.full(corridor.clip(window).z.shape, np.nan)
     common = one.window.common(window)
     base[common.inside(window)] = one.base[common.inside(one.window)]

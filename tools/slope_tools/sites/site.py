@@ -185,7 +185,7 @@ def of_road(choices: OfMass, found: release.Body, layers: Layers, size: Size) ->
     raster, said = found.raster, []
     for name, road in layers.roads.items():
         file = name if len(layers.roads) > 1 else str(choices.road.file)
-        on = release_toe.on_body(depth_of(found) > 0, raster, road,
+        on = release_toe.on_body(found.depth > 0, raster, road,
                                  release_toe.rim(size.diameter ** 3, raster.transform.a))
         under = None if on and on.wholly else release_toe.under(found.area, found.slip, road)
         said += [on.finding(file)] if on else []
@@ -372,16 +372,7 @@ def say_size(choices: OfMass, size: Size, found: release.Body, machine: Machine,
 
 # --- map ---
 
-def depth_of(found: release.Body) -> np.ndarray:
-    """The depth (m) of a body on the grid of its terrain, 0 beside it."""
-    depth = np.zeros(found.raster.z.shape)
-    row, column = found.area.corner
-    rows, columns = found.slip.shape
-    depth[row:row + rows, column:column + columns] = np.nan_to_num(found.area.z - found.slip)
-    return depth
-
-
 def shown(choices: OfMass, found: release.Body, layers: Layers, reached: Optional[Raster]) -> Shown:
     """What the map shows; reached: the largest thickness of the trial run."""
-    return Shown(found.raster, depth_of(found), found.geometry, layers.road, layers.observed, layers.structures,
+    return Shown(found.raster, found.depth, found.geometry, layers.road, layers.observed, layers.structures,
                  layers.lines, reached, layers.zones, {"set": choices.known.set, "confined": choices.known.confined})

@@ -10,7 +10,7 @@ from matplotlib.colors import BoundaryNorm
 from ..drawing import figures, palettes, pictures
 from ..drawing.figures import COLOURS, FULL, STYLE
 from ..drawing.maps import RELIEF, contours, part, shade, window
-from ..geometry import extent
+from ..geometry import extent, extent_of
 from ..survey.rasters import Raster
 from ..survey.resampling import sample
 from . import bodies, columns
@@ -28,7 +28,7 @@ def draw(path: Path, raster: Raster, factor: np.ndarray, rows: Sequence[Dict[str
 
     factor: the least one in each cell; masks: the cells of each body, as in rows; rock: heights of the bedrock.
     """
-    boxes = [box_of(raster, mask) for mask in (np.isfinite(factor), *masks) if mask.any()]
+    boxes = [extent_of(raster.transform, mask) for mask in (np.isfinite(factor), *masks) if mask.any()]
     shown = window(raster, *boxes) if boxes else extent(raster)
     sections = min(len(rows), MOST)
     deep = math.ceil(sections / 2)
@@ -46,14 +46,6 @@ def draw(path: Path, raster: Raster, factor: np.ndarray, rows: Sequence[Dict[str
                              rock)
         axes.set_title(title)
         pictures.save(figure, path, bbox_inches="tight")
-
-
-def box_of(raster: Raster, mask: np.ndarray):
-    """Local xlo, ylo, xhi, yhi of the cells of a mask."""
-    row, column = np.nonzero(mask)
-    xlo, yhi = raster.transform * (column.min(), row.min())
-    xhi, ylo = raster.transform * (column.max() + 1, row.max() + 1)
-    return xlo, ylo, xhi, yhi
 
 
 def middle_of(raster: Raster, mask: np.ndarray) -> np.ndarray:
