@@ -1,7 +1,6 @@
 """Reading YAML, making CSV, and writing files whole or not at all."""
 import csv
 import fcntl
-import functools
 import glob
 import hashlib
 import io
@@ -9,9 +8,10 @@ import math
 import os
 import platform
 import shutil
+import time
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any, List
+from typing import Any, Callable, Dict, List, NamedTuple, Tuple
 
 import yaml
 import numpy as np
@@ -84,10 +84,44 @@ def renaming(folder: Path):
         os.close(handle)        # which ends the lock
 
 
+DIGEST = "sha256"
+
+
+class Known(NamedTuple):
+    """What was read of a file; when: seconds since the epoch; stamp: of the file then."""
+    stamp: Tuple[int, ...]
+    when: float
+    value: Any
+
+
+def stamp_of(path) -> Tuple[int, ...]:
+    """What every change of a file changes: its time of change (ctime) cannot be set back."""
+    about = os.stat(path)
+    return about.st_dev, about.st_ino, about.st_size, about.st_mtime_ns, about.st_ctime_ns
+
+
+known: Dict[Tuple[str, str], Known] = {}        # {(kind of value, path): of a file}
+
+
+def once(kind: str, path, read: Callable[[], Any]) -> Any:
+    """What read() says of a file, which is read again when it changes; of a kind for each function."""
+    key, stamp = (kind, os.path.abspath(path)), stamp_of(path)
+    if key not in known or known[key].stamp != stamp:
+        known[key] = Known(stamp, time.time(), read())
+    return known[key].value
+
+
 def sha256(path) -> str:
     """Of a file, in hexadecimal."""
-    about = os.stat(path)
-    return _sha256(str(path), about.st_dev, about.st_ino, about.st_size, about.st_mtime_ns, about.st_ctime_ns)
+    return once(DIGEST, path, lambda: digest_of(path))
+
+
+def digest_of(path) -> str:
+    digest = hashlib.sha256()
+    with open(path, "rb") as data:
+        for block in iter(lambda: data.read(1 << 20), b""):
+            digest.update(block)
+    return digest.hexdigest()
 
 
 def flush(path: Path) -> None:
@@ -106,15 +140,6 @@ def flush_all(folder: Path) -> None:
             if os.path.isfile(os.path.join(top, name)):
                 flush(Path(top, name))
         flush(Path(top))
-
-
-@functools.lru_cache(maxsize=4096)
-def _sha256(path, *_) -> str:
-    digest = hashlib.sha256()
-    with open(path, "rb") as data:
-        for block in iter(lambda: data.read(1 << 20), b""):
-            digest.update(block)
-    return digest.hexdigest()
 
 
 def parse_yaml(path: Any, what: str) -> Any:

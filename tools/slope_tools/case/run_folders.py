@@ -1,8 +1,8 @@
 """The files of a run: its summary and the rasters that fix deposit/grid wrote."""
-import functools
+import hashlib
 import os
 from pathlib import Path
-from typing import Any, Dict, Iterable, List, Mapping, Optional, Tuple, Union
+from typing import Any, Iterable, List, Mapping, Optional, Tuple, Union
 
 from .. import disk, schemas
 from ..errors import SlopeError
@@ -78,13 +78,9 @@ def ended(folder: Path) -> Mapping[str, Any]:
 
 def _load(path: Path) -> Mapping[str, Any]:
     """One of both, which a command asks for many times."""
-    about = os.stat(path) if path.exists() else None
-    return _loaded(path, about and (about.st_ino, about.st_size, about.st_mtime_ns, about.st_ctime_ns))
-
-
-@functools.lru_cache(maxsize=4096)
-def _loaded(path: Path, _) -> Mapping[str, Any]:
-    return schemas.load(path, OF_STUDY, BEGUN if path.name == VARIABLES else ENDED)
+    def loaded() -> Mapping[str, Any]:
+        return schemas.load(path, OF_STUDY, BEGUN if path.name == VARIABLES else ENDED)
+    return disk.once("run", path, loaded) if path.is_file() else loaded()
 
 
 def load_summary(path, schema=SUMMARY):
@@ -92,12 +88,13 @@ def load_summary(path, schema=SUMMARY):
     return schemas.load(path, WHAT, schema)
 
 
-def state(folder: Path) -> Dict[str, Any]:
-    """What tells whether a run is the same: what was written at its end, and the sizes and times of its files."""
+def state(folder: Path) -> str:
+    """Digest that tells whether a run is the same: what was written at its end, and sizes and times of its files."""
     marker = folder / MARKER
-    return {"marker": disk.sha256(marker) if marker.is_file() else None,
-            "files": sorted((one.name, one.stat().st_size, one.stat().st_mtime_ns) for one in os.scandir(folder)
-                            if one.is_file() and not one.name.startswith("."))}
+    files = sorted((one.name, one.stat().st_size, one.stat().st_mtime_ns) for one in os.scandir(folder)
+                   if one.is_file() and not one.name.startswith("."))
+    return hashlib.sha256(repr([disk.sha256(marker) if marker.is_file() else None, files]).encode(
+        "utf-8", "surrogateescape")).hexdigest()
 
 
 def stamps(prefix: Path, names: Iterable[str]) -> List[Optional[Tuple[int, int]]]:

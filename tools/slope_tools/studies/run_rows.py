@@ -3,7 +3,7 @@ import functools
 import os
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Dict, List, Optional, Sequence
+from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from ..tables.rows import Failed, Finished, OnRoad, Row
 from . import body_depth, site_ground
 from .setup import Road, Setup
 
+NAMELESS: Dict[str, Any] = {"run": "", "set": {}, "repeat": {}, "batch": 0}
 OF_SUMMARY = ("moves", "not counted")      # kinds of warnings
 
 
@@ -40,17 +41,23 @@ def prefix_of(run: Repeat) -> Path:
 def finished(run: Repeat, output: Path) -> Finished:
     """The row of a finished run, for a table in a folder; its numbers are kept with the run."""
     run.log.update()
-    found = kept.value(run.folder / ".row.json", run_folders.state(run.folder), lambda: measured(
-        run.folder, run_folders.ended(run.folder)["summary"], run.log))
-    return records.read(Finished, {
-        "run": run.name, "set": run.combination, "repeat": run.repeat, "batch": run.batch, **found,
-        "summary": os.path.relpath(run.folder / found["summary"], output)})
+
+    def read() -> Finished:
+        found = kept.value(run.folder / ".row.json", state_of(run), lambda: measured(
+            run.folder, run_folders.ended(run.folder)["summary"], run.log))
+        return records.read(Finished, {**NAMELESS, **found})
+    row = kept.once((run.folder, disk.stamp_of(run.marker)), read)
+    return replace(row, run=run.name, set=run.combination, repeat=run.repeat, batch=run.batch,
+                   summary=os.path.relpath(run.folder / row.summary, output))
+
+
+def state_of(run: Repeat) -> str:
+    return kept.once(("state", run.folder, disk.stamp_of(run.marker)), lambda: run_folders.state(run.folder))
 
 
 def alone(folder: Path, summary: Path, log: logs.Log) -> Finished:
     """The row of a run that is none of a study: it has no name."""
-    return records.read(Finished, {"run": "", "set": {}, "repeat": {}, "batch": 0,
-                                   **disk.plain(measured(folder, summary.name, log))})
+    return records.read(Finished, {**NAMELESS, **disk.plain(measured(folder, summary.name, log))})
 
 
 def measured(folder: Path, summary_name: str, log: logs.Log) -> Dict[str, Any]:
@@ -82,12 +89,15 @@ def measured(folder: Path, summary_name: str, log: logs.Log) -> Dict[str, Any]:
 def with_road(run: Repeat, road: Road, row: Finished) -> Finished:
     """With what `slope volume` says of it, which goes to the folder volume of the run, without the picture, and is kept
     there; and with what lies beyond."""
-    made_of = {"run": run_folders.state(run.folder), "road": road._replace(file=Path(road.file.name))._asdict(),
-               "file": file_parts.content(str(road.file))}
-    folder = run.folder / quantities.volume_folder(road.name)
-    found = kept.value(folder / "row.json", made_of, functools.partial(measured_on, road, run, row),
-                       lambda: [folder / name for name in ("volume.yaml", "volume.tif", "volume_mesh.tif")])
-    return replace(row, road=records.read(OnRoad, found), left=found["left"])
+    def read() -> Tuple[OnRoad, Any]:
+        content = kept.once(("road", road.file), lambda: file_parts.content(str(road.file)))
+        made_of = {"run": state_of(run), "road": road._replace(file=Path(road.file.name))._asdict(), "file": content}
+        folder = run.folder / quantities.volume_folder(road.name)
+        found = kept.value(folder / "row.json", made_of, functools.partial(measured_on, road, run, row),
+                           lambda: [folder / name for name in ("volume.yaml", "volume.tif", "volume_mesh.tif")])
+        return records.read(OnRoad, found), found["left"]
+    on_road, left = kept.once((run.folder, disk.stamp_of(run.marker), road), read)
+    return replace(row, road=on_road, left=left)
 
 
 def measured_on(road: Road, run: Repeat, row: Finished) -> Dict[str, Any]:

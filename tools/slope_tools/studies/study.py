@@ -5,7 +5,7 @@ import functools
 from pathlib import Path
 from typing import Callable, Iterator, NamedTuple, Optional, Sequence, Set
 
-from .. import disk
+from .. import disk, kept
 from ..case import decks
 from ..case.data_files import data_files
 from ..ensembles import known_events
@@ -77,6 +77,7 @@ def alone(folder: Path, only_read: bool = False) -> Iterator[None]:
                 stack.enter_context(disk.alone_in(folder))
                 _ours.add(place)
                 stack.callback(_ours.discard, place)
+                stack.enter_context(kept.remembered(place))
         except OSError as error:
             raise SlopeError(folder, f"cannot be used: {error.strerror}") from error
         yield
