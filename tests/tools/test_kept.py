@@ -1,6 +1,8 @@
 """What runs say is computed once, and again when a run, the road, what is asked or the tools are others: kept.py."""
 import json
+import os
 import shutil
+import time
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +11,7 @@ import pytest
 from test_conditioned import write_set
 from tiny_collapse import loaded
 
-from slope_tools import kept
+from slope_tools import disk, kept
 from slope_tools.ensembles import conditioned, ensemble, ensemble_maps
 from slope_tools.statistics import emulator
 from slope_tools.studies import run_rows
@@ -89,6 +91,57 @@ def test_a_second_study_measures_nothing(succeed, monkeypatch):
     Path("out/rolling_0.3/volume/volume.tif").write_bytes(b"")
     succeed(words)
     assert calls[8:] == ["measured_on"] and Path("out/rolling_0.3/volume/volume.tif").stat().st_size
+
+
+def test_a_second_study_reads_only_what_changed(succeed, monkeypatch):
+    """In a process of its own; an edit of the same size, with its time set back, is seen."""
+    monkeypatch.setattr(kept, "SETTLED", 0.0)
+    words, read = f"--set rolling=0,0.3 {ROAD} -o out", []
+    really, load = disk.digest_of, disk.parse_yaml
+    monkeypatch.setattr(disk, "digest_of", lambda path: read.append(Path(path)) or really(path))
+    monkeypatch.setattr(disk, "parse_yaml", lambda path, what: read.append(Path(path)) or load(path, what))
+
+    def again():
+        disk.known.clear()
+        kept.tools.cache_clear()
+        read.clear()
+        succeed(words)
+        mine = {Path(os.path.relpath(path, "out")) for path in read}
+        return {path for path in mine if path.parts[0] != ".."}
+    succeed(words)
+    again()
+    left = {path for path in again() if path.parts[0] != ".inputs"}
+    assert left == {Path("rolling_0/tiny.summary.yaml")}        # of the body, of the first run
+    raster = Path("out/rolling_0.3/volume/volume.tif")
+    was = raster.stat()
+    raster.write_bytes(b"0" * was.st_size)
+    os.utime(raster, ns=(was.st_atime_ns, was.st_mtime_ns))
+    assert raster.relative_to("out") in again() and raster.read_bytes()[:1] != b"0"
+    marker = Path("out/rolling_0/finished.yaml")
+    marker.write_text(marker.read_text() + "# edited\n")
+    assert marker.relative_to("out") in again()
+    Path("out", kept.FILE).write_text("[1, 2]")
+    assert marker.relative_to("out") in again()
+
+
+def test_a_file_that_may_change_unseen_is_not_remembered(tmp_path, monkeypatch):
+    """At once after it was written: not within the resolution of the time of change."""
+    file, path = tmp_path / "file", tmp_path / kept.FILE
+    monkeypatch.setattr(disk, "known", {})
+    file.write_text("x")
+    first = disk.sha256(file)
+    kept.remember(path)
+    assert str(file) not in path.read_text()
+    monkeypatch.setattr(kept, "SETTLED", 0.02)
+    time.sleep(0.03)
+    disk.known[disk.DIGEST, str(file)] = disk.known[disk.DIGEST, str(file)]._replace(value="too early")
+    kept.remember(path)
+    assert first in path.read_text() and "too early" not in path.read_text()
+
+
+def test_numbers_count_by_their_values():
+    assert kept.digest({"width": 0, "start": 2.5}) == kept.digest({"width": 0.0, "start": 2.5})
+    assert kept.digest(["[1.0]"]) != kept.digest(["[1]"]) and kept.digest([0]) != kept.digest([False])
 
 
 def test_arrays_and_dataclasses_count_in_full():

@@ -65,10 +65,11 @@ def page(tmp_path, monkeypatch):
     monkeypatch.setattr(document, "render", lambda content: "<html><head>\n" + (
         f'<meta name="slope-made-of" content="{content["made_of"]}">' if content["made_of"] else "") + "</head></html>")
 
-    def update(site=None, **change):
-        output = tmp_path / "report.html"
+    def update(site=None, place=tmp_path, **change):
+        output = place / "report.html"
         before = len(drawn)
-        asked = Asked(folder, film=output.with_suffix(".mp4"), study=replace(about, **change), site=site or {})
+        asked = Asked(place / folder.name, film=output.with_suffix(".mp4"), study=replace(about, **change),
+                      site=site or {})
         lines = document.update(asked, output)
         assert ("unchanged" in lines[0]) == (len(drawn) == before)
         return len(drawn) - before
@@ -80,6 +81,14 @@ def test_a_page_is_drawn_once(page):
     assert [page() for _ in range(3)] == [1, 0, 0]
     again = replace(page.about.study, collected="now", machine={"name": "there"}, jobs=4)
     assert page(study=again) == 0
+
+
+def test_a_page_is_drawn_once_however_its_folder_is_named(page, monkeypatch):
+    assert page() == 1
+    above = page.folder.parent
+    for here, name in ((above, "."), (page.folder, ".."), (above.parent, above.name)):
+        monkeypatch.chdir(here)
+        assert page(place=Path(name)) == 0, name
 
 
 @pytest.mark.parametrize("what", ["number", "run", "raster", "site", "tools", "page", "table", "film"])

@@ -10,6 +10,7 @@ from .findings import Finding, finding
 from .schemas import TYPES, nth
 
 T = TypeVar("T")
+SIMPLE = {str, float, int, bool, NoneType}
 WORDS = {str: "string", float: "number", int: "integer", bool: "boolean", Mapping: "object", list: "array"}
 
 
@@ -26,6 +27,8 @@ class Fields(NamedTuple):
 def plain(value: Any) -> Any:
     """What YAML and JSON have of a value: records as mappings, in the order of their fields, without those of
     a dataclass that are None where that is the default."""
+    if type(value) in SIMPLE:       # most are
+        return value
     if isinstance(value, Finding):
         return value.entry()
     if dataclasses.is_dataclass(value):

@@ -83,7 +83,9 @@ def digest_of(asked: Asked, study: study_types.Study) -> str:
     about = study_file.plain(study)
     about["study"] = {key: value for key, value in about["study"].items() if key not in BESIDE}
     site = site_file(asked.folder)
-    found = {"asked": disk.plain({**asked._asdict(), "study": None, "site": None}),
+    # however its folder is named on the command line
+    film = asked.film.name if asked.film else None
+    found = {"asked": {**asked._asdict(), "study": None, "site": None, "folder": mark(asked.folder), "film": film},
              "about": about,
              "site": asked.site if asked.site is not None else site and disk.sha256(site),
              "runs": {row.run: run_folders.state(run_folders.summary_of(asked.folder, row.summary).parent)

@@ -9,6 +9,7 @@ passes through one Step after another to the finest size.
 What balls that are finer still would change follows from the last step (grid convergence: Roache, Journal of Fluids
 Engineering, 116, 405 (1994); ASME V&V 20-2009, section 2).  All functions are pure.
 """
+import functools
 import math
 from dataclasses import dataclass
 from typing import Any, List, NamedTuple, Optional, Sequence, Tuple
@@ -29,6 +30,12 @@ ORDERS = 0.5, 2.0       # between which an observed order counts
 ORDER = 1.0             # else
 
 
+@functools.lru_cache(maxsize=4096)
+def quantile_of_t(freedom: float) -> float:
+    """Beyond which (1 - CONFIDENCE) / 2 of Student's t lies."""
+    return float(stats.t.ppf((1 + CONFIDENCE) / 2, freedom))
+
+
 class Finest(NamedTuple):
     """A value at the finest size: of a run with such balls, whose deviation is 0, or transferred from a coarser one.
 
@@ -41,7 +48,7 @@ class Finest(NamedTuple):
     @property
     def band(self) -> Tuple[float, float]:
         """Between which a run lies with CONFIDENCE: in the logarithm, unless it may be nothing."""
-        half = float(stats.t.ppf((1 + CONFIDENCE) / 2, self.freedom)) * self.deviation
+        half = quantile_of_t(self.freedom) * self.deviation
         if half <= 0:
             return self.value, self.value
         if self.value > 2 * half:
@@ -324,7 +331,7 @@ def left(steps: Sequence[Step]) -> Optional[Left]:
         return None
     order = observed_order(before, last, steps[-1].finer) if before else None
     share = SAFETY / (steps[-1].finer ** (order or ORDER) - 1)
-    half = float(stats.t.ppf((1 + CONFIDENCE) / 2, last.freedom)) * last.error
+    half = quantile_of_t(last.freedom) * last.error
     least, most = sorted([last.constant, last.of_largest])
     best, low, high = (math.expm1(share * change) for change in (last.constant, least - half, most + half))
     return Left(min(low, 0.0), best, max(high, 0.0), math.expm1(most), order or ORDER, order is not None)
