@@ -46,13 +46,14 @@ def finished(run: Repeat, output: Path) -> Finished:
         found = kept.value(run.folder / ".row.json", state_of(run), lambda: measured(
             run.folder, run_folders.ended(run.folder)["summary"], run.log))
         return records.read(Finished, {**NAMELESS, **found})
-    row = kept.once((run.folder, disk.stamp_of(run.marker)), read)
+    row: Finished = kept.once((run.folder, disk.stamp_of(run.marker)), read)
     return replace(row, run=run.name, set=run.combination, repeat=run.repeat, batch=run.batch,
                    summary=os.path.relpath(run.folder / row.summary, output))
 
 
 def state_of(run: Repeat) -> str:
-    return kept.once(("state", run.folder, disk.stamp_of(run.marker)), lambda: run_folders.state(run.folder))
+    state: str = kept.once(("state", run.folder, disk.stamp_of(run.marker)), lambda: run_folders.state(run.folder))
+    return state
 
 
 def alone(folder: Path, summary: Path, log: logs.Log) -> Finished:
