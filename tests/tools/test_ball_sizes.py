@@ -107,7 +107,8 @@ def test_a_quantile_is_no_lower_than_errors_of_runs_make_it():
     lengths = np.linspace(50.0, 150.0, number)
 
     def draw(_, key):
-        return np.tile(lengths, (50, 1)) if key == "length_m" else 1000 * np.exp(0.1 * rng.standard_normal((50, number)))
+        volumes = 1000 * np.exp(0.1 * rng.standard_normal((50, number)))
+        return np.tile(lengths, (50, 1)) if key == "length_m" else volumes
 
     runs = SimpleNamespace(rows=[], exceedance=lambda one: 1.0 - (np.asarray(one) - 40) / 120,
                            weights=SimpleNamespace(ratio=None))

@@ -208,8 +208,8 @@ class Answer(NamedTuple):
 
 
 class Part(NamedTuple):
-    """What one study says alone; band: of its number, of a floor too; bound: whether its lower end is one; open: nothing
-    but its runs bounds it from above."""
+    """What one study says alone; band: of its number, of a floor too; bound: whether its lower end is one; open:
+    nothing but its runs bounds it from above."""
     kind: Kind
     volume: Optional[float]
     share: Optional[float] = None
