@@ -52,7 +52,7 @@ def is_assigned(site: Dict[str, Any]) -> bool:
 
 def sentence(body: Body) -> str:
     """It, for a client."""
-    about = [f"{volume(body.volume)} of ground come down"]
+    about = [f"{volume(body.volume)} of ground would come down"]
     if body.depth and body.area:
         about.append(f", up to {digits.three(body.depth)} m deep and of {digits.three(body.area)} m² in plan")
     about.append(f", above {body.shape}")

@@ -44,10 +44,9 @@ def plain(_: str, __: str, value: float) -> str:
 
 def say(one: Letter, write: Write = plain) -> Said:
     number = one.number
-    return Said(f"If the slope fails, {three(one.released)} m3 of ground come down.",
-                clear(number, write) + taken(one) if number else "",
-                basis(number, one, write) if number else "", far(one.reach, write), roads(one, write),
-                change(number) if number else "",
+    return Said(f"{three(one.released)} m3 of ground would come down.", clear(number, write) if number else "",
+                f"{taken(one)} {basis(number, one, write)}".strip() if number else "", far(one.reach, write),
+                roads(one, write), change(number) if number else "",
                 f"Not in it: {'; '.join([DRY, *(LACKS[kind] for kind in one.lacks if kind in LACKS)])}.",
                 capital(one.size) + " The band has it." * bool(
                     one.size and number and number.kind == Kind.NUMBER.value))
@@ -83,7 +82,7 @@ def counted(runs: int, which: str = "") -> str:
 def taken(one: Letter) -> str:
     """What to clear means."""
     return "" if one.cut is None or not (one.number and one.number.volume_m3) else (
-        f" That is what lies on it, and what beside it would slide onto it, above {one.cut:g} degrees from its edges.")
+        f"That is what lies on it, and what beside it would slide onto it, above {one.cut:g} degrees from its edges.")
 
 
 def clear(number: Headline, write: Write) -> str:

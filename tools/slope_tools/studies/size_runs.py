@@ -198,7 +198,8 @@ def make(setup: Setup, work: jobs.Work, points: Sequence[Repeat], wanted: Option
     chosen, names = pick(known), {one.name: one for one in points}
     times = np.array([site_budget.in_steps(row.stop_time_s, row.variables.get("spacing")) for row in known])
     first = np.array([row.run in chosen.first for row in known])
-    usual = np.median([one for one, row in zip(times, known) if not row.batch])     # without those added as longer ones
+    # without those that were added as longer ones
+    usual = np.median([one for one, row in zip(times, known) if not row.batch] or times)
     where = places_of(known, chosen.along)
 
     def ordered(limits, start: Sequence[int]) -> List[int]:
