@@ -534,8 +534,8 @@ def test_the_body_in_a_sentence():
     known = body.Body(14808.9, 3584.0, 8.0, 35.02, body.SHAPES["slbl"], 1786.2, "EPSG:6677", True, "release.geojson")
     assert body.sentence(known) == (
         "14,809 m³ of ground would come down, up to 8.00 m deep and of 3,580 m² in plan, above a slip surface by the "
-        "sloping local base level, on ground of 35 degrees on average. Its bulk density is 1,786 kg/m³. Coordinates: EPSG:6677 "
-        "(assigned).")
+        "sloping local base level, on ground of 35 degrees on average. Its bulk density is 1,786 kg/m³. Coordinates: "
+        "EPSG:6677 (assigned).")
     assert body.sentence(body.Body(119e6, None, None, None, "a given slip surface", None, None, False, None)) == (
         "119 million m³ of ground would come down, above a given slip surface. Coordinates: local metres.")
 
