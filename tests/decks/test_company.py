@@ -181,7 +181,7 @@ timestep $({part}*0.25*sqrt(2500*PI*1e-6/6/2e4))
 fix base all wall/gran/balls 2 0.01 surface base upper spacing 0.01
 fix g all gravity 9.81 vector 0 0 -1
 fix mv all nve/sphere
-run $(round(3/dt))
+run $(round(6/dt))
 compute far all displace/atom
 compute most all reduce max c_far[4]
 thermo_style custom step atoms c_most

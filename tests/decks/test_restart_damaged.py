@@ -7,12 +7,12 @@ import pytest
 from deck_helpers import run_deck, write_asc
 from mesh_helpers import mesh_deck, plane, write_case
 
-KEYS, HISTORY, FORCE = 3, 7, 10
+KEYS, HISTORY, OF_BALL = 3, 7, 13
 BALLS = [(0.3, 0.2, 0.49), (0.3, 0.2, 1.48)]     # one on the mesh, one on top of it
 
 # the fix, numbers of its one contact after their length, and what is said of them
 PLACES = {"mesh": (2 + KEYS + HISTORY, "Fix wall/gran/mesh wall"),
-          "pair": (3 + HISTORY + FORCE, "Pair gran/restitution")}
+          "pair": (3 + HISTORY + OF_BALL, "Pair gran/restitution")}
 
 
 def deck(text, **settings):

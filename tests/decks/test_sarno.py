@@ -9,7 +9,7 @@ import pytest
 from deck_helpers import run_deck, script_of
 
 CASE = Path(__file__).resolve().parents[2] / "inputs" / "16_flume"
-COARSE = {"ratio": 6, "settle": 0.4, "duration": 1}
+COARSE = {"ratio": 6, "settle": 0.4, "duration": 1.4}
 
 
 @pytest.fixture(scope="module")

@@ -89,7 +89,7 @@ def test_the_end_of_all_is_reckoned_with_the_tasks_that_run(here):
     work = engine.Work(here / "case" / "in.tiny", {}, here / "out" / ".inputs", program, 1, 2)
     todo = [jobs.Run(here / "out", {"rolling": str(i)}) for i in range(30)]
     display = job_display.Display(todo, todo, work.at_a_time)
-    display.walls, display.queue = {"": [60.0, 120.0]}, todo[:20]
+    display.walls, display.queue = {1.0: [60.0, 120.0]}, todo[:20]
     for running, ends in ((0, 1800), (6, 300), (10, 180)):
         work.active = [jobs.Active(one, Stub(i < running), 0.0) for i, one in enumerate(todo)]
         assert len(work._shown()) == running

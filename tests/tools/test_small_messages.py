@@ -80,13 +80,13 @@ def test_a_time_limit_is_no_estimate(monkeypatch):
 
 
 def test_what_is_left_is_reckoned_by_size(monkeypatch):
-    """Of a size that no run has ended with, as the longest."""
+    """Of a size that no run has ended with, by the nearest one: half the diameter is 16 times the work."""
     todo = [SimpleNamespace(name=str(k), varied="", chosen={"d": d} if d else {}) for k, d in enumerate(
-        ("1", "1", "0.5", ""))]
+        ("1", "1", "0.5", "", "0.25"))]
     display = job_display.Display(todo, todo, lambda: 2)
-    display.walls = {"1": [10.0, 20.0], "0.5": [100.0]}
-    assert display._ends(4) == pytest.approx((15 + 15 + 100 + 100) / 2)
-    assert display._ends(6) == pytest.approx((15 + 15 + 100 + 100 + 100) / 2)      # two are under way
+    display.walls = {1.0: [10.0, 20.0], 0.5: [100.0]}
+    assert display._ends(5) == pytest.approx((15 + 15 + 100 + 15 + 1600) / 2)
+    assert display._ends(7) == pytest.approx((15 + 15 + 100 + 15 + 1600 + 100) / 2)      # two are under way
 
 
 # --- lines and roads ---
