@@ -8,6 +8,7 @@ from .. import kept, provenance, records
 from ..case import run_folders
 from ..deposits.road_axis import axes_of, axis_of
 from ..ensembles import ensemble, known_events
+from ..errors import SlopeError
 from ..geometry import as_multi, box_of
 from ..mobility import known
 from ..mobility.exceedance import Mobility
@@ -74,7 +75,12 @@ def read(setup: Setup, questions: Questions, todo: Sequence[Repeat], rows: Seque
     among = known.Known(None, "")
     if first and row:
         prefix = run_folders.prefix_of(run_folders.summary_of(setup.output, row.summary))
-        among = usable.known_of(prefix, terrain_of(first.folder, first.log), questions.among, setup.body)
+        try:
+            among = usable.known_of(prefix, terrain_of(first.folder, first.log), questions.among, setup.body)
+        except SlopeError as error:     # a terrain that only LAMMPS finds, a raster that was changed
+            if setup.road:
+                raise
+            among = known.Known(None, str(error))
         if setup.road:
             raster = placed(run_folders.load_raster(prefix, "thickness"), first)
             events = usable.known_events(among.found, setup.road.read(raster).polygon)
