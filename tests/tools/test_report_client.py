@@ -102,8 +102,8 @@ HEADLINES = {
                            road={**ROAD, "reached": [0.02, 0.07]})}
 HEADLINES["open"] = {**HEADLINES["floor"], "kind": "open", "low_m3": None, "reasons": [
     {"code": "size of balls", "numbers": {"sizes": 1, "grown": None}}]}
-SAID = {"number": ("35,800 m³ must be cleared from the road; this figure lies, with 90 % confidence within the "
-                   "model, between 21,000 and 48,200 m³. That is what lies on it, and what beside it would slide "
+SAID = {"number": ("35,800 m³ must be cleared from the road; within the model this figure lies with 90 % "
+                   "confidence between 21,000 and 48,200 m³. That is what lies on it, and what beside it would slide "
                    "onto it, above 30 degrees from its edges.", "; 3 % go beyond all runs and may leave more than any "
                    "of these; ", " of this volume and height leave no more, by 24 runs ",
                    "13 runs with chosen settings give 1,200 m³. The band, as the root of the squares: chance and "
@@ -125,7 +125,7 @@ SAID = {"number": ("35,800 m³ must be cleared from the road; this figure lies, 
                      "is not known. More than a tenth of the runs failed, or had not come to rest when they ended "
                      "(runs with chosen settings).",
                      "Next step: more time for the mass to come to rest, about"),
-        "nothing": ("0 m³ must be cleared from the road: in no run does anything come to lie on it.",
+        "nothing": ("0 m³ must be cleared from the road, by these runs: in none does anything come to lie on it.",
                     "2 % to 7 % of known events of this volume and height, and none of 6 runs of both kinds, reach "
                     "it.")}
 

@@ -5,7 +5,7 @@ from ..digits import percent, three
 from ..mobility.how_far import TAIL, Reach
 from ..statistics.answer import Cause, Code, Kind, Source
 from ..statistics.entries import Headline, HeadlineRoad, PaperPart
-from ..tables import answer_words
+from ..tables import answer_words, sizes
 from ..tables.study_types import Study
 from .letter import Letter
 from .road_numbers import Number
@@ -49,7 +49,8 @@ def say(one: Letter, write: Write = plain) -> Said:
                 roads(one, write), change(number) if number else "",
                 f"Not in it: {'; '.join([DRY, *(LACKS[kind] for kind in one.lacks if kind in LACKS)])}.",
                 capital(one.size) + " The band has it." * bool(
-                    one.size and number and number.kind == Kind.NUMBER.value))
+                    sizes.UNKNOWN not in one.size and number and any(
+                        share.cause == Cause.SIZE.value for share in number.band)))
 
 
 def lines(one: Letter) -> List[str]:
@@ -94,12 +95,15 @@ def clear(number: Headline, write: Write) -> str:
 def of_number(number: Headline, write: Write) -> str:
     low, high = (write(f"{REMOVE}, {name} end", "m3", value or 0.0)
                  for value, name in ((number.low_m3, "lower"), (number.high_m3, "upper")))
-    how = "with 90 % confidence" if has_chance(number) else "without chance, as no run was repeated,"
     ends = f"between {low} and {high} m3"
-    if number.open_above and has_chance(number):
-        how, ends = "with 95 % confidence", f"above {low} m3, and below {high} m3 as far as these runs go"
-    return (f"{write(REMOVE, 'm3', number.volume_m3 or 0.0)} m3 must be cleared from the road; this figure lies, {how} "
-            f"within the model, {ends}.")
+    if not has_chance(number):
+        ends += ", without what chance changes, as no run was repeated"
+    elif number.open_above:
+        ends = f"with 95 % confidence above {low} m3, and below {high} m3 as far as these runs go"
+    else:
+        ends = f"with 90 % confidence {ends}"
+    return (f"{write(REMOVE, 'm3', number.volume_m3 or 0.0)} m3 must be cleared from the road; within the model this "
+            f"figure lies {ends}.")
 
 
 def has_chance(number: Headline) -> bool:
@@ -126,7 +130,8 @@ def of_withheld(_: Headline, __: Write) -> str:
 
 
 def of_nothing(number: Headline, write: Write) -> str:
-    return f"{write(REMOVE, 'm3', 0.0)} m3 must be cleared from the road: in no run does anything come to lie on it."
+    return (f"{write(REMOVE, 'm3', 0.0)} m3 must be cleared from the road, by these runs: in none does anything come "
+            "to lie on it.")
 
 
 def basis(number: Headline, one: Letter, write: Write) -> str:
