@@ -78,7 +78,8 @@ def test_a_band_has_shares_that_add_as_squares():
     assert "detailed" in said.basis and "-50.0 +60.0" in said.basis and "--" not in said.basis
     # without repeats nobody knows what chance adds: no confidence is named
     said = sentences(answer.of(Paper(1000.0, transfer=(80.0, 40.0)), None, None).about())
-    assert "between 920 and 1,040 m3" in said.clear and "90 %" not in said.clear and "without what chance changes" in said.clear
+    assert "between 920 and 1,040 m3" in said.clear and "90 %" not in said.clear and \
+        "without what chance changes" in said.clear
 
 
 def test_a_floor_is_the_lower_end_rounded_down():
