@@ -18,6 +18,7 @@ from slope_tools.mobility import run_length
 from slope_tools.statistics import ball_sizes
 from slope_tools.statistics.ball_sizes import Finest, fit, transfer
 from slope_tools.statistics.entries import KnownQuantile
+from slope_tools.studies import size_runs
 from slope_tools.tables import sizes
 
 MEASURED = Path(__file__).with_name("ball_sizes.csv")
@@ -240,6 +241,19 @@ def test_a_pair_that_becomes_nothing_drags_no_other():
     mixed = fit([*coarse, 5, 8], [0.0, 404, 1010, 2020, 4040, 5, 8], none(7), ball=1)
     assert transfer([mixed], 7.0, ()).value == pytest.approx(7) and transfer([mixed], 7.0, ()).band[1] > 50
     assert fit([1.0, 5, 6], [0.0, 5, 6], none(3)).least > 1         # a length has none either
+
+
+def test_long_runs_have_finer_balls_but_not_the_finest():
+    """Of two finer sizes: the finest are quick, and have the size before, which slow ones have, too; what takes ages has
+    none."""
+    times = np.array([1.0, 1.2, 0.9, 1.1, 1.4, 3.0, 3.5, 9.0])
+    where = np.column_stack([np.arange(8.0), times])
+    first = np.arange(8) == 5           # a number rests on it
+    half, quarter = size_runs.orders_of(times, first, where, [6, 3])
+    assert quarter[0] == 5 and set(quarter) == {0, 1, 2, 3, 4, 5} and half[:3] == quarter[:3]
+    assert 6 in half[:6] and 7 not in half
+    assert size_runs.orders_of(times, first, where, [4])[0][0] == 5          # of one finer size
+    assert size_runs.orders_of(np.ones(1), np.ones(1, bool), np.zeros((1, 1)), [1, 1]) == [[0], [0]]
 
 
 def test_points_of_finer_balls_are_spread_and_nested():

@@ -1,7 +1,7 @@
 """The runs of points with finer balls: how many points, which, and their rows at the finest size (tables/sizes).
 
-All points run with the coarsest balls.  Of these some run with finer ones, too: those on which numbers rest, then such
-that parameters and lengths are spread; the points of a finer size are among those of the one before.
+All points run with the coarsest balls.  Of these some run with finer ones, too: such on which numbers rest, and such
+that parameters and lengths are spread; those with the finest rest soon, and have all sizes.
 """
 import functools
 import math
@@ -200,22 +200,10 @@ def make(setup: Setup, work: jobs.Work, points: Sequence[Repeat], wanted: Option
     first = np.array([row.run in chosen.first for row in known])
     # without those that were added as longer ones
     usual = np.median([one for one, row in zip(times, known) if not row.batch] or times)
-    where = places_of(known, chosen.along)
-
-    def ordered(limits, start: Sequence[int]) -> List[int]:
-        """Of the points that rest by then these, and then such as spread out."""
-        inside = np.flatnonzero(times <= limits * usual)
-        return inside[ball_sizes.spread(where[inside], [int(k) for k in np.searchsorted(inside, start)],
-                                        len(inside))].tolist()
-
-    # the finest: one on which a number rests and such as spread out; others may come once all values are at this size
-    quick = np.where(first, SLOW, LONG)
-    fine = ordered(quick, np.flatnonzero(first & (times <= SLOW * usual))[:1].tolist())
-    last = wanted.points[-1] if len(wanted.points) > 1 else 1
-    orders = [ordered(np.maximum(quick, SLOW), fine[:last]), *[fine] * (len(wanted.points) - 1)]
+    orders = orders_of(times / max(usual, 1e-9), first, places_of(known, chosen.along), wanted.points)
     wanted = wanted.fitted([times[order].tolist() for order in orders])
     late = min(site_budget.LATE, max(0, wanted.points[-1] - sizes.FEWEST))
-    made = Made(points, {}, [names[known[k].run] for k in fine], late)
+    made = Made(points, {}, [names[known[k].run] for k in orders[-1]], late)
     planned = [(k, each) for k, (order, number) in enumerate(zip(orders, wanted.points)) for each in order[:number]]
     missing = [(k, times[each]) for k, each in planned
                if not SizeRun(setup.runs, names[known[each].run], wanted.values[k + 1]).made(work.store)]
@@ -226,6 +214,23 @@ def make(setup: Setup, work: jobs.Work, points: Sequence[Repeat], wanted: Option
     work.store.admit(runs)
     work.do(runs)
     return made
+
+
+def orders_of(times: np.ndarray, first: np.ndarray, where: np.ndarray, numbers: Sequence[int]) -> List[List[int]]:
+    """For each finer size the points that may have it, in the order in which they come: of the finest one on which
+    numbers rest, then such as rest soon and spread out; of the first finer size these, then such as rest late, too.
+
+    times: to rest of each, over the usual one; first: on which numbers rest; where: (n, d); numbers: of each size.
+    """
+    def ordered(limits, start: Sequence[int]) -> List[int]:
+        inside = np.flatnonzero(times <= limits)
+        return inside[ball_sizes.spread(where[inside], [int(k) for k in np.searchsorted(inside, start)],
+                                        len(inside))].tolist()
+
+    quick = np.where(first, SLOW, LONG)
+    fine = ordered(quick, np.flatnonzero(first & (times <= SLOW))[:1].tolist())
+    start = fine[:numbers[-1] if len(numbers) > 1 else 1]
+    return [ordered(np.full(len(times), SLOW), start), *[fine] * (len(numbers) - 1)]
 
 
 def add(setup: Setup, made: Made, wanted: Wanted, point: Repeat, k: int) -> SizeRun:
