@@ -244,8 +244,8 @@ def test_a_pair_that_becomes_nothing_drags_no_other():
 
 
 def test_long_runs_have_finer_balls_but_not_the_finest():
-    """Of two finer sizes: the finest are quick, and have the size before, which slow ones have, too; what takes ages has
-    none."""
+    """Of two finer sizes: the finest are quick, and have the size before, which slow ones have, too; what takes ages
+    has none."""
     times = np.array([1.0, 1.2, 0.9, 1.1, 1.4, 3.0, 3.5, 9.0])
     where = np.column_stack([np.arange(8.0), times])
     first = np.arange(8) == 5           # a number rests on it
