@@ -233,6 +233,21 @@ def test_the_largest_values_decide_what_finer_balls_leave():
     assert steady.grown == pytest.approx(0.2, abs=0.01)
 
 
+@pytest.mark.parametrize("error", ["share", "m3"])
+def test_a_site_of_another_scale_has_the_same_bands(error):
+    """Volumes and balls 1,000 times as large, and pairs in another order: the same, 1,000 times as large."""
+    rng = np.random.default_rng(6)
+    coarse, at = np.geomspace(300.0, 9000.0, 12), rng.random((12, 2))
+    noise = rng.standard_normal(12)
+    fine = coarse * np.exp(0.05 * noise) if error == "share" else np.maximum(0, coarse + 150 * noise)
+    for other in (np.arange(12), rng.permutation(12)):
+        one = fit(coarse, fine, at, ball=10.0)
+        large = fit(1e3 * coarse[other], 1e3 * fine[other], at[other], ball=1e4)
+        for value in (20.0, 250.0, 900.0, 12000.0):
+            assert transfer([large], 1e3 * value, (0.2, 1.4)).band == pytest.approx(
+                [1e3 * end for end in transfer([one], value, (0.2, 1.4)).band])
+
+
 def test_a_pair_that_becomes_nothing_drags_no_other():
     coarse = np.array([100.0, 400, 1000, 2000, 4000])
     step = fit(coarse, [0.0, 404, 1010, 2020, 4040], none(5), ball=1)
