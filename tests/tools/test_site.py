@@ -355,6 +355,11 @@ def test_a_site_has_one_number_of_three_sizes_of_balls(tmp_path, monkeypatch, ca
     assert cli.main(["study", "mine"]) == 0
     assert before == {path: path.stat().st_mtime_ns for path in mine.rglob("finished.yaml")}
     assert yaml.safe_load((mine / "study" / "study.yaml").read_text())["headline"] == number
+    # in less time, too: finer runs that are there count
+    (mine / "site.yaml").write_text(re.sub(r"(?m)^  levels: 3 ", "  levels: null ", (mine / "site.yaml").read_text()))
+    assert cli.main(["study", "mine", "--minutes", "0.001"]) == 0
+    assert before == {path: path.stat().st_mtime_ns for path in mine.rglob("finished.yaml")}
+    assert yaml.safe_load((mine / "study" / "study.yaml").read_text())["headline"] == number
 
 
 def test_the_longest_runs_begin_first(done):

@@ -128,7 +128,7 @@ def wanted(site: Site, planned: Planned, asked: Asked, points=0, alone=False) ->
         time = site_budget.time_of(float(planned.variables[VARIABLE]), found.body.volume, found.trial,
                                    soil_of(site, planned), plan_, jobs_of(planned.setup), minutes)
     numbers = site_budget.finer(plan_.paper + plan_.points, time, minutes, levels)
-    return size_runs.halved(planned.variables[VARIABLE], numbers, time)
+    return size_runs.halved(planned.variables[VARIABLE], numbers, time, more=levels is None)
 
 
 def soil_of(site: Site, planned: Planned) -> site_budget.Soil:

@@ -39,10 +39,18 @@ FINER = 1.5             # times, at least, from a size to the next one
 
 class Wanted(NamedTuple):
     """values: diameters for the deck, the coarsest first; points: how many with each of the finer ones; time: that
-    these may take, None: not known."""
+    these may take, None: not known; more: finished runs with finer ones count, too."""
     values: Sequence[str]
     points: Sequence[int]
     time: Optional[site_budget.Time] = None
+    more: bool = False
+
+    def with_finished(self, finished: Callable[[str], int]) -> "Wanted":
+        """With all diameters of which there are enough; finished: how many runs of one are."""
+        values = list(self.values)
+        while self.more and finished(next_ := halved_times(values[0], len(values))) >= sizes.FEWEST:
+            values.append(next_)
+        return self._replace(values=values)
 
     def fitted(self, rests: Sequence[Sequence[float]]) -> "Wanted":
         """With as many points as time allows; rests: for each finer size, of all that may be, in their order, the times
@@ -52,7 +60,7 @@ class Wanted(NamedTuple):
         means = [float(np.mean([self.time.one(k, rest) for rest in several[:number]]))
                  for k, (several, number) in enumerate(zip(rests, self.points), 1)]
         return self._replace(points=site_budget.within(
-            len(rests[-1]), lambda k: means[k - 1], self.time.whole, len(self.values)))
+            len(rests[-1]), lambda k: means[k - 1], self.time.whole, len(self.points) + 1))
 
     @property
     def settings(self) -> Dict[str, List[str]]:
@@ -149,12 +157,16 @@ def of_deck(option: Optional[str], deck: Path, points: int, names: Sequence[str]
     return Wanted(values, site_budget.pairs(points, len(values)))
 
 
-def halved(diameter: str, numbers: Sequence[int], time: Optional[site_budget.Time] = None) -> Wanted:
-    """Diameters d, d/2, d/4 and so on."""
+def halved_times(diameter: str, number: int) -> str:
+    return f"{float(diameter) / 2 ** number:.10g}"
+
+
+def halved(diameter: str, numbers: Sequence[int], time: Optional[site_budget.Time] = None, more=False) -> Wanted:
+    """Diameters d, d/2, d/4 and so on; time, more: as of Wanted."""
     d = as_number(diameter)
     if not (isinstance(d, float) and d > 0):
         raise SlopeError(OPTION, f"must be of a deck whose variable {VARIABLE} is the diameter of the balls", diameter)
-    return Wanted([diameter, *(f"{d / 2 ** k:.10g}" for k in range(1, len(numbers) + 1))], numbers, time)
+    return Wanted([diameter, *(halved_times(diameter, k) for k in range(1, len(numbers) + 1))], numbers, time, more)
 
 
 # --- which, and making them ---
@@ -189,10 +201,10 @@ def pick_largest(rows: Sequence[Finished]) -> Pick:
 def make(setup: Setup, work: jobs.Work, points: Sequence[Repeat], wanted: Optional[Wanted],
          pick: Callable[[Sequence[Finished]], Pick] = pick_largest) -> Made:
     """Make the runs with finer balls of points that ran with the coarsest ones, the longest first; pick: of the rows of
-    these."""
+    these.  Runs of before that are not wanted any more are taken."""
     common = setup.road is not None and setup.road.name != ""       # studies of several roads have these runs in common
     known = finished_of(rows_of(setup._replace(road=None) if common else setup, points)) \
-        if wanted and wanted.points else []
+        if wanted and wanted.values[1:] else []
     if not wanted or not known:
         return Made(points, {})
     chosen, names = pick(known), {one.name: one for one in points}
@@ -202,14 +214,15 @@ def make(setup: Setup, work: jobs.Work, points: Sequence[Repeat], wanted: Option
     usual = np.median([one for one, row in zip(times, known) if not row.batch] or times)
     orders = orders_of(times / max(usual, 1e-9), first, places_of(known, chosen.along), wanted.points)
     wanted = wanted.fitted([times[order].tolist() for order in orders])
-    late = min(site_budget.LATE, max(0, wanted.points[-1] - sizes.FEWEST))
+    late = min(site_budget.LATE, max(0, [sizes.FEWEST, *wanted.points][-1] - sizes.FEWEST))
     made = Made(points, {}, [names[known[k].run] for k in orders[-1]], late)
     planned = [(k, each) for k, (order, number) in enumerate(zip(orders, wanted.points)) for each in order[:number]]
-    missing = [(k, times[each]) for k, each in planned
-               if not SizeRun(setup.runs, names[known[each].run], wanted.values[k + 1]).made(work.store)]
+    there = {(k, each) for k, value in enumerate(wanted.values[1:]) for each, row in enumerate(known)
+             if SizeRun(setup.runs, names[row.run], value).made(work.store)}
+    missing = [(k, times[each]) for k, each in planned if (k, each) not in there]
     setup.tell(told(wanted, len(missing), wanted.time and sum(
         wanted.time.one(k + 1, rest) for k, rest in missing) / work.jobs))
-    todo = {(j, each) for k, each in planned[:len(planned) - late] for j in range(k + 1)}      # each is a pair
+    todo = {(j, each) for k, each in planned[:len(planned) - late] for j in range(k + 1)} | there   # each is a pair
     runs = [add(setup, made, wanted, names[known[each].run], k) for k, each in sorted(todo, reverse=True)]
     work.store.admit(runs)
     work.do(runs)
@@ -236,7 +249,7 @@ def orders_of(times: np.ndarray, first: np.ndarray, where: np.ndarray, numbers: 
 def add(setup: Setup, made: Made, wanted: Wanted, point: Repeat, k: int) -> SizeRun:
     """The run of a point with the k-th of the finer balls."""
     run = SizeRun(setup.runs, point, wanted.values[k + 1])
-    made.finer.setdefault(point.folder, [None] * len(wanted.points))[k] = run
+    made.finer.setdefault(point.folder, [None] * (len(wanted.values) - 1))[k] = run
     return run
 
 
@@ -244,14 +257,17 @@ def settle(setup: Setup, work: jobs.Work, points: Sequence[Repeat], wanted: Opti
            pick: Callable[[Sequence[Finished]], Pick] = pick_largest) -> AtFinest:
     """make(), then the finest runs of those on which numbers rest once all rows are at the finest size, as these change
     what others are there; at last of others, so that there are as many as were wanted."""
+    if wanted:
+        wanted = wanted.with_finished(
+            lambda value: sum(SizeRun(setup.runs, one, value).made(work.store) for one in points))
     made = make(setup, work, points, wanted, pick)
     at, left = at_finest(setup, made), made.late
     for _ in range(ROUNDS):
-        if not at.sizes or not wanted:
+        if not at.sizes or not wanted or not wanted.points:
             break
         rows = [replace(row, run=one.name) for one, row in zip(points, at.rows(rows_of(setup, at.runs(points))))]
         first = pick(finished_of(rows)).first
-        without = [one for one in made.next if not made.has(one, -1)]
+        without = [one for one in made.next if not made.has(one, len(wanted.points) - 1)]
         now = [one for one in without if one.name in first][:max(left, 1)] or without[:left]
         if not now:
             break
@@ -259,7 +275,8 @@ def settle(setup: Setup, work: jobs.Work, points: Sequence[Repeat], wanted: Opti
         todo = [add(setup, made, wanted, one, k) for k in range(len(wanted.points))[::-1] for one in now
                 if not made.has(one, k)]
         work.store.admit(todo)
-        setup.tell(f"{len(now)} more with balls of {float(wanted.values[-1]):.3g} m, as the values so far ask for")
+        finest = float(wanted.values[len(wanted.points)])
+        setup.tell(f"{len(now)} more with balls of {finest:.3g} m, as the values so far ask for")
         work.do(todo, share=True)
         at = at_finest(setup, made)
     return at
