@@ -50,11 +50,14 @@ def test_mean_and_range(script):
 
 def test_the_longer_terrain_has_the_same_heights(script):
     short, long = (np.loadtxt(CASE / f"{name}.asc", skiprows=6) for name in ("terrain", "terrain_long"))
-    assert np.array_equal(long[:, -short.shape[1]:], short)
-    assert long.shape == (short.shape[0], short.shape[1] + 160)
+    assert np.array_equal(long[32:-32, -short.shape[1]:], short)
+    assert long.shape == (short.shape[0] + 64, short.shape[1] + 160)
     head = dict(line.split() for line in (CASE / "terrain_long.asc").read_text().splitlines()[:6])
-    assert (head["xllcorner"], head["cellsize"]) == ("-400", "2.5")
-    assert script.make_terrain.heights(west=script.make_terrain.FAR) == pytest.approx(long, abs=6e-4)
+    assert (head["xllcorner"], head["yllcorner"], head["cellsize"]) == ("-400", "-80", "2.5")
+    made = script.make_terrain
+    assert made.heights(west=made.FAR, more=made.ASIDE) == pytest.approx(long, abs=6e-4)
+    roads = [np.loadtxt(CASE / f"{name}.csv", delimiter=",") for name in ("road", "road_long")]
+    assert (roads[1] - roads[0]).tolist() == [[0, -80], [0, -80], [0, 80], [0, 80]]     # from edge to edge
 
 
 def volumes(*remove):
