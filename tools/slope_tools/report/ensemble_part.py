@@ -87,8 +87,8 @@ class Ensemble:
             return None
         return hazard_curve(
             self.data.folder / ensemble.HAZARD, self.of, self.entry, f"Hazard curve: {self.entry.name}", "the runs",
-            f"The hazard curve: share of the runs in which the quantity is larger, with its "
-            f"{100 * self.about.confidence:g} % bounds; dots: what 50, 90, 95 and 99 % of the runs stay within.")
+            f"The hazard curve: share of the {self.about.finished} runs of the design in which the quantity is larger, "
+            f"with its {100 * self.about.confidence:g} % bounds; dots: what 50, 90, 95 and 99 % of them stay within.")
 
     def indices(self) -> List[Picture]:
         """A chart for each quantity whose emulator says something, the one that counts first, three at most."""
