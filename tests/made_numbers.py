@@ -2,13 +2,17 @@
 """Numbers of pages that are made, not typed: takes what commands wrote into inputs/, and fills the pages.
 
     tests/made_numbers.py [DIR]         DIR: of `slope verify -o DIR`; without it the pages are filled alone
+    tests/made_numbers.py NN.NAME=FILE[:COLUMN,...] ...     what the pages have of a table that a command wrote
 
 inputs/NN_case/numbers.yaml holds what runs gave; `slope verify` writes one for each case into DIR/numbers, for which
 this script puts what is new into the file, and inputs/20_embankment/paper_table.py those of that case. In the text a
 number has its name: NN.name or NN.name:format, NN being that of the case, the format Python's (default .5g); of a claim
 NN.claim and NN.claim.control. A table of the case gives NN.TABLE.row.column, a row having the name of its first two
 words; reference.yaml NN.reference.series.x, NN.reference.series.over (its largest over the level) and
-NN.reference.level; seen() of a script of the case what its data have.
+NN.reference.level; seen() of a script of the case what its data have. Of a table that a command wrote elsewhere, CSV or
+YAML, NN.NAME.row.column goes into numbers.yaml where a page has it; rows are named by COLUMN,... (default: the first),
+and rows of one name are NN.NAME.row.column.mean, .low, .high, .sd, .above_0 and .count. A format may end with a
+unit to divide by: .0f/1e6.
 
     Markdown    <!--01.restitution_0.25-->0.24873<!--/-->           the comments are not shown
     pages       :made:`0.24873<01.restitution_0.25>`                a role of doc/src/conf.py
@@ -22,6 +26,7 @@ import re
 import sys
 from pathlib import Path
 
+import numpy as np
 import yaml
 
 TOP = Path(__file__).resolve().parents[1]
@@ -37,6 +42,10 @@ NAME = r"(?P<case>\d\d)\.(?P<name>[^\s:<>`]+?)(?::(?P<form>[^\s<>`]+?))?"
 MARKS = (re.compile(rf"(?P<start><!--{NAME}-->)(?P<shown>[^<]*)(?P<end><!--/-->)"),
          re.compile(rf"(?P<start>:made:`)(?P<shown>[^`<]*?)(?P<end><{NAME}>`)"))
 SERIES = re.compile(r"(?P<start>\{)(?P<shown>[^}]*)(?P<end>\}\s+# (?P<case>\d\d)\.(?P<name>[\w.]+))$", re.MULTILINE)
+
+
+SEVERAL = {"mean": np.mean, "low": min, "high": max, "sd": lambda values: np.std(values, ddof=1) if values[1:] else 0,
+           "above_0": lambda values: sum(value > 0 for value in values), "count": len}
 
 
 def kept(case):
@@ -65,6 +74,60 @@ def table(path):
     return {".".join((path.stem, *row[:2], name)): value for row in rows for name, value in zip(head[2:], row[2:])}
 
 
+def written(path, by=()):
+    """Of a table that a command wrote: {row.column: number or word}, of rows of one name what is written of several."""
+    if path.suffix == ".yaml":
+        return flat(loaded(path))
+    with open(path, encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    by = by or list(rows[0])[:1]
+    groups = {}
+    for row in rows:
+        groups.setdefault(".".join(number_or_word(row[one], "g") for one in by), []).append(row)
+    found = {}
+    for name, several in groups.items():
+        for column in set(several[0]) - set(by):
+            values = [number_or_word(row[column]) for row in several]
+            found[f"{name}.{column}"] = values[0]
+            values = [one for one in values if not isinstance(one, str)]
+            found.update({f"{name}.{column}.{what}": float(f"{of(values):.8g}")
+                          for what, of in SEVERAL.items() if values})
+    return found
+
+
+def number_or_word(word, form=""):
+    """Of a cell of a table; form: as a name has it."""
+    try:
+        return format(float(word), form) if form else float(f"{float(word):.8g}")
+    except ValueError:
+        return word.replace(" ", "_")
+
+
+def flat(one, name=""):
+    """Mappings and lists as dotted names; an entry of a list has its first value, or its place, as name."""
+    if not isinstance(one, (dict, list)):
+        return {name: one}
+    pairs = one.items() if isinstance(one, dict) else (
+        (next(iter(entry.values())) if isinstance(entry, dict) else k, entry) for k, entry in enumerate(one))
+    return {key: value for first, entry in pairs
+            for key, value in flat(entry, f"{name}.{first}".strip(".").replace(" ", "_")).items()}
+
+
+def take_table(wanted, texts=None):
+    """NN.NAME=FILE[:COLUMN,...]: put what the pages have of a table into numbers.yaml; it must have all of that."""
+    name, _, file = wanted.partition("=")
+    file, _, by = file.partition(":")
+    case, _, name = name.partition(".")
+    found = {f"{name}.{key}": value for key, value in written(Path(file), by.split(",") if by else ()).items()}
+    texts = texts or [path.read_text(encoding="utf-8") for path in PAGES]
+    names = {match["name"] for text in texts for mark in MARKS for match in mark.finditer(text)
+             if match["case"] == case and match["name"].startswith(name + ".")}
+    if unknown := sorted(names - set(found)):
+        sys.exit(f"made_numbers.py: {file} must have {', '.join(unknown)}; it has {', '.join(sorted(found))}")
+    folder, = INPUTS.glob(f"{case}_*")
+    put(folder / f"{verify.NUMBERS}.yaml", {"seen": {key: found[key] for key in sorted(names)}})
+
+
 def seen(path):
     """What seen() of a script gives."""
     spec = importlib.util.spec_from_file_location(path.stem, path)
@@ -89,7 +152,8 @@ def worded(got, form):
     """A number as the text has it: 3e-6, and a chance that would be rounded to 0 as less than the last digit."""
     if isinstance(got, str):
         return got
-    text = re.sub(r"e([-+])0(?=\d)", r"e\1", format(got, form or ".5g"))
+    form, _, unit = (form or ".5g").partition("/")
+    text = re.sub(r"e([-+])0(?=\d)", r"e\1", format(got / float(unit) if unit else got, form))
     if text.endswith("%") and got > 0 and float(text[:-1]) == 0:
         return "less than " + re.sub(r"0(?=%)", "1", text)
     return text
@@ -133,8 +197,8 @@ def put(place, new):
 
 
 def main():
-    if len(sys.argv) > 1:
-        take(sys.argv[1])
+    for word in sys.argv[1:]:
+        (take_table if "=" in word else take)(word)
     for path in PAGES:
         text = path.read_text(encoding="utf-8")
         if (new := filled(text)) != text:
