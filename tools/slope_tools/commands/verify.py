@@ -13,7 +13,7 @@ from ..options import Program, bare, flag, option
 from ..programs import find_lmp
 from ..runs import jobs
 from ..validation import verification
-from ..validation.verify import NAME, Runner, compared, judge, line, made, value, write
+from ..validation.verify import NAME, NUMBERS, Runner, compared, judge, line, made, value, write
 
 DESCRIPTION = "Run the cases of inputs/, compare them with closed forms and published numbers, write a report."
 EPILOG = """\
@@ -44,7 +44,7 @@ class Request(Program):
 
 def run(args: Request) -> None:
     """Do the command; raises SlopeError on bad input and when a claim does not hold. Prints the claims."""
-    claims = chosen(args.quick, args.only)
+    claims, others = chosen(args.quick, args.only)
     if bare(args):
         print(plan(claims))
         return
@@ -58,8 +58,6 @@ def run(args: Request) -> None:
         output.mkdir(parents=True, exist_ok=True)
         with disk.alone_in(output), jobs.signals_interrupt():
             runner = Runner(output / "runs", lmp)
-            others = [one for one in verification.all_seen()
-                      if one.case in {claim.case for claim in claims} and (one.quick or not args.quick)]
             runner.do(runs_of(claims) + [run for one in others for run in one.runs], args.jobs or jobs.cores())
             outcomes = [judge(claim, runner) for claim in claims]
             seen = [(one, value(one, one.runs, runner)) for one in others]
@@ -75,7 +73,8 @@ def run(args: Request) -> None:
         raise SlopeError(output / f"{NAME}.html", f"{len(wrong)} of {len(outcomes)} claims do not hold or have a "
                          f"control that does not fail: {', '.join(outcome.claim.name for outcome in wrong[:5])}"
                          + (", ..." if len(wrong) > 5 else ""))
-    print(f"all {len(outcomes)} claims hold, and all controls fail: {output / NAME}.html")
+    print(f"all {len(outcomes)} claims hold, and all controls fail: {output / NAME}.html" if outcomes else
+          f"no claims; {len(seen)} numbers: {output / NUMBERS}")
 
 
 def runs_of(claims):
@@ -95,14 +94,15 @@ def plan(claims) -> str:
 
 
 def chosen(quick: bool, only: Optional[str]):
-    """The claims that are asked for."""
-    claims = [claim for claim in verification.all_claims() if claim.quick or not quick]
+    """The claims that are asked for, and the other numbers of their cases."""
+    claims, others = ([one for one in several if one.quick or not quick]
+                      for several in (verification.all_claims(), verification.all_seen()))
     if only:
         known = [case.CASE for case in verification.cases()]
         for name in only.split(","):
             if name not in known:
                 raise SlopeError("--only", f"must be of {', '.join(known)}", name)
-        claims = [claim for claim in claims if claim.case in only.split(",")]
-    if not claims:
+        claims, others = ([one for one in several if one.case in only.split(",")] for several in (claims, others))
+    if not claims and not others:
         raise SlopeError("--only", "has no claims that are quick", only)
-    return claims
+    return claims, others

@@ -1,13 +1,15 @@
 """The claims that the package is held to: a module per case or question, with runs, closed forms, tolerances, controls.
 
 `slope verify` runs them all, tests/decks/test_verification.py the quick ones. A module has a docstring, whose first
-line is its title, CASE, the folder in inputs/ that it is about, and CLAIMS. A new one is one more name in MODULES.
+line is its title, CASE, the folder in inputs/ that it is about, and CLAIMS; SEEN, if it has one, are the other numbers
+of the case's README. A new one is one more name in MODULES.
 """
 import importlib
 
 MODULES = ("restitution", "timestep", "slide_roll", "rolling_resistance", "apparent_restitution", "oblique_impact",
            "sticking_impact", "rolling", "collisions", "rough_gas", "tochigi", "column_collapse", "heap",
-           "resting_heap", "ground_direction", "repose_walls", "axisymmetric", "flume", "pyramid", "penetration")
+           "resting_heap", "ground_direction", "repose_walls", "axisymmetric", "flume", "pyramid", "penetration",
+           "wall_force")
 
 
 def cases():

@@ -216,6 +216,7 @@ class Seen(NamedTuple):
     runs: Tuple[Run, ...]
     got: Callable[..., Union[float, str]]
     quick: bool = True
+    chance: float = 0.0                 # share by which builds that round otherwise differ
 
     @property
     def case(self):

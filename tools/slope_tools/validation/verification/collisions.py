@@ -4,7 +4,7 @@ inputs/08_collisions: two balls, a chain of ten, a gas of 64.
 """
 import numpy as np
 
-from .claims import AtMost, Between, Claim, Control, Near, Run
+from .claims import AtMost, Between, Claim, Control, Near, Run, Seen
 from .restitution import restitution as restitution_of
 
 CASE = "08_collisions"
@@ -143,3 +143,4 @@ CLAIMS = [
     _keeps("energy_damped_rule", "The same at steps of the rule: largest gain of energy", DAMPED(part=1, steps=20000),
            growth, 1e-9, "undamped, scheme plain", GAS(scheme="plain", part=1, steps=20000)),
 ]
+SEEN = [Seen("left", (DAMPED,), left, chance=0.1), Seen("left_rule", (DAMPED(part=1, steps=20000),), left, chance=0.1)]

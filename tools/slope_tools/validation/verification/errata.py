@@ -26,8 +26,8 @@ def errata():
                 "and between soil/slip surface balls (red) are 0.48\".",
                 f"The dashpot follows from 0.48 with the mass of one ball ({soil:.3g} N s/m), so it holds for a ball "
                 f"on a fixed ball. Two moving balls have half of that mass: {moving:.3f}. A true 0.48 between them "
-                f"needs {true:.3g} N s/m. Pair gran/restitution takes the right mass for each pair (mass pair); the "
-                "paper's convention is mass ball.",
+                f"needs {true:.3g} N s/m. Pair gran/restitution takes the right mass for each pair (mass pair); mass "
+                "ball gives the paper's dashpots.",
                 ("table_4_moving", "true_0.48")),
         Erratum("Condition for rolling: 3.5 tan(theta) > tan(phi), not 3",
                 "A ball rolls without sliding if 3 tan(theta) > tan(phi).",
@@ -41,7 +41,7 @@ def errata():
                 f"gives {soil:.3g} N s/m for 0.48 and {field:.3g} N s/m for 0.1.",
                 ("table_4_moving",)),
         Erratum("In Table 3's case 3 the ball rotates without sliding",
-                "\"The element slides in cases 2 and 3.\"",
+                "\"The element slides in cases 2 and 3\".",
                 "Case 3 of Table 3 rotates without sliding, as the simulation here does.", ()),
         Erratum("There are two Tables 5, and Tables 4 and 5 are named in reverse",
                 "\"Table 4 and 5 show the parameters for the balls and their contact\".",

@@ -6,7 +6,7 @@ half a layer, so that single balls that roll ahead do not count. The beads' numb
 """
 import numpy as np
 
-from .claims import Between, Claim, Control, Near, Run
+from .claims import Between, Claim, Control, Near, Run, Seen
 
 CASE = "16_flume"
 SAND = Run("16_flume/in.flume")
@@ -78,3 +78,10 @@ CLAIMS = [
     Claim("glass_height", "The same: thickness at the back", "m", MANGENEY, fillings(BEADS), mean(thickness(NEAR)),
           Near(0.14, 0.01), Control(SLIPPERY, (BEADS(**SLIDING),))),
 ]
+SEEN = [Seen(f"glass.{name}.{what}", fillings(BEADS), lambda *results, of=of, end=end: end(map(of, results)))
+        for name, of in (("front", runout), ("height", thickness(NEAR))) for what, end in (("low", min), ("high", max))]
+SEEN.append(Seen("sand.sliding_08", (SAND(**SLIDING),), thickness(0.8)))
+# of finer balls, one filling each, which takes a minute
+SEEN += [Seen(f"fine.{name}", (run,), of, False, 0.2) for name, run, of in (
+    ("sand_04", SAND(d=0.01), thickness(0.4)), ("sand_08", SAND(d=0.01), thickness(0.8)),
+    ("glass_front", BEADS(d=0.005), runout), ("glass_height", BEADS(d=0.005), thickness(NEAR)))]

@@ -124,3 +124,31 @@ def at(angle, what):
 
 SEEN = [Seen(f"{what}.{angle}", (IMPACT,), at(angle, what)) for angle in (0, 20, 40, 60, 85)
         for what in ("e_n", "e_t", "spin") if (angle, what) != (0, "e_t")]
+
+
+def alumina(what):
+    """Of the alumina: angle of the largest spin, degrees; velocity at the contact at an angle, after over before."""
+    def got(result):
+        balls = frames(result)
+        theta, spin, vx = balls["v_theta"][0], balls["omegay"], balls["vx"]
+        if what == "angle":
+            return theta[np.argmax(spin[-1])]
+        k = int(np.argmin(np.abs(theta - what)))
+        return (vx[-1][k] - RADIUS * spin[-1][k]) / vx[0][k]
+    return got
+
+
+def slides_from(result):
+    """Degrees, from which on the spin is that of sliding throughout, within 0.1 rad/s."""
+    balls = frames(result)
+    slides = 2.5 * MU * (1 + E) * -balls["vz"][0] / RADIUS
+    return balls["v_theta"][0][np.abs(balls["omegay"][-1] - slides) > 0.1].max() + 1
+
+
+SOFTER = {"kt_1": ALUMINA(ktkn=1), "kt_2_3": ALUMINA(ktkn=0.6667)}
+WIDE = ALUMINA(first=0, each=5)
+SEEN += [Seen("alumina.angle", (ALUMINA,), alumina("angle")), Seen("alumina.slides_from", (ALUMINA,), slides_from)]
+SEEN += [Seen(f"alumina.{name}.{what}", (run,), got) for name, run in SOFTER.items()
+         for what, got in (("spin", largest_spin), ("angle", alumina("angle")))]
+SEEN += [Seen(f"alumina.contact.{angle}", (ALUMINA if angle == 31 else WIDE,), alumina(angle))
+         for angle in (5, 10, 20, 31)]

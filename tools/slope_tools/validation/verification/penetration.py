@@ -3,7 +3,7 @@
 inputs/18_penetration: 7,105 balls of 2 mm, 2 ms. Same springs, dashpots and friction; pair granular's dashpots see the
 velocity of half a step ago, and single contacts differ from the first on.
 """
-from .claims import Claim, Control, Near, Run
+from .claims import Claim, Control, Near, Run, Seen
 
 CASE = "18_penetration"
 SMALL = Run("18_penetration/in.penetration")(balls=7105, time=0.002, settle=0.04)
@@ -21,3 +21,5 @@ CLAIMS = [
           Control("half the friction and restitution 0.1", (SMALL(friction=8, steel_friction=5, e=0.1), GRANULAR)),
           quick=False),
 ]
+SEEN = [Seen(f"way.{name}", (run,), lambda result: result.number("way", "penetration:"), False, 0.01)
+        for name, run in (("ours", SMALL), ("granular", GRANULAR))]

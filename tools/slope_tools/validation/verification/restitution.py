@@ -58,3 +58,5 @@ def with_overlap(result):
 
 
 SEEN += [Seen(f"overlap_added_{e}", (DROP(e=e, h1=0.740),), with_overlap) for e in (0.25, 0.445)]
+SEEN.append(Seen("moving_1.45e4", (RUNS["cn_1.45e4"],),
+                 lambda result: float(result.printed("  1   1 ")[0].split()[6])))      # of the start-up table

@@ -83,3 +83,8 @@ SEEN = [Seen(f"{theta}.{name}", (START(theta=theta),), lambda result, name=name:
         for theta in (0, 10) for name in ("rotation", "sliding")]
 SEEN += [Seen(f"velocity.{theta}", (START(theta=theta, tend=0.005),),
               lambda result: result.number("velocity", "slide_roll:")) for theta in ("9.0", "9.2", "9.5", "9.7")]
+SEEN += [Seen(f"{theta}.ratio", (START(theta=theta),),
+              lambda result, law=law: result.number(f"of {law} theory", "slide_roll:"))
+         for theta, law in ((0, "slide"), (10, "roll"))]
+SEEN += [Seen(f"velocity_later.{theta}", (START(theta=theta),),
+              lambda result: result.number("velocity", "slide_roll:")) for theta in ("9.5", "9.7")]

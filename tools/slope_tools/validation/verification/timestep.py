@@ -44,3 +44,10 @@ STEPS = {"5e-7": "5.0e-7", "5e-6": "5.0e-6", "5e-5": "5.0e-5", "1.2e-4": RULE, "
 SEEN = [Seen(f"{scheme}.{step}.{name}", (DROP(scheme=scheme, dt=dt),),
              lambda result, name=name: result.number(name, "timestep:"), step != "5e-7")
         for scheme in ("plain", "exact") for step, dt in STEPS.items() for name in ("observed", "from", "to")]
+SEEN += [Seen(f"plain.{step}.height{which}", (PLAIN(dt=dt),),
+              lambda result, name=name: 0.741 * result.number(name, "timestep:") ** 2, step != "5e-7")
+         for step, dt, which, name in (("5e-7", STEPS["5e-7"], "", "observed"), ("5e-4", BEYOND, "", "observed"),
+                                       ("5e-4", BEYOND, "_highest", "to"))]
+LATE = ("neigh_modify    delay 0 ", "neigh_modify    delay 10 "), ("neighbor        $(0.5*v_d) bin", "")
+SEEN += [Seen(f"{scheme}.late", (DROP(*LATE, scheme=scheme, dt=RULE),),
+              lambda result: result.number("observed", "timestep:")) for scheme in ("plain", "exact")]
