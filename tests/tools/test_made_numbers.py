@@ -103,3 +103,28 @@ def test_what_was_not_made_anew_stays(tmp_path, monkeypatch):
     made_numbers.put(place, {"claims": {"b": {"got": 2.0}}, "seen": {"x": 2}})
     assert made_numbers.yaml.safe_load(place.read_text()) == {
         "claims": {"a": {"got": 1.0}, "b": {"got": 2.0}}, "seen": {"x": 2}}
+
+
+TABLE = "run,wall,line,m3,word\na,1,behind,3000,x\nb,1,behind,3500,x\nc,0,behind,0,y\n"
+
+
+def test_a_table_that_a_command_wrote_gives_what_pages_have(tmp_path, monkeypatch):
+    """Rows of one name are several runs; of what no page has nothing is kept, and what a page has must be there."""
+    monkeypatch.setattr(made_numbers, "INPUTS", tmp_path)
+    place = tmp_path / "01_a" / "numbers.yaml"
+    place.parent.mkdir()
+    (tmp_path / "lines.csv").write_text(TABLE)
+    text = "<!--01.lines.1.behind.m3.low:.1f/1e3-->?<!--/--> :made:`?<01.lines.0.behind.m3>`"
+    made_numbers.take_table(f"01.lines={tmp_path}/lines.csv:wall,line", [text])
+    kept = made_numbers.yaml.safe_load(place.read_text())["seen"]
+    assert kept == {"lines.0.behind.m3": 0.0, "lines.1.behind.m3.low": 3000.0}
+    assert made_numbers.filled(text, {"01": kept}) == text.replace("?", "3.0", 1).replace("?", "0")
+    found = made_numbers.written(tmp_path / "lines.csv", ["wall"])
+    assert [found[f"1.m3.{what}"] for what in ("mean", "low", "high", "above_0", "count")] == [3250, 3000, 3500, 2, 2]
+    assert found["1.m3.sd"] == pytest.approx(500 / 2 ** 0.5) and found["0.word"] == "y" and "0.word.mean" not in found
+    (tmp_path / "f.yaml").write_text("curves:\n- body: 'a b'\n  median: 958.5\nlevels: [0.1, 0.2]\n")
+    assert made_numbers.written(tmp_path / "f.yaml") == {
+        "curves.a_b.body": "a b", "curves.a_b.median": 958.5, "levels.0": 0.1, "levels.1": 0.2}
+    with pytest.raises(SystemExit, match="must have lines.1.behind.none; it has lines.0"):
+        made_numbers.take_table(f"01.lines={tmp_path}/lines.csv:wall,line", [text.replace("m3.low", "none")])
+    assert made_numbers.yaml.safe_load(place.read_text())["seen"] == kept
