@@ -199,12 +199,19 @@ def put(place, new):
 def main():
     for word in sys.argv[1:]:
         (take_table if "=" in word else take)(word)
+    lack = []
     for path in PAGES:
         text = path.read_text(encoding="utf-8")
-        if (new := filled(text)) != text:
+        try:
+            new = filled(text)
+        except KeyError as error:
+            lack.append(f"{path.relative_to(TOP)} has a mark of a number that nothing made: {error.args[0]}")
+            continue
+        if new != text:
             path.write_text(new, encoding="utf-8")
             print(f"filled {path.relative_to(TOP)}")
     VERIFICATION.write_text(verify.page(verify.kept_outcomes()), encoding="ascii")
+    sys.exit("\n".join(lack))
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ import importlib
 MODULES = ("restitution", "timestep", "slide_roll", "rolling_resistance", "apparent_restitution", "oblique_impact",
            "sticking_impact", "rolling", "collisions", "rough_gas", "tochigi", "column_collapse", "heap",
            "resting_heap", "ground_direction", "repose_walls", "axisymmetric", "flume", "pyramid", "penetration",
-           "wall_force")
+           "wall_force", "embankment")
 
 
 def cases():
