@@ -104,13 +104,18 @@ def number_or_word(word, form=""):
 
 
 def flat(one, name=""):
-    """Mappings and lists as dotted names; an entry of a list has its first value, or its place, as name."""
+    """Mappings and lists as dotted names; an entry of a list is named by its first values, or by its place."""
     if not isinstance(one, (dict, list)):
         return {name: one}
-    pairs = one.items() if isinstance(one, dict) else (
-        (next(iter(entry.values())) if isinstance(entry, dict) else k, entry) for k, entry in enumerate(one))
-    return {key: value for first, entry in pairs
-            for key, value in flat(entry, f"{name}.{first}".strip(".").replace(" ", "_")).items()}
+    pairs = dict(enumerate(one)) if isinstance(one, list) else one
+    if isinstance(one, list) and all(isinstance(entry, dict) for entry in one):
+        for many in range(1, 1 + min(map(len, one), default=0)):
+            heads = [".".join(number_or_word(str(word), "g") for word in [*entry.values()][:many]) for entry in one]
+            if len(set(heads)) == len(heads):
+                pairs = dict(zip(heads, one))
+                break
+    return {key: value for first, entry in pairs.items()
+            for key, value in flat(entry, f"{name}.{first}".strip(".")).items()}
 
 
 def take_table(wanted, texts=None):

@@ -122,9 +122,12 @@ def test_a_table_that_a_command_wrote_gives_what_pages_have(tmp_path, monkeypatc
     found = made_numbers.written(tmp_path / "lines.csv", ["wall"])
     assert [found[f"1.m3.{what}"] for what in ("mean", "low", "high", "above_0", "count")] == [3250, 3000, 3500, 2, 2]
     assert found["1.m3.sd"] == pytest.approx(500 / 2 ** 0.5) and found["0.word"] == "y" and "0.word.mean" not in found
-    (tmp_path / "f.yaml").write_text("curves:\n- body: 'a b'\n  median: 958.5\nlevels: [0.1, 0.2]\n")
+    (tmp_path / "f.yaml").write_text("curves:\n- body: 'a b'\n  median: 958.5\nlevels: [0.1, 0.2]\n"
+                                     "zones:\n- of: speed\n  above: 1.0\n- of: speed\n  above: 10.0\n")
     assert made_numbers.written(tmp_path / "f.yaml") == {
-        "curves.a_b.body": "a b", "curves.a_b.median": 958.5, "levels.0": 0.1, "levels.1": 0.2}
+        "curves.a_b.body": "a b", "curves.a_b.median": 958.5, "levels.0": 0.1, "levels.1": 0.2,
+        "zones.speed.1.of": "speed", "zones.speed.1.above": 1.0, "zones.speed.10.of": "speed",
+        "zones.speed.10.above": 10.0}
     with pytest.raises(SystemExit, match="must have lines.1.behind.none; it has lines.0"):
         made_numbers.take_table(f"01.lines={tmp_path}/lines.csv:wall,line", [text.replace("m3.low", "none")])
     assert made_numbers.yaml.safe_load(place.read_text())["seen"] == kept

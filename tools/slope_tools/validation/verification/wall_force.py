@@ -13,9 +13,9 @@ DECK = Run("19_wall_force/in.wall_force")
 CLAIMS: Tuple[Claim, ...] = ()      # they wait for the measured curves
 CHANCE = 0.1                        # of the filling: a build that rounds otherwise has another one
 SEEN = [Seen(f"{angle}.{sand}.{key}", (DECK(angle=angle, sand=sand),),
-             lambda result, name=name: result.number(name, "wall_force:"), chance=CHANCE)
+             lambda result, name=name: result.number(name, "wall_force:"), False, CHANCE)
         for angle, sand in ((45, 62), (45, 50), (65, 62))
         for key, name in (("largest", "largest force"), ("end", "at the end"), ("left", "on the flume"))]
 SEEN.append(Seen("mass_ratio", (DECK(angle=45, sand=62), DECK(angle=45, sand=50)),
                  lambda *results: np.divide(*(one.number("largest force", "wall_force:") for one in results)),
-                 chance=CHANCE))
+                 False, CHANCE))
