@@ -12,6 +12,8 @@ CLAIMS = [claim for claim in verification.all_claims() if claim.quick]
 # beginnings of the names of claims that take long; controls of collapses say what a claim is worth, and find no fault
 LONG = "dense_gas", "dam_break_08"
 LONG_CONTROLS = (*LONG, "dam_break", "glass", "heap", "ground_direction", "runout")
+# claims of half a minute to a minute, which --all makes; what takes longer is left to `slope verify`
+LATE = "step_5e-7", "dam_break_toe", "repose_without_walls", "pyramid_travel", "penetration"
 # of claims on a mean, the runs that are made here
 RUNS = {"glass_front": 1, "glass_height": 1}
 
@@ -53,6 +55,16 @@ def test_a_claim_gives_what_the_pages_show(runner, claim):
 def assert_kept(got, kept, chance=0.0):
     """Equal to what a page may round to, or to what chance leaves."""
     assert got == (kept if isinstance(kept, str) else pytest.approx(kept, rel=max(1e-3, chance), abs=1e-7))
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("claim", [one for one in verification.all_claims() if one.name in LATE],
+                         ids=lambda one: one.name)
+def test_a_claim_of_a_minute_gives_what_the_pages_show(runner, claim):
+    """By chance other builds may be a tenth away; a difference of faces, which is 0 but for chance, 1 %."""
+    got = verify.value(claim, claim.runs, runner)
+    assert claim.bound.holds(got)
+    assert got == pytest.approx(KEPT[claim.name].got, rel=0.1, abs=0.01 if claim.unit == "" else 1e-7)
 
 
 @pytest.mark.parametrize("one", [
