@@ -6,7 +6,7 @@ single balls that roll ahead do not count. Published: sand, rice, sugar, glass b
 """
 import numpy as np
 
-from .claims import Between, Claim, Control, Near, Run, Seen
+from .claims import Between, Claim, Control, Near, Run
 
 CASE = "11_column_collapse"
 DECK = Run("11_column_collapse/in.column_collapse")
@@ -66,5 +66,3 @@ CLAIMS = [
           FILLINGS[4] + FILLINGS[8],
           exponent, Near(2 / 3, 0.15), Control("between a = 0.5 and a = 1", (COLUMNS[0.5], COLUMNS[1])), quick=False),
 ]
-SEEN = [Seen("exponent", (COLUMNS[4], COLUMNS[8]), exponent, False, 0.15)]
-SEEN += [Seen(f"runout_1.of_16.{seed}", (DECK(a=1, length=16, seed=seed),), runout, False, 0.1) for seed in (1, 2)]

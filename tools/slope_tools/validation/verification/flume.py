@@ -81,7 +81,3 @@ CLAIMS = [
 SEEN = [Seen(f"glass.{name}.{what}", fillings(BEADS), lambda *results, of=of, end=end: end(map(of, results)))
         for name, of in (("front", runout), ("height", thickness(NEAR))) for what, end in (("low", min), ("high", max))]
 SEEN.append(Seen("sand.sliding_08", (SAND(**SLIDING),), thickness(0.8)))
-# of finer balls, one filling each, which takes a minute
-SEEN += [Seen(f"fine.{name}", (run,), of, False, 0.2) for name, run, of in (
-    ("sand_04", SAND(d=0.01), thickness(0.4)), ("sand_08", SAND(d=0.01), thickness(0.8)),
-    ("glass_front", BEADS(d=0.005), runout), ("glass_height", BEADS(d=0.005), thickness(NEAR)))]

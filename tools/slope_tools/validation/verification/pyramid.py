@@ -4,7 +4,7 @@ inputs/17_pyramid: a body on each of four faces of 35 degrees, the pyramid as it
 """
 import numpy as np
 
-from .claims import AtMost, Claim, Control, Run, Seen
+from .claims import AtMost, Claim, Control, Run
 
 CASE = "17_pyramid"
 AZIMUTHS, FACES = (0, 45), (1, 2, 3, 4)
@@ -41,13 +41,3 @@ CLAIMS = [
           "over that", "", SOURCE, turned(DECK), spread, AtMost(0.04),
           Control("plan grid, spacing 1 d", turned(DECK(pattern="grid", spacing=1))), quick=False),
 ]
-
-
-def on_face(azimuth, face):
-    """Mean travel of the seeds, m."""
-    return lambda *results: travels(results)[0].mean(axis=1)[AZIMUTHS.index(azimuth), FACES.index(face)]
-
-
-SEEN = [Seen(f"{pattern}.{azimuth}.{face}", runs, on_face(azimuth, face), False, 0.05)
-        for pattern, runs in (("scattered", turned(DECK)), ("grid", turned(DECK(pattern="grid", spacing=1))))
-        for azimuth in AZIMUTHS for face in FACES]

@@ -7,7 +7,7 @@ from typing import Dict, Tuple
 
 import numpy as np
 
-from .claims import Claim, Control, Near, Run, Seen
+from .claims import Claim, Control, Near, Run
 
 CASE = "14_repose_walls"
 DECK = Run("14_repose_walls/in.repose_walls")
@@ -52,19 +52,3 @@ CLAIMS = [
           Control("rolling resistance 0.1", (WITHOUT[0](rolling=0.1),)), quick=False,
           remark="The rolling resistance, 0.033, was fitted on the first of these fillings."),
 ]
-
-
-def angle_with(d, plate):
-    """The same for beads of d m on a plate, diameters."""
-    return lambda *results: np.mean([angles_of(result.frames("repose.dump"), d, plate) for result in results])
-
-
-SMALL, LARGE = angle_with(0.01, PLATE), angle_with(0.02, PLATE / 2)
-BEADS_20 = DECK(d=0.02, plate=15, height=6)
-SEEN = []
-for _name, _run, _got in (("no", WITHOUT[0], SMALL), ("8", DECK(thickness=8), SMALL), ("4", DECK(thickness=4), SMALL),
-                          ("20.no", BEADS_20(walls="no", thickness=8), LARGE), ("20.4", BEADS_20(thickness=4), LARGE)):
-    _runs = tuple(_run(seed=seed) for seed in SEEDS)
-    SEEN += [Seen(f"{_name}.{seed}", (run,), _got, False, 0.1) for seed, run in zip(SEEDS, _runs)]
-    SEEN.append(Seen(f"{_name}.mean", _runs, _got, False, 0.1))
-SEEN.append(Seen("4.less_friction", (DECK(thickness=4, wall_friction=21.8, seed=1),), SMALL, False, 0.1))
