@@ -61,10 +61,10 @@ def assert_kept(got, kept, chance=0.0):
 @pytest.mark.parametrize("claim", [one for one in verification.all_claims() if one.name in LATE],
                          ids=lambda one: one.name)
 def test_a_claim_of_a_minute_gives_what_the_pages_show(runner, claim):
-    """By chance other builds may be a tenth away; a difference of faces, which is 0 but for chance, 1 %."""
+    """By chance other builds may be a tenth away; a difference of faces, which is 0 but for chance, 2 %."""
     got = verify.value(claim, claim.runs, runner)
     assert claim.bound.holds(got)
-    assert got == pytest.approx(KEPT[claim.name].got, rel=0.1, abs=0.01 if claim.unit == "" else 1e-7)
+    assert got == pytest.approx(KEPT[claim.name].got, rel=0.1, abs=0.02 if claim.unit == "" else 1e-7)
 
 
 @pytest.mark.parametrize("one", [
