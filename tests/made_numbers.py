@@ -88,7 +88,8 @@ def written(path, by=()):
     for name, several in groups.items():
         for column in set(several[0]) - set(by):
             values = [number_or_word(row[column]) for row in several]
-            found[f"{name}.{column}"] = values[0]
+            if not values[1:]:
+                found[f"{name}.{column}"] = values[0]
             values = [one for one in values if not isinstance(one, str)]
             found.update({f"{name}.{column}.{what}": float(f"{of(values):.8g}")
                           for what, of in SEVERAL.items() if values})
