@@ -65,13 +65,15 @@ def test_a_run_that_is_killed(site):
     (site / "in.killed").write_text(deck(WRITERS["Fix deposit/grid"] + "\nthermo 1", steps=100_000_000))
     with subprocess.Popen([LMP, "-in", "in.killed", "-log", "none"], cwd=site, env={**ENVIRONMENT, **ALONE}, text=True,
                           stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as run:
-        while not run.stdout.readline().startswith("Step"):
-            assert run.poll() is None
-        assert f", process {run.pid}, since 2" in (site / "out.lock").read_text()
-        run_deck(deck(WRITERS["Fix deposit/grid"]), site,
-                 expect_error=f"Fix deposit/grid: output out must be that of one "
-                 f"run at a time, got a run on host {os.uname().nodename}, process {run.pid}, since ")
-        os.kill(run.pid, signal.SIGKILL)
+        try:
+            while not run.stdout.readline().startswith("Step"):
+                assert run.poll() is None
+            assert f", process {run.pid}, since 2" in (site / "out.lock").read_text()
+            run_deck(deck(WRITERS["Fix deposit/grid"]), site,
+                     expect_error=f"Fix deposit/grid: output out must be that of one "
+                     f"run at a time, got a run on host {os.uname().nodename}, process {run.pid}, since ")
+        finally:
+            os.kill(run.pid, signal.SIGKILL)
     assert (site / "out.lock").exists()
     run_deck(deck(WRITERS["Fix deposit/grid"]), site)
     assert not (site / "out.lock").exists()
