@@ -51,8 +51,10 @@ def worst(site: Site, name: str) -> Site:
 def named(name: str, taken: Set[str]) -> str:
     """The name of a road that no other has, for its files and pages; case does not count."""
     name = re.sub(r"[^\w.-]+", "_", name).strip("._-")[:LONGEST] or "road"
-    each = (name, *(f"{name}_{k}" for k in range(2, 10 ** 6)))
-    found = next(one for one in each if one.casefold() not in taken)
+    found, k = name, 1
+    while found.casefold() in taken:
+        k += 1
+        found = f"{name}_{k}"
     taken.add(found.casefold())
     return found
 
