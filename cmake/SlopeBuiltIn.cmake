@@ -41,7 +41,8 @@ if(SLOPE_SOURCES)
   target_include_directories(slope PRIVATE $<TARGET_PROPERTY:lammps,INCLUDE_DIRECTORIES>)
   target_compile_definitions(slope PRIVATE $<TARGET_PROPERTY:lammps,COMPILE_DEFINITIONS>
     SLOPE_LAMMPS_VERSION=${SLOPE_LAMMPS_VERSION})
-  target_sources(lammps PRIVATE $<TARGET_OBJECTS:slope>)
+  target_precompile_headers(slope PRIVATE "${LAMMPS_SOURCE_DIR}/src/pointers.h")
+  target_sources(lammps PRIVATE $<TARGET_OBJECTS:slope> ${SLOPE_OBJECTS})
 endif()
 
 install(TARGETS lmp RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")

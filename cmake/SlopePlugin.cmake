@@ -10,7 +10,7 @@ string(TOUPPER "${LAMMPS_SIZES}" sizes)
 
 GenerateStyleHeaders("${CMAKE_BINARY_DIR}/styles") # of what RegisterStyles found: ours
 
-add_library(slopeplugin MODULE src/plugin/slopeplugin.cpp ${SLOPE_SOURCES})
+add_library(slopeplugin MODULE src/plugin/slopeplugin.cpp ${SLOPE_SOURCES} ${SLOPE_OBJECTS})
 set_target_properties(slopeplugin PROPERTIES
   PREFIX ""
   CXX_STANDARD 17 CXX_STANDARD_REQUIRED ON CXX_EXTENSIONS OFF # of the newest LAMMPS' headers
