@@ -27,7 +27,7 @@ pair_coeff  1 1 stiffness 1.0e6 1.0e6 restitution 0.4 friction 20
 pair_coeff  1 2 stiffness 1.0e6 1.0e6 restitution 0.4 friction 20
 fix         ground all wall/gran/balls 2 1.0 {balls} write fixed.xyz
 neighbor    0.2 bin
-neigh_modify every 1 delay 0 check yes
+neigh_modify every 1 delay 0 check yes binsize 3
 timestep    2.0e-4
 fix         move all nve/sphere
 fix         weight all gravity 9.81 vector {gx} 0 {gz}

@@ -32,7 +32,7 @@ velocity one set 3 4 -2
 velocity two set -2 -4 0
 velocity far set 27 12 12
 neighbor 0.4 bin
-neigh_modify every 1 delay 0 check yes
+neigh_modify every 1 delay 0 check yes binsize 10
 pair_style gran/restitution
 pair_coeff * * stiffness 2e6 2e6 restitution 0.5 friction 30 rolling 0.05
 timestep 1e-3
@@ -111,7 +111,7 @@ read_restart mid.restart
 region ground terrain ground.asc depth 30 headroom 60
 region pit block 30.2 41.3 20.1 {pit} -30 60 units box
 neighbor 0.4 bin
-neigh_modify every 1 delay 0 check yes
+neigh_modify every 1 delay 0 check yes binsize 10
 comm_modify vel yes
 timestep 1e-3
 fix wall all wall/gran/balls 2 1.0 {ground}
