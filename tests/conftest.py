@@ -1,6 +1,7 @@
 """Of all tests in Python: the tools are on the path of modules, cases are made once, the longest files begin first."""
 import csv
 import fcntl
+import gc
 import os
 import shutil
 import sys
@@ -15,6 +16,7 @@ TESTS = Path(__file__).resolve().parent
 LONGEST = 200       # letters of a test's name that are kept
 
 sys.path.insert(0, os.environ.get("SLOPE_TOOLS", str(TESTS.parent / "tools")))
+gc.set_threshold(50_000, 10, 10)        # looking for garbage took a third of the tests' collection
 
 
 def pytest_configure(config):
@@ -26,6 +28,12 @@ def pytest_collection_modifyitems(items):
     """The longest files first, as workers take whole files: one that came last would keep one processor."""
     seconds = read_seconds()
     items.sort(key=lambda item: -seconds.get(relative(item.path), 1.0))      # keeps the order within a file
+
+
+def pytest_collection_finish():
+    """What is there now stays, and need not be looked through."""
+    gc.collect()
+    gc.freeze()
 
 
 def relative(path):

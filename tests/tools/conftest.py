@@ -72,6 +72,16 @@ def no_power_cut():
         yield
 
 
+@pytest.fixture(scope="session", autouse=True)
+def one_gdal():
+    """rasterio looks for GDAL's data whenever it opens a file: once is enough."""
+    import rasterio.env
+    gdal = rasterio.env.GDALEnv()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(rasterio.env, "GDALEnv", lambda: gdal)
+        yield
+
+
 # --- runs ---
 
 @pytest.fixture(scope="session", autouse=True)
