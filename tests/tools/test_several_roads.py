@@ -10,8 +10,7 @@ import yaml
 from shapely.geometry import LineString
 from shapely.ops import substring
 
-from test_site import BALLS, EAST, NORTH, ROAD, gis, inside, make, told, write_files, write_layer  # noqa: F401
-from tiny_collapse import LMP
+from test_site import BALLS, EAST, NORTH, ROAD, gis, make, slope, told, write_files, write_layer  # noqa: F401
 
 from slope_tools import digits
 from slope_tools.commands import study as study_command
@@ -53,22 +52,16 @@ def done(tmp_path_factory):
     for name, points in (("near", NEAR), ("far", FAR)):
         write_layer(folder / f"{name}.geojson", points)
     made = make(folder, "--shape", "ellipsoid", "--depth", "5", "--balls", BALLS, "--road", "far.geojson", "--road",
-                "road.geojson", "--road", "near.geojson", run=inside_with_lmp)
+                "road.geojson", "--road", "near.geojson")
     assert made.returncode == 0, made.stderr
     site = folder / "mine" / "site.yaml"
     site.write_text(site.read_text().replace("rolling: [0.0, 0.05, 0.1]", "rolling: [0.05, 0.1]").replace(
         "spacing: [0.5, 0.7]", "spacing: []"))
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(volume_files, "draw", lambda path, *_: path.touch())
-        study = inside_with_lmp(folder, "study", "mine", "--paper", "--levels", "1")
+        study = slope(folder, "study", "mine", "--paper", "--levels", "1")
     assert study.returncode == 0, study.stderr
     return folder, made.stdout, study.stdout
-
-
-def inside_with_lmp(folder, *words, **_):
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("LMP", LMP)
-        return inside(folder, *words)
 
 
 def about_in(folder):
@@ -87,9 +80,9 @@ def test_each_road_has_the_numbers_of_a_site_with_it_alone(done, tmp_path, monke
     for name in ("far", "near"):
         alone = tmp_path / name
         shutil.copytree(folder, alone)
-        made = inside_with_lmp(alone, "site", "mine", "--road", f"{name}.geojson")
+        made = slope(alone, "site", "mine", "--road", f"{name}.geojson")
         assert made.returncode == 0, made.stderr
-        made = inside_with_lmp(alone, "study", "mine", "--paper", "--levels", "1")
+        made = slope(alone, "study", "mine", "--paper", "--levels", "1")
         assert made.returncode == 0 and "are finished already" in made.stdout, made.stderr
         own, beside = about_in(alone / "mine" / "study"), about_in(mine / "roads" / name / "study")
         assert plain(own) == plain(beside)
@@ -97,7 +90,7 @@ def test_each_road_has_the_numbers_of_a_site_with_it_alone(done, tmp_path, monke
         rows = [row for row in table if row["road"] == name]
         assert [float(row["remove_m3"]) for row in rows] == [row["remove_m3"] for row in own["runs"]]
         assert not (alone / "mine" / "roads.csv").exists()      # what is known of the other roads stays, and is refused
-        made = inside_with_lmp(alone, "report", "mine/roads/far", "--no-film")
+        made = slope(alone, "report", "mine/roads/far", "--no-film")
         assert made.returncode == 2 and "its study had another choice of roads" in made.stderr
         volumes[name] = own["conservative"]["volume_m3"] or max(row["remove_m3"] for row in own["runs"])
     assert len(table) == 3 * len(own["runs"]) and len(set(volumes.values())) == 2
@@ -109,12 +102,12 @@ def test_files_of_the_user_stay(done, tmp_path, monkeypatch):
     for words, status in (("--road far.geojson", 0), ("--road far.geojson --road near.geojson", 2)):
         folder = tmp_path / str(status)
         shutil.copytree(done[0], folder)
-        assert inside_with_lmp(folder, "site", "mine", *words.split()).returncode == 0
+        assert slope(folder, "site", "mine", *words.split()).returncode == 0
         mine = folder / "mine"
         for path in (mine / "roads" / "mine" / "axis.gpkg", mine / "roads" / "far" / "notes.txt", mine / "roads.csv"):
             path.parent.mkdir(exist_ok=True)
             path.write_text("of the user\n")
-        made = inside_with_lmp(folder, "study", "mine", "--levels", "1")
+        made = slope(folder, "study", "mine", "--levels", "1")
         assert made.returncode == status and ("roads.csv: must not exist" in made.stderr) is bool(status)
         for path in (mine / "roads" / "mine" / "axis.gpkg", mine / "roads" / "far" / "notes.txt", mine / "roads.csv"):
             assert path.read_text() == "of the user\n"
@@ -140,7 +133,7 @@ def test_the_worst_stands_for_the_site(done):
         assert one.text.partition(" m3")[0] in page and one.text in said
     assert f"report.html is of the worst, {first.road}" in said
     assert said.count("conservative volume to remove") == 1       # of the worst alone
-    again = inside_with_lmp(folder, "report", f"mine/roads/{others[0].road}", "--no-film")
+    again = slope(folder, "report", f"mine/roads/{others[0].road}", "--no-film")
     assert again.returncode == 0, again.stderr
 
 
@@ -150,21 +143,21 @@ def test_a_study_of_other_roads_is_no_answer(done, tmp_path):
     shutil.copytree(done[0], folder)
     for words in ("report mine --no-film", "export mine", "export mine --zones 0.9", "report mine/roads/far --no-film",
                   "export mine/roads/far --zones 0.9 -o far"):
-        made = inside_with_lmp(folder, *words.split())
+        made = slope(folder, *words.split())
         assert made.returncode == 0, made.stderr
     assert "10 runs cannot tell" not in made.stdout and " 1 runs cannot tell" not in made.stdout
-    assert inside_with_lmp(folder, "site", "mine", "--road", "far.geojson", "--road", "near.geojson").returncode == 0
+    assert slope(folder, "site", "mine", "--road", "far.geojson", "--road", "near.geojson").returncode == 0
     for words in ("report mine --no-film", "export mine", "export mine --zones 0.9", "report mine/roads/road --no-film",
                   "export mine/roads/road"):
-        made = inside_with_lmp(folder, *words.split())
+        made = slope(folder, *words.split())
         assert made.returncode == 2 and "as it was studied: its study had another choice of roads" in made.stderr
     for words in ("report road --no-film", "export road"):
-        made = inside_with_lmp(folder / "mine" / "roads", *words.split())
+        made = slope(folder / "mine" / "roads", *words.split())
         assert made.returncode == 2 and "must be as it was studied" in made.stderr
-    assert inside_with_lmp(folder, "report", "mine/roads/far", "--no-film").returncode == 0
-    assert inside_with_lmp(folder, "site", "mine", "--road", "far.geojson", "--road", "near.geojson", "--cut-angle",
-                           "45").returncode == 0
-    made = inside_with_lmp(folder, "report", "mine/roads/far", "--no-film")
+    assert slope(folder, "report", "mine/roads/far", "--no-film").returncode == 0
+    assert slope(folder, "site", "mine", "--road", "far.geojson", "--road", "near.geojson", "--cut-angle",
+                 "45").returncode == 0
+    made = slope(folder, "report", "mine/roads/far", "--no-film")
     assert made.returncode == 2 and "its study had another cut_angle of the road" in made.stderr
 
 

@@ -9,7 +9,6 @@ import shlex
 import shutil
 import struct
 import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -77,15 +76,8 @@ def write_wall(path, x=38.0, low=(30, 50)):
     path.write_bytes(b"\0" * 80 + struct.pack("<I", 2) + records)
 
 
-def slope(folder, *words, **environment):
-    """Run tools/slope; gives the finished process."""
-    return subprocess.run([sys.executable, str(TOOLS / "slope"), *map(str, words)], cwd=folder, text=True,
-                          stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, check=False,
-                          env={**os.environ, "LMP": str(Path(LMP).absolute()), **environment}, timeout=1200)
-
-
 def inside(folder, *words):
-    """The same in this process, for what ends before a study."""
+    """Run `slope WORDS` in this process; gives what a finished one has."""
     out, err, back = io.StringIO(), io.StringIO(), os.getcwd()
     os.chdir(folder)
     try:
@@ -96,6 +88,13 @@ def inside(folder, *words):
     finally:
         os.chdir(back)
     return subprocess.CompletedProcess(words, status, out.getvalue(), err.getvalue())
+
+
+def slope(folder, *words):
+    """The same with a LAMMPS program."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("LMP", str(Path(LMP).absolute()))
+        return inside(folder, *words)
 
 
 def work_in(folder, patch):
@@ -114,10 +113,9 @@ def told(gis, monkeypatch, capsys):
     return lambda *words: called(capsys, ["site", *map(str, words)])
 
 
-def make(folder, *words, run=slope, **environment):
+def make(folder, *words, run=slope):
     """A site in folder/mine from the standard files; more words may follow."""
-    return run(folder, "site", "--terrain", "dem.tif", "--release", "release.geojson", *words, "-o", "mine",
-               **environment)
+    return run(folder, "site", "--terrain", "dem.tif", "--release", "release.geojson", *words, "-o", "mine")
 
 
 def make_mine():

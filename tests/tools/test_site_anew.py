@@ -593,7 +593,7 @@ def test_the_report_is_written_though_the_score_fails(gis, monkeypatch):  # noqa
     (gis / "mine" / "score" / "score.yaml").write_text("of other runs\n")
     outline = (gis / "mine" / "observed.csv").read_text()
     (gis / "mine" / "observed.csv").write_text("no outline\n")
-    study = in_process(gis, "study", "mine", "--paper")
+    study = in_process(gis, "study", "mine", "--paper", "--levels", "1")
     assert study.returncode == 2 and study.stderr.splitlines()[-1].startswith("slope study: mine/observed.csv: "), study
     assert not (gis / "mine" / "runs").exists()     # said before anything is run
     (gis / "mine" / "observed.csv").write_text(outline)
@@ -602,6 +602,6 @@ def test_the_report_is_written_though_the_score_fails(gis, monkeypatch):  # noqa
         raise SlopeError("mapped", "must fit")
 
     monkeypatch.setattr(score_run, "make", fails)
-    study = in_process(gis, "study", "mine", "--paper")
+    study = in_process(gis, "study", "mine", "--paper", "--levels", "1")
     assert study.returncode == 2 and study.stderr.splitlines()[-1].startswith("slope study: mapped: "), study
     assert (gis / "mine" / "report.html").exists() and not (gis / "mine" / "score").exists()
