@@ -168,11 +168,11 @@ def seam(tmp_path, d, field_d, fixes=ONE):
     run_deck(DECK.format(fixes=fixes.format(**values), body="both", **values), tmp_path)
     balls = numpy.concatenate([read(tmp_path / "slip.xyz"), read(tmp_path / "field.xyz")])
     surface = RegularGridInterpolator((y[:, 0], x[0]), base(x, y))
-    u, v = numpy.meshgrid(numpy.arange(1, 49, 0.1), numpy.arange(1, 59, 0.1))
+    u, v = numpy.meshgrid(numpy.arange(1, 49, 0.15), numpy.arange(1, 59, 0.15))
     points = numpy.column_stack([u.ravel(), v.ravel(), surface((v, u)).ravel()])
     top = cKDTree(points)
     # places of centres that touch it: along its normal, where nothing else is nearer
-    gy, gx = numpy.gradient(points[:, 2].reshape(u.shape), 0.1)
+    gy, gx = numpy.gradient(points[:, 2].reshape(u.shape), 0.15)
     normal = numpy.column_stack([-gx.ravel(), -gy.ravel(), numpy.ones(gx.size)])
     sunk = points - contact * normal / numpy.linalg.norm(normal, axis=1)[:, None]
     sunk = sunk[top.query(sunk)[0] > 0.98 * contact]
