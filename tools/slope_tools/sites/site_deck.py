@@ -1,4 +1,5 @@
 """The deck of a site: in.site.j2 filled in, plain LAMMPS with every number an index variable."""
+import functools
 import math
 import re
 from pathlib import Path
@@ -58,12 +59,16 @@ def text(choices: OfMass, parts: Parts, numbers: Numbers) -> str:
     return filled(Path(__file__).with_name(TEMPLATE), values(choices, parts, numbers))
 
 
+@functools.lru_cache
+def templates(folder: Path) -> jinja2.Environment:
+    """Those of a folder, which may import those beside this module; each is compiled once."""
+    return jinja2.Environment(loader=jinja2.FileSystemLoader([folder, Path(__file__).parent]), trim_blocks=True,
+                              lstrip_blocks=True, keep_trailing_newline=True, undefined=jinja2.StrictUndefined)
+
+
 def filled(template: Path, parameters: Mapping[str, Any]) -> str:
-    """A deck from a template, which may import those beside this module."""
-    loader = jinja2.FileSystemLoader([template.parent, Path(__file__).parent])
-    environment = jinja2.Environment(loader=loader, trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True,
-                                     undefined=jinja2.StrictUndefined)
-    return aligned(environment.get_template(template.name).render(parameters))
+    """A deck from a template."""
+    return aligned(templates(template.parent).get_template(template.name).render(parameters))
 
 
 def values(choices: OfMass, parts: Parts, numbers: Numbers) -> Dict[str, Any]:
