@@ -229,6 +229,26 @@ def test_out_of_range(depth, slope, words):
     assert all(f"does not cover this {word}" in line for word, line in zip(words, found.outside))
 
 
+def two_bodies(other):
+    """A disc on the western flank of a valley that falls to the south, and a smaller one at another place."""
+    ground = terrain(lambda x, y: 2000 + STEEP * np.abs(x - 1200) + 0.02 * y)
+    first, second = (disc(ground, place, depth) for place, depth in (((400, 600), 20.0), (other, 15.0)))
+    return first, body.of_arrays(ground[0], first.depth + second.depth, "two")
+
+
+@pytest.mark.parametrize("other", [(2000, 600), (700, 200), (1000, 1000)])
+def test_of_several_bodies_the_largest_has_the_path(other):
+    """What lies between two bodies is neither's; both flanks of a valley together are level."""
+    alone, both = two_bodies(other)
+    one, path = (fall_path.trace(mass, 1e5) for mass in (alone, both))
+    assert both.crown == alone.crown
+    assert path.x[0] == pytest.approx(one.x[0]) and path.y[0] == pytest.approx(one.y[0])
+    assert np.abs(path.y[path.x < 1000] - 600).max() < 60
+    assert alone.beside() == []
+    found, = both.beside()
+    assert found.numbers["volume"] == pytest.approx(alone.volume) and found.numbers["all"] > 1.7 * alone.volume
+
+
 def test_a_road(known):
     lane = box(1000, 0, 1020, 1190)
     first = road.at_road(known.path, lane)

@@ -492,6 +492,13 @@ def test_the_picture_has_all_polygons_and_the_bearing_is_the_bodys(slope, monkey
     assert "towards 270 degrees" in out
 
 
+def test_that_one_body_lies_above_another_is_no_fall(body):
+    terrain(lambda x, y: ramp(31)(x, y) + 30.0 * (y > 100))
+    areas((box(40, 20, 70, 80), {"name": "lower"}), (box(90, 120, 160, 180), {"name": "upper"}))
+    _, about = body("t.asc --polygon p.geojson --shape slab --depth 3")
+    assert about["body"]["bearing"] == pytest.approx(270, abs=0.1)
+
+
 def test_a_target_out_of_reach(refused):
     terrain(ramp(30))
     polygon(box(60, 60, 140, 140))

@@ -65,7 +65,7 @@ def run(args: Request) -> None:
             other = roads.read_local(site.folder / site_roads.file_name(name), mass.raster, site.choices.road.asked,
                                      local=True).polygon
             print(outlook.road_text(found.decides, road.at_road(found.decides.path, other), name))
-    for line in (*results.doubts(found), *results.disagreement(mass, found)):
+    for line in (*results.doubts(mass, found), *results.disagreement(mass, found)):
         tell(line)
     print(f"wrote {', '.join(str(args.output / name) for name in results.FILES)}")
 

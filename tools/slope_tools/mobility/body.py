@@ -1,14 +1,19 @@
 """The mass that falls: ground before and depth of the body on the same grid, from a release, a site, or arrays."""
 from pathlib import Path
-from typing import NamedTuple, Tuple
+from typing import List, NamedTuple, Tuple
 
 import numpy as np
+from scipy.ndimage import label
 
 from ..errors import SlopeError
+from ..findings import Finding
 from ..releases import release, release_area
 from ..sites import site_folder
 from ..survey import rasters
 from ..survey.rasters import Raster
+
+
+SIDE = 0.02     # of the volume; bodies that hold less beside the largest are not worth a word
 
 
 class Body(NamedTuple):
@@ -32,22 +37,42 @@ class Body(NamedTuple):
         return self.raster.z - self.depth
 
     @property
+    def main(self) -> np.ndarray:
+        """Depth (m) of the largest part, where several release areas, or a scar in parts, do not touch.
+
+        What lies between two bodies is neither's fall line.
+        """
+        parts, _ = label(self.depth > 0, np.ones((3, 3)))
+        volumes = np.bincount(parts.ravel(), self.depth.ravel())
+        return np.where(parts == volumes.argmax(), self.depth, 0.0)
+
+    def beside(self) -> List[Finding]:
+        """That the fall path is that of one body of several."""
+        main = float(self.main.sum()) * self.cell ** 2
+        return [Finding("several bodies", {"volume": main, "all": self.volume})] * (
+            main < (1 - SIDE) * self.volume)
+
+    @property
     def crown(self) -> Tuple[float, float, float]:
-        """x, y, z (m) of the highest ground in the body."""
-        row, column = np.unravel_index(np.argmax(np.where(self.depth > 0, self.raster.z, -np.inf)), self.depth.shape)
+        """x, y, z (m) of the highest ground in the body, of several in the largest."""
+        row, column = np.unravel_index(np.argmax(np.where(self.main > 0, self.raster.z, -np.inf)), self.depth.shape)
         x, y = self.raster.transform * (column + 0.5, row + 0.5)
         return float(x), float(y), float(self.raster.z[row, column])
 
     def fall_line(self) -> Tuple[np.ndarray, np.ndarray]:
-        """Of the body: its centre of volume (x, y, m), and the unit vector down the plane that fits its ground best."""
-        row, column = np.nonzero(self.depth)
+        """Of the body: its centre of volume (x, y, m), and the unit vector down the plane that fits its ground best.
+
+        Of several bodies those of the largest.
+        """
+        depth = self.main
+        row, column = np.nonzero(depth)
         x, y = self.raster.transform * np.array([column + 0.5, row + 0.5])
-        weight = self.depth[row, column]
+        weight = depth[row, column]
         top, left = row.min(), column.min()
         part = slice(top, row.max() + 1), slice(left, column.max() + 1)
         columns, _ = self.raster.transform * (np.arange(left, column.max() + 1) + 0.5, 0.0)
         _, rows = self.raster.transform * (0.0, np.arange(top, row.max() + 1) + 0.5)
-        downhill, slope = release_area.fall(columns, rows, self.raster.z[part], self.depth[part] > 0)
+        downhill, slope = release_area.fall(columns, rows, self.raster.z[part], depth[part] > 0)
         if slope < release_area.FLAT:
             raise SlopeError(self.where, f"the ground of the body must fall by at least {release_area.FLAT:g} degree, "
                              "for a fall path", f"{slope:.3g}, flat")

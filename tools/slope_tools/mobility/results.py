@@ -17,7 +17,7 @@ from ..survey.geopackage import Layer
 from . import body, lucas
 from .body import Body
 from .exceedance import WORDS, Mobility
-from .fall_path import TERRAIN
+from .fall_path import LINE, TERRAIN
 from .known import Choice, Found, choice, of_body
 from .landslides import NOT_OF_ROADS
 from .road import AtRoad
@@ -81,7 +81,7 @@ def of_site(folder: Path) -> Tuple[List[str], List[Finding]]:
         found = of_body(mass, choice(choices.known.set, (), choices.known.confined))
     except SlopeError:
         return [], []
-    return [second_opinion(mass, found)], disagreement(mass, found)
+    return [second_opinion(mass, found)], [*mass.beside(), *disagreement(mass, found)]
 
 
 def ends(length: Optional[float], toe: float = -1.0) -> str:
@@ -102,10 +102,11 @@ def disagreement(mass: Body, found: Found) -> List[Finding]:
         "farther": "the events" if known.near > lucas.beyond(said.far) else "that law's masses"})]
 
 
-def doubts(found: Found) -> List[Finding]:
-    """What must be said: out of range, or a path that ends too early."""
+def doubts(mass: Body, found: Found) -> List[Finding]:
+    """What must be said: several bodies, out of range, or a path that ends too early."""
     counts = found.decides
-    several = [Finding("outside of set", {"text": text}) for text in (found.by_set.outside if found.by_set else [])]
+    several = [*mass.beside()] if counts.path.end != LINE else []
+    several += [Finding("outside of set", {"text": text}) for text in (found.by_set.outside if found.by_set else [])]
     if counts.length_at(0.5) is None and counts.path.end == TERRAIN:
         several.append(Finding("path ends", {"length": metres(counts.path.length[-1]),
                                              "share": percent(counts.beyond_path())}))
@@ -147,7 +148,7 @@ def about(found: Found, source: Source, road: Optional[AtRoad]) -> Dict[str, Any
     whole: Dict[str, Any] = {
         "slope_version": version(), "terrain": source.terrain, "volume_m3": source.body.volume,
         "crown": dict(zip("xyz", path.crown)), "in_range": bool(by_set and by_set.in_range),
-        "warnings": entries(doubts(found)),
+        "warnings": entries(doubts(source.body, found)),
         "path": {"length_m": path.length[-1], "height_m": path.fall[-1], "ends": path.end},
         "exceedance_is": counts.chosen, "confined_path": source.asked.confined}
     for one in found.each:

@@ -125,10 +125,18 @@ def fill_remedy(z: np.ndarray, row: int, column: int) -> str:
 
 
 def fall(x: np.ndarray, y: np.ndarray, z: np.ndarray, mask: np.ndarray) -> Tuple[np.ndarray, float]:
-    """Unit vector downhill, and slope in degrees, of the plane that fits the ground in a mask best."""
+    """Unit vector downhill, and slope in degrees, of the plane that fits the ground in a mask best.
+
+    Parts that do not touch have planes of one slope, each at its own height: that one lies above the other is no fall.
+    """
     row, column = np.nonzero(mask)
-    points = np.column_stack([x[column] - x[column].mean(), y[row] - y[row].mean(), np.ones(len(row))])
-    gradient = np.linalg.lstsq(points, z[mask] - z[mask].mean(), rcond=None)[0][:2]
+    part = label(mask, np.ones((3, 3)))[0][mask]
+
+    def within(values: np.ndarray) -> np.ndarray:
+        return values - (np.bincount(part, values) / np.maximum(np.bincount(part), 1))[part]
+
+    points = np.column_stack([within(x[column]), within(y[row])])
+    gradient = np.linalg.lstsq(points, within(z[mask]), rcond=None)[0]
     size = float(np.hypot(*gradient))
     downhill = -gradient / size if size > 1e-12 else np.array([1.0, 0.0])
     return downhill, math.degrees(math.atan(size))

@@ -136,7 +136,7 @@ def warnings(made: List[Made], shape: str, where: str) -> List[Finding]:
         if not one.taken:
             doubts.append(Finding("no body", {"polygon": f"{where}: {one.name}", "why": (
                 "no slip surface of this curvature lies below its ground" if one.cells else
-                "it holds no centre of a cell of the terrain")}))
+                "no centre of a cell of the terrain is its own: it is small, beside the terrain or in a deeper one")}))
         elif shape == "slbl" and (curvature < 0 or one.share < LITTLE):
             doubts.append(Finding("little", {"form": f"bulges (curvature {curvature:.3g} /m) and " * (curvature < 0),
                                              "percent": 100 * one.share, "depth": one.mean, "name": one.name},

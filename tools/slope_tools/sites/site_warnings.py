@@ -29,7 +29,7 @@ HEAVIEST = ("in feet", "no ground's slope", "cliff", "picture", "pits", "no such
             "no way out", "hollow", "above ground", "no body", "little", "road on body", "under road", "beyond toe",
             "bulges", "rim", "parts", "own depth",
             "small angle", "large rolling", "narrow road", "low wall", "left terrain", "outside", "not at rest",
-            "zone covered", "zones overlap", "second opinion",
+            "zone covered", "zones overlap", "several bodies", "second opinion",
             "blocks on level ground", "thin", "few across", "few cells")
 NAMES = "{file}:", "{name}:"        # with which the words of a kind begin that is of one object
 LARGE = 1e6             # m3: larger masses run farther than laboratory friction suggests
