@@ -15,6 +15,7 @@ from affine import Affine
 from rasterio.crs import CRS
 from shapely.affinity import translate
 from shapely.geometry import MultiLineString, MultiPolygon, Point, Polygon, box, mapping
+from shapely.ops import unary_union
 
 from messages import is_one
 from run_helpers import called, examples
@@ -509,6 +510,19 @@ def test_a_text_of_two_lines_is_two():
     for text in ("1,10,20\n2,20,30\n", "1_0,2\n3,4\n", "1,2\n", "1;2\n3;4\n"):
         with pytest.raises(polygons.SlopeError, match="must be a line"):
             lines.text_geometry("a.csv", text)
+
+
+@pytest.mark.parametrize("between", ["\n", " ", ";\n", "\r\n# the next one\r\n", "\n\nLINESTRING EMPTY\n"])
+def test_all_of_several_well_known_texts_are_read(written, between):
+    """Not only the first one, which is all that GEOS reads."""
+    several = ["LINESTRING (0 0, 9 0)", "LINESTRING\n(9 0,\n9 5)", "MULTILINESTRING ((1 1, 2 2), (3 3, 4 4))"]
+    found, _ = lines.text_geometry("a.wkt", between.join(several))
+    assert [line.coords[0] for line in lines.parts_of(found)] == [(0, 0), (9, 0), (1, 1), (3, 3)]
+    squares = [box(10, 10, 20, 20), box(30, 10, 40, 20)]
+    Path("a.wkt").write_text(between.replace("LINESTRING", "POLYGON").join(one.wkt for one in squares))
+    assert_is(written("a.wkt --local")[0], unary_union(squares))
+    with pytest.raises(polygons.SlopeError, match="must be a line"):
+        lines.text_geometry("a.wkt", several[0] + " and more")
 
 
 # --- bad input: what test_wrong_inputs.py does not have ---

@@ -281,11 +281,11 @@ def test_carriageways_have_a_number_together(tmp_path, gis):  # noqa: F811
         each = roads.read_each(tmp_path / "m.geojson", raster, roads.Asked(width=6.0))
         assert len(each) == number
     write_lines(tmp_path / "m.geojson", ("M1", north), ("M1", south), (None, lane), (None, [(18, 40), (38, 40)]))
-    said = []
-    each = roads.read_each(tmp_path / "m.geojson", raster, roads.Asked(width=6.0), warn=said.append)
+    each = roads.read_each(tmp_path / "m.geojson", raster, roads.Asked(width=6.0))
     assert list(each) == ["M1", "M1_2", "m_3", "m_4", "M1 both carriageways"]
-    assert [one.kind for one in said] == ["roads meet"] and said[0].numbers["places"] == (
-        f"M1_2 and m_4 at east {EAST + 18:.1f} north {NORTH + 40:.1f}")
+    said, = roads.meetings({name: ("m.geojson", one) for name, one in each.items()}, raster)
+    assert said.kind == "roads meet" and said.numbers["places"].startswith(
+        f"M1_2 and m_4 at east {EAST + 18:.1f} north {NORTH + 40:.1f}") and "M1 and M1_2" not in said.numbers["places"]
     both = each["M1 both carriageways"]
     assert both.polygon.equals(each["M1"].polygon.union(each["M1_2"].polygon)) and len(both.lines) == 2
     roads.write(tmp_path / "both.csv", both, raster)
@@ -293,6 +293,29 @@ def test_carriageways_have_a_number_together(tmp_path, gis):  # noqa: F811
     assert again.polygon.symmetric_difference(both.polygon).area < 1e-6 and len(again.lines) == 2
     with pytest.raises(SlopeError, match=f"got 4 that meet at east {EAST + 18:.1f} north {NORTH + 40:.1f}"):
         roads.read_local(tmp_path / "m.geojson", raster, roads.Asked(width=6.0))
+
+
+def test_roads_that_nearly_meet_are_told(tmp_path, gis):  # noqa: F811
+    """Ends drawn by eye, pieces of one road in files of their own, and polygons."""
+    raster = rasters.read(gis / "dem.tif")
+    raster = raster._replace(transform=type(raster.transform).translation(-EAST, -NORTH) * raster.transform,
+                             offset=(EAST, NORTH))
+    asked = roads.Asked(width=6.0)
+    for gap in (0.0, 0.5, 1.9, 2.5, 6.0):
+        halves = [(10, 5), (10, 40)], [(10, 40 + gap), (10, 70)]
+        write_lines(tmp_path / "one.geojson", *((None, half) for half in halves))
+        each = roads.read_each(tmp_path / "one.geojson", raster, asked)
+        assert len(each) == 1 + (gap > network.GAP)
+        assert sum(one.line.length for one in each.values()) == pytest.approx(65 - gap * (len(each) - 1))
+        assert len(roads.meetings({name: ("one", one) for name, one in each.items()}, raster)) == (gap == 2.5)
+        apart, shapes = {}, {}
+        for name, half in zip("ab", halves):
+            write_lines(tmp_path / f"{name}.geojson", (None, half))
+            apart[name] = name, *roads.read_each(tmp_path / f"{name}.geojson", raster, asked).values()
+            shapes[name] = name, roads.Road(apart[name][1].polygon)
+        for several in (apart, shapes):
+            found = roads.meetings(several, raster)
+            assert len(found) == (gap < 5) and all(one.numbers["file"] == "a, b" for one in found)
 
 
 def test_roads_of_one_name_and_of_a_layer(told, gis):  # noqa: F811

@@ -101,8 +101,8 @@ WORDS: Dict[str, Union[str, Words]] = {
     "zone covered": "{file}: zone {zone} lies below later features and counts nowhere",
     "no geometry": "{feature} has no geometry ({without} of {features} have none): left out",
     "no line": "{file}: {kinds} in it, where a line is asked for: left out",
-    "roads meet": "{file}: roads that meet are studied each by itself, a cut through both takes more than the larger "
-                  "number: {places}",
+    "roads meet": "{file}: roads that meet, or nearly do, are studied each by itself, and a cut through both takes more "
+                  "than the larger number: {places}; is it one road? Then join its lines",
     "drawn twice": "{file}: {percent:.3g} % of the length of its lines is drawn more than once, or there and back: "
                    "taken once",
     "file name": "{file}: LAMMPS cannot read {characters} in the name of a file: rename it before it goes into a deck",

@@ -82,4 +82,6 @@ def read(choices: Choices, raster: Raster, crs, advice, warn) -> Dict[str, Tuple
             found[named(name, taken)] = path, road
     if len(found) > 1 and choices.KIND:
         raise SlopeError("--road", ONE, ", ".join(found))
+    for said in roads.meetings(found, raster):
+        warn(said)
     return found

@@ -153,7 +153,8 @@ def text_geometry(path, text):
                          f"{rule})", got)
     try:
         if polygons.WKT.match(re.sub("#.*", "", text).lstrip()):
-            return wkt.loads(re.sub("#.*", "", text).strip()), None
+            each = [wkt.loads(one) for _, one in vectors.statements(text)]
+            return each[0] if len(each) == 1 else GeometryCollection(each), None
         found = text_points.read(text, fail)
         return MultiLineString([[point for _, point in block] for block in found.blocks]), found.head.unit
     except (ShapelyError, ValueError, TypeError, AttributeError) as error:

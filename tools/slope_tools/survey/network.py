@@ -18,6 +18,7 @@ from shapely.ops import polygonize, substring
 from .features import attribute
 
 SAME = 0.01         # m; ends that are closer to each other, or to a line, meet
+GAP = 2.0           # m; free ends that are no farther from each other are one, where they go on in each other
 LOOK = 10.0         # m of a way, in which it leaves a junction
 STRAIGHT = 61.0     # degrees; ways that turn more do not go on in each other, unless nothing else is there
 TURN = 135.0        # the same of ways of one name
@@ -88,7 +89,7 @@ def roads_of(drawn: Sequence[Drawn]) -> List[One]:
 def split(drawn: Sequence[Drawn]) -> List[Way]:
     """The lines cut where ends of others, or of themselves, lie on them; ends that meet are one node."""
     points = np.array([one.line.coords[k][:2] for one in drawn for k in (0, -1)])
-    near = cKDTree(points).query_pairs(SAME, output_type="ndarray")
+    near = np.concatenate([cKDTree(points).query_pairs(SAME, output_type="ndarray"), gaps(drawn, points)])
     _, label = connected_components(coo_matrix((np.ones(len(near)), near.T), (len(points),) * 2), directed=False)
     first = np.unique(label, return_index=True)[1]      # of the points of each node
     ways = []
@@ -106,6 +107,18 @@ def split(drawn: Sequence[Drawn]) -> List[Way]:
             line[[0, -1]] = points[[first[places[low]], first[places[high]]]]
             ways.append(Way(LineString(line), (places[low], places[high]), number))
     return ways
+
+
+def gaps(drawn: Sequence[Drawn], points: np.ndarray) -> np.ndarray:
+    """Pairs of ends, drawn by eye, that go on in each other but for a gap; points: both ends of each line."""
+    tree, found = cKDTree(points), []
+    for k, j in sorted(tree.query_pairs(GAP)):
+        one, other = (Way(drawn[end // 2].line, (0, 0), 0).leaves(end % 2) for end in (k, j))
+        if k // 2 != j // 2 and turn(one, other) <= STRAIGHT and all(
+                line.line.distance(Point(points[end])) > SAME for end in (k, j) for number, line in enumerate(drawn)
+                if number != end // 2):
+            found.append((k, j))
+    return np.reshape(np.array(found, int), (-1, 2))
 
 
 def at_nodes(ways: Sequence[Way]) -> Dict[int, List[End]]:
@@ -333,9 +346,9 @@ def beside(one: LineString, other: LineString, apart: float) -> bool:
     step, near, angles = short.length / STATIONS, 0, []
     for s in (np.arange(STATIONS) + 0.5) * step:
         here = short.interpolate(s)
-        if long.distance(here) > apart:
-            continue
         at = long.project(here)
+        if long.distance(here) > apart or not 0 < at < long.length:
+            continue        # beyond its end is not beside it
         near += 1
         mine, its = (np.subtract(line.interpolate(place + step / 2).coords[0][:2],
                                  line.interpolate(max(0.0, place - step / 2)).coords[0][:2])

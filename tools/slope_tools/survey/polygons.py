@@ -158,23 +158,14 @@ def _read_layer(path, warn, advice):
 
 def _read_wkt(path, text):
     """Polygons of a text with one or several WKT, each of which may go over several lines."""
-    polygons, statement, first = [], "", 1
-    lines = text.splitlines()
-    for number, line in enumerate(lines, 1):
-        if not statement.strip():
-            first = number
-        statement += line.split("#")[0] + "\n"
-        if statement.count("(") > statement.count(")") and number < len(lines):
-            continue
-        if statement.strip():
-            where = f"{path}: line {first}"
-            try:
-                geometry = wkt.loads(statement.strip())
-            except (ShapelyError, ValueError, TypeError) as error:
-                raise SlopeError(where, "must be WKT such as POLYGON ((x y, x y, x y, x y))",
-                                 statement.strip()[:40]) from error
-            polygons += _parts(where, geometry)
-        statement = ""
+    polygons = []
+    for first, statement in vectors.statements(text):
+        where = f"{path}: line {first}"
+        try:
+            geometry = wkt.loads(statement)
+        except (ShapelyError, ValueError, TypeError) as error:
+            raise SlopeError(where, "must be WKT such as POLYGON ((x y, x y, x y, x y))", statement[:40]) from error
+        polygons += _parts(where, geometry)
     if not polygons:
         raise SlopeError(path, "must hold a polygon, it is empty")
     return polygons

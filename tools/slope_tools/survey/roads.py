@@ -4,14 +4,15 @@ A file of a line keeps its direction: chainage runs along it. A CSV is rings wit
 points of a line.
 """
 import re
+from itertools import combinations
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 from shapely.errors import ShapelyError
 from shapely.geometry import LineString, Point, box
 from shapely.geometry.base import BaseGeometry
-from shapely.ops import unary_union
+from shapely.ops import nearest_points, unary_union
 
 from .. import disk
 from ..errors import SlopeError
@@ -20,6 +21,7 @@ from ..geometry import extent, numbers
 from . import features, lines, network, polygons, vectors
 
 ARCS = 45       # pieces of a quarter of a circle, outside of bends
+GAP = 5.0       # m between two roads that nearly meet
 SHOWN = 3       # places where roads meet, that are printed
 SLACK = 1e-5    # m, beyond the terrain; written coordinates are rounded
 
@@ -141,11 +143,30 @@ def read_each(path, raster, asked: Asked = NOTHING, crs=None, advice=None, warn=
         name = ", ".join(dict.fromkeys(name for k in group for name in found[k].names[:1])) or own
         made[free(f"{name} {'both' if len(group) == 2 else 'all'} carriageways", made)] = together(
             path, [found[k].line for k in group], raster, asked)
-    if met := network.meetings(found):
-        shown = "; ".join(f"{names[k]} and {names[j]} {features.place(at, raster)}" for k, j, at in met[:SHOWN])
-        warn(Finding("roads meet", {"file": str(path), "places": shown + f"; and {len(met) - SHOWN} more" * (
-            len(met) > SHOWN)}))
     return made
+
+
+def meetings(several: Mapping[str, Tuple[str, Road]], raster) -> List[Finding]:
+    """The roads of {name: (file, road)} that meet, or nearly do, and have no number together; the closest first.
+
+    Ends that were drawn by eye, and pieces in files of their own, leave gaps.
+    """
+    pairs = [one.polygon.buffer(SLACK) for _, one in several.values() if len(one.lines) > 1]
+    found = []
+    for (name, (file, one)), (beside, (other_file, other)) in combinations(several.items(), 2):
+        if max(len(one.lines), len(other.lines)) > 1 or one.polygon.distance(other.polygon) > GAP or any(
+                both.contains(one.polygon) and both.contains(other.polygon) for both in pairs):
+            continue
+        ways = [road.line or road.polygon for road in (one, other)]
+        found.append((round(ways[0].distance(ways[1]), 3),
+                      f"{name} and {beside} {features.place(nearest_points(*ways)[0], raster)}", file, other_file))
+    if not found:
+        return []
+    found.sort(key=lambda one: one[0])
+    return [Finding("roads meet", {
+        "file": ", ".join(dict.fromkeys(file for one in found for file in one[2:])),
+        "places": "; ".join(one[1] for one in found[:SHOWN]) + f"; and {len(found) - SHOWN} more" * (
+            len(found) > SHOWN)})]
 
 
 def free(name: str, taken: Mapping[str, Any]) -> str:

@@ -27,6 +27,7 @@ KINDS = (r"(?:(?:MULTI|COMPOUND)?(?:POLYGON|LINESTRING|POINT|CURVE|SURFACE)|GEOM
 SRID = re.compile(rf"SRID\s*=\s*(\d+)\s*;\s*(?={KINDS})", re.IGNORECASE)
 CELL = re.compile(rf"(?:{SRID.pattern})?{KINDS}[^\";\t\n]*", re.IGNORECASE)
 COLUMNS = {"wkt", "wkt_geom", "geom", "geometry", "the_geom"}
+BETWEEN = " \t\r\n;,"      # stands between well-known texts
 MARK = "layername="         # QGIS: FILE|layername=NAME|geometrytype=...
 MAGIC = bytes([0, 0, 0x27, 0x0a])       # begins a shapefile
 ANY = "any"                 # type of the geometries of a layer that may have several
@@ -225,6 +226,27 @@ def check_shapefile(path: Path) -> None:
     for one in (path, *beside):
         with open(one, "rb") as file:
             zips.check_length(str(one), one.stat().st_size, file.read(32))
+
+
+def statements(text: str) -> List[Tuple[int, str]]:
+    """The well-known texts in a text, one after the other, each with the number of the line in which it begins.
+
+    What is none, between or after them, is one as well. GEOS reads the first of several and says nothing.
+    """
+    text = re.sub("#.*", "", text)
+    ends, depth = [], 0
+    for mark in re.finditer(r"[()]|\bEMPTY\b", text, re.IGNORECASE):
+        depth += {"(": 1, ")": -1}.get(mark.group(), 0)
+        if depth == 0:
+            ends.append(mark.end())
+    found, line, low = [], 1, 0
+    for high in (*ends, len(text)):
+        part = text[low:high]
+        begins = part.lstrip(BETWEEN)
+        if begins:
+            found.append((line + part[:len(part) - len(begins)].count("\n"), begins.rstrip(BETWEEN)))
+        line, low = line + part.count("\n"), high
+    return found
 
 
 def plain_text(path: object, text: str) -> Tuple[str, Optional[CRS]]:
