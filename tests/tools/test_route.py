@@ -33,7 +33,7 @@ from slope_tools.route.yearly import Yearly
 from slope_tools.seismic import chain, fragility
 from slope_tools.seismic.fragility_files import Fragility
 from slope_tools.statistics import hazard
-from slope_tools.survey import geopackage
+from slope_tools.survey import geopackage, rasters
 from slope_tools.tables import road_runs
 
 LMP = os.environ.get("LMP")
@@ -598,8 +598,9 @@ def given_bodies(**more):
     ({"depth": -3.0}, "got -3"),
     ({"depth": 0}, "got 0"), ({"depth": "inf"}, "got inf"), ({"depth": True}, "got True"), ({"depth": [5]}, "depth"),
     ({"volume": "1.200,5"}, "volume must be a number of m3 > 0"), ({"depth": "2026-11-27"}, "got 2026-11-27"),
-    ({"depth": 3.0, "volume": 900.0}, "must have one attribute, depth (m) or volume (m3)"),
-    ({"depth": None}, "must have one attribute, depth (m) or volume (m3)"), ({"Depth": "six"}, "got six"),
+    ({"depth": 3.0, "volume": 900.0}, "must have one attribute, depth or thickness (m), or volume (m3)"),
+    ({"depth": None}, "must have one attribute, depth or thickness (m), or volume (m3)"),
+    ({"Depth": "six"}, "got six"), ({"thickness": "1.5 m"}, "thickness must be a number of m > 0"),
     ({"depth": ""}, "must have one attribute"),
     ({"depth": 1e6}, "depth: must be at most"), ({"volume": 1e9}, "volume: must be at most"),
     ({"volume": 0.1}, "must hold a body"), ({"volume": 4.0}, "below the ground somewhere")])
@@ -609,7 +610,6 @@ def test_an_attribute_that_is_no_size(slope, about, got):
         given_bodies()
     line = str(error.value)
     assert line.startswith("slides.geojson: feature 1: ") and got in line, line
-    assert "--" not in line and "shape" not in line
 
 
 def test_a_size_may_be_text(slope):
@@ -639,13 +639,13 @@ def test_a_feature_without_a_geometry_is_left_out(slope):
     (LineString([(150, 45), (170, 60)]), "must be a polygon"), (Point(150, 45), "must be a polygon"),
     (Polygon([(150, 45), (174, 69), (174, 45), (150, 69)]), "must be polygons that do not cross or touch themselves")])
 def test_a_geometry_that_is_no_body(slope, geometry, said):
-    """The line names the file and the feature, no file of ours, and no option that the command has not."""
+    """The line names the file and the feature, and no file of ours."""
     bodies_file({"depth": 4.0}, {"depth": 3.0}, geometries={1: geometry})
     with pytest.raises(SlopeError) as error:
         given_bodies()
     line = str(error.value)
     assert line.startswith("slides.geojson: feature 2: ") and said in line, line
-    assert not any(word in line for word in ("/tmp", "polygon.geojson", "--shape", "slbl", "--assign-crs EPSG:n;"))
+    assert not any(word in line for word in ("/tmp", "polygon.geojson", "--assign-crs EPSG:n;"))
 
 
 def test_a_ground_that_bulges(slope):
@@ -657,7 +657,21 @@ def test_a_ground_that_bulges(slope):
     with pytest.raises(SlopeError) as error:
         given_bodies()
     line = str(error.value)
-    assert line.startswith("slides.geojson: feature") and ": depth: must be at least" in line and "--" not in line, line
+    assert line.startswith("slides.geojson: feature") and ": depth: must be at least" in line, line
+    assert "--shape slab" in line
+
+
+def test_bodies_of_a_thickness(slope):
+    """As release features of AvaFrame and RAMMS: a slab of it, in all parts of a feature."""
+    parts = MultiPolygon([box(120, 45, 132, 69), box(138, 45, 150, 69)])
+    bodies_file({"depth": 4.0}, {"Thickness": 1.5}, geometries={1: parts})
+    found, _ = given_bodies(shape="slab", cohesion=None, friction=None)
+    assert found[1].mask.sum() * 9 == pytest.approx(parts.area)
+    for one, depth in zip(found, (4.0, 1.5)):
+        z = rasters.read_asc_local("R/terrain.asc").z[one.window.part]
+        assert (z - one.base)[one.mask] == pytest.approx(depth, abs=1e-3)
+    bodies_file({"depth": 4.0}, {"thickness": 1.5})
+    assert len(given_bodies(shape="slbl")[0]) == 2
 
 
 def test_given_bodies_need_no_strength(slope):
@@ -832,6 +846,35 @@ def test_wrong_routes(slope, capsys, change, said):
 def test_another_choice_is_refused(two, capsys):
     status, _, err = called(capsys, ["route", str(two[0]), "--cohesion", "8e3"])
     assert status == 2 and err.count("\n") == 1 and "--cohesion" in err and "8000" in err and "another folder" in err
+
+
+@pytest.mark.parametrize("name", ["terrain", "road", "bodies", "ground", "ground_table"])
+def test_an_edit_of_what_a_route_has_read_is_seen(tmp_path, name):
+    """Not an old number beside a new map: before there are bodies all is begun anew, then it is refused."""
+    first = {"terrain": ["dem.vrt"], "road": "axis.csv", "bodies": "slides.csv", "ground": "zones.tif",
+             "ground_table": "zones.csv", "road_width": 8.0, "corridor": 60.0, "density": 1900.0}
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(tmp_path)
+        for file in ("tile.tif", "axis.csv", "slides.csv", "zones.tif", "zones.csv"):
+            Path(file).write_text("as it was")
+        Path("dem.vrt").write_text(
+            "<VRTDataset><SourceFilename relativeToVRT='1'>tile.tif</SourceFilename></VRTDataset>")
+        choices.settle(Path("R"), first)
+        Path("R/terrain.asc").write_text("")
+        choices.settle(Path("R"), {})
+        assert Path("R/terrain.asc").is_file()
+        edited = Path({"terrain": "tile.tif"}.get(name, np.ravel(first[name])[0]))
+        edited.write_text("edited")
+        choices.settle(Path("R"), {})
+        assert Path("R/terrain.asc").is_file() == (name in ("bodies", "ground", "ground_table"))
+        Path("R", choices.TABLE).write_text("")
+        choices.settle(Path("R"), {"sample": 8})
+        edited.write_text("edited again")
+        with pytest.raises(SlopeError) as error:
+            choices.settle(Path("R"), {})
+        assert str(error.value).startswith(f"--{name.replace('_', '-')}: must not have changed")
+        Path(np.ravel(first[name])[0]).unlink()         # the folder may have gone without what it was made of
+        assert choices.settle(Path("R"), {}).sample == 8
 
 
 def test_before_there_are_bodies_choices_may_change(tmp_path):

@@ -9,7 +9,9 @@ from ..errors import SlopeError
 from ..findings import printer
 from ..options import count, number, option, positional, whole
 from ..programs import find_lmp
+from ..releases.release import SHAPES
 from ..runs import jobs
+from ..survey.rasters import UNITS
 from . import road_arguments
 from .run_arguments import Engine, engine_of
 
@@ -45,6 +47,13 @@ class Request(road_arguments.Clearing, Engine):
     terrain: Optional[List[str]] = option("elevation model, as slope terrain takes it", metavar="DEM", nargs="+")
     crs: Optional[str] = option("wanted CRS of the terrain", metavar="EPSG:n")
     assign_crs: Optional[str] = option("the elevation model is in this CRS, whatever it says", metavar="EPSG:n")
+    z_unit: Optional[str] = option("of the heights of the elevation model, whatever it says", choices=UNITS)
+    nodata: Optional[List[float]] = option(
+        "a value of the elevation model, in its own unit, that stands for no height, beside the one that it declares; "
+        "may be given several times", metavar="V", action="append")
+    differ: Optional[float] = option(
+        "accept a median difference of two elevation models of up to M m where both have heights (default 5)",
+        metavar="M")
     cell: Optional[float] = option("wanted cell size, m", metavar="S")
     fill: Optional[int] = option("fill NODATA holes of at most N cells", metavar="N")
     road: Optional[str] = option("the road's axis, a line: GeoJSON, shapefile, CSV or WKT", metavar="LINE")
@@ -59,7 +68,10 @@ class Request(road_arguments.Clearing, Engine):
         "limits of its greatest depth, m", metavar=("LO", "HI"), nargs=2, type=number)
     keep: Optional[int] = option("bodies of a window of the search (default 3)", metavar="N", type=count)
     below: Optional[float] = option("bodies with a factor of safety below F may fail (default 1.5)", metavar="F")
-    bodies: Optional[str] = option("no search: polygons with an attribute depth (m) or volume (m3)", metavar="POLYGONS")
+    bodies: Optional[str] = option("no search: polygons with an attribute depth or thickness (m), or volume (m3)",
+                                   metavar="POLYGONS")
+    shape: Optional[str] = option("of the slip surfaces of --bodies, as of slope release (default sphere)",
+                                  choices=[one for one in SHAPES if one != "plane"])
     ground: Optional[str] = option("zones of the ground, as slope site takes them", metavar="P|RASTER")
     ground_table: Optional[str] = option("of the classes of such a raster", metavar="CSV")
     reach: Optional[float] = option(

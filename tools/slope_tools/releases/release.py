@@ -116,7 +116,7 @@ def body_of(wanted: Wanted) -> Body:
 def polygons_in(wanted: Wanted, raster, geometry) -> List[features.Polygon]:
     """The polygons of a body, with what their features say."""
     if wanted.read:
-        return [features.Polygon("", one) for one in polygons.polygons_of(geometry)]
+        return features.distinct([features.Polygon("", one) for one in polygons.polygons_of(geometry)], raster)
     assert wanted.polygon
     sized = wanted.shape in OF_EACH and wanted.volume is None and wanted.curvature is None
     return features.read(wanted.polygon, geometry, raster, wanted.local,
@@ -216,7 +216,7 @@ def check_pits(raster, geometry, wanted: Wanted) -> None:
     x, y = raster.transform * (column + 0.5, row + 0.5)
     raise SlopeError(wanted.polygon, f"the ground in it must have no pits: {int(found.cells.sum())} cells of "
                      f"{found.shown} lie {found.least:.4g} m or more {found.side} all cells beside them; "
-                     f"{plausible.remedy(found, ground)} (slope terrain, slope site)",
+                     f"{plausible.remedy(found, ground)} (slope terrain, site, route)",
                      f"the first at east {x + raster.offset[0]:.1f} north {y + raster.offset[1]:.1f}")
 
 
@@ -249,8 +249,8 @@ def from_shape(wanted: Wanted, raster, geometry):
     release_area.require_slope(area, wanted.where)
     parts = len(polygons.polygons_of(geometry))
     if parts > 1:
-        raise SlopeError(wanted.polygon, "must be one polygon: make a feature of each part" if wanted.read else
-                         f"must be one polygon for --shape {wanted.shape}; {' and '.join(OF_EACH)} take several", parts)
+        raise SlopeError(wanted.polygon, f"must be one polygon for --shape {wanted.shape}; {' and '.join(OF_EACH)} "
+                         "take several", parts)
     below = None
     if wanted.shape == "sphere":
         shape = release_bodies.sphere_shape(area, geometry, wanted.where)
@@ -267,9 +267,9 @@ def from_shape(wanted: Wanted, raster, geometry):
         free = release_dip.least(area, line, below)
         depth = release_solve.depths(area, shape.surface(free))
     elif wanted.depth is not None:
-        free, depth = release_solve.to_depth(area, shape, wanted.depth, wanted.called("depth"), not wanted.read)
+        free, depth = release_solve.to_depth(area, shape, wanted.depth, wanted.called("depth"))
     elif wanted.volume is not None:
-        free, depth = release_solve.to_volume(area, shape, wanted.volume, wanted.called("volume"), not wanted.read)
+        free, depth = release_solve.to_volume(area, shape, wanted.volume, wanted.called("volume"))
     else:
         free = shape.most
         depth = release_solve.depths(area, shape.surface(free))
@@ -290,7 +290,7 @@ def from_each(wanted: Wanted, raster, several: List[features.Polygon], numbers: 
     """The same of bodies in several polygons, and what became of each."""
     assert wanted.shape
     area = release_area.area_of(raster, numbers > 0, wanted.where, wanted.terrain)
-    size = release_parts.Size(wanted.depth, wanted.volume, wanted.curvature, wanted.called, not wanted.read)
+    size = release_parts.Size(wanted.depth, wanted.volume, wanted.curvature, wanted.called)
     depth, made = release_parts.depths(area, release_parts.within(numbers, area), several, wanted.shape, size,
                                        wanted.where)
     choices: Dict[str, Any] = {"shape": wanted.shape, "given": given(wanted)}

@@ -23,7 +23,6 @@ class Size(NamedTuple):
     volume: Optional[float]         # m3, of all together
     curvature: Optional[float]      # 1/m
     called: Any
-    another: bool                   # whether the user can choose another shape
 
 
 class Made(NamedTuple):
@@ -86,7 +85,7 @@ def depths(area: Area, numbers: np.ndarray, several: List[Polygon], shape: str, 
                 "" if alone else f" in {one.name}")
         curvature = None
         if shape == "slbl":
-            curvature, depth = base_level(part, asked, volume, size.curvature, called, size.another)
+            curvature, depth = base_level(part, asked, volume, size.curvature, called)
         else:
             even = asked if asked is not None else (volume or 0.0) / (cells * area.cell ** 2)
             depth = np.where(part.inside, even, 0.0)
@@ -97,14 +96,14 @@ def depths(area: Area, numbers: np.ndarray, several: List[Polygon], shape: str, 
     return found, made
 
 
-def base_level(part: Area, depth: Optional[float], volume: Optional[float], curvature: Optional[float], called: str,
-               another: bool) -> Tuple[float, np.ndarray]:
+def base_level(part: Area, depth: Optional[float], volume: Optional[float], curvature: Optional[float],
+               called: str) -> Tuple[float, np.ndarray]:
     """The curvature (1/m) of the base level of a polygon, and its depths, to one of depth, volume or curvature."""
     shape = slbl_shape(part)
     if depth is not None:
-        return release_solve.to_depth(part, shape, depth, called, another)
+        return release_solve.to_depth(part, shape, depth, called)
     if volume is not None:
-        return release_solve.to_volume(part, shape, volume, called, another)
+        return release_solve.to_volume(part, shape, volume, called)
     free = shape.most if curvature is None else curvature
     if not shape.least <= free <= shape.most:
         raise SlopeError(called, f"must be >= {shape.least:.3g} and <= {shape.most:.3g} /m for "

@@ -50,11 +50,10 @@ def volume(depth: np.ndarray, cell: float) -> float:
 
 
 def solved(area: Area, shape: Shape, wanted: float, measure: Callable[[np.ndarray], float], called: str,
-           unit: str, another: bool) -> Tuple[float, np.ndarray]:
+           unit: str) -> Tuple[float, np.ndarray]:
     """The free number of a shape at which measure(depths) is what is wanted, and the depths.
 
-    called: what messages call what is wanted; another: whether the user can choose another shape. Raises SlopeError if
-    there is no such number.
+    called: what messages call what is wanted. Raises SlopeError if there is no such number.
     """
     def find(number):
         return depths(area, shape.surface(number))
@@ -68,13 +67,13 @@ def solved(area: Area, shape: Shape, wanted: float, measure: Callable[[np.ndarra
     if not len(rises) and found.max() < 0:
         what = shape.limit if np.argmax(found) == len(found) - 1 else f"the largest {shape.name}"
         raise SlopeError(called, f"must be at most {at_most(found.max() + wanted)} {unit}, that of {what} within the "
-                         f"release polygon: take a larger polygon{' or another shape' * another}", f"{wanted:.10g}")
+                         f"release polygon: take a larger polygon or another shape", f"{wanted:.10g}")
     if not len(rises):
         why = (f"that of the smallest {shape.name} within the release polygon: take "
-               f"{SHALLOW * another}a smaller polygon")
+               f"{SHALLOW}a smaller polygon")
         if "toe" in shape.about and "shoulder" in shape.about:
             why = ("as the ground in the release polygon bulges above the line from toe to shoulder, so that no "
-                   f"smaller {shape.name} goes through both: take {SHALLOW * another}a smaller polygon")
+                   f"smaller {shape.name} goes through both: take {SHALLOW}a smaller polygon")
         raise SlopeError(called, f"must be at least {at_least(found.min() + wanted)} {unit}, {why}", f"{wanted:.10g}")
     low, high = tried[rises[-1]], tried[rises[-1] + 1]
     close = EXACT * max(abs(low), abs(high))
@@ -98,14 +97,14 @@ def part_way(below: np.ndarray, above: np.ndarray, wanted: float, measure: Calla
     return below + share * (above - below)
 
 
-def to_depth(area: Area, shape: Shape, depth: float, called="--depth", another=True) -> Tuple[float, np.ndarray]:
+def to_depth(area: Area, shape: Shape, depth: float, called="--depth") -> Tuple[float, np.ndarray]:
     """The free number of a shape whose largest depth (m, vertical) is given, and the depths."""
-    return solved(area, shape, depth, lambda found: float(found.max()), called, "m", another)
+    return solved(area, shape, depth, lambda found: float(found.max()), called, "m")
 
 
-def to_volume(area: Area, shape: Shape, wanted: float, called="--volume", another=True) -> Tuple[float, np.ndarray]:
+def to_volume(area: Area, shape: Shape, wanted: float, called="--volume") -> Tuple[float, np.ndarray]:
     """The free number of a shape whose volume (m3) is given, and the depths."""
-    return solved(area, shape, wanted, lambda found: volume(found, area.cell), called, "m3", another)
+    return solved(area, shape, wanted, lambda found: volume(found, area.cell), called, "m3")
 
 
 def slip_surface(area: Area, depth: np.ndarray, where: str) -> np.ndarray:

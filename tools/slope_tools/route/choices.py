@@ -4,21 +4,25 @@ import shutil
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Union, get_args, get_origin, get_type_hints
 
+import numpy as np
+
 from .. import disk, schemas
 from ..errors import SlopeError
 from ..releases.packing import BULK
-from ..survey import roads
+from ..survey import file_parts, roads, vectors, zips
 
 NAME = "route.yaml"
 VERSION = 1
 WHAT = "what `slope route` wrote"
 # paths, kept as from the folder
 FILES = ("terrain", "road", "bodies", "ground", "ground_table", "fragility")
+READ = FILES[:-1]       # once: an edit of them afterwards is another question
+SOURCES = "sources"     # in route.yaml: what these held
 TABLE = "bodies.yaml"
 # what is made before that table, and of which options
 MADE = ("terrain.asc", "terrain.yaml", "road.csv", "windows")
-OF = ("terrain", "crs", "assign_crs", "cell", "fill", "road", "road_width", "corridor", "cohesion", "friction",
-      "density", "water", "volume", "depth", "keep")
+OF = ("terrain", "crs", "assign_crs", "z_unit", "nodata", "differ", "cell", "fill", "road", "road_width", "corridor",
+      "cohesion", "friction", "density", "water", "volume", "depth", "keep")
 # may change once bodies are there: only the evaluation of their runs has it
 LATER = ("sample", "fragility", "name", "client", "author", "blocked", "lane", "clearing", "loosening", "cut_angle",
          "mesh")
@@ -39,6 +43,9 @@ class Choices(NamedTuple):
     water: Optional[float] = None
     crs: Optional[str] = None
     assign_crs: Optional[str] = None
+    z_unit: Optional[str] = None
+    nodata: Optional[List[float]] = None
+    differ: Optional[float] = None
     cell: Optional[float] = None
     fill: int = 0
     road_from: float = 0.0
@@ -53,6 +60,7 @@ class Choices(NamedTuple):
     keep: int = 3
     below: float = 1.5
     bodies: Optional[str] = None
+    shape: Optional[str] = None
     ground: Optional[str] = None
     ground_table: Optional[str] = None
     reach: float = 0.01
@@ -84,7 +92,8 @@ def schema() -> Dict[str, Any]:
     for name in ("volume", "depth"):
         fields[name] = {**schemas.listed(schemas.NUMBER, 2, null=True), "maxItems": 2}
     needed = {"slope_route": {"enum": [VERSION]}, **{name: fields.pop(name) for name in NEEDED}}
-    return {**schemas.mapping(needed), "properties": {**needed, **fields}, "additionalProperties": False}
+    return {**schemas.mapping(needed), "properties": {**needed, **fields, SOURCES: schemas.OBJECT},
+            "additionalProperties": False}
 
 
 def of_hint(hint: Any) -> Dict[str, Any]:
@@ -103,7 +112,7 @@ def option(name: str) -> str:
 def settle(folder: Path, given: Mapping[str, Any]) -> Choices:
     """The choices of a folder with those that are given now, checked and kept; SlopeError if they do not fit."""
     path = folder / NAME
-    known = read(folder)._asdict() if path.is_file() else {}
+    known, before = (read(folder)._asdict(), sources_in(folder)) if path.is_file() else ({}, {})
     changed = [name for name, value in given.items() if known and not same(name, known[name], value)]
     for name in changed:
         if name not in LATER and (folder / TABLE).is_file():
@@ -115,6 +124,13 @@ def settle(folder: Path, given: Mapping[str, Any]) -> Choices:
     none: Dict[str, Any] = dict.fromkeys(STRENGTH)
     found = Choices(**{**none, **known, **given})
     check(found)
+    now = {name: digest for name in READ if (digest := content(getattr(found, name)))}
+    for name, digest in now.items():
+        if name not in changed and before.get(name, digest) != digest:
+            if (folder / TABLE).is_file():
+                raise SlopeError(option(name), f"must not have changed since the bodies and runs of {folder} were made "
+                                 "of it: take another folder", " ".join(np.ravel(getattr(found, name))))
+            changed.append(name)
     if not path.is_file() and folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise SlopeError(folder, "must be a new folder, an empty one, or that of a route")
     folder.mkdir(parents=True, exist_ok=True)
@@ -122,16 +138,29 @@ def settle(folder: Path, given: Mapping[str, Any]) -> Choices:
         for place in MADE:
             shutil.rmtree(folder / place, ignore_errors=True)
             (folder / place).unlink(missing_ok=True)
-    keep(folder, found)
+    keep(folder, found, {**before, **now})
     return found
 
 
-def keep(folder: Path, found: Choices) -> None:
-    """Write route.yaml, unless it says so already."""
+def content(files: Any) -> str:
+    """Digest of what files of an option hold, as far as they are there; "" without any."""
+    paths = [zips.split(os.path.normpath(vectors.source(one).path))[0] for one in
+             (files if isinstance(files, list) else [files]) if one]
+    return " ".join(file_parts.content(one) for one in paths if os.path.isfile(one))
+
+
+def sources_in(folder: Path) -> Dict[str, str]:
+    """What content() gave of each option when the folder was made; nothing of older ones."""
+    return schemas.load(folder / NAME, f"{WHAT} of this version", schema()).get(SOURCES) or {}
+
+
+def keep(folder: Path, found: Choices, sources: Optional[Mapping[str, str]] = None) -> None:
+    """Write route.yaml, unless it says so already; sources: None: those that it has."""
     path = folder / NAME
+    sources = sources_in(folder) if sources is None else sources
     about = {name: from_folder(value, folder) if name in FILES else value for name, value in found._asdict().items()}
     text = disk.yaml_text("slope route: m, m3, Pa, degrees, kg/m3; paths as from here",
-                          {"slope_route": VERSION, **about})
+                          {"slope_route": VERSION, **about, SOURCES: dict(sources)})
     if not path.is_file() or path.read_text(encoding="utf-8") != text:
         disk.write(path, text)
 
@@ -142,7 +171,8 @@ def read(folder: Path) -> Choices:
     if not path.is_file():
         raise SlopeError(folder, f"must be the folder of a route, with {NAME}")
     about = schemas.load(path, f"{WHAT} of this version", schema())
-    del about["slope_route"]
+    for name in ("slope_route", SOURCES):
+        about.pop(name, None)
     return Choices(**{name: to_here(value, folder) if name in FILES else value for name, value in about.items()})
 
 
@@ -178,6 +208,8 @@ def check(found: Choices) -> None:
         other = next((name for name in STRENGTH if name not in missing), None)
         raise SlopeError(option(missing[0]), f"must be given with {option(other)}" if other else
                          "must be given, unless --bodies are")
+    if found.shape and not found.bodies:
+        raise SlopeError(option("shape"), "must be given with --bodies", found.shape)
     if not 0 <= found.reach < 1:
         raise SlopeError("--reach", "must be 0 to below 1, a share of known events", f"{found.reach:g}")
     if found.balls and found.minutes:

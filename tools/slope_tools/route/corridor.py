@@ -77,8 +77,8 @@ def make(choices: Choices, folder: Path, tell, warn) -> Corridor:
     """The corridor of a folder, whose terrain is written unless it is there."""
     path = folder / TERRAIN
     if not path.is_file():
-        wanted = local_terrain.Wanted(choices.crs, None, choices.cell, None, choices.fill, choices.assign_crs, {}, None,
-                                      (), pits=False)
+        wanted = local_terrain.Wanted(choices.crs, None, choices.cell, None, choices.fill, choices.assign_crs, {},
+                                      choices.z_unit, choices.nodata or (), pits=False, differ=choices.differ)
         tell(local_terrain.summary(TERRAIN, local_terrain.make(choices.terrain, path, wanted, tell, warn)))
     return read(choices, folder, warn)
 

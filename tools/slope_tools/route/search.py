@@ -24,7 +24,7 @@ from ..releases import release, release_files
 from ..runs import slip_run
 from ..slips import bishop, bodies, failed
 from ..survey import polygons, rasters, vectors
-from ..survey.features import attribute, size_of
+from ..survey.features import attribute, depth_of, size_of
 from .choices import TABLE, Choices
 from .corridor import TERRAIN, Corridor, Window, around, searches, write_line
 
@@ -32,7 +32,6 @@ WINDOWS, SLIPS = "windows", "slips"
 DONE = "window.yaml"        # of a window that was searched
 SHARED = 0.1                # of the smaller body's cells; bodies that share more are one
 WHAT = "what `slope route` wrote"
-SIZES = {"depth": "m", "volume": "m3"}      # attributes of polygons
 ADVICE = polygons.Advice(polygon_crs="save it from a GIS with one; a .prj file beside a shapefile",
                          terrain_crs="--assign-crs EPSG:n", wrong_crs="save it from a GIS with the right CRS")
 BODY = schemas.mapping({
@@ -160,7 +159,7 @@ def of_window(place: Path, window: Window) -> List[Slip]:
 # --- given ---
 
 def given(choices: Choices, corridor: Corridor, warn) -> List[Slip]:
-    """The bodies of polygons with an attribute depth (m) or volume (m3); SlopeError if two share their ground."""
+    """The bodies of polygons with an attribute depth, thickness or volume; SlopeError if two share their ground."""
     found: List[Slip] = []
     for name, geometry, crs, size in features(choices.bodies, warn):
         where = f"{choices.bodies}: {name}"
@@ -169,7 +168,7 @@ def given(choices: Choices, corridor: Corridor, warn) -> List[Slip]:
         xlo, ylo, xhi, yhi = local.bounds
         window = corridor.window(xlo - room, ylo - room, xhi + room, yhi + room)
         ground = corridor.clip(window)
-        body = release.body_of(release.Wanted("the terrain", where, read=(ground, local), **size))
+        body = release.body_of(release.Wanted("the terrain", where, choices.shape, read=(ground, local), **size))
         for one in body.warnings:
             warn(one._replace(part=name))
         slip = release_files.ground_without(ground, body.area, body.slip)
@@ -198,10 +197,12 @@ def features(path: Optional[str], warn):
     crs = found.known_crs(path, ADVICE.wrong_crs)
     for number, (_, geometry), about in zip(found.numbers, found.features, found.attributes):
         where = f"{path}: feature {number}"
-        size = {key: size_of(where, key, value, unit) for key, unit in SIZES.items()
-                if (value := attribute(about, key)) is not None}
-        if len(size) != 1:
-            raise SlopeError(where, "must have one attribute, depth (m) or volume (m3), > 0", size or None)
+        depth, _ = depth_of(str(path), number, about)
+        volume = attribute(about, "volume")
+        if (depth is None) == (volume is None):
+            raise SlopeError(where, "must have one attribute, depth or thickness (m), or volume (m3), > 0",
+                             None if depth is None else f"{depth:g} m and {volume}")
+        size = {"depth": depth} if volume is None else {"volume": size_of(where, "volume", volume, "m3")}
         yield f"feature {number}", geometry, crs, size
 
 

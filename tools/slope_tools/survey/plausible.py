@@ -140,7 +140,7 @@ def ask(path, raster: Raster, crs, unit: str) -> None:
     raise SlopeError(path, "heights in feet over a plan in metres must be confirmed, as many such tags are wrong: "
                      f"--z-unit m if they are metres, and the ground falls by {mean_slope(raster):.3g} degrees on "
                      f"average, --z-unit ft or us-ft if they are feet, {mean_slope(feet):.3g} degrees (slope terrain, "
-                     "slope site)", unit)
+                     "site, route)", unit)
 
 
 def warn_of_slope(raster: Raster, warn: Callable[[Finding], Any]) -> None:

@@ -148,7 +148,7 @@ def check_heights(path, z, found, unit, may_be_feet, marks):
     row, column = row + found.first[0], column + found.first[1]
     remedy = f"{marks.options(shown)} if it means none" if marks else f"gdal_translate -a_nodata {shown} declares it"
     name = "metres" if unit == "m" else unit
-    feet = "; --z-unit ft (slope terrain, slope site) if these are feet" if (
+    feet = "; --z-unit ft (slope terrain, site, route) if these are feet" if (
         may_be_feet and HIGHEST < value < HIGHEST / UNITS["ft"]) else ""
     scaled = "" if float(stored) == value else f", which stands for {value:g} {unit}"
     raise SlopeError(f"{path}: row {row + 1} column {column + 1}", f"must be a height in {name} between -9000 and "
@@ -172,7 +172,7 @@ def unit_of(path, tag, crs, heights=True, given=None):
         name, factor = crs.linear_units_factor
         if any(abs(factor / UNITS[foot] - 1) < 1e-7 for foot in ("ft", "us-ft")):
             raise SlopeError(path, f"must say the unit of its heights, as its CRS, {crs_name(crs)}, is in {name}"
-                             ": give --z-unit us-ft, ft or m (slope terrain, slope site)", "none")
+                             ": give --z-unit us-ft, ft or m (slope terrain, site, route)", "none")
     return unit
 
 
