@@ -101,8 +101,8 @@ WORDS: Dict[str, Union[str, Words]] = {
     "zone covered": "{file}: zone {zone} lies below later features and counts nowhere",
     "no geometry": "{feature} has no geometry ({without} of {features} have none): left out",
     "no line": "{file}: {kinds} in it, where a line is asked for: left out",
-    "roads meet": "{file}: roads that meet, or nearly do, are studied each by itself, and a cut through both takes more "
-                  "than the larger number: {places}; is it one road? Then join its lines",
+    "roads meet": "{file}: roads that meet, or nearly do, are studied each by itself, and a cut through both takes "
+                  "more than the larger number: {places}; is it one road? Then join its lines",
     "drawn twice": "{file}: {percent:.3g} % of the length of its lines is drawn more than once, or there and back: "
                    "taken once",
     "file name": "{file}: LAMMPS cannot read {characters} in the name of a file: rename it before it goes into a deck",
@@ -138,9 +138,9 @@ WORDS: Dict[str, Union[str, Words]] = {
     "shift": "beside the body {file} lies {metres:.3g} m {side} the terrain (median), which counts in the depths: "
              "vertical datums are not compared, are they the same?",
     "parts": "the body is in {parts} parts that do not touch, of {volumes} m3{rest}: is that the body you mean?",
-    "several bodies": "several bodies that do not touch: the fall path, along which runs and known events are measured, "
-                      "is that of the largest, {volume:,.0f} m3, and says nothing of roads below the others; known "
-                      "events are those of the volume of all, {all:,.0f} m3. One site for each body?",
+    "several bodies": "several bodies that do not touch: the fall path, along which runs and known events are "
+                      "measured, is that of the largest, {volume:,.0f} m3, and says nothing of roads below the others; "
+                      "known events are those of the volume of all, {all:,.0f} m3. One site for each body?",
     # of a body and its balls
     "no program": "no LAMMPS program (LMP, --lmp, build/lmp): no trial run, time and speeds are unknown",
     "left terrain": "{percent:.2g} % of the mass left the terrain in the trial run: use a larger elevation model",
