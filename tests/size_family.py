@@ -164,13 +164,14 @@ def row(name: str, folder: Path, prefix: Path, finer: str, seed: str, d: float, 
     from slope_tools.deposits import deposit, volume
     from slope_tools.mobility import run_length
     terrain = folder / "site" / "terrain.asc"
-    about = volume.of_run(str(prefix), volume.Wanted(folder / "road.csv", 10.0, local=True), terrain).about
+    about = volume.compute_removal(str(prefix), volume.Wanted(folder / "road.csv", 10.0, local=True), terrain).about
     summary = yaml.safe_load(Path(f"{prefix}.summary.yaml").read_text())
     body = yaml.safe_load((folder / "site" / "site.yaml").read_text())["found"]["body"]
-    left = deposit.read(str(prefix), terrain, lambda said: None)
+    left = deposit.read_deposit(str(prefix), terrain, lambda said: None)
     balls, released = summary["balls"]["released"], summary["volume"]["released"]
     return [name, finer, seed, d, balls, body["mean_depth"] / d, about["volume"]["remove"],
-            about["volume"]["remove_on_road"], about["divided"]["past"], run_length.of_run(left, terrain).distance,
+            about["volume"]["remove_on_road"], about["divided"]["past"],
+            run_length.measure_run_length(left, terrain).distance,
             summary["travel"]["centroid"], inertial_number(ALL[name], prefix, d, released / balls), released,
             summary["stop"]["time"], seconds]
 
@@ -192,8 +193,8 @@ def judge(path: Path) -> None:
             for coarse, fine in zip(sizes, sizes[1:]):
                 both = [[float(of[one, size][quantity]) for one in others] for size in (coarse, fine)]
                 ball = max(float(of[one, coarse]["released"]) / float(of[one, coarse]["balls"]) for one in others)
-                steps.append(ball_sizes.fit(*both, np.empty((len(others), 0)), float(fine) / float(coarse),
-                                            0.0 if quantity == "length" else ball, steps[-1] if steps else None))
+                steps.append(ball_sizes.fit_step(*both, np.empty((len(others), 0)), float(fine) / float(coarse),
+                                                 0.0 if quantity == "length" else ball, steps[-1] if steps else None))
             value, truth = (float(of[name, size][quantity]) for size in (sizes[0], sizes[-1]))
             one = ball_sizes.transfer(steps, value, ())
             low, high = one.band

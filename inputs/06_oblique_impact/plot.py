@@ -11,7 +11,7 @@ from slope_tools.validation.verification import claims, oblique_impact as case  
 
 figure, (left, right) = plt.subplots(1, 2, figsize=(8, 3), constrained_layout=True)
 for path in sys.argv[1:]:
-    balls = claims.read_frames(path)
+    balls = claims.read_claim_frames(path)
     theta, spin, vx, v = balls["v_theta"][0], balls["omegay"][-1], balls["vx"], -balls["vz"][0]
     contact = (vx[-1] - case.RADIUS * spin) / np.where(theta > 0, vx[0], np.nan)
     slides = 2.5 * case.MU * (1 + case.E) * v / case.RADIUS

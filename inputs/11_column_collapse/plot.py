@@ -30,7 +30,7 @@ def main(names):
     for law, name, colour in ((case.LUBE, "Lube et al.", "#1b6ca8"), (case.LAJEUNESSE, "Lajeunesse et al.", "#d1603d")):
         left.loglog(a, [case.law(one, law) if not 2.7 < one < 3.3 else np.nan for one in a], color=colour, label=name)
     for name in names:
-        start, end = (claims.read_frames(Path(f"{name}.{when}.dump")) for when in ("start", "end"))
+        start, end = (claims.read_claim_frames(Path(f"{name}.{when}.dump")) for when in ("start", "end"))
         length, height = case.size(start)
         got = case.runout_of(start, end)
         low, high = (case.law(height / length, law) for law in (case.LUBE, case.LAJEUNESSE))

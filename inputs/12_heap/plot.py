@@ -17,7 +17,7 @@ def main(names):
     plt.rcParams.update({"font.size": 8, "axes.spines.top": False, "axes.spines.right": False})
     figure, axes = plt.subplots(figsize=(5.2, 3.4), constrained_layout=True)
     for name in names:
-        before, after = (claims.read_frames(Path(f"{name}.{when}.dump")) for when in (1, 2))
+        before, after = (claims.read_claim_frames(Path(f"{name}.{when}.dump")) for when in (1, 2))
         angles, way = [case.angle_of(balls) for balls in (before, after)], case.creep_of(before, after)
         print(f"{name}: {angles[0]:.1f}, then {angles[1]:.1f} degrees; {after['id'].size} balls; "
               f"median way between, in diameters: {way:.2g}")

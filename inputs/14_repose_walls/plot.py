@@ -25,9 +25,9 @@ def main(wanted):
         name, about = one.split("=")
         about, _, d = about.partition(",")
         d, thickness = float(d or 10), None if about == "no" else float(about)
-        beads = claims.read_frames(Path(f"{name}.dump"))
+        beads = claims.read_claim_frames(Path(f"{name}.dump"))
         plate = case.PLATE * 10 / d
-        angles, measured = case.angles_of(beads, d / 1000, plate), case.measured(d, thickness)
+        angles, measured = case.angles_of(beads, d / 1000, plate), case.measure_repose_angle(d, thickness)
         print(f"{name}: {len(beads['x'][0])} beads, flanks {angles[0]:.1f} and {angles[1]:.1f}, "
               f"mean {np.mean(angles):.1f}, measured {measured:.1f} degrees")
         if d == 10:
@@ -35,8 +35,8 @@ def main(wanted):
             left.plot(*case.surface(*(beads[axis][0] / 0.01 for axis in "xyz")).T, color=colour, lw=0.8)
             right.plot(thickness or FAR, np.mean(angles), "o", color=colour, ms=4)
     thickness = np.linspace(3, 10, 50)
-    right.plot(thickness, case.measured(10, thickness), "k", label="measured, Zhou et al. (2002)")
-    right.plot(FAR, case.measured(10), "k_", ms=14)
+    right.plot(thickness, case.measure_repose_angle(10, thickness), "k", label="measured, Zhou et al. (2002)")
+    right.plot(FAR, case.measure_repose_angle(10), "k_", ms=14)
     right.plot([], [], "o", color="grey", ms=4, label="SLOPE")
     left.set(xlabel="x / d", ylabel="height / d", aspect="equal", ylim=(0, None))
     right.set(xlabel="thickness / d", ylabel="angle, degrees", ylim=(10, 34))

@@ -26,7 +26,7 @@ def main(names):
     left.plot(a, a, "C1", label="Lajeunesse et al. (2004)")
     groups = {}
     for name in names:
-        start, end = (claims.read_frames(Path(f"{name}.{when}.dump")) for when in ("start", "end"))
+        start, end = (claims.read_claim_frames(Path(f"{name}.{when}.dump")) for when in ("start", "end"))
         radius, height = case.size(start)
         runout, left_high = case.runout_of(start, end), height_of(end) / radius
         print(f"{name}: a {height / radius:.2f}, r0 {radius:g} d, {len(end['x'][0])} balls: run-out {runout:.3f}, "

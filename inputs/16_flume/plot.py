@@ -22,7 +22,7 @@ def main(names):
     plt.rcParams.update({"font.size": 8, "axes.spines.top": False, "axes.spines.right": False})
     figure, axes = plt.subplots(figsize=(8, 3), constrained_layout=True)
     for name in names:
-        start, end = (claims.read_frames(Path(f"{name}.{when}.dump")) for when in ("start", "end"))
+        start, end = (claims.read_claim_frames(Path(f"{name}.{when}.dump")) for when in ("start", "end"))
         length = round(start["x"].max() + case.NEAR / 4, 1)
         height = min((bed[1] for bed in MEASURED if bed[0] == length), key=lambda z: abs(z - start["z"].max()))
         x = np.arange(case.NEAR, end["x"].max(), case.NEAR)

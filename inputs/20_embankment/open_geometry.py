@@ -68,7 +68,8 @@ def numbers(folder):
     """Of a run: released, m3; 99 % within, m; beyond the road, m3; {cut: (to remove, on the road)}; bulk factor."""
     prefix = folder / "embankment"
     summary = run_folders.load_summary(f"{prefix}.summary.yaml")
-    found = {cut: volume.of_run(str(prefix), volume.Wanted(HERE / "road.csv", 5.0, cut, True), folder / "terrain.asc")
+    found = {cut: volume.compute_removal(str(prefix), volume.Wanted(HERE / "road.csv", 5.0, cut, True), folder /
+                                         "terrain.asc")
              for cut in CUTS}
     raster = found[CUTS[0]].run.raster
     beyond = raster.z[:, :round(make_terrain.ROAD[0] / make_terrain.CELL)].sum() * make_terrain.CELL ** 2

@@ -53,11 +53,11 @@ def thickness(prefix, raster, bulk):
 
 def volumes(prefix, bulk=None, cut=CUT):
     """Of a run, m3 by name of WHAT; bulk: another bulk factor than the run's."""
-    found = volume.of_run(str(prefix), volume.Wanted(HERE / "road.csv", MESH, cut, local=True),
-                          prefix.parent / "terrain.asc", tell=lambda said: None)
+    found = volume.compute_removal(str(prefix), volume.Wanted(HERE / "road.csv", MESH, cut, local=True),
+                                   prefix.parent / "terrain.asc", tell=lambda said: None)
     run, factor = found.run, bulk / found.run.bulk if bulk else 1.0
     raster = run.raster._replace(z=thickness(prefix, run.raster, bulk)) if bulk else run.raster
-    result = volume.evaluate(run._replace(raster=raster), found.road, cut, found.mesh)
+    result = volume.evaluate_removal(run._replace(raster=raster), found.road, cut, found.mesh)
     far = round(make_terrain.ROAD[0] / raster.transform.a)
     return dict(zip(WHAT, (factor * run.summary["volume"]["released"], result.total(result.volume),
                            result.total(result.road), float(raster.z[:, :far].sum()) * raster.transform.a ** 2)))
@@ -130,7 +130,7 @@ def table(made):
 
 
 def study_bulk(study, row):
-    return volume.deposit.read(study.prefix(row["run"]), None, lambda said: None).bulk
+    return volume.deposit.read_deposit(study.prefix(row["run"]), None, lambda said: None).bulk
 
 
 def main():

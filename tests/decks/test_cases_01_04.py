@@ -13,7 +13,7 @@ import pytest
 
 from deck_helpers import run_deck
 
-from slope_tools.validation.verification.claims import number
+from slope_tools.validation.verification.claims import find_number
 from slope_tools.validation.verification.slide_roll import G, on_a_sphere
 
 TOP = Path(__file__).resolve().parents[2]
@@ -46,8 +46,8 @@ def curve(tmp_path, name):
 def test_table_2_with_scheme_plain(tmp_path, variables, observed, g):
     log = run_case("01_restitution", tmp_path, tend=0.45, scheme="plain", g=g, **variables)
     line, = printed(log, "restitution:")
-    assert number("observed", line) == pytest.approx(observed, abs=0.003)
-    assert math.sqrt(number("h2", line) / 0.741) == pytest.approx(observed, abs=0.003)
+    assert find_number("observed", line) == pytest.approx(observed, abs=0.003)
+    assert math.sqrt(find_number("h2", line) / 0.741) == pytest.approx(observed, abs=0.003)
 
 
 def test_curve_of_figure_5(tmp_path):
@@ -70,9 +70,9 @@ def test_curve_of_figure_5(tmp_path):
 def test_time_step(tmp_path, scheme, tolerances):
     log = run_case("02_timestep", tmp_path, tend=0.7, scheme=scheme)
     lines = printed(log, "timestep:")
-    assert [number("dt", line) for line in lines] == [5e-7, 5e-6, 5e-5, 1.2e-4, 5e-4]
-    low = [number("from", line) for line in lines]
-    high = [number("to", line) for line in lines]
+    assert [find_number("dt", line) for line in lines] == [5e-7, 5e-6, 5e-5, 1.2e-4, 5e-4]
+    low = [find_number("from", line) for line in lines]
+    high = [find_number("to", line) for line in lines]
 
     # the shorter the step, the less it matters when in a step the contact begins
 
@@ -80,7 +80,7 @@ def test_time_step(tmp_path, scheme, tolerances):
         assert 0.445 - tolerance < low[k] <= high[k] < 0.445 + tolerance, lines[k]
     assert scheme == "exact" or high[4] > 0.445 * 1.5, lines[4]
     if scheme == "plain":
-        assert number("observed", lines[4]) > 0.445 * 1.1, lines[4]
+        assert find_number("observed", lines[4]) > 0.445 * 1.1, lines[4]
 
     # and the warning: not in the log before the last run
 

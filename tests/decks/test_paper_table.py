@@ -38,7 +38,7 @@ def test_another_bulk_factor_is_that_of_the_deck(script, runs):
     assert found == pytest.approx(expected, rel=1e-3) and usual["released"] == pytest.approx(48858, rel=1e-3)
     factor = found["released"] / usual["released"]
     assert factor < 0.8 and abs(found["to remove"] / factor / usual["to remove"] - 1) > 0.02
-    again = script.volumes(runs["body"] / "embankment", float(script.volume.deposit.read(
+    again = script.volumes(runs["body"] / "embankment", float(script.volume.deposit.read_deposit(
         runs["body"] / "embankment", None, lambda said: None).bulk))
     assert again == pytest.approx(usual, rel=1e-3)      # the deck's own rasters from the same balls
 

@@ -150,7 +150,7 @@ def test_what_slope_polygon_writes(tmp_path):
     star = Polygon(np.transpose([9.3 + radius * np.cos(angle), 8.7 + radius * np.sin(angle)]))
     whole = star.difference(box(8.5, 6.5, 12.5, 9.5)).union(box(18.5, 18.5, 21.5, 22.5)).union(box(9.5, 7.5, 10.5, 8.5))
     place = rasters.Place(None, (0.0, 0.0), (30, 30), (-5.0, -5.0, 25.0, 25.0))
-    written = polygons.write(tmp_path / "road.csv", whole, place)
+    written = polygons.write_polygon(tmp_path / "road.csv", whole, place)
     log = run_deck(deck(), tmp_path)
     said = log.split("Region polygon road: ")[1].splitlines()[0]
     assert said.startswith("4 rings, ") and float(said.split()[-1]) == pytest.approx(written.area, rel=1e-7)

@@ -258,8 +258,8 @@ def read_page(folder):
         setattr(figure_maps, name, lambda *_, **__: "")
     for name in ("bars", "chart", "convergence"):
         setattr(figure_charts, name, lambda *_, **__: "")
-    figure_charts.section = lambda *_, **__: ("", 1, None)
-    page, _ = document.make(Asked(folder))
+    figure_charts.draw_section = lambda *_, **__: ("", 1, None)
+    page, _ = document.make_page(Asked(folder))
     page.section.table()
     page.numbers.table()
 
@@ -303,21 +303,21 @@ def sizes(path):
 
 def reference_of(path):
     from slope_tools.report import reference
-    reference.read(path, {"remove_m3": "to remove", "front_m": "farthest ball"})
+    reference.read_reference(path, {"remove_m3": "to remove", "front_m": "farthest ball"})
 
 
 # name: seeds, how a file is changed, which files are (None: all), reader
 TARGETS = {
     "asc": (one("a.asc", GRID), mutate, None, of("a.asc", rasters.read_asc_local)),
     "sidecar": (lambda: [sidecar()], mutate_yaml, ("a.yaml",), of("a.asc", rasters.read_asc_local)),
-    "geotiff": (one("a.tif", geotiff), mutate, None, of("a.tif", rasters.read)),
+    "geotiff": (one("a.tif", geotiff), mutate, None, of("a.tif", rasters.read_raster)),
     "csv": (one("a.csv", RINGS), mutate, None, of("a.csv", polygon)),
     "wkt": (one("a.wkt", WKT), mutate, None, of("a.wkt", polygon)),
     "geojson": (one("a.geojson", geojson), mutate_json, None, of("a.geojson", polygon)),
     "shapefile": (lambda: [shapefile()], mutate, None, of("p.shp", polygon)),
-    "xml": (one("a.xml", tile), mutate, None, of("a.xml", fggml.read)),
+    "xml": (one("a.xml", tile), mutate, None, of("a.xml", fggml.read_fggml_tiles)),
     "zip": (one("a.zip", lambda: zipped(a_xml=tile(), b_xml=tile()), lambda: zipped(a_zip=zipped(b_xml=tile()))),
-            mutate_zip, None, of("a.zip", fggml.read)),
+            mutate_zip, None, of("a.zip", fggml.read_fggml_tiles)),
     "dump": (one("a.dump", DUMP), mutate, None, of("a.dump", lambda path: dumps.last(path, ("type", "vx")))),
     "dump_gz": (one("a.gz", lambda: gzip.compress(DUMP)), mutate_gz, None, of("a.gz", dumps.last)),
     "summary": (one("a.summary.yaml", yaml.safe_dump(SUMMARY).encode()), mutate_yaml, None,

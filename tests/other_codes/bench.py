@@ -57,7 +57,7 @@ class Request:
         metavar="DIR")
 
 
-def run(args: Request) -> None:
+def run_bench(args: Request) -> None:
     """Do the command; raises SlopeError on bad input. Prints the tables."""
     if args.field_factor < 1:
         raise SlopeError("--field-factor", "must be >= 1", f"{args.field_factor:g}")

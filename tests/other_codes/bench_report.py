@@ -79,9 +79,9 @@ def report(plan):
             plan.notes.append(f"{codes[name]['title']} ran another collapse: kinetic energy "
                               f"{state['kinetic_energy_to_ours']:.3f} of ours, displacement of the centroid off by "
                               f"{100 * state['centroid_off']:.1f} %")
-    disk.write(plan.output / "bench.csv", table(plan.runs))
-    disk.write(plan.output / "bench.yaml", "# slope bench: s, m, J, bytes; ratios are medians of neighbouring runs\n"
-               + yaml.safe_dump(about, sort_keys=False))
+    disk.write_file(plan.output / "bench.csv", table(plan.runs))
+    disk.write_file(plan.output / "bench.yaml", "# slope bench: s, m, J, bytes; ratios are medians of neighbouring "
+                    "runs\n" + yaml.safe_dump(about, sort_keys=False))
     draw(plan.output / "bench.png", about)
     show(about, plan.output)
 

@@ -99,7 +99,7 @@ class Plan:
         self.say(f"making the {name}")
         folder = self.folder(name)
         write_terrain(folder / "terrain.asc", self.size, factor)
-        disk.write(folder / peers.DECK, collapse(self.size, steps))
+        disk.write_file(folder / peers.DECK, collapse(self.size, steps))
         result = peer_runs.run(self.ours, folder)
         self.versions["slope"] = f"LAMMPS {result.version}"
         fixed = {kind: np.loadtxt(folder / f"fixed.{kind}.xyz") for kind in (2, 3)}

@@ -34,8 +34,10 @@ def terrain(size, factor):
 
 def write_terrain(path, size, factor):
     z, (x, y), cell = terrain(size, factor)
-    disk.write(path, f"ncols {z.shape[1]}\nnrows {z.shape[0]}\nxllcorner {x:g}\nyllcorner {y:g}\ncellsize {cell:g}\n"
-               "NODATA_value -9999\n" + "".join(" ".join(f"{value:.3f}" for value in row) + "\n" for row in z.tolist()))
+    disk.write_file(path, f"ncols {z.shape[1]}\nnrows {z.shape[0]}\nxllcorner {x:g}\nyllcorner {y:g}\ncellsize "
+                    f"{cell:g}\n"
+                    "NODATA_value -9999\n" + "".join(" ".join(f"{value:.3f}" for value in row) + "\n" for row
+                                                     in z.tolist()))
 
 
 def contacts():

@@ -46,7 +46,7 @@ class Request(Program):
         metavar="DIR")
 
 
-def run(args: Request) -> None:
+def run_crosscheck(args: Request) -> None:
     """Do the command; raises SlopeError on bad input, and when codes disagree. Prints the comparison."""
     cases = peers.chosen("--only", args.only, CASES)
     names = peers.chosen("--peers", args.peers, [code.name for code in PEERS])

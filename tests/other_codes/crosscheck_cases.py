@@ -71,7 +71,7 @@ def scene_of(lmp, deck, settings, folder):
     walls = re.findall(r"^[ \t]*fix[ \t]+(\S+)[ \t]+\S+[ \t]+wall/gran/balls\b.*", before, re.MULTILINE)
     before = re.sub(r"^([ \t]*fix[ \t]+(\S+)[ \t]+\S+[ \t]+wall/gran/balls\b[^#\n]*)",
                     lambda found: f"{found[1].rstrip()} write ground.{found[2]}.xyz ", before, flags=re.MULTILINE)
-    disk.write(folder / deck.name, before + "run 0\n" f"""
+    disk.write_file(folder / deck.name, before + "run 0\n" f"""
 print "SCENE dt $(dt:%.17g)"
 write_dump all custom {START} id {peer_runs.COLUMNS} modify sort id format float %.17g
 write_dump all custom kinds.dump id type diameter mass x y z vx vy vz modify sort id format float %.17g

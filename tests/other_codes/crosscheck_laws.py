@@ -60,7 +60,7 @@ def laws(work, case):
                 for each, values in several.items():
                     found.setdefault(each, [[] for _ in ROLLING[1:]])[i].append(values)
     rows = list(rows_of(found))
-    disk.write(work.output / FILE, csv_of(rows))
+    disk.write_file(work.output / FILE, csv_of(rows))
     work.about_laws = {"d": d, "starts": list(STARTS), "rows": rows}
 
 

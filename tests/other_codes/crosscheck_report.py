@@ -29,9 +29,9 @@ def report(work):
     writer = csv.DictWriter(out, [*Check._fields, "passed"], lineterminator="\n")
     writer.writeheader()
     writer.writerows(rows)
-    disk.write(work.output / "crosscheck.csv", out.getvalue())
-    disk.write(work.output / "crosscheck.yaml", "# slope crosscheck: the same scenes in other codes; m, rad, m3\n"
-               + yaml.safe_dump(about, sort_keys=False))
+    disk.write_file(work.output / "crosscheck.csv", out.getvalue())
+    disk.write_file(work.output / "crosscheck.yaml", "# slope crosscheck: the same scenes in other codes; m, rad, m3\n"
+                    + yaml.safe_dump(about, sort_keys=False))
     written = ["crosscheck.yaml", "crosscheck.csv"]
     if work.about_table:
         written.append("table.csv")

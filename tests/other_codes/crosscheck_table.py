@@ -86,7 +86,7 @@ def table(work, case):
             for code, (final, _) in found.items():
                 volumes[code][-1].append(numbers_of(work, f"{name}.deck", settings, scene, final))
     work.about_table = about(volumes, deck)
-    disk.write(work.output / FILE, csv_of(work.about_table))
+    disk.write_file(work.output / FILE, csv_of(work.about_table))
     for row in work.about_table["rows"]:
         if row["verdict"]:
             work.checks.append(check_of(case, row))
@@ -161,14 +161,14 @@ def numbers_of(work, folder_name: str, settings, scene, final) -> Dict[str, floa
     if len(final) != len(ids):
         raise SlopeError(folder, "must be of a run that keeps all balls in its box", f"{len(final)} of {len(ids)}")
     corners = scene.box()
-    disk.write(folder / "end.dump", "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n" + f"{len(ids)}\n"
-               + "ITEM: BOX BOUNDS ff ff ff\n" + "".join(f"{low} {high}\n" for low, high in zip(*corners))
-               + "ITEM: ATOMS id x y z\n" + "".join(f"{id_} {x!r} {y!r} {z!r}\n" for id_, (x, y, z)
-                                                    in zip(ids, final[:, :3].tolist())))
+    disk.write_file(folder / "end.dump", "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n" + f"{len(ids)}\n"
+                    + "ITEM: BOX BOUNDS ff ff ff\n" + "".join(f"{low} {high}\n" for low, high in zip(*corners))
+                    + "ITEM: ATOMS id x y z\n" + "".join(f"{id_} {x!r} {y!r} {z!r}\n" for id_, (x, y, z)
+                                                         in zip(ids, final[:, :3].tolist())))
     text = re.sub(r"&[ \t]*\n", " ", DECK.read_text(encoding="ascii"))
     before = re.split(r"^[ \t]*run\b", text, flags=re.MULTILINE)[0]
     before = re.sub(r"^[ \t]*(dump|dump_modify|restart)\b.*$", "", before, flags=re.MULTILINE)
-    disk.write(folder / "in.end", before + "read_dump end.dump 0 x y z box no\nrun 0\n")
+    disk.write_file(folder / "in.end", before + "read_dump end.dump 0 x y z box no\nrun 0\n")
     bulk = run_folders.load_summary(folder / "embankment.summary.yaml", run_folders.OF_DEPOSIT)["bulk_factor"]
     options = [word for pair in {**settings, "bulk": bulk, "out": "end"}.items() for word in ("-var", *map(str, pair))]
     peer_runs.run_deck(work.lmp, folder, "in.end", 1, options)
@@ -184,7 +184,8 @@ def numbers_of(work, folder_name: str, settings, scene, final) -> Dict[str, floa
 def evaluated(work, folder_name: str) -> volume.Removal:
     """What is to be removed of the places that numbers_of() took last."""
     folder = work.folder(folder_name)
-    return volume.of_run(str(folder / "end"), volume.Wanted(ROAD, MESH, CUT, local=True), folder / "terrain.asc")
+    return volume.compute_removal(str(folder / "end"), volume.Wanted(ROAD, MESH, CUT, local=True), folder /
+                                  "terrain.asc")
 
 
 def deck_ids(folder) -> List[int]:

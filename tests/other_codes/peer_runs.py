@@ -17,7 +17,7 @@ POLL = 0.05         # s between two looks at a run
 
 def launch(words, folder, ranks):
     """Start a program in a folder; what it says goes to SCREEN."""
-    words = [*launcher.words(None, ranks, 0), *words]       # no slots: other runs may hold all cores
+    words = [*launcher.list_launcher_words(None, ranks, 0), *words]       # no slots: other runs may hold all cores
     try:
         with open(folder / SCREEN, "wb") as screen:
             return processes.start(words, folder, screen)

@@ -127,7 +127,7 @@ class Slope(Code):
         lines += ["group soil type 1", *loading(scene)]
         if len(scene.moving) > MANY:
             lines += self.tuned(scene)
-        disk.write(folder / DECK, "\n".join([*lines, *output(steps, every)]) + "\n")
+        disk.write_file(folder / DECK, "\n".join([*lines, *output(steps, every)]) + "\n")
 
     @staticmethod
     def tuned(scene):
@@ -151,7 +151,7 @@ class Frozen(Code):
                  "group soil type 1", "group ground subtract all soil",
                  "neigh_modify exclude group ground ground", "fix ground ground freeze",
                  *loading(scene), *output(steps, every)]
-        disk.write(folder / DECK, "\n".join(lines) + "\n")
+        disk.write_file(folder / DECK, "\n".join(lines) + "\n")
 
     def law(self, scene):
         """The commands of the contact law."""
@@ -222,7 +222,7 @@ class Liggghts(Code):
                  "pair_coeff * *", "group soil type 1", "group ground subtract all soil",
                  "neigh_modify exclude group ground ground", "fix ground ground freeze",
                  *loading(scene), *output(steps, every, "format \"%d" + 9 * " %.12g" + "\"")]
-        disk.write(folder / DECK, "\n".join(lines) + "\n")
+        disk.write_file(folder / DECK, "\n".join(lines) + "\n")
 
 
 YADE = """\
@@ -301,7 +301,7 @@ class Yade(Code):
         write_rows(folder / "moving.txt", scene.moving)
         for kind, points in scene.fixed.items():
             write_rows(folder / f"fixed.{kind}.xyz", points)
-        disk.write(folder / "scene.py", YADE.format(
+        disk.write_file(folder / "scene.py", YADE.format(
             radius=scene.diameter / 2, density=scene.density, steps=steps, every=every, materials=materials,
             reach=scene.skin / 2, gravity=scene.gravity, dt=scene.dt))
 
@@ -372,11 +372,11 @@ def write_data(path, scene, fixed):
     still = np.zeros((len(every) - len(scene.moving), 6))
     lines += [f"{i} " + " ".join(f"{value:.12g}" for value in row)
               for i, row in enumerate(np.concatenate([scene.moving[:, 3:], still]).tolist(), 1)]
-    disk.write(path, "\n".join(lines) + "\n")
+    disk.write_file(path, "\n".join(lines) + "\n")
 
 
 def write_rows(path, rows):
-    disk.write(path, "".join(" ".join(f"{value:.12g}" for value in row) + "\n" for row in rows.tolist()))
+    disk.write_file(path, "".join(" ".join(f"{value:.12g}" for value in row) + "\n" for row in rows.tolist()))
 
 
 def chosen(option, text, known):

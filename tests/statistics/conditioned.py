@@ -31,7 +31,7 @@ def mass_of(lengths):
 
 def shares(lengths, volumes):
     mass = mass_of(lengths)
-    return mass.share @ conditioned.above(volumes, LEVELS) + mass.far
+    return mass.share @ conditioned.are_above_levels(volumes, LEVELS) + mass.far
 
 
 def ensemble(kind, seed, jump, chance, number=RUNS):
@@ -53,7 +53,7 @@ def bands(kind, jump, chance, repetitions, first=1000):
         effect = None
         if kind != "independent":
             effect = conditioned.Design(kind, u, lengths, twins.exceedance).effect(volumes)
-        curve = conditioned.curve(volumes, mass_of(lengths), effect)
+        curve = conditioned.compute_known_curve(volumes, mass_of(lengths), effect)
         _, low[k], high[k] = np.transpose([curve.at(level) for level in LEVELS])
     many = np.array([shares(*ensemble(kind, 10_000 + k, jump, chance)[1:]) for k in range(MANY)])
     width = np.diff(np.quantile(many, [0.05, 0.95], axis=0), axis=0)[0]

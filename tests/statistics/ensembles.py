@@ -38,7 +38,7 @@ def bands(repetitions=40, rounds=10):
             levels = np.quantile(reference, [0.5, 0.75, 0.9], method="inverted_cdf")
             for k in range(repetitions):
                 place = np.repeat(designs.points(designs.SOBOL, 3, points, 100 * turn + k), several, axis=0)
-                curve = hazard.curve(noisy(place, rng), np.repeat(range(points), several))
+                curve = hazard.compute_hazard_curve(noisy(place, rng), np.repeat(range(points), several))
                 for i, level in enumerate(levels):
                     band = curve.at(level)
                     covered[turn, i] += band.low <= (reference > level).mean() <= band.high

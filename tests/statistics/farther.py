@@ -34,13 +34,13 @@ def error(one, found):
 def main(repetitions=40):
     lengths, volumes = stand_in.response(designs.points(designs.SOBOL, 3, 40000, 10), np.random.default_rng(1))
     mass = conditioned.masses(weights.of_lengths(lengths, twins.exceedance(lengths)))
-    truth = mass.share @ conditioned.above(volumes, stand_in.LEVELS) + mass.far
+    truth = mass.share @ conditioned.are_above_levels(volumes, stand_in.LEVELS) + mass.far
     held = {True: [], False: []}
     for seed in range(repetitions):
         one = stand_in.Ensemble(seed)
         for first in held:
             found = one.weights(not first, first)
-            curve = conditioned.curve(one.volumes[:len(found.weights)], conditioned.masses(found))
+            curve = conditioned.compute_known_curve(one.volumes[:len(found.weights)], conditioned.masses(found))
             share, low, high = np.transpose([curve.at(level) for level in stand_in.LEVELS])
             held[first].append([*((low <= truth) & (truth <= high)), *(high - low), found.far, found.effective,
                                 error(one, found), *(share - truth)])

@@ -49,7 +49,7 @@ def tiny_case(tmp_path, monkeypatch):
     The maps of slope volume, which take longest in a study, are empty; test_volume.py has one.
     """
     import run_helpers  # noqa: F401  (its path of the tools; here, as most tests need none of it)
-    monkeypatch.setattr("slope_tools.deposits.volume_files.draw", lambda path, *_: path.touch())
+    monkeypatch.setattr("slope_tools.deposits.volume_files.draw_removal", lambda path, *_: path.touch())
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("LMP", tiny_collapse.LMP)
     tiny_collapse.write_case(tmp_path / "case")
@@ -117,7 +117,7 @@ def save_blank():
         def save(figure, path, **options):
             if rendered:
                 return save.real(figure, path, **options)
-            return pictures.disk.write(path, BLANK["png"])
+            return pictures.disk.write_file(path, BLANK["png"])
         save.real, pictures.save = pictures.save, save
     if figures and not hasattr(figures.data_uri, "real"):
         def data_uri(figure, kind="png"):
@@ -155,5 +155,5 @@ def blank_pictures(monkeypatch):
         monkeypatch.setattr(figure_maps, "mesh_map", lambda *_, **__: ("data:image/png;base64,AAAA", False))
         for name in ("chart", "bars", "convergence"):
             monkeypatch.setattr(figure_charts, name, lambda *_, **__: "data:image/svg+xml;base64,AAAA")
-        monkeypatch.setattr(figure_charts, "section", lambda *_: ("data:image/svg+xml;base64,AAAA", 1, None))
+        monkeypatch.setattr(figure_charts, "draw_section", lambda *_: ("data:image/svg+xml;base64,AAAA", 1, None))
     return blank

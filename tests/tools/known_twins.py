@@ -10,7 +10,7 @@ from slope_tools.statistics import designs
 
 JUMP = 1750.0, 2300.0       # m
 ROAD = 1500.0               # m, where the road lies
-RELATION = relation.of_events(events.read())
+RELATION = relation.of_events(events.read_events())
 
 
 def exceedance(length):

@@ -26,16 +26,16 @@ def names(kind):
 def row(**given):
     """A row of study.yaml with these entries, of a run with a road or a mapped deposit if one of them is of it."""
     if given.get("status") == "failed":
-        return rows.read({**FAILED, **given})
+        return rows.read_row({**FAILED, **given})
     about = {**dict.fromkeys(names(rows.Finished)), **USUAL}
     for part, kind in rows.PARTS.items():
         if given.keys() & names(kind):
             about.update({**dict.fromkeys(names(kind)), **OF_PART[part]})
     unknown = given.keys() - about.keys()
     assert not unknown, f"no fields: {unknown}"
-    return rows.read({**about, **given})
+    return rows.read_row({**about, **given})
 
 
 def changed(one, **given):
     """The same row with other entries."""
-    return row(**{**rows.plain(one), **given})
+    return row(**{**rows.encode_row(one), **given})

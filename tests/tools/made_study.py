@@ -23,7 +23,7 @@ NOTHING = {"largest": {}, "farthest": None, "conservative": None, "size": None, 
 
 def made(kind, entries):
     """A record of plain entries, or of records; what is not given says nothing."""
-    return records.read(kind, filled(kind, records.plain(entries)))
+    return records.read_record(kind, filled(kind, records.encode_record(entries)))
 
 
 def filled(kind, value):
@@ -108,4 +108,4 @@ def write(folder, rows, header=None, **entries):
     if given.get("conservative"):
         header = {"road": {"cut_angle": 30, "mesh": 10, "local": "road.csv"}, **(header or {})}
     about = study({"runs": len(rows), "finished": len(rows), **(header or {})}, runs=list(rows), **given)
-    (folder / "study.yaml").write_text(yaml.safe_dump(study_file.plain(about)))
+    (folder / "study.yaml").write_text(yaml.safe_dump(study_file.encode_study(about)))

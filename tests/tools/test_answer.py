@@ -32,7 +32,8 @@ STOPPED = answer.Reason(Code.TERRAIN, {"share": 0.12, "path_m": 900.0})
 def ensemble(far=0.01, rules=(), values=1000.0, **more):
     """Quantiles of values * share, unknown where known events lie beyond the runs."""
     return Ensemble([KnownQuantile(share, values * share, 0.9 * values * share, 1.1 * values * share)
-                     if share <= 1 - far else KnownQuantile(share, None, None, None) for share in answer.shares(far)],
+                     if share <= 1 - far else KnownQuantile(share, None, None, None) for share
+                     in answer.choose_known_shares(far)],
                     far, 800.0, [Withheld(rule) for rule in rules], **more)
 
 
@@ -47,37 +48,38 @@ def codes(found):
 
 
 def test_the_larger_of_both():
-    found = answer.of(Paper(700.0), ensemble(), road(0.5, 0.6))
+    found = answer.combine_answers(Paper(700.0), ensemble(), road(0.5, 0.6))
     assert (found.kind, found.volume, found.source, found.share) == (Kind.NUMBER, 950.0, Source.ENSEMBLE, 0.95)
     assert (found.low, found.high, found.reasons) == (pytest.approx(855), pytest.approx(1045), [])
-    found = answer.of(Paper(1200.0), ensemble(), road(0.5, 0.6))
+    found = answer.combine_answers(Paper(1200.0), ensemble(), road(0.5, 0.6))
     assert (found.kind, found.volume, found.source, found.share, found.high) == (
         Kind.NUMBER, 1200.0, Source.PAPER, None, 1200.0)
     # what the other one may be the number may be, too
-    found = answer.of(Paper(1000.0, transfer=(0.0, 20.0)), ensemble(), road(0.5, 0.6))
+    found = answer.combine_answers(Paper(1000.0, transfer=(0.0, 20.0)), ensemble(), road(0.5, 0.6))
     assert (found.volume, found.source, found.high) == (1000.0, Source.PAPER, pytest.approx(1045))
     assert found.band[-1] == (Cause.OTHER.value, 0.0, pytest.approx((45 ** 2 - 20 ** 2) ** 0.5))
-    assert answer.of(Paper(5.0), None, None)[:2] == (Kind.NUMBER, 5.0)
-    assert answer.of(None, ensemble(), None)[:2] == (Kind.NUMBER, 950.0)
-    assert answer.of(None, None, None) is None
+    assert answer.combine_answers(Paper(5.0), None, None)[:2] == (Kind.NUMBER, 5.0)
+    assert answer.combine_answers(None, ensemble(), None)[:2] == (Kind.NUMBER, 950.0)
+    assert answer.combine_answers(None, None, None) is None
 
 
 def test_a_band_has_shares_that_add_as_squares():
     """By hand: chance, transfer and finer balls, on either side."""
-    found = answer.of(Paper(1000.0, least=940.0, transfer=(80.0, 40.0), size=Size(-0.04, 0.03)), None, None)
+    found = answer.combine_answers(Paper(1000.0, least=940.0, transfer=(80.0, 40.0), size=Size(-0.04, 0.03)), None,
+                                   None)
     assert [tuple(one) for one in found.band] == [
         (Cause.RUNS.value, 60.0, 0.0), (Cause.TRANSFER.value, 80.0, 40.0), (Cause.SIZE.value, 40.0, 30.0)]
     assert (found.kind, found.volume) == (Kind.NUMBER, 1000.0)
     assert (found.low, found.high) == pytest.approx((1000 - (60 ** 2 + 80 ** 2 + 40 ** 2) ** 0.5, 1050))
     of = [one._replace(transfer=[50.0, 60.0]) for one in ensemble().quantiles]
-    found = answer.of(None, ensemble()._replace(quantiles=of, size=Size(0.0, 0.1)), None)
+    found = answer.combine_answers(None, ensemble()._replace(quantiles=of, size=Size(0.0, 0.1)), None)
     assert (found.low, found.high) == pytest.approx((950 - (95 ** 2 + 50 ** 2) ** 0.5,
                                                      950 + (95 ** 2 + 60 ** 2 + 95 ** 2) ** 0.5))
     said = sentences(found.about())
     assert "between 843 and 1,100 m3" in said.clear and "90 %" in said.clear
     assert "detailed" in said.basis and "-50.0 +60.0" in said.basis and "--" not in said.basis
     # without repeats nobody knows what chance adds: no confidence is named
-    said = sentences(answer.of(Paper(1000.0, transfer=(80.0, 40.0)), None, None).about())
+    said = sentences(answer.combine_answers(Paper(1000.0, transfer=(80.0, 40.0)), None, None).about())
     assert "between 920 and 1,040 m3" in said.clear and "90 %" not in said.clear and \
         "without what chance changes" in said.clear
 
@@ -87,18 +89,18 @@ def test_a_floor_is_the_lower_end_rounded_down():
     few = Size(floor=answer.Reason(Code.SIZE, {"sizes": 3, "grown": 0.3}))
     for paper, other, low in ((Paper(1200.0, least=1177.0, size=few), ensemble(), 1170.0),
                               (Paper(700.0), ensemble(size=few), 855.0)):
-        found = answer.of(paper, other, road(0.5, 0.6))
+        found = answer.combine_answers(paper, other, road(0.5, 0.6))
         assert (found.kind, found.volume, found.low, found.high) == (Kind.FLOOR, low, low, None)
         assert codes(found) == [Code.SIZE]
     # of two lower bounds the larger counts, whoever has the larger number
-    found = answer.of(Paper(900.0, least=890.0, size=few), ensemble(size=few), road(0.5, 0.6))
+    found = answer.combine_answers(Paper(900.0, least=890.0, size=few), ensemble(size=few), road(0.5, 0.6))
     assert (found.volume, found.source) == (890.0, Source.PAPER)
     # what makes it one comes first, and its remedy with it: the terrain ends behind the road
-    found = answer.of(None, ensemble(0.08, stopped=STOPPED, size=few), road(0.5, 0.6))
+    found = answer.combine_answers(None, ensemble(0.08, stopped=STOPPED, size=few), road(0.5, 0.6))
     assert (found.kind, codes(found)) == (Kind.FLOOR, [Code.SIZE, Code.BEYOND, Code.TERRAIN])
-    assert answer.of(Paper(0.0, size=few), None, None).kind is Kind.NOTHING
-    assert answer.of(Paper(1200.0, size=few), None, None).kind is Kind.OPEN         # chance may be less
-    assert answer.of(Paper(1200.0, least=0.0, size=few), None, None).kind is Kind.OPEN      # 0 is no bound
+    assert answer.combine_answers(Paper(0.0, size=few), None, None).kind is Kind.NOTHING
+    assert answer.combine_answers(Paper(1200.0, size=few), None, None).kind is Kind.OPEN         # chance may be less
+    assert answer.combine_answers(Paper(1200.0, least=0.0, size=few), None, None).kind is Kind.OPEN      # 0 is no bound
 
 
 def test_what_finer_balls_may_undercut_is_no_lower_bound():
@@ -109,12 +111,12 @@ def test_what_finer_balls_may_undercut_is_no_lower_bound():
                                          (Paper(700.0), ensemble(size=few), road(0.5, 0.6), 950.0),
                                          (Paper(0.0), ensemble(0.08, stopped=STOPPED, size=few),
                                           road(0.5, 0.6)._replace(far=901.0), 920.0)):
-            found = answer.of(paper, other, of)
+            found = answer.combine_answers(paper, other, of)
             assert (found.kind, found.volume, found.low, found.high) == (Kind.OPEN, volume, None, None)
             said = sentences(found.about())
             assert "neither" in said.clear and "least" not in said.clear and "90 %" not in said.clear
-            assert answer_words.volume(found.kind.value, volume, "m3").endswith("m3 (no bound)")
-    assert answer.of(Paper(None, [Withheld(Rule.LEFT)], size=few), None, None).kind is Kind.WITHHELD
+            assert answer_words.describe_volume(found.kind.value, volume, "m3").endswith("m3 (no bound)")
+    assert answer.combine_answers(Paper(None, [Withheld(Rule.LEFT)], size=few), None, None).kind is Kind.WITHHELD
 
 
 STEP = {"finer": 2.0, "pairs": 8, "factor": 1.0, "deviation": 0.03, "on_parameters": False}
@@ -136,9 +138,11 @@ def test_fewer_than_two_halvings_make_no_bound_and_one_that_grows_a_floor(size, 
     quantile = {"share": 0.95, "value": 1200.0, "low": 1000.0, "high": 1400.0}
     about = made_study.study(conservative=made_study.conservative(1200.0, chance_m3=50.0), size=size)
     other = made_study.study(ensemble=made_study.ensemble({"to_remove": [quantile]}), size=size)
-    for found in (answer.of(answered.paper_of(about), None, None), answer.of(None, answered.ensemble_of(other), None)):
+    for found in (answer.combine_answers(answered.paper_of(about), None, None),
+                  answer.combine_answers(None, answered.ensemble_of(other), None)):
         assert found.kind is kind and [one.code for one in found.reasons] == [Code.SIZE] * (kind is not Kind.NUMBER)
-        assert all(words in text(one) for one in found.reasons for text in (answer_words.text, answer_words.client))
+        assert all(words in text(one) for one in found.reasons for text
+                   in (answer_words.describe_reason, answer_words.client))
         step = next_step.of_studies([next_step.Made(about, Path("out"))], found.about())
         assert (step is None) == (kind is Kind.NUMBER) and (step is None or "--levels" in step.command)
     if kind is Kind.NUMBER:
@@ -147,32 +151,33 @@ def test_fewer_than_two_halvings_make_no_bound_and_one_that_grows_a_floor(size, 
 
 def test_where_known_events_lie_beyond_the_runs_the_number_is_of_those_within():
     """A floor only where the terrain ends before the road does: the lower end."""
-    found = answer.of(Paper(0.0), ensemble(0.08, stopped=STOPPED), road(0.5, 0.6))
+    found = answer.combine_answers(Paper(0.0), ensemble(0.08, stopped=STOPPED), road(0.5, 0.6))
     assert (found.kind, found.volume, codes(found)) == (Kind.NUMBER, 920.0, [Code.BEYOND, Code.TERRAIN])
-    found = answer.of(Paper(0.0), ensemble(0.08, stopped=STOPPED), road(0.5, 0.6)._replace(far=901.0))
+    found = answer.combine_answers(Paper(0.0), ensemble(0.08, stopped=STOPPED), road(0.5, 0.6)._replace(far=901.0))
     assert (found.kind, found.volume, found.share, found.high) == (Kind.FLOOR, 828.0, 0.92, None)
     assert codes(found) == [Code.BEYOND, Code.TERRAIN]
     assert found.reasons[0].numbers == {"far": 0.08, "longest_m": 800.0, "most_m3": 0.0, "runs": 0}
     other = answer.Reason(Code.RUNS, {"points": 8})
-    found = answer.of(Paper(0.0), ensemble(0.08, stopped=other), road(0.5, 0.6))
+    found = answer.combine_answers(Paper(0.0), ensemble(0.08, stopped=other), road(0.5, 0.6))
     assert (found.kind, found.volume, found.share, found.high) == (Kind.NUMBER, 920.0, 0.92, pytest.approx(1012))
     assert codes(found) == [Code.BEYOND, Code.RUNS]
-    found = answer.of(Paper(0.0), ensemble(0.7), road(0.5, 0.6))
+    found = answer.combine_answers(Paper(0.0), ensemble(0.7), road(0.5, 0.6))
     assert (found.kind, found.volume, found.share) == (Kind.NUMBER, 300.0, 0.3)
-    [reason] = answer.of(Paper(0.0), ensemble(0.3, path_end=161.2, most=77.0, runs=24), road(0.5, 0.6)).reasons
+    [reason] = answer.combine_answers(Paper(0.0), ensemble(0.3, path_end=161.2, most=77.0, runs=24),
+                                      road(0.5, 0.6)).reasons
     assert reason.numbers["path_end_m"] == 161.2
     # only of its own runs is known what they leave, and how far others go is said once, by one ruler
     assert all(words in answer_words.client(reason) for words in ("30 %", "24 runs", "77 m3")) and \
         "161" not in answer_words.client(reason)
     # without an upper bound it is what no run exceeded
     several = [KnownQuantile(0.95, None, 9.0, None), KnownQuantile(0.9, 7.0, 5.0, None)]
-    found = answer.of(None, Ensemble(several, 0.08, 800.0, most=11.0), None)
+    found = answer.combine_answers(None, Ensemble(several, 0.08, 800.0, most=11.0), None)
     assert (found.kind, found.volume, found.share, found.low, found.high) == (Kind.NUMBER, 7.0, 0.9, 5.0, 11.0)
     # the paper's more is a number, too
-    found = answer.of(Paper(5000.0), ensemble(0.7), road(0.5, 0.6))
+    found = answer.combine_answers(Paper(5000.0), ensemble(0.7), road(0.5, 0.6))
     assert (found.kind, found.volume, found.source) == (Kind.NUMBER, 5000.0, Source.PAPER)
     # nor is nothing known at all
-    found = answer.of(None, ensemble(1.0, [Rule.MOBILITY]), road(0.5, 0.6))
+    found = answer.combine_answers(None, ensemble(1.0, [Rule.MOBILITY]), road(0.5, 0.6))
     assert (found.kind, found.volume, found.share) == (Kind.FLOOR, 0.0, 0.0)
 
 
@@ -180,7 +185,7 @@ def test_where_known_events_lie_beyond_the_runs_the_number_is_of_those_within():
     (0.0, [0.95]), (0.05, [0.95]), (0.0501, [0.95, 0.94]), (0.08, [0.95, 0.92]), (0.104, [0.95, 0.89]),
     (1, [0.95, 0.0])])
 def test_the_number_is_of_all_that_the_runs_reach(far, shares):
-    assert answer.shares(far) == shares
+    assert answer.choose_known_shares(far) == shares
 
 
 @pytest.mark.parametrize("low, high, kind, said", [
@@ -188,10 +193,10 @@ def test_the_number_is_of_all_that_the_runs_reach(far, shares):
     (0.11, 0.2, Kind.FLOOR, [Code.NOT_REACHED])])
 def test_a_road_that_no_run_reaches(low, high, kind, said):
     """The near edge decides: both scatters, one, or none says that more than a tenth of the known events reach it."""
-    found = answer.of(Paper(0.0), ensemble(values=0.0), road(low, high, 399.0))
+    found = answer.combine_answers(Paper(0.0), ensemble(values=0.0), road(low, high, 399.0))
     assert (found.kind, found.volume, codes(found)) == (kind, 0.0, said)
     assert all(one.numbers == {"low": low, "high": high, "near_m": 400.0, "longest_m": 399.0} for one in found.reasons)
-    assert answer.of(Paper(0.0), ensemble(values=0.0), road(low, high, None)).kind is kind
+    assert answer.combine_answers(Paper(0.0), ensemble(values=0.0), road(low, high, None)).kind is kind
 
 
 @pytest.mark.parametrize("reached, paper, rules, kind, said", [
@@ -208,7 +213,8 @@ def test_a_road_that_no_run_reaches(low, high, kind, said):
 def test_a_road_that_known_events_reach_and_no_run_does(reached, paper, rules, kind, said):
     """0 m3 is nothing only where few known events reach it, whatever study stands beside it; rules: of an ensemble."""
     beside = None if rules is None else ensemble(values=0.0, rules=rules)
-    found = answer.of(Paper(paper, [Withheld(Rule.LEFT)] * (paper is None), paper), beside, road(*reached, 0.0))
+    found = answer.combine_answers(Paper(paper, [Withheld(Rule.LEFT)] * (paper is None), paper), beside,
+                                   road(*reached, 0.0))
     assert (found.kind, found.volume, codes(found)) == (kind, paper or 0.0, said)
 
 
@@ -218,33 +224,34 @@ def test_nothing_is_said_only_where_no_run_brings_a_ball(rules, reached):
     """Of either study, whatever governs: 2 of 26 runs leave 530 and 614 m3."""
     beside = AtRoad(26, 2, 1, 1621.0, 5.8, 530.0, 614.0).and_of(AtRoad(6, 0, 0, 9.0, 0.1))
     for mass in (ensemble(values=0.0, rules=rules), ensemble(0.7, rules, 0.0), None):
-        found = answer.of(Paper(0.0), mass, Road(151.0, 158.0, reached, reached, 165.0, beside))
+        found = answer.combine_answers(Paper(0.0), mass, Road(151.0, 158.0, reached, reached, 165.0, beside))
         assert (found.kind, found.volume, found.high) == (Kind.FLOOR, 0.0, None)
         assert found.reasons[0] == (Code.SOME, {"runs": 32, "reach": 2, "least_m3": 530.0, "most_m3": 614.0})
         said = found.about()
         first = sentences(said)
         assert first.clear.startswith("More than 0 m3") and "no run" not in (first.clear + first.basis).lower()
         assert "2 of 32" in first.change and "530 to 614" in first.change and "2 of 32 runs" in first.roads
-    found = answer.of(Paper(0.0), ensemble(values=0.0), Road(151.0, 158.0, (0.0, 0.05), (0.0, 0.0), 120.0, AtRoad(
-        26, 0, 0, 3.0, 0.4)))
+    found = answer.combine_answers(Paper(0.0), ensemble(values=0.0),
+                                   Road(151.0, 158.0, (0.0, 0.05), (0.0, 0.0), 120.0, AtRoad(26, 0, 0, 3.0, 0.4)))
     assert found.kind is Kind.NOTHING
 
 
 def test_rules_that_withhold_one_of_both():
     mobility, balls, left = (Withheld(rule) for rule in (Rule.MOBILITY, Rule.BALLS, Rule.LEFT))
     for harmless in (mobility, balls):      # which the ensemble makes up for
-        found = answer.of(Paper(None, [harmless]), ensemble(), road(0.5, 0.6))
+        found = answer.combine_answers(Paper(None, [harmless]), ensemble(), road(0.5, 0.6))
         assert (found.kind, found.volume, found.reasons) == (Kind.NUMBER, 950.0, [])
-        assert answer.of(Paper(None, [harmless]), None, None).kind is Kind.WITHHELD     # alone it stands
-    found = answer.of(Paper(None, [left]), ensemble(), road(0.5, 0.6))
+        assert answer.combine_answers(Paper(None, [harmless]), None, None).kind is Kind.WITHHELD     # alone it stands
+    found = answer.combine_answers(Paper(None, [left]), ensemble(), road(0.5, 0.6))
     assert (found.kind, found.volume, found.high, codes(found)) == (Kind.FLOOR, 855.0, None, [Code.RULE])
     assert found.reasons[0].numbers["source"] == "paper" and found.reasons[0].numbers["rule"] == Rule.LEFT.value
-    found = answer.of(Paper(70.0, least=65.0), ensemble(rules=[Rule.LEFT]), road(0.5, 0.6))
+    found = answer.combine_answers(Paper(70.0, least=65.0), ensemble(rules=[Rule.LEFT]), road(0.5, 0.6))
     assert (found.kind, found.volume, found.source) == (Kind.FLOOR, 65.0, Source.PAPER)
-    assert answer.of(Paper(70.0), ensemble(rules=[Rule.LEFT]), road(0.5, 0.6)).kind is Kind.OPEN
-    found = answer.of(Paper(70.0), ensemble(rules=[Rule.BALLS]), road(0.5, 0.6))     # its largest is less than balls
+    assert answer.combine_answers(Paper(70.0), ensemble(rules=[Rule.LEFT]), road(0.5, 0.6)).kind is Kind.OPEN
+    found = answer.combine_answers(Paper(70.0), ensemble(rules=[Rule.BALLS]),
+                                   road(0.5, 0.6))     # its largest is less than balls
     assert (found.kind, found.volume) == (Kind.NUMBER, 70.0)
-    found = answer.of(Paper(None, [left]), ensemble(rules=[Rule.RUNS]), road(0.5, 0.6))
+    found = answer.combine_answers(Paper(None, [left]), ensemble(rules=[Rule.RUNS]), road(0.5, 0.6))
     assert (found.kind, found.volume, found.source, codes(found)) == (Kind.WITHHELD, None, None, [Code.RULE, Code.RULE])
 
 
@@ -253,16 +260,17 @@ def test_what_only_runs_bound_is_said_so():
     of = [one._replace(high=None) for one in ensemble().quantiles]
     for quantiles, ends in ((of, ("95 %", "above 855", "as far as these runs go")),
                             (ensemble().quantiles, ("90 %", "between 855"))):
-        said = sentences(answer.of(None, ensemble()._replace(quantiles=quantiles, most=1200.0), None).about()).clear
+        said = sentences(answer.combine_answers(None, ensemble()._replace(quantiles=quantiles, most=1200.0),
+                                                None).about()).clear
         assert all(one in said for one in ends)
 
 
 def test_what_study_yaml_says():
-    about = answer.of(Paper(700.0), ensemble(0.08, stopped=STOPPED), road(0.5, 0.6)).about()
-    about = records.plain(about)
-    assert disk.plain(about) == about and list(about) == ["kind", "volume_m3", "share", "low_m3", "high_m3", "source",
-                                                          "paper", "ensemble", "road", "reasons", "band",
-                                                          "open_above"]
+    about = answer.combine_answers(Paper(700.0), ensemble(0.08, stopped=STOPPED), road(0.5, 0.6)).about()
+    about = records.encode_record(about)
+    assert disk.make_plain(about) == about and list(about) == ["kind", "volume_m3", "share", "low_m3", "high_m3",
+                                                               "source", "paper", "ensemble", "road", "reasons", "band",
+                                                               "open_above"]
     assert about["paper"] == {"volume_m3": 700.0, "withheld": [], "runs": 0}
     assert about["ensemble"] == {"volume_m3": None, "far": 0.08, "withheld": [], "runs": 0}
     assert about["road"]["reached"] == [0.5, 0.6] and about["reasons"][1] == {
@@ -310,12 +318,13 @@ def test_an_older_result_is_not_merged_where_all_runs_failed(tmp_path, monkeypat
             raise study.RunsFailed(tmp_path, "all runs failed")
         return made_study.study({"collected": "2026-11-27T10:00:00+00:00"})
 
-    for name in ("plan", "make", "wanted"):
+    for name in ("plan_site_study", "make_site_runs", "wanted"):
         monkeypatch.setattr(study.site_study, name, lambda *_: None)
-    monkeypatch.setattr(study.site_study, "collect", lambda *_, **__: site_study.Done(tmp_path, runs(False), None))
+    monkeypatch.setattr(study.site_study, "collect_site_results", lambda *_,
+                        **__: site_study.Done(tmp_path, runs(False), None))
     monkeypatch.setattr(study, "run_deck", lambda *_: runs(fails))
     monkeypatch.setattr(study, "of_ensemble", lambda *_: None)
-    monkeypatch.setattr(study, "write_report", lambda *_, **__: None)
+    monkeypatch.setattr(study, "write_site_report", lambda *_, **__: None)
     monkeypatch.setattr(study.answered, "of_both", lambda *several: calls.append(several))
     asked, site = study.Request(deck=tmp_path, quiet=True), site_choices.unread(OfMass.of({}), tmp_path)
     files = [tmp_path / name / "study.yaml" for name in ("study", "ensemble")]
@@ -332,7 +341,7 @@ def test_an_older_result_is_not_merged_where_all_runs_failed(tmp_path, monkeypat
 
 def test_no_number_exceeds_what_was_released():
     """Neither its upper end, where chance or finer balls would take it there."""
-    found = answer.of(Paper(900.0, least=850.0, size=Size(0.0, 0.5), released=1000.0), None, None)
+    found = answer.combine_answers(Paper(900.0, least=850.0, size=Size(0.0, 0.5), released=1000.0), None, None)
     assert (found.kind, found.volume, found.high) == (Kind.NUMBER, 900.0, 1000.0)
-    found = answer.of(Paper(1200.0, least=1100.0, size=Size(0.0, 0.1), released=1000.0), None, None)
+    found = answer.combine_answers(Paper(1200.0, least=1100.0, size=Size(0.0, 0.1), released=1000.0), None, None)
     assert (found.volume, found.high) == (1000.0, 1000.0) and found.low <= 1000

@@ -38,8 +38,8 @@ def test_the_raster_of_a_sphere_is_the_sphere():
     z, centre, radius = HIGH[:3]
     exact = columns.of_sphere(z, centre, radius, 180.0, 1900.0)
     base = columns.base_of(z, centre, radius)
-    inside = columns.largest(z, base)
-    found, size = back.sphere_of(back.points_of(z, base, inside))
+    inside = columns.find_largest_part(z, base)
+    found, size = back.sphere_of(back.list_base_points(z, base, inside))
     assert found == pytest.approx(centre, abs=1e-6) and size == pytest.approx(radius, abs=1e-6)
     assert back.steepest(z, base, inside, found) == pytest.approx(180, abs=1e-6)
     raster = columns.of_raster(z, base, inside, found, 180.0, 1900.0)
@@ -57,7 +57,8 @@ def test_a_long_ellipsoid_is_that_of_the_core():
     middle = 0.5 * 2161 * 0.5
     left = 32.26 ** 2 - (x - 25.94) ** 2 - ((y - middle) / 15) ** 2
     base = 46.34 - np.sqrt(np.where(left > 0, left, np.nan))
-    body = columns.of_raster(terrain, base, columns.largest(terrain, base) & np.isfinite(np.gradient(base)).all(axis=0),
+    body = columns.of_raster(terrain, base, columns.find_largest_part(terrain, base) &
+                             np.isfinite(np.gradient(base)).all(axis=0),
                              (25.94, middle, 46.34), 180.0, 18.82e3 / columns.GRAVITY)
     soil = Strengths(41.65e3, np.tan(np.radians(15.0)))
     assert bishop.factor_of_safety(body, soil)[0] == pytest.approx(1.526, rel=0.01)
@@ -98,7 +99,7 @@ def table():
 def test_a_sphere_its_table_and_its_raster(here, capsys):
     (x, y, z), radius = HIGH[1:3]
     base = columns.base_of(HIGH[0], HIGH[1], radius)
-    write_asc("scar.asc", np.where(columns.largest(HIGH[0], base), base, HIGH[0].z), 0.5)
+    write_asc("scar.asc", np.where(columns.find_largest_part(HIGH[0], base), base, HIGH[0].z), 0.5)
     area = write_columns("crit.1.columns.csv", *HIGH[:3], 1919.1)
     volume = columns.of_sphere(*HIGH[:3], 180.0, 1919.1).volume
     Path("crit.slips.csv").write_text("rank,x,y,z,radius,direction,volume,area\n"
@@ -143,7 +144,7 @@ def test_a_hollow_that_is_no_sphere(here, capsys):
     about = yaml.safe_load(Path("out/back.yaml").read_text())
     assert status == 0 and 15 < about["radius"] < 50
     assert not err and not about["warnings"]        # by less than a tenth
-    body = failed.read("scar.asc", HIGH[0], None, 1919.1)
+    body = failed.read_failed_body("scar.asc", HIGH[0], None, 1919.1)
     line = back.line(body.columns)
     assert abs(back.line(body.far).cohesion[0] / line.cohesion[0] - 1) < 0.1
     [text] = map(str, stability.failed_warnings(body, line, line._replace(cohesion=1.2 * line.cohesion)))

@@ -16,7 +16,7 @@ from slope_tools.deposits import deposit, volume
 from slope_tools.ensembles import known_events
 from slope_tools.mobility import run_length
 from slope_tools.statistics import ball_sizes
-from slope_tools.statistics.ball_sizes import Finest, fit, transfer
+from slope_tools.statistics.ball_sizes import Finest, fit_step, transfer
 from slope_tools.statistics.entries import KnownQuantile
 from slope_tools.studies import size_runs
 from slope_tools.tables import sizes
@@ -33,7 +33,7 @@ def test_a_factor_by_hand():
     """The mean of the logarithms; the deviation is that of the left-out ones."""
     changes = np.array([0.1, 0.2, 0.3, 0.4])
     coarse = np.array([400.0, 800, 100, 200])
-    step = fit(coarse, coarse * np.exp(changes), none(4))
+    step = fit_step(coarse, coarse * np.exp(changes), none(4))
     left_out = [0.1 - 0.3, 0.2 - 0.8 / 3, 0.3 - 0.7 / 3, 0.4 - 0.2]
     assert step.ratio.constant == pytest.approx(0.25) and step.ratio.freedom == pytest.approx(3)
     assert step.ratio.deviation == pytest.approx(math.sqrt(sum(one ** 2 for one in left_out) / 4))
@@ -49,18 +49,18 @@ def test_a_factor_by_hand():
 
 def test_few_balls_have_a_difference():
     """Below ten coarse balls; what is nothing stays nothing."""
-    step = fit([0, 20, 40, 500, 600], [0, 10, 50, 500, 660], none(5), ball=10)
+    step = fit_step([0, 20, 40, 500, 600], [0, 10, 50, 500, 660], none(5), ball=10)
     assert step.least == 100 and step.small.number == 3 and step.ratio.number == 2
     assert transfer([step], 50.0, ()).value == pytest.approx(50.0)
     assert transfer([step], 50.0, ()).deviation == pytest.approx(step.small.deviation)
-    nothing = fit([0, 0, 0, 0], [0, 0, 0, 0], none(4), ball=10)
+    nothing = fit_step([0, 0, 0, 0], [0, 0, 0, 0], none(4), ball=10)
     assert transfer([nothing], 0.0, ()) == Finest(0.0) and nothing.ratio is None
     # of too few small pairs a difference scatters as a ratio at its end
-    few = fit([50, 200, 400, 800], [50, 220, 400, 860], none(4), ball=10)
+    few = fit_step([50, 200, 400, 800], [50, 220, 400, 860], none(4), ball=10)
     assert transfer([few], 0.0, ()).deviation == pytest.approx(100 * few.ratio.deviation)
     assert transfer([few], 0.0, ()).band[0] == 0
     # of what is no volume, nothing has a difference, too
-    hours = fit([0, 0, 10, 20], [4, 6, 11, 22], none(4))
+    hours = fit_step([0, 0, 10, 20], [4, 6, 11, 22], none(4))
     assert transfer([hours], 0.0, ()).value == 5
     assert (ball_sizes.draws([[hours]] * 2, [0.0, 10.0], none(2), 50) > 0).all()
 
@@ -68,7 +68,7 @@ def test_few_balls_have_a_difference():
 def test_a_single_pair_is_no_certainty():
     """All of its change may be error."""
     for coarse, fine in (([100, 0, 0], [130, 0, 0]), ([100], [130])):
-        step = fit(coarse, fine, none(len(coarse)), ball=1)
+        step = fit_step(coarse, fine, none(len(coarse)), ball=1)
         low, high = transfer([step], 500.0, ()).band
         assert low < 500 and high > 1000
 
@@ -76,7 +76,7 @@ def test_a_single_pair_is_no_certainty():
 def test_draws_leave_no_more_than_was_released():
     rows = [[made_rows.row(variables={"d": d}, remove_m3=remove, released_m3=2500.0, ball_m3=1.0)
              for remove in volumes] for d, volumes in (("2", (1000.0, 2000.0)), ("1", (1500.0, 2100.0)))]
-    drawn = sizes.of([*zip(*rows)]).draws(rows[0], "remove_m3", 200)
+    drawn = sizes.combine_sizes([*zip(*rows)]).draws(rows[0], "remove_m3", 200)
     assert drawn.max() == 2500 and drawn.min() < 1500
 
 
@@ -87,7 +87,7 @@ def test_what_no_finer_run_has_is_unknown():
                              length_by_lobe_m=lobes, ball_m3=1.0)
 
     coarse, fine = [one(2, 50.0, [60.0, 40.0]) for _ in range(4)], [one(1, None) for _ in range(2)]
-    found = sizes.of([*zip(coarse, fine), *([only] for only in coarse[2:])])
+    found = sizes.combine_sizes([*zip(coarse, fine), *([only] for only in coarse[2:])])
     got = [found.row(each) for each in (coarse[3], fine[0])]
     assert [each.distance_99_m for each in got] == [None, None] and [each.length_m for each in got] == [None, None]
     assert got[0].road.remove_m3 == 100 and found.steps["distance_99_m"][0].known is False
@@ -97,7 +97,7 @@ def test_no_more_is_removed_than_was_released():
     coarse, fine = ([made_rows.row(variables={"d": d}, remove_m3=remove, released_m3=1000.0, ball_m3=1.0,
                                    blocked_m=remove / 10, axis_m=104.0) for remove in volumes]
                     for d, volumes in (("2", (500.0, 600.0, 950.0)), ("1", (700.0, 840.0))))
-    found = sizes.of([*zip(coarse, fine), coarse[2:]])
+    found = sizes.combine_sizes([*zip(coarse, fine), coarse[2:]])
     assert found.row(coarse[2]).road.blocked_m == 104       # nor is more of a road blocked than there is
     assert found.row(coarse[2]).road.remove_m3 == 1000 and found.row(coarse[0]).road.remove_m3 == pytest.approx(700)
 
@@ -131,8 +131,8 @@ def test_parameters_count_where_they_predict_better():
     at = rng.random((16, 2))
     noise = 0.02 * rng.standard_normal(16)
     coarse = 1000 * np.exp(rng.standard_normal(16))
-    with_slope = fit(coarse, coarse * np.exp(0.1 + 0.5 * at[:, 0] + noise), at)
-    without = fit(coarse, coarse * np.exp(0.1 + noise), at)
+    with_slope = fit_step(coarse, coarse * np.exp(0.1 + 0.5 * at[:, 0] + noise), at)
+    without = fit_step(coarse, coarse * np.exp(0.1 + noise), at)
     assert with_slope.ratio.slopes == pytest.approx([0.5, 0.0, 0.0], abs=0.1)
     assert np.abs(without.ratio.slopes).max() < 0.02 and without.ratio.constant == pytest.approx(0.1, abs=0.02)
     value = transfer([with_slope], 1000.0, (0.9, 0.5))
@@ -157,8 +157,8 @@ def test_bands_hold_what_was_not_run(pairs, few, scatter, finer, slope):
         coarse, noise = 10000 * np.exp(0.5 * rng.standard_normal(len(at))), rng.standard_normal((2, len(at)))
         half = coarse * np.exp(-0.05 + slope * at[:, 0] + scatter * noise[0])
         quarter = half * np.exp(0.03 + slope / 2 * at[:, 0] + finer * noise[1])
-        first = fit(coarse[:pairs], half[:pairs], at[:pairs], ball=80)
-        last = fit(half[:few], quarter[:few], at[:few], ball=10, before=first)
+        first = fit_step(coarse[:pairs], half[:pairs], at[:pairs], ball=80)
+        last = fit_step(half[:few], quarter[:few], at[:few], ball=10, before=first)
         for k in range(pairs, len(at)):
             low, high = transfer([first, last], coarse[k], at[k]).band
             inside.append(low <= quarter[k] <= high)
@@ -169,22 +169,22 @@ def test_an_error_in_m3_is_none_of_the_largest():
     """As small as it is of the largest values; a further step with few pairs goes on with it, and draws have it."""
     rng = np.random.default_rng(2)
     coarse = np.geomspace(1000.0, 16000.0, 12)
-    step = fit(coarse, coarse + 400 * rng.standard_normal(12), none(12), ball=1)
+    step = fit_step(coarse, coarse + 400 * rng.standard_normal(12), none(12), ball=1)
     small, large = (transfer([step], value, ()) for value in (1500.0, 15000.0))
     assert step.ratio.power == 1 and small.deviation == pytest.approx(large.deviation, rel=0.2) and \
         200 < large.deviation < 700
-    further = fit(coarse[-2:], coarse[-2:] * 1.01, none(2), ball=1, before=step)
+    further = fit_step(coarse[-2:], coarse[-2:] * 1.01, none(2), ball=1, before=step)
     assert further.ratio.power == 1 and 0.7 < transfer([further], 1500.0, ()).deviation / small.deviation < 1.3
     drawn = ball_sizes.draws([[step]] * 2, [1500.0, 15000.0], none(2), 4000)
     assert np.quantile(drawn[:, 1], (0.05, 0.95)) == pytest.approx(large.band, rel=0.04)
-    shares = fit(coarse, coarse * np.exp(0.1 * rng.standard_normal(12)), none(12), ball=1)
+    shares = fit_step(coarse, coarse * np.exp(0.1 * rng.standard_normal(12)), none(12), ball=1)
     assert shares.ratio.power == 0
 
 
 def test_draws_are_as_the_bands():
     rng = np.random.default_rng(3)
     coarse = np.array([1000.0, 2000, 3000, 4000, 5000, 6000, 7000, 8000])
-    step = fit(coarse, coarse * np.exp(0.1 * rng.standard_normal(8)), none(8), ball=10)
+    step = fit_step(coarse, coarse * np.exp(0.1 * rng.standard_normal(8)), none(8), ball=10)
     found = ball_sizes.draws([[step, step], [step], [], [step]], [900.0, 900.0, 900.0, 0.0], none(4), 2000)
     for column, steps in zip(found.T[:2], ([step, step], [step])):
         one = transfer(steps, 900.0, ())
@@ -201,23 +201,24 @@ def test_what_finer_balls_would_change():
 
     def steps(first, last, scatter):
         half = coarse * np.exp(first + scatter * noise)
-        one = fit(coarse, half, none(4))
-        return [one, fit(half, half * np.exp(last + scatter * noise), none(4), before=one)]
+        one = fit_step(coarse, half, none(4))
+        return [one, fit_step(half, half * np.exp(last + scatter * noise), none(4), before=one)]
 
-    clear = ball_sizes.left(steps(0.2, 0.1, 1e-4))
+    clear = ball_sizes.estimate_remaining_step(steps(0.2, 0.1, 1e-4))
     assert clear.observed and clear.order == pytest.approx(1.0, abs=0.01) and clear.low == 0
     assert clear.best == pytest.approx(math.expm1(1.25 * 0.1), rel=0.01)
     assert clear.grown == pytest.approx(math.expm1(0.1))
-    assert ball_sizes.left(steps(0.24, 0.08, 1e-4)).best == pytest.approx(math.expm1(1.25 * 0.08 / 2), rel=0.02)
-    unclear = ball_sizes.left(steps(-0.02, 0.01, 0.02))
+    assert ball_sizes.estimate_remaining_step(steps(0.24, 0.08, 1e-4)).best == pytest.approx(math.expm1(1.25 * 0.08 /
+                                                                                                        2), rel=0.02)
+    unclear = ball_sizes.estimate_remaining_step(steps(-0.02, 0.01, 0.02))
     assert not unclear.observed and unclear.order == 1 and unclear.low < 0 < unclear.best < unclear.high
-    assert ball_sizes.left(steps(-0.2, 0.1, 1e-4)).observed is False        # not of one sign
+    assert ball_sizes.estimate_remaining_step(steps(-0.2, 0.1, 1e-4)).observed is False        # not of one sign
     # changes that do not shrink leave no less than those that shrink slowly
-    slow = ball_sizes.left(steps(0.1, 0.07, 1e-4))
+    slow = ball_sizes.estimate_remaining_step(steps(0.1, 0.07, 1e-4))
     for first in (0.1, 0.07, 0.02):
-        assert ball_sizes.left(steps(first, 0.0708, 1e-4)).high > slow.high
-    assert ball_sizes.left(steps(0.1, 0.1, 1e-4)[:1]) is None
-    assert ball_sizes.left([fit([0, 0], [0, 0], none(2), ball=1)] * 2) is None
+        assert ball_sizes.estimate_remaining_step(steps(first, 0.0708, 1e-4)).high > slow.high
+    assert ball_sizes.estimate_remaining_step(steps(0.1, 0.1, 1e-4)[:1]) is None
+    assert ball_sizes.estimate_remaining_step([fit_step([0, 0], [0, 0], none(2), ball=1)] * 2) is None
 
 
 def test_the_largest_values_decide_what_finer_balls_leave():
@@ -225,11 +226,11 @@ def test_the_largest_values_decide_what_finer_balls_leave():
     coarse = np.geomspace(1000.0, 8000.0, 8)
     half = coarse * 1.4
     grows = np.linspace(0.0, math.log(1.4), 8)
-    before = fit(coarse, half, none(8))
-    found = ball_sizes.left([before, fit(half, half * np.exp(grows), none(8), before=before)])
+    before = fit_step(coarse, half, none(8))
+    found = ball_sizes.estimate_remaining_step([before, fit_step(half, half * np.exp(grows), none(8), before=before)])
     assert found.grown == pytest.approx(0.4, abs=0.05) and found.high > found.best == pytest.approx(
         math.expm1(1.25 * grows.mean()), rel=0.02)
-    steady = ball_sizes.left([before, fit(half, half * 1.2, none(8), before=before)])
+    steady = ball_sizes.estimate_remaining_step([before, fit_step(half, half * 1.2, none(8), before=before)])
     assert steady.grown == pytest.approx(0.2, abs=0.01)
 
 
@@ -241,8 +242,8 @@ def test_a_site_of_another_scale_has_the_same_bands(error):
     noise = rng.standard_normal(12)
     fine = coarse * np.exp(0.05 * noise) if error == "share" else np.maximum(0, coarse + 150 * noise)
     for other in (np.arange(12), rng.permutation(12)):
-        one = fit(coarse, fine, at, ball=10.0)
-        large = fit(1e3 * coarse[other], 1e3 * fine[other], at[other], ball=1e4)
+        one = fit_step(coarse, fine, at, ball=10.0)
+        large = fit_step(1e3 * coarse[other], 1e3 * fine[other], at[other], ball=1e4)
         for value in (20.0, 250.0, 900.0, 12000.0):
             assert transfer([large], 1e3 * value, (0.2, 1.4)).band == pytest.approx(
                 [1e3 * end for end in transfer([one], value, (0.2, 1.4)).band])
@@ -250,12 +251,12 @@ def test_a_site_of_another_scale_has_the_same_bands(error):
 
 def test_a_pair_that_becomes_nothing_drags_no_other():
     coarse = np.array([100.0, 400, 1000, 2000, 4000])
-    step = fit(coarse, [0.0, 404, 1010, 2020, 4040], none(5), ball=1)
+    step = fit_step(coarse, [0.0, 404, 1010, 2020, 4040], none(5), ball=1)
     assert transfer([step], 1500.0, ()).value == pytest.approx(1515)
     assert transfer([step], 90.0, ()).band[0] == 0
-    mixed = fit([*coarse, 5, 8], [0.0, 404, 1010, 2020, 4040, 5, 8], none(7), ball=1)
+    mixed = fit_step([*coarse, 5, 8], [0.0, 404, 1010, 2020, 4040, 5, 8], none(7), ball=1)
     assert transfer([mixed], 7.0, ()).value == pytest.approx(7) and transfer([mixed], 7.0, ()).band[1] > 50
-    assert fit([1.0, 5, 6], [0.0, 5, 6], none(3)).least > 1         # a length has none either
+    assert fit_step([1.0, 5, 6], [0.0, 5, 6], none(3)).least > 1         # a length has none either
 
 
 def test_long_runs_have_finer_balls_but_not_the_finest():
@@ -273,9 +274,11 @@ def test_long_runs_have_finer_balls_but_not_the_finest():
 
 def test_points_of_finer_balls_are_spread_and_nested():
     places = np.array([[0.0, 0], [1, 0], [0, 1], [1, 1], [0.5, 0.5], [0.1, 0]])
-    assert ball_sizes.spread(places, [0], 3) == ball_sizes.spread(places, [0], 5)[:3]
-    assert ball_sizes.spread(places, [0], 2) == [0, 3] and 5 not in ball_sizes.spread(places, [0], 5)
-    assert ball_sizes.spread(places, [], 1) == [4] and len(ball_sizes.spread(places, [], 9)) == 6
+    assert ball_sizes.order_spread_points(places, [0], 3) == ball_sizes.order_spread_points(places, [0], 5)[:3]
+    assert ball_sizes.order_spread_points(places, [0], 2) == [0, 3] and 5 not in ball_sizes.order_spread_points(places,
+                                                                                                                [0], 5)
+    assert ball_sizes.order_spread_points(places, [], 1) == [4] and len(ball_sizes.order_spread_points(places, [],
+                                                                                                       9)) == 6
 
 
 def test_measured_pairs():
@@ -290,9 +293,9 @@ def test_measured_pairs():
         for point in at:
             others, steps = [one for one in at if one != point], []
             for coarse, fine in ((400, 3200), (3200, 25600)):
-                steps.append(fit([values[one, coarse] for one in others], [values[one, fine] for one in others],
-                                 [at[one] for one in others], ball=ball * 400 / coarse,
-                                 before=steps[-1] if steps else None))
+                steps.append(fit_step([values[one, coarse] for one in others], [values[one, fine] for one in others],
+                                      [at[one] for one in others], ball=ball * 400 / coarse,
+                                      before=steps[-1] if steps else None))
             one, truth = transfer(steps, values[point, 400], at[point]), values[point, 25600]
             low, high = one.band
             inside.append(low <= truth <= high)
@@ -328,10 +331,10 @@ def of_run(site, row, d, packing):
     words = [str(word) for name, value in {**sets, "d": d, "packing": packing, "out": "run"}.items()
              for word in ("-var", name, value)]
     subprocess.run([os.environ["LMP"], "-in", "in.site", "-screen", "none", *words], cwd=site, check=True)
-    about = volume.of_run(str(site / "run"), volume.Wanted(site / "road.csv", 10.0, local=True),
-                          site / "terrain.asc").about
-    left = deposit.read(str(site / "run"), site / "terrain.asc", lambda _: None)
+    about = volume.compute_removal(str(site / "run"), volume.Wanted(site / "road.csv", 10.0, local=True),
+                                   site / "terrain.asc").about
+    left = deposit.read_deposit(str(site / "run"), site / "terrain.asc", lambda _: None)
     for path in site.glob("run.*"):
         path.unlink()
     return {"remove": about["volume"]["remove"], "beyond": about["divided"]["past"],
-            "length": run_length.of_run(left, site / "terrain.asc").distance}
+            "length": run_length.measure_run_length(left, site / "terrain.asc").distance}

@@ -98,20 +98,20 @@ def test_a_false_tag_of_feet_is_refused_by_all_that_take_heights(bed, unit, show
         out.write(BED, 1)
         out.units = (unit,)
     for taken in (lambda: beside.heights_on("feet.tif", TERRAIN),
-                  lambda: release_scar.read("feet.tif", None, TERRAIN, 0),
-                  lambda: release_scar.read("feet.tif", "surface", TERRAIN, 0),
+                  lambda: release_scar.read_scar("feet.tif", None, TERRAIN, 0),
+                  lambda: release_scar.read_scar("feet.tif", "surface", TERRAIN, 0),
                   lambda: failed.of_base(TERRAIN, Path("feet.tif"), None, 2000, None)):
         with pytest.raises(SlopeError, match=f"feet.tif: heights in {shown} must be confirmed.*--z-unit m, ft or us-ft"
                                              " .*, got 11[0-9] m off"):
             taken()
     for taken in (lambda: score.read_observed("feet.tif", TERRAIN, 0.1, False),     # a thickness has nothing beside it
-                  lambda: release_scar.read("feet.tif", "depth", TERRAIN, 0)):
+                  lambda: release_scar.read_scar("feet.tif", "depth", TERRAIN, 0)):
         with pytest.raises(SlopeError, match=f"feet.tif: must be in metres, got {unit}"):
             taken()
 
 
 def test_heights_in_feet_are_a_scar_in_metres(bed, monkeypatch):
-    assert release_scar.read("feet.tif", None, TERRAIN, 0).depth == pytest.approx(TERRAIN.z - BED)
+    assert release_scar.read_scar("feet.tif", None, TERRAIN, 0).depth == pytest.approx(TERRAIN.z - BED)
     assert failed.of_base(TERRAIN, Path("feet.tif"), None, 2000, None).cells
     opened, names = rasters.opened, []
     monkeypatch.setattr(rasters, "opened", lambda path, *more: names.append(path) or opened(path, *more))

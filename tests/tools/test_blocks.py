@@ -55,7 +55,7 @@ def told(gis, monkeypatch, capsys):
     """`slope WORDS` there, in this process; gives status, stdout, stderr."""
     monkeypatch.chdir(gis)
     monkeypatch.setenv("LMP", LMP)
-    monkeypatch.setattr(site_map, "draw", lambda path, *_: path.write_bytes(b""))
+    monkeypatch.setattr(site_map, "draw_site_map", lambda path, *_: path.write_bytes(b""))
     return lambda *words: called(capsys, [str(word) for word in words])
 
 
@@ -76,7 +76,8 @@ def made(gis):
     patch.undo()
     from slope_tools.blocks import study
     found = site_choices.load_kind(gis / "tmp", OfBlocks)
-    return SimpleNamespace(folder=gis / "tmp", site=found, known=study.read(found, study.planned(found)))
+    return SimpleNamespace(folder=gis / "tmp", site=found, known=study.read_block_runs(found,
+                                                                                       study.plan_block_runs(found)))
 
 
 # --- the folder ---
@@ -119,7 +120,7 @@ def test_a_mass_knows_nothing_of_it(told, gis):
     assert not {"kind", "blocks"} & OfMass.of({}).entries().keys()
     with pytest.raises(kinds.SlopeError, match="must be a site of a mass here, got one of blocks"):
         assert told("site", *WORDS, "-o", "other")[0] == 0
-        site_choices.load(gis / "other")
+        site_choices.load_site(gis / "other")
 
 
 @pytest.mark.parametrize("words, message", [
@@ -208,7 +209,7 @@ def test_energies_at_a_line_are_those_of_dumps_of_every_step(made, tmp_path):
     (tmp_path / "in.every").write_text(f"{deck[0]}{every}variable    steps{deck[1]}")
     subprocess.run([LMP, "-in", "in.every", "-log", "none", "-screen", "none", "-var", "rolling", "0.1", "-var",
                     "duration", "6", "-var", "start", "4"], cwd=tmp_path, check=True)
-    found = runs.read("every", tmp_path, {"rolling": "0.1", "ground": "1"}, made.known.terrain)
+    found = runs.read_block_run("every", tmp_path, {"rolling": "0.1", "ground": "1"}, made.known.terrain)
     dt = yaml.safe_load((tmp_path / "site.summary.yaml").read_text())["dt"]
     most = np.full(len(found.diameter), np.nan)
     before = {}
@@ -276,7 +277,7 @@ def test_files(made):
         assert first["geometry"]["coordinates"][0] == pytest.approx(start + (EAST, NORTH, 0), abs=1e-3)
     for name in files.LARGEST:
         with rasterio.open(made.folder / "study" / f"{name}.tif") as found:
-            most = max(np.nanmax(runs.rasters.read(one.folder / f"site.{name}.asc", heights=False).z)
+            most = max(np.nanmax(runs.rasters.read_raster(one.folder / f"site.{name}.asc", heights=False).z)
                        for one in made.known.runs)
             assert found.read(1).max() == pytest.approx(most)
 
@@ -303,7 +304,7 @@ def test_files_for_paraview_are_of_the_run_with_the_farthest_block(made, told, m
     monkeypatch.setenv("DUMP2VTK", str(tmp_path / "stand-in"))
     status, out, err = told("vtk", "tmp")
     assert status == 0 and "tmp/vtk/site.pvd" in out, err
-    name = page.shown(made.known).name
+    name = page.choose_shown_run(made.known).name
     words = (tmp_path / "words").read_text().split()
     assert words[0].endswith(f"{made.folder.name}/runs/{name}/site.00000000.dump")
     assert words[words.index("--deposit") + 1].endswith(f"/{name}/site")
@@ -337,7 +338,7 @@ def a_run(ground, reached, left=None, rolling="0.1", ahead=True):
 
 
 def test_none_that_reaches_is_never_certain():
-    of = outcome.evaluate([a_run(ground, [0] * 100) for ground in range(10)])
+    of = outcome.evaluate_blocks([a_run(ground, [0] * 100) for ground in range(10)])
     reach = of.best.reach
     assert reach.seen == 0 and reach.high == pytest.approx(withheld.exceeded_at_most(10))
     assert reach.text == f"at most {digits.percent(reach.high)}" == "at most 26 %"
@@ -349,40 +350,40 @@ def test_none_that_reaches_is_never_certain():
 def test_a_few_that_reach_bound_no_less_than_none(number):
     """A few blocks of one of ten grounds: another ground may bring as many as after none."""
     few = [a_run(ground, [1] * number * (ground == 1) + [0] * (100 - number * (ground == 1))) for ground in range(10)]
-    reach = outcome.evaluate(few).best.reach
+    reach = outcome.evaluate_blocks(few).best.reach
     assert reach.seen == number and reach.high >= withheld.exceeded_at_most(10) > 0.2
 
 
 def test_all_that_reach_are_never_certain():
-    of = outcome.evaluate([a_run(ground, [1] * 100) for ground in range(10)])
+    of = outcome.evaluate_blocks([a_run(ground, [1] * 100) for ground in range(10)])
     assert of.best.reach.text == "at least 74 %"
 
 
 def test_blocks_of_a_ground_count_together():
     """Half of the grounds let all pass: that is not 500 of 1,000 independent blocks."""
-    together = outcome.evaluate([a_run(ground, [ground % 2] * 100) for ground in range(10)]).best.reach
-    apart = outcome.evaluate([a_run(ground, [0, 1] * 50) for ground in range(10)]).best.reach
+    together = outcome.evaluate_blocks([a_run(ground, [ground % 2] * 100) for ground in range(10)]).best.reach
+    apart = outcome.evaluate_blocks([a_run(ground, [0, 1] * 50) for ground in range(10)]).best.reach
     assert together.share == apart.share == 0.5
     assert together.high - together.low > 0.4 and apart.high - apart.low < 0.06
 
 
 def test_blocks_that_left_make_it_at_least():
-    of = outcome.evaluate([a_run(ground, [1, 0, 0, 0], [0, 1, 0, 0]) for ground in range(10)])
+    of = outcome.evaluate_blocks([a_run(ground, [1, 0, 0, 0], [0, 1, 0, 0]) for ground in range(10)])
     reach = of.best.reach
     assert reach.share == 0.25 and reach.open == 10 and reach.high > 0.5 > reach.low
     assert reach.text.startswith("at least 25 %") and of.best.at_least == "at least "
     assert [one.kind for one in of.doubts()] == ["blocks left"]
-    away = outcome.evaluate([a_run(ground, [1, 0, 0, 0], [0, 1, 0, 0], ahead=False) for ground in range(10)])
+    away = outcome.evaluate_blocks([a_run(ground, [1, 0, 0, 0], [0, 1, 0, 0], ahead=False) for ground in range(10)])
     assert away.best.reach.open == away.best.past.open == 0 and away.best.reach.high < 0.5 and away.best.away == 10
     assert away.best.at_least == "at least " and away.doubts()[0].numbers["away"] == 10       # how far they go
-    none = outcome.evaluate([a_run(ground, [0, 0, 0, 0], [1, 0, 0, 0]) for ground in range(10)]).best.reach
+    none = outcome.evaluate_blocks([a_run(ground, [0, 0, 0, 0], [1, 0, 0, 0]) for ground in range(10)]).best.reach
     assert none.text.startswith("up to ") and none.high > 0.25
 
 
 def test_what_left_is_not_retained_unless_no_road_was_ahead():
     """Four blocks that end 0 to 3 m beyond the foot, the second of which left the terrain."""
     for ahead, shares in ((True, [1 / 4, 1 / 4, 2 / 4, 3 / 4]), (False, [2 / 4, 2 / 4, 3 / 4, 1])):
-        of = outcome.evaluate([a_run(0, [0] * 4, [0, 1, 0, 0], ahead=ahead)])
+        of = outcome.evaluate_blocks([a_run(0, [0] * 4, [0, 1, 0, 0], ahead=ahead)])
         one = of.best
         by_width = dict(zip(of.widths, one.retained))
         assert [by_width[width].share for width in range(4)] == shares
@@ -407,7 +408,7 @@ def test_the_foot_is_above_the_road_and_below_benches():
 def test_blocks_that_stay_where_they_begin_are_counted():
     """Two of the four blocks of ground 0 and one of ground 1 go less than two diameters."""
     grounds = [replace(a_run(ground, [0] * 4, [0] * 4), diameter=np.ones(4)) for ground in range(3)]
-    of = outcome.evaluate(grounds)
+    of = outcome.evaluate_blocks(grounds)
     assert [(one.kind, one.numbers["still"], one.numbers["blocks"]) for one in of.doubts()] == [("blocks still", 3, 12)]
 
 
@@ -421,7 +422,7 @@ def test_a_road_is_ahead_of_a_block_that_leaves_unless_it_is_behind_or_was_passe
     start, end = np.full((len(ends), 2), (20.0, 30.0)), np.array(list(ends), float)
     assert sides.ahead_of(start, end, sides.of_places(end)).tolist() == list(ends.values())
     left = Gone(np.ones(len(ends)), end, start, np.zeros(len(ends)), "table")
-    assert passed.beside(left, sides).ahead.tolist() == list(ends.values())      # of a mass, too
+    assert passed.sort_by_side(left, sides).ahead.tolist() == list(ends.values())      # of a mass, too
 
 
 def test_beyond_the_road():

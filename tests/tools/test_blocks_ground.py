@@ -103,7 +103,7 @@ def zoned(tmp_path_factory):
     patch = pytest.MonkeyPatch()
     patch.chdir(folder)
     patch.setenv("LMP", LMP)
-    patch.setattr(site_map, "draw", lambda path, *_: path.write_bytes(b""))
+    patch.setattr(site_map, "draw_site_map", lambda path, *_: path.write_bytes(b""))
     from slope_tools import cli
     words = ["--terrain", "dem.tif", "--release", "cliff.geojson", "--road", "road.geojson", "--ground",
              "zones.geojson", "--blocks", "80", "--size", "0.8:1.2", "--rolling", "0.05"]
@@ -114,7 +114,9 @@ def zoned(tmp_path_factory):
     assert cli.main(["site", "mine"]) == 0 and cli.main(["study", "mine", "--jobs", "2"]) == 0
     patch.undo()
     found = site_choices.load_kind(folder / "mine", OfBlocks)
-    return SimpleNamespace(folder=folder / "mine", site=found, known=study.read(found, study.planned(found)))
+    return SimpleNamespace(folder=folder / "mine", site=found, known=study.read_block_runs(found,
+                                                                                           study.plan_block_runs(
+                                                                                               found)))
 
 
 def test_the_deck_has_the_coefficients_of_the_zones(zoned):
@@ -138,7 +140,7 @@ def test_blocks_stop_in_a_rough_zone(zoned, tmp_path):
             "field_e_rough": "0.1"}
     words = [word for name, value in same.items() for word in ("-var", name, value)]
     subprocess.run([LMP, "-in", site_deck.NAME, "-log", "none", "-screen", "none", *words], cwd=tmp_path, check=True)
-    other = runs.read("same", tmp_path, {"rolling": "0.05", "ground": "1"}, zoned.known.terrain)
+    other = runs.read_block_run("same", tmp_path, {"rolling": "0.05", "ground": "1"}, zoned.known.terrain)
     stopped, rolled = (one.end[:, 0] > TOE - 4 for one in (own, other))
     assert stopped.mean() > 0.8 and rolled.mean() < 0.3
     assert other.reached.mean() > own.reached.mean() + 0.4
@@ -152,7 +154,7 @@ def test_the_page_says_what_the_ground_is_where(zoned, monkeypatch):
         ["outside of all zones", "46.7", "30", "0.05", "0.1", "0.9"]]
     seen = []
     monkeypatch.setattr(figure_maps, "value_map", lambda layers, *_: seen.append(layers) or "")
-    page.write(zoned.known, zoned.folder / "again.html")
+    page.write_block_page(zoned.known, zoned.folder / "again.html")
     for layers in seen:
         assert layers.zones["rough"].equals_exact(Polygon(ROUGH), 1e-3) or layers.zones["rough"].equals(Polygon(ROUGH))
         assert list(layers.zones) == ["rough", "scree 2"] and layers.release.sum() == 50

@@ -141,11 +141,11 @@ def test_points_are_drawn_from_a_likelihood():
 
     cloud = designs.points(designs.SOBOL, 2, 4096, 1)
     logs = log_likelihood(cloud)
-    points, there = tempering.draw(log_likelihood, cloud, logs, 1)
+    points, there = tempering.sample_likelihood(log_likelihood, cloud, logs, 1)
     assert there == pytest.approx(log_likelihood(points)) and len(np.unique(points, axis=0)) > 0.9 * len(points)
     assert points.mean(axis=0) == pytest.approx([0.3, 0.6], abs=0.004)
     assert (points @ turn).std(axis=0) == pytest.approx([0.05, 0.0005], rel=0.1)
-    assert -logs.max() > 10 * tempering.least(lambda some: -log_likelihood(some), cloud, -logs, 1)
+    assert -logs.max() > 10 * tempering.minimise_function(lambda some: -log_likelihood(some), cloud, -logs, 1)
 
 
 def test_what_the_model_cannot_reach_is_said():
@@ -226,7 +226,7 @@ def here(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     deck = write_case(tmp_path / "case")
     Path("case/road.csv").write_text("13,0\n18,0\n18,24\n13,24\n")
-    terrain = rasters.read(Path("case/terrain.asc"))
+    terrain = rasters.read_raster(Path("case/terrain.asc"))
     rasters.write_asc_local(Path("case/terrain.asc"), terrain._replace(
         crs=rasterio.crs.CRS.from_epsg(6677), offset=(-12000.0, 34000.0)), {})
     deck.write_text(deck.read_text().replace("index 150", "index 700\nvariable  xoffset index 0.0").replace(
@@ -461,7 +461,7 @@ def fit_of(tmp_path, monkeypatch, rest_after, duration="10", fixed=(), fails=())
                 stop_reason="halted" if seconds >= rest_after else "run completed"))
         return rows
 
-    monkeypatch.setattr(fit.run_rows, "rows_of", rows_of)
+    monkeypatch.setattr(fit.run_rows, "read_run_rows", rows_of)
     monkeypatch.setattr(fit.Fit, "summary", lambda self, row: None)
     monkeypatch.setattr(fit.Fit, "terrain", staticmethod(lambda one: None))
     work = SimpleNamespace(store=SimpleNamespace(admit=lambda todo: None), do=lambda todo: None,

@@ -26,7 +26,7 @@ def runs():
 
 
 def bodies(volumes=None):
-    return [chain.left(one, range(len(one)), 1000.0) for one in (runs() if volumes is None else volumes)]
+    return [chain.compute_left_volume(one, range(len(one)), 1000.0) for one in (runs() if volumes is None else volumes)]
 
 
 def simulated(capacity, given, at_peaks, rng, volumes):
@@ -142,17 +142,18 @@ def test_more_is_never_more_likely():
 
 def test_without_runs_the_whole_body_is_on_the_road():
     always = np.full((fragility.REPLICATES, 1, 1), 10.0)
-    found = chain.family(always, np.array([20.0]), [chain.left([], [], 800.0)], np.array([0.0, 799.0, 800.0]))
+    found = chain.family(always, np.array([20.0]), [chain.compute_left_volume([], [], 800.0)],
+                         np.array([0.0, 799.0, 800.0]))
     assert found.value[0].tolist() == [1, 1, 0] and found.high[0].tolist() == [1, 1, 0] and (found.low == 0).all()
 
 
 def test_bounds_of_runs_and_of_runs_that_failed():
     """Of 4 runs none above 100: by Clopper and Pearson 1 - 0.05^(1/4) may be, as much as the body has."""
     always = np.full((fragility.REPLICATES, 1, 1), 10.0)
-    body = chain.left([70.0, 80.0, 90.0, 100.0], range(4), 800.0)
+    body = chain.compute_left_volume([70.0, 80.0, 90.0, 100.0], range(4), 800.0)
     found = chain.family(always, np.array([20.0]), [body], np.array([100.0, 799.0, 800.0]))
     assert found.value[0, 0] == 0 and found.high[0] == pytest.approx([1 - 0.05 ** 0.25, 1 - 0.05 ** 0.25, 0])
-    one_failed = chain.left([70.0, 80.0, 90.0, 100.0], range(4), 800.0, failed=1)
+    one_failed = chain.compute_left_volume([70.0, 80.0, 90.0, 100.0], range(4), 800.0, failed=1)
     more = chain.family(always, np.array([20.0]), [one_failed], np.array([100.0]))
     assert more.high[0, 0] == pytest.approx(stats.beta.ppf(0.95, 2, 4))
 
@@ -182,6 +183,7 @@ def test_upper_bounds_hold_for_the_worst_dependence(number):
     always = np.full((fragility.REPLICATES, 1, number), 10.0)
     for _ in range(100):
         drawn = [rng.exponential(100.0, 24) for _ in range(number)]
-        band = chain.family(always, np.array([20.0]), [chain.left(one, range(24), 1e5) for one in drawn], level)
+        band = chain.family(always, np.array([20.0]), [chain.compute_left_volume(one, range(24), 1e5) for one in drawn],
+                            level)
         held += [band.high[0, 0] >= worst, band.low[0, 0] <= apart <= band.high[0, 0]]
     assert (held >= 95).all()

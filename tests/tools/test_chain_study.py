@@ -45,7 +45,7 @@ def made(tmp_path_factory):
 def mine(made, here, monkeypatch):
     """The same in the test's folder; no report of the study."""
     shutil.copytree(made, here, dirs_exist_ok=True)
-    monkeypatch.setattr(study, "write_report", lambda *_, **__: None)
+    monkeypatch.setattr(study, "write_site_report", lambda *_, **__: None)
     return here
 
 
@@ -126,14 +126,14 @@ def shown_in_the_report(of):
     class Data:
         study, folder = made_study.study(chain=chain), Path("mine/ensemble")
 
-    *texts, figures, _, parts, _ = chain_part.section(Data, Numbers()).blocks
+    *texts, figures, _, parts, _ = chain_part.make_chain_section(Data, Numbers()).blocks
     picture, = figures.pictures
     assert picture.uri.startswith("data:image/svg")
     assert len(texts) == len(of["chain"]["more_than_m3"]) + 1 and len(parts.rows) == chain_part.MOST_ROWS
     total = sum(float(row[1]) for row in parts.rows)
     assert total == pytest.approx(of["chain"]["per_year"][0]["value"], rel=0.05)
     Data.study = made_study.study(chain=replace(chain, withheld=["few balls"]))
-    assert chain_part.section(Data, Numbers()) is None
+    assert chain_part.make_chain_section(Data, Numbers()) is None
 
 
 @pytest.fixture

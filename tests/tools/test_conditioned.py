@@ -38,7 +38,7 @@ def mass_of(lengths):
 
 def shares(lengths, volumes):
     mass = mass_of(lengths)
-    return mass.share @ conditioned.above(volumes, LEVELS) + mass.far
+    return mass.share @ conditioned.are_above_levels(volumes, LEVELS) + mass.far
 
 
 # --- bounds ---
@@ -53,7 +53,7 @@ def test_bands_hold_a_reference(jump, least):
         found.append(shares(lengths, volumes))
         if seed >= 40:
             continue
-        curve = conditioned.curve(volumes, mass_of(lengths))
+        curve = conditioned.compute_known_curve(volumes, mass_of(lengths))
         bands.append([(one.low, one.high) for one in map(curve.at, LEVELS)])
     low, high = np.moveaxis(bands, 2, 0)
     held = ((low <= reference) & (reference <= high)).sum(axis=0)
@@ -89,12 +89,12 @@ def test_an_estimate_by_hand():
 def test_what_lies_beyond_exceeds_every_value():
     lengths = np.linspace(1000, 1800, 40)
     mass = mass_of(lengths)
-    curve = conditioned.curve(lengths - 1000, mass)
+    curve = conditioned.compute_known_curve(lengths - 1000, mass)
     assert curve.share[-1] == pytest.approx(mass.far) and 0.3 < mass.far < 0.85
     assert curve.share[0] == pytest.approx(1)
     assert (np.diff(curve.share) <= 1e-12).all() and (curve.low <= curve.share).all() and curve.low[-1] == 0
     assert (curve.high >= curve.share - 1e-12).all()
-    few, most = conditioned.quantiles(curve, (0.1, 0.9))
+    few, most = conditioned.compute_known_quantiles(curve, (0.1, 0.9))
     assert 0 <= few.low <= few.value <= 800
     assert (most.value, most.high) == (None, None)
 
@@ -107,7 +107,7 @@ def test_events_before_the_shortest_run_may_leave_more_on_a_road(shortest):
     mass = conditioned.masses(weights.of_lengths(lengths, law.sf(lengths)))
     assert mass.early.sum() == pytest.approx(law.cdf(shortest))
     left, lost = (10000 * np.exp(-((length - 500) / 150) ** 2) for length in (lengths, events))
-    curve = conditioned.curve(left, mass)
+    curve = conditioned.compute_known_curve(left, mass)
     for volume in (2000, 5000, 7500):
         band, truth = curve.at(volume), (lost > volume).mean()
         assert band.low <= truth <= band.high and band.low <= band.value <= band.high, (volume, truth, band)
@@ -127,7 +127,7 @@ def test_a_quantile_in_a_gap_is_no_number(share, values):
     assert (low, high) == (1200, 1500)
     mass = conditioned.masses(found)
     assert [one.sum() for one in mass.either] == pytest.approx([mass.share.sum()] * 2)
-    one, = conditioned.quantiles(conditioned.curve(values, mass), [share], values, mass)
+    one, = conditioned.compute_known_quantiles(conditioned.compute_known_curve(values, mass), [share], values, mass)
     falling = values[0] > values[-1]
     inside = LAW.cdf(1200) < (1 - share - mass.far if falling else share) < LAW.cdf(1500)
     assert (one.gap is not None) == (bool(inside) and np.ptp(values) > 0)
@@ -143,7 +143,7 @@ def test_without_a_gap_there_is_no_either():
     lengths = LAW.ppf(np.linspace(0.01, 0.99, 64))
     mass = conditioned.masses(weights.of_lengths(lengths, LAW.sf(lengths)))
     assert mass.either is None
-    one, = conditioned.quantiles(conditioned.curve(lengths, mass), (0.5,), lengths, mass)
+    one, = conditioned.compute_known_quantiles(conditioned.compute_known_curve(lengths, mass), (0.5,), lengths, mass)
     assert one.gap is None
 
 
@@ -167,7 +167,7 @@ def test_words_of_a_quantile_in_a_gap(gap):
 
 def test_runs_that_reach_no_event_say_nothing():
     mass = conditioned.masses(weights.of_lengths([2000, 2000], [0.4, 0.4]))
-    curve = conditioned.curve([1.0, 2.0], mass)
+    curve = conditioned.compute_known_curve([1.0, 2.0], mass)
     assert (curve.low[-1], curve.high[0]) == (0, 1)
 
 
@@ -226,9 +226,9 @@ def test_an_ensemble_is_weighted(slope, succeed, capsys, monkeypatch):
     assert added in (4, 8) and len(rows) == found["runs"] == 8 + added and (ratio[8:] < 1).all()
     whole = yaml.safe_load(Path("out/study.yaml").read_text())["ensemble"]
     assert (whole["runs"], whole["points"], whole["design"]["points"]) == (8, 8, 8)
-    columns, last = travel_shares.columns, list(csv.DictReader(open("out/study.csv", encoding="ascii")))[-1]
-    monkeypatch.setattr(travel_shares, "columns", lambda summary: {     # the last per cent of an added run left
-        **columns(summary),
+    columns, last = travel_shares.read_share_columns, list(csv.DictReader(open("out/study.csv", encoding="ascii")))[-1]
+    monkeypatch.setattr(travel_shares, "read_share_columns", lambda summary: {
+        **columns(summary),     # the last per cent of an added run left
         **({"distance_99_m": None} if summary["travel"]["front"] == pytest.approx(float(last["front_m"])) else {})})
     for path in Path("out").glob("*/.row.json"):        # what they say was kept
         path.unlink()
@@ -296,14 +296,14 @@ def test_what_is_not_reached_is_said():
     runs = type("Runs", (), {"rows": rows, "failed": 1})
     about = made_study.weighted(reached=0.4, far=0.5, short=0.1, longest_m=1700.4, shortest_m=900, effective=11.6,
                                 gaps=[{"low_m": 1200, "high_m": 1500, "share": 0.2}])
-    lines = list(map(str, known_events.doubts(about, runs)))
+    lines = list(map(str, known_events.find_known_caveats(about, runs)))
     for line, text in zip(lines, ("no run goes beyond 1,700 m; 50 % of known events do", "before 900 m; 10 %",
                                   "between 1,200 and 1,500 m no run ends; 20 % of known events do", "as 12 runs",
                                   "1 of 3 runs have no length", "1 of 2 runs lost more than 1 %")):
         assert text in line
     assert len(lines) == 6
-    assert known_events.doubts(made_study.weighted(reached=0.96, far=0.02, short=0.02, effective=60),
-                               type("Runs", (), {"rows": rows[:1], "failed": 0})) == []
+    assert known_events.find_known_caveats(made_study.weighted(reached=0.96, far=0.02, short=0.02, effective=60),
+                                           type("Runs", (), {"rows": rows[:1], "failed": 0})) == []
 
 
 def test_a_report_shows_no_number_where_events_go_beyond_the_runs():

@@ -289,7 +289,7 @@ def test_a_combination_that_scatters_more_than_the_others():
 
 @pytest.mark.parametrize("deviation, expected", [(351, 10), (511, 100), (124, 10), (49.9, 1), (50, 10), (0.3, 0.01)])
 def test_to_what_a_volume_is_known(deviation, expected):
-    assert rounding.place(deviation) == pytest.approx(expected)
+    assert rounding.choose_rounding(deviation) == pytest.approx(expected)
 
 
 def test_rounded_parts_add_up_and_are_never_too_small():
@@ -307,5 +307,6 @@ def test_without_a_scatter_three_digits_are_shown():
     assert best.place == 100 and best.rounded()["volume"] == 14800
     assert predict(combinations((0,))).rounded()["volume"] == 0
     assert predict(combinations((1000,))).rounded()["volume"] == 1000
-    assert (rounding.text(14758.2, 10), rounding.text(14758.2, 0.1), rounding.text(0.0149, 0.01)) == (
+    assert (rounding.format_rounded(14758.2, 10), rounding.format_rounded(14758.2, 0.1),
+            rounding.format_rounded(0.0149, 0.01)) == (
         "14,760", "14,758.2", "0.01")

@@ -56,7 +56,7 @@ SAME, MORE = (10.0, 11.0, 10.5), (13.0, 14.0, 13.5)
 def test_resolved_takes_two_halvings_from_eight_balls(values, balls, resolved):
     found = compared(*((2.0 ** (len(values) - 1 - k), one) for k, one in enumerate(values)), balls=balls)
     assert found.resolved is resolved
-    words = convergence.words(found, "d", "to remove", "m3", "{:g}".format)
+    words = convergence.describe_convergence(found, "d", "to remove", "m3", "{:g}".format)
     assert words[-1].startswith("to remove: resolved" if resolved else "to remove: not resolved")
 
 
@@ -83,9 +83,9 @@ def slope(tiny_case, capsys):
 
 def test_sizes_that_did_not_finish_leave_no_older_comparison(tmp_path, monkeypatch):
     (tmp_path / "converge.yaml").write_text("of runs before")
-    monkeypatch.setattr(size_study, "rows_of", lambda *_: [])
+    monkeypatch.setattr(size_study, "read_run_rows", lambda *_: [])
     plan = size_study.Plan(SimpleNamespace(output=tmp_path), {}, {}, "d", [])
-    size_study.collect(plan, ["front_m"], None)
+    size_study.collect_sizes(plan, ["front_m"], None)
     assert not (tmp_path / "converge.yaml").exists()
 
 

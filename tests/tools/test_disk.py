@@ -301,7 +301,7 @@ def many_sets(folder, name, number, failed):
             with disk.complete(folder, "marker") as new:
                 for part in ("a", "b", "marker"):
                     (new / part).write_text(name)
-            with disk.beside(folder / "c", folder / "d") as pair:
+            with disk.write_beside(folder / "c", folder / "d") as pair:
                 for part in pair:
                     part.write_text(name)
     except Exception as error:
@@ -344,7 +344,7 @@ def test_what_a_marker_promises_is_on_the_disk(tmp_path, monkeypatch):
     assert sorted(done[:3]) == sorted(["a.csv", "m.yaml", new.name])
     assert done[3:] == ["set", "to a.csv", "set", "to m.yaml", "set", tmp_path.name]
     done.clear()
-    disk.write(tmp_path / "one", "text")
+    disk.write_file(tmp_path / "one", "text")
     assert done == [f".one.{platform.node()}.{os.getpid()}.new", "to one", tmp_path.name]
 
 
@@ -354,7 +354,7 @@ def test_a_folder_that_cannot_be_reached_is_one_line(tmp_path, monkeypatch):
 
     monkeypatch.setattr(Path, "is_dir", is_dir)
     with pytest.raises(SlopeError, match="one: cannot be written: Permission denied"):
-        disk.write(tmp_path / "one", "text")
+        disk.write_file(tmp_path / "one", "text")
 
 
 def test_what_a_killed_process_left_goes_with_the_next_file(tmp_path):
@@ -368,7 +368,7 @@ def test_what_a_killed_process_left_goes_with_the_next_file(tmp_path):
               tmp_path / f".two.{platform.node()}.{child}.new"]
     for path in (left, *others):
         path.write_text("half")
-    disk.write(tmp_path / "one", "text")
+    disk.write_file(tmp_path / "one", "text")
     assert sorted(tmp_path.iterdir()) == sorted([*others, tmp_path / "one"])
 
 
@@ -490,7 +490,7 @@ def test_a_read_only_file_system_is_said(tmp_path, monkeypatch):
     monkeypatch.setattr(Path, "write_bytes", refuse)
     monkeypatch.setattr(Path, "unlink", refuse)
     with pytest.raises(SlopeError, match="report.html: cannot be written: Read-only file system"):
-        disk.write(tmp_path / "report.html", "text")
+        disk.write_file(tmp_path / "report.html", "text")
 
 
 def test_what_is_twice_in_a_yaml_is_written_twice():

@@ -48,7 +48,7 @@ def most(here, **more):
 
 
 def evaluated(here, made, rows):
-    return elastic.evaluate(elastic.read(elastic.Made(0.9, "0", made), rows, here))
+    return elastic.evaluate_elastic(elastic.read_elastic_runs(elastic.Made(0.9, "0", made), rows, here))
 
 
 def test_reach_and_area_beside_the_usual_runs(tmp_path, rows):
@@ -61,7 +61,7 @@ def test_reach_and_area_beside_the_usual_runs(tmp_path, rows):
         "restitution 0.9 of soil, slip surface and ground, rolling 0, 3 runs: 99 % of the volume stays within 110 m "
         "(100 to 120) instead of 85 m (80 to 90); all other runs, up to 95 m; the deposit covers 92 m2 (80 to 108) "
         "instead of 44 m2 (40 to 48); all other runs, up to 56 m2")
-    text = elastic.table(elastic.read(elastic.Made(0.9, "0", made), rows, tmp_path))
+    text = elastic.tabulate_elastic(elastic.read_elastic_runs(elastic.Made(0.9, "0", made), rows, tmp_path))
     table = list(csv.DictReader(text.splitlines()))
     assert [(one["run"], one["largest_restitution"]) for one in table] == [
         ("e1", "yes"), ("e2", "yes"), ("e3", "yes"), ("a", "no"), ("b", "no"), ("c", "no")]

@@ -110,7 +110,7 @@ def test_bounds_are_those_of_clopper_and_pearson():
 
 def test_failed_runs_widen_the_bounds_and_move_no_estimate():
     values, point = np.arange(1, 41.0), range(40)
-    without, with_ = (hazard.curve(values, point, failed).at(30) for failed in (0, 4))
+    without, with_ = (hazard.compute_hazard_curve(values, point, failed).at(30) for failed in (0, 4))
     assert without.value == with_.value == 0.25
     assert with_.low < without.low and with_.high > without.high
     assert with_.low == pytest.approx(hazard.share_bounds(10, 44)[0])
@@ -119,7 +119,7 @@ def test_failed_runs_widen_the_bounds_and_move_no_estimate():
 
 def test_quantiles_and_their_bounds_are_order_statistics():
     values = np.random.default_rng(2).permutation(np.arange(1, 101.0))
-    found = hazard.quantiles(values, range(100))
+    found = hazard.compute_quantiles(values, range(100))
     assert [one.value for one in found] == [50, 90, 95, 99]
     # X_(l) and X_(u) with P(B(100, 0.9) < l) <= 5 % and P(B(100, 0.9) < u) >= 95 %
     low = max(k for k in range(1, 101) if stats.binom.cdf(k - 1, 100, 0.9) <= 0.05)
@@ -127,15 +127,17 @@ def test_quantiles_and_their_bounds_are_order_statistics():
     assert (found[1].low, found[1].high) == (low, high)
     # 100 runs do not bound the 99 % quantile, three not even the median
     assert found[3].high is None and stats.binom.cdf(99, 100, 0.99) < 0.95
-    assert hazard.quantiles([1, 2, 3], range(3))[0] == (0.5, 2, None, None)
+    assert hazard.compute_quantiles([1, 2, 3], range(3))[0] == (0.5, 2, None, None)
 
 
 def test_runs_of_the_same_point_are_worth_less():
     values = np.repeat(np.arange(1, 21.0), 3)
     point = np.repeat(np.arange(20), 3)
-    alone, together = hazard.curve(values, range(60)).at(10), hazard.curve(values, point).at(10)
+    alone, together = hazard.compute_hazard_curve(values, range(60)).at(10), hazard.compute_hazard_curve(values,
+                                                                                                         point).at(10)
     assert alone.value == together.value == 0.5
-    assert (together.low, together.high) == pytest.approx(hazard.curve(np.arange(1, 21.0), range(20)).at(10)[1:])
+    assert (together.low, together.high) == pytest.approx(hazard.compute_hazard_curve(np.arange(1, 21.0),
+                                                                                      range(20)).at(10)[1:])
     assert together.high - together.low > 1.5 * (alone.high - alone.low)
     # three that have nothing in common count as three
     free = np.random.default_rng(1).permutation(values)
@@ -155,7 +157,7 @@ def test_bands_of_the_hazard_curve_cover_a_reference():
     shares = [(reference > level).mean() for level in levels]
     covered = np.zeros(3, int)
     for seed in range(40):
-        curve = hazard.curve(noisy(designs.points(designs.SOBOL, 3, 64, seed), rng), range(64))
+        curve = hazard.compute_hazard_curve(noisy(designs.points(designs.SOBOL, 3, 64, seed), rng), range(64))
         bands = [curve.at(level) for level in levels]
         covered += [band.low <= share <= band.high for band, share in zip(bands, shares)]
     assert (covered >= 32).all(), covered
@@ -460,7 +462,7 @@ def test_what_an_ensemble_says_in_words():
         influence={"front_m": {"text": "so", "variables": {
             "a": {"rank": 0.1, "first": 0.1, "first_error": 0.0, "total": 0.2, "total_error": 0.05},
             "b": {"rank": -0.7, "first": 0.7, "first_error": 0.0, "total": 0.9, "total_error": 0.01}}}})
-    assert ensemble.describe(about) == [
+    assert ensemble.describe_ensemble(about) == [
         "ensemble: 5 runs of 5 points; bounds hold with 90 %",
         "farthest ball: 90 % of the runs stay within 120 m (100 to ?)",
         "farthest ball depends on b (0.70 alone, 0.90 with others, +- 0.01), a (0.10 alone, 0.20 with others, +- "
@@ -480,5 +482,5 @@ def test_points_of_the_design_are_found_in_the_rows():
     plan = sample.Sample(3, "sobol", 1, (variable("0:10"),))
     rows = [made_rows.row(set={"steps": "9", "x": value}, front_m=front)
             for value, front in (("5", 1.0), ("5", 2.0), ("2.5", 3.0), ("5", 4.0))]
-    assert ensemble.points_of(plan, rows) == [0, 0, 1, 0]
+    assert ensemble.number_design_points(plan, rows) == [0, 0, 1, 0]
     assert plan.places(rows).tolist() == [[0.5], [0.5], [0.25], [0.5]]

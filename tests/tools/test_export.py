@@ -184,7 +184,7 @@ def test_without_a_terrain_in_local_metres(slope):
 def test_a_geopackage_without_a_crs_is_in_metres(tmp_path, crs, number):
     """Not in degrees, for which GDAL takes it, and QGIS with it."""
     raster = rasters.Raster(np.ones((2, 2)), Affine(1, 0, 0, 0, -1, 2), crs and CRS.from_string(crs))
-    geopackage.write(tmp_path / "a.gpkg", {"a": geopackage.Layer("Point", {}, [(Point(1, 2), {})])}, raster)
+    geopackage.write_geopackage(tmp_path / "a.gpkg", {"a": geopackage.Layer("Point", {}, [(Point(1, 2), {})])}, raster)
     with contextlib.closing(sqlite3.connect(tmp_path / "a.gpkg")) as base:
         for table in ("gpkg_contents", "gpkg_geometry_columns"):
             assert base.execute(f"SELECT srs_id FROM {table}").fetchone() == (number,)
@@ -247,10 +247,10 @@ def test_bad_input_is_one_line(slope, here, arguments, message):
 
 def test_the_base_of_a_run(here):
     values = write_rasters()
-    found = deposit.read("run", None, lambda text: None)
+    found = deposit.read_deposit("run", None, lambda text: None)
     assert np.array_equal(found.base, values["base"], equal_nan=True)
     os.remove("run.base.asc")
-    found = deposit.read("run", None, lambda text: None)
+    found = deposit.read_deposit("run", None, lambda text: None)
     assert found.base == pytest.approx(values["base"], nan_ok=True, abs=1e-9)
 
 
@@ -263,7 +263,7 @@ def test_a_base_of_another_run(here, change, message):
     values = write_rasters()
     write_asc("run.base.asc", change(values["base"]), 2.5)
     with pytest.raises(SlopeError) as error:
-        deposit.read("run", None, lambda text: None)
+        deposit.read_deposit("run", None, lambda text: None)
     assert message in str(error.value)
 
 

@@ -100,10 +100,10 @@ def test_the_weighted_lengths_are_those_of_known_events(ensembles):
 def test_added_points_count_as_the_parameters_are_distributed(ensembles, reference):
     """Shares above volumes within their bounds; a parameter's mean nearer to the truth than without the ratios."""
     u, volumes, mass = reference
-    truth = mass.share @ conditioned.above(volumes, LEVELS) + mass.far
+    truth = mass.share @ conditioned.are_above_levels(volumes, LEVELS) + mass.far
     held, wrong = 0, {True: [], False: []}
     for one in ensembles:
-        curve = conditioned.curve(one.volumes, conditioned.masses(one.weights()))
+        curve = conditioned.compute_known_curve(one.volumes, conditioned.masses(one.weights()))
         bounds = np.array([curve.at(level) for level in LEVELS])
         held += int(((bounds[:, 1] <= truth) & (truth <= bounds[:, 2])).sum())
         # a box holds less of the second variable than the design, at the same length
@@ -169,8 +169,9 @@ def test_why_no_more_are_added():
     u[:2] = 0, 0, 1
     found = stopped(added, lengths=response(u)[0])
     assert found.code is Code.RANGE and found.numbers["ends"]["a"].startswith("0.0")
-    assert "range" in answer_words.text(found) and "a 0.0" in answer_words.text(found)
-    assert "a 0.07" in answer_words.text(found._replace(numbers={"ends": "a 0.07"}))       # of an older version
+    assert "range" in answer_words.describe_reason(found) and "a 0.0" in answer_words.describe_reason(found)
+    assert "a 0.07" in answer_words.describe_reason(
+        found._replace(numbers={"ends": "a 0.07"}))       # of an older version
     u[:2] = 0.5
     for _ in range(8):
         new, added = proposed(added, u, lengths, beyond)
@@ -230,10 +231,10 @@ def test_a_study_is_continued(tmp_path):
     batch, added = proposed(added, u, lengths, twins.exceedance(lengths))
     assert added.line(batch, lengths, twins.exceedance(lengths)).startswith("no run goes beyond ")
     assert "8 more points towards a 0.0 to " in added.line(batch, lengths, twins.exceedance(lengths))
-    farther.keep(tmp_path, added)
-    assert farther.read(tmp_path, planned(2 * RUNS, high=10.0)).batches == added.batches
-    assert farther.read(tmp_path, planned(high=9.0)).batches == []
+    farther.write_added_runs(tmp_path, added)
+    assert farther.read_added_runs(tmp_path, planned(2 * RUNS, high=10.0)).batches == added.batches
+    assert farther.read_added_runs(tmp_path, planned(high=9.0)).batches == []
     text = (tmp_path / farther.FILE).read_text()
     (tmp_path / farther.FILE).write_text(text.replace("box:", "bax:"))
     with pytest.raises(SlopeError, match="must be what `slope study --known` wrote"):
-        farther.read(tmp_path, planned(high=10.0))
+        farther.read_added_runs(tmp_path, planned(high=10.0))

@@ -145,7 +145,7 @@ def written(slope):
 def one(text):
     """The one tile of a file with that content."""
     Path("tile.xml").write_bytes(text.encode() if isinstance(text, str) else text)
-    tile, = fggml.read("tile.xml")
+    tile, = fggml.read_fggml_tiles("tile.xml")
     return tile
 
 
@@ -273,7 +273,7 @@ def test_what_macos_adds_to_a_zip_is_skipped(here):
     more = {f"__MACOSX/folder/._{name}": "\0\5" for name in texts}
     texts = {f"folder/{name}": text for name, text in texts.items()}
     write_zip("mac.zip", {**texts, **more, "._a.xml": "\0", "._b.zip": ""})
-    assert len(fggml.read("mac.zip")) == len(texts)
+    assert len(fggml.read_fggml_tiles("mac.zip")) == len(texts)
 
 
 def test_all_zips_in_a_zip_share_one_limit(here, monkeypatch):
@@ -283,10 +283,10 @@ def test_all_zips_in_a_zip_share_one_limit(here, monkeypatch):
     (here / "pack.zip").write_bytes(zipped({f"{k}.zip": data for k, data in enumerate(inner)}))
     total = sum(map(len, inner)) + sum(len(text.encode()) for text in quarters()[1].values())
     monkeypatch.setattr(fggml, "LARGEST_ZIP", total)
-    assert len(fggml.read("pack.zip")) == 4
+    assert len(fggml.read_fggml_tiles("pack.zip")) == 4
     monkeypatch.setattr(fggml, "LARGEST_ZIP", total - 1)
     with pytest.raises(rasters.SlopeError, match="pack.zip: 3.zip: must have at most"):
-        fggml.read("pack.zip")
+        fggml.read_fggml_tiles("pack.zip")
 
 
 def test_names_of_members_are_never_paths(here):
@@ -296,7 +296,7 @@ def test_names_of_members_are_never_paths(here):
     assert os.listdir() == ["all.zip"]
     write_zip("bad.zip", {"../\x1b[31m.xml": "<a"})
     with pytest.raises(rasters.SlopeError, match=r"bad.zip: ../\?\[31m.xml: line 1: must be XML"):
-        fggml.read("bad.zip")
+        fggml.read_fggml_tiles("bad.zip")
 
 
 @pytest.mark.parametrize("spacing, cell", [(1 / 30, 1), (0.2, 5), (0.4, 10)])

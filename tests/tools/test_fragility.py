@@ -55,7 +55,7 @@ def test_normal_strengths_on_an_infinite_slope(correlation):
     peaks = np.arange(20.0, 600.0, 20.0)
     soil = fragility.strengths_of(normal_soil(correlation), 1024, 1)
     capacity = fragility.capacities([infinite_slope()], soil, fragility.PseudoStatic(1.0))[:, :, 0]
-    found = fragility.curve(capacity, peaks)
+    found = fragility.compute_fragility_curve(capacity, peaks)
     expected = chance(peaks, correlation)
     assert expected.min() < 0.02 and expected.max() > 0.98
     assert found.value == pytest.approx(expected, abs=2e-3)
@@ -70,8 +70,9 @@ def test_bands_hold_what_they_promise():
     inside = 0
     for seed in range(200):
         soil = fragility.strengths_of(normal_soil(), 64, 1000 * seed + 1)
-        band = fragility.curve(fragility.capacities([infinite_slope()], soil, fragility.PseudoStatic(1.0))[:, :, 0],
-                               peaks)
+        band = fragility.compute_fragility_curve(fragility.capacities([infinite_slope()], soil,
+                                                                      fragility.PseudoStatic(1.0))[:, :, 0],
+                                                 peaks)
         inside += band.low[0] <= expected <= band.high[0]
     assert 165 <= inside <= 195
 
@@ -104,15 +105,16 @@ def test_lognormal_capacities_come_back():
     rng = np.random.default_rng(5)
     strength = np.exp(0.3 * rng.normal(size=(fragility.REPLICATES * 512, 1)))
     record = np.exp(0.2 * stats.norm.ppf((np.arange(21) + 0.5) / 21))
-    found = fragility.fit(400 * strength * record, np.arange(50.0, 1500.0, 25.0))
+    found = fragility.fit_lognormal(400 * strength * record, np.arange(50.0, 1500.0, 25.0))
     assert (found.median, found.beta_u) == pytest.approx((400, 0.3), rel=0.02)
     assert found.beta_r == pytest.approx(0.2, rel=0.05)
     assert found.hclpf == pytest.approx(400 * np.exp(-1.645 * 0.5), rel=0.03)
     assert found.off < 0.01 and found.median_error < 5
     assert found.at_hclpf == pytest.approx(found.at_hclpf_fitted, rel=0.2)
-    weak = fragility.fit(np.where(strength < 0.75, 100.0, 400 * strength * record), np.arange(50.0, 1500.0, 25.0))
+    weak = fragility.fit_lognormal(np.where(strength < 0.75, 100.0, 400 * strength * record),
+                                   np.arange(50.0, 1500.0, 25.0))
     assert weak.at_hclpf > 1.5 * weak.at_hclpf_fitted
-    assert fragility.fit(400 * strength * record, np.array([5.0, 10.0, 15.0])) is None
+    assert fragility.fit_lognormal(400 * strength * record, np.array([5.0, 10.0, 15.0])) is None
 
 
 def test_annual_frequency_is_the_integral():
@@ -141,7 +143,7 @@ SOIL = "--density 2039 --cohesion 3e3:9e3 --friction 22:32"
     "peak_gal,annual probability of exceedance\n50,0.00995016625\n200,0.000999500167\n"])
 def test_the_head_of_a_hazard_counts(tmp_path, text):
     (tmp_path / "h.csv").write_text(text)
-    found = hazard_file.read(tmp_path / "h.csv")
+    found = hazard_file.read_seismic_hazard(tmp_path / "h.csv")
     assert np.array(found) == pytest.approx(np.array([[50, 200], [1e-2, 1e-3]]), rel=1e-6)
 
 
@@ -158,7 +160,7 @@ def test_the_head_of_a_hazard_counts(tmp_path, text):
 def test_a_hazard_in_another_order_or_unit(tmp_path, text, rule):
     (tmp_path / "h.csv").write_text(text)
     with pytest.raises(SlopeError, match=re.escape(f"h.csv: {rule}")):
-        hazard_file.read(tmp_path / "h.csv")
+        hazard_file.read_seismic_hazard(tmp_path / "h.csv")
 
 
 def write_slips():
@@ -169,7 +171,7 @@ def write_slips():
     rows = []
     for rank, r in ((1, radius), (2, radius + 1.0)):
         base = columns.base_of(ground, centre, r)
-        inside = columns.largest(ground, base)
+        inside = columns.find_largest_part(ground, base)
         volume = columns.of_sphere(ground, centre, r, 180.0, 2000.0).volume
         write_asc(f"slips/out.{rank}.base.asc", np.where(inside, base, np.nan), 0.5)
         area = write_columns(f"slips/out.{rank}.columns.csv", ground, centre, r, 2000.0)

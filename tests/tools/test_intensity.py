@@ -73,13 +73,13 @@ def test_a_scatter_of_failing_is_doubted():
     """Of 1000 m3 released, 10 m3 on the road are no failure."""
     rows = [row("0", "0", "", 0.0), row("0", "0", "0.5", 10.0), row("300", "0", "", 5.0), row("300", "0", "0.5", 60.0),
             row("600", "0", "", 40.0), row("600", "0", "0.5", 60.0)]
-    one, = intensity.doubts(intensity.entry("peak", combinations.grouped(rows), []))
+    one, = intensity.find_intensity_caveats(intensity.entry("peak", combinations.grouped(rows), []))
     assert one.numbers == {"variable": "peak", "values": "300"}
-    assert not intensity.doubts(intensity.entry("peak", combinations.grouped(rows[:2] + rows[4:]), []))
+    assert not intensity.find_intensity_caveats(intensity.entry("peak", combinations.grouped(rows[:2] + rows[4:]), []))
     assert one.kind == "fails at times"
     # it came down in all runs, and to the road in one only
     rows = [changed(each, centroid_m=each.centroid_m + 100) for each in rows]
-    one, = intensity.doubts(intensity.entry("peak", combinations.grouped(rows), []))
+    one, = intensity.find_intensity_caveats(intensity.entry("peak", combinations.grouped(rows), []))
     assert (one.kind, one.numbers["values"]) == ("reaches at times", "300")
 
 
@@ -90,7 +90,7 @@ def test_a_scatter_of_failing_is_doubted():
                                              ({"peak": ["a", "b"]}, None), ({"peak": ["0", "nan"]}, None),
                                              ({"peak": ["0", "inf"], "pga": ["1", "2"]}, "pga")])
 def test_which_variable_is_an_intensity(settings, found):
-    assert intensity.check(None, settings, True) == found
+    assert intensity.check_intensity(None, settings, True) == found
 
 
 @pytest.mark.parametrize("named, settings, road, words", [
@@ -101,7 +101,7 @@ def test_which_variable_is_an_intensity(settings, found):
     ("peak", {"peak": ["0"]}, True, ("--intensity", "several", "0"))])
 def test_wrong_intensity(named, settings, road, words):
     with pytest.raises(errors.SlopeError) as error:
-        intensity.check(named, settings, road)
+        intensity.check_intensity(named, settings, road)
     assert all(word in str(error.value) for word in words) and "\n" not in str(error.value)
 
 

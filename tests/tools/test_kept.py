@@ -66,7 +66,7 @@ def test_a_second_study_measures_nothing(succeed, monkeypatch):
     succeed(words)
     before, table = loaded(), Path("out/study.csv").read_text()
     calls = []
-    for name in ("measured", "measured_on"):
+    for name in ("measure_run", "measured_on"):
         def counted(*given, name=name, really=getattr(run_rows, name)):
             calls.append(name)
             return really(*given)
@@ -87,7 +87,7 @@ def test_a_second_study_measures_nothing(succeed, monkeypatch):
     thickness, = Path("out/rolling_0").glob("*.thickness.asc")
     thickness.write_text(thickness.read_text() + "\n")
     succeed(words)
-    assert calls[6:] == ["measured", "measured_on"]
+    assert calls[6:] == ["measure_run", "measured_on"]
     Path("out/rolling_0.3/volume/volume.tif").write_bytes(b"")
     succeed(words)
     assert calls[8:] == ["measured_on"] and Path("out/rolling_0.3/volume/volume.tif").stat().st_size

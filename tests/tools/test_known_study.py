@@ -70,8 +70,8 @@ def test_both_studies_of_masses_of_all_sizes(request, capsys, monkeypatch, name,
 def test_the_ensemble_varies_ground_and_restitution(large, capsys, monkeypatch):
     """Friction, rolling, spacing, restitution on the field and the packing; runs that are added go farther."""
     seen = []
-    monkeypatch.setattr(study_command.site_study, "make", lambda *_: None)
-    monkeypatch.setattr(ensemble_study, "run", lambda _, questions, *more: seen.append(questions.order))
+    monkeypatch.setattr(study_command.site_study, "make_site_runs", lambda *_: None)
+    monkeypatch.setattr(ensemble_study, "run_ensemble", lambda _, questions, *more: seen.append(questions.order))
     assert study(capsys, monkeypatch, "big")[0] == 0
     [order] = seen
     assert {one.name: (one.low, one.high) for one in order.sample.variables} == {
@@ -94,7 +94,7 @@ def test_other_grounds_at_both_ends_of_rolling(mine, capsys, monkeypatch):  # no
                       for more in ("", "_packing_2", "_packing_3")),
                     *(f"rolling_{rolling}_spacing_{spacing}" for spacing in ("0.5", "0.7") for rolling in ("0", "0.1"))]
     assert "_d_" not in out and "17 runs, 0 of them finished" in out        # one of half the step
-    choices = site_choices.load(mine).choices
+    choices = site_choices.load_site(mine).choices
     own = choices.changed({("study", "spacing"): [0.5, 0.9], ("study", "rolling"): [0.2]})
     assert own.other_grounds == [(0.5, 0.2)]        # its own ground is none of the others
 
@@ -118,8 +118,8 @@ def test_refused(mine, capsys, monkeypatch, words, line):  # noqa: F811
 def test_why_not(large, monkeypatch):
     """Level ground has no fall path; any other mass is compared, with a mapped deposit or without."""
     assert known_study.why_not(large) == ""
-    whole = body.of_site(large)
-    monkeypatch.setattr(body, "of_site", lambda _: whole._replace(raster=whole.raster._replace(
+    whole = body.read_mobility_body(large)
+    monkeypatch.setattr(body, "read_mobility_body", lambda _: whole._replace(raster=whole.raster._replace(
         z=np.full_like(whole.raster.z, 7.0))))
     assert "cannot be compared with known events" in known_study.why_not(large) and "flat" in known_study.why_not(large)
 
@@ -129,31 +129,31 @@ def test_known_of_site_yaml_reaches_the_study(mine, capsys, monkeypatch):  # noq
     choices = (mine / "site.yaml").read_text()
     for given, path, named in (("null", "all", False), ("debris_flows:channelized", "channelized", True)):
         (mine / "site.yaml").write_text(choices.replace("  set: null", f"  set: {given}"))
-        asked = known_arguments.choice_of(None, [], None, site_choices.load(mine))
-        condition = known_events.check(asked, None, mine)
+        asked = known_arguments.choice_of(None, [], None, site_choices.load_site(mine))
+        condition = known_events.check_condition(asked, None, mine)
         found = known_events.mobility_of(condition, mine, mine)
         assert found.law.path == path and found.in_range and (condition.found.strict is not None) == named
         assert asked.about() == {"set": None if given == "null" else given, "left_out": [], "confined": "unknown"}
-        kept = results.Questions({}, {}, (), known=asdict(site_choices.load(mine).choices.known)).among
+        kept = results.Questions({}, {}, (), known=asdict(site_choices.load_site(mine).choices.known)).among
         assert kept == {"set": asked.about()["set"], "confined": "unknown"}
         assert known.of_about(kept).row == asked.row
     with pytest.raises(SlopeError, match="--known: must be a set that covers the mass"):
-        known_events.check(known.choice("rock_avalanches"), "rock_avalanches", mine)
+        known_events.check_condition(known.choice("rock_avalanches"), "rock_avalanches", mine)
 
 
 def test_the_estimate_is_of_the_study_that_is_made(large):
-    choices = site_choices.load(large).choices
-    assert site_choices.load(large).content["found"]["study"]["runs"] == 16 + choices.study.points == 80
-    plan = site_budget.plan(choices)
+    choices = site_choices.load_site(large).choices
+    assert site_choices.load_site(large).content["found"]["study"]["runs"] == 16 + choices.study.points == 80
+    plan = site_budget.plan_budget(choices)
     assert plan.runs == 80 and not plan.half_step and "64 runs weighted by known events" in plan.text
     choices = choices.changed({("study", "points"): 0})
-    plan = site_budget.plan(choices)
+    plan = site_budget.plan_budget(choices)
     assert plan.runs == 16 and not plan.half_step       # no road: nothing to compare
-    assert site_budget.plan(choices.changed({("road", "file"): "road.csv"})).half_step
+    assert site_budget.plan_budget(choices.changed({("road", "file"): "road.csv"})).half_step
     assert plan.text == ("16 runs: 3 rolling resistances x 3 packings, 4 on other grounds, 3 with the largest "
                          "restitution")
-    assert site_budget.plan(choices.changed({("study", "spacing"): []})).runs == 12
-    assert site_budget.plan(choices.changed({("study", "largest_restitution"): None})).runs == 13
+    assert site_budget.plan_budget(choices.changed({("study", "spacing"): []})).runs == 12
+    assert site_budget.plan_budget(choices.changed({("study", "largest_restitution"): None})).runs == 13
 
 
 @pytest.mark.parametrize("left, asked, numbers", [
@@ -171,17 +171,18 @@ def test_time_decides_how_many_points_run_with_finer_balls(left, asked, numbers)
 def test_the_method_is_in_the_results(mine, monkeypatch, capsys):  # noqa: F811
     """It goes from the command to study.yaml through the questions."""
     seen = []
-    monkeypatch.setattr(site_study.results, "collect", lambda setup, questions, *_: seen.append(questions.method))
+    monkeypatch.setattr(site_study.results, "collect_results", lambda setup, questions,
+                        *_: seen.append(questions.method))
     monkeypatch.setattr(site_study.study, "perform", lambda *words, **_: words[3](words[2], None))
-    monkeypatch.setattr(site_study.size_runs, "make", lambda *_: site_study.size_runs.Made((), {}))
-    monkeypatch.setattr(site_study, "step_of", lambda *_: None)
+    monkeypatch.setattr(site_study.size_runs, "make_finer_runs", lambda *_: site_study.size_runs.Made((), {}))
+    monkeypatch.setattr(site_study, "judge_step_run", lambda *_: None)
     monkeypatch.setattr(site_study, "elastic_of", lambda *_: None)
     study(capsys, monkeypatch, "mine --paper")
     assert seen.pop() == known_study.ASKED and not seen
     monkeypatch.setattr(study_command, "run_deck", lambda args, beside: setattr(
         beside, "at", site_study.size_runs.AtFinest(site_study.size_runs.Made((), {}), None)) or made_study.study())
     with pytest.raises(AssertionError):       # there is no study.yaml, as nothing is collected
-        study_command.run_both(study_command.Request(deck=mine), site_choices.load(mine), 8)
+        study_command.run_both(study_command.Request(deck=mine), site_choices.load_site(mine), 8)
     assert seen.pop() == known_study.BESIDE
 
 
@@ -200,10 +201,10 @@ def test_a_site_of_a_mass_on_top_of_the_terrain(large, inside):  # noqa: F811
     assert before.z == pytest.approx(ground.z + mass, abs=2e-3) and (before.crs, before.offset) == (ground.crs,
                                                                                                     ground.offset)
     assert np.nan_to_num(depth.z) == pytest.approx(mass, abs=2e-3)
-    assert body.of_site(top).base == pytest.approx(ground.z, abs=2e-3)
+    assert body.read_mobility_body(top).base == pytest.approx(ground.z, abs=2e-3)
     text = (top / "site.yaml").read_text()
     assert "confined: 'no'" in text and "set: rockfalls" in text
     (top / "site.yaml").write_text(text.replace("confined: 'no'", "confined: yes"))
-    assert site_choices.load(top).choices.known == Known("rockfalls", "yes")
+    assert site_choices.load_site(top).choices.known == Known("rockfalls", "yes")
     inside("top --name again")
     assert rasters.read_asc_local(top / "terrain.asc").z == pytest.approx(before.z, abs=1e-6)      # once, not twice

@@ -142,7 +142,7 @@ def gridded(function, cell, west=0.0, south=0.0, size=SIDE):
 def evaluated(road, deposit, ground, cell, lane=LANE, blocked=0.1):
     """The only stretch, its lane's place and the Cutter."""
     raster = gridded(deposit, cell)
-    [one] = lanes.stretches(raster, [road.axis()], WIDTH, blocked)
+    [one] = lanes.find_lane_stretches(raster, [road.axis()], WIDTH, blocked)
     cutter = lanes.Cutter(raster, gridded(ground, cell).z, 30, 4)
     return one, cutter.least(one, WIDTH, lane), cutter
 
@@ -180,8 +180,8 @@ def test_stretch_and_passable_width_beside_a_cone(way, cell):
     def cone(px, py):
         return np.clip(2 - 0.4 * np.hypot(px - x, py - y), 0, None)
 
-    [one] = lanes.stretches(gridded(cone, cell, round(float(x)) - 5.0, round(float(y)) - 5.0, 10.0), [road.axis()],
-                            WIDTH, 0.1)
+    [one] = lanes.find_lane_stretches(gridded(cone, cell, round(float(x)) - 5.0, round(float(y)) - 5.0, 10.0),
+                                      [road.axis()], WIDTH, 0.1)
     half = math.sqrt(4.75 ** 2 - 1)     # where the road's edge cuts the circle
     if way == "curved":
         half = 80 * math.acos((75 ** 2 + 76 ** 2 - 4.75 ** 2) / (2 * 75 * 76))
@@ -236,7 +236,7 @@ def test_an_axis_with_bends_is_divided_without_gaps_and_overlaps():
 @pytest.fixture
 def slope(here, capsys, monkeypatch):
     """Run `slope volume ARGUMENTS`, without its map; gives status, stdout, stderr."""
-    monkeypatch.setattr(volume_files, "draw", lambda path, *_: path.touch())
+    monkeypatch.setattr(volume_files, "draw_removal", lambda path, *_: path.touch())
     return lambda arguments: run_command("volume", arguments, capsys)
 
 
@@ -309,7 +309,7 @@ def test_the_union_of_lanes_along_rising_ground():
         return 0.4 * y + 0 * x
 
     road, raster = ROADS["straight"], gridded(deposit, 1.0)
-    found = lanes.stretches(raster, [road.axis()], WIDTH, 0.1)
+    found = lanes.find_lane_stretches(raster, [road.axis()], WIDTH, 0.1)
     cutter = lanes.Cutter(raster, gridded(ground, 1.0).z, 30, 4)
     got = cutter.removed([cutter.area(one, 0.0, LANE) for one in found]).cells.sum()
     step = 0.1
@@ -332,7 +332,7 @@ def test_the_union_of_lanes_is_that_of_their_cuts(cleared):
     parts = [box(40, round(one["from"]), 44, round(one["to"])) for one in about["stretches"]]
     write_geojson("parts.geojson", *parts)
     from slope_tools.deposits import volume
-    both = volume.of_run("run", volume.Wanted(Path("parts.geojson"), 7, local=True)).about
+    both = volume.compute_removal("run", volume.Wanted(Path("parts.geojson"), 7, local=True)).about
     assert about["clearing"]["remove_lane"] == pytest.approx(both["volume"]["remove"], rel=1e-9)
 
 
@@ -407,7 +407,7 @@ def test_a_road_that_is_written_is_read_as_the_same_line(here):
     place = gridded(GROUNDS["level"], 2.0)._replace(offset=(EAST, NORTH))
     asked = roads.Asked(6.0)
     road = roads.Road(CURVE.buffer(3, cap_style=2), [CURVE])
-    roads.write(Path("road.csv"), road, place)
+    roads.write_road(Path("road.csv"), road, place)
     assert roads.read_local("road.csv", place, asked).line.equals_exact(CURVE, 1e-6)
     with pytest.raises(roads.SlopeError, match="road.csv: is a line, whose width must be given: --road-width"):
         roads.read_local("road.csv", place)
@@ -466,18 +466,18 @@ def run_of(weight, *stretches):
 
 def test_stretches_of_a_study_are_unions_with_shares_and_quantiles():
     runs = [run_of(1, (0, 10, 100.0), (30, 40, 50.0)), run_of(1, (5, 20, 300.0)), run_of(1), run_of(1, (6, 8, 10.0))]
-    about = road_runs.evaluate(runs)
+    about = road_runs.evaluate_road_runs(runs)
     first, second = about.stretches
     assert (first["from"], first["to"], first["share"]) == (0, 20, 0.75)
     assert (second["from"], second["to"], second["share"]) == (30, 40, 0.25)
     assert first["remove_lane"] == [0, 10, 300] and first["passable_width"] == [1, 1, 8]
     assert about.totals["remove_lane"] == [0, 10, 300] and about.share_blocked == 0.75
     assert about.shares == [[0, 5, 0.25], [5, 6, 0.5], [6, 8, 0.75], [8, 10, 0.5], [10, 20, 0.25], [30, 40, 0.25]]
-    heavy = road_runs.evaluate([runs[0]._replace(weight=9), *runs[1:]])
+    heavy = road_runs.evaluate_road_runs([runs[0]._replace(weight=9), *runs[1:]])
     assert heavy.stretches[1]["share"] == pytest.approx(0.75) and heavy.totals["remove_lane"][1] == 150
     head, *lines = road_runs.rows(about)
     assert [len(line) for line in lines] == [len(head)] * 3
-    nothing = road_runs.evaluate([run_of(1), run_of(1)])
+    nothing = road_runs.evaluate_road_runs([run_of(1), run_of(1)])
     assert nothing.stretches == nothing.shares == [] and nothing.share_blocked == 0
 
 
@@ -530,7 +530,7 @@ def test_a_study_of_a_line_is_that_of_the_polygon_and_is_reported(here, capsys, 
     (here / "line.csv").write_text("15,0\n15,24\n")
     (here / "polygon.csv").write_text("13,0\n17,0\n17,24\n13,24\n")
     monkeypatch.setenv("LMP", LMP)
-    monkeypatch.setattr(volume_files, "draw", lambda path, *_: path.touch())
+    monkeypatch.setattr(volume_files, "draw_removal", lambda path, *_: path.touch())
     options = "--lane 1.5 --clearing 20 --loosening 1.25 --blocked 0.05"
     abouts = []
     for name, width in (("line", "--road-width 4"), ("polygon", "")):
@@ -557,11 +557,11 @@ def test_a_study_of_a_line_is_that_of_the_polygon_and_is_reported(here, capsys, 
     assert run_command("report", "line", capsys)[0] == 0
     page = Path("line/report.html").read_text(encoding="utf-8")
     assert 'id="road"' in page and "Where the road is blocked" in page
-    low, high = (rounding.text(value, rounding.place_of_digits(value)) for value in hours)
+    low, high = (rounding.format_rounded(value, rounding.place_of_digits(value)) for value in hours)
     assert f"{low} ({low} to {high})" in page       # of the table
     study, numbers = load_study(Path("line/study.yaml")), Numbers()
     data = SimpleNamespace(study=study)
-    whole, lane = ([rounding.text(one, rounding.place_of_digits(one)) for one in found["totals"][key][::2]]
+    whole, lane = ([rounding.format_rounded(one, rounding.place_of_digits(one)) for one in found["totals"][key][::2]]
                    for key in ("hours", "remove_lane"))
     assert road_part.on_first_page(data, numbers, False) == [
         f"A lane of 1.5 m is open after {low} to {high} hours, the whole road after {' to '.join(whole)} hours of one "

@@ -34,7 +34,7 @@ def compared(folder, path):
     terrains = [folder / one.run / "terrain.asc" for one in about.runs]
     found, observed = mapped.compare(path, folder, about.runs, terrains)
     about = replace(about, runs=found, observed=observed)
-    file.write_text(yaml.safe_dump(disk.plain(study_file.plain(about))))
+    file.write_text(yaml.safe_dump(disk.make_plain(study_file.encode_study(about))))
     return about
 
 
@@ -46,7 +46,7 @@ def outline(path):
 
 def thickness(folder, path, of=2.0):
     """A raster of so much thickness in the same rectangle, on the grid of the runs."""
-    raster = rasters.read(next(iter(sorted(folder.glob("*/tiny.thickness.asc")))), heights=False)
+    raster = rasters.read_raster(next(iter(sorted(folder.glob("*/tiny.thickness.asc")))), heights=False)
     rows, columns = np.indices(raster.z.shape)
     x, y = raster.transform * (columns + 0.5, rows + 0.5)
     inside = (x > LOW[0]) & (x < HIGH[0]) & (y > LOW[1]) & (y < HIGH[1])
@@ -56,7 +56,7 @@ def thickness(folder, path, of=2.0):
 
 def test_overlap_and_run_out_by_hand(here):
     about = compared(here / "repeated", outline(here / "observed.csv"))
-    entry, rows = records.plain(about.observed), about.runs
+    entry, rows = records.encode_record(about.observed), about.runs
     assert entry["file"] == "../observed.csv" and entry["volume_m3"] is None
     assert entry["area_m2"] == pytest.approx((HIGH[0] - LOW[0]) * (HIGH[1] - LOW[1]))
     _, inside, _ = thickness(here / "repeated", here / "other.tif")
@@ -66,16 +66,18 @@ def test_overlap_and_run_out_by_hand(here):
         assert one.mapped.beyond_mapped_m == pytest.approx(one.length_m - entry["length_m"])
     assert entry["best"] == max(rows, key=lambda one: one.mapped.overlap).run
     assert min(one.length_m for one in rows) < entry["length_m"] + 10
-    run = deposit.read(str(here / "repeated" / rows[0].run / "tiny"), None, lambda text: None)     # by its own outline
+    run = deposit.read_deposit(str(here / "repeated" / rows[0].run / "tiny"), None,
+                               lambda text: None)     # by its own outline
     mask, _ = run_length.lobes(run)
     own = unary_union([shape(one) for one, _ in shapes(mask.astype("uint8"), mask, transform=run.raster.transform)])
     length = mapped.length_of(run, None, score.from_polygon(own, run.raster))
-    assert length == pytest.approx(run_length.of_run(run, None).distance, abs=1e-3)
+    assert length == pytest.approx(run_length.measure_run_length(run, None).distance, abs=1e-3)
     beyond = mapped.length_of(run, None, score.from_polygon(own.union(own.buffer(1000)), run.raster))
     assert beyond > length + 900        # what lies beside the grid counts
-    text, = mapped.describe(about.observed, rows)
+    text, = mapped.describe_mapped(about.observed, rows)
     assert re.search(rf"overlap \(Jaccard\) \d\.\d\d to \d\.\d\d, best of {entry['best']}, [+-]\d+ m in run-out", text)
-    assert "overlap,beyond_mapped_m" in study_table.table({"rolling": ["0", "0.3"], "steps": ["1200"]}, {}, rows, {
+    assert "overlap,beyond_mapped_m" in study_table.tabulate_study({"rolling": ["0", "0.3"], "steps": ["1200"]}, {},
+                                                                   rows, {
         "seed": "0"}).splitlines()[0]
 
 
@@ -84,13 +86,13 @@ def test_the_mass_of_a_mapped_thickness(here):
     entry = compared(here / "repeated", path).observed
     volume = inside.sum() * cell ** 2
     assert entry.volume_m3 == pytest.approx(volume) and entry.released_m3 == pytest.approx(349, abs=1)
-    assert f"{100 * (1 - volume / entry.released_m3):.0f} % less than is released" in mapped.describe(entry, [
+    assert f"{100 * (1 - volume / entry.released_m3):.0f} % less than is released" in mapped.describe_mapped(entry, [
         row(run=entry.best, overlap=0.5)])[1]
 
 
 def test_without_a_mapped_deposit_nothing_is_compared(here):
-    assert mapped.of_site(None) is None and mapped.of_site(here) is None
-    assert mapped.of_site(outline(here / "observed.csv").parent) == here / "observed.csv"
+    assert mapped.find_mapped_deposit(None) is None and mapped.find_mapped_deposit(here) is None
+    assert mapped.find_mapped_deposit(outline(here / "observed.csv").parent) == here / "observed.csv"
     rows = [row(status="failed")]
     assert mapped.compare(None, here, [row()], [None]) == ([row()], None)
     assert mapped.compare(here / "observed.csv", here, rows, [None]) == (rows, None)
@@ -105,7 +107,7 @@ def test_the_page_compares_whatever_the_method(here, slope, kind, monkeypatch):
     monkeypatch.setattr(figure_maps, "value_map", lambda one, *_, **__: layers.append(one) or "data:,")
     assert slope("repeated")[0] == 0
     assert all(one.mapped is not None for one in layers)
-    assert any(entry.text == "mapped deposit" for entry in figure_maps.entries(layers[0]))
+    assert any(entry.text == "mapped deposit" for entry in figure_maps.list_legend_entries(layers[0]))
     page = html.unescape((folder / "report.html").read_text(encoding="utf-8"))
     best = next(one.mapped for one in about.runs if one.run == about.observed.best)
     first = page[:page.index('id="appendix"')]

@@ -6,7 +6,7 @@ import pytest
 from slope_tools.errors import SlopeError
 from slope_tools.mobility import events, relation
 
-ALL = events.read()
+ALL = events.read_events()
 
 
 def test_relation_of_the_set():
@@ -59,7 +59,7 @@ def test_wrong_sets(tmp_path, text, words):
     path = tmp_path / "set.csv"
     path.write_text(text, encoding="utf-8")
     with pytest.raises(SlopeError) as error:
-        events.read(path)
+        events.read_events(path)
     assert all(word in str(error.value) for word in (str(path), *words))
 
 

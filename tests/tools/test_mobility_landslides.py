@@ -17,11 +17,11 @@ from slope_tools.releases import release
 from slope_tools.survey import rasters
 
 EMBANKMENT = TOP / "inputs" / "20_embankment"
-ROW = landslides.named()
+ROW = landslides.choose_landslide_row()
 
 
 def test_the_rows():
-    rows = landslides.read()
+    rows = landslides.read_landslides()
     assert len(rows) == 13 and sum(row.events for row in rows if row.path == "all") == 204
     assert {row.type for row in rows} == set(landslides.TYPES) and {row.path for row in rows} >= {"all", "channelized"}
     assert ROW[:7] == ("translational_slides", "all", 69, -0.159, -0.068, 0.435, 0.67)
@@ -31,20 +31,20 @@ def test_the_rows():
     ("rockfalls", ("rockfalls", "all")), ("debris flows:Channelised", ("debris_flows", "channelized")),
     ("trans:unob", ("translational_slides", "unobstructed")), ("earth", ("earthflows_and_mudslides", "all"))])
 def test_a_name(text, found):
-    assert landslides.named(text)[:2] == found
+    assert landslides.choose_landslide_row(text)[:2] == found
 
 
 @pytest.mark.parametrize("text", ["", "slides", "rock:", "rockfalls:channelized", "earth:obstructed", "rocks:all:x"])
 def test_no_name(text):
     with pytest.raises(SlopeError, match="--known: must be"):
-        landslides.named(text)
+        landslides.choose_landslide_row(text)
 
 
 @pytest.mark.parametrize("text, half, twentieth", [
     ("translational", 108, 295), ("translational:unobstructed", 119, 322)])
 def test_the_embankment(text, half, twentieth):
     """49,000 m3 that fall 36 m, by hand."""
-    row = landslides.named(text)
+    row = landslides.choose_landslide_row(text)
     assert row.farthest(0.5, 0.049, 36) == pytest.approx(half, abs=0.5)
     assert row.farthest(0.95, 0.049, 36) == pytest.approx(twentieth, abs=0.5)
     for share in (0.01, 0.05, 0.3, 0.5, 0.8, 0.99):
@@ -54,8 +54,9 @@ def test_the_embankment(text, half, twentieth):
 def test_both_scatters():
     """The one of the limit and the one of R2; the larger probability counts, on either side of the median."""
     assert ROW.deviations == pytest.approx((0.0954, 0.2644), abs=1e-4)
-    assert all(row.deviations[0] < row.deviations[1] for row in landslides.read())
-    assert landslides.named("rockfalls:ob").deviations == pytest.approx((0.0626, 0.0824), abs=1e-4)     # R2's is larger
+    assert all(row.deviations[0] < row.deviations[1] for row in landslides.read_landslides())
+    assert landslides.choose_landslide_row("rockfalls:ob").deviations == pytest.approx((0.0626, 0.0824),
+                                                                                       abs=1e-4)     # R2's is larger
     length, volume, fall = np.array([60.0, 300.0]), 0.049, 36.0
     for kind, deviation in (("landslides_narrow", 0.095446), ("landslides_wide", 0.264438)):
         scores = (np.log10(fall / length) + 0.159 + 0.068 * math.log10(49000)) / deviation
@@ -89,7 +90,7 @@ def test_where_the_two_have_nothing_in_common_a_warning_says_so(moved, farther):
     """Of a row whose line lies where it does, and far above and below it, with a small scatter."""
     mass = gentle()
     row = ROW._replace(a=ROW.a + moved, limit=0.1, r2=0.97)
-    found = known.Found(None, exceedance.of_body(mass, row))
+    found = known.Found(None, exceedance.compute_mobility(mass, row))
     said = lucas.opinion(mass, found.decides.path)
     assert said.steep > said.angle > said.flat and said.toe > 0
     assert [(one.kind, one.numbers["farther"]) for one in results.disagreement(mass, found)] == (
@@ -107,7 +108,7 @@ def gentle(depth=1.0):
 
 def test_it_begins_at_the_toe_and_never_rises():
     mass = gentle()
-    found = known.of_body(mass, known.choice())
+    found = known.compute_known_mobility(mass, known.choice())
     assert found.decides is found.by_row and found.by_set is not None and not found.by_set.in_range
     one, path = found.by_row, found.by_row.path
     beyond = fall_path.from_toe(mass, path)
@@ -126,7 +127,7 @@ def test_it_begins_at_the_toe_and_never_rises():
 
 def test_at_most_where_the_curve_begins_below_a_share():
     """From 1 before the toe it falls by what nobody knows: no length between two points, but the one it begins at."""
-    found = known.of_body(gentle(), known.choice())
+    found = known.compute_known_mobility(gentle(), known.choice())
     one = found.by_row
     toe = float(one.path.length[np.flatnonzero(one.said)[0]])
     for kind, curve in one.curves.items():
@@ -147,13 +148,13 @@ def test_at_most_where_the_curve_begins_below_a_share():
 
 def test_both_scatters_at_an_edge():
     """Of a row the smaller and the larger; of a set twice what counts; before the toe what holds there."""
-    one = known.of_body(gentle(), known.choice()).by_row
+    one = known.compute_known_mobility(gentle(), known.choice()).by_row
     length = one.length_at(0.2)
     assert one.shares(length) == tuple(sorted(float(one.exceedance(length, kind)) for kind in one.law.both))
     assert one.shares(length)[0] < one.shares(length)[1] == pytest.approx(one.exceedance(length))
     first = float(one.path.length[np.flatnonzero(one.said)[0]])
     assert one.shares(0.5 * first) == one.shares(first) and one.shares(first)[1] < 1
-    large = known.of_body(disc(hillside(), (300, 300)), known.choice())
+    large = known.compute_known_mobility(disc(hillside(), (300, 300)), known.choice())
     near, (narrow, wide) = large.by_row.length_at(0.8), large.by_row.law.both
     assert large.by_row.exceedance(near, narrow) > large.by_row.exceedance(near, wide)      # nearer than the median
     assert large.by_row.shares(near)[0] == large.by_row.exceedance(near, wide) < large.by_row.shares(near)[1]
@@ -165,9 +166,9 @@ def test_both_scatters_at_an_edge():
 def test_what_withholds_a_number():
     """A set that covers the mass, or a row that was asked for; not the landslides that stand for the set."""
     small, large = gentle(), disc(hillside(), (300, 300))
-    assert known.of_body(small, known.choice()).strict is None
-    assert known.of_body(small, known.choice("rockfalls")).strict.law.type == "rockfalls"
-    assert known.of_body(large, known.choice()).strict.law.kinds[-1] == "mixture"
+    assert known.compute_known_mobility(small, known.choice()).strict is None
+    assert known.compute_known_mobility(small, known.choice("rockfalls")).strict.law.type == "rockfalls"
+    assert known.compute_known_mobility(large, known.choice()).strict.law.kinds[-1] == "mixture"
     asked = known.choice("rockfalls", confined="no")
     assert known.of_about(asked.about()) == asked and known.of_about({}) == known.choice()
 
@@ -176,7 +177,7 @@ def test_a_set_says_nothing_of_falls_that_none_of_its_events_had():
     """On a hill of 210 m: no point has a fall of the set. On one of 240 m: not before it."""
     for height, covered in ((210, False), (260, True)):
         ground = terrain(lambda x, y: 1000 - STEEP * np.clip(x, 0, 2 * height), 300, 60)
-        found = known.of_body(disc(ground, (200, 300)), known.choice())
+        found = known.compute_known_mobility(disc(ground, (200, 300)), known.choice())
         one = found.by_set
         assert one.in_range == covered == (found.decides is one)
         assert (one.path.fall[one.said] >= 220).all() and one.said.any() == covered
@@ -189,12 +190,12 @@ def test_a_set_says_nothing_of_falls_that_none_of_its_events_had():
 def test_half_of_them_end_before_any_fall_of_the_set():
     """A path that falls far, but slowly: where the set begins, hardly any event arrives."""
     ground = terrain(lambda x, y: 1000 - 0.06 * x, 500, 60)
-    found = known.of_body(disc(ground, (300, 300)), known.choice())
+    found = known.compute_known_mobility(disc(ground, (300, 300)), known.choice())
     assert found.by_set.said.any() and not found.by_set.in_range and "cover this height" in found.by_set.outside[0]
 
 
 def test_a_row_that_is_asked_for():
-    found = known.of_body(gentle(20.0), known.choice("debris flows:channelized"))
+    found = known.compute_known_mobility(gentle(20.0), known.choice("debris flows:channelized"))
     assert found.by_set is None and found.decides.law is not ROW and found.decides.law.path == "channelized"
 
 
@@ -222,7 +223,7 @@ def test_the_family_of_the_embankment():
     """Never more farther down; the set takes over once, by less than the narrower band of 90 %."""
     which = {}
     for factor in np.geomspace(0.1, 10, 9):
-        found = known.of_body(embankment(factor), known.choice())
+        found = known.compute_known_mobility(embankment(factor), known.choice())
         which[factor] = found.decides.chosen
         assert all((np.diff(curve) <= 0).all() for one in found.each for curve in one.curves.values())
         lane = road.at_road(found.decides.path, box(60 * factor, 0, 80 * factor, 160 * factor))
@@ -232,9 +233,9 @@ def test_the_family_of_the_embankment():
         f for f, kind in which.items() if kind == "mixture")
     for _ in range(6):      # where it takes over
         middle = math.sqrt(low * high)
-        covered = known.of_body(embankment(middle), known.choice()).by_set.in_range
+        covered = known.compute_known_mobility(embankment(middle), known.choice()).by_set.in_range
         low, high = (low, middle) if covered else (middle, high)
-    before, after = (known.of_body(embankment(f), known.choice()).decides for f in (low, high))
+    before, after = (known.compute_known_mobility(embankment(f), known.choice()).decides for f in (low, high))
     assert {before.chosen, after.chosen} == {"landslides", "mixture"} and high < 1.02 * low
     bands = [math.log10(one.length_at(0.05) / one.length_at(0.95)) for one in (before, after)]
     jumps = [abs(math.log10(b / a)) for a, b in zip(numbers(before, low), numbers(after, high))]
@@ -246,7 +247,7 @@ def test_the_volume_where_the_set_begins():
     found = []
     for depth in (2.82, 2.84):
         mass = disc(hillside(), (300, 300), depth)
-        found.append(known.of_body(mass, known.choice()).decides)
+        found.append(known.compute_known_mobility(mass, known.choice()).decides)
     before, after = found
     assert (before.chosen, after.chosen) == ("landslides", "mixture")
     bands = [math.log10(one.length_at(0.05) / one.length_at(0.95)) for one in found]
@@ -257,9 +258,10 @@ def test_the_volume_where_the_set_begins():
 def test_at_the_road_that_lies_too_high():
     """A fall that no event of the set had: at least what they say farther down."""
     mass = disc(hillside(), (300, 300))
-    found = known.of_body(mass, known.choice())
+    found = known.compute_known_mobility(mass, known.choice())
     at = road.at_road(found.decides.path, box(500, 0, 520, 600))
     told = results.at_road(found, at)
     assert at.fall < 220 and told["exceedance"] is None and told["at_least"] == pytest.approx(
         found.decides.exceedance(found.decides.path.length[np.flatnonzero(found.decides.said)[0]]))
-    assert told["exceedance_landslides"] == exceedance.of_body(mass, ROW, path=found.by_row.path).exceedance(at.length)
+    assert told["exceedance_landslides"] == exceedance.compute_mobility(mass, ROW,
+                                                                        path=found.by_row.path).exceedance(at.length)

@@ -22,7 +22,7 @@ from slope_tools.releases import release
 from slope_tools.survey import rasters
 from slope_tools.survey.rasters import Raster
 
-ALL = events.read()
+ALL = events.read_events()
 SET = relation.of_events(ALL)
 DATA = next((folder for folder in (top / "shared" / "data" for top in TOP.parents) if folder.is_dir()), TOP / "none")
 FRANK = DATA / "frank"
@@ -177,7 +177,7 @@ def by_hand(path, volume, confined):
 
 @pytest.fixture(scope="module")
 def known():
-    return exceedance.of_body(disc(hillside(), (300, 300)), SET)
+    return exceedance.compute_mobility(disc(hillside(), (300, 300)), SET)
 
 
 @pytest.mark.parametrize("kind, confined", [("confined", True), ("unconfined", False), ("mixture", "mixture")])
@@ -194,7 +194,7 @@ def test_what_counts(known):
     least, mixture, most = (known.exceedance(1800, kind) for kind in ("unconfined", None, "confined"))
     assert most > mixture + 0.05 > least + 0.1
     for answer, kind in exceedance.CONFINED.items():
-        found = known_events.of_body(disc(hillside(), (300, 300)), known_events.choice(confined=answer))
+        found = known_events.compute_known_mobility(disc(hillside(), (300, 300)), known_events.choice(confined=answer))
         assert found.decides is found.by_set and found.decides.chosen == kind
         assert found.decides.exceedance(1800) == pytest.approx(known.exceedance(1800, kind), abs=1e-3)
 
@@ -203,7 +203,7 @@ def test_it_never_rises():
     """Before a cliff the probability is less than by the height below the cliff."""
     mass = disc(terrain(lambda x, y: 3000 - STEEP * np.minimum(x, 700) - 900 / (1 + np.exp((1900 - x) / 15))),
                 (200, 600))
-    found = exceedance.of_body(mass, SET, "unconfined")
+    found = exceedance.compute_mobility(mass, SET, "unconfined")
     raw = by_hand(found.path, found.volume, False)
     far = found.path.fall >= 220
     assert np.diff(raw[far]).max() > 0.1
@@ -224,7 +224,7 @@ def test_where_a_run_lies(known):
 @pytest.mark.parametrize("depth, slope, words", [(1.0, STEEP, ["volume, 3"]), (20.0, 0.05, ["height, "])])
 def test_out_of_range(depth, slope, words):
     mass = disc(terrain(lambda x, y: 3000 - slope * x), (300, 600), depth)
-    found = exceedance.of_body(mass, SET)
+    found = exceedance.compute_mobility(mass, SET)
     assert not found.in_range and len(found.outside) == len(words)
     assert all(f"does not cover this {word}" in line for word, line in zip(words, found.outside))
 
@@ -260,12 +260,12 @@ def test_a_road(known):
 @pytest.mark.skipif(not FRANK.is_dir(), reason="the rasters of inputs/30_frank are not here")
 def test_the_frank_slide():
     """By all events but itself, what was observed is inside of 10 to 90 %, along the river and across the valley."""
-    after, pile = (rasters.read(FRANK / f"Frankslide_{name}.asc") for name in ("topography", "pile"))
+    after, pile = (rasters.read_raster(FRANK / f"Frankslide_{name}.asc") for name in ("topography", "pile"))
     mass = body.of_arrays(after._replace(z=after.z + pile.z), pile.z, "Frank")
     others = [one for one in ALL if one.name != "Frank Slide"]
     across = fall_path.given(mass, LineString([(413, 1264), (3960, 3633)]), "line")
     for path in (None, across):
-        found = exceedance.of_body(mass, relation.of_events(others), "unconfined", path)
+        found = exceedance.compute_mobility(mass, relation.of_events(others), "unconfined", path)
         assert found.in_range and found.volume == pytest.approx(36.0, abs=0.1)
         assert 0.1 < found.exceedance(3080) < 0.9
     assert found.length_at(0.5) == pytest.approx(3080, rel=0.05)
@@ -327,7 +327,7 @@ def test_the_path_for_a_gis(tmp_path):
     """A piece to each point of the table, in the CRS of the terrain."""
     mass = disc(hillside(), (300, 300))
     there = mass._replace(raster=mass.raster._replace(crs=CRS.from_epsg(6677), offset=(1000.0, -2000.0)))
-    found = known_events.of_body(there, known_events.choice())
+    found = known_events.compute_known_mobility(there, known_events.choice())
     results.write_lines(tmp_path / "path.gpkg", found, there)
     path, shares = found.decides.path, found.decides.curves["mixture"]
     with fiona.open(tmp_path / "path.gpkg", layer="path") as layer:
@@ -433,7 +433,7 @@ def test_pictures(known, tmp_path):
     mass = disc(hillside(), (300, 300))
     lane = box(1000, 0, 1020, 1190)
     charts.draw_map(tmp_path / "map.png", known, mass, lane)
-    found = known_events.of_body(mass, known_events.choice(), known.path)
+    found = known_events.compute_known_mobility(mass, known_events.choice(), known.path)
     out = found._replace(by_set=found.by_set._replace(outside=["x"]))
     charts.draw_profile(tmp_path / "profile.png", out, mass, road.at_road(known.path, lane))
     assert all((tmp_path / name).read_bytes()[:4] == b"\x89PNG" for name in ("map.png", "profile.png"))

@@ -41,13 +41,13 @@ def ground_of(raster, before, depth, **about):
 
 @pytest.fixture(scope="module")
 def known():
-    return known_events.of_body(disc(hillside(), (300, 300)), known_events.choice()).by_set
+    return known_events.compute_known_mobility(disc(hillside(), (300, 300)), known_events.choice()).by_set
 
 
 def test_a_run_lies_where_its_length_does(known):
     length = known.length_at(0.96)
     data, ground, numbers = case([length], study=False)
-    (what, text), = mobility_part.content(data, ground, numbers)
+    (what, text), = mobility_part.list_mobility_limits(data, ground, numbers)
     share = known.where_lies(length).at_most
     assert share == pytest.approx(0.04) and what == mobility_part.WHAT
     assert "as far as 4 % of rock avalanches of this volume and height do" in text
@@ -59,12 +59,12 @@ def test_a_run_lies_where_its_length_does(known):
 def test_several_runs_lie_between(known):
     ends = [known.length_at(share) for share in (0.98, 0.89)]
     data, ground, numbers = case([ends[1], None, ends[0], (ends[0] + ends[1]) / 2])
-    text = mobility_part.content(data, ground, numbers)[0][1]
+    text = mobility_part.list_mobility_limits(data, ground, numbers)[0][1]
     assert "deposits of the runs reach" in text and "as far as 2 % to 11 % of rock avalanches" in text
 
 
 def test_beyond_the_path_is_at_least(known):
-    text = mobility_part.content(*case([known.path.length[-1] + 100]))[0][1]
+    text = mobility_part.list_mobility_limits(*case([known.path.length[-1] + 100]))[0][1]
     assert f"as far as at least {percent(1 - known.beyond_path())} of rock" in text
 
 
@@ -77,11 +77,11 @@ def test_a_terrain_that_ends_before_half_of_the_events(columns, length):
     data, ground, numbers = case([900.0])
     part = ground_of(ground.raster._replace(z=ground.raster.z[:, :columns]), ground.before[:, :columns],
                      ground.slip_depth[:, :columns])
-    text = mobility_part.content(data, part, numbers)[0][1]
+    text = mobility_part.list_mobility_limits(data, part, numbers)[0][1]
     if length is None:
         assert "terrain shows the first" not in text
         return
-    found = exceedance.of_body(disc(hillside(), (300, 300)), SET)
+    found = exceedance.compute_mobility(disc(hillside(), (300, 300)), SET)
     shares = [percent(found.exceedance(length, kind)) for kind in ("unconfined", "confined")]
     assert f"terrain shows the first 1,340 m of the way, where {shares[0]} ({shares[1]}) of them go on" in text
 
@@ -92,7 +92,7 @@ def test_a_terrain_that_ends_before_half_of_the_events(columns, length):
     ({"set": "gone.csv"}, ("cannot be compared", "gone.csv")),
 ])
 def test_otherwise_it_says_why(change, words):
-    (_, text), = mobility_part.content(*case(**{"lengths": [900.0], **change}))
+    (_, text), = mobility_part.list_mobility_limits(*case(**{"lengths": [900.0], **change}))
     assert all(word in text for word in words) and "of this volume" not in text
 
 
@@ -103,8 +103,8 @@ def test_landslides_where_no_set_covers_the_mass_or_they_were_asked_for(scar, se
     """A small mass, or a row of site.yaml: as far as these, by the larger of both scatters, and by each."""
     data, ground, numbers = case([900.0], scar=scar, set=set_)
     one = ground.known.found.decides
-    assert one.law.name in mobility_part.content(data, ground, numbers)[0][1] and name in one.law.name
-    text = mobility_part.content(data, ground, numbers)[0][1]
+    assert one.law.name in mobility_part.list_mobility_limits(data, ground, numbers)[0][1] and name in one.law.name
+    text = mobility_part.list_mobility_limits(data, ground, numbers)[0][1]
     shares = [percent(one.where_lies(900.0, kind).at_most) for kind in (one.chosen, *one.law.both)]
     assert f"as far as {shares[0]} of landslides" in text and "not of cuts and embankments of roads" in text
     assert f"{shares[1]} by the smaller, {shares[2]} by the larger" in text and "rock avalanches" not in text
@@ -115,7 +115,7 @@ def test_a_height_that_no_event_has():
     low = ground.before.min()
     lower = ground_of(ground.raster, low + (ground.before - low) / 8, ground.slip_depth)
     assert "220 to 1720 m" in lower.known.found.by_set.outside[0]
-    assert "of landslides of this volume" in mobility_part.content(data, lower, numbers)[0][1]
+    assert "of landslides of this volume" in mobility_part.list_mobility_limits(data, lower, numbers)[0][1]
 
 
 # --- the first page ---
@@ -171,11 +171,11 @@ def test_how_far_without_known_events(known):
     outside = known._replace(outside=["the set of known events does not cover this volume"])
     one = how_far.pool([60.0, 70.0, 80.0], outside, "ensemble")
     assert (one.near_m, one.middle_m, one.far_m, one.events) == (60.0, 70.0, 80.0, False)
-    said = letter_words.far(one, letter_words.plain)
+    said = letter_words.far(one, letter_words.format_console_number)
     assert "70.0 m (60.0 to 80.0 m)" in said and "does not cover this volume" in said and "3 runs" in said
     one = how_far.pool([60.0, math.inf, math.inf], None, "paper", why="No path")
     assert (one.near_m, one.middle_m, one.far_m, one.end_m) == (60.0, None, None, None)      # not that of a run
-    assert letter_words.far(one, letter_words.plain).startswith("It goes 60.0 m or more")
+    assert letter_words.far(one, letter_words.format_console_number).startswith("It goes 60.0 m or more")
     assert how_far.pool([], known) is None
 
 
@@ -197,7 +197,7 @@ def test_nearer_than_events_tell_the_distance_may_be_less(known):
     least = known.path.length[k]
     one = how_far.pool([2 * least], dropped)
     assert one.least_m == least >= one.near_m and one.middle_m > least
-    assert f"({three(least)} m or less to " in letter_words.far(one, letter_words.plain)
+    assert f"({three(least)} m or less to " in letter_words.far(one, letter_words.format_console_number)
 
 
 # --- on maps and section ---
@@ -215,10 +215,10 @@ def test_marks_lie_across_the_path_where_shares_of_the_events_go_farther(known):
         across = mark.ends[1] - mark.ends[0]
         assert abs(across @ (after - before)) < 0.1 * np.hypot(*across) * np.hypot(*(after - before))
     assert LineString(reach.path).length == pytest.approx(max(wanted.values()), rel=1e-3)
-    text = known_reach.words(reach)
+    text = known_reach.describe_known_reach(reach)
     assert f"beyond them go half{' and a tenth' * (0.1 in wanted)} of known events" in text
     assert exceedance.WORDS["mixture"] in text and ("would lie beyond the terrain" in text) == (len(reach.marks) < 2)
-    fewer = known_reach.words(reach._replace(marks=reach.marks[:1]))
+    fewer = known_reach.describe_known_reach(reach._replace(marks=reach.marks[:1]))
     assert "a tenth" not in fewer and fewer.endswith("; other marks would lie beyond the terrain.")
 
 
@@ -234,5 +234,5 @@ def test_a_section_shows_the_marks_that_it_passes(known):
 
 
 def test_where_no_set_covers_the_mass_there_are_no_marks():
-    assert known_reach.words(known_reach.NOTHING) == "" and not list(
+    assert known_reach.describe_known_reach(known_reach.NOTHING) == "" and not list(
         known_reach.on_line(known_reach.NOTHING, LineString([(0, 0), (1, 1)])))

@@ -75,10 +75,10 @@ def test_what_is_changed_while_the_runs_are_made_does_not_count(mine, monkeypatc
 
     for place in (study, study_command):
         monkeypatch.setattr(place, "perform", perform)
-    monkeypatch.setattr(study_command, "write_report", lambda *_, **__: None)
+    monkeypatch.setattr(study_command, "write_site_report", lambda *_, **__: None)
     monkeypatch.setattr(study_command.files, "write_abouts", lambda *_: None)
     monkeypatch.setenv("LMP", LMP)
-    study_command.run(study_command.Request(deck=mine))
+    study_command.run_study(study_command.Request(deck=mine))
     assert [angle for angle, _ in seen] == [30, 30, 30] and seen[1][1] == [{"set": None, "confined": "unknown"}]
 
 
@@ -90,7 +90,7 @@ def test_other_data_between_both_studies_end_the_command(mine, monkeypatch):  # 
     monkeypatch.setattr(study, "perform", perform)
     monkeypatch.setenv("LMP", LMP)
     with pytest.raises(SlopeError, match="mine: must not change while its study is made"):
-        study_command.run(study_command.Request(deck=mine))
+        study_command.run_study(study_command.Request(deck=mine))
 
 
 def test_the_site_is_one_commands_from_end_to_end(mine, monkeypatch):  # noqa: F811
@@ -103,13 +103,14 @@ def test_the_site_is_one_commands_from_end_to_end(mine, monkeypatch):  # noqa: F
         return made_study.study()
 
     tried = []
-    monkeypatch.setattr(study_command.site_study, "make", others)
-    monkeypatch.setattr(study_command.site_study, "collect", lambda *_, **__: site_study.Done(mine, others(), None))
+    monkeypatch.setattr(study_command.site_study, "make_site_runs", others)
+    monkeypatch.setattr(study_command.site_study, "collect_site_results", lambda *_,
+                        **__: site_study.Done(mine, others(), None))
     monkeypatch.setattr(study_command, "run_deck", others)
     monkeypatch.setattr(study_command.answered, "of_both", lambda *_: None)
     monkeypatch.setattr(study_command.files, "write_abouts", lambda *_: None)
-    monkeypatch.setattr(study_command, "write_report", others)
-    study_command.run(study_command.Request(deck=mine))
+    monkeypatch.setattr(study_command, "write_site_report", others)
+    study_command.run_study(study_command.Request(deck=mine))
     assert len(tried) == 5
     with disk.alone_in(mine):
         pass
@@ -256,8 +257,8 @@ PLAN = SimpleNamespace(names=["x"], number=8, places=lambda rows: np.array([[flo
                                              ([50.0, 51.0, 52.0], 3)])
 def test_runs_that_are_the_same_are_one(lengths, points):
     rows = rows_of(lengths)
-    assert len(set(ensemble.points_of(PLAN, rows))) == points
-    values = ensemble.numbers("length", "m", np.array(lengths), ensemble.points_of(PLAN, rows), 0)
+    assert len(set(ensemble.number_design_points(PLAN, rows))) == points
+    values = ensemble.summarise_quantity("length", "m", np.array(lengths), ensemble.number_design_points(PLAN, rows), 0)
     doubts = ensemble.no_effect(rows)
     assert [one.kind for one in doubts] == ["no effect"] * (points < len(lengths))
     if points == 1:
@@ -275,9 +276,9 @@ def test_one_run_of_known_events_has_no_bounds():
     found = SimpleNamespace(exceedance=lambda length: np.interp(length, [0, 100], [1, 0]))
     runs = known_events.Runs(PLAN, [], rows, found)
     from slope_tools.ensembles import conditioned
-    curve = conditioned.curve(runs.column("remove_m3"), runs.mass, None, runs.several, 0.0)
+    curve = conditioned.compute_known_curve(runs.column("remove_m3"), runs.mass, None, runs.several, 0.0)
     assert all(one.low is one.high is None
-               for one in known_events.quantiles(curve, runs, "remove_m3", (0.5, 0.9)))
+               for one in known_events.list_known_quantiles(curve, runs, "remove_m3", (0.5, 0.9)))
 
 
 # --- one ruler ---

@@ -44,14 +44,14 @@ def test_no_count(text, rule):
 
 @pytest.mark.parametrize("text, value", [("0", 0), ("-12", -12), ("+4", 4), ("4294967295", 2 ** 32 - 1)])
 def test_whole(text, value):
-    assert options.whole(text) == value
+    assert options.parse_whole_number(text) == value
 
 
 @pytest.mark.parametrize("text", ["1e3", "x", "2.0", "1_000", " 1", "", "9" * 19])
 def test_not_whole(text):
     with pytest.raises(argparse.ArgumentTypeError, match=re.escape(f"must be a whole number of at most 18 digits, got "
                                                                    f"{text!r}")):
-        options.whole(text)
+        options.parse_whole_number(text)
 
 
 @pytest.mark.parametrize("words", [

@@ -30,8 +30,8 @@ def test_outcome_imports_nothing_that_writes_or_tells():
 
 
 @pytest.mark.parametrize("evaluate", [
-    outcome.evaluate, ensemble.evaluate, known_events.evaluate, chain_files.evaluate, intensity.evaluate,
-    road_runs.evaluate, step_check.compare, combinations.conservative],
+    outcome.evaluate_study, ensemble.evaluate_ensemble, known_events.evaluate_known_events, chain_files.evaluate_chain,
+    intensity.evaluate_intensity, road_runs.evaluate_road_runs, step_check.compare, combinations.conservative],
     ids=lambda one: f"{one.__module__.split('.')[-1]}.{one.__name__}")
 def test_an_evaluation_has_no_folder_and_writes_nothing(evaluate):
     """Neither a folder nor something that tells is among its parameters, and it calls nothing that writes."""
@@ -61,7 +61,7 @@ def page(tmp_path, monkeypatch):
         film = SimpleNamespace(content=b"film", text="", failed=False)
         return SimpleNamespace(section=table, numbers=table, film=film, warnings=[]), {}
 
-    monkeypatch.setattr(document, "make", make)
+    monkeypatch.setattr(document, "make_page", make)
     monkeypatch.setattr(document, "render", lambda content: "<html><head>\n" + (
         f'<meta name="slope-made-of" content="{content["made_of"]}">' if content["made_of"] else "") + "</head></html>")
 
@@ -111,14 +111,14 @@ def test_a_page_is_drawn_when_something_of_it_has_changed(page, monkeypatch, wha
 
 
 def test_a_page_whose_film_failed_is_drawn_again(page, monkeypatch):
-    make = document.make
+    make = document.make_page
 
     def failed(asked):
         found, content = make(asked)
         found.film = SimpleNamespace(content=None, text="No film: ffmpeg could not make it", failed=True)
         return found, content
 
-    monkeypatch.setattr(document, "make", failed)
+    monkeypatch.setattr(document, "make_page", failed)
     assert [page(), page()] == [1, 1]
-    monkeypatch.setattr(document, "make", make)
+    monkeypatch.setattr(document, "make_page", make)
     assert [page(), page()] == [1, 0]

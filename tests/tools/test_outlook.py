@@ -18,7 +18,7 @@ STANDARD = " ".join(["--release release.geojson", *BODY, "--road road.geojson"])
 
 @pytest.fixture(autouse=True)
 def nothing_drawn(monkeypatch):
-    monkeypatch.setattr(site_command.site_map, "draw", lambda path, *_: path.write_bytes(b""))
+    monkeypatch.setattr(site_command.site_map, "draw_site_map", lambda path, *_: path.write_bytes(b""))
 
 
 def test_where_the_terrain_ends_and_what_is_to_be_added(inside, gis):  # noqa: F811
@@ -47,7 +47,7 @@ def test_a_terrain_that_ends_on_a_road_makes_a_floor(mine, monkeypatch):  # noqa
     for add, said in ((0.0, False), (60.0, True)):
         monkeypatch.setattr(outlook.road, "at_road", lambda *given: (
             one := met(*given))._replace(passed=one.passed + add))
-        found = outlook.lines(mine)
+        found = outlook.describe_outlook(mine)
         assert any("at best a floor" in line and "beyond the terrain" in line for line in found) is said
         assert any("go beyond the terrain" in line for line in found)
 
@@ -56,14 +56,14 @@ def test_a_site_with_too_few_sizes_of_balls_has_no_bound(mine):  # noqa: F811
     path = mine / "site.yaml"
     for levels, said in ((2, True), (3, False)):
         path.write_text(re.sub(r"  levels: \w+", f"  levels: {levels}", path.read_text()))
-        found = outlook.lines(mine)
+        found = outlook.describe_outlook(mine)
         assert any("balls of 2 sizes are run, 3 show" in line and "neither" in line for line in found) is said
 
 
 @pytest.mark.parametrize("side, x, y", [("west", 0.5, 40.0), ("east", 119.5, 40.0), ("south", 60.0, 0.5),
                                         ("north", 60.0, 79.5), ("south and the west", 1.0, 1.0)])
 def test_the_side_at_which_a_path_leaves(mine, side, x, y):  # noqa: F811
-    mass = outlook.body.of_site(mine)
+    mass = outlook.body.read_mobility_body(mine)
     ends = np.array([60.0, x]), np.array([40.0, y])
     path = outlook.FallPath(*ends, np.zeros(2), np.zeros(2), outlook.TERRAIN, (0.0, 0.0, 0.0))
     assert outlook.side_of(path, mass.raster) == side
@@ -84,9 +84,12 @@ def test_a_road_narrower_than_a_ball_or_two_cells(inside, gis, words, balls, cel
 
 def test_a_narrow_polygon_is_a_narrow_road():
     strip = LineString([(0, 0), (50, 10), (100, 0)]).buffer(3, cap_style=2)
-    found, = site_warnings.of_road(strip, None, 7.9, 2.0)
+    found, = site_warnings.check_road_resolution(strip, None, 7.9, 2.0)
     assert found.numbers["width"] == pytest.approx(6, rel=0.07) and "--diameter 5." in found.numbers["remedy"]
-    assert site_warnings.of_road(strip, None, 5.0, 2.5) == [] == site_warnings.of_road(None, None, 5.0, 2.5)
+    assert site_warnings.check_road_resolution(strip, None, 5.0, 2.5) == [] == site_warnings.check_road_resolution(None,
+                                                                                                                   None,
+                                                                                                                   5.0,
+                                                                                                                   2.5)
 
 
 def test_a_coarse_elevation_model(inside, gis):  # noqa: F811
@@ -100,7 +103,7 @@ def test_a_coarse_elevation_model(inside, gis):  # noqa: F811
 
 
 def test_the_disk_of_a_study_grows_with_balls_and_runs(mine):  # noqa: F811
-    choices, found = site_choices.load(mine).choices, site_choices.found(mine)
+    choices, found = site_choices.load_site(mine).choices, site_choices.found(mine)
     whole = site_disk.study(mine, choices, found, [8, 4])
     choices = choices.changed({("study", "points"): 0})
     paper, without = (site_disk.study(mine, choices, found, numbers) for numbers in ([8, 4], []))

@@ -116,7 +116,7 @@ def test_public_names():
 def test_arguments_are_the_options(options, words):
     parser = calls.Parser(prog="study", add_help=False)
     options_of.declare(parser, study.Request)
-    assert calls.words(parser, options) == words
+    assert calls.list_option_words(parser, options) == words
 
 
 @pytest.mark.parametrize("options, message", [

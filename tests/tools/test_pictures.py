@@ -106,7 +106,7 @@ from slope_tools import animation, plots, report
 from slope_tools.plots import figure_charts, figure_maps, figure_structures, site_map
 from slope_tools.animation import film
 assert matplotlib.rcParams == before
-release.run(request(release.Request, parser.parse_args("WORDS".split())))
+release.run_release(request(release.Request, parser.parse_args("WORDS".split())))
 assert matplotlib.rcParams == before and matplotlib.get_backend() == "svg", "settings"
 assert [f for f in warnings.filters if "Glyph" in str(f)] == [f for f in filters if "Glyph" in str(f)]
 assert plt.get_fignums() == [mine.number]
@@ -129,7 +129,7 @@ def test_drawing_outside_of_the_settings_is_found():
         usual = figures.text_width("abc", 8)
         text = made.text(0, 0, "abc", fontsize=8).get_window_extent(made.canvas.get_renderer())
         assert usual == pytest.approx(text.width / made.dpi, rel=0.05)
-    for wrong in (pictures.figure, lambda: pictures.drawn(made)):
+    for wrong in (pictures.figure, lambda: pictures.encode_figure(made)):
         with pytest.raises(RuntimeError, match="within settings"):
             wrong()
     with matplotlib.rc_context({"font.family": "monospace", "font.style": "italic"}):

@@ -312,7 +312,7 @@ def test_a_written_file_is_an_input_again(written, slope):
 
 
 def test_a_zero_has_no_sign(here):
-    polygons.write("a.csv", Polygon([(-1e-9, 1), (5, 1), (5, 4)]), rasters.read_place("t.asc"))
+    polygons.write_polygon("a.csv", Polygon([(-1e-9, 1), (5, 1), (5, 4)]), rasters.read_place("t.asc"))
     assert Path("a.csv").read_text().endswith("\n0.0,1.0\n5.0,1.0\n5.0,4.0\n")
 
 

@@ -457,7 +457,7 @@ def test_the_unit_of_time_counts(tmp_path, monkeypatch, name, factor):
     monkeypatch.chdir(tmp_path)
     rows = [f"{round(t / factor, 6):g},{a:.9g}" for t, a in zip(T, EW / GAL)]
     Path("a.csv").write_text(f"{name},EW (gal)\n" + "\n".join(rows) + "\n")
-    found, = quake_records.read("a.csv")
+    found, = quake_records.read_quake_record("a.csv")
     assert found.dt == pytest.approx(DT) and found.values == pytest.approx(EW, abs=1e-7)
 
 
@@ -495,9 +495,9 @@ def test_a_velocity_is_no_acceleration(slope):
 def test_a_motion_in_another_order_or_unit(slope, head, rule):
     Path("m.txt").write_text(f"{head}\n1 1 0 0\n2 2 0 0\n")
     with pytest.raises(SlopeError, match=re.escape(rule)):
-        motion_file.read("m.txt")
+        motion_file.read_motion("m.txt")
     Path("m.txt").write_text("# of fix ground/motion: t ax ay az (s, m/s2)\n1 1 0 0\n2 2 0 0\n")
-    assert motion_file.read("m.txt").shape == (2, 4)
+    assert motion_file.read_motion("m.txt").shape == (2, 4)
 
 
 @pytest.mark.parametrize("head, unit, option", [

@@ -49,14 +49,14 @@ PLAIN = {"name": "a", "pairs": [{"low": 1.5, "high": 2.0}], "of": {"x": 3, "y": 
 
 
 def test_there_and_back():
-    assert records.plain(THING) == PLAIN and list(records.plain(THING)) == list(PLAIN)
-    found = records.read(Thing, yaml.safe_load(yaml.safe_dump(records.plain(THING))))
+    assert records.encode_record(THING) == PLAIN and list(records.encode_record(THING)) == list(PLAIN)
+    found = records.read_record(Thing, yaml.safe_load(yaml.safe_dump(records.encode_record(THING))))
     assert found == THING and isinstance(found.ends, tuple) and isinstance(found.pairs[0], Pair)
 
 
 def test_what_is_missing_has_its_default_and_more_does_not_count():
     about = {key: value for key, value in PLAIN.items() if key not in ("more", "any")}
-    found = records.read(Thing, {**about, "pairs": [{"low": 7, "middle": 1}], "unknown": 1})
+    found = records.read_record(Thing, {**about, "pairs": [{"low": 7, "middle": 1}], "unknown": 1})
     assert (found.more, found.any, found.pairs) == (None, None, [Pair(7, 2.0)])
 
 
@@ -64,7 +64,7 @@ def test_nothing_of_numpy_is_left():
     """safe_dump() knows none of its types."""
     thing = Thing("a", (Pair(np.float64(1.5), np.float32(2.0)),), {"x": np.int64(3)}, np.bool_(True),
                   (np.float64(0.25), 4.0), ("b",), np.array([1.0, 2.0]))
-    found = records.plain(thing)
+    found = records.encode_record(thing)
     assert yaml.safe_load(yaml.safe_dump(found)) == found
     assert found == {**PLAIN, "of": {"x": 3}, "any": [1.0, 2.0]}
     for value in (found["pairs"][0]["low"], found["pairs"][0]["high"], found["ends"][0]):
@@ -88,16 +88,16 @@ def test_nothing_of_numpy_is_left():
     ({"ends": 3.0}, "ends: must be a list in brackets, got 3.0")])
 def test_what_is_none_is_said_with_its_place(change, said):
     with pytest.raises(records.NoRecord) as caught:
-        records.read(Thing, {**PLAIN, **change})
+        records.read_record(Thing, {**PLAIN, **change})
     assert said in str(caught.value) and str(caught.value).startswith(f"{list(change)[0]}: ")
     assert len(str(caught.value)) < 150
 
 
 def test_all_that_is_missing_is_named():
     with pytest.raises(records.NoRecord, match="^must have name and right and ends$"):
-        records.read(Thing, {"pairs": [], "of": {}})
+        records.read_record(Thing, {"pairs": [], "of": {}})
     with pytest.raises(records.NoRecord, match="^must be a section with keys, got 'a'$"):
-        records.read(Thing, "a")
+        records.read_record(Thing, "a")
 
 
 # --- the rows of a study ---
@@ -105,8 +105,8 @@ def test_all_that_is_missing_is_named():
 @pytest.mark.parametrize("name", ROWS)
 def test_a_row_there_and_back(name):
     row = made_rows.row(**ROWS[name])
-    about = rows.plain(row)
-    assert rows.read(yaml.safe_load(disk.yaml_text("a row", about))) == row
+    about = rows.encode_row(row)
+    assert rows.read_row(yaml.safe_load(disk.yaml_text("a row", about))) == row
     assert isinstance(row, Failed if name == "failed" else Finished)
     assert list(about)[:2] == ["run", "status"] and not {"road", "mapped"} & about.keys()
     assert ("remove_m3" in about, "overlap" in about) == (name in ("road", "both"), name in ("mapped", "both"))
@@ -119,7 +119,7 @@ def test_a_row_there_and_back(name):
     if one.default is MISSING and one.name != "run"])       # without it the schema of the file is not met
 def test_a_row_that_lacks_something_is_one_line(name, lacks):
     """With file, run, and the key as the file has it."""
-    about = rows.plain(made_rows.row(**ROWS[name]))
+    about = rows.encode_row(made_rows.row(**ROWS[name]))
     del about[lacks]
     with pytest.raises(SlopeError) as caught:
         study_file.row_of(Path("out/study.yaml"), about)
@@ -136,7 +136,7 @@ def test_a_row_that_lacks_something_is_one_line(name, lacks):
     ({"release": {"released": 1.0}}, "release: must have body and factor and from_cubic and removed"),
     ({"status": "done"}, "status: must be failed or finished, got 'done'")])
 def test_a_row_of_a_wrong_type_is_one_line(change, said):
-    about = {**rows.plain(made_rows.row(**ROWS["both"])), **change}
+    about = {**rows.encode_row(made_rows.row(**ROWS["both"])), **change}
     with pytest.raises(SlopeError) as caught:
         study_file.row_of(Path("out/study.yaml"), about)
     assert str(caught.value) == f"out/study.yaml: run one: must be {study_file.WHAT}: {said}"
@@ -148,7 +148,7 @@ def test_every_quantity_is_a_field_of_a_row():
     row = made_rows.row(**ROWS["both"])
     for key, one in quantities.ALL.items():
         kind, of = types[key]
-        assert row.value(key) == rows.plain(row)[key]
+        assert row.value(key) == rows.encode_row(row)[key]
         assert kind is (Finished if one in quantities.OF_RUN else OnRoad if one in quantities.OF_ROAD else kind)
         assert not one.maybe or of == Optional[float], key
         if quantities.On.MEAN in one.on:
@@ -166,21 +166,22 @@ def test_a_record_of_several_kinds_is_the_smallest_that_has_all_keys():
     """An entry that lacks a key is refused, and not taken for a smaller one: of known events that weigh nothing."""
     weighted, known = made_study.weighted(), made_study.weighted(reached=None)
     for one in (weighted, known):
-        entry = records.plain(made_study.ensemble(dict(vars(one))))
-        assert records.read(ensemble_types.Ensemble, entry).known_events == one
-    entry = records.plain(made_study.ensemble({}))
+        entry = records.encode_record(made_study.ensemble(dict(vars(one))))
+        assert records.read_record(ensemble_types.Ensemble, entry).known_events == one
+    entry = records.encode_record(made_study.ensemble({}))
     for name in entry["known_events"].keys() - vars(known).keys():      # but for what is none by default
         lacks = {key: value for key, value in entry["known_events"].items() if key != name}
         with pytest.raises(records.NoRecord, match=f"known_events: must have {name}"):
-            records.read(ensemble_types.Ensemble, {**entry, "known_events": lacks})
+            records.read_record(ensemble_types.Ensemble, {**entry, "known_events": lacks})
 
 
 def test_what_is_none_by_default_is_not_written():
     design = ensemble_types.Design("sobol", 1, 64, {})
-    assert records.plain(design) == {"kind": "sobol", "seed": 1, "points": 64, "variables": {}}
-    assert records.plain(replace(design, fit="a"))["fit"] == "a"
-    assert records.plain(ensemble_types.KnownVariable([], {"a": None})) == {"quantiles": [], "rank": {"a": None}}
-    assert records.read(ensemble_types.Design, records.plain(design)) == design
+    assert records.encode_record(design) == {"kind": "sobol", "seed": 1, "points": 64, "variables": {}}
+    assert records.encode_record(replace(design, fit="a"))["fit"] == "a"
+    assert records.encode_record(ensemble_types.KnownVariable([], {"a": None})) == {"quantiles": [],
+                                                                                    "rank": {"a": None}}
+    assert records.read_record(ensemble_types.Design, records.encode_record(design)) == design
 
 
 @pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
@@ -197,4 +198,4 @@ def test_a_study_is_read_as_it_was_written(tiny_case, monkeypatch, capsys):
     kinds = [(type(row), getattr(row, "road", None) is not None) for row in about.runs]
     assert kinds == [(Finished, True)] * 2 + [(Failed, False)]
     assert study_file.load_study(Path("out/study.yaml")).runs == about.runs
-    assert study_file.Study.read("out").runs == [rows.plain(row) for row in about.runs]
+    assert study_file.Study.read("out").runs == [rows.encode_row(row) for row in about.runs]

@@ -32,7 +32,7 @@ NAMES = ["r.slip.asc", "r.slip.yaml", "r.depth.asc", "r.depth.yaml", "r.png", "r
 @pytest.fixture
 def no_picture(monkeypatch):
     """An empty NAME.png: it takes nine tenths of the time, and one test looks at it."""
-    monkeypatch.setattr(release_chart, "draw", lambda path, *rest: Path(path).write_bytes(b""))
+    monkeypatch.setattr(release_chart, "draw_release", lambda path, *rest: Path(path).write_bytes(b""))
 
 
 @pytest.fixture
@@ -73,7 +73,7 @@ def terrain(height, path="t.asc", size=(100, 120), cell=2.0, crs=CRS_M, offset=(
 
 def polygon(geometry, path="p.csv"):
     """A polygon in the deck's format, local metres of the terrain t.asc."""
-    polygons.write(path, geometry, rasters.read_place("t.asc"))
+    polygons.write_polygon(path, geometry, rasters.read_place("t.asc"))
     return path
 
 
@@ -199,7 +199,7 @@ def test_the_sphere_of_the_embankment():
     found = release_area.area_of(raster, release_area.nodes_inside(raster, whole), "p", "t")
     line = release_area.FallLine(np.array([84.0, 80, 0]), np.array([156.0, 80, 36]))
     depth = release_solve.depths(found, release_bodies.cap(found, line, 18.0))
-    assert release_solve.volume(depth, found.cell) == pytest.approx(48858, rel=0.005)
+    assert release_solve.compute_volume(depth, found.cell) == pytest.approx(48858, rel=0.005)
     face = box(84, 30, 156, 130)
     inside = release_area.nodes_inside(raster, face)
     line = release_area.fall_line(release_area.area_of(raster, inside, "p", "t"), face, "p")
@@ -581,7 +581,7 @@ def test_numbers_come_before_files(slope, monkeypatch, here):
     terrain(hill)
     polygon(box(80, 20, 140, 180))
     before = sorted(here.iterdir())
-    monkeypatch.setattr(release_chart, "draw", full)
+    monkeypatch.setattr(release_chart, "draw_release", full)
     status, out, err = slope("t.asc --polygon p.csv --depth 5 -o r")
     assert status == 2 and "volume" in out and "wrote" not in out
     above, full_disk = err.splitlines()
@@ -882,8 +882,8 @@ def test_a_run_releases_what_is_printed(body, shape):
         summary = released("r", d)
         assert summary["volume"]["released"] == pytest.approx(found["volume"], rel=0.002)
         assert summary["release"]["bulk_factor"] == pytest.approx(1 / 0.60, rel=0.05)
-    base = rasters.read("r.base.asc").z     # on a grid of the terrain's cells: the slip surface's own nodes
-    assert base == pytest.approx(rasters.read("r.slip.asc").z, abs=1e-6)
+    base = rasters.read_raster("r.base.asc").z     # on a grid of the terrain's cells: the slip surface's own nodes
+    assert base == pytest.approx(rasters.read_raster("r.slip.asc").z, abs=1e-6)
 
 
 def test_the_balls_slide(body):
@@ -898,8 +898,8 @@ def test_the_balls_slide(body):
 def test_a_million_cubic_metres_at_frank(body):
     if not FRANK.is_dir():
         pytest.skip("shared/data/frank is not there")
-    after = rasters.read(FRANK / "Frankslide_topography.asc")
-    pile = rasters.read(FRANK / "Frankslide_pile.asc", heights=False)
+    after = rasters.read_raster(FRANK / "Frankslide_topography.asc")
+    pile = rasters.read_raster(FRANK / "Frankslide_pile.asc", heights=False)
     rasters.write_asc_local("before.asc", after._replace(z=after.z + pile.z), {})
     scar, _ = body(f"before.asc --scar {FRANK / 'Frankslide_topography.asc'}")
     assert scar["volume"] == pytest.approx(pile.z.sum() * 400, rel=1e-6) == pytest.approx(36.0e6, rel=1e-3)

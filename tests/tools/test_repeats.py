@@ -73,7 +73,7 @@ def test_repeats_are_made_for_each_combination_and_the_headline_is_theirs(slope)
         assert entry["remove_m3"]["scatter"] == pytest.approx(statistics.stdev(several))
         assert float(line["remove_m3_mean"]) == entry["remove_m3"]["mean"]
         assert float(line["remove_m3_scatter"]) == entry["remove_m3"]["scatter"]
-    assert records.plain(best) == about["conservative"]
+    assert records.encode_record(best) == about["conservative"]
 
 
 def test_what_a_repeat_does_not_change_counts_once(succeed):
@@ -133,7 +133,7 @@ def test_wrong_repeats_are_one_line(slope, arguments, message):
 
 
 def test_the_first_run_may_have_a_value_of_set():
-    todo = repeats.plan("out", {"seed": ["5"], "rolling": ["0", "1"]}, {"seed": ["5", "6"]}, {"seed": "0"})
+    todo = repeats.plan_repeats("out", {"seed": ["5"], "rolling": ["0", "1"]}, {"seed": ["5", "6"]}, {"seed": "0"})
     assert [one.name for one in todo] == [f"seed_{seed}_rolling_{rolling}" for rolling in "01" for seed in "56"]
     assert [one.key for one in todo] == ["base", "seed 6"] * 2
     assert [one.combination["rolling"] for one in todo] == ["0", "0", "1", "1"]
@@ -141,13 +141,14 @@ def test_the_first_run_may_have_a_value_of_set():
 
 def test_combinations_beside_the_product_are_one_run_each():
     others = [{"rolling": "0", "spacing": "0.5"}]
-    todo = repeats.plan("out", {"rolling": ["0", "1"], "spacing": ["0.9"]}, {"seed": ["6"]}, {"seed": "0"}, others)
+    todo = repeats.plan_repeats("out", {"rolling": ["0", "1"], "spacing": ["0.9"]}, {"seed": ["6"]}, {"seed": "0"},
+                                others)
     assert [one.name for one in todo] == ["rolling_0_spacing_0.9", "rolling_0_spacing_0.9_seed_6",
                                           "rolling_1_spacing_0.9", "rolling_1_spacing_0.9_seed_6",
                                           "rolling_0_spacing_0.5"]
     assert todo[-1].varied == "rolling 0, spacing 0.5" and todo[0].varied == "rolling 0, spacing 0.9"
     with pytest.raises(SlopeError, match="at most 10000 runs, got 10001"):
-        repeats.plan("out", {"rolling": [str(k) for k in range(10000)], "spacing": ["0.9"]}, {}, {}, others)
+        repeats.plan_repeats("out", {"rolling": [str(k) for k in range(10000)], "spacing": ["0.9"]}, {}, {}, others)
 
 
 # --- the conservative volume ---
@@ -175,7 +176,7 @@ def test_a_difference_below_chance_is_no_trend_and_no_doubt():
     [entry] = best.differences
     assert (entry.largest_at, entry.smallest_at, entry.clear) == ("1", "0", False) and entry.by_m3 == 4
     assert best.doubts == []
-    assert any("no more than expected by chance" in line for line in combinations.describe(best))
+    assert any("no more than expected by chance" in line for line in combinations.describe_combinations(best))
 
 
 def test_a_difference_larger_than_chance_at_the_end_of_a_range_is_a_doubt():
@@ -205,11 +206,11 @@ def test_which_ground_governs():
         (("1", "0.5"), (40.0,)), names=("rolling", "spacing"))]
     best = conservative(settings, several)
     assert best.ground == "the ground that governs: spacing 0.5, stop angle 15.5 degrees (tried: spacing 0.9, 0.5)"
-    assert best.ground in combinations.describe(best)
+    assert best.ground in combinations.describe_combinations(best)
     assert (best.mean_m3, best.repeats, best.label) == (95, 1, "rolling 0, spacing 0.5")
     assert best.chance_m3 == pytest.approx(best.quantile * best.scatter_m3 * 2 ** 0.5)
     assert [(entry.variable, entry.by_m3) for entry in best.differences] == [("rolling", 55), ("spacing", 24)]
-    entry = combinations.entries(combinations.grouped(several), ["remove_m3"])[0]
+    entry = combinations.list_combination_entries(combinations.grouped(several), ["remove_m3"])[0]
     assert entry["stop_angle_deg"] == 24.5
     several[6] = changed(several[6], remove_m3=60.0)
     best = conservative(settings, several)
@@ -264,7 +265,7 @@ def test_runs_of_another_outcome_are_doubted():
     (1.25, conservative_volume.Scatter(0.0, 4), "1.25"),
 ])
 def test_volumes_are_shown_to_what_is_known(value, scatter, expected):
-    assert study_table.volume(value, scatter) == expected
+    assert study_table.round_volume(value, scatter) == expected
 
 
 # --- rest and travel ---
@@ -328,10 +329,10 @@ def test_a_run_that_its_deck_halts_is_at_rest_unless_it_moves(slope, step, at_re
 
 def test_shares_of_travel_come_from_the_summary():
     about = summary()
-    assert travel_shares.columns(about) == dict.fromkeys(travel_shares.COLUMNS)
+    assert travel_shares.read_share_columns(about) == dict.fromkeys(travel_shares.COLUMNS)
     about["travel"]["quantiles"] = [{"share": share, "distance": 100 * share, "reach_angle": 30 - share}
                                     for share in (0.5, 0.9, 0.95, 0.99, 0.999)]
-    found = travel_shares.columns(about)
+    found = travel_shares.read_share_columns(about)
     assert [found[f"distance_{share}_m"] for share in (50, 90, 95, 99)] == pytest.approx([50, 90, 95, 99])
     assert found["reach_99_deg"] == pytest.approx(29.01)
 
@@ -354,7 +355,7 @@ TRAVEL = {"front": 1.0, "front_at_release": 1.0, "centroid": 1.0, "reach_angle":
     ("volume", {"released": 1.0}, "must have on_grid and off_grid and lost and residual")])
 def test_wrong_values_of_a_summary_are_one_line(section, value, rule):
     with pytest.raises(SlopeError, match=f"a.yaml: must be a summary that fix deposit/grid wrote: .*{rule}"):
-        schemas.check(value, run_folders.SUMMARY["properties"][section], "a.yaml", run_folders.WHAT)
+        schemas.check_schema(value, run_folders.SUMMARY["properties"][section], "a.yaml", run_folders.WHAT)
 
 
 @pytest.mark.parametrize("kinds, name, column", [
@@ -364,7 +365,8 @@ def test_wrong_values_of_a_summary_are_one_line(section, value, rule):
     ((None, None), "length along the fall path", False)])
 def test_a_length_without_a_fall_path_is_called_straight(kinds, name, column):
     several = [changed(one, length_is=kind, length_m=30.0) for one, kind in zip(rows((("0",), (5.0, 6.0))), kinds)]
-    assert quantities.name_of("length_m", several) == name
-    assert quantities.name_of("front_m", several) == "farthest ball"
-    head = study_table.table({"rolling": ["0"]}, {"seed": []}, several, {"seed": "0"}).splitlines()[0].split(",")
+    assert quantities.name_quantity("length_m", several) == name
+    assert quantities.name_quantity("front_m", several) == "farthest ball"
+    head = study_table.tabulate_study({"rolling": ["0"]}, {"seed": []}, several,
+                                      {"seed": "0"}).splitlines()[0].split(",")
     assert ("length_is" in head) == column and (not column or head[head.index("length_deg") + 1] == "length_is")

@@ -144,16 +144,16 @@ def change(folder, function):
         for row in about["runs"] if about else ():
             if row["status"] == "finished" and row["summary"] == str(path.relative_to(folder)):
                 known = {**quantities.of_summary(summary),
-                         **judged.columns(summary, SimpleNamespace(notes=[], warnings=[]))}
+                         **judged.list_ending_columns(summary, SimpleNamespace(notes=[], warnings=[]))}
                 row.update({key: known[key] for key in known if key not in ("release", "log_warnings", "released_m3")},
-                           front_m=summary["travel"]["front"], **travel_shares.columns(summary))
+                           front_m=summary["travel"]["front"], **travel_shares.read_share_columns(summary))
                 key = travel_shares.DISTANCE
                 about["largest"].pop(key, None)
     if about:
-        finished = finished_of(map(rows.read, about["runs"]))
-        about["largest"]["front_m"] = records.plain(outcome.largest(finished, "front_m"))
+        finished = finished_of(map(rows.read_row, about["runs"]))
+        about["largest"]["front_m"] = records.encode_record(outcome.find_largest_row(finished, "front_m"))
         if all(row.value(key) is not None for row in finished):
-            about["largest"][key] = records.plain(outcome.largest(finished, key))
+            about["largest"][key] = records.encode_record(outcome.find_largest_row(finished, key))
         (folder / "study.yaml").write_text(yaml.safe_dump(about))
 
 
@@ -293,8 +293,8 @@ def stands(name):
     for parts in (best, best["rounded"]):
         parts["volume_m3"] = parts["mean_m3"] + (parts["chance_m3"] or 0)
     path.write_text(yaml.safe_dump(about))
-    said = answer.of(answered.paper_of(study_file.load_study(path)), None, None)
-    path.write_text(yaml.safe_dump({**about, "headline": records.plain(said.about())}))
+    said = answer.combine_answers(answered.paper_of(study_file.load_study(path)), None, None)
+    path.write_text(yaml.safe_dump({**about, "headline": records.encode_record(said.about())}))
     return best
 
 
@@ -446,7 +446,7 @@ def test_the_run_that_lost_most_went_farthest(slope, here):
         for row, share, distance, front in zip(about["runs"], lost, distances, fronts):
             row.update(lost_m3=share * row["released_m3"], distance_99_m=distance, front_m=front)
         path.write_text(yaml.safe_dump(about))
-        assert travel_shares.farthest(finished_of(map(rows.read, about["runs"]))).run == farthest["run"]
+        assert travel_shares.find_farthest_run(finished_of(map(rows.read_row, about["runs"]))).run == farthest["run"]
         assert report_data.Data(Path("out")).result.name == farthest["run"]
 
 
@@ -865,7 +865,7 @@ def text_of(path, text):
 
 def only_failed():
     about = yaml.safe_load(Path("out/study.yaml").read_text())
-    about["runs"] = [rows.plain(made_rows.row(status="failed"))]
+    about["runs"] = [rows.encode_row(made_rows.row(status="failed"))]
     about["conservative"], about["largest"] = None, {}
     Path("out/study.yaml").write_text(yaml.safe_dump(about))
 

@@ -139,7 +139,7 @@ def test_what_stands_first(slope, here, case):
     study = replace(study_file.load_study(path), headline=number)
     step = next_step.of_studies([next_step.Made(study, path.parent)], number)
     path.write_text(yaml.safe_dump({**about, "headline": HEADLINES[case],
-                                    "next_step": step and records.plain(step.about())}))
+                                    "next_step": step and records.encode_record(step.about())}))
     assert slope("repeated")[0] == 0
     text = " ".join(client(here / "repeated" / "report.html").split())
     for words in SAID[case]:
@@ -384,7 +384,7 @@ def test_the_weightiest_come_first_and_three_are_shown():
     assert len(told) == 9
     assert "1 million" in told[2] and told[3].startswith("2 of 4 runs") and "coarse" in told[6]
     assert "All 4 runs lost mass over the edge, up to 6,000 m" in told[7] and told[8].startswith("The slip surface")
-    levels = [level for level, _ in warnings.listed(found, data.names())]
+    levels = [level for level, _ in warnings.rank_warnings(found, data.names())]
     assert levels == sorted(levels, reverse=True) and levels.count(NOTE) == 3      # large, moving, lost
     assert warnings.rest_of(7) == "The appendix has all 7 warnings, the settings, the runs and the checks."
 
@@ -393,7 +393,7 @@ def test_what_no_run_tells_is_on_the_first_page_alone():
     rows = rows_of((0.0, 50000.0))
     found = warnings.findings(data_of(rows), GROUND)
     assert [one.kind for one in found] == ["no repeats", "no sizes", "slip assumed"]
-    assert warnings.listed(found, {}) == [] and len(warnings.first_page(found)) == 3
+    assert warnings.rank_warnings(found, {}) == [] and len(warnings.first_page(found)) == 3
     found = warnings.findings(data_of(rows, repeats={"seed": ["1"]}, study=made_study.study(
         conservative=made_study.conservative(1.0), size={})), GROUND)
     assert [one.kind for one in found] == ["slip assumed"]

@@ -52,7 +52,7 @@ def test_where_a_section_cuts_a_structure():
 def test_points_of_a_control_line(tmp_path):
     path = tmp_path / "fence.csv"
     path.write_text("# x y\n11 23\n11,1   # its end\n")
-    assert obstacles.points_of(path).tolist() == [[11, 23], [11, 1]]
+    assert obstacles.read_line_points(path).tolist() == [[11, 23], [11, 1]]
 
 
 # --- on maps and section ---
@@ -96,11 +96,11 @@ def test_the_section_has_them(drawn):
     s = np.linspace(0, 40, 81)
     runs = [("run", 0.5 * s + 1, np.where(s < 20, 1.0, 0.0))]
     cut = np.where(s < 10, 0.5 * s + 0.5, np.nan)
-    figure_charts.section(s, 0.5 * s, 0.5 * s, runs, [(2, 6)], cut, "title", (), obstacles.section_of(
+    figure_charts.draw_section(s, 0.5 * s, 0.5 * s, runs, [(2, 6)], cut, "title", (), obstacles.section_of(
         WALL, np.array([[0.0, 5.0], [40.0, 5.0]])), [11.0], [(0.1, 30.0)])
     assert {"road", "structure", "control line", "cut surface", "a tenth of known events go farther"} <= texts(drawn[0])
     assert any(list(line.get_xdata()) == [30.0, 30.0] for axes in drawn[0].axes for line in axes.lines)
-    figure_charts.section(s, 0.5 * s, 0.5 * s, runs, [], None, "title")
+    figure_charts.draw_section(s, 0.5 * s, 0.5 * s, runs, [], None, "title")
     assert not {"structure", "control line", "cut surface"} & texts(drawn[1])
 
 
@@ -172,9 +172,9 @@ def test_results_of_nothing(drawn):
 
 
 def test_a_hazard_curve_has_no_value_below_nothing():
-    curve = hazard.curve([0.0, 0.0, 5.0, 8.0], range(4))
-    rows = [row.split(",")[1:3] for row in hazard.table({"remove_m3": curve}).splitlines()[1:]]
+    curve = hazard.compute_hazard_curve([0.0, 0.0, 5.0, 8.0], range(4))
+    rows = [row.split(",")[1:3] for row in hazard.tabulate_hazard({"remove_m3": curve}).splitlines()[1:]]
     assert rows == [["0", "0.5"], ["5", "0.25"], ["8", "0"]]
-    curve = hazard.curve([3.0, 4.0], range(2))
-    rows = [row.split(",")[1:3] for row in hazard.table({"front_m": curve}).splitlines()[1:]]
+    curve = hazard.compute_hazard_curve([3.0, 4.0], range(2))
+    rows = [row.split(",")[1:3] for row in hazard.tabulate_hazard({"front_m": curve}).splitlines()[1:]]
     assert rows == [["0", "1"], ["3", "0.5"], ["4", "0"]]

@@ -90,7 +90,7 @@ def test_no_title_and_no_row_is_alone(tmp_path):
     page.write_text(f"<html>{style}" + "".join(
         f"<section style='break-before: page'><div style='height: {mm}mm'></div>{table}</section>"
         for mm in range(190, 246)), encoding="utf-8")
-    printing.write(page, tmp_path / "page.pdf")
+    printing.print_page(page, tmp_path / "page.pdf")
     found = [text.split() for text in words("pdftotext", "-layout", tmp_path / "page.pdf", "-").decode().split("\f")]
     found = [[word for word in text if word in ("TITLE", "CAPTION", "HEAD") or word[:3] == "row"] for text in found]
     assert sum("TITLE" in text for text in found) == 56 and any(text[-1:] == ["row2"] for text in found)
@@ -126,7 +126,7 @@ def test_a_browser_that_fails_leaves_no_pdf(monkeypatch, tmp_path, script, last)
     page = tmp_path / "page.html"
     page.write_text("<html></html>")
     with pytest.raises(Exception, match=f"must print {page}, got {last}"):
-        printing.write(page, tmp_path / "page.pdf")
+        printing.print_page(page, tmp_path / "page.pdf")
     assert not (tmp_path / "page.pdf").exists()
 
 
@@ -140,7 +140,7 @@ def test_a_browser_that_hangs_is_ended_with_all_that_it_started(monkeypatch, tmp
     page = tmp_path / "page.html"
     page.write_text("<html></html>")
     with pytest.raises(SlopeError) as error:
-        printing.write(page, tmp_path / "page.pdf")
+        printing.print_page(page, tmp_path / "page.pdf")
     assert str(error.value) == (f"--pdf: {program} must print {page} within 1 s: try again when less runs on this "
                                 "machine, or print the page from any browser, got nothing by then")
     child, end = int((tmp_path / "child").read_text()), time.monotonic() + 10
@@ -166,7 +166,7 @@ def test_what_a_browser_leaves_running_is_not_waited_for(monkeypatch, tmp_path):
     monkeypatch.setenv("PATH", f"{program.parent}:/bin:/usr/bin")
     monkeypatch.setattr(printing, "PATIENCE", 60)
     (tmp_path / "page.html").write_text("<html></html>")
-    printing.write(tmp_path / "page.html", tmp_path / "page.pdf")
+    printing.print_page(tmp_path / "page.html", tmp_path / "page.pdf")
     assert (tmp_path / "page.pdf").read_text() == "%PDF\n"
 
 

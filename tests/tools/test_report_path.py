@@ -164,7 +164,7 @@ def test_distances_within_a_mask():
     within[0:2, 2] = False      # a wall with a gap below
     start = np.zeros((3, 5), bool)
     start[0, 0] = True
-    found = flow_path.distances(within, start, 10.0)
+    found = flow_path.compute_path_distances(within, start, 10.0)
     assert found[0, 1] == 10 and found[1, 1] == pytest.approx(10 * np.sqrt(2))
     # through the gap: two diagonals down to it, two up again
     assert found[0, 4] == pytest.approx(10 * 4 * np.sqrt(2))

@@ -205,7 +205,7 @@ def heights(length, drop, thick, count=200):
 def test_a_section_has_a_place_for_everything(drawn, length, drop, thick):
     s, before, base, runs = heights(length, drop, thick)
     road = [(0.1 * length, 0.11 * length), (0.12 * length, 0.13 * length)]
-    figure_charts.section(s, before, base, runs, road, base + 1, LONG, bends=[0.4 * length, 0.6 * length])
+    figure_charts.draw_section(s, before, base, runs, road, base + 1, LONG, bends=[0.4 * length, 0.6 * length])
     figure = the_only(drawn)
     check_layout(figure)
 
@@ -216,7 +216,7 @@ def test_a_section_has_a_place_for_everything(drawn, length, drop, thick):
     (3000, 1000, 3, 1, True)])          # no exaggeration would do: a panel of its own
 def test_the_deposit_is_seen_on_the_section(drawn, length, drop, thick, factor, below):
     s, before, base, runs = heights(length, drop, thick)
-    _, told, told_below = figure_charts.section(s, before, base, runs, [], None, "Section")
+    _, told, told_below = figure_charts.draw_section(s, before, base, runs, [], None, "Section")
     figure = the_only(drawn)
     axes = figure.axes[0]
     place = axes.get_window_extent()
@@ -295,7 +295,7 @@ def test_bounds_are_round_numbers():
 
 @pytest.mark.parametrize("value, expected", [(7, 8), (1, 1), (45, 50), (0.31, 0.4), (8.1, 10), (60, 60)])
 def test_above(value, expected):
-    assert figures.above(value) == pytest.approx(expected)
+    assert figures.round_up_nicely(value) == pytest.approx(expected)
 
 
 @pytest.mark.parametrize("low, high", [(0, 1), (-5, 3), (1e6, 1e6 + 7), (0.1, 0.11), (3, 997), (-0.2, 0.3)])

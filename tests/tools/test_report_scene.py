@@ -95,7 +95,7 @@ def test_frames_are_the_dumps_ball_by_ball(case):
     path = case / f"view.{900:09d}.dump"
     lines = path.read_text().splitlines()
     path.write_text("\n".join(lines[:9] + lines[:8:-1]) + "\n")        # LAMMPS' order is any order
-    found, why = frames.read(Data(case).result)
+    found, why = frames.read_frames(Data(case).result)
     assert why == "" and found.factor == 1 and found.dumped == len(steps) == 13
     assert found.time == pytest.approx([0.002 * step for step in steps])
     ids = sorted(steps[0])
@@ -113,7 +113,7 @@ def test_a_ball_that_is_lost_is_no_longer_there(case):
     lines[3] = str(int(lines[3]) - 1)
     gone = int(lines.pop().split()[0])
     path.write_text("\n".join(lines) + "\n")
-    found, _ = frames.read(Data(case).result)
+    found, _ = frames.read_frames(Data(case).result)
     column = sorted(dumps_of(case)[0]).index(gone)
     there = np.isfinite(found.place[:, column, 0])
     assert there[:-1].all() and not there[-1]
@@ -122,12 +122,12 @@ def test_a_ball_that_is_lost_is_no_longer_there(case):
 
 
 def test_speeds_without_velocities_are_those_of_the_way(case):
-    full, _ = frames.read(Data(case).result)
+    full, _ = frames.read_frames(Data(case).result)
     for path in case.glob("view.*.dump"):
         lines = path.read_text().splitlines()
         lines[8:] = ["ITEM: ATOMS id x y z"] + [" ".join(np.take(line.split(), [0, 2, 3, 4])) for line in lines[9:]]
         path.write_text("\n".join(lines) + "\n")
-    found, _ = frames.read(Data(case).result)
+    found, _ = frames.read_frames(Data(case).result)
     way = np.linalg.norm(full.place[5] - full.place[4], axis=1) / 0.15
     assert found.speed[5] == pytest.approx(way, rel=1e-3, abs=1e-4) and way.max() > 1
     # without a diameter too: the balls' volume is the released one over the bulk factor
@@ -150,9 +150,9 @@ def test_budget(dumped, balls, size, shots, most):
 
 @library
 def test_what_is_thinned_out_is_said_and_keeps_its_volume(case, monkeypatch):
-    all_of_them, _ = frames.read(Data(case).result)
+    all_of_them, _ = frames.read_frames(Data(case).result)
     monkeypatch.setattr(frames, "MOST_PLACES", 13 * 100)
-    found, _ = frames.read(Data(case).result)
+    found, _ = frames.read_frames(Data(case).result)
     assert found.place.shape == (13, 100, 3) and found.balls == all_of_them.balls
     assert (found.diameter ** 3).sum() == pytest.approx((all_of_them.diameter ** 3).sum(), rel=1e-5)
     # the balls that are left are balls of the run, on their own ways
@@ -246,15 +246,15 @@ def test_structures_in_the_ground_that_is_shown(box, inside):
 def test_the_ground_that_is_shown_reaches_to_structures_nearby(ran):
     """Near is what is no farther than the mass is long; what lies beyond the terrain does not count."""
     ground = Ground(Data(ran))
-    alone = scene.shown(ground, {})
+    alone = scene.frame_scene(ground, {})
     box = extent_of(ground.raster.transform, ground.touched | ground.source)
     size = max(box[2] - box[0], box[3] - box[1])
 
     def post(x):
         return {"post": np.array([[[x, 12, 0], [x + 0.5, 12, 0], [x, 12, 1]]], float)}
-    assert scene.shown(ground, post(box[0] + 1)).tolist() == alone.tolist()
-    assert scene.shown(ground, post(box[0] - 2 * size)).tolist() == alone.tolist()
-    assert scene.shown(ground, post(max(1, box[0] - 0.9 * size)))[0] <= 1 < alone[0]
+    assert scene.frame_scene(ground, post(box[0] + 1)).tolist() == alone.tolist()
+    assert scene.frame_scene(ground, post(box[0] - 2 * size)).tolist() == alone.tolist()
+    assert scene.frame_scene(ground, post(max(1, box[0] - 0.9 * size)))[0] <= 1 < alone[0]
 
 
 @library

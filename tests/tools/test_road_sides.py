@@ -233,7 +233,7 @@ def test_what_left_by_dumps(tmp_path):
                                (5, 1, 310, 300, 0, 0)])
     write_dump(tmp_path, 200, [(1, 1, 830, 340, 20, 0), (3, 1, 790, 100, 0, 0), (4, 1, 330, 480, 20, 0),
                                (5, 1, 310, 300, 0, 0)])
-    found = gone.read(tmp_path / "site", ground)
+    found = gone.read_balls_gone(tmp_path / "site", ground)
     assert found.source == "dumps" and found.volume == pytest.approx(16 * np.array([1, 8, 1]) / 12)
     assert found.place == pytest.approx(np.array([[800, 310], [800, 200], [300, 480]]), abs=1e-6)
     assert found.start == pytest.approx(np.array([[790, 300], [795, 200], [290, 480]]))
@@ -242,10 +242,10 @@ def test_what_left_by_dumps(tmp_path):
 
 def test_not_known_what_left(tmp_path):
     ground = ground_of(np.ones((ROWS, COLUMNS)), lost=40.0)
-    assert gone.read(tmp_path / "site", ground) is None
+    assert gone.read_balls_gone(tmp_path / "site", ground) is None
     ground = ground_of(np.ones((ROWS, COLUMNS)))
-    assert gone.read(tmp_path / "site", ground).source == "nothing left"
+    assert gone.read_balls_gone(tmp_path / "site", ground).source == "nothing left"
     ground.summary["files"] = ["site.thickness.asc", "site.left.csv"]
     with pytest.raises(SlopeError) as error:
-        gone.read(tmp_path / "site", ground)
+        gone.read_balls_gone(tmp_path / "site", ground)
     assert "site.left.csv: must be the table" in str(error.value)

@@ -72,7 +72,7 @@ def test_a_short_road_is_one_window():
 def test_the_ground_of_a_body_has_the_road_in_one_piece():
     """A hairpin, which leaves the ground around the body and comes back."""
     one = corridor_of([(20, 95), (300, 95), (300, 110), (60, 110)], reach=30.0)
-    window, line, start = corridor.around(one, 90, 120, 120, 150)
+    window, line, start = corridor.cut_window(one, 90, 120, 120, 150)
     inner = box(*run_helpers_extent(one.clip(window)))
     assert inner.covers(line) and line.length > 400 and one.axis.buffer(1e-6).covers(line)
     assert start == pytest.approx(1000 + one.axis.project(Point(line.coords[0])))
@@ -83,7 +83,7 @@ def test_the_ground_of_a_body_has_the_road_in_one_piece():
     [(200, 95), (400, 95), (400, 2), (300, 2), (300, 80), (200, 80)]])      # a bend there
 def test_a_road_at_the_edge_of_the_terrain(line):
     one = corridor_of(line)
-    window, found, start = corridor.around(one, 290, 105, 310, 125)
+    window, found, start = corridor.cut_window(one, 290, 105, 310, 125)
     assert box(*run_helpers_extent(one.clip(window))).covers(found) and found.length > 50
     assert start == pytest.approx(1000 + one.axis.project(Point(found.coords[0])))
 
@@ -155,7 +155,7 @@ def test_several_bodies_against_an_own_integral(capacity):
 def test_the_chain_of_a_site_lies_between(capacity):
     """Bodies that fail together, runs that are independent: chain.py, of one sample's strength."""
     found = of_capacity(capacity)
-    runs = [chain.left([1.0] * k + [0.0] * (4 - k), range(4), 1.0) for k in (3, 1, 2)]
+    runs = [chain.compute_left_volume([1.0] * k + [0.0] * (4 - k), range(4), 1.0) for k in (3, 1, 2)]
     value = float(chain.frequency(capacity, found.rate, found.peaks, runs, np.zeros(1)).total.value[0])
     rate = Yearly(found).of([1, 2, 3], [0.75, 0.25, 0.5])
     assert rate.dependent < value < rate.independent
@@ -200,9 +200,9 @@ def two(tmp_path):
 
 
 def made(folder, table, **more):
-    asked = choices.read(folder)._replace(**more)
-    ground = corridor.read(asked, folder)
-    return results.make(asked, ground, folder, table), ground
+    asked = choices.read_route_choices(folder)._replace(**more)
+    ground = corridor.read_corridor(asked, folder)
+    return results.make_route_results(asked, ground, folder, table), ground
 
 
 def test_stretches_and_bodies(two):
@@ -264,7 +264,7 @@ def test_which_body_brings_most_to_each_ten_metres(two):
         assert first["properties"]["body"] == "1" and shape(second["geometry"]).length == pytest.approx(10)
         x, y = shape(second["geometry"]).centroid.coords[0]
         assert (x - run_helpers.EAST, y - run_helpers.NORTH) == pytest.approx((CELL + 55, 50))
-    route_page.write(choices.read(two[0]), ground, two[0], found, lambda said: None)
+    route_page.write_route_page(choices.read_route_choices(two[0]), ground, two[0], found, lambda said: None)
     assert "Which body brings most" in (two[0] / route_page.PAGE).read_text()
     # of runs that count differently, and of a body that is left behind
     one, other = road_runs.by_body({"a": [(3.0, [[0.0, 4.0]]), (1.0, [])], "b": [(0.5, [[0.0, 2.9], [10.0, 1.0]])]})
@@ -289,7 +289,7 @@ def with_fragility(two, capacity, monkeypatch):
     """The same route with fragilities of its two bodies, read from nowhere."""
     found = of_capacity(capacity[:, :, :2])
     digests = [results.disk.sha256(two[0] / f"slips/{k}/body.{k}.base.asc") for k in (1, 2)]
-    monkeypatch.setattr(results.fragility_files, "read", lambda path: found._replace(bases=digests))
+    monkeypatch.setattr(results.fragility_files, "read_fragility", lambda path: found._replace(bases=digests))
     asked = yaml.safe_load((two[0] / choices.NAME).read_text())
     (two[0] / choices.NAME).write_text(yaml.safe_dump({**asked, "fragility": "fragility"}))
     return found
@@ -307,7 +307,7 @@ def test_a_year_of_a_stretch(two, capacity, monkeypatch):
     assert found["bodies"][0]["per_year"]["blocks"] == pytest.approx(
         0.75 * found["bodies"][0]["per_year"]["fails"], rel=1e-3)
     said = []
-    route_page.write(choices.read(two[0]), ground, two[0], found, said.append)
+    route_page.write_route_page(choices.read_route_choices(two[0]), ground, two[0], found, said.append)
     page = (two[0] / route_page.PAGE).read_text()
     assert page.count("<figure>") == 2 and "0.020 to 0.080" in page and f"{year['counts']:.2g}" in page
     assert any("--sample" in one for one in said)
@@ -522,9 +522,9 @@ for k in range(300):
     at = x - 60.0 + 40.0 * draw.random(4)
     bodies.append(((x, 120.0), several, 5.0, 5 * round((x - 100) / 5), 20.0, [[(a, a + 60.0)] for a in at.tolist()]))
 folder, table = route_stand_in.make(Path({folder!r}), (80, 8000), 5.0, bodies)
-asked = choices.read(folder)
-ground = corridor.read(asked, folder)
-found = results.make(asked, ground, folder, table)
+asked = choices.read_route_choices(folder)
+ground = corridor.read_corridor(asked, folder)
+found = results.make_route_results(asked, ground, folder, table)
 route_page.write(asked, ground, folder, found, print)
 """
 
@@ -589,7 +589,8 @@ def given_bodies(**more):
                             bodies="slides.geojson")._replace(**more)
     said = []
     Path("R").mkdir(exist_ok=True)
-    return search.given(asked, corridor.make(asked, Path("R"), lambda _: None, lambda _: None), said.append), said
+    return search.given(asked, corridor.make_corridor(asked, Path("R"), lambda _: None, lambda _: None),
+                        said.append), said
 
 
 @pytest.mark.parametrize("about, got", [
@@ -691,7 +692,7 @@ def test_a_search_needs_strengths(tmp_path, given, said):
         choices.settle(tmp_path / "R", {**first, **given})
     assert str(error.value) == said and not (tmp_path / "R").exists()
     assert choices.settle(tmp_path / "R", {**first, "bodies": "slides.geojson"}).cohesion is None
-    assert choices.read(tmp_path / "R").friction is None
+    assert choices.read_route_choices(tmp_path / "R").friction is None
 
 
 def test_the_page_of_bodies_without_a_factor(two):
@@ -699,7 +700,7 @@ def test_the_page_of_bodies_without_a_factor(two):
     for one in table["bodies"]:
         one["factor"] = None
     found, ground = made(two[0], table)
-    route_page.write(choices.read(two[0]), ground, two[0], found, lambda _: None)
+    route_page.write_route_page(choices.read_route_choices(two[0]), ground, two[0], found, lambda _: None)
     assert "None" not in (two[0] / route_page.PAGE).read_text()
     assert [row["factor"] for row in csv.DictReader((two[0] / results.BODIES).read_text().splitlines())] == ["", ""]
 
@@ -709,7 +710,7 @@ def test_the_page_of_bodies_without_a_factor(two):
 def test_what_runs_do_not_depend_on_may_be_given_later(two, name, value):
     more = {"clearing": {"loosening": 1.3}}.get(name, {})
     assert getattr(choices.settle(two[0], {name: value, **more}), name) == value
-    assert getattr(choices.read(two[0]), name) == value
+    assert getattr(choices.read_route_choices(two[0]), name) == value
 
 
 def route_of(capsys, *words):
@@ -887,7 +888,7 @@ def test_before_there_are_bodies_choices_may_change(tmp_path):
     assert choices.settle(tmp_path / "R", {"reach": 0.5}).reach == 0.5 and (tmp_path / "R/windows/1").is_dir()
     assert choices.settle(tmp_path / "R", {"road": "other.csv"}).road.endswith("other.csv")
     assert sorted(path.name for path in (tmp_path / "R").iterdir()) == ["route.yaml"]
-    assert choices.read(tmp_path / "R").reach == 0.5
+    assert choices.read_route_choices(tmp_path / "R").reach == 0.5
 
 
 @pytest.mark.parametrize("name, value", [
@@ -924,9 +925,9 @@ def test_a_body_without_a_finished_run(two, capsys, monkeypatch):
     program.chmod(0o755)
     (two[0] / "bodies/2/ensemble/study.yaml").unlink()
     todo = type("Run", (), {"error": "exit status 1"})
-    monkeypatch.setattr(runs, "make_site", lambda *rest: None)
-    monkeypatch.setattr(runs, "asked_of", lambda *rest: runs.Asked(None, None, None, [todo]))
-    monkeypatch.setattr(runs, "make", lambda *rest: ["body 2: 4 of 4 runs failed"])
+    monkeypatch.setattr(runs, "make_body_site", lambda *rest: None)
+    monkeypatch.setattr(runs, "make_route_study", lambda *rest: runs.Asked(None, None, None, [todo]))
+    monkeypatch.setattr(runs, "make_route_runs", lambda *rest: ["body 2: 4 of 4 runs failed"])
     status, _, err = called(capsys, ["route", str(two[0]), "--lmp", str(program)])
     assert status == 2 and err.count("\n") == 1 and "body 2: 4 of 4 runs failed" in err, err
 
@@ -949,7 +950,7 @@ def test_zones_of_a_study(two, capsys):
     assert (entry["at_least_m2"], entry["cannot_tell_m2"]) == (50 * 25, 30 * 25)    # 4 of 4; 3, 2 and 1 of 4
     about = yaml.safe_load((folder / "study.yaml").read_text())
     weights = {"run_0": 0.02, "run_1": 0.02, "run_2": 0.02, "run_3": 0.94}
-    about["ensemble"] = records.plain(made_study.ensemble({"weights": weights}))
+    about["ensemble"] = records.encode_record(made_study.ensemble({"weights": weights}))
     (folder / "study.yaml").write_text(yaml.safe_dump(about))
     assert zones_of(folder, capsys, "--zones", "0.4", "--overwrite")[0] == 0
     [entry] = yaml.safe_load((folder / "zones/zones.yaml").read_text())["zones"]
@@ -1015,7 +1016,7 @@ def hill(folder):
 
 def test_a_given_body_has_a_factor_and_a_fragility(tmp_path):
     mass, given = hill(tmp_path / "slips" / "1")
-    found = search.columns_of(tmp_path, 1, 1900.0)
+    found = search.read_route_body(tmp_path, 1, 1900.0)
     assert found.name == "1" and found.direction == pytest.approx(270, abs=2)
     assert found.columns.volume == pytest.approx(mass.volume, rel=0.03)
     factor = search.bishop_factor(given, mass.raster, tmp_path / "base.asc", mass.base)

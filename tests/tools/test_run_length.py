@@ -94,8 +94,8 @@ def test_along_a_bend_and_straight():
     across = run_length.of_deposit(deposit((205, 1305, 305, 305, 9e4)), path(*BEND[:3]))
     assert across.distance == pytest.approx(1200) == across.straight
     places = np.array([[505.0, 405.0], [905.0, 205.0], [1305.0, 0.0], [0.0, 305.0], [3000.0, 5.0]])
-    assert run_length.along(path(*BEND[:3]), np.array([[1305.0, 305.0]])) == pytest.approx([800], abs=0.5)
-    assert run_length.along(path(*BEND), places) == pytest.approx([400, 900, 1500, 0, 2190], abs=0.5)
+    assert run_length.measure_along_path(path(*BEND[:3]), np.array([[1305.0, 305.0]])) == pytest.approx([800], abs=0.5)
+    assert run_length.measure_along_path(path(*BEND), places) == pytest.approx([400, 900, 1500, 0, 2190], abs=0.5)
 
 
 def test_without_a_path_it_is_straight():
@@ -116,18 +116,19 @@ def test_of_a_run(here):
     write_run(thickness, ground - body, CELL, travel={"top": [105.0, 205.0, 958.0]})
     write_asc("terrain.asc", ground, CELL)
     run_length._path.cache_clear()
-    found = [run_length.of_run(deposits.read("run", None, lambda text: None), here / "terrain.asc") for _ in range(2)]
+    found = [run_length.measure_run_length(deposits.read_deposit("run", None, lambda text: None), here / "terrain.asc")
+             for _ in range(2)]
     assert run_length._path.cache_info()[:2] == (1, 1)
     assert found[0].on_path and found[0].distance == found[1].distance
     assert found[0].distance > 1.12 * found[0].straight and found[0].others == (found[0].distance,) * 2
-    assert not run_length.of_run(deposits.read("run", None, lambda text: None), None).on_path
+    assert not run_length.measure_run_length(deposits.read_deposit("run", None, lambda text: None), None).on_path
 
 
 # --- what offices ask for ---
 
 def test_shares_of_the_volume_over_the_height_by_hand():
     """41 columns of cells of one thickness, 100 to 500 m from the crown; a body whose toe is 50 m below it."""
-    found = offices.distances(deposit((*BULK, 9e4)), path(*STRAIGHT))
+    found = offices.measure_office_distances(deposit((*BULK, 9e4)), path(*STRAIGHT))
     assert found == pytest.approx([300, 460, 500], abs=1)
     slope = offices.Slope(50.0, 120.0)
     assert slope.zone == 50 and slope._replace(height=20.0).zone == 40
@@ -213,11 +214,11 @@ def test_the_table_for_offices_is_found_by_hand_from_the_rasters(here):
     write_asc("run.max_thickness.asc", thickness * (1 + x / 2000), CELL)
     write_asc("run.max_speed.asc", np.where(thickness > 0, 20 - 0.02 * x, 0), CELL)
     road = Polygon([(480, 5), (520, 5), (560, 595), (520, 595)])
-    run = deposits.read("run", None, lambda text: None)
+    run = deposits.read_deposit("run", None, lambda text: None)
     before, slip = scar.before(run.raster, run.base, here / "terrain.asc")
     mass, way = body.of_arrays(run.raster._replace(z=before), slip, "a"), run_length.path_of(run, here / "terrain.asc")
     numbers = Numbers()
-    run_part.over_height(offices.slope(mass, way), offices.distances(run, way), numbers)
+    run_part.over_height(offices.slope(mass, way), offices.measure_office_distances(run, way), numbers)
     most = [rasters_of(f"run.max_{name}.asc") for name in ("thickness", "speed")]
     run_part.at_edge(offices.at_edge(road, run.raster, *most), 1786.0, numbers)
     ours, hand = {what: value for what, *_, value in numbers.rows}, by_hand(road, 1786.0)

@@ -74,7 +74,7 @@ def test_a_scenario_is_a_whole_site_with_the_balls_of_its_own(here, capsys, fast
     assert {name: half[name] for name in KEPT} == {name: mine[name] for name in KEPT}
     assert float(half["speed"]) == pytest.approx(faster * float(mine["speed"]), rel=0.05)
     assert float(half["thick"]) == float(mine["thick"]) > 0
-    choices = site_choices.load(Path("mine/scenarios/half")).choices
+    choices = site_choices.load_site(Path("mine/scenarios/half")).choices
     assert choices.study.packing == (2, 5) and choices.study.rolling == (0.02, 0.08)
     assert site_choices.found(Path("mine/scenarios/half")).body.volume == pytest.approx(800, rel=0.02)
     assert choices.project.name == "mine, half"
@@ -100,11 +100,11 @@ def test_it_equals_a_site_made_by_hand_with_the_same_values(here, capsys, words)
     given = {"--terrain": "dem.tif", "--release": "release.geojson", "--road": "road.geojson"}
     given.update({name: value for name, value in zip(words[::2], words[1::2]) if name in given})
     more = [word for name, value in zip(words[::2], words[1::2]) if name not in given for word in (name, value)]
-    mine = site_choices.load(Path("mine")).choices
+    mine = site_choices.load_site(Path("mine")).choices
     size = [] if {"--volume", "--depth"} & {*words} else ["--depth", f"{mine.release.depth:g}"]
     assert cli.main(["site", *[word for pair in given.items() for word in pair], "--shape", mine.release.shape,
                      *size, *more, "--diameter", repr(mine.balls.diameter), "-o", "hand"]) == 0
-    model = site_choices.load(other).choices.model
+    model = site_choices.load_site(other).choices.model
     edit(Path("hand"), "model", **{key: getattr(model, key) for key in (
         "cell", "duration", "film", "least_speed", "least_thick")})
     edit(Path("hand"), "study", packing=[2, 5], rolling=[0.02, 0.08])
@@ -167,7 +167,7 @@ def test_a_scenario_that_cannot_be_made_may_be_mended(here, capsys):
     assert cli.main(["site", "mine", "--scenario", "huge", "--volume", "1e9"]) == 2
     assert [path.name for path in Path("mine/scenarios/huge").iterdir()] == ["site.yaml"]
     assert cli.main(["site", "mine", "--scenario", "huge", "--volume", "800"]) == 0
-    assert site_scenarios.of_site(Path("mine")) == [Path("mine/scenarios/huge")]
+    assert site_scenarios.list_scenarios(Path("mine")) == [Path("mine/scenarios/huge")]
     assert site_scenarios.site_of(Path("mine/scenarios/huge")) == Path("mine").resolve()
     assert site_scenarios.site_of(Path("mine")) is None
 
@@ -182,7 +182,7 @@ def test_what_differs_is_said(here, capsys):
     write_dem(Path("after.tif"), z=np.full((40, 60), 90.0) + np.arange(60) * 0.6)
     assert cli.main(["site", "mine", "--scenario", "cut", "--terrain", "after.tif"]) == 0
     assert cli.main(["site", "mine", "--scenario", "huge", "--volume", "1e9"]) == 2
-    mine, cut, half, huge, smooth = compare.read(Path("mine"))
+    mine, cut, half, huge, smooth = compare.read_scenarios(Path("mine"))
     assert [one.name for one in (mine, cut, half, huge, smooth)] == ["mine", "cut", "half", "huge", "smooth"]
     asked = {one.name: compare.choices_that_differ(mine.site, one.site) for one in (cut, half, smooth)}
     assert asked == {"cut": ["files after.tif"], "half": ["volume 800"], "smooth": ["spacing 0.6", "friction 25"]}
@@ -193,7 +193,7 @@ def test_what_differs_is_said(here, capsys):
     assert any(text.startswith("stop angles") for text in found["smooth"]) and "another terrain" not in found["smooth"]
     edit(Path("mine"), "road", file=None)
     assert cli.main(["site", "mine", "--diameter", "2"]) == 0
-    mine, *others = compare.read(Path("mine"))
+    mine, *others = compare.read_scenarios(Path("mine"))
     assert "balls of 1.98 m instead of 2" in list(compare.differences(mine, others[1]))
     assert list(page.models([mine, *others]))[2] == "huge: not made yet."
 
@@ -240,19 +240,22 @@ def test_numbers_side_by_side_are_of_the_studies_that_all_have(tmp_path):
     # that of the sweep alone is what it says itself: of one size, no bound
     found = method.headline_of(BOTH, names)
     assert (found.source, found.kind, found.volume_m3) == ("paper", "open", 1000)
-    assert (method.farthest(BOTH, names), method.farthest(BOTH, ["study", "ensemble"])) == (100, 300)
-    assert len(method.rows_of(BOTH, names)) == 2 and len(method.rows_of(BOTH, ["study", "ensemble"])) == 4
+    assert (method.find_farthest_reach(BOTH, names), method.find_farthest_reach(BOTH, ["study", "ensemble"])) == (100,
+                                                                                                                  300)
+    assert len(method.list_finished_rows(BOTH, names)) == 2 and len(method.list_finished_rows(BOTH,
+                                                                                              ["study",
+                                                                                               "ensemble"])) == 4
     known = of_roads(tmp_path, **{"": {"ensemble": BOTH["ensemble"]}})
     said = method.difference({"mine": known, "half": sweep}, folders)
     assert method.common([known, sweep]) == [] and "mine: runs that are weighted" in said and "half: a sweep" in said
 
 
 def test_every_road_has_a_column(here, tmp_path):
-    mine = compare.read(Path("mine"))[0]
+    mine = compare.read_scenarios(Path("mine"))[0]
     one = mine._replace(studied=of_roads(tmp_path, upper=BOTH, lower=BOTH))
     half = {road: {"study": sweep_of(number, number)} for road, number in (("upper", 500.0), ("lower", 10.0))}
     other = mine._replace(name="half", studied=of_roads(tmp_path, **half))
-    table = page.table([one, other, mine._replace(name="new")])
+    table = page.tabulate_scenarios([one, other, mine._replace(name="new")])
     assert [head.text for head in table.heads[5:7]] == ["to remove from upper", "to remove from lower"]
     assert [row[5:] for row in table.rows] == [["1,000 (no bound)", "1,000 (no bound)", "2 of 2"],
                                                ["500", "10.0", "2 of 2"],
@@ -261,24 +264,25 @@ def test_every_road_has_a_column(here, tmp_path):
 
 def test_studies_are_read_of_each_road(here, monkeypatch):
     """Both where one command made them, else the one that governs."""
-    site = compare.read(Path("mine"))[0].site
+    site = compare.read_scenarios(Path("mine"))[0].site
     monkeypatch.setattr(method.outdated, "changed", lambda *_: None)
     for folder in ("mine", "mine/roads/a", "mine/roads/b"):
         for name, about in BOTH.items():
             place = Path(folder, name)
             place.mkdir(parents=True)
-            (place / "study.yaml").write_text(yaml.safe_dump(study_file.plain(about)))
-    assert method.read(site).names == ["study", "ensemble"] and method.read(site).governs.name == "ensemble"
+            (place / "study.yaml").write_text(yaml.safe_dump(study_file.encode_study(about)))
+    assert method.read_method(site).names == ["study",
+                                              "ensemble"] and method.read_method(site).governs.name == "ensemble"
     several = replace(site, found=replace(site.found, roads=("a", "b")))
-    assert list(method.read(several).roads) == ["a", "b"]
+    assert list(method.read_method(several).roads) == ["a", "b"]
     path = Path("mine/roads/b/study/study.yaml")
     about = yaml.safe_load(path.read_text())
     about["study"].update(method=known_study.ASKED, governs="study")
     path.write_text(yaml.safe_dump(about))
     shutil.rmtree("mine/roads/b/ensemble")
-    assert method.read(several).names == ["study"]
+    assert method.read_method(several).names == ["study"]
     monkeypatch.setattr(method.outdated, "changed", lambda *_: "deck")
-    assert method.read(several) is None
+    assert method.read_method(several) is None
 
 
 def test_an_outline_lies_where_it_is_on_the_ground():

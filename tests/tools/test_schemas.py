@@ -29,12 +29,12 @@ SIDECAR = ("{crs: null, origin: {east: 0, north: 0}, size: {rows: 3, columns: 4}
 def study(runs=(), **entries):
     """The text of a study.yaml."""
     largest = {"front_m": {"run": "one", "value": 100.0}}
-    return json.dumps({**study_file.plain(made_study.study(largest=largest)), **entries, "runs": list(runs)})
+    return json.dumps({**study_file.encode_study(made_study.study(largest=largest)), **entries, "runs": list(runs)})
 
 
 def weighted(**entries):
     """An ensemble's entry, whose known events have these."""
-    about = records.plain(made_study.ensemble({}))
+    about = records.encode_record(made_study.ensemble({}))
     return {**about, "known_events": {**about["known_events"], **entries}}
 
 
@@ -48,7 +48,7 @@ FILES = {       # file: (its reader, a text, what must be said)
         ("{about: {seed: 1}, points: [{a: '1'}, {b: '1'}]}", "second value: must have a"),
         ("{about: {seed: 1}, points: [{a: 1}]}", "first value: a: must be a text, got 1"),
         ("{about: {seed: 2}, points: []}", "must be of the same observation, variables and seed"))),
-    "added.yaml": (lambda folder: farther.read(folder, LHS), (
+    "added.yaml": (lambda folder: farther.read_added_runs(folder, LHS), (
         ("variables: {}", "(remove it): must have batches"),
         ("{variables: {}, batches: [{box: [[0, 1]]}]}", "batches: first value: must have points"),
         ("{variables: {}, batches: [{box: [[0]], points: [{a: '1'}]}]}", "must have at least 2 items"))),
@@ -63,7 +63,7 @@ FILES = {       # file: (its reader, a text, what must be said)
         (SIDECAR % ".inf", "extent: yhi: must be a finite number, got inf"),
         ((SIDECAR % "3").replace("rows: 3", "rows: 0"), "size: rows: must be >= 1, got 0"),
         ((SIDECAR % "3").replace("null", "{wkt: nowhere}"), "must be a sidecar that `slope terrain` wrote (The WKT"))),
-    "fragility.yaml": (fragility_files.read, (
+    "fragility.yaml": (fragility_files.read_fragility, (
         ("{bodies: [], peaks_gal: [1], hazard_curve: null, warnings: []}", "bodies: must not be empty"),
         ("{bodies: [{body: '1', base_sha256: a}], peaks_gal: [a], hazard_curve: null, warnings: []}",
          "peaks_gal: first value: must be a finite number, got 'a'"))),
@@ -76,9 +76,9 @@ FILES = {       # file: (its reader, a text, what must be said)
     "study.yaml": (named_run.governing_run, (
         ("runs: []", "must have study and largest and farthest and conservative and"),
         (study(), "must have a finished run, got 0 that failed"),
-        (study([rows.plain(row(status="failed"))]), "must have a finished run, got 1 that fail"),
+        (study([rows.encode_row(row(status="failed"))]), "must have a finished run, got 1 that fail"),
         (study(ensemble={**weighted(), "of": 1}), "ensemble: of: must be a text, got 1"),
-        (study(headline={**records.plain(made_study.headline()), "share": "a"}),
+        (study(headline={**records.encode_record(made_study.headline()), "share": "a"}),
          "headline: share: must be a finite number, got 'a'"),
         (study(ensemble=weighted(to_remove=[{}])), "to_remove: first value: must have share and value"),
         (study(ensemble={**weighted(), "known_events": without(weighted()["known_events"], "weights")}),
@@ -86,11 +86,12 @@ FILES = {       # file: (its reader, a text, what must be said)
         (study(conservative={"run": 1}), "conservative: must have volume_m3 and"),
         (study(ensemble={**weighted(), "withheld": ["why"]}),
          "withheld: first value: must be a section with keys, got 'why'"),
-        (study([rows.plain(row())], ensemble={**weighted(), "withheld": [{"kind": "of another version", "text": "a"}]}),
+        (study([rows.encode_row(row())], ensemble={**weighted(), "withheld": [{"kind": "of another version",
+                                                                               "text": "a"}]}),
          "withheld must have reasons of this version"),
         (study([{"run": "one", "status": "finished", "set": {}}]),
          f"study.yaml: run one: must be {study_file.WHAT}: must have repeat and batch and variables and"),
-        (study([{**rows.plain(row()), "front_m": "far"}]),
+        (study([{**rows.encode_row(row()), "front_m": "far"}]),
          f"study.yaml: run one: must be {study_file.WHAT}: front_m: must be a finite number, got 'far'"),
         (study([{"run": "one", "status": "running", "set": {}}]), "status: must be failed or finished, got 'run"))),
     "site.yaml": (heading.site_of, (("project: [1]", "project: must be a section with keys or null, got [1]"),
@@ -98,7 +99,7 @@ FILES = {       # file: (its reader, a text, what must be said)
     "converge.yaml": (lambda folder: convergence_part.Sizes(folder / "converge.yaml"), (
         ("study: {variable: d}", f"must be {convergence_part.WHAT}: must have quantities"),
         ("{study: {variable: d, deck: a, finished: 1}, quantities: {}}", "quantities: must not be empty"))),
-    "r.yaml": (lambda folder: reference.read(folder / "r.yaml", {"a": "it"}), (
+    "r.yaml": (lambda folder: reference.read_reference(folder / "r.yaml", {"a": "it"}), (
         ("{title: T, quantities: {a: {levels: {b: 1}, 7: 1}}}", "must have no 7, which is unknown"),
         ("{title: T, quantities: {a: {levels: {b: 1}, 7: 1, more: 1}}}", "must have no 7, more, which is unknown"),
         ("{title: T, quantities: {a: {variable: v, series: {-9: 1}}}}", "series: -9: must be a section with keys"),
@@ -122,7 +123,7 @@ def test_what_is_wrong_with_a_file_is_one_line(tmp_path, name, reader, text, sai
 def test_reference_values(tmp_path):
     path = tmp_path / "reference.yaml"
     path.write_text("{title: ' T  U ', quantities: {a: {levels: {b: 1}, variable: v, series: {c: {2: 5, 0.5: 4}}}}}")
-    found = reference.read(path, {"a": "it"})
+    found = reference.read_reference(path, {"a": "it"})
     assert (found.title, found.remark) == ("T U", "")
     assert found.quantities == {"a": reference.Quantity("v", {"c": [(0.5, 4.0), (2.0, 5.0)]}, {"b": 1.0})}
 

@@ -24,7 +24,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreference
 @pytest.fixture
 def no_map(monkeypatch):
     """The map, which takes most of the time, is left out."""
-    monkeypatch.setattr(score, "draw", lambda path, *_: path.touch())
+    monkeypatch.setattr(score, "draw_score", lambda path, *_: path.touch())
 
 
 @pytest.fixture

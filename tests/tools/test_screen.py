@@ -40,7 +40,7 @@ def runs():
 @pytest.mark.parametrize("width", [180, 120, 90, 70, 50, 40])
 def test_a_table_fits_and_no_number_is_cut(width):
     shown, out = runs(), io.StringIO()
-    left_out = study_table.fit(shown, width)
+    left_out = study_table.fit_width(shown, width)
     Console(file=out, width=width).print(shown)
     lines = out.getvalue().splitlines()
     kept = [cell for head, cell in CELLS.items() if head not in left_out]
@@ -93,7 +93,7 @@ def test_a_warning_of_a_library_is_a_line_of_ours(before, monkeypatch, capsys):
         warnings.warn("two\tnumbers are one", UserWarning)
         for kind in (DeprecationWarning, PendingDeprecationWarning):        # for those who write programs
             warnings.warn("write @ for *", kind)
-    monkeypatch.setattr(polygon, "run", warns)
+    monkeypatch.setattr(polygon, "run_polygon", warns)
     mine = warnings.showwarning
     with warnings.catch_warnings():
         warnings.simplefilter("always")
@@ -128,7 +128,7 @@ def test_a_fault_of_the_page_is_no_bad_input(tmp_path, monkeypatch, capsys):
             raise KeyError("cards")
     monkeypatch.setattr("slope_tools.report.page.Page", Broken)
     with pytest.raises(KeyError):
-        document.make(document.Asked(tmp_path))
+        document.make_page(document.Asked(tmp_path))
 
 
 # --- the page ---
@@ -141,7 +141,7 @@ def test_that_a_road_has_no_crs_is_said_beside_the_maps_not_in_red(monkeypatch):
                          (report_warnings, "below_ground"), (structures_part, "coarse_walls")):
         monkeypatch.setattr(module, name, lambda *_: [])
     data = SimpleNamespace(judged=[], repeats=[], study=made_study.study(warnings=several))
-    found = report_warnings.listed(report_warnings.findings(data, None), {})
+    found = report_warnings.rank_warnings(report_warnings.findings(data, None), {})
     assert [(level, text.count("too few runs")) for level, text in found] == [("warning", 1)]
 
 

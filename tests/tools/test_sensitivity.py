@@ -59,7 +59,7 @@ def test_one_variable_at_a_time_against_the_scatter_of_equivalent_runs(slope, su
         most = max(names[1:4], key=lambda run: abs(values[run] - mean))
         text = about["trust"][i]
         assert text in out
-        assert f"one run is accurate to +- {quantities.number(T * deviation)} m3" in text
+        assert f"one run is accurate to +- {quantities.format_quantity(T * deviation)} m3" in text
         assert f"{most.split('_', 2)[2].replace('_', ' ')} changes it most" in text
     assert Path("out/sensitivity.png").read_bytes()[:4] == b"\x89PNG"
 

@@ -58,7 +58,7 @@ def done(tmp_path_factory):
     site.write_text(site.read_text().replace("rolling: [0.0, 0.05, 0.1]", "rolling: [0.05, 0.1]").replace(
         "spacing: [0.5, 0.7]", "spacing: []"))
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(volume_files, "draw", lambda path, *_: path.touch())
+        patch.setattr(volume_files, "draw_removal", lambda path, *_: path.touch())
         study = slope(folder, "study", "mine", "--paper", "--levels", "1")
     assert study.returncode == 0, study.stderr
     return folder, made.stdout, study.stdout
@@ -73,7 +73,7 @@ def test_each_road_has_the_numbers_of_a_site_with_it_alone(done, tmp_path, monke
     mine = folder / "mine"
     assert site_choices.found(mine).roads == ("far", "road", "near")
     assert "far.road.csv: 1 polygon" in said and "near.road.csv" in said
-    monkeypatch.setattr(study_command, "write_report", lambda *_, **__: None)
+    monkeypatch.setattr(study_command, "write_site_report", lambda *_, **__: None)
     with open(mine / "roads.csv", encoding="utf-8", newline="") as file:
         table = list(csv.DictReader(file))
     volumes = {}
@@ -119,11 +119,11 @@ def test_the_worst_stands_for_the_site(done):
     folder, _, said = done
     mine = folder / "mine"
     whole = about_in(mine / "study")
-    first, *others = road_numbers.read(load_study(mine / "study" / "study.yaml"))
+    first, *others = road_numbers.read_road_numbers(load_study(mine / "study" / "study.yaml"))
     assert first.counts_m3 == max(one.counts_m3 for one in (first, *others)) and len(others) == 2
     assert plain(whole) == plain(about_in(mine / "roads" / first.road / "study"))
     assert (mine / "road.csv").read_text() == (mine / f"{first.road}.road.csv").read_text()
-    assert named_run.read(str(mine)).study == mine / "study"
+    assert named_run.read_named_run(str(mine)).study == mine / "study"
     page = html.unescape((mine / "report.html").read_text(encoding="utf-8"))
     assert f'Of 3 roads this is the worst, "{first.road}"; "' in page
     for one in others:
@@ -176,7 +176,7 @@ def test_a_run_on_a_road_is_drawn_with_its_own_volume(done):
     run = next(one for one in (mine / "runs").iterdir() if (one / "volume" / "volume.yaml").is_file())
     found = {name: yaml.safe_load((run / name / "volume.yaml").read_text())["volume"]["remove"]
              for name in ("volume", "volume_far", "volume_road", "volume_near")}
-    worst = road_numbers.read(load_study(mine / "study" / "study.yaml"))[0].road
+    worst = road_numbers.read_road_numbers(load_study(mine / "study" / "study.yaml"))[0].road
     assert found["volume"] == found[f"volume_{worst}"] and len(set(found.values())) == 3
 
 
@@ -204,7 +204,7 @@ def test_the_worst_is_the_largest(several, order, words):
 def test_lines_that_do_not_meet_are_each_a_road(tmp_path, gis, names, found):  # noqa: F811
     points = [(10, 5), (10, 70)], [(30, 5), (30, 40), (34, 70)]
     write_lines(tmp_path / "two.geojson", *zip(names, points))
-    raster = rasters.read(gis / "dem.tif")
+    raster = rasters.read_raster(gis / "dem.tif")
     raster = raster._replace(transform=type(raster.transform).translation(-EAST, -NORTH) * raster.transform,
                              offset=(EAST, NORTH))
     each = roads.read_each(tmp_path / "two.geojson", raster, roads.Asked(width=6.0))
@@ -272,7 +272,7 @@ def test_where_the_ways_of_a_road_are_cut_does_not_matter(cut, turned):
 
 def test_carriageways_have_a_number_together(tmp_path, gis):  # noqa: F811
     """Of one name, or without any and next to each other; a service road beside is none, nor is a side road."""
-    raster = rasters.read(gis / "dem.tif")
+    raster = rasters.read_raster(gis / "dem.tif")
     raster = raster._replace(transform=type(raster.transform).translation(-EAST, -NORTH) * raster.transform,
                              offset=(EAST, NORTH))
     north, south, lane = [(10, 5), (10, 70)], [(18, 70), (18, 5)], [(14, 20), (14, 60)]
@@ -288,7 +288,7 @@ def test_carriageways_have_a_number_together(tmp_path, gis):  # noqa: F811
         f"M1_2 and m_4 at east {EAST + 18:.1f} north {NORTH + 40:.1f}") and "M1 and M1_2" not in said.numbers["places"]
     both = each["M1 both carriageways"]
     assert both.polygon.equals(each["M1"].polygon.union(each["M1_2"].polygon)) and len(both.lines) == 2
-    roads.write(tmp_path / "both.csv", both, raster)
+    roads.write_road(tmp_path / "both.csv", both, raster)
     again = roads.read_local(tmp_path / "both.csv", raster, roads.Asked(width=6.0), local=True)
     assert again.polygon.symmetric_difference(both.polygon).area < 1e-6 and len(again.lines) == 2
     with pytest.raises(SlopeError, match=f"got 4 that meet at east {EAST + 18:.1f} north {NORTH + 40:.1f}"):
@@ -297,7 +297,7 @@ def test_carriageways_have_a_number_together(tmp_path, gis):  # noqa: F811
 
 def test_roads_that_nearly_meet_are_told(tmp_path, gis):  # noqa: F811
     """Ends drawn by eye, pieces of one road in files of their own, and polygons."""
-    raster = rasters.read(gis / "dem.tif")
+    raster = rasters.read_raster(gis / "dem.tif")
     raster = raster._replace(transform=type(raster.transform).translation(-EAST, -NORTH) * raster.transform,
                              offset=(EAST, NORTH))
     asked = roads.Asked(width=6.0)
@@ -325,7 +325,7 @@ def test_roads_of_one_name_and_of_a_layer(told, gis):  # noqa: F811
     status, out, err = told("--terrain", "dem.tif", "--release", "release.geojson", "--shape", "ellipsoid", "--depth",
                             5, "--road", "two.geojson", "--road", "b/two.geojson", "--road-width", 2, "-o", "mine")
     assert status == 0, err
-    site = site_choices.load(gis / "mine")
+    site = site_choices.load_site(gis / "mine")
     assert site_roads.names(site) == ["Old_road", "Route_4", "Route_4_2", "国道4号"]
     assert site.choices.road.file.endswith("two.geojson")
     assert len(site.choices.road.others) == 1 and "Route_4_2.road.csv: 1 line of 65 m, 2 m wide" in out

@@ -29,7 +29,7 @@ from slope_tools.releases import release_chart
 from slope_tools.runs import jobs
 from slope_tools.sites import site_budget, site_choices, site_deck, site_warnings
 from slope_tools.sites.site_sections import OfMass, sections
-from slope_tools.sites.site import numbers as site_numbers
+from slope_tools.sites.site import find_deck_numbers as site_numbers
 from slope_tools.errors import SlopeError
 from slope_tools.plots import site_map
 from slope_tools.studies import letter, letter_words, size_runs, study
@@ -102,8 +102,8 @@ def work_in(folder, patch):
     patch.chdir(folder)
     patch.delenv("LMP", raising=False)
     patch.setattr(programs, "BESIDE", folder / "nowhere")
-    for module in (release_chart, site_map):
-        patch.setattr(module, "draw", lambda path, *_: Path(path).write_bytes(b""))
+    for module, name in ((release_chart, "draw_release"), (site_map, "draw_site_map")):
+        patch.setattr(module, name, lambda path, *_: Path(path).write_bytes(b""))
 
 
 @pytest.fixture
@@ -148,7 +148,7 @@ def done(tmp_path_factory):
     assert first.returncode == 0, first.stderr
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("LMP", str(Path(LMP).absolute()))
-        patch.setattr(volume_files, "draw", lambda path, *_: path.touch())      # of each run: they take longest
+        patch.setattr(volume_files, "draw_removal", lambda path, *_: path.touch())      # of each run: they take longest
         second = inside(folder, "study", "mine", "--paper", "--levels", "1")
     assert second.returncode == 0, second.stderr
     return folder, first.stdout, second.stdout
@@ -184,7 +184,7 @@ def test_two_commands_lead_from_gis_files_to_a_report(done):
     assert (mine / "report.mp4").exists() == bool(shutil.which("ffmpeg"))
     assert not list(folder.glob(".mine*"))
     assert str(folder) not in (mine / "release.yaml").read_text() + (mine / "site.yaml").read_text()
-    about = site_choices.load(mine).choices
+    about = site_choices.load_site(mine).choices
     assert about.project.author == "A. N. Engineer" and about.balls.number == BALLS
     assert f"{round(site_choices.found(mine).balls)}" in first.replace(",", "")
 
@@ -198,8 +198,8 @@ def test_both_studies_give_one_number(done, tmp_path, monkeypatch, capsys):
     pages = []
     (mine / "site.yaml").write_text((mine / "site.yaml").read_text().replace("points: 64", "points: 8"))
     monkeypatch.setattr(farther, "MOST", 0.0)       # runs that are added are tested elsewhere
-    monkeypatch.setattr(study_command, "write_report", lambda study, page, *_, film=True, quiet=False: pages.append(
-        (study.name, page.name, film)))
+    monkeypatch.setattr(study_command, "write_site_report", lambda study, page, *_, film=True, quiet=False:
+                        pages.append((study.name, page.name, film)))
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("LMP", LMP)
     assert cli.main(["study", "mine", "--levels", "1"]) == 0
@@ -227,7 +227,7 @@ def test_both_studies_give_one_number(done, tmp_path, monkeypatch, capsys):
     step, = (line.removeprefix("next step: ") for line in out.splitlines() if line.startswith("next step: "))
     assert paper["next_step"] == both["next_step"] and step.startswith(both["next_step"]["text"]) and step.endswith(
         both["next_step"]["command"])
-    words = letter_words.lines(letter.of_study(load_study(mine / "study" / "study.yaml")))
+    words = letter_words.list_letter_lines(letter.of_study(load_study(mine / "study" / "study.yaml")))
     assert [line for line in out.splitlines() if line in words] == words
     governs, other = ("study", "ensemble") if found["source"] == "paper" else ("ensemble", "study")
     assert pages == [(other, {"study": "paper.html", "ensemble": "ensemble.html"}[other], False),
@@ -308,8 +308,8 @@ def test_a_site_has_one_number_of_three_sizes_of_balls(tmp_path, monkeypatch, ca
     write_files(tmp_path)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("LMP", LMP)
-    monkeypatch.setattr(volume_files, "draw", lambda path, *_: path.touch())
-    monkeypatch.setattr(study_command, "write_report", lambda *_, **__: None)
+    monkeypatch.setattr(volume_files, "draw_removal", lambda path, *_: path.touch())
+    monkeypatch.setattr(study_command, "write_site_report", lambda *_, **__: None)
     monkeypatch.setattr(jobs, "busy", lambda: 99)        # no run has two ranks: other tests run beside this one
     monkeypatch.setattr(farther, "MOST", 0.0)
     monkeypatch.setattr(site_budget, "LEAST", (4, 2))
@@ -388,8 +388,8 @@ def test_the_largest_restitution_is_none_of_the_volume(done):
 
 
 def test_the_study_is_resumed(done, monkeypatch):
-    monkeypatch.setattr(study_command, "write_report", lambda *_, **__: None)
-    monkeypatch.setattr(volume_files, "draw", lambda path, *_: path.touch())
+    monkeypatch.setattr(study_command, "write_site_report", lambda *_, **__: None)
+    monkeypatch.setattr(volume_files, "draw_removal", lambda path, *_: path.touch())
     folder, _, _ = done
     before = {path: path.stat().st_mtime_ns for path in (folder / "mine").rglob("finished.yaml")}
     again = inside(folder, "study", "mine", "--paper", "--levels", "1")
@@ -410,8 +410,8 @@ def test_no_run_is_made_twice(done):
 
 def test_runs_of_an_older_version_are_taken_over(done, tmp_path, monkeypatch):
     """They were in the folders of the parts, and are left there."""
-    monkeypatch.setattr(study_command, "write_report", lambda *_, **__: None)
-    monkeypatch.setattr(volume_files, "draw", lambda path, *_: path.touch())
+    monkeypatch.setattr(study_command, "write_site_report", lambda *_, **__: None)
+    monkeypatch.setattr(volume_files, "draw_removal", lambda path, *_: path.touch())
     mine = tmp_path / "mine"
     shutil.copytree(done[0] / "mine", mine)
     for name in ("dem.tif", "release.geojson", "road.geojson"):
@@ -671,7 +671,7 @@ def test_a_second_trial_tells_how_long_most_runs_take():
     assert site_budget.duration(fine._replace(rest=5.0)) == 120.0
 
     choices = OfMass.of({"terrain": {"files": ["dem.tif"]}, "balls": {"minutes": 1.0}})
-    wanted = site_budget.plan(choices)
+    wanted = site_budget.plan_budget(choices)
     took = [site_budget.study_seconds(2.0, 3e4, one, SOIL, wanted, 2, ()) for one in (fine, both)]
     assert took[0] == took[1]
 
@@ -854,7 +854,7 @@ def test_a_site_that_could_not_be_made_keeps_its_choices(gis, told):
     status, out, err = told("--depth", "500", *given)
     assert status == 2 and "--depth: must be at most" in err
     assert "site.yaml was kept: change it, then: tools/slope site 'Damm Fluchth\u00f6rn'; or repeat the command" in out
-    assert site_choices.load(mine).choices.release.depth == 500
+    assert site_choices.load_site(mine).choices.release.depth == 500
     assert "must be at most" in site_choices.found(mine).failed
     (mine / "site.yaml").write_text((mine / "site.yaml").read_text().replace("depth: 500", "depth: 5"))
     status, out, err = told(mine.name)
@@ -883,7 +883,7 @@ def test_files_in_a_crs_that_they_do_not_name(gis, told):
     given = ("--assign-crs", "road.geojson=EPSG:6677", "--assign-crs", "./line.geojson=EPSG:6677")
     status, out, err = told(*words, *given, "-o", "mine")
     assert status == 0 and "road.csv: 1 polygon, 1,280 m2" in out, err
-    assert site_choices.load(gis / "mine").choices.crs.assigned == {
+    assert site_choices.load_site(gis / "mine").choices.crs.assigned == {
         "road.geojson": "EPSG:6677", "line.geojson": "EPSG:6677"}
     status, out, err = told("mine")
     assert status == 0 and "road.csv: 1 polygon, 1,280 m2" in out, err

@@ -92,7 +92,7 @@ def test_names_of_the_files_are_known_before(inside, mine):
     write_layer(mine.parent / "observed.geojson", [(36, 50), (36, 30)], kind=LineString)
     write_layer(mine.parent / "mapped.geojson", MAPPED)
     inside("mine --line observed.geojson --observed mapped.geojson")
-    assert site_folder.planned(site_choices.load(mine).choices) - {site_trial.REACHED} == set(
+    assert site_folder.list_site_files(site_choices.load_site(mine).choices) - {site_trial.REACHED} == set(
         site_choices.found(mine).files) == {path.name for path in mine.iterdir() if path.name != ".lock"}
     assert len((mine / "observed.csv").read_text().splitlines()) >= 5
     assert (mine / "observed_2.csv").read_text().splitlines()[1:] == ["36,50", "36,30"]
@@ -197,9 +197,9 @@ def edit(mine, section, **values):
 
 
 def test_another_body_gets_balls_of_its_own(inside, mine):
-    first = site_choices.load(mine).choices
+    first = site_choices.load_site(mine).choices
     inside("mine --volume 500")
-    second = site_choices.load(mine).choices
+    second = site_choices.load_site(mine).choices
     assert second.balls.number == first.balls.number and second.release.depth is None
     assert second.balls.diameter < first.balls.diameter / 1.5
     assert site_choices.found(mine).balls == pytest.approx(site_budget.MANY, rel=0.02)      # as it is thin
@@ -209,19 +209,19 @@ def test_another_body_gets_balls_of_its_own(inside, mine):
         about["found"]["derived"][f"model.{key}"] = 99.0
         (mine / "site.yaml").write_text(yaml.safe_dump(about))
     inside("mine --client somebody")
-    assert site_choices.load(mine).choices.model.speed == site_choices.load(mine).choices.model.duration == 99
+    assert site_choices.load_site(mine).choices.model.speed == site_choices.load_site(mine).choices.model.duration == 99
     inside("mine --depth 4")
-    model = site_choices.load(mine).choices.model
+    model = site_choices.load_site(mine).choices.model
     assert (model.speed, model.duration) == (47, 600)
 
 
 def test_what_the_user_chose_stays(inside, mine):
-    diameter = site_choices.load(mine).choices.balls.diameter
+    diameter = site_choices.load_site(mine).choices.balls.diameter
     inside(f"mine --diameter {diameter}")       # the same, but chosen now
     edit(mine, "model", speed=60.0, cell=3.0)
     inside("mine")
     inside("mine --volume 500")
-    choices = site_choices.load(mine).choices
+    choices = site_choices.load_site(mine).choices
     assert choices.balls.diameter == diameter and choices.balls.number is None
     assert choices.model.speed == 60 and choices.model.cell == 3
 
@@ -231,7 +231,7 @@ def test_a_shape_that_nobody_named_is_none(inside, gis):  # noqa: F811
     for words, shape in (("", "sphere"), ("--dip 30", "plane"), ("--dip 28", "plane")):
         if words:
             inside(f"mine {words}")
-        assert site_choices.load(gis / "mine").choices.release.shape is None
+        assert site_choices.load_site(gis / "mine").choices.release.shape is None
         assert yaml.safe_load((gis / "mine" / "release.yaml").read_text())["shape"] == shape
     inside("--terrain dem.tif --release release.geojson --volume 400 -o other")
     inside("other --curvature 0.002")
@@ -248,17 +248,17 @@ def test_the_sphere_that_dips_least_follows_its_foundation(inside, mine, gis):  
         with rasterio.open("old.tif", "w", **profile) as out:
             out.write(z - 2, 1)
         inside(f"mine {words}")
-        one = site_choices.load(mine).choices.release
+        one = site_choices.load_site(mine).choices.release
         assert (one.depth, one.volume, one.dip) == (depth, None, dip)
         assert (Path(one.foundation).name if isinstance(one.foundation, str) else one.foundation) == foundation
         about = yaml.safe_load((mine / "release.yaml").read_text())
         assert about["shape"] == "sphere" and ("dip_m" in about) == bool(dip)
     edit(mine, "release", depth=None, dip="least", foundation="../old.tif")
     inside("mine")
-    assert "old.tif" in str(site_choices.load(mine).sources())
+    assert "old.tif" in str(site_choices.load_site(mine).sources())
     edit(mine, "release", dip="most")
     with pytest.raises(SlopeError, match="release.dip"):
-        site_choices.load(mine)
+        site_choices.load_site(mine)
 
 
 # --- warnings ---
@@ -293,11 +293,11 @@ def test_the_heaviest_warnings_are_shown_once_for_all_objects():
 def test_the_map_has_the_fall_path(inside, mine, monkeypatch):
     """From the body down, as slope mobility has it; where no events cover the body, too, and none without a body."""
     seen = []
-    monkeypatch.setattr(site_map, "draw", lambda path, shown, _: seen.append(shown) or path.write_bytes(b""))
+    monkeypatch.setattr(site_map, "draw_site_map", lambda path, shown, _: seen.append(shown) or path.write_bytes(b""))
     inside("mine --known rock_avalanches")
     path = site_map.reach_of(seen[0]).path
     asked = known.of_about({"set": "rock_avalanches", "confined": "unknown"})
-    found = known.of_body(body.of_site(mine), asked).decides.path
+    found = known.compute_known_mobility(body.read_mobility_body(mine), asked).decides.path
     assert path == pytest.approx(np.column_stack([found.x, found.y])) and len(path) > 3
     z = sample(seen[0].raster, *path.T)
     assert z[0] > z[-1] + 5
@@ -330,19 +330,19 @@ def older(mine, **model):
     deck.write_text(re.sub("variable  ground_seed .*\n", "", text))
     (mine / "site.yaml").write_text(yaml.safe_dump(about))
     about["found"].update(deck_sha256=disk.sha256(deck),
-                          choices_sha256=site_choices.load(mine).fingerprint())
+                          choices_sha256=site_choices.load_site(mine).fingerprint())
     (mine / "site.yaml").write_text(yaml.safe_dump(about))
 
 
 def test_the_study_of_an_older_site_is_as_it_was(mine):
     older(mine)
-    choices = site_choices.load(mine).choices
+    choices = site_choices.load_site(mine).choices
     assert choices.older["model"]["field_diameter"] == 2 and choices.model.spacing == 1
-    site_study.check(site_choices.load(mine))
+    site_study.check_site(site_choices.load_site(mine))
     assert site_study.grounds(choices, decks.index_variables(mine / site_deck.NAME)) == []
     edit(mine, "model", field_diameter=3.0)
     with pytest.raises(SlopeError, match="must not have been changed since"):
-        site_study.check(site_choices.load(mine))
+        site_study.check_site(site_choices.load_site(mine))
 
 
 def test_an_older_site_is_rebuilt_with_the_ground_of_now(inside, mine):
@@ -352,7 +352,7 @@ def test_an_older_site_is_rebuilt_with_the_ground_of_now(inside, mine):
     assert line.startswith("slope site: mine/site.yaml: model.spacing: must be <= 0.95: ") and line.count("\n") == 1
     assert "--spacing 0.9" in line and line.endswith(", got 1\n") and contents(mine) == before
     assert "field_diameter and field_ratio of an older version" in inside("mine --spacing 0.9").out
-    choices = site_choices.load(mine).choices
+    choices = site_choices.load_site(mine).choices
     assert choices.model.spacing == 0.9 and not choices.older
     assert choices.study.spacing == (0.5, 0.7)
     older(mine, spacing=0.33)
@@ -371,7 +371,7 @@ def with_lattice(mine):
                            deck.read_text()))
     (mine / "site.yaml").write_text(yaml.safe_dump(about))
     about["found"].update(deck_sha256=disk.sha256(deck),
-                          choices_sha256=site_choices.load(mine).fingerprint())
+                          choices_sha256=site_choices.load_site(mine).fingerprint())
     (mine / "site.yaml").write_text(yaml.safe_dump(about))
 
 
@@ -384,11 +384,11 @@ def test_the_study_of_a_site_with_a_lattice_is_as_it_was(inside, mine, monkeypat
 
 
 def test_a_site_with_a_lattice_is_rebuilt_with_a_packing(inside, mine):
-    before = site_choices.load(mine).choices
+    before = site_choices.load_site(mine).choices
     with_lattice(mine)
     out = inside("mine").out
     assert "xoffset, yoffset, zoffset of an older version" in out
-    choices = site_choices.load(mine).choices
+    choices = site_choices.load_site(mine).choices
     assert choices.study.packing == (2, 3, 4) and not choices.older
     assert choices.model.density == 2977 and choices.balls == before.balls
     assert "fill body seed" in (mine / site_deck.NAME).read_text()
@@ -401,7 +401,7 @@ def test_a_site_with_a_lattice_is_rebuilt_with_a_packing(inside, mine):
 def test_a_wrong_spacing_in_the_file(mine, model, rule):
     edit(mine, "model", **model)
     with pytest.raises(SlopeError, match=re.escape(f"site.yaml: {rule}")):
-        site_choices.load(mine)
+        site_choices.load_site(mine)
 
 
 # --- soil and ground ---
@@ -409,7 +409,7 @@ def test_a_wrong_spacing_in_the_file(mine, model, rule):
 def test_options_of_soil_and_ground_reach_the_deck(inside, mine):
     out = inside("mine --friction 25 --rolling 0 0.07 --slip-friction 5 --spacing 0.5 --density 1600 "
                  "--field-restitution 0.3").out
-    choices = site_choices.load(mine).choices
+    choices = site_choices.load_site(mine).choices
     assert choices.study.rolling == (0, 0.07)
     assert "friction 25 degrees, on the slip surface 5; rolling resistance 0, 0.07" in out
     assert "bulk density 1,600 kg/m3" in out
@@ -542,9 +542,9 @@ def test_one_command_at_a_time_works_in_a_site(inside, mine, gis):  # noqa: F811
 
 
 def test_warnings_of_a_site_are_those_of_its_study(tmp_path):
-    assert site_study.warnings_of(tmp_path) == []
+    assert site_study.read_site_warnings(tmp_path) == []
     (tmp_path / "warnings.yaml").write_text("# slope site\n- too thin\n")
-    assert list(map(str, site_study.warnings_of(tmp_path))) == ["too thin"]
+    assert list(map(str, site_study.read_site_warnings(tmp_path))) == ["too thin"]
 
 
 # --- sources that change after the folder was made ---
@@ -601,7 +601,7 @@ def test_the_report_is_written_though_the_score_fails(gis, monkeypatch):  # noqa
     def fails(*_):
         raise SlopeError("mapped", "must fit")
 
-    monkeypatch.setattr(score_run, "make", fails)
+    monkeypatch.setattr(score_run, "make_score", fails)
     study = in_process(gis, "study", "mine", "--paper", "--levels", "1")
     assert study.returncode == 2 and study.stderr.splitlines()[-1].startswith("slope study: mapped: "), study
     assert (gis / "mine" / "report.html").exists() and not (gis / "mine" / "score").exists()

@@ -72,23 +72,23 @@ def mine(whole, inside, gis, trials, monkeypatch):  # noqa: F811
 
 def finish(folder, points=POINTS):
     """Make the folders of all runs that are ahead."""
-    planned = site_study.plan(site_choices.load(folder), ENGINE)
-    more, _ = ahead.points_of(planned, points)
+    planned = site_study.plan_site_study(site_choices.load_site(folder), ENGINE)
+    more, _ = ahead.plan_weighted_points(planned, points)
     files = data_files(planned.setup.deck, {**planned.settings, **planned.repeated})
-    wanted = site_study.wanted(site_choices.load(folder), planned, site_study.Asked(), points)
+    wanted = site_study.wanted(site_choices.load_site(folder), planned, site_study.Asked(), points)
     fine = [size_runs.SizeRun(planned.setup.runs, one, value) for value, number in zip(wanted.values[1:], wanted.points)
             for one in [*planned.todo, *more][:number]]
     with study.prepared(planned.setup, files, 1) as work:
         for several in (planned.runs, more, fine):
             work.store.admit(several)
-            for run in store.once(several):
+            for run in store.select_distinct_runs(several):
                 if not run.finished:
                     work._make_folder(run)
                     run.marker.write_text("summary: site.summary.yaml\n")
 
 
 def counts(folder, points=POINTS):
-    found = ahead.of_site(site_choices.load(folder), ENGINE, points)
+    found = ahead.look_ahead(site_choices.load_site(folder), ENGINE, points)
     return found.there, found.new
 
 
@@ -115,7 +115,7 @@ CHANGES = [
 @pytest.mark.parametrize("section, values, words, there, new", CHANGES)
 def test_a_list_that_changes_and_changes_back_keeps_all_runs(mine, inside, trials, section, values, words,  # noqa: F811
                                                              there, new):
-    before, variables = site_choices.load(mine).choices.entries(), decks.index_variables(mine / site_deck.NAME)
+    before, variables = site_choices.load_site(mine).choices.entries(), decks.index_variables(mine / site_deck.NAME)
     edit(mine, section, **values)
     assert counts(mine) == (there, new)
     edit(mine, section, **before[section])
@@ -123,12 +123,12 @@ def test_a_list_that_changes_and_changes_back_keeps_all_runs(mine, inside, trial
     if words:
         out = inside(f"mine {words}").out
         assert counts(mine) == (there, new) and f"the study: {there} of {there + new} runs are there" in out
-        assert site_choices.load(mine).choices.entries()[section] == {**before[section], **values}
+        assert site_choices.load_site(mine).choices.entries()[section] == {**before[section], **values}
         edit(mine, section, **before[section])
         inside("mine")
     assert counts(mine) == (ALL, 0) and decks.index_variables(mine / site_deck.NAME) == variables
     assert trials == []        # none was made again
-    after = site_choices.load(mine).choices.entries()
+    after = site_choices.load_site(mine).choices.entries()
     assert all(after[section][key] == before[section][key] for section, key in site_choices.DERIVED)
 
 
@@ -148,9 +148,9 @@ def test_the_sizes_of_balls(mine):
     assert counts(mine) == (ALL + new, 0)
     edit(mine, "study", levels=1)
     assert counts(mine) == (ALL, 0)
-    more = ahead.of_site(site_choices.load(mine), ENGINE, POINTS, site_study.Asked(3, 1000.0))
+    more = ahead.look_ahead(site_choices.load_site(mine), ENGINE, POINTS, site_study.Asked(3, 1000.0))
     assert more.there == ALL + new and more.new > 0
-    assert ahead.of_site(site_choices.load(mine), ENGINE, POINTS, site_study.Asked(minutes=1e-3)).new == 0
+    assert ahead.look_ahead(site_choices.load_site(mine), ENGINE, POINTS, site_study.Asked(minutes=1e-3)).new == 0
 
 
 def test_files_by_any_path_from_any_folder(mine, inside, trials, monkeypatch, tmp_path):  # noqa: F811
@@ -190,10 +190,10 @@ def test_an_ensemble_that_does_not_vary_a_list_takes_its_first_value(mine, monke
     edit(mine, "study", rolling=[0.1, 0.05])
     seen = []
     monkeypatch.setattr(study_command, "run_deck", lambda args, _: seen.append((args.set, args.vary)))
-    monkeypatch.setattr(study_command, "write_report", lambda *_, **__: None)
+    monkeypatch.setattr(study_command, "write_site_report", lambda *_, **__: None)
     request = study_command.Request(deck=mine, sample=8)
     for words in (["friction=5:30"], ["friction=5:30", "rolling=0:0.1"], []):
-        study_command.run_site_ensemble(study_command.replace(request, vary=words), site_choices.load(mine))
+        study_command.run_site_ensemble(study_command.replace(request, vary=words), site_choices.load_site(mine))
     assert [fixed for fixed, _ in seen] == [["rolling=0.1"], [], []]
 
 
@@ -201,12 +201,12 @@ def test_what_is_ahead_is_said_before_anything_runs(mine, monkeypatch, capsys):
     edit(mine, "study", rolling=[0.05, 0.1, 0.15])
     said = []
     monkeypatch.setattr(study_command, "run_both", lambda *_: said.append(capsys.readouterr().out) or Made((), None))
-    study_command.run(study_command.Request(deck=mine))
+    study_command.run_study(study_command.Request(deck=mine))
     assert re.search(rf"^{6 + POINTS} of {17 + POINTS} runs are there, 11 to make, (\d+ s|\d+ minutes); up to {POINTS} "
                      "more where known events go farther$", said[0], re.MULTILINE), said
-    seconds = ahead.of_site(site_choices.load(mine), ENGINE, POINTS).seconds
+    seconds = ahead.look_ahead(site_choices.load_site(mine), ENGINE, POINTS).seconds
     finish(mine)
-    assert ahead.of_site(site_choices.load(mine), ENGINE, POINTS).seconds is None and seconds > 0
+    assert ahead.look_ahead(site_choices.load_site(mine), ENGINE, POINTS).seconds is None and seconds > 0
 
 
 def test_a_trial_run_is_kept_until_what_it_depends_on_changes(mine, inside, trials, monkeypatch):  # noqa: F811
@@ -241,9 +241,9 @@ def test_a_folder_without_a_film_takes_that_of_its_deck(mine, inside):  # noqa: 
     about["found"]["deck_sha256"] = site_trial.disk.sha256(path)
     about["found"]["choices_sha256"] = ""
     (mine / "site.yaml").write_text(yaml.safe_dump(about))
-    about["found"]["choices_sha256"] = site_choices.load(mine).fingerprint()
+    about["found"]["choices_sha256"] = site_choices.load_site(mine).fingerprint()
     (mine / "site.yaml").write_text(yaml.safe_dump(about))
-    site_study.check(site_choices.load(mine))
+    site_study.check_site(site_choices.load_site(mine))
     inside("mine")
     assert decks.index_variables(path)["film"] == "0.35"
 
@@ -269,7 +269,7 @@ def test_a_study_of_other_choices_is_no_answer(mine, inside, monkeypatch, words,
         inside(f"mine {words}")
     assert outdated.changed(mine, mine / "study") == changed
     if changed is None:
-        return outdated.check(mine, mine / "study")
+        return outdated.check_study_current(mine, mine / "study")
     with pytest.raises(SlopeError, match="must be as it was studied: .* `slope study .* the study of now"):
-        outdated.check(mine, mine / "study")
-    return outdated.check(mine / "study", mine / "study")       # the folder of the study itself shows it
+        outdated.check_study_current(mine, mine / "study")
+    return outdated.check_study_current(mine / "study", mine / "study")       # the folder of the study itself shows it

@@ -115,6 +115,6 @@ def test_what_was_found_is_checked_when_it_is_read(tmp_path, found, where):
     """It is not to be changed; who did gets a line, whatever reads it."""
     about = {"slope_site": 1, "terrain": {"files": ["dem.tif"]}, "release": {}, "found": found}
     (tmp_path / "site.yaml").write_text(yaml.safe_dump(about))
-    for read in (site_choices.load, site_choices.found):
+    for read in (site_choices.load_site, site_choices.found):
         with pytest.raises(SlopeError, match=f"site.yaml: must be a site.yaml of `slope site`: found: {where}: must"):
             read(tmp_path)

@@ -93,7 +93,7 @@ def test_options_and_keys(inside, gis):  # noqa: F811
     write_layer(gis / "second.geojson", [(20, 10), (20, 70)], "EPSG:4326", kind=LineString)
     assert "\nslope site: --height: must be given" in "\n" + inside(f"{STANDARD} --wall wall.geojson -o none", 2).err
     out = inside(f"{STANDARD} --wall wall.geojson --wall second.geojson --height 8 -o mine").out
-    choices = site_choices.load(gis / "mine").choices.structures
+    choices = site_choices.load_site(gis / "mine").choices.structures
     assert choices.height == 8 and choices.width is None and len(choices.walls) == 2
     assert "wall.stl: " in out and "second.stl" in out
     deck = (gis / "mine" / "in.site").read_text()

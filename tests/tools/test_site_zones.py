@@ -49,7 +49,8 @@ def write_zones(path, several, crs="EPSG:6677"):
 
 
 def read(path, table=None, warn=lambda _: None):
-    return site_zones.read(site_zones.Source(str(path), table and str(table), None, polygons.ADVICE), TERRAIN, warn)
+    return site_zones.read_site_zones(site_zones.Source(str(path), table and str(table), None, polygons.ADVICE),
+                                      TERRAIN, warn)
 
 
 def at(zones, x, y):
@@ -231,7 +232,7 @@ def test_a_site_with_zones(gis, mine):
     assert "ground.scree.csv: zone scree, 15.6 % of the terrain, 1,500 m2: friction 35, spacing 0.6" in mine
     assert re.search(r"zone scree: stop angle 15.\d, 18.\d, 21.\d degrees at a rolling .* 0, 0.05, 0.1", mine)
     assert re.search(r"zone 森: stop angle 30.\d degrees at a rolling resistance of 0.15$", mine, re.M)
-    site = site_choices.load(gis / "mine")
+    site = site_choices.load_site(gis / "mine")
     found = site.found
     assert [zone.name for zone in found.zones] == ["scree", "森", "zone 3"]
     assert {"ground.gpkg", "ground.scree.csv", "ground.zone.csv", "ground.zone_3.csv"} <= set(found.files)
@@ -244,7 +245,7 @@ def test_a_site_with_zones(gis, mine):
 
 def test_the_maps_of_a_report_have_the_zones(gis, mine):
     """Of a study in the site's folder; none where the files of the zones are gone."""
-    data = SimpleNamespace(site=site_choices.load(gis / "mine").content, folder=gis / "mine" / "study")
+    data = SimpleNamespace(site=site_choices.load_site(gis / "mine").content, folder=gis / "mine" / "study")
     raster = read_asc_local(gis / "mine" / "terrain.asc")
     found = maps_part.zones_of(data, raster)
     assert list(found) == ["scree", "森", "zone 3"]
@@ -262,7 +263,7 @@ def test_the_deck_has_the_values_of_a_run(gis, mine, changed):
     folder = gis / "mine"
     words = [word for name, value in changed.items() for word in ("-var", name, value)]
     log = lmp(folder, *words, "-var", "duration", "0.001")
-    site = site_choices.load(folder)
+    site = site_choices.load_site(folder)
     variables, model = decks.index_variables(folder / "in.site"), site.choices.model
     d = float(variables["d"])
 
@@ -318,7 +319,7 @@ def test_a_deck_without_zones_has_no_word_of_them(gis):
 
 def test_a_changed_file_of_zones_is_noticed(gis, tmp_path):
     """As every other source of a site."""
-    assert "../zones.geojson" in site_choices.load(gis / "mine").sources()
+    assert "../zones.geojson" in site_choices.load_site(gis / "mine").sources()
 
 
 def test_the_sites_of_a_route_have_the_zones_that_lie_on_them(tmp_path):

@@ -34,7 +34,7 @@ def write_columns(path, raster, centre, radius, density, water=0.0):
     x, y = columns.centres(raster)
     dx, dy = x - centre[0], y - centre[1]
     e = np.sqrt(np.maximum(radius ** 2 - dx ** 2 - dy ** 2, 1e-9))
-    kept = columns.largest(raster, np.where(e > 1e-4, centre[2] - e, np.nan))
+    kept = columns.find_largest_part(raster, np.where(e > 1e-4, centre[2] - e, np.nan))
     dx, dy, e, top = (one[kept] for one in (dx, dy, e, raster.z))
     low, area = centre[2] - e, np.full(len(e), raster.transform.a ** 2)
     rows = np.column_stack([dx, dy, e, area, dx / e, dy / e, density * columns.GRAVITY * area * (top - low),
@@ -102,7 +102,7 @@ def test_dry_cap_without_cohesion_is_the_infinite_slope(k, water):
 def test_columns_of_a_file_are_those_of_the_sphere(tmp_path, direction):
     z, centre, radius = CASES[0][:3]
     write_columns(tmp_path / "a.1.columns.csv", z, centre, radius, 1900.0, 29.0)
-    found = columns.read(tmp_path / "a.1.columns.csv", direction)
+    found = columns.read_slip_columns(tmp_path / "a.1.columns.csv", direction)
     expected = columns.of_sphere(z, centre, radius, direction, 1900.0, np.full(z.z.shape, 29.0))
     assert found.normal is None and expected.normal is None
     for name in set(columns.Columns._fields) - {"normal", "volume"}:
@@ -114,7 +114,7 @@ def test_what_is_connected_and_what_is_not_below_ground():
     with pytest.raises(columns.SlopeError, match="must be below the ground somewhere"):
         columns.of_sphere(z, (10.0, 25.0, 80.0), 20.0, 180.0, 2000.0)
     ridges = ground(lambda x: 10 + 3 * np.cos(x / 3), 100, 60)
-    kept = columns.largest(ridges, columns.base_of(ridges, (23.0, 15.0, 40.0), 30.5))
+    kept = columns.find_largest_part(ridges, columns.base_of(ridges, (23.0, 15.0, 40.0), 30.5))
     x = columns.centres(ridges)[0]
     assert 5 < np.ptp(x[kept]) < 19       # one ridge of several below
 
@@ -127,5 +127,5 @@ def test_the_map_of_a_search_has_all_that_was_searched(tmp_path, monkeypatch):
     shown = []
     monkeypatch.setattr(chart.pictures, "save", save)
     raster = ground(lambda x: 10 + x / 2, 100, 40)
-    chart.draw(tmp_path / "a.png", raster, np.ones((40, 100)), [], [], "a search")
+    chart.draw_slips(tmp_path / "a.png", raster, np.ones((40, 100)), [], [], "a search")
     assert shown == [0, 50, 0, 20]

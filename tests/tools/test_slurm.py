@@ -290,7 +290,7 @@ def test_options_that_the_study_sets_are_refused(stand_ins, capsys, option):
 def test_other_options_are_not():
     for words in ("--account=a -A a", "-p all --partition all", "--wait-all-nodes=1 -w n1", "--acctg-freq=1"):
         try:
-            engine.check(words)
+            engine.check_slurm(words)
         except SlopeError as error:
             assert not str(error).startswith("--slurm")
 
@@ -388,7 +388,7 @@ def test_cancelling_does_not_hide_the_first_error(queue, monkeypatch):
     ("mpiexec -n {np} -genv 'A B'", 2, ["mpiexec", "-n", "2", "-genv", "A B"]),
 ])
 def test_words_of_a_launcher(start, ranks, expected):
-    assert launcher.words(start, ranks, 2) == expected
+    assert launcher.list_launcher_words(start, ranks, 2) == expected
 
 
 def test_more_ranks_than_tasks_of_slurm(tmp_path, monkeypatch):
@@ -399,7 +399,7 @@ def test_more_ranks_than_tasks_of_slurm(tmp_path, monkeypatch):
         monkeypatch.setenv(f"SLURM_{name}", value)
     monkeypatch.delenv("OMPI_MCA_rmaps_base_oversubscribe", raising=False)
     with open(tmp_path / "screen", "w", encoding="ascii") as screen:
-        started = processes.start([*launcher.words(None, 2, jobs.slots()), "true"], tmp_path, screen)
+        started = processes.start([*launcher.list_launcher_words(None, 2, jobs.slots()), "true"], tmp_path, screen)
     assert started.wait(60) == 0, (tmp_path / "screen").read_text()
     monkeypatch.setenv("SLURM_TASKS_PER_NODE", "16(x2),3")
     assert jobs.slots() == 16
@@ -422,8 +422,8 @@ def test_a_run_is_started_by_the_launcher(here):
 def test_a_launcher_of_the_working_folder_is_found_from_that_of_a_run(here, monkeypatch):
     Path("mine.sh").write_text("#!/bin/sh\nshift 2\nexec \"$@\"\n")
     Path("mine.sh").chmod(0o755)
-    assert launcher.words("./mine.sh --fast", 2, 2) == [f"{here}/mine.sh", "--fast", "-n", "2"]
-    assert launcher.words("./mine.sh {np}", 2, 2) == [f"{here}/mine.sh", "2"]
+    assert launcher.list_launcher_words("./mine.sh --fast", 2, 2) == [f"{here}/mine.sh", "--fast", "-n", "2"]
+    assert launcher.list_launcher_words("./mine.sh {np}", 2, 2) == [f"{here}/mine.sh", "2"]
     assert cli.main(shlex.split("study case/in.tiny --set steps=20 --launcher ./mine.sh -o out")) == 0
 
 

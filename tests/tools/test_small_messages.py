@@ -38,9 +38,9 @@ def test_shares_and_numbers_of_nothing():
     shares = (0.9999, 1.0, 0.0, 0.00021, 0.305)
     assert [digits.cents(one) for one in shares] == ["100 %", "100 %", "0 %", "0.021 %", "30 %"]
     assert digits.cents(0.99996, 3) == "100 %"
-    assert [digits.plain(one) for one in ("-1.2e+03", "1e-05", "12")] == ["-1200", "1e-05", "12"]
-    assert study_table.volume(7.62e-11, None) == "0" == Numbers()("beyond it", "m3", 7.62e-11)
-    assert study_table.volume(0.0762, None) == "0.0762" == Numbers()("beyond it", "m3", 0.0762)
+    assert [digits.format_plain(one) for one in ("-1.2e+03", "1e-05", "12")] == ["-1200", "1e-05", "12"]
+    assert study_table.round_volume(7.62e-11, None) == "0" == Numbers()("beyond it", "m3", 7.62e-11)
+    assert study_table.round_volume(0.0762, None) == "0.0762" == Numbers()("beyond it", "m3", 0.0762)
     assert Numbers()("frequency", "per year", 2.5e-7) == "0.000000250"
 
 
@@ -130,10 +130,10 @@ def test_a_road_of_a_layer_is_there(here):
     """FILE|layername=NAME, as QGIS has it."""
     write_geojson("road.geojson", LineString([(1, 2), (3, 4)]))
     Path("in.none").write_text("variable rolling index 0\n")
-    study.check_road(Road(Path("road.geojson|layername=road")), Path("in.none"), {})
+    study.check_deck_road(Road(Path("road.geojson|layername=road")), Path("in.none"), {})
     mapped = observations.Wanted(Path("road.geojson|layername=road"), None, None, None, 0.1, 0.1, False)
     mapped.check(False)
-    for check in (lambda: study.check_road(Road(Path("no.geojson|layername=road")), Path("in.none"), {}),
+    for check in (lambda: study.check_deck_road(Road(Path("no.geojson|layername=road")), Path("in.none"), {}),
                   lambda: replace(mapped, observed=Path("no.geojson|layername=road")).check(False)):
         with pytest.raises(SlopeError, match="must be an existing file"):
             check()

@@ -95,7 +95,7 @@ def test_bodies_table_map_and_warnings(low, capsys):
     # its deck runs from where it lies, and slope fragility reads what it left
 
     assert "region ground terrain ../terrain.asc" in Path("slips/in.slips").read_text()
-    assert [body.name for body in bodies.read(Path("slips"))] \
+    assert [body.name for body in bodies.read_slip_bodies(Path("slips"))] \
         == [f"{row['body']:.0f}" for row in rows]
 
 
@@ -107,7 +107,7 @@ def test_ellipsoids_are_not_above_spheres_and_go_on_to_their_fragility(low, caps
     assert status == 0, err
     [row] = table("wide")
     assert row["factor"] < 1.0389 and 1.5 < row["across"] < 4.0
-    [body] = bodies.read(Path("wide"))
+    [body] = bodies.read_slip_bodies(Path("wide"))
     soil = bishop.Strengths(3e3, np.tan(np.radians(19.6)))
     assert body.columns.normal is None      # the body can turn about its axis
     assert bishop.factor_of_safety(body.columns, soil)[0] == pytest.approx(row["factor"], rel=1e-7)
@@ -116,8 +116,8 @@ def test_ellipsoids_are_not_above_spheres_and_go_on_to_their_fragility(low, caps
 
     # a section of a sphere would lie beside the base that find_slip wrote
 
-    [of_table] = bodies.rows_of(Path("wide/body.slips.csv"))
-    base = bodies.rasters.read(Path("wide/body.1.base.asc"))
+    [of_table] = bodies.read_body_rows(Path("wide/body.slips.csv"))
+    base = bodies.rasters.read_raster(Path("wide/body.1.base.asc"))
     sphere = columns.base_of(base, (row["x"], row["y"], row["z"]), row["radius"])
     exact = columns.base_of(base, (row["x"], row["y"], row["z"]), row["radius"], of_table["direction"],
                             bodies.shape_of(of_table))
@@ -140,7 +140,7 @@ def test_a_smaller_search_in_the_same_folder(coarse, capsys):
     assert "is at the edge of --within" in err and row["factor"] < 1 and "below 1" in err
     assert not list(Path("slips").glob("body.2.*"))
     # water and all: with the inertia of the search the factor is the same
-    [body] = bodies.read(Path("slips"))
+    [body] = bodies.read_slip_bodies(Path("slips"))
     assert bishop.factor_of_safety(body.columns, SOIL, 0.05, -0.02)[0] == pytest.approx(row["factor"], rel=1e-7)
     deck = Path("slips/in.slips").read_text()
     assert all(words in deck for words in ("water ru 0.1", "seismic 0.05 -0.02", "depth 0 2", "within inside"))
@@ -164,21 +164,21 @@ def plane_body(cells, rise=0.5):
 def test_doubts_of_numbers(change, limits, kind):
     raster, row, inside = plane_body(9)
     given = {"volume": None, "depth": None, "allowed": None, **limits}
-    found = [one.kind for one in doubts.of_body(raster, {**row, **change}, inside, **given)]
+    found = [one.kind for one in doubts.find_body_doubts(raster, {**row, **change}, inside, **given)]
     assert found == ([kind] if kind else [])
 
 
 def test_doubts_of_places():
     raster, row, inside = plane_body(7)
-    assert [one.kind for one in doubts.of_body(raster, row, inside, None, None, None)] == ["columns"]
+    assert [one.kind for one in doubts.find_body_doubts(raster, row, inside, None, None, None)] == ["columns"]
     raster, row, inside = plane_body(9)
     hole = raster._replace(z=np.where(np.indices((20, 20))[0] == 15, np.nan, raster.z))
-    assert [one.kind for one in doubts.of_body(hole, row, inside, None, None, None)] == ["terrain"]
+    assert [one.kind for one in doubts.find_body_doubts(hole, row, inside, None, None, None)] == ["terrain"]
     assert doubts.at_edge(raster, np.roll(inside, -3, axis=1)) and not doubts.at_edge(raster, inside)
     allowed = doubts.cells_in(raster, box(4, 4, 16, 16))
-    assert not doubts.of_body(raster, row, inside, None, None, allowed)
+    assert not doubts.find_body_doubts(raster, row, inside, None, None, allowed)
     allowed = doubts.cells_in(raster, box(5, 4, 16, 16))
-    assert [one.kind for one in doubts.of_body(raster, row, inside, None, None, allowed)] == ["within"]
+    assert [one.kind for one in doubts.find_body_doubts(raster, row, inside, None, None, allowed)] == ["within"]
     assert doubts.length(raster, inside, 180.0) == pytest.approx(9)
 
 
@@ -215,7 +215,7 @@ def several_bodies(site, rows):
                         f"run{rank}"], cwd="all", check=True, stdout=subprocess.DEVNULL)
         summary = yaml.safe_load(Path(f"all/run{rank}.summary.yaml").read_text())
         assert summary["volume"]["released"] == pytest.approx(volume, rel=2e-3)
-        start = bodies.rasters.read(Path(f"all/run{rank}.arrival.asc"), heights=False)
+        start = bodies.rasters.read_raster(Path(f"all/run{rank}.arrival.asc"), heights=False)
         y = start.transform.f + start.transform.e * (np.nonzero(start.z == 0)[0] + 0.5)
         at.append(y.mean())
     # spheres of one size beside each other along the embankment
@@ -252,11 +252,11 @@ def test_doubtful_input_is_named():
     half = np.array([[1.0, np.nan], [np.nan, np.nan]])
     masks = [half == 1.0, np.ones((2, 2), bool)]
     given = [stability.Given(kind, "", "rock.asc", half) for kind in ("bedrock", "water table", "layer")]
-    found = list(map(str, stability.warnings_of(8.0, 19.0, [{"rank": 1}, {"rank": 2}], masks, given)))
+    found = list(map(str, stability.find_stability_warnings(8.0, 19.0, [{"rank": 1}, {"rank": 2}], masks, given)))
     assert [one.split(":")[0] for one in found] == ["--cohesion 8", "--density 19", *3 * ["body 2"]]
     assert all(f"{what} has no value below 75 % of its cells" in one for what, one in zip(
         ("--bedrock", "--water-table", "--layer rock.asc"), found[2:]))
-    assert not list(stability.warnings_of(0.0, 1900.0, [], [], []))
+    assert not list(stability.find_stability_warnings(0.0, 1900.0, [], [], []))
 
 
 SOIL = bishop.Strengths(3e3, np.tan(np.radians(19.6)))
@@ -265,11 +265,11 @@ SOIL = bishop.Strengths(3e3, np.tan(np.radians(19.6)))
 @needs_lmp
 def test_bodies_above_a_bedrock(on_rock):
     """The columns that slope fragility uses have the factor, yield coefficient and volume of find_slip."""
-    rock = bodies.rasters.read(Path("rock.asc")).z
-    found = bodies.read(Path("slips"))
+    rock = bodies.rasters.read_raster(Path("rock.asc")).z
+    found = bodies.read_slip_bodies(Path("slips"))
     assert [body.name for body in found] == [f"{row['body']:.0f}" for row in on_rock]
     for body, row in zip(found, on_rock):
-        base = bodies.rasters.read(body.base).z
+        base = bodies.rasters.read_raster(body.base).z
         inside = np.isfinite(base)
         assert (base[inside] >= rock[inside] - 1e-6).all()
         assert 0.2 < (base[inside] < rock[inside] + 1e-4).mean() < 1

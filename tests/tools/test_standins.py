@@ -14,7 +14,7 @@ from slope_tools.ensembles import conditioned
 from slope_tools.mobility import events, relation, weights
 from slope_tools.statistics import designs
 
-RELATION = relation.of_events(events.read())
+RELATION = relation.of_events(events.read_events())
 NUMBER, RUNS, ROAD = 20, 64, 10.0
 INSIDE, FACTOR = (15, 20), 4.0
 BAND = 0.05, 0.5, 0.95
@@ -37,8 +37,8 @@ def stand_in(rng, mean_exponent):
     found = on_road(1e6 * volume, lengths, at, mean_exponent - 0.4 + 0.8 * u[:, 1], 0.7 + 0.6 * u[:, 2])
     weighted = weights.of_lengths(lengths, RELATION.exceedance(lengths, volume, np.full(RUNS, fall)))
     assert weighted.far < 0.05
-    curve = conditioned.curve(found, conditioned.masses(weighted))
-    return truth, [one.value for one in conditioned.quantiles(curve, BAND)]
+    curve = conditioned.compute_known_curve(found, conditioned.masses(weighted))
+    return truth, [one.value for one in conditioned.compute_known_quantiles(curve, BAND)]
 
 
 def inside(seed, mean_exponent=1.0, wrong=1.0):

@@ -71,20 +71,20 @@ def test_a_site_and_its_study_say_it_of_each_ground(inside, mine):  # noqa: F811
     """The site of its own; the study of the others at both ends of the rolling resistances; what is unknown is not."""
     own = (f"the ground, spacing 0.9: stop angle {angles(0.9, 0, 0.05, 0.1)} degrees at a rolling resistance of 0, "
            "0.05, 0.1")
-    said = site_ground.lines(site_choices.load(mine))
+    said = site_ground.describe_grounds(site_choices.load_site(mine))
     assert len(said) == 1 and said[0].startswith(own) and said[0] in inside("mine --balls 70").out
-    both = site_ground.lines(site_choices.load(mine), others=True)
+    both = site_ground.describe_grounds(site_choices.load_site(mine), others=True)
     assert both[0] == said[0] and [line.split(":")[0] for line in both] == [
         f"the ground, spacing {spacing}" for spacing in ("0.9", "0.5", "0.7")]
     assert f"stop angle {angles(0.7, 0, 0.1)} degrees at a rolling resistance of 0, 0.1; of" in both[2]
-    share = steeper.below(body.of_site(mine)).steeper(stop_angle(0.5, 30, 0, 0.1).degrees)
+    share = steeper.below(body.read_mobility_body(mine)).steeper(stop_angle(0.5, 30, 0, 0.1).degrees)
     assert re.search(rf"of the slope below the body {100 * share:.0f}, \d+ % is steeper$", both[1])
     about = yaml.safe_load((mine / "site.yaml").read_text())
     about["study"]["rolling"] = [0, 0.9]
     (mine / "site.yaml").write_text(yaml.safe_dump(about))
-    assert re.search("resistance of 0;", site_ground.lines(site_choices.load(mine))[0])
+    assert re.search("resistance of 0;", site_ground.describe_grounds(site_choices.load_site(mine))[0])
     inside("mine --friction 60")
-    assert site_ground.lines(site_choices.load(mine), others=True) == []
+    assert site_ground.describe_grounds(site_choices.load_site(mine), others=True) == []
 
 
 def shown(below, **given):

@@ -22,7 +22,7 @@ def here(tiny_case):
 
 def make(chosen, name=None, deck="in.tiny", done=True, **defaults):
     """A run's folder in out, as one of a study leaves it."""
-    folder = Path("out") / (name or jobs.name_of(chosen))
+    folder = Path("out") / (name or jobs.name_run(chosen))
     folder.mkdir(parents=True)
     variables = {"rolling": "0.0", "friction": "30", "cell": "1.0", "steps": "150", "out": "tiny",
                  "terrain": "terrain.asc", **defaults, **chosen}
@@ -45,10 +45,10 @@ def folders(*several, older=()):
     ({"rolling": "0.1"}, {"rolling": "0.1", "friction": "30"}),     # the deck's own value
     ({"rolling": "0.10"}, {"friction": "30.0", "rolling": "0.1"})])
 def test_runs_of_the_same_values_are_one(here, one, other):
-    name = jobs.name_of(one)
+    name = jobs.name_run(one)
     assert folders(one, other) == [f"out/{name}"] * 2
     make(other)
-    assert folders(one) == [f"out/{jobs.name_of(other)}"]
+    assert folders(one) == [f"out/{jobs.name_run(other)}"]
 
 
 @pytest.mark.parametrize("about", [{"friction": "29"}, {"deck": "in.other"}, {"name": ".rolling_0.1_friction_30.new"}])

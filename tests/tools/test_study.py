@@ -88,7 +88,7 @@ def wait_for(condition, what, seconds=30):
     ("a:b:c", ["a:b:c"]),
 ])
 def test_values(text, expected):
-    assert settings.values(f"x={text}", text) == expected
+    assert settings.parse_setting_values(f"x={text}", text) == expected
 
 
 def test_the_product_has_a_folder_per_run_with_all_that_it_needs(slope, here):
@@ -161,7 +161,7 @@ def finished(tmp_path_factory):
     folder = tmp_path_factory.mktemp("finished")
     write_case(folder / "case")
     edit(folder / "case" / "in.tiny", "output ${out}", "output ${out} extent 12 40 0 24")
-    terrain = rasters.read(folder / "case" / "terrain.asc")
+    terrain = rasters.read_raster(folder / "case" / "terrain.asc")
     rasters.write_asc_local(folder / "case" / "terrain.asc", terrain._replace(
         crs=rasterio.crs.CRS.from_epsg(6677), offset=(-12000.0, 34000.0)), {})
     (folder / "case" / "road.csv").write_text("-11987,34000\n-11983,34000\n-11983,34024\n-11987,34024\n")
@@ -206,7 +206,7 @@ def test_table_yaml_and_summaries_have_the_same_numbers(finished):
         assert (row["status"], line["status"], line["error"]) == ("finished", "finished", "")
         assert [line[name] for name in ("rolling", "friction", "steps")] == list(row["set"].values())
         assert row["wall_s"] > 0 and row["variables"]["cell"] == "1.0"
-        assert rounding.text(row["remove_m3"], rounding.place_of_digits(row["remove_m3"])) in out
+        assert rounding.format_rounded(row["remove_m3"], rounding.place_of_digits(row["remove_m3"])) in out
     assert any(row["off_grid_m3"] > 0.1 for row in about["runs"])
 
 

@@ -246,7 +246,7 @@ def test_a_raster_in_the_zip_in_which_it_is_downloaded(made, here, name):
         archive.writestr(f"{name}.aux.xml", "<PAMDataset/>")
     assert in_place(made("a.zip"))
     assert rasters.is_raster("a.zip")
-    assert rasters.read(f"./a.zip/{name}").z.shape == (ROWS, COLUMNS)
+    assert rasters.read_raster(f"./a.zip/{name}").z.shape == (ROWS, COLUMNS)
     with zipfile.ZipFile("a.zip", "a") as archive:
         archive.writestr("outline.geojson", "{}")
     assert not rasters.is_raster("a.zip")       # a layer, with a raster or a list of its points
@@ -265,11 +265,12 @@ def test_an_archive_that_is_damaged_or_has_a_password(here, member, password):
         data = re.sub(re.escape(head) + b"." * at, lambda found: found[0][:-2] + b"\1\0", data, flags=re.DOTALL)
     Path("a.zip").write_bytes(data if password else damaged)
     with pytest.raises(SlopeError, match="^a.zip") as raised:
-        vectors.read("a.zip", "Polygon") if member in ("a.geojson", "a.shp") else rasters.read("a.zip")
+        vectors.read_vector_layer("a.zip", "Polygon") if member in ("a.geojson",
+                                                                    "a.shp") else rasters.read_raster("a.zip")
     assert ("a.zip: must be a whole archive without a password" in str(raised.value)) or not password
     Path("a.asc.gz").write_bytes(b"garbage")
     with pytest.raises(SlopeError, match="^a.asc.gz: must be a whole archive"):
-        rasters.read("a.asc.gz")
+        rasters.read_raster("a.asc.gz")
     with pytest.raises(FileNotFoundError), zips.open_text("gone.asc"):      # no archive
         pass
 
@@ -288,7 +289,7 @@ def test_several_rasters_in_a_zip_are_merged(made, slope, here):
     assert in_place(made("both.zip"))
     assert yaml.safe_load(Path("out.yaml").read_text())["sources"] == ["both.zip"]
     with pytest.raises(Exception, match="both.zip: must hold one raster; unpack it, it holds a.tif, b.tif, got 2 "):
-        rasters.read("both.zip")
+        rasters.read_raster("both.zip")
     write("a.xyz", points())
     Path("a.xyz.gz").write_bytes(gzip.compress(Path("a.xyz").read_bytes()))
     assert in_place(made("a.xyz.gz"))
@@ -385,7 +386,7 @@ def test_a_window_is_a_part_of_the_whole(made, here, monkeypatch, options, name)
         x, y = crs.transform(CRS.from_string(CRS_M), CRS.from_string("EPSG:6676"), *np.array(box).reshape(2, 2).T)
         box = [round(one) for one in (x[0], y[0], x[1], y[1])]
     bounds = " ".join(map(str, box))
-    whole, transform = rasters.read("dem.tif")[:2]
+    whole, transform = rasters.read_raster("dem.tif")[:2]
     if name == "dem.asc":
         made("dem.tif --origin 0 0")
         shutil.move("out.asc", name)
@@ -468,8 +469,8 @@ def test_the_cells_of_a_survey_are_in_the_crs_that_is_assigned(here):
 def test_a_list_of_points_is_read_once(here, monkeypatch):
     """Also for the size of its cells."""
     write("a.xyz", points(2.0))
-    parsed, read = [], xyz.read
-    monkeypatch.setattr(xyz, "read", lambda name, form: parsed.append(name) or read(name, form))
+    parsed, read = [], xyz.read_xyz_grid
+    monkeypatch.setattr(xyz, "read_xyz_grid", lambda name, form: parsed.append(name) or read(name, form))
     choices = OfMass.of({"terrain": {"files": ["a.xyz"], "crs": CRS_M}})
     assert site.terrain(choices, here, ignore, ignore)[1]["surveyed_cell"] == 2 and parsed == ["a.xyz"]
 

@@ -103,7 +103,7 @@ def test_many_runs_are_thinned_out_to_the_unfavourable_side(monkeypatch):
 
 def test_one_run_in_five_reaches_the_road():
     """n bodies: 1 - 0.8^n of independent ones; n times 0.2 if they never do together, 0.2 if they always do."""
-    of = chain.left([0.0] * 80 + [800.0] * 20, range(100), 5000.0)
+    of = chain.compute_left_volume([0.0] * 80 + [800.0] * 20, range(100), 5000.0)
     for number in (2, 3):
         bodies = [of] * number
         found = chain.Sums(bodies, np.array([500.0])).of(2 ** number - 1)
@@ -115,7 +115,7 @@ def test_one_run_in_five_reaches_the_road():
 
 def test_large_sums_are_likelier_rank_by_rank():
     """Half of the runs leave 1000 m3: more than 1500 m3 by two bodies with 0.5 rank by rank, with 0.25 independent."""
-    of = chain.left([0.0] * 32 + [1000.0] * 32, range(64), 5000.0)
+    of = chain.compute_left_volume([0.0] * 32 + [1000.0] * 32, range(64), 5000.0)
     found = chain.Sums([of, of], np.array([500.0, 1500.0])).of(3)
     assert found.value == pytest.approx([0.75, 0.5])
     assert together.at_least([of.value] * 2, [500.0, 1500.0]) == pytest.approx([0.5, 0.0])
@@ -126,8 +126,8 @@ def test_the_value_lies_between_its_bounds():
     rng = np.random.default_rng(8)
     volumes = np.linspace(0.0, 2500.0, 80)
     for number in (1, 2, 3, 4):
-        bodies = [chain.left(np.round(rng.gamma(1.0, 90.0, rng.integers(3, 90)), rng.integers(-2, 3)),
-                             range(200), 1000.0) for _ in range(number)]
+        bodies = [chain.compute_left_volume(np.round(rng.gamma(1.0, 90.0, rng.integers(3, 90)), rng.integers(-2, 3)),
+                                            range(200), 1000.0) for _ in range(number)]
         band = chain.Sums(bodies, volumes).of(2 ** number - 1)
         assert (band.low <= band.value).all() and (band.value <= band.high).all() and (band.high <= 1).all()
         assert all((np.diff(side) <= 0).all() for side in band) and band.low.max() > 0

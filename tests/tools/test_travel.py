@@ -19,7 +19,7 @@ COMMAND = "travel"
 
 @pytest.fixture
 def no_picture(monkeypatch):
-    monkeypatch.setattr(travel, "draw", lambda path, *_: path.touch())
+    monkeypatch.setattr(travel, "draw_travel", lambda path, *_: path.touch())
 
 
 @pytest.fixture

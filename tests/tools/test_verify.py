@@ -225,7 +225,7 @@ def test_frames(tmp_path):
     (tmp_path / "a.dump").write_text("".join(
         f"ITEM: TIMESTEP\n{step}\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS ff ff ff\n0 1\n0 1\n0 1\n"
         f"ITEM: ATOMS id x\n1 {step}\n2 7\n" for step in (0, 5)))
-    assert claims.read_frames(tmp_path / "a.dump")["x"].tolist() == [[0, 7], [5, 7]]
+    assert claims.read_claim_frames(tmp_path / "a.dump")["x"].tolist() == [[0, 7], [5, 7]]
 
 
 # --- the page ---

@@ -36,7 +36,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreference
 @pytest.fixture
 def no_map(monkeypatch):
     """The map, which takes most of the time, is left out."""
-    monkeypatch.setattr(volume_files, "draw", lambda path, *_: path.touch())
+    monkeypatch.setattr(volume_files, "draw_removal", lambda path, *_: path.touch())
 
 
 @pytest.fixture
@@ -97,7 +97,7 @@ def evaluated(thickness, ground, road, mesh=10, angle=30, samples=4):
     """Volumes without the command: what is removed on the road, beside it, and where the cut is below the ground."""
     x, y = centres(*thickness.shape, 2.5)
     run = plain_deposit(thickness, ground(x, y) * np.ones_like(x), 2.5)
-    result = volume.evaluate(run, road, angle, volume.make_mesh(mesh, run.raster), samples)
+    result = volume.evaluate_removal(run, road, angle, volume.make_mesh(mesh, run.raster), samples)
     return result.total(result.road), result.total(result.beside), result.steep
 
 
@@ -291,7 +291,7 @@ def test_strips_and_bounds_change_nothing(monkeypatch, seed, rise):
     for strip_, near, diagonal in ((1000, cut.NEAR, cut.HALF_DIAGONAL), (10 ** 9, 40, 10 ** 9)):
         for name, value in (("STRIP", strip_), ("NEAR", near), ("HALF_DIAGONAL", diagonal)):
             monkeypatch.setattr(cut, name, value)
-        results.append(volume.evaluate(run, road, 30, mesh, 2))
+        results.append(volume.evaluate_removal(run, road, 30, mesh, 2))
     pruned, plain = results
     assert np.abs(pruned.removed - plain.removed).max() < 1e-12
     for key in ("deposit", "road", "beside", "road_area", "steep"):
@@ -304,7 +304,7 @@ def test_against_a_sum_over_points():
     thickness, base, road = rough(5, 30, 30)
     road = translate(road, -30, -20).intersection(box(0, 0, 60, 60))
     run = plain_deposit(thickness, base, 2.0)
-    got = volume.evaluate(run, road, 30, volume.make_mesh(10, run.raster), 8)
+    got = volume.evaluate_removal(run, road, 30, volume.make_mesh(10, run.raster), 8)
 
     def height(x, y):
         return cut.Ground(base).height(*(~run.raster.transform * (x, y)))

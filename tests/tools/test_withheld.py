@@ -140,8 +140,8 @@ def check_proposed(text):
             continue
         fixed, repeated = (check_settings(getattr(asked, name), asked.deck, f"--{name}") for name in ("set", "repeat"))
         if asked.sample or asked.vary:
-            sample.check(asked.sample, "sobol", 1, asked.vary, asked.deck, one_value_each(fixed, "--set", "--vary"),
-                         repeated)
+            sample.check_sample(asked.sample, "sobol", 1, asked.vary, asked.deck,
+                                one_value_each(fixed, "--set", "--vary"), repeated)
         else:
             assert fixed and not asked.known
 
@@ -185,10 +185,10 @@ def test_a_range_is_made_wider_where_it_ends(here):
     made = next_step.Made(made_study.study({"deck": "in.all"}, ensemble=whole), Path("out"))
     for ends, friction in (({}, "2.5:30"), ({"friction": "5"}, "2.5:30"),
                            ({"friction": "5", "packing": "1"}, "2.5:30")):
-        command = next_step.step_of(made, Code.RANGE, {"ends": ends}).command
+        command = next_step.make_next_step(made, Code.RANGE, {"ends": ends}).command
         assert f"--vary friction={friction} " in command and command.endswith("--vary packing=uniform:1:1000000")
     for ends in ({"rolling": "0"}, {"packing": "friction"}):
-        assert next_step.step_of(made, Code.RANGE, {"ends": ends}) is None
+        assert next_step.make_next_step(made, Code.RANGE, {"ends": ends}) is None
 
 
 # --- of the rows of a study ---
@@ -212,14 +212,14 @@ def judged(several, events=None):
 def test_a_number_that_may_stand():
     best = judged(rows(90.0, 100, 110), events(400.0, 0.6))
     assert best.withheld == [] and best.volume_m3 > 110 and best.zero is None
-    [first, *_] = combinations.describe(best)
+    [first, *_] = combinations.describe_combinations(best)
     assert first.startswith("conservative volume to remove: ")
 
 
 def test_a_number_that_is_withheld_is_nowhere():
     best = judged(rows(90.0, 100, 110), events(600.0, 0.6))
     assert best.volume_m3 is None and best.rounded["volume_m3"] is None
-    lines = combinations.describe(best)
+    lines = combinations.describe_combinations(best)
     assert lines[0] == "not usable as a conservative volume:" and "no run reaches 600 m" in lines[1]
     assert not any("m3" in line for line in lines)
 
@@ -227,7 +227,7 @@ def test_a_number_that_is_withheld_is_nowhere():
 def test_zero_has_a_probability():
     best = judged(rows(0.0, 0, 0), events(400.0, 0.25))
     assert best.volume_m3 == 0 and best.zero.exceeded_at_most == pytest.approx(1 - 0.05 ** (1 / 3))
-    assert combinations.describe(best)[1] == (
+    assert combinations.describe_combinations(best)[1] == (
         "nothing is to be removed in any of 3 runs: in another one something is with a probability of at most 63 % "
         "(95 % confidence); 25 % of known events of this volume and height go as far as the road")
 

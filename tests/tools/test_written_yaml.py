@@ -11,7 +11,7 @@ from run_helpers import write_sidecar
 from slope_tools import cli, disk, written_yaml
 from slope_tools.errors import SlopeError
 from slope_tools.report import reference
-from slope_tools.schemas import NUMBER, check, mapping
+from slope_tools.schemas import NUMBER, check_schema, mapping
 from slope_tools.survey import rasters
 
 
@@ -39,15 +39,15 @@ def test_what_misleads_is_refused(tmp_path, text, line, got, rule):
 def test_what_means_what_it_says_is_read():
     about = {"a": True, "b": False, "c": [0, 5, -7], "d": [1500.0, 0.5, 10.5], "e": "010", "f": "2026-11-27", "g": None,
              "h": "EPSG:6677", "i": "NO2"}
-    assert written_yaml.load("a: yes\nb: off\nc: [0, +5, -7]\nd: [1.5e+3, .5, 010.5]\ne: '010'\nf: '2026-11-27'\n"
-                             "g: ~\nh: EPSG:6677\ni: NO2\n") == about
-    assert written_yaml.load("x: &m {a: 1, b: 1}\ny:\n  <<: *m\n  a: 2")["y"] == {"a": 2, "b": 1}
+    assert written_yaml.load_yaml("a: yes\nb: off\nc: [0, +5, -7]\nd: [1.5e+3, .5, 010.5]\ne: '010'\nf: '2026-11-27'\n"
+                                  "g: ~\nh: EPSG:6677\ni: NO2\n") == about
+    assert written_yaml.load_yaml("x: &m {a: 1, b: 1}\ny:\n  <<: *m\n  a: 2")["y"] == {"a": 2, "b": 1}
 
 
 def test_what_the_tools_write_is_read():
     names = ["010", "0x1F", "1:30", "2026-11-27", "1_000", "1e3", "yes", "=", "08", "<<", "null", "12e45"]
     about = {"names": names, **{name: k for k, name in enumerate(names)}, "numbers": [1e-9, 1e22, 0.1, -3, 10 ** 20]}
-    assert written_yaml.load(disk.yaml_text("of names that look like numbers", about)) == about
+    assert written_yaml.load_yaml(disk.yaml_text("of names that look like numbers", about)) == about
 
 
 def test_it_is_read_by_libyaml():
@@ -58,7 +58,7 @@ def test_it_is_read_by_libyaml():
 def test_a_text_that_is_meant_as_a_number(text, meant):
     with pytest.raises(SlopeError, match=rf"a: must be a finite number \(as {meant}; YAML takes it for "
                        "a text\\), got '"):
-        check(written_yaml.load(f"a: {text}"), mapping({"a": NUMBER}), "x.yaml", "a file")
+        check_schema(written_yaml.load_yaml(f"a: {text}"), mapping({"a": NUMBER}), "x.yaml", "a file")
 
 
 def test_each_file_that_people_write(here, capsys):
@@ -72,7 +72,7 @@ def test_each_file_that_people_write(here, capsys):
             rasters.read_place("terrain.asc")
     Path("r.yaml").write_text("title: T\nquantities:\n  a:\n    levels: {b: 010}\n")
     with pytest.raises(SlopeError, match="r.yaml: line 4: .*got 010"):
-        reference.read("r.yaml", {"a": "it"})
+        reference.read_reference("r.yaml", {"a": "it"})
     for name, words in (("site.yaml", ["site", "mine"]), ("route.yaml", ["route", "mine"])):
         Path("mine").mkdir(exist_ok=True)
         Path("mine", name).write_text(f"slope_{name[:-5]}: 1\nslope_{name[:-5]}: 1\n")
@@ -85,7 +85,7 @@ def test_each_file_that_people_write(here, capsys):
 def test_without_libyaml():
     """The checks are those of Python's loader, too."""
     code = ("import yaml; del yaml.CSafeLoader; from slope_tools import written_yaml as w; "
-            "print(w.FAST.__mro__[2], w.load('a: 1'))")
+            "print(w.FAST.__mro__[2], w.load_yaml('a: 1'))")
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True,
                           env={"PYTHONPATH": str(Path(cli.__file__).parents[1])})
     assert "SafeLoader" in done.stdout and "{'a': 1}" in done.stdout

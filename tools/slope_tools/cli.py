@@ -4,7 +4,7 @@ A subcommand NAME is the module slope_tools.commands.NAME (of IN_TESTS: tests/ot
 
     DESCRIPTION, EPILOG     its help, before and after the options
     Request                 its options, the fields of a frozen class: see options.py
-    run(request)            does the work; raises SlopeError on bad input
+    run_NAME(request)       does the work; raises SlopeError on bad input
 
 Only the module that is asked for is imported: a subcommand starts fast, and needs only its own libraries.
 """
@@ -105,16 +105,16 @@ def add_command(commands, name, module, **kwargs):
                                  description=module.DESCRIPTION, **kwargs)
     parser.add_argument("--describe", action=options.Describe)
     options.declare(parser, module.Request)
-    parser.set_defaults(run=lambda found: run(name, module, options.request(module.Request, found)))
+    parser.set_defaults(run=lambda found: run_command(name, module, options.request(module.Request, found)))
     return parser
 
 
-def run(name, module, request):
+def run_command(name, module, request):
     """Do a subcommand, by the kind of the site that it may be given."""
     if name in BY_KIND:
-        importlib.import_module(f"{__package__}.blocks.kinds").run(name, module, request, print)
+        importlib.import_module(f"{__package__}.blocks.kinds").run_by_kind(name, module, request, print)
     else:
-        module.run(request)
+        getattr(module, f"run_{name}")(request)
 
 
 def with_new_names(command, argv):
@@ -135,9 +135,9 @@ def check_names(words):
     places.update((word, os.path.realpath(word.replace("\0", ""))) for word in words)
     for word, place in places.items():
         if not (disk.is_utf8(word) and disk.is_utf8(place)):
-            raise SlopeError(word if disk.is_utf8(word) else disk.shown(word), "must have a name in UTF-8: rename it "
-                             "(names of an unpacked zip may be in another encoding)",
-                             disk.shown(place) if disk.is_utf8(word) else None)
+            raise SlopeError(word if disk.is_utf8(word) else disk.escape_name(word), "must have a name in UTF-8: "
+                             "rename it " "(names of an unpacked zip may be in another encoding)",
+                             disk.escape_name(place) if disk.is_utf8(word) else None)
 
 
 def forget_matplotlibrc():

@@ -31,14 +31,14 @@ def at_least(value: float, digits: int = DIGITS) -> str:
     return f"{math.ceil(value * power) / power:.15g}"
 
 
-def plain(text: str) -> str:
+def format_plain(text: str) -> str:
     """A number as text, never as a power of ten above 1: 100 of 1e+02."""
     return f"{float(text):.0f}" if re.fullmatch(r"-?[\d.]+e\+\d+", text) else text
 
 
 def cents(share: float, digits: int = 2) -> str:
     """A share with so many digits, as it is: 0.02 %, 100 %."""
-    return f"{plain(f'{100 * share:.{digits}g}')} %"
+    return f"{format_plain(f'{100 * share:.{digits}g}')} %"
 
 
 def percent(share: float, exact: bool = False) -> str:
@@ -57,7 +57,7 @@ def percent(share: float, exact: bool = False) -> str:
     return f"{value:.2g} %" if abs(value) < 9.95 else f"{value:.0f} %" if value < 99 else f"{value:.1f} %"
 
 
-def measured(share: float) -> str:
+def format_measured_share(share: float) -> str:
     """percent() of something that was counted or measured."""
     return percent(share, exact=True)
 
@@ -109,12 +109,12 @@ def prefix(largest: float) -> Tuple[float, str]:
     return next(((factor, name) for factor, name in PREFIXES if largest >= factor), PREFIXES[-1])
 
 
-def volume(value: float) -> str:
+def format_volume(value: float) -> str:
     """A volume with its unit, for messages: 33,885 m3, 4.52 million m3."""
     return f"{rounded(value / MILLION)} million m3" if value >= MILLION else f"{rounded(value)} m3"
 
 
-def place(value: float) -> str:
+def format_coordinate(value: float) -> str:
     """A coordinate in m, to a decimetre."""
     return f"{value:.1f}"
 

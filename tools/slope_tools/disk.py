@@ -20,9 +20,9 @@ from . import written_yaml
 from .errors import SlopeError
 
 
-def write(path, content):
+def write_file(path, content):
     """Write a file of text or bytes: complete, or not touched."""
-    with beside(path) as (new,):
+    with write_beside(path) as (new,):
         new.write_bytes(content.encode("utf-8") if isinstance(content, str) else content)
 
 
@@ -31,7 +31,7 @@ def is_utf8(name: str) -> bool:
     return not any("\ud800" <= letter <= "\udfff" for letter in name)
 
 
-def shown(name: str) -> str:
+def escape_name(name: str) -> str:
     """A name in a message; bytes that are not UTF-8 as \\x93."""
     return os.fsencode(name).decode("utf-8", "backslashreplace")
 
@@ -44,7 +44,7 @@ def csv_text(columns, rows) -> str:
 
 
 @contextmanager
-def beside(*paths):
+def write_beside(*paths):
     """Names to write files under, beside those asked for, which they take in this order once all are complete.
 
     The last one is what makes them valid, and is named where they cannot be written.
@@ -103,7 +103,7 @@ def stamp_of(path) -> Tuple[int, ...]:
 known: Dict[Tuple[str, str], Known] = {}        # {(kind of value, path): of a file}
 
 
-def once(kind: str, path, read: Callable[[], Any]) -> Any:
+def read_once(kind: str, path, read: Callable[[], Any]) -> Any:
     """What read() says of a file, which is read again when it changes; of a kind for each function."""
     key, stamp = (kind, os.path.abspath(path)), stamp_of(path)
     if key not in known or known[key].stamp != stamp:
@@ -113,7 +113,7 @@ def once(kind: str, path, read: Callable[[], Any]) -> Any:
 
 def sha256(path) -> str:
     """Of a file, in hexadecimal."""
-    return once(DIGEST, path, lambda: digest_of(path))
+    return read_once(DIGEST, path, lambda: digest_of(path))
 
 
 def digest_of(path) -> str:
@@ -145,7 +145,7 @@ def flush_all(folder: Path) -> None:
 def parse_yaml(path: Any, what: str) -> Any:
     """What is in a YAML file, of whatever type."""
     try:
-        return written_yaml.load(Path(path).read_text(encoding="utf-8"))
+        return written_yaml.load_yaml(Path(path).read_text(encoding="utf-8"))
     except written_yaml.Misleading as error:
         raise SlopeError(f"{path}: line {error.line}", error.rule, error.got) from None
     except RecursionError:
@@ -154,7 +154,7 @@ def parse_yaml(path: Any, what: str) -> Any:
         raise SlopeError(path, f"must be {what} ({getattr(error, 'strerror', None) or error})") from error
 
 
-def is_number(value: Any) -> bool:
+def is_finite_number(value: Any) -> bool:
     """Whether it is a finite number, as YAML has them."""
     try:
         return not isinstance(value, bool) and math.isfinite(value)
@@ -242,7 +242,7 @@ def complete(folder, marker, called=None):
     except OSError as error:
         raise SlopeError(asked, f"cannot be written: {error.strerror or error}") from error
     except SlopeError as error:
-        # of write(), which names the file on its way: the user knows the folder that it goes to
+        # of write_file(), which names the file on its way: the user knows the folder that it goes to
         if isinstance(error.__cause__, OSError) and str(error).startswith(f"{new}{os.sep}"):
             raise SlopeError(asked, f"cannot be written: {error.__cause__.strerror}") from error.__cause__
         raise
@@ -269,7 +269,7 @@ def check_standing(record, files, sources, overwrite, called=None):
         return
     try:
         text = Path(record).read_text(encoding="utf-8")
-        known = set(texts(written_yaml.load(text))) if Path(record).suffix == ".yaml" else text
+        known = set(texts(written_yaml.load_yaml(text))) if Path(record).suffix == ".yaml" else text
     except (OSError, ValueError, RecursionError, yaml.YAMLError):
         known = ""
     others = [name for name in map(str, sources) if name not in known]
@@ -301,12 +301,12 @@ def check_file(path, suffix, inputs=(), called="an input"):
         raise SlopeError("-o", f"must not be {called}", path)
 
 
-def plain(value: Any) -> Any:
+def make_plain(value: Any) -> Any:
     """numpy's numbers, tuples and paths as what YAML and JSON know."""
     if isinstance(value, dict):
-        return {key: plain(inner) for key, inner in value.items()}
+        return {key: make_plain(inner) for key, inner in value.items()}
     if isinstance(value, (list, tuple, np.ndarray)):
-        return [plain(inner) for inner in value]
+        return [make_plain(inner) for inner in value]
     if isinstance(value, np.generic):
         return value.item()
     return str(value) if isinstance(value, Path) else value
@@ -314,7 +314,8 @@ def plain(value: Any) -> Any:
 
 def yaml_text(comment, about) -> str:
     """A YAML file with a comment on its first line; what is in it twice is written twice, not as an alias."""
-    return f"# {comment}\n" + yaml.dump(plain(about), Dumper=written_yaml.DUMPER, sort_keys=False, allow_unicode=True)
+    return f"# {comment}\n" + yaml.dump(make_plain(about), Dumper=written_yaml.DUMPER, sort_keys=False,
+                                        allow_unicode=True)
 
 
 def write_yaml(path, about, comment):

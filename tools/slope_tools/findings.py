@@ -6,7 +6,7 @@ from typing import Any, Callable, Dict, Iterable, List, Mapping, NamedTuple, Opt
 from . import digits
 from .finding_words import LIMIT, NOTE, OTHER, WARNING, words_of
 
-__all__ = ["LIMIT", "NOTE", "OTHER", "WARNING", "Finding", "finding", "entries", "texts", "gathered", "who"]
+__all__ = ["LIMIT", "NOTE", "OTHER", "WARNING", "Finding", "finding", "encode_findings", "texts", "gathered", "who"]
 NAMED = 4               # runs that a line names
 
 
@@ -16,7 +16,7 @@ class _Shown(float):
     def __format__(self, spec):
         if spec == "cubic":
             return digits.cubic(float(self))
-        return digits.plain(format(float(self), spec)) if spec else digits.rounded(self, 3)
+        return digits.format_plain(format(float(self), spec)) if spec else digits.rounded(self, 3)
 
 
 class Finding(NamedTuple):
@@ -99,7 +99,7 @@ def finding(said: Said) -> Finding:
     return found
 
 
-def entries(several: Iterable[Said]) -> List[Dict[str, Any]]:
+def encode_findings(several: Iterable[Said]) -> List[Dict[str, Any]]:
     """The same of several, as a file has them."""
     return [finding(one).entry() for one in several]
 

@@ -29,7 +29,7 @@ def box_of(raster):
     return shapely.geometry.box(*extent(raster))
 
 
-def numbers(values):
+def format_numbers(values):
     """Coordinates or bounds in a message."""
     return " ".join(f"{value:.10g}" for value in values)
 

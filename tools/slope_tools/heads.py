@@ -36,7 +36,7 @@ def acceleration(text: str) -> Optional[float]:
     return ACCELERATIONS.get(plain.rstrip(".,"))
 
 
-def number(word: str) -> float:
+def parse_cell(word: str) -> float:
     """The number of a cell, nan if it is none; Python would take 1_5 for 15."""
     try:
         return float(word) if "_" not in word else math.nan

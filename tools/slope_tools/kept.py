@@ -27,8 +27,8 @@ def tools() -> str:
 
 def digest(made_of: Any) -> str:
     """Of values that JSON knows, dataclasses of them, and what has a text; and of these tools. 0 and 0.0 are one."""
-    text = json.dumps([tools(), disk.plain(made_of)], sort_keys=True, default=lambda one: disk.plain(vars(one))
-                      if dataclasses.is_dataclass(one) else str(one))
+    text = json.dumps([tools(), disk.make_plain(made_of)], sort_keys=True,
+                      default=lambda one: disk.make_plain(vars(one)) if dataclasses.is_dataclass(one) else str(one))
     text = json.dumps(json.loads(text, parse_float=by_value))
     return hashlib.sha256(text.encode("utf-8")).hexdigest()
 
@@ -54,9 +54,9 @@ def value(path: Path, made_of: Any, make: Callable[[], Any], written: Callable[[
         before, _, text = path.read_text(encoding="utf-8").partition("\n")
         if before == seal(text):
             return json.loads(text)
-    text = json.dumps(disk.plain(make()))
+    text = json.dumps(disk.make_plain(make()))
     with contextlib.suppress(OSError, SlopeError):      # the folder is somebody else's: it is made again next time
-        disk.write(path, f"{seal(text)}\n{text}")
+        disk.write_file(path, f"{seal(text)}\n{text}")
     return json.loads(text)     # the same as when it is read
 
 
@@ -65,7 +65,7 @@ def value(path: Path, made_of: Any, make: Callable[[], Any], written: Callable[[
 @contextlib.contextmanager
 def remembered(folder: Path) -> Iterator[None]:
     """For a command that has a folder for itself: what it reads of files is known to the next command, as long as they
-    do not change, and what is computed for once() is computed once."""
+    do not change, and what is computed for make_once() is computed once."""
     global _said
     path, before = folder / FILE, _said
     recall(path)
@@ -78,7 +78,7 @@ def remembered(folder: Path) -> Iterator[None]:
             remember(path)
 
 
-def once(key: Any, make: Callable[[], Any]) -> Any:
+def make_once(key: Any, make: Callable[[], Any]) -> Any:
     """What make() gives, once for each key in a command; outside of remembered() each time."""
     if _said is None:
         return make()
@@ -114,4 +114,4 @@ def remember(path: Path) -> None:
                 entries.append([kind, name, stamp, now, disk.digest_of(name)])
     text = json.dumps([tools(), entries])
     if not path.is_file() or path.read_text(encoding="utf-8") != text:
-        disk.write(path, text)
+        disk.write_file(path, text)

@@ -166,7 +166,7 @@ def bare(asked: Any) -> bool:
     return asked == type(asked)()
 
 
-def number(text):
+def parse_number(text):
     """argparse type: a finite number."""
     try:
         value = float(text)
@@ -177,7 +177,7 @@ def number(text):
     return value
 
 
-def whole(text):
+def parse_whole_number(text):
     """argparse type: a whole number, of either sign."""
     if not re.fullmatch(r"[-+]?0*[0-9]{1,18}", text):
         raise argparse.ArgumentTypeError(f"must be a whole number of at most 18 digits, got {text!r}")
@@ -193,8 +193,9 @@ def count(text):
     return int(text)
 
 
-READ: Dict[Any, Callable[[str], Any]] = {float: number, int: count, Path: Path}       # the others as they are
-KINDS: Dict[Any, str] = {number: "number", whole: "whole", count: "count", Path: "path"}     # of the others: text
+READ: Dict[Any, Callable[[str], Any]] = {float: parse_number, int: count, Path: Path}       # the others as they are
+KINDS: Dict[Any, str] = {parse_number: "number", parse_whole_number: "whole", count: "count",
+                         Path: "path"}     # of the others: text
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -24,7 +24,7 @@ class Fields(NamedTuple):
     needed: List[str]
 
 
-def plain(value: Any) -> Any:
+def encode_record(value: Any) -> Any:
     """What YAML and JSON have of a value: records as mappings, in the order of their fields, without those of
     a dataclass that are None where that is the default."""
     if type(value) in SIMPLE:       # most are
@@ -33,17 +33,17 @@ def plain(value: Any) -> Any:
         return value.entry()
     if dataclasses.is_dataclass(value):
         parts = ((getattr(value, one.name), one) for one in dataclasses.fields(value))
-        return {one.name: plain(part) for part, one in parts if part is not None or one.default is not None}
+        return {one.name: encode_record(part) for part, one in parts if part is not None or one.default is not None}
     if hasattr(value, "_asdict"):
-        return {name: plain(one) for name, one in value._asdict().items()}
+        return {name: encode_record(one) for name, one in value._asdict().items()}
     if isinstance(value, Mapping):
-        return {name: plain(one) for name, one in value.items()}
-    return [plain(one) for one in value] if isinstance(value, (list, tuple)) else disk.plain(value)
+        return {name: encode_record(one) for name, one in value.items()}
+    return [encode_record(one) for one in value] if isinstance(value, (list, tuple)) else disk.make_plain(value)
 
 
-def read(kind: Type[T], value: Any) -> T:
-    """A value of a type from what plain() made of it; NoRecord if it is none. Further keys do not count; a field that
-    is missing has its default."""
+def read_record(kind: Type[T], value: Any) -> T:
+    """A value of a type from what encode_record() made of it; NoRecord if it is none. Further keys do not count; a
+    field that is missing has its default."""
     return typing.cast(T, _read(kind, value))
 
 
@@ -55,23 +55,23 @@ def _read(kind: Any, value: Any) -> Any:
         several = [one for one in parts if one is not NoneType]
         return _read(next((one for one in reversed(several) if _knows(one, value)), several[0]), value)
     if isinstance(origin, type) and issubclass(origin, Mapping):
-        check(value, Mapping)
+        check_record_value(value, Mapping)
         return {name: _inside(name, parts[1], one) for name, one in value.items()}
     if isinstance(origin, type):
-        check(value, list)
+        check_record_value(value, list)
         found = [_inside(nth(k), parts[0], one) for k, one in enumerate(value)]
         return tuple(found) if origin is tuple else found
     if kind is Finding:
-        check(value, Mapping)
+        check_record_value(value, Mapping)
         return finding(value)
     if of := _fields(kind):
-        check(value, Mapping)
+        check_record_value(value, Mapping)
         if lacks := [name for name in of.needed if name not in value]:
             raise NoRecord(f"must have {' and '.join(lacks)}")
         parts_ = {name: _inside(name, one, value[name]) for name, one in of.types.items() if name in value}
         return kind(**parts_)
     if kind is not Any:
-        check(value, kind)
+        check_record_value(value, kind)
     return value
 
 
@@ -89,10 +89,10 @@ def _knows(kind: Any, value: Any) -> bool:
     return of is not None and isinstance(value, Mapping) and value.keys() <= of.types.keys()
 
 
-def check(value: Any, kind: Any) -> None:
+def check_record_value(value: Any, kind: Any) -> None:
     """Raise NoRecord unless a value is what YAML and JSON have for a type."""
     if kind is float:
-        right = disk.is_number(value)
+        right = disk.is_finite_number(value)
     elif kind is list:
         right = isinstance(value, (list, tuple))
     else:

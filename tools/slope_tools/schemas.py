@@ -20,7 +20,7 @@ RULES = {"exclusiveMinimum": "be > {}", "minimum": "be >= {}", "exclusiveMaximum
          "enum": "be one of {}", "minItems": "have at least {} items", "maxItems": "have at most {} items"}
 
 
-def numbers(*names: str) -> Dict[str, Any]:
+def number_keys(*names: str) -> Dict[str, Any]:
     return dict.fromkeys(names, NUMBER)
 
 
@@ -30,26 +30,26 @@ def mapping(required: Mapping[str, Any], null: bool = False, **optional: Any) ->
             "properties": {**required, **optional}}
 
 
-def named(items: Mapping[str, Any], least: int = 0) -> Dict[str, Any]:
+def dict_of(items: Mapping[str, Any], least: int = 0) -> Dict[str, Any]:
     """Of a mapping whose keys are names, and whose values are all alike."""
     return {"type": "object", "additionalProperties": items, "minProperties": least}
 
 
-def listed(items: Mapping[str, Any], least: int = 0, null: bool = False) -> Dict[str, Any]:
+def list_of(items: Mapping[str, Any], least: int = 0, null: bool = False) -> Dict[str, Any]:
     return {"type": ["array", "null"] if null else "array", "items": items, "minItems": least}
 
 
-FINDINGS = listed({"anyOf": [OBJECT, TEXT], "description": "findings"}, null=True)     # TEXT: of older versions
+FINDINGS = list_of({"anyOf": [OBJECT, TEXT], "description": "findings"}, null=True)     # TEXT: of older versions
 
 
-def load(path, what: str, schema: Mapping[str, Any]) -> Any:
+def load_checked(path, what: str, schema: Mapping[str, Any]) -> Any:
     """What a YAML file holds; SlopeError unless it fits the schema. what: the file, for messages."""
     about = disk.parse_yaml(path, what)
-    check(about, schema, path, what)
+    check_schema(about, schema, path, what)
     return about
 
 
-def check(value: Any, schema: Mapping[str, Any], where, what: str) -> None:
+def check_schema(value: Any, schema: Mapping[str, Any], where, what: str) -> None:
     """Raise SlopeError unless a value fits the schema."""
     wrong = first_error(value, schema)
     if wrong:
@@ -71,7 +71,7 @@ def validator():
 
     return jsonschema.validators.extend(
         latest, {"additionalProperties": additional},
-        type_checker=latest.TYPE_CHECKER.redefine("number", lambda _, value: disk.is_number(value)))
+        type_checker=latest.TYPE_CHECKER.redefine("number", lambda _, value: disk.is_finite_number(value)))
 
 
 def first_error(value: Any, schema: Mapping[str, Any]) -> Optional[Tuple[List[Any], str]]:
@@ -91,13 +91,13 @@ def nth(index: int) -> str:
     return f"{NTH[index] if index < len(NTH) else f'{index + 1}th'} value"
 
 
-def as_number(value: Any) -> Optional[str]:
+def find_yaml_number(value: Any) -> Optional[str]:
     """How YAML has the number that a text is meant to be: 1.2e1, which is a text to it, or one in quotes; else None."""
     try:
         number = float(value) if isinstance(value, str) and "_" not in value else None
     except ValueError:
         return None
-    return yaml.safe_dump(number).split()[0] if disk.is_number(number) else None
+    return yaml.safe_dump(number).split()[0] if disk.is_finite_number(number) else None
 
 
 def rule_of(error) -> str:
@@ -110,8 +110,8 @@ def rule_of(error) -> str:
         return f"must have {' and '.join(key for key in value if key not in error.instance)}"
     if rule == "type":
         types = value if isinstance(value, list) else [value]
-        example = f", such as [{got}]" if "array" in types and disk.is_number(error.instance) else ""
-        if "number" in types and (meant := as_number(error.instance)):
+        example = f", such as [{got}]" if "array" in types and disk.is_finite_number(error.instance) else ""
+        if "number" in types and (meant := find_yaml_number(error.instance)):
             example = f" (as {meant}; YAML takes it for a text)"
         return f"must be {' or '.join(TYPES.get(one, one) for one in types)}{example}, got {got}"
     if rule == "anyOf" and "description" in error.schema:

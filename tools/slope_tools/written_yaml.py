@@ -73,7 +73,7 @@ def _loader(base):
 FAST, DEEP = _loader(C_LOADER), _loader(yaml.SafeLoader)
 
 
-def load(text: str) -> Any:
+def load_yaml(text: str) -> Any:
     """What a text of YAML holds; Misleading, or an error of yaml's.
 
     libyaml's recursion has no limit and would end the program: a text that may be nested thousands of levels deep is

@@ -27,7 +27,7 @@ def main(folder, road, picture):
             continue
         prefix = run_folders.prefix_of(folder / row["summary"])
         for angle in ANGLES:
-            found = volume.of_run(prefix, volume.Wanted(road, mesh=10.0, cut_angle=angle, local=True))
+            found = volume.compute_removal(prefix, volume.Wanted(road, mesh=10.0, cut_angle=angle, local=True))
             print(f"{row['run']}: cut of {angle:g} degrees, {found.about['volume']['remove']:.1f} m3 to remove")
             if worst is None or found.about["volume"]["remove"] > worst.about["volume"]["remove"]:
                 worst = found

@@ -34,7 +34,7 @@ class Frames(NamedTuple):
     factor: float
 
 
-def read(result) -> Tuple[Optional[Frames], str]:
+def read_frames(result) -> Tuple[Optional[Frames], str]:
     """The Frames of a run, or None and the reason: a sentence, and lines for a deck below it."""
     paths = snapshots(result.folder, result.summary["stop"]["step"])
     if len(paths) < 2:
@@ -54,7 +54,7 @@ def read(result) -> Tuple[Optional[Frames], str]:
         place[at] = shot.place
         if {"vx", "vy", "vz"} <= shot.of.keys():
             speed[at] = np.sqrt(sum(shot.of[key] ** 2 for key in ("vx", "vy", "vz")))
-        size[at] = diameter(shot, result)
+        size[at] = find_ball_diameters(shot, result)
     time = np.array([shot.step for shot in shots]) * result.summary["dt"]
     if np.isnan(speeds).all():
         speeds = mean_speeds(places, time)
@@ -76,7 +76,7 @@ def shot_of(path):
     return dumps.last(path, ("diameter", "radius", "vx", "vy", "vz"))
 
 
-def diameter(shot, result):
+def find_ball_diameters(shot, result):
     """Of each ball; where the dump does not have it, all are as large as one that stands for its share of the mass."""
     if "diameter" in shot.of:
         return shot.of["diameter"]

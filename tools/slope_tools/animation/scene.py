@@ -33,7 +33,7 @@ MOVES = 0.1             # m/s
 def scene(data, ground, section, frames: Frames) -> Dict[str, Any]:
     """What the viewer takes, ready for JSON; lengths in m, relative to x y of `centre` and to height 0."""
     walls = structures_of(data.result)
-    box = shown(ground, walls)
+    box = frame_scene(ground, walls)
     places, low, span = quantised(frames.place)
     top = fastest(frames.speed)
     with np.errstate(invalid="ignore"):
@@ -77,7 +77,7 @@ def first_heights(places):
 def fastest(speeds):
     """The speed (m/s) that the scale ends at, a round number that few balls exceed."""
     moving = speeds[np.isfinite(speeds) & (speeds > MOVES)]
-    return figures.above(float(np.percentile(moving, FASTEST))) if moving.size else 1.0
+    return figures.round_up_nicely(float(np.percentile(moving, FASTEST))) if moving.size else 1.0
 
 
 def tones(what):
@@ -112,7 +112,7 @@ def packed_structure(name, corners):
 
 # --- ground ---
 
-def shown(ground, walls):
+def frame_scene(ground, walls):
     """Local xlo, ylo, xhi, yhi of the ground that is shown: what the mass touched, the road beside it, structures that
     are no farther from that than it is long, and room."""
     box = np.array(extent_of(ground.raster.transform, ground.touched | ground.source))

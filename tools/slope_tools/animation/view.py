@@ -29,7 +29,7 @@ OTHERWISE, ARISING FROM, OUT OF OR IN CONNECTION WITH THE SOFTWARE OR THE USE OR
 """
 
 
-def content(data, ground, section, frames: Optional[Frames], why: str, film: str) -> Dict[str, Any]:
+def make_view_content(data, ground, section, frames: Optional[Frames], why: str, film: str) -> Dict[str, Any]:
     """What the template takes: scene (JSON) and scripts, with a caption, or why there is none; and film, a sentence."""
     found: Dict[str, Any] = {"title": "The collapse in three dimensions", "scene": None, "scripts": [], "why": why,
                              "caption": "", "film": film}

@@ -9,7 +9,7 @@ from .. import disk, provenance
 from ..case import run_folders
 from ..deposits import dumps
 from ..deposits.flow_path import snapshots
-from ..findings import entries
+from ..findings import encode_findings
 from ..survey import geopackage, rasters
 from ..survey.rasters import Raster
 from .runs import PREFIX, QUANTITIES, Run
@@ -20,21 +20,21 @@ RESULTS, BLOCKS, RETAINED, GIS = "blocks.yaml", "blocks.csv", "retained.csv", "b
 NAMES = [*(f"{name}.tif" for name in LARGEST), GIS]
 
 
-def write(folder: Path, known) -> None:
+def write_block_files(folder: Path, known) -> None:
     """All of it; known: study.Known."""
     with disk.complete(folder, RESULTS) as new:
-        columns, rows = table(known.runs)
-        disk.write(new / BLOCKS, disk.csv_text(columns, rows))
-        disk.write(new / RETAINED, disk.csv_text(("rolling", "ditch_m", "retained_percent", "low", "high"), (
+        columns, rows = tabulate_blocks(known.runs)
+        disk.write_file(new / BLOCKS, disk.csv_text(columns, rows))
+        disk.write_file(new / RETAINED, disk.csv_text(("rolling", "ditch_m", "retained_percent", "low", "high"), (
             [one.rolling, width, *(100 * value for value in (share.share, share.low, share.high))]
             for one in known.outcome.results for width, share in zip(known.outcome.widths, one.retained))))
         write_gis(new, known)
         disk.write_yaml(new / RESULTS, {"slope_version": provenance.version(), "made": provenance.now(),
-                                        **known.outcome.about(), "warnings": entries(known.doubts)},
+                                        **known.outcome.about(), "warnings": encode_findings(known.doubts)},
                         "slope study of single blocks: by block; m, m/s, J; bounds of 90 %")
 
 
-def table(runs: List[Run]) -> Tuple[List[str], List[list]]:
+def tabulate_blocks(runs: List[Run]) -> Tuple[List[str], List[list]]:
     """A row for each block."""
     columns = ["rolling", "ground", "block", "diameter_m", *(f"start_{axis}" for axis in "xyz"), "end_x", "end_y",
                *(f"{name}_m" for name in runs[0].travel), "left", "moving", "reached_road", "passed_road",
@@ -49,7 +49,7 @@ def table(runs: List[Run]) -> Tuple[List[str], List[list]]:
     return columns, rows
 
 
-def largest(runs: List[Run], name: str, place: Raster) -> Raster:
+def combine_largest(runs: List[Run], name: str, place: Raster) -> Raster:
     """A raster's largest values over runs, as they are, in the place of a terrain."""
     several = [run_folders.load_raster(one.folder / PREFIX, name, heights=False) for one in runs]
     most = np.fmax.reduce([one.z for one in several])
@@ -72,11 +72,11 @@ def write_gis(folder: Path, known) -> None:
     """The largest speed and energy over all runs; paths of those runs that govern, and where all their blocks end."""
     raster, best = known.terrain.raster, [one for one in known.runs if one.rolling == known.outcome.best.rolling]
     for name, unit in LARGEST.items():
-        over_all = largest(known.runs, name, raster)
+        over_all = combine_largest(known.runs, name, raster)
         rasters.write_geotiff(folder / f"{name}.tif", {f"largest over all runs ({unit})": over_all.z}, over_all)
     about = {"rolling": "float", "ground": "int", "block": "int"}
     ends = {**about, "diameter_m": "float", "distance_m": "float", "left": "int", "reached": "int", "passed": "int"}
-    geopackage.write(folder / GIS, {
+    geopackage.write_geopackage(folder / GIS, {
         "paths": geopackage.Layer("3D LineString", about, (
             (LineString(places), {"rolling": float(one.rolling), "ground": one.ground, "block": block})
             for one, block, places in paths(best) if len(places) > 1)),

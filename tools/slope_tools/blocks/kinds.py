@@ -16,25 +16,25 @@ TAKEN = {"study": ("deck", "np", "jobs", "lmp", "dry_run", "anew", "launcher", "
          "vtk": ("prefix", "output", "single")}
 
 
-def run(command: str, module: Any, request: Any, tell: Any) -> None:
+def run_by_kind(command: str, module: Any, request: Any, tell: Any) -> None:
     """Do a command of TAKEN: what its module does, or on a site of blocks what is done with these."""
     folder, *taken = TAKEN[command]
     named = getattr(request, folder)
     if named is None or site_choices.kind_in(Path(named)) is not OfBlocks:
-        return module.run(request)
+        return getattr(module, f"run_{command}")(request)
     for field in dataclasses.fields(request):
         default = field.default_factory() if callable(field.default_factory) else field.default
         if field.metadata and field.name not in (folder, *taken) and getattr(request, field.name) != default:
             name = next(iter(field.metadata["names"]), "") or f"--{field.name.replace('_', '-')}"
             raise SlopeError(name, WRONG)
     found = site_choices.load_kind(Path(named), OfBlocks)
-    site_study.check(found)
+    site_study.check_site(found)
     if command == "study":
         from . import study
-        return study.run(found, module.setup_of(request))
+        return study.run_block_study(found, module.setup_of(request))
     if command == "vtk":
         from . import page, runs, study as of_blocks
-        shown = page.shown(of_blocks.read(found, of_blocks.planned(found)))
+        shown = page.choose_shown_run(of_blocks.read_block_runs(found, of_blocks.plan_block_runs(found)))
         tell(f"{shown.name}, the run with the farthest block: {shown.folder}")
         return module.convert(str(shown.folder / runs.PREFIX), request.output, found.folder, request.single)
     return (export if command == "export" else report)(found, request.output, request.overwrite, tell)
@@ -45,7 +45,7 @@ def export(found: site_choices.Folder[OfBlocks], output, overwrite: bool, tell) 
     from . import files, study as of_blocks
     folder = output or found.folder / "export"
     disk.check_folder(folder, [*files.NAMES, "export.yaml"], [found.folder], overwrite)
-    known = of_blocks.read(found, of_blocks.planned(found))
+    known = of_blocks.read_block_runs(found, of_blocks.plan_block_runs(found))
     with disk.complete(folder, "export.yaml") as new:
         files.write_gis(new, known)
         disk.write_yaml(new / "export.yaml", {"of": found.folder, "files": files.NAMES}, "slope export: m/s, J")
@@ -59,7 +59,7 @@ def report(found: site_choices.Folder[OfBlocks], output, overwrite: bool, tell) 
     path = output or found.folder / page.NAME
     disk.check_file(path, ".html")
     document.check_standing(path, found.folder, overwrite, path.resolve().parent == found.folder.resolve())
-    tell(page.write(of_blocks.read(found, of_blocks.planned(found)), path))
+    tell(page.write_block_page(of_blocks.read_block_runs(found, of_blocks.plan_block_runs(found)), path))
 
 
 # --- slope site ---
@@ -69,7 +69,7 @@ def begun(number: Any) -> Choices:
     return OfMass.of({}) if number is None else OfBlocks.of({})
 
 
-def check(choices: Choices, given: Dict[str, Key]) -> None:
+def check_kind(choices: Choices, given: Dict[str, Key]) -> None:
     """Raise SlopeError unless options, of these sections and keys, have a meaning for the kind of a site."""
     if choices.KIND and "roads" in given:
         raise SlopeError("--road", site_roads.ONE)

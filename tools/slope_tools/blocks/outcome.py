@@ -110,13 +110,13 @@ class Outcome:
 
     def about(self) -> Dict[str, Any]:
         """For a file, without what has a table of its own."""
-        about = {**records.plain(self), "best": self.best.rolling}
+        about = {**records.encode_record(self), "best": self.best.rolling}
         for one in (about, *about["results"]):
             one.pop("widths", None), one.pop("retained", None)
         return about
 
 
-def evaluate(runs: Sequence[Run]) -> Outcome:
+def evaluate_blocks(runs: Sequence[Run]) -> Outcome:
     """Of finished runs."""
     widths = widths_to(max(float(one.travel[DITCH].max()) for one in runs))
     ditch = np.concatenate([one.ditch for one in runs])
@@ -152,7 +152,7 @@ def result_of(runs: Sequence[Run], widths: Sequence[float]) -> Result:
 
     def quantity(values: np.ndarray) -> Optional[Quantity]:
         there = np.isfinite(values)
-        return Quantity(int(there.sum()), hazard.quantiles(values[there], ground[there], shares=SHARES),
+        return Quantity(int(there.sum()), hazard.compute_quantiles(values[there], ground[there], shares=SHARES),
                         float(values[there].max())) if there.any() else None
 
     at = {place: {name: joined(lambda one: one.at[place][name]) for name in QUANTITIES} for place in runs[0].at}

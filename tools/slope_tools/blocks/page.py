@@ -37,7 +37,7 @@ TITLES = {"distance": "Travelled distance in plan, from start to end",
           "height": "Height of the block's lower edge above the terrain"}
 
 
-def number(value: Optional[float], unit: str) -> str:
+def format_block_number(value: Optional[float], unit: str) -> str:
     if value is None:
         return "?"
     return digits.si(value, unit) if unit == "J" else f"{digits.three(value) if value else '0'} {unit}"
@@ -51,14 +51,16 @@ def sentences(known) -> Iterator[str]:
         yield f"Of the blocks {best.reach.text} reach the road and {best.past.text} pass it ({whose})"
         hardest = {name: of.hardest(AT_ROAD, name) for name in QUANTITIES}
         energy, speed, height = (one.at[AT_ROAD][name] for name, one in hardest.items())
-        yield (f"at its near edge 95 % of those that reach it have at most {number(energy.most, 'J')}, the hardest "
-               f"{number(energy.largest, 'J')} (rolling resistance {hardest['energy'].rolling}); up to "
-               f"{number(speed.largest, 'm/s')}, the lower edge up to {number(height.largest, 'm')} above the terrain")
+        yield (f"at its near edge 95 % of those that reach it have at most {format_block_number(energy.most, 'J')}, "
+               "the hardest "
+               f"{format_block_number(energy.largest, 'J')} (rolling resistance {hardest['energy'].rolling}); up to "
+               f"{format_block_number(speed.largest, 'm/s')}, the lower edge up to "
+               f"{format_block_number(height.largest, 'm')} above the terrain")
     elif best.reach:
         yield (f"none {whose}, {'was seen to reach' if best.reach.open else 'reaches'} the road; as blocks share their "
                f"grounds, chance leaves {best.reach.text} possible, more grounds (blocks.grounds of site.yaml) less")
     distance = best.travel["distance"]
-    half, most, largest = (number(value, "m") for value in (
+    half, most, largest = (format_block_number(value, "m") for value in (
         distance.quantiles[0].value, distance.most, distance.largest))
     yield (f"in plan half of {'all' if best.reach else 'the'} blocks travel {best.at_least}{half}, 5 % more than "
            f"{best.at_least}{most}, the farthest {best.at_least}{largest} (rolling resistance {best.rolling})")
@@ -70,8 +72,9 @@ def cells(one: Optional[Quantity], unit: str, prefix: str = "") -> List[str]:
     """Quantiles with their bounds, the largest, and of how many blocks."""
     if one is None:
         return ["-", "-", "-", "0"]
-    return [*(f"{prefix}{number(at.value, unit)} ({number(at.low, unit)} to {number(at.high, unit)})"
-              for at in one.quantiles), prefix + number(one.largest, unit), f"{one.blocks:,}"]
+    return [*(f"{prefix}{format_block_number(at.value, unit)} ({format_block_number(at.low, unit)} to "
+              f"{format_block_number(at.high, unit)})"
+              for at in one.quantiles), prefix + format_block_number(one.largest, unit), f"{one.blocks:,}"]
 
 
 def tables(known) -> Iterator[Section]:
@@ -116,21 +119,23 @@ def farther(known) -> Picture:
         distance = np.concatenate([run.travel["distance"] for run in known.runs if run.rolling == one.rolling])
         x = np.linspace(0, distance.max(), POINTS)
         series.append((one.rolling, x.tolist(), [100 * float(np.mean(distance > at)) for at in x]))
-    return curve(series, "travelled distance in plan (m)", "blocks that go farther (%)", "Travelled distance",
-                 "Share of the blocks that go farther; one that left the terrain ends where it left it.")
+    return draw_curve(series, "travelled distance in plan (m)", "blocks that go farther (%)", "Travelled distance",
+                      "Share of the blocks that go farther; one that left the terrain ends where it left it.")
 
 
 def retained(known) -> Picture:
     """Which share a ditch keeps."""
     of = known.outcome
-    to_road = f" The road begins {number(of.to_road, 'm')} beyond the foot (median)." if of.to_road is not None else ""
-    return curve([(one.rolling, of.widths, [100 * share.share for share in one.retained]) for one in of.results],
-                 "width of a ditch at the slope's foot (m)", "blocks retained (%)", "Retained by a ditch",
-                 "Share of the blocks that end on the slope or within so far of its foot, below which the ground falls "
-                 f"less than 1 : 4; a level ditch, no barrier.{to_road} All numbers: study/{files.RETAINED}.")
+    to_road = (f" The road begins {format_block_number(of.to_road, 'm')} beyond the foot (median)." if of.to_road
+               is not None else "")
+    return draw_curve([(one.rolling, of.widths, [100 * share.share for share in one.retained]) for one in of.results],
+                      "width of a ditch at the slope's foot (m)", "blocks retained (%)", "Retained by a ditch",
+                      "Share of the blocks that end on the slope or within so far of its foot, below which the ground "
+                      "falls "
+                      f"less than 1 : 4; a level ditch, no barrier.{to_road} All numbers: study/{files.RETAINED}.")
 
 
-def curve(series, x_label: str, y_label: str, title: str, caption: str) -> Picture:
+def draw_curve(series, x_label: str, y_label: str, title: str, caption: str) -> Picture:
     """series: of each a rolling resistance, x and y."""
     return Picture(figure_charts.chart([figure_charts.Series(f"rolling resistance {rolling}", x, y)
                                         for rolling, x, y in series], x_label, y_label, title), title, caption)
@@ -151,7 +156,7 @@ def widths(known, marks: List[str]) -> Table:
 def maps(known, data: Data, ground: Ground) -> Dict[str, Picture]:
     """The largest energy and speed over all runs."""
     raster, crs, found = ground.raster, ground.raster.crs, {}
-    several = {name: files.largest(known.runs, name, raster).z for name in files.LARGEST}
+    several = {name: files.combine_largest(known.runs, name, raster).z for name in files.LARGEST}
     shown = ground.window(extent_of(raster.transform, several["max_speed"] > 0),
                           *([data.road.bounds] if data.road else []))
     release = release_area.nodes_inside(raster, polygons.read_local(known.site.folder / f"{BODY}.csv", raster, True))
@@ -171,20 +176,20 @@ def maps(known, data: Data, ground: Ground) -> Dict[str, Picture]:
     return found
 
 
-def shown(known) -> Run:
+def choose_shown_run(known) -> Run:
     """The run with the farthest block of those that govern."""
     return max((one for one in known.runs if one.rolling == known.outcome.best.rolling),
                key=lambda one: one.travel["distance"].max())
 
 
-def write(known, output: Path) -> str:
+def write_block_page(known, output: Path) -> str:
     """The page; a line for the user."""
-    site, run = known.site, shown(known)
+    site, run = known.site, choose_shown_run(known)
     data = Data(run.folder)
     data.road = known.terrain.road and known.terrain.road.polygon
     ground = Ground(data)
-    shots, why = frames.read(data.result)
-    about = view.content(data, ground, Profile(data, ground, None, False), shots, why, "")
+    shots, why = frames.read_frames(data.result)
+    about = view.make_view_content(data, ground, Profile(data, ground, None, False), shots, why, "")
     caption = f"Run with the farthest block, {run.name}: {about['caption'].partition(' The ground is')[0]}"
     head = heading.heading(site.folder, {}, site.content)
     html = document.render({
@@ -196,7 +201,7 @@ def write(known, output: Path) -> str:
         "footer": f"{document.MADE_BY}, SLOPE {provenance.version()}; all numbers: study/{files.RESULTS}, "
                   f"study/{files.BLOCKS}; for a GIS: study/{', study/'.join(files.NAMES)}"},
         Path(__file__).with_name("blocks.html.j2"))
-    disk.write(output, html)
+    disk.write_file(output, html)
     return f"{output}: {len(html) / 1e6:.1f} MB"
 
 

@@ -75,7 +75,7 @@ def terrain_of(site: Folder[OfBlocks]) -> Terrain:
     return Terrain(raster, down / np.hypot(*down), road, sides, lines)
 
 
-def read(name: str, folder: Path, chosen: Dict[str, str], terrain: Terrain) -> Run:
+def read_block_run(name: str, folder: Path, chosen: Dict[str, str], terrain: Terrain) -> Run:
     """A finished run."""
     prefix = folder / PREFIX
     summary = run_folders.load_summary(f"{prefix}.summary.yaml")
@@ -89,19 +89,22 @@ def read(name: str, folder: Path, chosen: Dict[str, str], terrain: Terrain) -> R
     left[gone["ball"].astype(int) - 1] = True
     if "halt" not in str(summary["stop"]["reason"]):
         moving[there] = np.linalg.norm(last[:, heads.index("vx"):heads.index("vx") + 3], axis=1) > SLOW
-    at = {line: largest(table_of(Path(f"{prefix}.{line}.line.csv"), CROSSING), diameter) for line in terrain.lines}
+    at = {line: find_largest_crossings(table_of(Path(f"{prefix}.{line}.line.csv"), CROSSING), diameter) for line
+          in terrain.lines}
     start = first[:, 2:4]
-    ahead = {line: spread(left, road_sides.not_behind(start[left], end[left], one))
+    ahead = {line: spread_over_blocks(left, road_sides.not_behind(start[left], end[left], one))
              for line, one in terrain.lines.items()}
     if terrain.sides:
         parts = [table_of(path, CROSSING) for path in sorted(folder.glob(f"{PREFIX}.{EDGE}_*.line.csv"))]
         crossed = {key: np.concatenate([part[key] for part in parts]) for key in parts[0]}
-        at[AT_ROAD] = largest({key: value[crossed["direction"] > 0] for key, value in crossed.items()}, diameter)
+        at[AT_ROAD] = find_largest_crossings({key: value[crossed["direction"] > 0] for key, value in crossed.items()},
+                                             diameter)
         reached = np.isfinite(at[AT_ROAD]["energy"])
         passed = reached & beyond_road(crossed, end, terrain.sides)
         part = terrain.sides.of_places(end[left])
-        ahead[AT_ROAD] = spread(left, (part == road_sides.ON) | terrain.sides.ahead_of(start[left], end[left], part))
-        behind = spread(left, part == road_sides.BEFORE) & ~ahead[AT_ROAD]
+        ahead[AT_ROAD] = spread_over_blocks(left, (part == road_sides.ON) |
+                                            terrain.sides.ahead_of(start[left], end[left], part))
+        behind = spread_over_blocks(left, part == road_sides.BEFORE) & ~ahead[AT_ROAD]
     way, feet = end - start, ditch.feet(terrain.raster, start, end, terrain.down,
                                         terrain.road and terrain.road.polygon)
     travel = {"distance": np.hypot(*way.T), "along": way @ terrain.down,
@@ -110,7 +113,7 @@ def read(name: str, folder: Path, chosen: Dict[str, str], terrain: Terrain) -> R
                reached, passed, behind, ahead, at, travel, feet.road, float(summary["guards"]["largest_overlap"]))
 
 
-def largest(crossings: Columns, diameter: np.ndarray) -> Columns:
+def find_largest_crossings(crossings: Columns, diameter: np.ndarray) -> Columns:
     """By block, of all its crossings; the height is that of its lower edge above the terrain."""
     block = crossings["ball"].astype(int) - 1
     values = {**crossings, "height": crossings["height"] - diameter[block] / 2}
@@ -129,7 +132,7 @@ def beyond_road(crossed: Columns, end: np.ndarray, sides: road_sides.Sides) -> n
     return found
 
 
-def spread(left: np.ndarray, found: np.ndarray) -> np.ndarray:
+def spread_over_blocks(left: np.ndarray, found: np.ndarray) -> np.ndarray:
     """What was found of those that left the terrain, of all blocks."""
     every = np.zeros(len(left), bool)
     every[left] = found

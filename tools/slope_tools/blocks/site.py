@@ -76,7 +76,7 @@ def build(given: OfBlocks, known: Derived, new: Path, folder: Path, machine: sit
     several, grounds = given.study.rolling, given.blocks.grounds
     runs = len(several) * grounds
     each = math.ceil(given.blocks.number / runs)
-    check(given, runs)
+    check_block_site(given, runs)
     raster, _ = site.terrain(given, new, tell, keep)
     start = start_of(given, raster, new, tell, keep)
     layers = site_layers.read_layers(given, raster, new, tell, keep)
@@ -86,27 +86,27 @@ def build(given: OfBlocks, known: Derived, new: Path, folder: Path, machine: sit
     trial = tried(given, start, said, new, machine, tell)
     choices = settled(given, start, trial)
     for ground in range(1, grounds + 1):
-        disk.write(new / f"blocks.{ground}.data", start.data(ground, each))
-    seconds = trial and trial.setup + trial.cost * each * trial.rest / step_of(choices)
+        disk.write_file(new / f"blocks.{ground}.data", start.data(ground, each))
+    seconds = trial and trial.setup + trial.cost * each * trial.rest / choose_time_step(choices)
     tell(f"{each * runs:,} blocks, {each:,} in each of {runs} runs: rolling resistances "
          f"{', '.join(f'{one:g}' for one in several)} on {grounds} grounds" + (
              f"; about {site_budget.duration_text(runs * seconds / machine.jobs)}, {machine.jobs} at a time, if "
              "nothing else runs" if seconds else ""))
     for one in (*site_warnings.of_trial(trial), *site_warnings.of_resistance(choices),
-                *site_warnings.of_zones(layers.zones), *doubts(start)):
+                *site_warnings.of_zones(layers.zones), *find_block_caveats(start)):
         keep(one)
-    site_warnings.write(new, warnings)
-    disk.write(new / site_deck.NAME, deck(choices, said, f"{each:,}", site_deck.run_time(seconds)))
+    site_warnings.write_site_warnings(new, warnings)
+    disk.write_file(new / site_deck.NAME, deck(choices, said, f"{each:,}", site_deck.run_time(seconds)))
     draw(new / MAP, site_layers.Shown(raster, np.zeros(raster.z.shape), start.polygon, layers.road, None, (),
                                       layers.lines, None, layers.zones), f"{title}: {each * runs:,} blocks")
     about = {**site.about_made(choices, new, folder, raster, layers), "trial": trial and trial._asdict(),
              "derived": site_choices.derived(given, choices, known), "blocks": {
                  "of_a_run": each, "runs": runs, "down": start.down, "slope": start.slope}}
-    disk.write(new / site_choices.NAME, site_choices.text(choices, about, folder.absolute()))
+    disk.write_file(new / site_choices.NAME, site_choices.make_site_file(choices, about, folder.absolute()))
     return site.Made(folder, list(about["files"] or ()))
 
 
-def check(choices: OfBlocks, runs: int) -> None:
+def check_block_site(choices: OfBlocks, runs: int) -> None:
     """Raise SlopeError unless the choices make sense together."""
     (low, high), number = sizes_of(choices), choices.blocks.number
     if not choices.release.polygon:
@@ -133,7 +133,7 @@ def start_of(choices: OfBlocks, raster: Raster, new: Path, tell, warn) -> Start:
     assert path
     polygon = polygons.read_local(path, raster, crs=site_layers.assigned(choices, path),
                                   advice=site_layers.advice(choices, path), warn=warn)
-    polygon = polygons.write(new / f"{BODY}.csv", polygon, raster)
+    polygon = polygons.write_polygon(new / f"{BODY}.csv", polygon, raster)
     corners = np.concatenate([np.asarray(one.exterior.coords)[:, :2] for one in polygons_of(polygon)])
     points = np.concatenate([corners, inside(polygon, 1000, np.random.default_rng(0))])
     none = np.isnan(lifted(raster, points, np.full(len(points), CLEAR * sizes[1])))
@@ -175,7 +175,7 @@ def lifted(raster: Raster, points: np.ndarray, reach: np.ndarray) -> np.ndarray:
     return most
 
 
-def doubts(start: Start) -> List[Finding]:
+def find_block_caveats(start: Start) -> List[Finding]:
     """What is to be known of a release area and of blocks."""
     cell = float(start.raster.transform.a)
     level = [Finding("blocks on level ground", {"slope": start.slope, "limit": FLAT})] * (start.slope < FLAT)
@@ -207,8 +207,8 @@ def edges(choices: OfBlocks, layers: site_layers.Layers, start: Start, new: Path
         points = np.round(np.asarray(ring.coords)[:, :2], 4) + 0.0
         points = points[np.append(True, (points[1:] != points[:-1]).any(axis=1))]
         found.append(Line(f"{EDGE}_{k}", f"{EDGE}_{k}.csv", points))
-        disk.write(new / found[-1].file, "# around the road, local x,y in m; forward is onto it\n"
-                   + "".join(f"{x!r},{y!r}\n" for x, y in points.tolist()))
+        disk.write_file(new / found[-1].file, "# around the road, local x,y in m; forward is onto it\n"
+                        + "".join(f"{x!r},{y!r}\n" for x, y in points.tolist()))
     return found
 
 
@@ -222,8 +222,9 @@ def deck_values(choices: OfBlocks, title: str, start: Start, lines, zones) -> Di
             "deck": site_deck.NAME, "size": f"{low:g}" if low == high else f"{low:g} to {high:g}",
             "grounds": choices.blocks.grounds, "headroom": math.ceil(start.top - float(np.nanmax(raster.z))),
             "bins": f"{max(2.0, (room / BINS) ** (1 / 3) / high):.3g}", "lines": lines, "shown": SHOWN,
-            "zones": site_deck.zone_values(zones, FIELD, model), "down": [site_deck.plain(one) for one in start.down],
-            **{name: site_deck.plain(value) for name, value in (
+            "zones": site_deck.zone_values(zones, FIELD, model), "down": [site_deck.format_deck_number(one) for one
+                                                                          in start.down],
+            **{name: site_deck.format_deck_number(value) for name, value in (
                 ("d", low), ("largest", high), ("spacing", model.spacing), ("widest", widest()),
                 ("rolling", min(choices.study.rolling)), ("friction", model.friction),
                 ("field_e", model.field_restitution), ("density", model.density),
@@ -234,9 +235,10 @@ def deck(choices: OfBlocks, said: Dict[str, Any], blocks: str, run_time: str) ->
     model = choices.model
     assert model.speed and model.duration and model.cell and model.film       # settled
     return site_deck.filled(TEMPLATE, {
-        **said, "speed": site_deck.plain(model.speed), "duration": site_deck.plain(model.duration),
-        "cell": site_deck.plain(model.cell), "film": site_deck.plain(model.film), "blocks": blocks,
-        "run_time": run_time})
+        **said, "speed": site_deck.format_deck_number(model.speed),
+        "duration": site_deck.format_deck_number(model.duration),
+        "cell": site_deck.format_deck_number(model.cell), "film": site_deck.format_deck_number(model.film),
+        "blocks": blocks, "run_time": run_time})
 
 
 def tried(choices: OfBlocks, start: Start, said: Dict[str, Any], new: Path, machine: site.Machine,
@@ -248,8 +250,8 @@ def tried(choices: OfBlocks, start: Start, said: Dict[str, Any], new: Path, mach
     folder.mkdir()
     for path in (*new.glob("*.asc"), *new.glob("*.csv")):
         os.symlink(f"../{path.name}", folder / path.name)
-    disk.write(folder / "blocks.1.data", start.data(1, TRIAL))
-    disk.write(folder / site_deck.NAME, deck(settled(choices, start, None), said, f"{TRIAL}", "some seconds"))
+    disk.write_file(folder / "blocks.1.data", start.data(1, TRIAL))
+    disk.write_file(folder / site_deck.NAME, deck(settled(choices, start, None), said, f"{TRIAL}", "some seconds"))
     found = site_budget.measure(folder, site_deck.NAME, machine.lmp, {})
     shutil.rmtree(folder)
     tell(f"trial run, {site.trial_text(found._replace(diameter=start.sizes[0]))}; took {found.seconds:.1f} s")
@@ -267,7 +269,7 @@ def settled(choices: OfBlocks, start: Start, trial: Optional[Trial]) -> OfBlocks
         cell=model.cell or float(raster.transform.a)))
 
 
-def step_of(choices: OfBlocks) -> float:
+def choose_time_step(choices: OfBlocks) -> float:
     """The deck's time step, s."""
     (low, high), speed = sizes_of(choices), choices.model.speed
     assert speed

@@ -24,15 +24,16 @@ class Known(NamedTuple):
 
 def settings_of(site: Folder[OfBlocks]):
     """{variable of the deck: its values}."""
-    return {"rolling": site_study.words(site.choices.study.rolling),
+    return {"rolling": site_study.format_deck_values(site.choices.study.rolling),
             "ground": [str(k) for k in range(1, site.choices.blocks.grounds + 1)]}
 
 
-def planned(site: Folder[OfBlocks]) -> List[repeats.Repeat]:
-    return repeats.plan(site.folder / RUNS, settings_of(site), {}, decks.index_variables(site.folder / site_deck.NAME))
+def plan_block_runs(site: Folder[OfBlocks]) -> List[repeats.Repeat]:
+    return repeats.plan_repeats(site.folder / RUNS, settings_of(site), {},
+                                decks.index_variables(site.folder / site_deck.NAME))
 
 
-def run(site: Folder[OfBlocks], engine: Setup) -> None:
+def run_block_study(site: Folder[OfBlocks], engine: Setup) -> None:
     """Make or continue all runs and show the outcome; raises SlopeError on bad input, and last if a run failed."""
     setup = engine._replace(deck=site.folder / site_deck.NAME, output=site.folder / site_study.STUDY, site=site.folder,
                             road=None)
@@ -40,23 +41,23 @@ def run(site: Folder[OfBlocks], engine: Setup) -> None:
     def collect(todo, _) -> None:
         if all(one.error for one in todo):
             raise study.failure(setup.output, todo) or SlopeError(setup.output, "must have a run")
-        known = read(site, todo)
-        files.write(setup.output, known)
+        known = read_block_runs(site, todo)
+        files.write_block_files(setup.output, known)
         for line in page.sentences(known):
             setup.tell(line)
         for one in known.outcome.doubts():
             setup.warn(one)
-        setup.tell(page.write(known, site.folder / page.NAME))
+        setup.tell(page.write_block_page(known, site.folder / page.NAME))
     with study.alone(site.folder, setup.dry_run):
-        study.perform(setup, settings_of(site), planned(site), collect)
+        study.perform(setup, settings_of(site), plan_block_runs(site), collect)
 
 
-def read(site: Folder[OfBlocks], todo: Sequence[Any]) -> Known:
+def read_block_runs(site: Folder[OfBlocks], todo: Sequence[Any]) -> Known:
     """What those of these runs say that finished; SlopeError if none did."""
     terrain = runs.terrain_of(site)
-    found = [runs.read(one.name, one.folder, one.chosen, terrain) for one in todo if one.finished]
+    found = [runs.read_block_run(one.name, one.folder, one.chosen, terrain) for one in todo if one.finished]
     if not found:
         raise SlopeError(site.folder, f"must hold a finished run: `slope study {site.folder}` makes them")
-    of = outcome.evaluate(found)
+    of = outcome.evaluate_blocks(found)
     failed = [Finding("failed", {"error": one.error}, (one.name,)) for one in todo if one.error]
-    return Known(site, terrain, found, of, [*site_study.warnings_of(site.folder), *failed, *of.doubts()])
+    return Known(site, terrain, found, of, [*site_study.read_site_warnings(site.folder), *failed, *of.doubts()])

@@ -5,7 +5,7 @@ from typing import Set
 
 from .. import disk
 from ..errors import SlopeError
-from ..schemas import TEXT, listed, mapping
+from ..schemas import TEXT, list_of, mapping
 from . import decks, run_folders
 
 # what runs, and the tools after them, leave in the deck's folder; a file that the deck reads is copied all the same
@@ -14,7 +14,7 @@ OUTPUTS = re.compile(r"^\.|^core|^log\.|\.(restart|dump|lammpstrj|vtp|vts|pvd)(\
                      re.IGNORECASE)
 
 
-WRITTEN = mapping({}, files=listed(TEXT, null=True))     # of a summary
+WRITTEN = mapping({}, files=list_of(TEXT, null=True))     # of a summary
 
 
 def data_files(deck, settings):
@@ -33,7 +33,7 @@ def data_files(deck, settings):
     for path in sorted(folder.iterdir()):
         if not disk.is_utf8(path.name):
             if os.fsencode(path.name).decode("utf-8", "replace") in words:      # as decks.commands() reads it
-                raise SlopeError(deck, "must name files in UTF-8: rename it", disk.shown(path.name))
+                raise SlopeError(deck, "must name files in UTF-8: rename it", disk.escape_name(path.name))
             continue
         output = OUTPUTS.search(path.name) or path.name in left or path.name in written
         if path.is_file() and (path.name in words or not output):

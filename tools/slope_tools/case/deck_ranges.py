@@ -89,13 +89,13 @@ class Checks:
         bounds = self.ranges.get(name)
         if bounds is None:
             return
-        if is_number(value):
+        if is_deck_number(value):
             if not bounds.holds(float(value)):
                 raise SlopeError(option, f"{name} must stay within the deck's range, {bounds.text}", words)
-        elif is_number(self.own.get(name, "")):
+        elif is_deck_number(self.own.get(name, "")):
             raise SlopeError(option, f"{name} must be a number, {bounds.text}", words)
 
 
-def is_number(text: str) -> bool:
+def is_deck_number(text: str) -> bool:
     """Whether LAMMPS takes a text for a number, a finite one."""
     return bool(re.fullmatch(NUMBER, text)) and math.isfinite(float(text))

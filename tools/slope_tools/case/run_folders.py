@@ -6,7 +6,7 @@ from typing import Any, Iterable, List, Mapping, Optional, Tuple, Union
 
 from .. import disk, schemas
 from ..errors import SlopeError
-from ..schemas import ABOVE_0, ANY, COUNT, FLAG, MAYBE, NUMBER, OBJECT, TEXT, listed, mapping, named, numbers
+from ..schemas import ABOVE_0, ANY, COUNT, FLAG, MAYBE, NUMBER, OBJECT, TEXT, list_of, mapping, dict_of, number_keys
 from ..survey import rasters
 
 RASTERS = {     # what fix deposit/grid writes, PREFIX.KIND.asc: quantity, unit
@@ -26,28 +26,28 @@ OF_STUDY = "what `slope study` wrote"
 MAYBE_TEXT = {"type": ["string", "null"]}
 DIGESTS = {"type": ["object", "null"], "additionalProperties": TEXT}   # {what: SHA-256}
 # of VARIABLES and MARKER, also of older versions
-BEGUN = mapping({}, set=named(TEXT), variables=named(TEXT), program=DIGESTS, environment=DIGESTS, inputs=DIGESTS,
-                continued=listed(OBJECT), ranks=COUNT, package=MAYBE_TEXT, lmp_sha256=MAYBE_TEXT)
+BEGUN = mapping({}, set=dict_of(TEXT), variables=dict_of(TEXT), program=DIGESTS, environment=DIGESTS, inputs=DIGESTS,
+                continued=list_of(OBJECT), ranks=COUNT, package=MAYBE_TEXT, lmp_sha256=MAYBE_TEXT)
 ENDED = mapping({"summary": TEXT}, wall_seconds=NUMBER, environment=DIGESTS, inputs=DIGESTS)
 WHAT = "a summary that fix deposit/grid wrote"
 # what `slope volume`, `score` and `export` need of one, and what the others do
-OF_DEPOSIT = mapping({"volume": mapping(numbers("on_grid", "off_grid", "lost")), "time": NUMBER, "moving": FLAG,
+OF_DEPOSIT = mapping({"volume": mapping(number_keys("on_grid", "off_grid", "lost")), "time": NUMBER, "moving": FLAG,
                       "bulk_factor": ABOVE_0})
 SUMMARY = mapping(
-    {"volume": mapping({"released": ABOVE_0, **numbers("on_grid", "off_grid", "lost", "residual")}),
-     "travel": mapping(numbers("front", "front_at_release", "centroid", "reach_angle"), quantiles=listed(mapping(
+    {"volume": mapping({"released": ABOVE_0, **number_keys("on_grid", "off_grid", "lost", "residual")}),
+     "travel": mapping(number_keys("front", "front_at_release", "centroid", "reach_angle"), quantiles=list_of(mapping(
          {"share": NUMBER, "distance": MAYBE, "reach_angle": MAYBE}), null=True)),
-     "largest": mapping(numbers("thickness", "max_thickness", "max_speed", "max_energy")),
+     "largest": mapping(number_keys("thickness", "max_thickness", "max_speed", "max_energy")),
      "stop": mapping({"step": NUMBER, "time": NUMBER, "reason": TEXT}),
      "grid": mapping({"cell": ABOVE_0, "extent": ANY}), "balls": mapping({"released": ABOVE_0, "lost": NUMBER}),
-     "motion": {**mapping(numbers("moving_share", "threshold"),
-                          **numbers("fast_share", "fast_volume", "fast_speed", "rest_share")),
+     "motion": {**mapping(number_keys("moving_share", "threshold"),
+                          **number_keys("fast_share", "fast_volume", "fast_speed", "rest_share")),
                 "dependentRequired": {"fast_share": ["fast_volume", "fast_speed"]}},
      "moving": FLAG, "ranks": NUMBER, "dt": ABOVE_0, "bulk_factor": ABOVE_0, "slope_version": ANY,
      "lammps_version": ANY},
     change_rate=NUMBER,     # older summaries, and other pair styles, have neither this nor the next two
     release=mapping({}, stiffness_number=MAYBE),
-    guards=mapping(numbers("largest_overlap", "deep_contacts", "energy_growth", "dangerous_builds")))
+    guards=mapping(number_keys("largest_overlap", "deep_contacts", "energy_growth", "dangerous_builds")))
 
 
 def summaries(folder):
@@ -79,13 +79,13 @@ def ended(folder: Path) -> Mapping[str, Any]:
 def _load(path: Path) -> Mapping[str, Any]:
     """One of both, which a command asks for many times."""
     def loaded() -> Mapping[str, Any]:
-        return schemas.load(path, OF_STUDY, BEGUN if path.name == VARIABLES else ENDED)
-    return disk.once("run", path, loaded) if path.is_file() else loaded()
+        return schemas.load_checked(path, OF_STUDY, BEGUN if path.name == VARIABLES else ENDED)
+    return disk.read_once("run", path, loaded) if path.is_file() else loaded()
 
 
 def load_summary(path, schema=SUMMARY):
     """The summary of fix deposit/grid as a dict, with all that the tools need of it."""
-    return schemas.load(path, WHAT, schema)
+    return schemas.load_checked(path, WHAT, schema)
 
 
 def state(folder: Path) -> str:
@@ -108,4 +108,4 @@ def load_raster(prefix, name, heights=True):
     path = Path(f"{prefix}.{name}.asc")
     if not path.is_file():
         raise SlopeError(path, "must be there: fix deposit/grid writes it beside its summary")
-    return rasters.read(path, heights)
+    return rasters.read_raster(path, heights)

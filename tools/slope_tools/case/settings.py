@@ -7,7 +7,7 @@ from . import deck_ranges, decks
 MOST_RUNS = 10_000
 
 
-def as_number(text):
+def normalise_value(text):
     """A value as a float where it is one, so that 0.1 and 0.10 are one value; else the text."""
     try:
         return float(text)
@@ -51,7 +51,7 @@ def check_settings(options, deck, option="--set"):
     checks = deck_ranges.Checks(deck)
     found = {}
     for name, words in zip(names, options):
-        found[name] = values(words, words.partition("=")[2], option)
+        found[name] = parse_setting_values(words, words.partition("=")[2], option)
         if option != "--set" or len(found[name]) > 1:
             checks.vary(option, name, words)
         for value in found[name]:
@@ -59,7 +59,7 @@ def check_settings(options, deck, option="--set"):
     return found
 
 
-def values(words, text, option="--set"):
+def parse_setting_values(words, text, option="--set"):
     """The values that the right side of an option NAME=VALUES stands for, as text; words: all of it."""
     found = []
     for part in text.split(","):
@@ -78,15 +78,15 @@ def values(words, text, option="--set"):
             raise SlopeError(option, "A:B:STEP must have a STEP that leads from A to B", words)
         if (stop - start) / step >= MOST_RUNS:
             raise SlopeError(option, f"must make at most {MOST_RUNS} runs", words)
-        found += [plain(start + i * step) for i in range(int((stop - start) / step) + 1)]
-    keys = [as_number(value) for value in found]
+        found += [format_decimal(start + i * step) for i in range(int((stop - start) / step) + 1)]
+    keys = [normalise_value(value) for value in found]
     for i, key in enumerate(keys):
         if key in keys[:i]:
             raise SlopeError(option, "must have every value once", f"{words} with {found[i]} twice")
     return found
 
 
-def plain(value):
+def format_decimal(value):
     """A decimal as text, without trailing zeros and, if it is short, without an exponent."""
     value = value.normalize() + 0
     return f"{value:f}" if -12 < value.adjusted() < 12 else str(value)

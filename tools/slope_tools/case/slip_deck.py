@@ -42,7 +42,7 @@ class Asked(NamedTuple):
     bedrock: Optional[str] = None           # raster of its heights
 
 
-def text(asked: Asked, named: Callable[[Path], str]) -> str:
+def make_slip_deck(asked: Asked, named: Callable[[Path], str]) -> str:
     """The deck; named: how it names the terrain."""
     words: List[str] = [f"strength {asked.strength.words()}"]
     for layer in asked.layers:

@@ -15,7 +15,7 @@ from ..deposits.score import THRESHOLD
 from ..errors import SlopeError
 from ..fitting import calibration, observations
 from ..fitting.fit import Fit
-from ..options import number, option, positional, several, whole
+from ..options import parse_number, option, positional, several, parse_whole_number
 from ..runs import jobs, repeats
 from ..statistics import backanalysis, distributions
 from ..studies import study
@@ -45,7 +45,7 @@ def tolerance(text):
     name, equals, share = text.rpartition("=")
     if equals and name not in observations.KINDS:
         raise argparse.ArgumentTypeError(f"must name one of {', '.join(observations.KINDS)}, got {name!r}")
-    return name, number(share)
+    return name, parse_number(share)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,10 +72,10 @@ class Request(run_arguments.Repeats, run_arguments.Runs):
         "(loguniform:LO:HI and the others of `slope study` too)", metavar="NAME=LO:HI", required=True)
     runs: int = option("total number of runs", metavar="N")
     set: List[str] = several("value of another index variable in all runs (default: the deck's)", metavar="NAME=VALUE")
-    seed: int = option("seed of the first points (default 1)", metavar="S", type=whole, default=1)
+    seed: int = option("seed of the first points (default 1)", metavar="S", type=parse_whole_number, default=1)
 
 
-def run(args: Request) -> None:
+def run_calibrate(args: Request) -> None:
     """Do the command; raises SlopeError on bad input, and where too few runs finished."""
     shares = dict(args.tolerance)
     wanted = observations.Wanted(args.observed, args.front, args.area, args.road_volume, shares.pop("", TOLERANCE),
@@ -83,7 +83,7 @@ def run(args: Request) -> None:
     variables = distributions.parse(args.vary, args.deck, ranges_only=True)
     fixed = one_value_each(check_settings(args.set, args.deck), "--set", "--vary")
     repeated = check_settings(args.repeat, args.deck, "--repeat")
-    repeats.check(list(repeated), args.equally_good)
+    repeats.check_repeats(list(repeated), args.equally_good)
     for one in variables:
         for given, names in (("--set", fixed), ("--repeat", repeated)):
             if one.name in names:
@@ -101,7 +101,7 @@ def run(args: Request) -> None:
     files = data_files.data_files(args.deck, {**settings, **repeated})
     setup = run_arguments.setup_of(args)
     if setup.road:
-        study.check_road(setup.road, setup.deck, settings)
+        study.check_deck_road(setup.road, setup.deck, settings)
     study.check_output(setup)
     about = {**wanted.about, "deck": args.deck.name, "set": fixed, "repeat": repeated,
              "variables": {one.name: one.text for one in variables}, "seed": args.seed}

@@ -25,16 +25,17 @@ def call(command: str, deck: Any, **options: Any) -> Any:
     module = importlib.import_module(f".{command}", __package__)
     parser = Parser(prog=command, allow_abbrev=False, add_help=False)
     declare(parser, module.Request)
-    found = parser.parse_args([*words(parser, options), "--", str(deck)], argparse.Namespace(command=command))
+    found = parser.parse_args([*list_option_words(parser, options), "--", str(deck)],
+                              argparse.Namespace(command=command))
     asked = request(module.Request, found)
     importlib.import_module("..survey.crs", __package__).require_database()
-    module.run(asked)
+    getattr(module, f"run_{command}")(asked)
     if command != "study" or asked.dry_run:
         return None
     return Study.read(asked.output or deck)
 
 
-def words(parser: argparse.ArgumentParser, options: Mapping[str, Any]) -> List[str]:
+def list_option_words(parser: argparse.ArgumentParser, options: Mapping[str, Any]) -> List[str]:
     """The options of a command line."""
     known = {name[2:].replace("-", "_"): (name, action) for action in parser._actions
              for name in action.option_strings if name.startswith("--")}
@@ -49,17 +50,17 @@ def words(parser: argparse.ArgumentParser, options: Mapping[str, Any]) -> List[s
         if value is True and action.nargs in (0, "?"):
             found.append(option)
         elif isinstance(value, Mapping):
-            found += [f"{option}={key}={text(one)}" for key, one in value.items()]
+            found += [f"{option}={key}={format_option_value(one)}" for key, one in value.items()]
         elif value is not None and value is not False:
-            several = value if isinstance(action, argparse._AppendAction) and listed(value) else [value]
-            found += [f"{option}{equals}{text(one)}" for one in several]
+            several = value if isinstance(action, argparse._AppendAction) and is_list_option(value) else [value]
+            found += [f"{option}{equals}{format_option_value(one)}" for one in several]
     return found
 
 
-def listed(value: Any) -> bool:
+def is_list_option(value: Any) -> bool:
     return isinstance(value, Iterable) and not isinstance(value, str)
 
 
-def text(value: Any) -> str:
+def format_option_value(value: Any) -> str:
     """A value as on the command line: several with commas between."""
-    return ",".join(map(str, value)) if listed(value) else str(value)
+    return ",".join(map(str, value)) if is_list_option(value) else str(value)

@@ -5,7 +5,7 @@ from typing import Any, Dict, Optional
 
 from .. import disk, findings
 from ..deposits import deposit
-from ..deposits.export import file_of, layers, write
+from ..deposits.export import file_of, layers, write_layer
 from ..errors import SlopeError
 from ..options import Overwrite, option, positional
 from ..studies import outdated
@@ -47,7 +47,7 @@ class Request(Overwrite):
                                       "above each of these limits, which rise", metavar="QUANTITY:L1,L2,...")
 
 
-def run(args: Request) -> None:
+def run_export(args: Request) -> None:
     """Do the command; raises SlopeError on bad input. Prints what was written."""
     if args.zones is not None:
         run_zones(args, args.zones)
@@ -73,16 +73,16 @@ def run_zones(args: Request, zones_: str) -> None:
     folder = args.output or own
     disk.check_folder(folder)
     if (study := answered.study_in(Path(args.prefix), weighted=True)):
-        outdated.check(Path(args.prefix), study)
+        outdated.check_study_current(Path(args.prefix), study)
     ground = zones.ground_of(args.prefix, findings.printer("export"))
-    zones.check(ground, wanted, args.prefix, zones_)
+    zones.check_zones(ground, wanted, args.prefix, zones_)
     asked = zones.asked(ground, zones_, limits)
     disk.check_folder(folder, ["zones.gpkg", "zones.yaml"], [args.prefix, asked], args.overwrite)
-    several = [zones.of(ground, limit, wanted) for limit in limits]
-    about: Dict[str, Any] = {"of": args.prefix, "asked": asked, **zones.about(ground, several, wanted)}
+    several = [zones.make_zones(ground, limit, wanted) for limit in limits]
+    about: Dict[str, Any] = {"of": args.prefix, "asked": asked, **zones.summarise_zones(ground, several, wanted)}
     with disk.complete(folder, "zones.yaml") as new:
-        geopackage.write(new / "zones.gpkg", zones.layers(ground, several, wanted), ground.raster,
-                         {zones.LAYER: zones.style(several, wanted, about["per_year"])})
+        geopackage.write_geopackage(new / "zones.gpkg", zones.layers(ground, several, wanted), ground.raster,
+                                    {zones.LAYER: zones.style(several, wanted, about["per_year"])})
         disk.write_yaml(new / "zones.yaml", about, "slope export --zones: m2; probabilities per year, or of the runs")
     for one in about["zones"]:
         print(f"{one['quantity']} > {one['exceeds']:g}, {'per year' if about['per_year'] else 'of the runs'} at least "
@@ -99,9 +99,9 @@ def run_zones(args: Request, zones_: str) -> None:
 def run_rasters(args: Request) -> None:
     """The rasters of a run."""
     warn, warnings = findings.warner("export")
-    named = named_run.read(args.prefix)
-    outdated.check(Path(args.prefix), named.study)
-    run_ = deposit.read(named.prefix, args.terrain, warn)
+    named = named_run.read_named_run(args.prefix)
+    outdated.check_study_current(Path(args.prefix), named.study)
+    run_ = deposit.read_deposit(named.prefix, args.terrain, warn)
     folder = args.output or (named.folder / "export" if named.folder else Path(f"{named.prefix}.export"))
     which = named.study and f"{named.run}, the governing run of {named.study}"
     place = run_.raster
@@ -115,7 +115,7 @@ def run_rasters(args: Request) -> None:
         warn(findings.Finding("no base", {"file": f"{named.prefix}.base.asc"}))
     with disk.complete(folder, "export.yaml") as new:
         for layer in rasters.progress(found, "writing GeoTIFFs"):
-            about["rasters"].append(write(new, layer, place, {"run": which or named.prefix}))
+            about["rasters"].append(write_layer(new, layer, place, {"run": which or named.prefix}))
         about["warnings"] = warnings
         disk.write_yaml(new / "export.yaml", about, "slope export: rasters of a run as GeoTIFFs; m, m/s, J, s")
     if which:

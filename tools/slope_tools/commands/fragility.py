@@ -9,7 +9,7 @@ import numpy as np
 from .. import disk, findings
 from ..digits import cents
 from ..errors import SlopeError
-from ..options import Overwrite, flag, option, positional, several, whole
+from ..options import Overwrite, flag, option, positional, several, parse_whole_number
 
 DESCRIPTION = "How likely the bodies of find_slip fail at a peak acceleration."
 EPILOG = """\
@@ -52,24 +52,24 @@ class Request(Overwrite):
     hazard: Optional[Path] = option(
         "lines peak,exceedance (gal, per year): gives the annual frequency of failure", metavar="CURVE.csv")
     sample: int = option(
-        "samples of the strength, 256 to 1048576 (default 4096)", metavar="N", type=whole, default=4096)
-    seed: int = option("seed of the samples (default 1)", metavar="S", type=whole, default=1)
+        "samples of the strength, 256 to 1048576 (default 4096)", metavar="N", type=parse_whole_number, default=4096)
+    seed: int = option("seed of the samples (default 1)", metavar="S", type=parse_whole_number, default=1)
     output: Path = option("folder for the results", "-o", metavar="DIR")
 
 
-def run(args: Request) -> None:
+def run_fragility(args: Request) -> None:
     """Do the command; raises SlopeError on bad input. Prints medians, HCLPF and frequencies."""
     from ..seismic import fragility, fragility_files as files, hazard_file      # scipy, matplotlib
     from ..quakes import motion_file
 
     peaks = peaks_of(args.peaks)
-    check(args)
+    check_fragility_request(args)
     soil = soil_of(args)
-    hazard = hazard_file.read(args.hazard) if args.hazard else None
+    hazard = hazard_file.read_seismic_hazard(args.hazard) if args.hazard else None
     disk.check_folder(args.output, files.FILES, [args.slips], args.overwrite)
     limit = 0.1 if args.displacement is None else args.displacement
     failure: Any = fragility.PseudoStatic(args.pseudo_static) if args.pseudo_static is not None else \
-        fragility.Slide(limit, [motion_file.read(path) for path in args.record], args.vertical)
+        fragility.Slide(limit, [motion_file.read_motion(path) for path in args.record], args.vertical)
     found = bodies_of(args)
     strengths = fragility.strengths_of(soil, math.ceil(args.sample / fragility.REPLICATES), args.seed)
     capacity = fragility.capacities(found, strengths, failure)
@@ -78,12 +78,12 @@ def run(args: Request) -> None:
     if len(found) > 1:
         names.append(files.ANY)
         columns.append(capacity.min(axis=2))
-    curves = [files.Curve(name, fragility.curve(one, peaks), fragility.fit(one, peaks),
+    curves = [files.Curve(name, fragility.compute_fragility_curve(one, peaks), fragility.fit_lognormal(one, peaks),
                           fragility.frequency(one, hazard, peaks) if hazard else None,
                           float((one <= 0).all(axis=1).mean()), float(np.median(one)))
               for name, one in zip(names, columns)]
     warn, kept = findings.warner("fragility")
-    for one in warnings_of(curves, peaks, found, args.pseudo_static, len(args.record), hazard):
+    for one in find_fragility_warnings(curves, peaks, found, args.pseudo_static, len(args.record), hazard):
         warn(one)
     about = {"bodies": [{"body": body.name, "volume_m3": body.columns.volume,
                          "base_sha256": disk.sha256(body.base)} for body in found],
@@ -94,8 +94,8 @@ def run(args: Request) -> None:
              "records": args.record, "vertical": args.vertical,
              "displacement": None if args.pseudo_static is not None else limit,
              "pseudo_static": args.pseudo_static, "hazard": args.hazard, "warnings": kept}
-    files.write(args.output, peaks, curves, capacity, about)
-    print(summary(curves, args.output, files.FILES))
+    files.write_fragility(args.output, peaks, curves, capacity, about)
+    print(describe_fragility(curves, args.output, files.FILES))
 
 
 def bodies_of(args: Request) -> Any:
@@ -104,16 +104,16 @@ def bodies_of(args: Request) -> Any:
     from ..slips import bodies
 
     if (args.slips / choices.NAME).is_file():
-        found = [search.columns_of(args.slips, one["body"], args.density)
+        found = [search.read_route_body(args.slips, one["body"], args.density)
                  for one in search.table_of(args.slips)["bodies"]]
     else:
-        found = bodies.read(args.slips, args.density)
+        found = bodies.read_slip_bodies(args.slips, args.density)
     if args.water is None:
         return found
     return [body._replace(columns=body.columns._replace(pressure=None)) for body in found]
 
 
-def check(args: Request) -> None:
+def check_fragility_request(args: Request) -> None:
     """The numbers, and what goes together."""
     if args.density is not None and not args.density > 0:
         raise SlopeError("--density", "must be > 0 kg/m3", f"{args.density:g}")
@@ -155,13 +155,13 @@ def soil_of(args: Request):
     from ..seismic.fragility import Soil
 
     tangent = args.friction.startswith("tan:")
-    return Soil(drawn("--cohesion", args.cohesion, 0.0, 1e8, "Pa"),
-                drawn("--friction", args.friction[4 * tangent:], 0.0, 10.0 if tangent else 89.0,
-                      "as a tangent" if tangent else "degrees"),
-                drawn("--water", args.water or "0", 0.0, 0.99, "as a ratio"), tangent, args.correlation)
+    return Soil(parse_drawn_number("--cohesion", args.cohesion, 0.0, 1e8, "Pa"),
+                parse_drawn_number("--friction", args.friction[4 * tangent:], 0.0, 10.0 if tangent else 89.0,
+                                   "as a tangent" if tangent else "degrees"),
+                parse_drawn_number("--water", args.water or "0", 0.0, 0.99, "as a ratio"), tangent, args.correlation)
 
 
-def drawn(option, text, low, high, unit):
+def parse_drawn_number(option, text, low, high, unit):
     """A number, or a distribution of `slope study --vary`, with all values from low to high."""
     from ..statistics import distributions
 
@@ -179,7 +179,7 @@ def drawn(option, text, low, high, unit):
     return one
 
 
-def warnings_of(curves, peaks, found, pseudo_static, records, hazard):
+def find_fragility_warnings(curves, peaks, found, pseudo_static, records, hazard):
     """What a reader must know."""
     from ..slips.columns import FEWEST
 
@@ -215,7 +215,7 @@ def warnings_of(curves, peaks, found, pseudo_static, records, hazard):
             yield findings.Finding("beyond the curve", {"which": one.title, "per_year": float(one.frequency.beyond)})
 
 
-def summary(curves, folder, files):
+def describe_fragility(curves, folder, files):
     """What the user needs to know."""
     from ..seismic.fragility_files import ANY
 

@@ -45,37 +45,37 @@ class Request(Body, known_arguments.Known, road_arguments.Width, Overwrite):
     path: Optional[Path] = option("a line from the crown down, instead of the steepest descent", metavar="LINE")
 
 
-def run(args: Request) -> None:
+def run_mobility(args: Request) -> None:
     """Do the command; raises SlopeError on bad input. Prints what was found and written."""
     disk.check_folder(args.output, results.FILES, [args.terrain], args.overwrite)
-    site = site_choices.load(Path(args.terrain)) if Path(args.terrain).is_dir() else None
+    site = site_choices.load_site(Path(args.terrain)) if Path(args.terrain).is_dir() else None
     asked = known_arguments.choice_of(args.known, args.left_out, args.confined,       # before the terrain is read
                                       site)
     tell = printer("mobility")
-    mass = of_site(args) if site else of_release(args, tell)
+    mass = read_site_body(args) if site else of_release(args, tell)
     lane = road_of(args, site, mass)
     path = fall_path.given(mass, line_of(args.path, args.local, mass), args.path) if args.path else None
-    found = known.of_body(mass, asked, path)
+    found = known.compute_known_mobility(mass, asked, path)
     met = lane and road.at_road(found.decides.path, lane)
     source = results.Source(args.terrain, mass, asked, lane)
-    results.write(args.output, found, source, met)
-    print("\n".join(results.words(found, source, met)))
+    results.write_mobility(args.output, found, source, met)
+    print("\n".join(results.describe_mobility(found, source, met)))
     if site and not args.road:
         for name in site_roads.names(site):
             other = roads.read_local(site.folder / site_roads.file_name(name), mass.raster, site.choices.road.asked,
                                      local=True).polygon
             print(outlook.road_text(found.decides, road.at_road(found.decides.path, other), name))
-    for line in (*results.doubts(mass, found), *results.disagreement(mass, found)):
+    for line in (*results.find_mobility_caveats(mass, found), *results.disagreement(mass, found)):
         tell(line)
     print(f"wrote {', '.join(str(args.output / name) for name in results.FILES)}")
 
 
-def of_site(args: Request) -> body.Body:
+def read_site_body(args: Request) -> body.Body:
     """The body of a site's folder."""
     asked = wanted(args)
     if asked != release.Wanted(args.terrain, local=args.local):
         raise SlopeError(args.terrain, "is the folder of a site, whose body is given: no options of slope release")
-    return body.of_site(Path(args.terrain))
+    return body.read_mobility_body(Path(args.terrain))
 
 
 def of_release(args: Request, tell) -> body.Body:
@@ -90,7 +90,7 @@ def of_release(args: Request, tell) -> body.Body:
 def road_of(args: Request, site: Optional[site_choices.Site], mass: body.Body):
     """The road in local metres; None without one."""
     asked = road_arguments.asked(args)
-    roads.check(asked)
+    roads.check_road(asked)
     if args.road:
         crs = args.crs and as_crs("--assign-crs", args.crs)
         return roads.read_local(args.road, mass.raster, asked, args.local, crs).polygon

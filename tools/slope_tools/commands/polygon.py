@@ -43,7 +43,7 @@ class Request(Overwrite):
     local: bool = flag("the coordinates of IN are the terrain's local metres, whatever IN says", one_of="place")
 
 
-def run(args: Request) -> None:
+def run_polygon(args: Request) -> None:
     """Do the command; raises SlopeError on bad input. Prints what was written and the line for the deck."""
     start = time.monotonic()
     check_file(args.output, ".csv", [vectors.source(args.input).path], "the input")
@@ -51,19 +51,19 @@ def run(args: Request) -> None:
     crs = as_crs("--assign-crs", args.crs) if args.crs else None
     place = rasters.read_place(args.terrain)
     warn = printer("polygon")
-    geometry = polygons.read_local(vectors.named(args.input, args.layer), place, local=args.local, crs=crs,
+    geometry = polygons.read_local(vectors.name_layer(args.input, args.layer), place, local=args.local, crs=crs,
                                    advice=polygons.OF_ASSIGN_CRS, warn=warn)
     beyond = 1 - geometry.intersection(box(*place.extent)).area / geometry.area
     if beyond > 1e-9:
         warn(Finding("outside", {"file": args.input, "percent": 100 * beyond, "terrain": args.terrain}))
     warn_of_name(args.output, warn)
-    geometry = polygons.write(args.output, geometry, place)
-    print(summary(args.output, geometry))
+    geometry = polygons.write_polygon(args.output, geometry, place)
+    print(describe_polygons(args.output, geometry))
     if time.monotonic() - start > SLOW:
         print(f"took {time.monotonic() - start:.0f} s")
 
 
-def summary(path, geometry):
+def describe_polygons(path, geometry):
     """What the user needs to know of the written polygons, and the line for the deck."""
     rings = polygons.rings_of(geometry)
     parts = polygons.polygons_of(geometry)

@@ -8,7 +8,7 @@ from ..disk import check_file, check_standing
 from ..errors import SlopeError
 from ..options import Overwrite, option, positional
 from ..quakes import quake_motion as motions, quake_records as records
-from ..quakes.quake import Processing, processed, write
+from ..quakes.quake import Processing, processed, write_quake
 
 DESCRIPTION = "Strong-motion records to the acceleration of the ground that fix ground/motion reads."
 EPILOG = """\
@@ -43,21 +43,21 @@ class Request(Overwrite):
     unit: Optional[str] = option("unit of a CSV that names none", choices=("gal", "g", "m/s2"))
 
 
-def run(args: Request) -> None:
+def run_quake(args: Request) -> None:
     """Do the command; raises SlopeError on bad input. Prints what the motion is like and the line for the deck."""
-    check(args)
-    components = [component for path in args.records for component in records.read(path, args.unit)]
+    check_quake_request(args)
+    components = [component for path in args.records for component in records.read_quake_record(path, args.unit)]
     if args.unit and all(component.unit_in_head for component in components):
         raise SlopeError("--unit", "must be given for a CSV that names no unit: files of networks have theirs in "
                          "their heads", args.unit)
     wanted = Processing(args.azimuth, args.baseline, args.window, args.band, args.peak, args.scale)
     motion, steps = processed(components, wanted)
     about = {"records": [c.source for c in components], "processing": steps, **motions.measures(motion)}
-    write(args.output, motion, about)
-    print(text(args.output, about))
+    write_quake(args.output, motion, about)
+    print(describe_motion(args.output, about))
 
 
-def check(args: Request) -> None:
+def check_quake_request(args: Request) -> None:
     """The numbers, what would be overwritten, and where nothing can be written, before there is any work."""
     check_file(args.output, ".txt", args.records, "a record")
     check_standing(args.output.with_suffix(".yaml"), [args.output], args.records, args.overwrite)
@@ -69,7 +69,7 @@ def check(args: Request) -> None:
         raise SlopeError("--azimuth", "must be a compass bearing, 0 to 360 degrees", f"{args.azimuth:g}")
 
 
-def text(path, about):
+def describe_motion(path, about):
     """What the user needs to know of the motion, and the line for the deck."""
     lines = [f"{path}: {about['points']} points every {about['dt']:g} s, {about['length']:g} s; "
              f"{'; '.join(about['processing'])}",

@@ -36,16 +36,16 @@ class Request(Body, Overwrite):
     output: Path = option("first part of the names of all files", "-o", metavar="NAME")
 
 
-def run(args: Request) -> None:
+def run_release(args: Request) -> None:
     """Do the command; raises SlopeError on bad input. Prints the body's numbers before it writes any file."""
     asked = wanted(args)
     sources = [path for path in (args.terrain, asked.polygon, args.scar, args.foundation) if isinstance(path, str)]
-    release_files.check(args.output, [vectors.source(path).path for path in sources])
+    release_files.check_release_files(args.output, [vectors.source(path).path for path in sources])
     raised = args.scar_is == "height"
     made = release_files.paths(args.output, raised)
     disk.check_standing(args.output.with_name(args.output.name + ".yaml"), made, sources, args.overwrite)
     body = release.body_of(asked)
-    print(release.text(body), flush=True)
+    print(release.describe_body(body), flush=True)
     tell = findings.printer("release")
     for line in body.warnings:
         tell(line)

@@ -3,20 +3,20 @@ import argparse
 from dataclasses import dataclass
 from typing import Optional, Union
 
-from ..options import flag, number, option
+from ..options import flag, parse_number, option
 from ..releases import release, release_dip, release_scar
 from ..survey import vectors
 
 
 def degrees_or_least(text: str) -> Union[float, str]:
     """argparse type of --dip."""
-    return text if text == release_dip.LEAST else number(text)
+    return text if text == release_dip.LEAST else parse_number(text)
 
 
 def level_or_file(text: str) -> Union[float, str]:
     """argparse type of --foundation."""
     try:
-        return number(text)
+        return parse_number(text)
     except argparse.ArgumentTypeError:
         return text
 
@@ -61,7 +61,7 @@ class Body:
 
 def wanted(args: Body) -> release.Wanted:
     """What these arguments, and the terrain, ask for."""
-    polygon = args.polygon and vectors.named(args.polygon, args.layer)
+    polygon = args.polygon and vectors.name_layer(args.polygon, args.layer)
     return release.Wanted(args.terrain, polygon, args.shape, args.depth, args.volume, args.curvature, args.dip,
                           args.direction, args.scar, args.scar_is, args.least, args.crs, local=args.local,
                           foundation=args.foundation)

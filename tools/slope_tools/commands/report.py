@@ -85,7 +85,7 @@ def study_of(folder: Path) -> Path:
     return folder
 
 
-def run(args: Request) -> None:
+def run_report(args: Request) -> None:
     """Do the command; raises SlopeError on bad input. Prints what was written."""
     given, section = args.folder, args.section
     if given is None:           # it stands behind --section, which takes what comes
@@ -94,7 +94,7 @@ def run(args: Request) -> None:
         *section, last = section
         given = Path(last)
     folder = study_of(given)
-    outdated.check(given, folder)
+    outdated.check_study_current(given, folder)
     output = args.output or given / "report.html"
     if output.suffix not in (".html", ".htm") or output.is_dir():
         raise SlopeError("-o", "must be a file that ends in .html", output)
@@ -110,16 +110,16 @@ def run(args: Request) -> None:
         printing.require_browser()
     asked = Asked(folder, args.shown, section, args.local, args.reference, args.converge, args.name,
                   args.client, args.author, None if args.no_film else output.with_suffix(".mp4"))
-    first, *notes = document.write(asked, output)
+    first, *notes = document.write_report(asked, output)
     print(first)
-    if (given / SITE).is_file() and site_scenarios.of_site(given):
+    if (given / SITE).is_file() and site_scenarios.list_scenarios(given):
         from ..scenarios import page
-        print(page.write(given, output.with_name(page.PAGE), args.overwrite))
+        print(page.write_scenarios_page(given, output.with_name(page.PAGE), args.overwrite))
     if args.pictures:
         document.write_pictures(output)
     if args.pdf:
         pdf = output.with_suffix(".pdf")
-        printing.write(output, pdf)
+        printing.print_page(output, pdf)
         print(f"{pdf}: the page on A4, by {printing.browser()}")
     if args.no_paper:
         print("note: --no-paper is the default now; --reference FILE.yaml brings other numbers in")

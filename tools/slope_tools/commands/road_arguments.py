@@ -41,7 +41,7 @@ def asked(args: Width) -> roads.Asked:
                           if (value := getattr(args, name, None)) is not None})
 
 
-def of_site(asked: Site) -> Dict[str, Any]:
+def list_road_options(asked: Site) -> Dict[str, Any]:
     """The options of the road that is asked of a site, as far as they are not by default; none without one."""
     about = asked.choices.road
     if not about.file:
@@ -58,7 +58,7 @@ def otherwise(args: Any) -> str:
     if not args.set:
         return f"; otherwise: {again.command(args, sample=64)}" if args.vary else ""
     try:
-        road = of_site(site_choices.load(args.deck))
+        road = list_road_options(site_choices.load_site(args.deck))
     except SlopeError:
         return ""
     beside = args.output or args.deck.with_name(f"{args.deck.absolute().name}_set")

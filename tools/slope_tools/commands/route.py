@@ -7,7 +7,7 @@ from typing import Any, List, Optional
 from .. import disk
 from ..errors import SlopeError
 from ..findings import printer
-from ..options import count, number, option, positional, whole
+from ..options import count, parse_number, option, positional, parse_whole_number
 from ..programs import find_lmp
 from ..releases.release import SHAPES
 from ..runs import jobs
@@ -63,9 +63,9 @@ class Request(road_arguments.Clearing, Engine):
     density: Optional[float] = option("of the ground, kg/m3", metavar="R")
     water: Optional[float] = option("pore pressure over the weight per area (default: dry)", metavar="RU")
     volume: Optional[List[float]] = option(
-        "limits of a body's volume, m3", metavar=("LO", "HI"), nargs=2, type=number)
+        "limits of a body's volume, m3", metavar=("LO", "HI"), nargs=2, type=parse_number)
     depth: Optional[List[float]] = option(
-        "limits of its greatest depth, m", metavar=("LO", "HI"), nargs=2, type=number)
+        "limits of its greatest depth, m", metavar=("LO", "HI"), nargs=2, type=parse_number)
     keep: Optional[int] = option("bodies of a window of the search (default 3)", metavar="N", type=count)
     below: Optional[float] = option("bodies with a factor of safety below F may fail (default 1.5)", metavar="F")
     bodies: Optional[str] = option("no search: polygons with an attribute depth or thickness (m), or volume (m3)",
@@ -80,7 +80,7 @@ class Request(road_arguments.Clearing, Engine):
     confined: Optional[str] = option(
         "whether valley sides confine the masses (default unknown)", choices=("yes", "no", "unknown"))
     sample: Optional[int] = option("runs of each body, of which more may be added later (default 4)", metavar="N",
-                                   type=whole)
+                                   type=parse_whole_number)
     vary: Optional[List[str]] = option(
         "what differs between the runs, as of slope study (default rolling=0:0.1 and packing=1:1000000)",
         metavar="NAME=DISTRIBUTION", action="append")
@@ -105,7 +105,7 @@ def tell(line: str) -> None:
     print(line, flush=True)
 
 
-def run(args: Request) -> None:
+def run_route(args: Request) -> None:
     """Do the command; raises SlopeError on bad input, and after all other runs when one failed."""
     from ..plots import site_map
     from ..route import choices as route_choices, corridor, page, results, runs, search
@@ -116,32 +116,32 @@ def run(args: Request) -> None:
     try:
         choices = route_choices.settle(folder, given)
         with disk.alone_in(folder, "route"), jobs.signals_interrupt():
-            ground = corridor.make(choices, folder, quiet, warn)
+            ground = corridor.make_corridor(choices, folder, quiet, warn)
             lmp = find_lmp(args.lmp)
-            table = search.make(choices, ground, folder, lmp, args.np, tell, warn)
+            table = search.search_route_bodies(choices, ground, folder, lmp, args.np, tell, warn)
             try:
                 results.yearly_of(choices, folder, table["bodies"])      # now, not after the runs
             except SlopeError:
-                route_choices.keep(folder, choices._replace(fragility=None))
+                route_choices.write_route_choices(folder, choices._replace(fragility=None))
                 raise
             machine = site.Machine(lmp, args.jobs or jobs.cores())
             several = []
             for about in table["bodies"]:
                 new = not runs.folder_of(folder, about["body"]).exists()
-                place = runs.make_site(choices, folder, about, len(table["bodies"]), machine, quiet, quiet,
-                                       site_map.draw)
+                place = runs.make_body_site(choices, folder, about, len(table["bodies"]), machine, quiet, quiet,
+                                            site_map.draw_site_map)
                 if new:
                     factor = "" if about["factor"] is None else f", factor of safety {about['factor']:.3f}"
                     tell(f"body {about['body']} at {about['chainage_m']:.0f} m: {about['volume_m3']:,.0f} m3{factor}")
-                several.append(runs.asked_of(choices, place, engine_of(args)))
+                several.append(runs.make_route_study(choices, place, engine_of(args)))
             if args.dry_run:
-                tell("\n".join(runs.listed(several)))
+                tell("\n".join(runs.list_route_runs(several)))
                 return
-            failed = runs.make(several, tell)
+            failed = runs.make_route_runs(several, tell)
             if any(all(run.error for run in one.todo) for one in several):      # nothing is known of that body
                 raise SlopeError(folder, f"runs of {len(failed)} bodies failed: {failed[0]}")
-            found = results.make(choices, ground, folder, table)
-            page.write(choices, ground, folder, found, warn)
+            found = results.make_route_results(choices, ground, folder, table)
+            page.write_route_page(choices, ground, folder, found, warn)
     except OSError as error:
         raise SlopeError(error.filename or folder, f"cannot be used: {error.strerror}") from error
     tell("\n".join(page.sentences(found)))

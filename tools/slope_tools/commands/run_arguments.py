@@ -10,7 +10,7 @@ from rich.table import Table
 
 from .. import streams
 from ..findings import printer
-from ..options import Program, flag, number, option, several, whole
+from ..options import Program, flag, parse_number, option, several, parse_whole_number
 from ..statistics import designs
 from ..studies.setup import Road, Setup
 from ..tables import study_table
@@ -19,9 +19,9 @@ from . import road_arguments
 DECK = "LAMMPS input deck with one fix deposit/grid; the plain files beside it are its data"
 
 
-def volumes(text):
+def parse_volumes(text):
     """argparse type: different volumes >= 0, rising."""
-    found = [number(part) for part in text.split(",")]
+    found = [parse_number(part) for part in text.split(",")]
     if any(one < 0 for one in found) or len(set(found)) < len(found):
         raise argparse.ArgumentTypeError(f"must be different volumes >= 0, with commas between, got {text!r}")
     return sorted(found)
@@ -84,7 +84,8 @@ class Sample:
     """An ensemble."""
     GROUP = "ensemble"
     sample: Optional[int] = option(
-        "an ensemble: N points of the distributions of --vary, instead of a product of lists", metavar="N", type=whole)
+        "an ensemble: N points of the distributions of --vary, instead of a product of lists", metavar="N",
+        type=parse_whole_number)
     vary: List[str] = several(
         "a variable of the ensemble: LO:HI or uniform:LO:HI, loguniform:LO:HI, triangular:LO:MODE:HI, "
         "normal:MEAN:DEVIATION:LO:HI, lognormal:MEDIAN:DEVIATION_OF_LN:LO:HI, list:V1@WEIGHT,V2@WEIGHT,...",
@@ -95,7 +96,7 @@ class Sample:
     design: Optional[str] = option(
         "sobol (default): more points can be added later; lhs: Latin hypercube, whose number of points is final",
         choices=designs.KINDS)
-    seed: Optional[int] = option("seed of the design (default 1)", metavar="S", type=whole)
+    seed: Optional[int] = option("seed of the design (default 1)", metavar="S", type=parse_whole_number)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -106,7 +107,7 @@ class Intensity:
         "needs --road", metavar="NAME")
     more_than: Optional[List[float]] = option(
         "volumes on the road, m3, whose probability of exceedance is given at each intensity (default: three round "
-        "ones)", metavar="V1,V2,...", type=volumes)
+        "ones)", metavar="V1,V2,...", type=parse_volumes)
 
 
 def teller(all_columns: bool) -> Callable[[Union[str, Table]], None]:
@@ -118,7 +119,7 @@ def teller(all_columns: bool) -> Callable[[Union[str, Table]], None]:
         width = Console().width if streams.is_terminal(sys.stdout) else 180
         if all_columns:
             width = max(width, study_table.width_of(what))
-        left_out = study_table.fit(what, width)
+        left_out = study_table.fit_width(what, width)
         if left_out:
             note = f"left out, in the files: {', '.join(left_out)}; --all-columns shows all"
             what.caption = "; ".join(filter(None, [what.caption, note]))

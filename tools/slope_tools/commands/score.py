@@ -40,7 +40,7 @@ class Request(Overwrite):
     local: bool = flag("the mapped deposit is in local metres, not in a CRS")
 
 
-def run(args: Request) -> None:
+def run_score(args: Request) -> None:
     """Do the command; raises SlopeError on bad input. Prints the scores."""
-    print(score_run.make(args.prefix, args.observed, args.output or Path(f"{args.prefix}.score"), args.threshold,
-                         args.mesh, args.terrain, args.local, args.overwrite))
+    print(score_run.make_score(args.prefix, args.observed, args.output or Path(f"{args.prefix}.score"), args.threshold,
+                               args.mesh, args.terrain, args.local, args.overwrite))

@@ -13,7 +13,7 @@ from ..errors import SlopeError
 from ..options import option, positional, several
 from ..runs import repeats
 from ..studies import study
-from ..studies.sensitivity import OF_ROAD, OF_TRAVEL, collect, plan, quantities
+from ..studies.sensitivity import OF_ROAD, OF_TRAVEL, collect_trials, plan_trials, quantities
 from ..tables.quantities import On, keys
 from . import run_arguments
 
@@ -51,7 +51,7 @@ class Request(run_arguments.Repeats, run_arguments.Runs):
         f"{', '.join(keys(On.ASKED))}", metavar="NAME,...")
 
 
-def run(args: Request) -> None:
+def run_sensitivity(args: Request) -> None:
     """Do the command; raises SlopeError on bad input, and after all other runs when one failed."""
     if args.levels:
         raise SlopeError("--levels", "must not be given here: it is --try now (sizes of balls have --levels of slope "
@@ -61,15 +61,15 @@ def run(args: Request) -> None:
     kinds = {"vary": check_settings(args.tried, args.deck, "--try"), "repeat": repeated}
     for name in kinds["vary"].keys() & repeated.keys():
         raise SlopeError("--repeat", "must not name a variable of --try", name)
-    repeats.check(list(repeated), args.equally_good)
+    repeats.check_repeats(list(repeated), args.equally_good)
     of = quantities(args.of, args.road is not None, args.converge is not None)
     setup = run_arguments.setup_of(args)
     if args.converge:
         if args.tried:
             raise SlopeError("--converge", "must be given without --try: one kind of study at a time", args.tried[0])
         from ..studies import size_study
-        return size_study.run(setup, args.converge, base, repeated, of)
-    todo = plan(setup, base, kinds)
+        return size_study.run_size_study(setup, args.converge, base, repeated, of)
+    todo = plan_trials(setup, base, kinds)
     settings = {name: list(dict.fromkeys(one.chosen[name] for one in todo if name in one.chosen))
                 for name in (*base, *kinds["vary"], *kinds["repeat"])}
-    study.perform(setup, settings, todo, lambda todo, work: collect(setup, base, of, todo, work))
+    study.perform(setup, settings, todo, lambda todo, work: collect_trials(setup, base, of, todo, work))

@@ -12,7 +12,7 @@ from ..ensembles import known_study
 from ..errors import SlopeError
 from ..findings import Finding, finding, printer
 from ..mobility import results
-from ..options import Program, flag, number, option, positional, whole
+from ..options import Program, flag, parse_number, option, positional, parse_whole_number
 from ..plots import site_map
 from ..programs import lmp_if_any
 from ..releases import packing
@@ -121,7 +121,7 @@ class Ground:
         metavar="M")
     bounds: Optional[List[float]] = option("take this part, m", nargs=4, metavar=("W", "S", "E", "N"))
     cell: Optional[float] = option("wanted cell size, m", metavar="S")
-    fill: Optional[int] = option("fill NODATA holes of at most N cells", type=whole, metavar="N")
+    fill: Optional[int] = option("fill NODATA holes of at most N cells", type=parse_whole_number, metavar="N")
     release: Optional[str] = option(
         "polygon of the ground that is released, in any CRS: GeoJSON, shapefile, CSV or WKT; with --scar, only the "
         "part of the scar inside it is used", metavar="P")
@@ -218,7 +218,7 @@ class Size:
 
 def sizes(text: str) -> List[float]:
     """argparse type: D or D:D2."""
-    return [number(part) for part in text.split(":")]
+    return [parse_number(part) for part in text.split(":")]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -253,11 +253,11 @@ class Request(Ground, Layers, known_arguments.Confined, Model, Size, Blocks, Abo
     verbose: bool = flag(f"print all warnings and notes, not the {site_warnings.MOST} that weigh most")
 
 
-def run(args: Request) -> None:
+def run_site(args: Request) -> None:
     """Do the command; raises SlopeError on bad input. Prints what may make the answer wrong, then what was read, found
     and written.
     """
-    folder, choices, known = chosen(args)
+    folder, choices, known = choose_site(args)
     lines: List[str] = []
     doubts: Dict[str, Finding] = {}
     warn = printer("site")
@@ -269,13 +269,13 @@ def run(args: Request) -> None:
     cores, first = args.jobs or jobs.cores(), None
     try:
         with jobs.signals_interrupt(), site_scenarios.room(folder) if args.scenario is not None else nullcontext():
-            made = site.make(choices, folder, site.Machine(lmp_if_any(args.lmp), cores), lines.append,
-                             warn if findings.as_json else keep, site_map.draw,
-                             again=args.folder is not None and args.scenario is None, known=known,
-                             how=kinds.build(choices))
+            made = site.make_site(choices, folder, site.Machine(lmp_if_any(args.lmp), cores), lines.append,
+                                  warn if findings.as_json else keep, site_map.draw_site_map,
+                                  again=args.folder is not None and args.scenario is None, known=known,
+                                  how=kinds.build(choices))
         if isinstance(choices, OfMass):
-            lines += [*site_ground.lines(site_choices.load(folder)), *outlook.lines(folder)]
-            second, differs = results.of_site(folder)
+            lines += [*site_ground.describe_grounds(site_choices.load_site(folder)), *outlook.describe_outlook(folder)]
+            second, differs = results.describe_site_mobility(folder)
             lines += second
             if differs:
                 keep(differs[0])
@@ -298,12 +298,12 @@ def runs_ahead(args: Request, folder: Path, points: int) -> str:
     engine = Setup(folder / site_deck.NAME, folder, jobs=args.jobs, lmp=args.lmp)
     try:
         points = 0 if known_study.why_not(folder) else points
-        return f"the study: {ahead.of_site(site_choices.load(folder), engine, points).text}"
+        return f"the study: {ahead.look_ahead(site_choices.load_site(folder), engine, points).text}"
     except SlopeError as error:
         return f"the study: {error}"
 
 
-def chosen(args: Request) -> Chosen:
+def choose_site(args: Request) -> Chosen:
     """The folder; the choices of the command line, or of the folder with those of the command line; and what of them
     was found before.
     """
@@ -322,12 +322,14 @@ def chosen(args: Request) -> Chosen:
         if args.terrain is None or args.output is None:
             raise SlopeError("--terrain" if args.terrain is None else "-o", "must be given, or the folder of a site")
         folder, choices, known = args.output, kinds.begun(args.blocks), {}
-    kinds.check(choices, {name: OPTIONS[name] for name in given})
+    kinds.check_kind(choices, {name: OPTIONS[name] for name in given})
     if "density" in given and isinstance(choices, OfMass):
         given["density"] = density_of_ball(given["density"])
     choices = replaced(choices, given)
-    site_choices.check({"slope_site": site_choices.VERSION, **choices.entries()}, str(folder / site_choices.NAME),
-                       {OPTIONS[option]: OTHERWISE.get(option, f"--{option.replace('_', '-')}") for option in given})
+    site_choices.check_site_file({"slope_site": site_choices.VERSION, **choices.entries()},
+                                 str(folder / site_choices.NAME),
+                                 {OPTIONS[option]: OTHERWISE.get(option, f"--{option.replace('_', '-')}") for option
+                                  in given})
     return folder, choices, known
 
 
@@ -346,7 +348,7 @@ def rebuilt(folder: Path, given: Dict[str, Any]) -> Chosen:
 def of_scenario(args: Request, given: Dict[str, Any]) -> Chosen:
     """The same of a new scenario, of which nothing was found before."""
     assert args.folder is not None and args.scenario is not None
-    folder, of = site_scenarios.place(args.folder, args.scenario), site_choices.load(args.folder)
+    folder, of = site_scenarios.choose_scenario_folder(args.folder, args.scenario), site_choices.load_site(args.folder)
     for name in SIZES:
         if name in given:
             raise SlopeError(f"--{name}", "must not be given with --scenario, whose balls are those of its site",

@@ -8,7 +8,7 @@ from .. import disk, findings
 from ..case import slip_deck
 from ..case.slip_deck import PREFIX
 from ..errors import SlopeError
-from ..options import Overwrite, Program, flag, number, option, positional, several
+from ..options import Overwrite, Program, flag, parse_number, option, positional, several
 from ..programs import find_lmp
 
 # options without a meaning for --failed; of the cohesion, between the axis of the nearest sphere and a far one
@@ -83,7 +83,7 @@ class Request(Soil, Search, Program, Overwrite):
     output: Path = option("folder for the results", "-o", metavar="DIR")
 
 
-def run(args: Request) -> None:
+def run_stability(args: Request) -> None:
     """Do the command; raises SlopeError on bad input. Prints the bodies."""
     if args.failed is not None:
         run_failed(args)
@@ -92,7 +92,7 @@ def run(args: Request) -> None:
     from ..slips import bodies, doubts
     from ..survey import polygons, rasters
 
-    asked = asked_of(args)
+    asked = make_slip_request(args)
     lmp = find_lmp(args.lmp)
     disk.check_folder(args.output, FILES, [args.terrain], args.overwrite)
     raster = rasters.read_asc_local(args.terrain)
@@ -104,24 +104,26 @@ def run(args: Request) -> None:
         for beside in given:
             rasters.write_asc_local(folder / beside.name, raster._replace(z=beside.z), {"sources": [beside.source]},
                                     exact=True)
-        said = slip_run.run(asked, polygon, raster, folder, lmp, args.np or 1,
-                            lambda line: print(line, flush=True))
-        rows = bodies.rows_of(folder / f"{PREFIX}.slips.csv", (*bodies.NUMBERS, "factor", "area", "depth"), ("yield",))
+        said = slip_run.run_slip_search(asked, polygon, raster, folder, lmp, args.np or 1,
+                                        lambda line: print(line, flush=True))
+        rows = bodies.read_body_rows(folder / f"{PREFIX}.slips.csv", (*bodies.NUMBERS, "factor", "area", "depth"),
+                                     ("yield",))
         if rows[0]["factor"] > HUGE:
             raise SlopeError(args.terrain, "must be steep enough, and the strengths in Pa, for a factor of safety "
                              f"below {HUGE:g} somewhere", f"{rows[0]['factor']:.4g}")
         masks = [bodies.mask_of(folder / f"{PREFIX}.{k + 1}.base.asc") for k in range(len(rows))]
         rock = next((one.z for one in given if one.name == slip_deck.BEDROCK), None)
-        for one in [*placed, *warnings_of(asked.strength.cohesion, args.density, rows, masks, given), *said.warnings,
-                    *doubts.of_all(raster, rows, masks, asked.volume, asked.depth,
-                                   polygon and doubts.cells_in(raster, polygon))]:
+        for one in [*placed, *find_stability_warnings(asked.strength.cohesion, args.density, rows, masks, given),
+                    *said.warnings, *doubts.find_all_doubts(raster, rows, masks, asked.volume, asked.depth,
+                                                            polygon and doubts.cells_in(raster, polygon))]:
             warn(one)
         table = [numbers_of(raster, row, mask) for row, mask in zip(rows, masks)]
-        write(folder, args, raster, rows, masks, rock, {"method": asked.method, "shape": asked.shape,
-                                                        "keep": asked.keep, "bodies": table, "warnings": kept})
+        write_stability(folder, args, raster, rows, masks, rock, {"method": asked.method, "shape": asked.shape,
+                                                                  "keep": asked.keep, "bodies": table,
+                                                                  "warnings": kept})
         slip_run.settle(asked, raster, folder, len(rows), args.output)
     slip_run.remove_others(args.output, len(rows), [one.name for one in given])
-    print(summary(table, args.output, said.notes))
+    print(describe_stability(table, args.output, said.notes))
 
 
 class Given(NamedTuple):
@@ -142,7 +144,7 @@ def rasters_of(args: Request, raster, warn) -> List[Given]:
             for kind, name, path in named if path is not None]
 
 
-def warnings_of(cohesion: float, density: float, rows, masks, given: Sequence[Given]):
+def find_stability_warnings(cohesion: float, density: float, rows, masks, given: Sequence[Given]):
     """What a reader must know of the input."""
     import numpy as np
 
@@ -158,7 +160,7 @@ def warnings_of(cohesion: float, density: float, rows, masks, given: Sequence[Gi
                                                   "file": one.source})
 
 
-def asked_of(args: Request) -> slip_deck.Asked:
+def make_slip_request(args: Request) -> slip_deck.Asked:
     """What the options ask for; find_slip checks the numbers, this what has no number there."""
     if args.cohesion is None or args.friction is None:
         raise SlopeError("--cohesion" if args.cohesion is None else "--friction",
@@ -175,12 +177,12 @@ def asked_of(args: Request) -> slip_deck.Asked:
         args.terrain, slip_deck.Strength(args.cohesion, args.friction, args.density), layers, args.water,
         slip_deck.TABLE if args.water_table else None, (shaking[0], shaking[-1] if len(shaking) > 1 else 0.0),
         bool(args.within),
-        pair(args.volume), pair(args.depth), None if args.direction is None else (90.0 - args.direction) % 360.0,
-        args.method or "bishop", args.keep or 3, args.shape or "sphere",
+        parse_limits(args.volume), parse_limits(args.depth), None if args.direction is None
+        else (90.0 - args.direction) % 360.0, args.method or "bishop", args.keep or 3, args.shape or "sphere",
         slip_deck.BEDROCK if args.bedrock else None)
 
 
-def pair(limits) -> Optional[Tuple[float, float]]:
+def parse_limits(limits) -> Optional[Tuple[float, float]]:
     """LO and HI of an option, if it is given."""
     return (limits[0], limits[1]) if limits else None
 
@@ -188,7 +190,7 @@ def pair(limits) -> Optional[Tuple[float, float]]:
 def parsed(word):
     """A number of --layer."""
     try:
-        return number(word)
+        return parse_number(word)
     except argparse.ArgumentTypeError as error:
         raise SlopeError("--layer", str(error)) from None
 
@@ -202,24 +204,24 @@ def numbers_of(raster, row: Dict[str, float], mask) -> Dict[str, float]:
             "cells": int(mask.sum()), **{name: row[name] for name in ("x", "y", "z", "radius", "across")}}
 
 
-def write(folder: Path, args: Request, raster, rows, masks, rock, found) -> None:
+def write_stability(folder: Path, args: Request, raster, rows, masks, rock, found) -> None:
     """stability.csv, .png and .yaml; rock: heights of the bedrock in the cells of the terrain, or None."""
     from ..slips import chart
     from ..survey import rasters
 
-    disk.write(folder / FILES[0], disk.csv_text(found["bodies"][0], (
+    disk.write_file(folder / FILES[0], disk.csv_text(found["bodies"][0], (
         [f"{value:.8g}" for value in row.values()] for row in found["bodies"])))
-    factor = rasters.read(folder / f"{PREFIX}.factor.asc", heights=False).z
+    factor = rasters.read_raster(folder / f"{PREFIX}.factor.asc", heights=False).z
     title = f"c {args.cohesion:g} Pa, friction {args.friction:g} degrees" + (
         f", k {args.seismic[0]:g}" if args.seismic else "")
-    chart.draw(folder / FILES[1], raster, factor, rows, masks, title, rock)
+    chart.draw_slips(folder / FILES[1], raster, factor, rows, masks, title, rock)
     about = {name: getattr(args, name) for name in ("terrain", "cohesion", "friction", "density", "layer", "water",
                                                     "water_table", "bedrock", "seismic", "volume", "depth",
                                                     "within", "local", "direction")}
     disk.write_yaml(folder / FILES[2], {**about, **found}, "slope stability: Pa, degrees, kg/m3, m, m3; bearings")
 
 
-def summary(table, folder, notes) -> str:
+def describe_stability(table, folder, notes) -> str:
     """What the user needs to know."""
     lines = [*notes, "body  factor   yield    volume m3    area m2  depth m  bearing  length m"]
     for row in table:
@@ -248,7 +250,7 @@ def run_failed(args: Any) -> None:
     table, rock = (path and beside.heights_on(path, raster, args.local, warn)
                    for path in (args.water_table, args.bedrock))
     way = None if args.direction is None else (90.0 - args.direction) % 360.0
-    body = failed.read(args.failed, raster, way, args.density, table, rock)
+    body = failed.read_failed_body(args.failed, raster, way, args.density, table, rock)
     if args.water is not None:
         body = body._replace(columns=body.columns._replace(pressure=None))
     line = back.line(body.columns, horizontal, vertical, ratio)
@@ -262,8 +264,8 @@ def run_failed(args: Any) -> None:
              "radius": body.radius, "cohesion_without_friction": line.cohesion[0],
              "friction_without_cohesion": line.friction[-1] if line.cohesion[-1] < 1e-6 * line.cohesion[0] else None,
              "warnings": kept}
-    back_files.write(args.output, line, far, about)
-    print(back_files.summary(line, about))
+    back_files.write_back_analysis(args.output, line, far, about)
+    print(back_files.describe_back_analysis(line, about))
     print(f"written to {args.output}: {' '.join(back_files.FILES)}")
 
 

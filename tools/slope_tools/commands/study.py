@@ -98,7 +98,7 @@ class Request(Sample, known_arguments.Known, Repeats, Intensity, Runs):
         "road distance_99_m)", metavar="NAME")
 
 
-def run(args: Request) -> None:
+def run_study(args: Request) -> None:
     """Do the command; raises SlopeError on bad input, and after all other runs when one failed."""
     if args.fine is not None:
         raise SlopeError("--fine", "must not be given any more: --levels says how many sizes of balls there are (1: "
@@ -110,24 +110,25 @@ def run(args: Request) -> None:
     for name in ("paper", "minutes"):
         if all(getattr(args, name) is not none for none in (None, False)):
             raise SlopeError(f"--{name}", "must be given with the folder of a site", args.deck)
-    run_deck(replace(args, around=site_choices.around(args.deck)))
+    run_deck(replace(args, around=site_choices.find_site_of_deck(args.deck)))
 
 
 def run_folder(args: Request) -> None:
     """The studies of a site's folder: of its road, or of each of several, and of the worst as if it were alone."""
-    check_kind(args)
-    site = site_choices.load(args.deck)
-    made = road_numbers.of_all(site, not args.dry_run, setup_of(args).tell, lambda one, several, quiet: run_site_of(
+    check_request(args)
+    site = site_choices.load_site(args.deck)
+    made = road_numbers.evaluate_all_roads(site, not args.dry_run, setup_of(args).tell, lambda one, several,
+                                           quiet: run_site_of(
         replace(args, roads=several, quiet=quiet), one))
     above = site_scenarios.site_of(args.deck) or args.deck
-    if made.abouts and site_scenarios.of_site(above):
+    if made.abouts and site_scenarios.list_scenarios(above):
         from ..scenarios import page        # with pictures: half a second
         print(page.refresh(above))
     if made.failed:
         raise made.failed
 
 
-def check_kind(args: Request) -> None:
+def check_request(args: Request) -> None:
     """Raise SlopeError if options are given that the study of a site, or its ensemble, does not have."""
     if args.sample is not None or args.fit is not None:
         if args.paper:
@@ -142,14 +143,14 @@ def run_site_of(args: Request, site: Site) -> Made:
     """The study of a site, of the road that is asked: a sweep, and an ensemble weighted by known events."""
     if args.sample is not None or args.fit is not None:
         return run_site_ensemble(args, site)
-    site_study.check(site)
+    site_study.check_site(site)
     points = site.choices.study.points
     why = "" if args.paper else known_study.why_not(args.deck) if points else known_study.NONE
     if args.paper or why:
         condition_of(replace(args, around=site))        # has no meaning here
         method = f"{known_study.PAPER}; {why}" if why else known_study.ASKED
         say(args, site, method, 0)
-        return run_site(args, site, method)
+        return make_site_study(args, site, method)
     say(args, site, f"{known_study.WEIGHTED}, which --paper makes alone", points)
     return run_both(args, site, points)
 
@@ -161,8 +162,8 @@ def run_both(args: Request, asked: Site, points: int) -> Made:
     anew.
     """
     site, before = site_roads.results(asked), site_study.digests(asked)
-    planned = site_study.plan(asked, setup_of(args))
-    site_study.make(planned)
+    planned = site_study.plan_site_study(asked, setup_of(args))
+    site_study.make_site_runs(planned)
     if site_study.digests(asked) != before:
         raise SlopeError(asked.folder, f"must not change while its study is made: {site_deck.NAME} and its data are "
                          "not those of the runs so far; the same command again, with --anew")
@@ -178,8 +179,8 @@ def run_both(args: Request, asked: Site, points: int) -> Made:
         failed, weighted = error, error.found
     if args.dry_run or weighted is None:
         return Made((), None)
-    paper = site_study.collect(asked, planned, known_study.BESIDE, lambda _: beside.found, args.roads, alone=False,
-                               made=True)
+    paper = site_study.collect_site_results(asked, planned, known_study.BESIDE, lambda _: beside.found, args.roads,
+                                            alone=False, made=True)
     failed = paper.failed or failed
     assert paper.about
     made: Dict[str, study_types.Study] = {site_study.STUDY: paper.about, site_study.ENSEMBLE: weighted}
@@ -194,23 +195,23 @@ def run_both(args: Request, asked: Site, points: int) -> Made:
     files.write_abouts({site / name: about for name, about in made.items()})
     for name, about in made.items():
         if name != governs:
-            write_report(site / name, site / PAGES[name], about, asked, film=False, quiet=args.quiet)
+            write_site_report(site / name, site / PAGES[name], about, asked, film=False, quiet=args.quiet)
     if not args.quiet:
         print("\n".join(console.tell_letter(made[governs])))
-    write_report(site / governs, site / road_numbers.PAGE, made[governs], asked, quiet=args.quiet)
+    write_site_report(site / governs, site / road_numbers.PAGE, made[governs], asked, quiet=args.quiet)
     return Made([made[governs], *(about for name, about in made.items() if name != governs)], failed)
 
 
 def sizes_of(args: Request) -> site_study.Asked:
-    return site_study.asked_of(args.levels, args.minutes)
+    return site_study.parse_asked(args.levels, args.minutes)
 
 
 def say(args: Request, site: Site, method: str, points: int) -> None:
     """How the study of a site is made, what its grounds hold, which runs are there; points: of the ensemble."""
     if args.roads or site.road not in ("", *site_roads.names(site)[:1]):
         return      # said for the first road
-    print("\n".join([method, *site_ground.lines(site, others=True),
-                     ahead.of_site(site, setup_of(args), points, sizes_of(args)).text]), flush=True)
+    print("\n".join([method, *site_ground.describe_grounds(site, others=True),
+                     ahead.look_ahead(site, setup_of(args), points, sizes_of(args)).text]), flush=True)
 
 
 def run_deck(args: Request, beside: Optional[site_study.Beside] = None) -> Optional[study_types.Study]:
@@ -222,7 +223,7 @@ def run_deck(args: Request, beside: Optional[site_study.Beside] = None) -> Optio
     args, chain = chain_of(args)
     settings = check_settings(args.set, args.deck)
     repeated = check_settings(args.repeat, args.deck, "--repeat")
-    repeats.check(list(repeated), args.equally_good)
+    repeats.check_repeats(list(repeated), args.equally_good)
     thresholds = check_thresholds(THICKNESSES if args.exceed is None else args.exceed)
     defaults = decks.index_variables(args.deck)
     many = args.sample is not None or bool(args.vary) or args.fit is not None
@@ -232,11 +233,11 @@ def run_deck(args: Request, beside: Optional[site_study.Beside] = None) -> Optio
     check_more_than(args.more_than or (), args.intensity, settings, bool(args.road))
     condition = condition_of(args)
     if many:
-        return run_ensemble(args, settings, repeated, thresholds, defaults, condition, chain, beside)
+        return make_ensemble(args, settings, repeated, thresholds, defaults, condition, chain, beside)
     if not settings:
         raise SlopeError("--set", "must be given, or --sample with --vary")
-    todo = repeats.plan(args.output, settings, repeated, defaults)
-    intensity.check(args.intensity, settings, bool(args.road))
+    todo = repeats.plan_repeats(args.output, settings, repeated, defaults)
+    intensity.check_intensity(args.intensity, settings, bool(args.road))
     setup = setup_of(args)
     wanted = size_runs.of_deck(args.levels, args.deck, len(todo), [*settings, *repeated])
     todo = size_runs.at_first(setup, todo, wanted)
@@ -245,7 +246,7 @@ def run_deck(args: Request, beside: Optional[site_study.Beside] = None) -> Optio
 
     def collect(_, work):
         at = size_runs.settle(setup, work, [one for one in todo if not one.error], wanted)
-        return results.collect(setup, questions._replace(sizes=at, notes=at.warnings), todo, work)
+        return results.collect_results(setup, questions._replace(sizes=at, notes=at.warnings), todo, work)
 
     return perform(setup, {**settings, **repeated, **(wanted.settings if wanted else {})}, todo, collect)
 
@@ -287,17 +288,17 @@ def chain_of(args: Request):
     for words in (*args.vary, *args.set):
         if words.startswith(f"{VARIABLE}="):
             raise SlopeError("--vary", f"must not have {VARIABLE}, which --fragility draws", words)
-    found = chain_files.check(fragility_files.read(args.fragility),
-                              args.around.found.bodies, args.site, args.more_than or ())
+    found = chain_files.check_chain(fragility_files.read_fragility(args.fragility),
+                                    args.around.found.bodies, args.site, args.more_than or ())
     fixed, drawn = chain_files.options(found)
     return replace(args, set=[*args.set, *fixed], vary=[*args.vary, *drawn], more_than=None), found
 
 
-def run_site(args: Request, site: Site, method: str) -> Made:
+def make_site_study(args: Request, site: Site, method: str) -> Made:
     """The standard study of a site's folder, and the report."""
-    done = site_study.run(site, setup_of(args), method, sizes_of(args), args.roads)
+    done = site_study.run_site_study(site, setup_of(args), method, sizes_of(args), args.roads)
     if done.study and done.about:
-        write_report(done.study, site_roads.results(site) / road_numbers.PAGE, done.about, site, quiet=args.quiet)
+        write_site_report(done.study, site_roads.results(site) / road_numbers.PAGE, done.about, site, quiet=args.quiet)
     return Made([done.about] if done.about else (), done.failed)
 
 
@@ -313,7 +314,7 @@ def refuse(args: Request, names, where="") -> None:
                              None if first is True else f"{first:g}" if isinstance(first, float) else first)
 
 
-def write_report(folder: Path, page: Path, about: study_types.Study, site: Site, film=True, quiet=False) -> None:
+def write_site_report(folder: Path, page: Path, about: study_types.Study, site: Site, film=True, quiet=False) -> None:
     """The page on a study, of which study.yaml says this, unless it is there; one of several roads has no film."""
     from ..report import document
     from ..report.heading import Asked
@@ -326,19 +327,19 @@ def write_report(folder: Path, page: Path, about: study_types.Study, site: Site,
 
 def run_site_ensemble(args: Request, site: Site) -> Made:
     """An ensemble of a site's deck with its road, in a folder of the site's, and the report."""
-    site_study.check(site)
+    site_study.check_site(site)
     wanted, beside = of_ensemble(args, site), None
     if args.fit or args.fragility:
         refuse(args, ("levels", "minutes"), "--from or --fragility: their runs have balls of one size")
     else:
         assert args.sample is not None
-        beside = site_study.Beside(None, site_study.wanted(site, site_study.plan(site, setup_of(args)),
+        beside = site_study.Beside(None, site_study.wanted(site, site_study.plan_site_study(site, setup_of(args)),
                                                            sizes_of(args), args.sample, alone=True))
     about = run_deck(wanted, beside)
     if about:
         assert wanted.output is not None
-        write_report(wanted.output, site_roads.results(site) / PAGES[site_study.ENSEMBLE], about, site,
-                     quiet=args.quiet)
+        write_site_report(wanted.output, site_roads.results(site) / PAGES[site_study.ENSEMBLE], about, site,
+                          quiet=args.quiet)
     return Made([about] if about else (), None, PAGES[site_study.ENSEMBLE])
 
 
@@ -355,7 +356,7 @@ def of_ensemble(args: Request, asked: Site, method="") -> Request:
                    set=[*args.set, *not_varied(args, choices, vary)],
                    output=args.output or site_roads.results(asked) / site_study.ENSEMBLE,
                    wide={} if args.vary or args.fit or args.fragility else known_study.WIDE,
-                   vary=vary, **road_arguments.of_site(asked))
+                   vary=vary, **road_arguments.list_road_options(asked))
 
 
 def not_varied(args: Request, choices: OfMass, vary) -> List[str]:
@@ -373,8 +374,8 @@ def of_fragility(choices: OfMass) -> List[str]:
     return [f"rolling={min(rolling):.10g}:{max(rolling):.10g}"] * (min(rolling) < max(rolling))
 
 
-def run_ensemble(args: Request, settings, repeated, thresholds, defaults, condition, chain=None,
-                 beside: Optional[site_study.Beside] = None) -> Optional[study_types.Study]:
+def make_ensemble(args: Request, settings, repeated, thresholds, defaults, condition, chain=None,
+                  beside: Optional[site_study.Beside] = None) -> Optional[study_types.Study]:
     """The runs of --sample; what study.yaml says of them; beside: of a site, whose points have finer balls together."""
     from ..ensembles import ensemble, ensemble_maps
     from ..fitting import calibrated
@@ -387,8 +388,8 @@ def run_ensemble(args: Request, settings, repeated, thresholds, defaults, condit
         plan = calibrated.sample(args.fit, args.sample, args.deck, fixed, repeated)
     else:
         assert args.sample is not None and args.design is not None and args.seed is not None        # settled()
-        plan = sample.check(args.sample, args.design, args.seed, args.vary, args.deck, fixed,
-                            repeated).widened(args.wide)
+        plan = sample.check_sample(args.sample, args.design, args.seed, args.vary, args.deck, fixed,
+                                   repeated).widened(args.wide)
     levels = ensemble_maps.Thresholds(thresholds, check_thresholds(args.exceed_speed, "--exceed-speed", "speeds"),
                                       check_thresholds(args.exceed_energy, "--exceed-energy", "energies"))
     of = ensemble.check_quantity(args.of, args.road is not None)
@@ -396,4 +397,4 @@ def run_ensemble(args: Request, settings, repeated, thresholds, defaults, condit
     questions = results.Questions({}, repeated, thresholds, ensemble.Order(plan, of, levels, condition), site=args.site,
                                   method=args.method, chain=chain, known=known_of(args), roads=args.roads,
                                   alone=not args.weigh)
-    return ensemble_study.run(setup, questions, fixed, defaults, args.levels, beside)
+    return ensemble_study.run_ensemble(setup, questions, fixed, defaults, args.levels, beside)

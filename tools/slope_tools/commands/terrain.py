@@ -8,7 +8,7 @@ from ..case.decks import quoted, warn_of_name
 from ..disk import check_file, check_standing
 from ..errors import SlopeError
 from ..findings import printer
-from ..options import Overwrite, number, option, positional, several, whole
+from ..options import Overwrite, parse_number, option, positional, several, parse_whole_number
 from ..survey import local_terrain, rasters
 
 DESCRIPTION = "Survey rasters (GeoTIFF, ASCII grids, XYZ, FG-GML) to the plain terrain.asc that decks read."
@@ -57,27 +57,27 @@ class Request(Overwrite):
         "what becomes 0 0: auto (default), the lower left corner rounded down to whole metres; or E N, in the "
         "output's CRS, m", nargs="+", default=["auto"], metavar=("auto|E", "N"))
     fill: int = option(
-        "fill NODATA holes of at most N cells (default 0: none); holes at the edge stay", type=whole, default=0,
-        metavar="N")
+        "fill NODATA holes of at most N cells (default 0: none); holes at the edge stay", type=parse_whole_number,
+        default=0, metavar="N")
 
 
-def run(args: Request) -> None:
+def run_terrain(args: Request) -> None:
     """Do the command; raises SlopeError on bad input. Prints what was done, a summary and the line for the deck."""
-    wanted = check(args)
+    wanted = check_terrain_request(args)
     warn = printer("terrain")
-    about = local_terrain.make(args.inputs, args.output, wanted, print, warn)
+    about = local_terrain.make_local_terrain(args.inputs, args.output, wanted, print, warn)
     warn_of_name(args.output, warn)
-    print(f"{local_terrain.summary(args.output, about)}\nregion ground terrain {quoted(str(args.output))}")
+    print(f"{local_terrain.describe_terrain(args.output, about)}\nregion ground terrain {quoted(str(args.output))}")
 
 
-def check(args: Request) -> local_terrain.Wanted:
+def check_terrain_request(args: Request) -> local_terrain.Wanted:
     """Check what can be checked before any reading; return what is wanted."""
     check_file(args.output, ".asc", args.inputs)
     check_standing(args.output.with_suffix(".yaml"), [args.output], args.inputs, args.overwrite)
     origin = None
     if args.origin != ["auto"]:
         try:
-            east, north = map(number, args.origin)
+            east, north = map(parse_number, args.origin)
         except (argparse.ArgumentTypeError, ValueError):
             raise SlopeError("--origin", "must be auto or two numbers, E N", " ".join(args.origin)) from None
         origin = east, north

@@ -6,7 +6,7 @@ from typing import List, Optional
 
 from .. import disk, findings
 from ..deposits import travel
-from ..options import Overwrite, number, option, positional, whole
+from ..options import Overwrite, parse_number, option, positional, parse_whole_number
 
 DESCRIPTION = "Where balls come to rest: cumulative distributions along and across the slope."
 EPILOG = """\
@@ -25,7 +25,7 @@ Writes travel.yaml (percentiles), travel.csv (distributions), balls.csv (one row
 def axis(text):
     """argparse type: degrees from x towards y."""
     try:
-        return {"x": 0.0, "y": 90.0}[text] if text in ("x", "y") else number(text)
+        return {"x": 0.0, "y": 90.0}[text] if text in ("x", "y") else parse_number(text)
     except argparse.ArgumentTypeError:
         raise argparse.ArgumentTypeError(f"must be x, y or degrees, got {text!r}") from None
 
@@ -43,20 +43,20 @@ class Request(Overwrite):
     across: Optional[List[float]] = option(
         "limits of the axis across the slope, m (default: all balls)", metavar=("LO", "HI"), nargs=2)
     type: Optional[List[int]] = option(
-        "only balls of these atom types (default: all)", metavar="N", nargs="+", type=whole)
+        "only balls of these atom types (default: all)", metavar="N", nargs="+", type=parse_whole_number)
     start: Optional[List[str]] = option(
         "dump of the start, one for all runs or one for each: adds travelled distances, run-out and reach angle, and "
         "the number of balls that are missing at the end", metavar="DUMP", nargs="+")
     output: Path = option("folder for the results (default travel)", "-o", metavar="DIR", default=Path("travel"))
 
 
-def run(args: Request) -> None:
+def run_travel(args: Request) -> None:
     """Do the command; raises SlopeError on bad input. Prints the percentiles."""
     wanted = travel.Wanted(args.axis, args.origin, args.along, args.across, args.type)
-    travel.check(args.dumps, args.start, wanted)
+    travel.check_travel(args.dumps, args.start, wanted)
     disk.check_folder(args.output, travel.FILES, args.dumps, args.overwrite)
     about = travel.of_dumps(args.dumps, args.start, wanted, args.output, findings.printer("travel"))
-    print(summary(about, args.output))
+    print(describe_travel(about, args.output))
 
 
 def missing(about):
@@ -65,7 +65,7 @@ def missing(about):
     return f"{of} of {balls} balls of the start are missing"
 
 
-def summary(about, folder):
+def describe_travel(about, folder):
     """What the user needs to know."""
     lines = [f"{about['balls']} balls of {about['runs']} run{'s' if about['runs'] > 1 else ''}"]
     for name in ("along", "across", "travel"):

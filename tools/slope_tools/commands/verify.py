@@ -13,7 +13,7 @@ from ..options import Program, bare, flag, option
 from ..programs import find_lmp
 from ..runs import jobs
 from ..validation import verification
-from ..validation.verify import NAME, NUMBERS, Runner, compared, judge, line, made, value, write
+from ..validation.verify import NAME, NUMBERS, Runner, compared, judge, line, made, value, write_verification
 
 DESCRIPTION = "Run the cases of inputs/, compare them with closed forms and published numbers, write a report."
 EPILOG = """\
@@ -42,11 +42,11 @@ class Request(Program):
         "-o", metavar="DIR")
 
 
-def run(args: Request) -> None:
+def run_verify(args: Request) -> None:
     """Do the command; raises SlopeError on bad input and when a claim does not hold. Prints the claims."""
-    claims, others = chosen(args.quick, args.only)
+    claims, others = choose_claims(args.quick, args.only)
     if bare(args):
-        print(plan(claims))
+        print(plan_verification(claims))
         return
     output = args.output or Path(NAME)
     if output.exists() and not output.is_dir():
@@ -63,7 +63,7 @@ def run(args: Request) -> None:
             seen = [(one, value(one, one.runs, runner)) for one in others]
             words = ["tools/slope verify"] + ["--quick"] * args.quick + [f"--only {args.only}"] * bool(args.only)
             about = made(" ".join(words), lmp, runner, outcomes, time.monotonic() - began)
-            write(output, outcomes, about, peers, seen)
+            write_verification(output, outcomes, about, peers, seen)
     except OSError as error:
         raise SlopeError(error.filename or output, f"cannot be used: {error.strerror}") from error
     for outcome in outcomes:
@@ -82,7 +82,7 @@ def runs_of(claims):
     return [one for claim in claims for one in (*claim.runs, *claim.control.runs)]
 
 
-def plan(claims) -> str:
+def plan_verification(claims) -> str:
     """What the command would do."""
     def many(some):
         return (f"{len(some)} claims on {len({claim.case for claim in some})} cases by {len(set(runs_of(some)))} runs")
@@ -93,7 +93,7 @@ def plan(claims) -> str:
             f"  slope verify --only CASE   of {', '.join(dict.fromkeys(claim.case for claim in claims))}")
 
 
-def chosen(quick: bool, only: Optional[str]):
+def choose_claims(quick: bool, only: Optional[str]):
     """The claims that are asked for, and the other numbers of their cases."""
     claims, others = ([one for one in several if one.quick or not quick]
                       for several in (verification.all_claims(), verification.all_seen()))

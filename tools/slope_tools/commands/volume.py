@@ -10,7 +10,7 @@ from .. import disk, findings
 from ..deposits import left_words, volume
 from ..deposits.volume import CUT_ANGLE, MUCH_BELOW, SAMPLES
 from ..digits import cents
-from ..options import Overwrite, flag, option, positional, whole
+from ..options import Overwrite, flag, option, positional, parse_whole_number
 from ..studies import outdated
 from ..tables import named_run
 from . import road_arguments
@@ -54,27 +54,27 @@ class Request(road_arguments.Clearing, Overwrite):
         "the road's axis: GeoJSON, shapefile, CSV or WKT (default: the road's middle)", metavar="LINE")
     samples: int = option(
         f"parts of a cell along a side for round corners and rough ground, even, 2 to 32 (default "
-        f"{SAMPLES}); planes are exact with any", metavar="K", type=whole, default=SAMPLES)
+        f"{SAMPLES}); planes are exact with any", metavar="K", type=parse_whole_number, default=SAMPLES)
     no_picture: bool = flag("without volume.png, which takes longest")
 
 
-def run(args: Request) -> None:
+def run_volume(args: Request) -> None:
     """Do the command; raises SlopeError on bad input. Prints the totals."""
     wanted = volume.Wanted(args.road, args.mesh, args.cut_angle, args.local, args.axis, args.bulk,
                            road_arguments.asked(args), args.samples)
-    volume.check(wanted)
-    named = named_run.read(args.prefix)
-    outdated.check(Path(args.prefix), named.study)
+    volume.check_wanted_volume(wanted)
+    named = named_run.read_named_run(args.prefix)
+    outdated.check_study_current(Path(args.prefix), named.study)
     folder = args.output or (named.folder / "volume" if named.folder else Path(f"{named.prefix}.volume"))
     disk.check_folder(folder, volume.FILES, [named.prefix, args.road], args.overwrite)
-    found = volume.of_run(named.prefix, wanted, args.terrain, findings.printer("volume"))
-    volume.write(found, folder, picture=not args.no_picture)
+    found = volume.compute_removal(named.prefix, wanted, args.terrain, findings.printer("volume"))
+    volume.write_removal(found, folder, picture=not args.no_picture)
     if named.study:
         print(f"{named.run}, the governing run of {named.study}: {named.prefix}")
-    print(summary(found.about, folder))
+    print(describe_removal(found.about, folder))
 
 
-def summary(about, folder):
+def describe_removal(about, folder):
     """What the user needs to know."""
     volume, axis = about["volume"], about["axis"]
     below = volume["remove_where_cut_below_ground"]

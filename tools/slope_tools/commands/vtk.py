@@ -34,10 +34,10 @@ class Request:
     single: bool = flag("values with 7 digits instead of 16")
 
 
-def run(args: Request) -> None:
+def run_vtk(args: Request) -> None:
     """Do the command; raises SlopeError on bad input. Prints what was written."""
-    named = named_run.read(args.prefix)
-    outdated.check(Path(args.prefix), named.study)
+    named = named_run.read_named_run(args.prefix)
+    outdated.check_study_current(Path(args.prefix), named.study)
     if named.study:
         print(f"{named.run}, the governing run of {named.study}: {named.prefix}")
     convert(named.prefix, args.output, named.folder or Path(named.prefix).parent, args.single)

@@ -26,17 +26,18 @@ class Clearing(NamedTuple):
     mesh: Optional[np.ndarray]          # m3 of the lanes together in each mesh cell
 
 
-def of_road(run_, result, profile, axes: Sequence[Axis], width: float, road: Optional[BaseGeometry], asked: Asked,
-            mesh: Mesh, angle: float, samples: int) -> Clearing:
+def evaluate_clearing(run_, result, profile, axes: Sequence[Axis], width: float, road: Optional[BaseGeometry],
+                      asked: Asked, mesh: Mesh, angle: float, samples: int) -> Clearing:
     """The Clearing of a Deposit's road.
 
-    result: volume.Result; profile: along the axis; width: of the road, m; road: see lanes.stretches; angle: of the cut,
-    degrees.
+    result: volume.Result; profile: along the axis; width: of the road, m; road: see lanes.find_lane_stretches; angle:
+    of the cut, degrees.
     """
-    found = lanes.stretches(run_.raster, axes, width, asked.blocked, road)
+    found = lanes.find_lane_stretches(run_.raster, axes, width, asked.blocked, road)
     entries = [{"from": round(one.along.low, DIGITS), "to": round(one.along.high, DIGITS),
                 "largest_thickness_on_axis": thickest(profile, one), "passable_width": round(one.passable, DIGITS),
-                "remove": result.rounded(volume)} for one, volume in zip(found, volumes(run_, result, found))]
+                "remove": result.rounded(volume)} for one, volume in zip(found,
+                                                                         compute_stretch_volumes(run_, result, found))]
     totals = {"road_width": round(width, DIGITS), "blocked_above": asked.blocked,
               "blocked_length": round(sum(one.along.high - one.along.low for one in found), DIGITS),
               "remove": result.total(result.volume)}
@@ -69,7 +70,7 @@ def thickest(profile, stretch: Stretch) -> float:
     return round(float(profile["thickness"][inside].max(initial=0.0)), DIGITS)
 
 
-def volumes(run_, result, found: Sequence[Stretch]) -> np.ndarray:
+def compute_stretch_volumes(run_, result, found: Sequence[Stretch]) -> np.ndarray:
     """What must be removed of each stretch, m3; together all of it."""
     row, column = np.nonzero(result.removed > 0)
     if not (found and len(row)):

@@ -78,7 +78,7 @@ def top(deposit):
     name = f"{deposit.prefix}.max_thickness.asc"
     source, thickness = "highest cell of the deposit", deposit.raster.z
     if Path(name).is_file():
-        largest = rasters.read(name, heights=False)
+        largest = rasters.read_raster(name, heights=False)
         if largest.z.shape == thickness.shape and largest.transform == deposit.raster.transform:
             source, thickness = "highest cell that the mass was in", largest.z
     surface = np.where((thickness > 0) & np.isfinite(deposit.base), deposit.base + thickness, -np.inf)

@@ -12,7 +12,7 @@ import numpy as np
 from ..case import run_folders
 from ..errors import SlopeError
 from ..findings import Finding
-from ..geometry import extent, numbers
+from ..geometry import extent, format_numbers
 from ..survey import rasters
 from ..survey.rasters import Raster
 
@@ -43,7 +43,7 @@ class Deposit(NamedTuple):
         return float(self.summary["bulk_factor"])
 
 
-def read(prefix, terrain, warn):
+def read_deposit(prefix, terrain, warn):
     """The Deposit that a run wrote to PREFIX, in the CRS of terrain (None: terrain.asc in the same folder, if any).
 
     warn is called with a Finding for each thing that makes the numbers doubtful.
@@ -53,7 +53,7 @@ def read(prefix, terrain, warn):
         if not Path(name).is_file():
             raise SlopeError(name, f"must be an existing file; {prefix} must be the output of fix deposit/grid")
     summary = run_folders.load_summary(names[2], run_folders.OF_DEPOSIT)
-    thickness, surface = (rasters.read(name, heights=False) for name in names[:2])
+    thickness, surface = (rasters.read_raster(name, heights=False) for name in names[:2])
     if thickness.z.shape != surface.z.shape or thickness.transform != surface.transform:
         raise SlopeError(names[1], f"must have the grid of {names[0]}")
     if min(thickness.z.shape) < 2:
@@ -84,7 +84,7 @@ def read_base(prefix, thickness, surface):
     difference = surface.z - thickness.z
     if not Path(name).is_file():
         return difference
-    base = rasters.read(name, heights=False)
+    base = rasters.read_raster(name, heights=False)
     if base.z.shape != thickness.z.shape or base.transform != thickness.transform:
         raise SlopeError(name, f"must have the grid of {prefix}.thickness.asc")
     largest = np.nanmax(np.abs(surface.z), initial=1.0)
@@ -111,15 +111,15 @@ def find_terrain(prefix, terrain, raster, warn):
     slack = np.array([slack, slack, raster.transform.a, raster.transform.a])
     outside = np.subtract(place.extent, grid) * [1, 1, -1, -1] > slack
     if outside.any():
-        raise SlopeError(found, f"must be the terrain of the run, whose grid is {numbers(grid)}; --terrain names "
-                         "another", numbers(place.extent))
+        raise SlopeError(found, f"must be the terrain of the run, whose grid is {format_numbers(grid)}; --terrain "
+                         "names " "another", format_numbers(place.extent))
     own = Path(prefix).with_name("terrain.asc")
     if own.is_file() and not os.path.samefile(own, found):
         there = rasters.read_place(own)
         if (there.crs, there.offset) not in ((None, (0, 0)), (place.crs, place.offset)):
             raise SlopeError(found, f"must lie where the run's terrain.asc does, {there.crs}, origin "
-                             f"{numbers(there.offset)}; --terrain names another",
-                             f"{place.crs}, {numbers(place.offset)}")
+                             f"{format_numbers(there.offset)}; --terrain names another",
+                             f"{place.crs}, {format_numbers(place.offset)}")
     if place.crs is None:
         warn(Finding("no CRS", {"file": str(found), "coordinates": "metres as in that file" if place.offset != (0, 0)
                                 else "the local metres of the run"}))

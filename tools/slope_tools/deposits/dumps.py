@@ -56,7 +56,7 @@ def last(path, wanted=()):
     if len(index) < 4:
         raise SlopeError(path, "must have the columns id x y z (or xu yu zu)", " ".join(columns))
     index.update((name, columns.index(name)) for name in wanted if name in columns)
-    of = {name: numbers(rows, i, f"{path}: line", first, name) if table is None else table[:, i]
+    of = {name: read_dump_numbers(rows, i, f"{path}: line", first, name) if table is None else table[:, i]
           for name, i in index.items()}
     ids, count = np.unique(of["id"], return_counts=True)
     if len(ids) < number:
@@ -110,20 +110,20 @@ def numbers_only(rows, columns):
     return table if table.shape == (len(rows), columns) and np.isfinite(table).all() else None
 
 
-def numbers(rows, column, where, first, name):
+def read_dump_numbers(rows, column, where, first, name):
     """A column as finite numbers."""
     words = [row[column] for row in rows]
     try:
         values = np.array(words, float)
     except ValueError:
-        values = np.array([as_number(word) for word in words])
+        values = np.array([parse_dump_number(word) for word in words])
     wrong = np.flatnonzero(~np.isfinite(values))
     if len(wrong):
         raise SlopeError(f"{where} {first + wrong[0]}", f"{name} must be a finite number", words[wrong[0]])
     return values
 
 
-def as_number(word):
+def parse_dump_number(word):
     try:
         return float(word)
     except ValueError:

@@ -35,12 +35,12 @@ def file_of(layer):
     return f"{layer.path.stem}.tif"
 
 
-def write(folder, layer, place, tags):
+def write_layer(folder, layer, place, tags):
     """Write a layer as a GeoTIFF on the grid of place (a Raster with CRS and offset); what export.yaml tells of it.
 
     tags: {name: text} of its metadata.
     """
-    raster = rasters.read(layer.path, heights=False)
+    raster = rasters.read_raster(layer.path, heights=False)
     if raster.z.shape != place.z.shape or raster.transform != place.transform:
         raise SlopeError(layer.path, "must have the grid of the run's thickness: is it of another run?")
     quantity, unit = RASTERS[layer.kind]

@@ -100,7 +100,7 @@ class Bands:
         if not release.any():
             return
         self.start = self.middle(release, np.maximum(deep, 1e-3))
-        self.distances = distances(touched, release, ground.cell * step)
+        self.distances = compute_path_distances(touched, release, ground.cell * step)
         reached = np.isfinite(self.distances)
         beyond = reached & (self.distances > 0) & (weight > 0)
         if not (beyond.any() and mass[reached].sum() > 0):
@@ -141,7 +141,7 @@ def thinned(values, step):
     return padded.reshape(rows, step, columns, step).any(axis=(1, 3))
 
 
-def distances(within, start, cell):
+def compute_path_distances(within, start, cell):
     """Distance (m) of each cell from the nearest start, over neighbours (8) within a mask; inf where none leads to."""
     number = np.full(within.shape, -1)
     number[within] = np.arange(np.count_nonzero(within))

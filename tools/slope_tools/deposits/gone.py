@@ -73,7 +73,7 @@ class Ground(NamedTuple):
         return float(self.summary["volume"]["released"]) - there
 
 
-def read(prefix: Path, ground: Ground) -> Optional[Gone]:
+def read_balls_gone(prefix: Path, ground: Ground) -> Optional[Gone]:
     """The balls that left; None where nobody knows: a run of an older version without dumps.
 
     Raises SlopeError, which names the file, on a table that is not one.
@@ -235,8 +235,8 @@ def groups(gone: Gone, ground: Ground, where: Optional[np.ndarray] = None,
     return sorted(found, key=lambda one: -one["volume"])
 
 
-def entries(run: Deposit) -> Optional[List[Dict[str, Any]]]:
+def list_gone_groups(run: Deposit) -> Optional[List[Dict[str, Any]]]:
     """groups() of a run without a road; None where it is not known what left."""
     ground = Ground.of(run)
-    left = ground and read(Path(run.prefix), ground)
+    left = ground and read_balls_gone(Path(run.prefix), ground)
     return groups(left, ground) if ground and left else None

@@ -45,8 +45,8 @@ class Place(NamedTuple):
     volume: float       # m3 of ground
 
 
-def stretches(deposit: Raster, axes: Sequence[Axis], width: float, blocked: float,
-              road: Optional[BaseGeometry] = None) -> List[Stretch]:
+def find_lane_stretches(deposit: Raster, axes: Sequence[Axis], width: float, blocked: float,
+                        road: Optional[BaseGeometry] = None) -> List[Stretch]:
     """The blocked stretches of a road, by chainage.
 
     deposit: thickness (m) in local metres; axes: the parts of the road's axis; width: W, m; blocked: T0, m; road: only
@@ -104,11 +104,11 @@ class Cutter:
         """The place of a lane (width, m) through a stretch where it takes least; road: the road's width, m."""
         def volume(offset: float, samples: Optional[int] = COARSE) -> float:
             return float(self.removed([self.area(stretch, offset, lane)], None, samples).cells.sum()) * self.cell ** 2
-        offset = least(volume, (road - lane) / 2, self.cell / STEPS, FINE * self.cell)
+        offset = minimise_offset(volume, (road - lane) / 2, self.cell / STEPS, FINE * self.cell)
         return Place(offset, volume(offset, None))
 
 
-def least(volume: Callable[[float], float], most: float, step: float, fine: float) -> float:
+def minimise_offset(volume: Callable[[float], float], most: float, step: float, fine: float) -> float:
     """Where a function of the offset is least within +-most: in steps, then to `fine` beside the best one.
 
     Of places that are equally good the one nearest to 0. All lengths in m.

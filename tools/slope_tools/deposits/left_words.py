@@ -15,7 +15,7 @@ Entry = Mapping[str, Any]       # of gone.groups()
 
 def where(entries: Sequence[Entry]) -> str:
     """How much left where."""
-    named = [f"{rounded(one['volume'], 3)} m3 {side(one)}{beside(one)}" for one in entries[:MOST]]
+    named = [f"{rounded(one['volume'], 3)} m3 {side(one)}{describe_side(one)}" for one in entries[:MOST]]
     rest = sum(one["volume"] for one in entries[MOST:])
     return "; ".join([*named, *([f"{rounded(rest, 3)} m3 elsewhere"] if rest > 0 else [])])
 
@@ -24,7 +24,7 @@ def side(one: Entry) -> str:
     return "in a hole of the terrain" if one["side"] == HOLE else f"in the {one['side']}"
 
 
-def beside(one: Entry) -> str:
+def describe_side(one: Entry) -> str:
     """On which side of the road; "" without one."""
     return ", " + BESIDE[one["where"]].format(one["distance"]) if "where" in one else ""
 

@@ -28,7 +28,7 @@ class Left(NamedTuple):
     distance: np.ndarray
 
 
-def of_run(run: Deposit, road: BaseGeometry, line: Optional[LineString]) -> Dict[str, Any]:
+def evaluate_passed(run: Deposit, road: BaseGeometry, line: Optional[LineString]) -> Dict[str, Any]:
     """What volume.yaml says; None where the run does not tell where its mass began.
 
     road: polygons in local metres, in the grid of the run; line: its axis, of a road that is one.
@@ -36,7 +36,8 @@ def of_run(run: Deposit, road: BaseGeometry, line: Optional[LineString]) -> Dict
     ground = Ground.of(run)
     if ground is None:
         return {"divided": None, "left": None}
-    return of_mass(ground, divide(road, line, ground.raster, ground.released), gone.read(Path(run.prefix), ground))
+    return of_mass(ground, divide(road, line, ground.raster, ground.released),
+                   gone.read_balls_gone(Path(run.prefix), ground))
 
 
 def of_mass(ground: Ground, sides: Sides, left: Optional[Gone]) -> Dict[str, Any]:
@@ -51,7 +52,7 @@ def of_mass(ground: Ground, sides: Sides, left: Optional[Gone]) -> Dict[str, Any
     unknown = ground.gone
     about: Optional[Dict[str, Any]] = None
     if left is not None:
-        balls = beside(left, sides)
+        balls = sort_by_side(left, sides)
         about = of_balls(left, balls, ground)
         around += about["past_end"]
         over = ground.gone - about["volume"]      # halves of balls at the edge, above ground or not
@@ -81,7 +82,7 @@ def rim(known: np.ndarray) -> np.ndarray:
     return known & ~ndimage.binary_erosion(known, np.ones((3, 3)))
 
 
-def beside(left: Gone, sides: Sides) -> Left:
+def sort_by_side(left: Gone, sides: Sides) -> Left:
     part = sides.of_places(left.place)
     road, before = prep(sides.road), sides.before
     points = [Point(place) for place in left.place]

@@ -15,7 +15,7 @@ class Quantile(NamedTuple):
     reach_angle: float      # degrees below the horizontal: the share is seen at this angle or a steeper one
 
 
-def quantiles(places, top, volumes, lost=0.0) -> List[Quantile]:
+def compute_reach_quantiles(places, top, volumes, lost=0.0) -> List[Quantile]:
     """Of balls at places (x y z, m) of some volumes (any unit), seen from top (x y z): a Quantile of each of SHARES.
 
     lost: volume of the balls that are not there; they went farther than the others.

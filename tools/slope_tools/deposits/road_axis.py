@@ -86,7 +86,7 @@ def in_grid_of(axis, raster, path):
     """The lines of an axis that lie in the grid; SlopeError, which names its file, if none does."""
     inside = lines_of(axis.intersection(geometry.box_of(raster)))
     if inside.is_empty:
-        raise SlopeError(path, "axis of the road must lie in the grid of the run", geometry.numbers(axis.bounds))
+        raise SlopeError(path, "axis of the road must lie in the grid of the run", geometry.format_numbers(axis.bounds))
     return eastward(inside)
 
 
@@ -117,7 +117,7 @@ def by_chainage(run_, road, axes):
     return [[EACH * at, held] for at, held in zip(found.tolist(), np.bincount(inverse, volume[row, column]).tolist())]
 
 
-def along(axis, run_, removed, asked, road=None):
+def profile_road(axis, run_, removed, asked, road=None):
     """Profile along the axis, a dict of arrays: one entry per cell that it crosses. Lengths are exact.
 
     asked: roads.Asked, whose start is the chainage of the axis' first point; road: polygons, beside which nothing is
@@ -145,7 +145,7 @@ def along(axis, run_, removed, asked, road=None):
             "removed": removed[row, column], "blocked": ((thickness > asked.blocked) & on_road).astype(int)}
 
 
-def stretches(profile):
+def find_profile_stretches(profile):
     """Blocked stretches of a profile: list of (from, to)."""
     step = np.diff(np.concatenate([[0], profile["blocked"], [0]]))
     return [(profile["from"][a], profile["to"][b - 1])

@@ -13,7 +13,7 @@ from ..survey.crs import same_crs
 from ..survey.rasters import HIGHEST, Raster, crs_name, is_raster
 from . import reach
 from .connected import connected, top
-from .volume_files import text
+from .volume_files import format_csv_number
 
 THRESHOLD = 0.1   # m
 FULL = 1e-9       # a smaller share of a cell, or of the largest thickness, is rounding
@@ -36,8 +36,8 @@ def read_observed(path, raster, threshold, local, warn=None):
     if not is_raster(path):
         polygon = polygons.read_local(path, raster, local)
         return from_polygon(polygon, raster)
-    mapped = beside.read(path, raster, False, local=beside.Local(local), warn=warn,
-                         remedy=" (--local if it is in the run's local metres)")
+    mapped = beside.read_raster_beside(path, raster, False, local=beside.Local(local), warn=warn,
+                                       remedy=" (--local if it is in the run's local metres)")
     return from_raster(path, mapped, raster, threshold)
 
 
@@ -74,14 +74,14 @@ def from_raster(path, mapped, raster, threshold):
     x = to_index.c + to_index.a * np.arange(thickness.shape[1] + 1)
     y = to_index.f + to_index.e * np.arange(thickness.shape[0] + 1)
     if x[0] >= shape[1] or x[-1] <= 0 or y[0] >= shape[0] or y[-1] <= 0:
-        raise SlopeError(path, f"must overlap the grid of the run, {geometry.numbers(extent(raster))} (local metres)",
-                         geometry.numbers(extent(Raster(thickness, there, None))))
+        raise SlopeError(path, f"must overlap the grid of the run, {geometry.format_numbers(extent(raster))} (local "
+                         "metres)", geometry.format_numbers(extent(Raster(thickness, there, None))))
     thick = thickness > threshold
-    share = np.clip(spread(thick.astype(float), x, y, shape), 0, 1)
+    share = np.clip(average_cells(thick.astype(float), x, y, shape), 0, 1)
     share[share < FULL] = 0
     area = abs(there.a * there.e)
     cell = raster.transform.a ** 2
-    mean = spread(thickness, x, y, shape)
+    mean = average_cells(thickness, x, y, shape)
     mean[mean < FULL * mean.max(initial=0)] = 0
     points = corners(there, thick)
     outside = thick.sum() * area - share.sum() * cell
@@ -90,7 +90,7 @@ def from_raster(path, mapped, raster, threshold):
                                                  ((outside, thick.sum()), (volume_outside, thickness.sum()))))
 
 
-def spread(values, x, y, shape):
+def average_cells(values, x, y, shape):
     """Values, even in the cells between lines x and y (index coordinates, ascending), as means of the unit cells."""
     for axis, lines, n in ((0, y, shape[0]), (1, x, shape[1])):
         values = np.moveaxis(values, axis, 0)
@@ -129,7 +129,7 @@ def overlap(simulated, observed, cell):
             "jaccard": ratio(met, union), "hit_rate": ratio(met, total), "precision": ratio(met, run_)}
 
 
-def runout(run_, simulated, observed):
+def compare_runout(run_, simulated, observed):
     """Distances in plan of the farthest points of both from the highest released point, and along the fall line (m)."""
     x, y, _, source = top(run_)
     points = corners(run_.raster.transform, simulated)
@@ -153,11 +153,11 @@ def runout(run_, simulated, observed):
         else:
             found.update(numbers)
     found["quantiles_of"] = "area" if observed.thickness is None else "volume"
-    found["quantiles"] = quantiles(run_, simulated, observed, (x, y))
+    found["quantiles"] = compare_quantiles(run_, simulated, observed, (x, y))
     return found
 
 
-def quantiles(run_, simulated, observed, place):
+def compare_quantiles(run_, simulated, observed, place):
     """Distances (m) of cell centres from a place that shares of both deposits stay within.
 
     Shares of the volume where both have a thickness; of the area where the mapped deposit is an outline.
@@ -217,7 +217,7 @@ def mesh_table(run_, simulated, observed, mesh):
     return table
 
 
-def volumes(observed, table):
+def compare_volumes(observed, table):
     """Volumes (m3) and their errors; per mesh cell: mean of the absolute errors over those with a deposit, and RMS."""
     ours = math.fsum(table["simulated_volume"].ravel())
     theirs = math.fsum(table["observed_volume"].ravel()) + observed.volume_outside
@@ -234,21 +234,21 @@ def volumes(observed, table):
 
 # --- output ---
 
-def write_csv(path, run_, mesh, table):
+def write_score_csv(path, run_, mesh, table):
     """One row per mesh cell with a deposit, simulated or mapped."""
     east, north = run_.raster.offset
     listed = np.argwhere(np.any([np.abs(values) > 0 for values in table.values()], axis=0))
 
     def line(row, column):
         x, y = mesh.corner(row, column)
-        return [row + 1, column + 1, *map(text, map(float, (x, y, x + east, y + north))),
-                *(text(float(values[row, column])) for values in table.values())]
+        return [row + 1, column + 1, *map(format_csv_number, map(float, (x, y, x + east, y + north))),
+                *(format_csv_number(float(values[row, column])) for values in table.values())]
 
-    disk.write(path, disk.csv_text(["row", "column", "xlo", "ylo", "east", "north", *table],
-                                   (line(row, column) for row, column in listed.tolist())))
+    disk.write_file(path, disk.csv_text(["row", "column", "xlo", "ylo", "east", "north", *table],
+                                        (line(row, column) for row, column in listed.tolist())))
 
 
-def draw(path, run_, simulated, observed, about):
+def draw_score(path, run_, simulated, observed, about):
     from ..drawing import maps, pictures        # matplotlib, which a study that draws nothing does not need
 
     raster = run_.raster

@@ -6,15 +6,15 @@ from .. import disk, findings
 from ..errors import SlopeError
 from ..survey.rasters import crs_name
 from . import deposit
-from .score import (THRESHOLD, balls, connected_runout, draw, mesh_table, overlap, read_observed, runout, volumes,
-                    write_csv)
+from .score import (THRESHOLD, balls, connected_runout, draw_score, mesh_table, overlap, read_observed, compare_runout,
+                    compare_volumes, write_score_csv)
 from .volume import make_mesh
 
 FILES = ("score.csv", "score.png", "score.yaml")
 
 
-def make(prefix: str, mapped: Path, folder: Path, threshold: float = THRESHOLD, mesh: Optional[float] = None,
-         terrain: Optional[Path] = None, local: bool = False, overwrite: bool = False) -> str:
+def make_score(prefix: str, mapped: Path, folder: Path, threshold: float = THRESHOLD, mesh: Optional[float] = None,
+               terrain: Optional[Path] = None, local: bool = False, overwrite: bool = False) -> str:
     """Write score.yaml, score.csv and score.png of a run to a folder; returns what the user needs to know.
 
     mapped: a file, outline or raster; threshold: m; mesh: side of the cells of score.csv, m, None: the run's; terrain:
@@ -25,7 +25,7 @@ def make(prefix: str, mapped: Path, folder: Path, threshold: float = THRESHOLD, 
     if mesh is not None and mesh <= 0:
         raise SlopeError("--mesh", "must be > 0", f"{mesh:g}")
     warn, warnings = findings.warner("score")
-    run_ = deposit.read(prefix, terrain, warn)
+    run_ = deposit.read_deposit(prefix, terrain, warn)
     disk.check_folder(folder, FILES, [run_.prefix, mapped], overwrite)
     squares = make_mesh(mesh or run_.cell, run_.raster)
     observed = read_observed(mapped, run_.raster, threshold, local, warn)
@@ -40,22 +40,22 @@ def make(prefix: str, mapped: Path, folder: Path, threshold: float = THRESHOLD, 
                      "moving": run_.summary["moving"]},
              "threshold": threshold, "cell": run_.cell, "mesh": squares.size,
              "area": overlap(simulated, observed, run_.cell),
-             "runout": {**runout(run_, simulated, observed), "balls": balls(run_),
+             "runout": {**compare_runout(run_, simulated, observed), "balls": balls(run_),
                         "connected": connected_runout(run_, threshold, observed)}}
     table = mesh_table(run_, simulated, observed, squares)
     if observed.thickness is not None:
         about["bulk_factor"] = run_.bulk
-        about["volume"] = volumes(observed, table)
+        about["volume"] = compare_volumes(observed, table)
     about["warnings"] = warnings
     with disk.complete(folder, "score.yaml") as new:
-        write_csv(new / "score.csv", run_, squares, table)
-        draw(new / "score.png", run_, simulated, observed, about)
+        write_score_csv(new / "score.csv", run_, squares, table)
+        draw_score(new / "score.png", run_, simulated, observed, about)
         about["files"] = list(FILES)
         disk.write_yaml(new / "score.yaml", about, "slope score: simulated against mapped; m, m2, m3, degrees")
-    return summary(about, folder)
+    return describe_score(about, folder)
 
 
-def summary(about, folder):
+def describe_score(about, folder):
     """What the user needs to know."""
     area, out = about["area"], about["runout"]
     jaccard = "none" if area["jaccard"] is None else f"{area['jaccard']:.3f}"

@@ -47,7 +47,7 @@ class Arrival(NamedTuple):
     lost: Optional[float]           # their volume, m3; None: the start has no diameter
 
 
-def check(paths: Sequence[str], starts: Optional[Sequence[str]], wanted: Wanted) -> None:
+def check_travel(paths: Sequence[str], starts: Optional[Sequence[str]], wanted: Wanted) -> None:
     """Raise SlopeError for what can be seen before any reading."""
     for name in DIRECTIONS:
         limits = wanted.limits(name)
@@ -65,10 +65,10 @@ def of_dumps(paths: Sequence[str], starts: Optional[Sequence[str]], wanted: Want
 
     tell: what gets the warnings.
     """
-    check(paths, starts, wanted)
+    check_travel(paths, starts, wanted)
     each_start: List[Optional[str]] = list(starts) if starts else [None]
     each_start *= len(paths) // len(each_start)
-    arrivals = [read(path, start, wanted) for path, start in
+    arrivals = [read_arrival(path, start, wanted) for path, start in
                 rasters.progress(list(zip(paths, each_start)), "reading the dumps")]
     warnings: List[Dict[str, Any]] = []
 
@@ -89,18 +89,18 @@ def of_dumps(paths: Sequence[str], starts: Optional[Sequence[str]], wanted: Want
         **{name: statistics([one.at[name] for one in arrivals]) for name in DIRECTIONS}}
     single = [each(one) for one in arrivals]
     if starts:
-        about["travel"] = statistics([plan(one.place - one.start) for one in arrivals])
-        about["runout"] = {key: spread([one["runout"][key] for one in single]) for key in
+        about["travel"] = statistics([measure_plan_length(one.place - one.start) for one in arrivals])
+        about["runout"] = {key: spread_over_runs([one["runout"][key] for one in single]) for key in
                            ("distance", "drop", "reach_angle")}
         about["runout"]["quantiles"] = [
-            {"share": share, **{key: spread([one["runout"]["quantiles"][k][key] for one in single])
+            {"share": share, **{key: spread_over_runs([one["runout"]["quantiles"][k][key] for one in single])
                                 for key in ("distance", "reach_angle")}} for k, share in enumerate(reach.SHARES)]
     about["each_run"] = [known(one) for one in single]
     about["warnings"] = warnings
     with disk.complete(folder, "travel.yaml") as new:
-        write_csv(new / "travel.csv", arrivals, tables)
+        write_travel_csv(new / "travel.csv", arrivals, tables)
         write_balls(new / "balls.csv", arrivals)
-        draw(new / "travel.png", arrivals, tables, wanted)
+        draw_travel(new / "travel.png", arrivals, tables, wanted)
         about["files"] = list(FILES)
         disk.write_yaml(new / "travel.yaml", about, "slope travel: arrival positions; m, degrees")
     return about
@@ -108,9 +108,9 @@ def of_dumps(paths: Sequence[str], starts: Optional[Sequence[str]], wanted: Want
 
 # --- the balls ---
 
-def read(path, start, wanted: Wanted) -> Arrival:
+def read_arrival(path, start, wanted: Wanted) -> Arrival:
     """The Arrival of a run."""
-    rest = chosen(dumps.last(path, ("type", "vx", "vy", "vz", "diameter", "radius")), wanted.types)
+    rest = select_balls(dumps.last(path, ("type", "vx", "vy", "vz", "diameter", "radius")), wanted.types)
     place = rest.place
     turn = math.radians(wanted.axis)
     way = np.array([[math.cos(turn), math.sin(turn)], [-math.sin(turn), math.cos(turn)]])
@@ -121,7 +121,7 @@ def read(path, start, wanted: Wanted) -> Arrival:
         moving = int((np.hypot(np.hypot(rest.of["vx"], rest.of["vy"]), rest.of["vz"]) > MOVING).sum())
     before, top, missing, lost = None, None, 0, None
     if start:
-        first = chosen(dumps.last(start, ("type", "diameter", "radius")), wanted.types)
+        first = select_balls(dumps.last(start, ("type", "diameter", "radius")), wanted.types)
         ids, order = first.of["id"], np.argsort(first.of["id"])
         same = order[np.minimum(np.searchsorted(ids, rest.of["id"], sorter=order), len(ids) - 1)]
         other = rest.of["id"][ids[same] != rest.of["id"]]
@@ -141,7 +141,7 @@ def volume_of(snapshot):
     return math.pi / 6 * (2 * snapshot.of["radius"]) ** 3 if "radius" in snapshot.of else None
 
 
-def chosen(snapshot, types):
+def select_balls(snapshot, types):
     """The balls of some types, None: all."""
     if not types:
         return snapshot
@@ -164,14 +164,14 @@ def distribution(arrivals, name, limits, warn):
     if outside:
         warn(Finding("beyond limits", {"option": f"--{name}", "low": float(lo), "high": float(hi),
                                        "outside": int(outside), "balls": len(balls)}))
-    step = step_of(hi - lo)
+    step = choose_axis_step(hi - lo)
     first = math.floor(lo / step + 1e-9) if limits else math.ceil(lo / step - 1e-9) - 1    # where the share is still 0
     at = (step * np.arange(first, math.ceil(hi / step - 1e-9) + 1)).round(12)
     shares = np.array([np.searchsorted(np.sort(one.at[name]), at, "right") / len(one.id) for one in arrivals])
     return at, shares, np.searchsorted(np.sort(balls), at, "right") / len(balls)
 
 
-def step_of(length):
+def choose_axis_step(length):
     """The smallest of 1, 2, 5 x 10^n with at most POINTS steps in a length (m)."""
     least = max(length, 1e-3) / POINTS
     power = 10.0 ** math.floor(math.log10(least))
@@ -183,7 +183,7 @@ def percentiles(values):
             "mean": round(float(values.mean()), 9), "sd": round(float(values.std()), 9)}
 
 
-def spread(values):
+def spread_over_runs(values):
     """A number of each run, over the runs; what is infinite is unknown."""
     return {"lowest": finite(min(values)), "median": finite(np.median(values)), "highest": finite(max(values))}
 
@@ -197,27 +197,27 @@ def statistics(runs):
     """Percentiles of the balls of all runs, and how each differs from run to run."""
     single = [percentiles(values) for values in runs]
     return {"all": percentiles(np.concatenate(runs)),
-            "over_runs": {key: spread([one[key] for one in single]) for key in single[0]}}
+            "over_runs": {key: spread_over_runs([one[key] for one in single]) for key in single[0]}}
 
 
-def plan(difference):
+def measure_plan_length(difference):
     """Length of vectors in plan."""
     return np.hypot(difference[..., 0], difference[..., 1])
 
 
-def runout(one):
+def measure_runout(one):
     """From the highest ball at the start to the farthest one now: distance in plan (m), drop (m), angle (degrees).
 
     And quantiles: what shares of the volume (of the balls, where a dump has no diameter) stay within, infinite where
     the farthest of those are missing.
     """
-    distance = plan(one.place - one.top)
+    distance = measure_plan_length(one.place - one.top)
     far = distance.argmax()
     drop = one.top[2] - one.place[far, 2]
     by_volume = one.volume is not None and (one.lost is not None or not one.missing)
     weights = (one.volume, one.lost or 0.0) if by_volume else (np.ones(len(distance)), float(one.missing))
     shares = [{"share": share, "distance": within, "reach_angle": angle}
-              for share, within, angle in reach.quantiles(one.place, one.top, *weights)]
+              for share, within, angle in reach.compute_reach_quantiles(one.place, one.top, *weights)]
     return {"distance": round(float(distance[far]), 9), "drop": round(float(drop), 9),
             "reach_angle": round(math.degrees(math.atan2(drop, distance[far])), 9), "ball": int(one.id[far]),
             "quantiles_of": "volume" if by_volume else "balls", "quantiles": shares}
@@ -228,7 +228,8 @@ def each(one):
     about = {"dump": one.name, "step": one.step, "balls": len(one.id), "moving": one.moving,
              **{name: percentiles(values) for name, values in one.at.items()}}
     if one.start is not None:
-        about.update(missing=one.missing, travel=percentiles(plan(one.place - one.start)), runout=runout(one))
+        about.update(missing=one.missing, travel=percentiles(measure_plan_length(one.place - one.start)),
+                     runout=measure_runout(one))
     return about
 
 
@@ -243,8 +244,8 @@ def known(one):
 
 # --- output ---
 
-def write_csv(path, arrivals, tables):
-    disk.write(path, disk.csv_text(
+def write_travel_csv(path, arrivals, tables):
+    disk.write_file(path, disk.csv_text(
         ["direction", "position", "lowest", "median", "highest", "all", *(one.name for one in arrivals)],
         ([name, *(f"{value:.9g}" for value in row)] for name, (at, shares, together) in tables.items()
          for row in np.column_stack([at, shares.min(axis=0), np.median(shares, axis=0), shares.max(axis=0), together,
@@ -258,15 +259,15 @@ def write_balls(path, arrivals):
     for one in arrivals:
         columns = [one.at["along"], one.at["across"], one.place[:, 2]]
         if moved:
-            distance, drop = plan(one.place - one.start), one.start[:, 2] - one.place[:, 2]
+            distance, drop = measure_plan_length(one.place - one.start), one.start[:, 2] - one.place[:, 2]
             columns += [distance, drop, np.degrees(np.arctan2(drop, distance))]
         rows += [[one.name, ball, *(f"{value:.9g}" for value in row)] for ball, row in
                  sorted(zip(one.id.tolist(), np.column_stack(columns)))]
-    disk.write(path, disk.csv_text(["run", "id", "along", "across", "z",
-                                    *(("travel", "drop", "angle") if moved else ())], rows))
+    disk.write_file(path, disk.csv_text(["run", "id", "along", "across", "z",
+                                         *(("travel", "drop", "angle") if moved else ())], rows))
 
 
-def draw(path, arrivals, tables, wanted: Wanted) -> None:
+def draw_travel(path, arrivals, tables, wanted: Wanted) -> None:
     """The distributions, as the paper's Figure 3: a line for the median of the runs, a band from lowest to highest."""
     several = len(arrivals) > 1
     with pictures.settings(figures.STYLE):

@@ -9,7 +9,7 @@ REACH = f"reach_{HEADLINE}_deg"
 BEYOND = 1 - HEADLINE / 100       # of the volume; where more left the box, that distance is beyond it
 
 
-def columns(summary: Mapping[str, Any]) -> Dict[str, Optional[float]]:
+def read_share_columns(summary: Mapping[str, Any]) -> Dict[str, Optional[float]]:
     """{column: m in plan from the highest released ball, or degrees} of a summary (run_folders.load_summary).
 
     None: a run of an older version, or so much left the box that this share of the released volume lies beyond it.
@@ -42,7 +42,7 @@ def lost(row: Traveled) -> bool:
     return row.lost_m3 > BEYOND * row.released_m3
 
 
-def farthest(rows: Sequence[One]) -> One:
+def find_farthest_run(rows: Sequence[One]) -> One:
     """The run that went farthest.
 
     Of those that left the box, which went beyond all others, it is the one that lost most. Where a run of an older

@@ -10,14 +10,14 @@ import numpy as np
 
 from .. import disk, geometry
 from ..errors import SlopeError
-from ..findings import Finding, entries, finding
+from ..findings import Finding, encode_findings, finding
 from ..geometry import Mesh
 from ..sites.site_warnings import of_angles
 from ..survey import rasters, roads
 from ..survey.lines import read_local
 from ..survey.rasters import crs_name
 from . import clearing, cut, deposit, passed, stretch_files, volume_files
-from .road_axis import along, axes_of, axis_of, by_chainage, in_grid_of, stretches, width_of
+from .road_axis import profile_road, axes_of, axis_of, by_chainage, in_grid_of, find_profile_stretches, width_of
 
 CUT_ANGLE = 30.0       # degrees
 MOST_SAMPLES = 32
@@ -42,7 +42,7 @@ class Wanted(NamedTuple):
 
 
 class Removal(NamedTuple):
-    """What must be removed from a road, and all that write() needs."""
+    """What must be removed from a road, and all that write_removal() needs."""
     run: deposit.Deposit
     road: Any                           # polygon in local metres, the part of it in the grid
     axis: Any                           # its lines
@@ -55,12 +55,12 @@ class Removal(NamedTuple):
     warnings: List[Finding]
 
 
-def of_run(prefix, wanted: Wanted, terrain=None, tell: Callable[[str], None] = lambda text: None) -> Removal:
+def compute_removal(prefix, wanted: Wanted, terrain=None, tell: Callable[[str], None] = lambda text: None) -> Removal:
     """The volume to remove of the run whose fix deposit/grid wrote PREFIX; tell: what gets the warnings.
 
     terrain: the run's, whose sidecar has the CRS (default: terrain.asc beside PREFIX). Raises SlopeError on bad input.
     """
-    check(wanted)
+    check_wanted_volume(wanted)
     warnings: List[Finding] = []
 
     def warn(said):
@@ -69,7 +69,7 @@ def of_run(prefix, wanted: Wanted, terrain=None, tell: Callable[[str], None] = l
 
     for one in of_angles({"--cut-angle": wanted.cut_angle}):
         warn(one)
-    run = deposit.read(prefix, terrain, warn)
+    run = deposit.read_deposit(prefix, terrain, warn)
     mesh = make_mesh(wanted.mesh, run.raster)
     asked = wanted.asked
     given = roads.read_local(wanted.road, run.raster, asked, wanted.local, warn=warn)
@@ -81,49 +81,51 @@ def of_run(prefix, wanted: Wanted, terrain=None, tell: Callable[[str], None] = l
         axis, source, width = axis_of(given.lines, road, asked)
     roads.check_lane(asked.lane, width)
     try:
-        result = evaluate(run, road, wanted.cut_angle, mesh, wanted.samples)
-        profile = along(axis, run, result.removed, asked, road if wanted.axis else None)
+        result = evaluate_removal(run, road, wanted.cut_angle, mesh, wanted.samples)
+        profile = profile_road(axis, run, result.removed, asked, road if wanted.axis else None)
         axes = axes_of(axis, asked)
-        cleared = clearing.of_road(run, result, profile, axes, width,
-                                   road if given.line is None else None, asked, mesh, wanted.cut_angle, wanted.samples)
+        cleared = clearing.evaluate_clearing(run, result, profile, axes, width,
+                                             road if given.line is None else None, asked, mesh, wanted.cut_angle,
+                                             wanted.samples)
     except cut.NoGround as error:
         x, y = run.raster.transform * error.args[0]
         raise SlopeError(wanted.road, "ground at the edge of the road must have a height, it has none at",
                          f"{x:.3f} {y:.3f} (local metres)") from None
     about = totals(wanted, run, mesh, result, profile, source)
     about.update(clearing=cleared.totals, stretches=cleared.entries, by_10_m=by_chainage(run, road, axes),
-                 **passed.of_run(run, road, given.line))
+                 **passed.evaluate_passed(run, road, given.line))
     if result.unknown > 0:
         warn(Finding("no ground", {"volume": float(result.unknown)}))
         about["volume"]["unknown"] = result.unknown
-    about["warnings"] = entries(warnings)
+    about["warnings"] = encode_findings(warnings)
     return Removal(run, road, axis, mesh, result, profile, cleared, wanted.bulk / run.bulk if wanted.bulk else None,
-                   disk.plain(about), warnings)
+                   disk.make_plain(about), warnings)
 
 
-def write(found: Removal, folder: Path, picture: bool = True) -> None:
+def write_removal(found: Removal, folder: Path, picture: bool = True) -> None:
     """Tables, rasters, GeoJSON, map and volume.yaml, all of them or none; found.about gets their names."""
     run, mesh, result, about = found.run, found.mesh, found.result, found.about
     cells = volume_files.Cells(run, mesh, result, found.factor, found.clearing.mesh)
     with disk.complete(folder, "volume.yaml") as new:
-        volume_files.write_csv(new / "volume.csv", cells)
+        volume_files.write_cells_csv(new / "volume.csv", cells)
         volume_files.write_geojson(new / "volume.geojson", run, mesh, cells)
         rasters.write_geotiff(new / "volume.tif", {"thickness to remove (m)": np.where(
             np.isfinite(run.base) | (run.raster.z > 0), result.removed, np.nan)}, run.raster)
         rasters.write_geotiff(new / "volume_mesh.tif", {"volume to remove (m3)": result.volume},
                               run.raster._replace(transform=mesh.transform))
         volume_files.write_profile(new / "axis.csv", run, found.profile)
-        stretch_files.write_csv(new / "stretches.csv", run, found.clearing)
-        stretch_files.write_geopackage(new / "stretches.gpkg", run, found.clearing)
+        stretch_files.write_stretches_csv(new / "stretches.csv", run, found.clearing)
+        stretch_files.write_stretches_geopackage(new / "stretches.gpkg", run, found.clearing)
         if picture:
-            volume_files.draw(new / "volume.png", run, found.road, found.axis, mesh, result, about, found.clearing)
+            volume_files.draw_removal(new / "volume.png", run, found.road, found.axis, mesh, result, about,
+                                      found.clearing)
         about["files"] = sorted(path.name for path in new.iterdir()) + ["volume.yaml"]
         disk.write_yaml(new / "volume.yaml", about, "slope volume: what must be removed; m, m2, m3, degrees")
     if not picture:
         (folder / "volume.png").unlink(missing_ok=True)     # of another result
 
 
-def check(wanted: Wanted) -> None:
+def check_wanted_volume(wanted: Wanted) -> None:
     """Check what can be checked before any reading."""
     if not 0 < wanted.cut_angle < 90:
         raise SlopeError("--cut-angle", "must be > 0 and < 90 degrees", f"{wanted.cut_angle:g}")
@@ -131,7 +133,7 @@ def check(wanted: Wanted) -> None:
         raise SlopeError("--mesh", "must be > 0", f"{wanted.mesh:g}")
     if wanted.bulk is not None and wanted.bulk <= 0:
         raise SlopeError("--bulk", "must be > 0", f"{wanted.bulk:g}")
-    roads.check(wanted.asked)
+    roads.check_road(wanted.asked)
     if wanted.axis is not None and wanted.asked.width is not None:
         raise SlopeError("--axis", "must not be given with --road-width: the axis of such a road is its line",
                          wanted.axis)
@@ -154,8 +156,8 @@ def in_grid(polygon, raster, path, warn):
     grid = geometry.box_of(raster)
     inside = polygon if grid.covers(polygon) else geometry.as_multi(polygon.intersection(grid))
     if inside.area <= 0:
-        raise SlopeError(path, f"must lie in the grid of the run, {geometry.numbers(geometry.extent(raster))} (local "
-                         "metres)", geometry.numbers(polygon.bounds))
+        raise SlopeError(path, f"must lie in the grid of the run, {geometry.format_numbers(geometry.extent(raster))} "
+                         "(local " "metres)", geometry.format_numbers(polygon.bounds))
     outside = 1 - inside.area / polygon.area
     if outside > 1e-9:
         warn(Finding("cut off", {"file": str(path), "percent": 100 * outside}))
@@ -187,7 +189,7 @@ class Result:
         return round(math.fsum(values.ravel()), self.digits)
 
 
-def evaluate(run_, road, angle, mesh, samples=SAMPLES):
+def evaluate_removal(run_, road, angle, mesh, samples=SAMPLES):
     """The Result for a Deposit, a road (polygon in local metres, in the grid) and a cut at an angle (degrees)."""
     tangent = math.tan(math.radians(angle)) * run_.cell
     removed = cut.removed(run_.raster.z, cut.Ground(run_.base), [geometry.to_index(road, run_.raster)], tangent, mesh,
@@ -207,7 +209,7 @@ def totals(wanted: Wanted, run_, mesh, result, profile, source) -> Dict[str, Any
     }
     volume["stays"] = round(volume["deposit"] - volume["remove"], result.digits)
     thickest = int(np.argmax(profile["thickness"]))
-    blocked = stretches(profile)
+    blocked = find_profile_stretches(profile)
     about = {
         "prefix": run_.prefix, "road": wanted.road, "cut_angle": wanted.cut_angle,
         "terrain": run_.terrain, "crs": None if place.crs is None else crs_name(place.crs),

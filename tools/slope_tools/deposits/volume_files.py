@@ -34,7 +34,7 @@ class Cells:
         return zip(*(values.tolist() for values in self.columns.values()))
 
 
-def text(value, digits=9):
+def format_csv_number(value, digits=9):
     """A number in a CSV file; as many digits as it takes for a rounded one."""
     if isinstance(value, int):
         return value
@@ -45,9 +45,9 @@ def text(value, digits=9):
     return short.removesuffix(".0")
 
 
-def write_csv(path, cells):
-    disk.write(path, disk.csv_text(cells.columns, ([text(value, cells.digits) for value in values]
-                                                   for values in cells.rows())))      # at least one: the road's
+def write_cells_csv(path, cells):
+    disk.write_file(path, disk.csv_text(cells.columns, ([format_csv_number(value, cells.digits) for value in values]
+                                                        for values in cells.rows())))      # at least one: the road's
 
 
 def write_geojson(path, run_, mesh, cells):
@@ -77,11 +77,11 @@ def write_profile(path, run_, profile):
     east, north = run_.raster.offset
     columns = {**profile, "east": profile["x"] + east, "north": profile["y"] + north}
     order = ("from", "to", "x", "y", "east", "north", "ground", "thickness", "removed", "blocked")
-    disk.write(path, disk.csv_text(order, (map(text, values)
-                                           for values in zip(*(columns[key].tolist() for key in order)))))
+    disk.write_file(path, disk.csv_text(order, (map(format_csv_number, values)
+                                                for values in zip(*(columns[key].tolist() for key in order)))))
 
 
-def draw(path, run_, road, axis, mesh, result, about, cleared):
+def draw_removal(path, run_, road, axis, mesh, result, about, cleared):
     from matplotlib.patches import Rectangle
 
     from ..drawing import maps, pictures

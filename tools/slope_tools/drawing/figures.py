@@ -39,7 +39,7 @@ def data_uri(figure, kind="png"):
     figure.set_layout_engine("none")    # once more, and it would not be what was measured
     used = figure.get_tightbbox(figure.canvas.get_renderer())
     width = figure.get_size_inches()[0]
-    content = pictures.drawn(figure, format=kind, dpi=DPI, bbox_inches=Bbox([
+    content = pictures.encode_figure(figure, format=kind, dpi=DPI, bbox_inches=Bbox([
         [min(0, used.x0), used.y0 - 0.03], [max(width, used.x1), used.y1 + 0.03]]),
         metadata={"Date": None} if kind == "svg" else {"Software": None})
     mime = {"png": "image/png", "svg": "image/svg+xml"}[kind]
@@ -148,11 +148,11 @@ def classes_of(values, apart=None):
     else:
         bounds = classes(largest) if largest > 0 else [lowest, 1.0]
     if bounds[-1] < largest:
-        bounds.append(above(largest))
+        bounds.append(round_up_nicely(largest))
     return bounds
 
 
-def above(value):
+def round_up_nicely(value):
     """The smallest of 1, 1.5, 2, 3, 4, 5, 6, 8 x 10^n at or above a value."""
     power = 10.0 ** math.floor(math.log10(value))
     return next(float(f"{step * power:.12g}") for step in (1, 1.5, 2, 3, 4, 5, 6, 8, 10)
@@ -170,7 +170,7 @@ def even_to_most(values):
     """Bounds of classes of equal width for most of the values (finite); stragglers are in one more class."""
     bounds = even(np.percentile(values, 97))
     if bounds[-1] < values.max():
-        bounds.append(above(values.max()))
+        bounds.append(round_up_nicely(values.max()))
     return bounds
 
 

@@ -53,7 +53,7 @@ def subplots(rows: int = 1, columns: int = 1, *, figsize: Any, dpi: Optional[flo
     return made, made.subplots(rows, columns, **options)
 
 
-def drawn(figure_: Figure, **options: Any) -> bytes:
+def encode_figure(figure_: Figure, **options: Any) -> bytes:
     """A figure as the content of a file; options: of savefig, without them a PNG.
 
     Without the version of matplotlib: the same figure is the same file.
@@ -66,4 +66,4 @@ def drawn(figure_: Figure, **options: Any) -> bytes:
 
 def save(figure_: Figure, path: Any, **options: Any) -> None:
     """Write a figure as a PNG, complete or not at all; options: of savefig."""
-    disk.write(path, drawn(figure_, **options))
+    disk.write_file(path, encode_figure(figure_, **options))

@@ -12,7 +12,8 @@ as the ensemble is. Where the emulator knows little, chance (its residuals) prev
 
 Known events before the shortest run count as the runs of the shortest window; what they did is not known (on a road
 near the source they may leave more), so that in an upper bound they exceed every value and in a lower one none. Those
-beyond the longest exceed every value, in a lower bound none; in places the longest run stands for them, see whole().
+beyond the longest exceed every value, in a lower bound none; in places the longest run stands for them, see
+weigh_runs().
 """
 from dataclasses import dataclass
 from typing import Callable, ClassVar, List, Optional, Sequence, Tuple
@@ -78,19 +79,19 @@ def either_side(share: np.ndarray, found: weights.Weights) -> Optional[Tuple[np.
     return both[0], both[1]
 
 
-def whole(mass: Masses) -> np.ndarray:
+def weigh_runs(mass: Masses) -> np.ndarray:
     """The share of all known events that each run stands for.
 
     Those beyond the longest run go at least as far as it does: it stands for them wherever a place is asked for, in
     maps, stretches and zones, so that no fewer of them reach its end than go beyond it. What they leave is not known:
-    as numbers they exceed every value, see curve().
+    as numbers they exceed every value, see compute_known_curve().
     """
     share = mass.share.copy()
     share[mass.order[-1]] += mass.far
     return share
 
 
-def above(values: np.ndarray, levels: np.ndarray) -> np.ndarray:
+def are_above_levels(values: np.ndarray, levels: np.ndarray) -> np.ndarray:
     """Whether each run (rows) has more than each level (columns)."""
     return values[:, None] > levels
 
@@ -118,7 +119,7 @@ def estimate(exceeding: np.ndarray, mass: Masses, factor=1.0, several: float = 1
 @dataclass(frozen=True)
 class Standing:
     """Runs that count as the known events that they stand for, in maps (as ensemble_maps.Alike); several, failed: see
-    estimate(). Those beyond the longest run: see whole(); in an upper bound they are everywhere."""
+    estimate(). Those beyond the longest run: see weigh_runs(); in an upper bound they are everywhere."""
     mass: Masses
     several: float
     failed: float
@@ -126,23 +127,24 @@ class Standing:
     at_a_time: ClassVar[int] = 20_000
 
     def within(self, block: np.ndarray) -> np.ndarray:
-        return within(block, whole(self.mass), hazard.SHARES)[:, None]
+        return within(block, weigh_runs(self.mass), hazard.SHARES)[:, None]
 
     def above(self, exceeding: np.ndarray) -> Sequence[np.ndarray]:
         _, low, high = estimate(exceeding, self.mass, several=self.several, failed=self.failed)
-        return whole(self.mass) @ exceeding, low, np.minimum(high + self.mass.far, 1)
+        return weigh_runs(self.mass) @ exceeding, low, np.minimum(high + self.mass.far, 1)
 
 
-def curve(values: hazard.Values, mass: Masses, effect: Optional[Sequence[hazard.Values]] = None,
-          several: float = 1.0, failed: float = 0.0) -> hazard.Curve:
-    """The share of known events above each value of the runs, with bounds; it begins as hazard.curve does.
+def compute_known_curve(values: hazard.Values, mass: Masses, effect: Optional[Sequence[hazard.Values]] = None,
+                        several: float = 1.0, failed: float = 0.0) -> hazard.Curve:
+    """The share of known events above each value of the runs, with bounds; it begins as hazard.compute_hazard_curve
+    does.
 
     effect: of the design (Design.effect), on the variance; several, failed: see estimate().
     """
     given = np.asarray(values, float)
     at = hazard.levels_of(given)
     factor = np.interp(at, effect[0], effect[1]) if effect else 1.0
-    part, low, high = estimate(above(given, at), mass, factor, several, failed)
+    part, low, high = estimate(are_above_levels(given, at), mass, factor, several, failed)
     high = np.maximum.accumulate((high + mass.far)[::-1])[::-1]
     return hazard.Curve(at, part + mass.far, np.minimum.accumulate(low), np.minimum(high, 1.0))
 
@@ -156,8 +158,9 @@ def bounds(share: np.ndarray, found: np.ndarray, runs: float):
     return np.clip(middle - half, 0, share), np.clip(middle + half, share, 1)
 
 
-def quantiles(found: hazard.Curve, shares: Sequence[float] = hazard.SHARES, values: Optional[hazard.Values] = None,
-              mass: Optional[Masses] = None) -> List[KnownQuantile]:
+def compute_known_quantiles(found: hazard.Curve, shares: Sequence[float] = hazard.SHARES,
+                            values: Optional[hazard.Values] = None,
+                            mass: Optional[Masses] = None) -> List[KnownQuantile]:
     """Values that shares of the known events stay within; None where events beyond the longest run decide.
 
     values, mass: of the runs of the curve, which tell whether events decide that end where no run does.
@@ -221,7 +224,7 @@ class Design:
         """Levels of a quantity, and the factor of the variance at each of them, at most 1."""
         given = np.asarray(values, float)
         levels = np.unique(np.quantile(given, (np.arange(LEVELS) + 0.5) / LEVELS, method="inverted_cdf"))
-        shares = np.array([mass.share @ above(one, levels) + mass.far
+        shares = np.array([mass.share @ are_above_levels(one, levels) + mass.far
                            for one, mass in zip(self.simulate(given), self.masses)])
         even, independent = (part.var(axis=0, ddof=1) for part in (shares[:SIMULATED], shares[SIMULATED:]))
         ratio = np.divide(even, independent, out=np.ones_like(even), where=independent > 0)

@@ -73,7 +73,7 @@ class Emulated:
     known_events: Optional[known_events.Emulated]
 
 
-def planned(rows: Sequence[Row]) -> List[Row]:
+def select_planned_rows(rows: Sequence[Row]) -> List[Row]:
     """The rows of the design, without those that were added."""
     return [row for row in rows if not row.batch]
 
@@ -85,11 +85,12 @@ def main_of(order: Order, finished: Sequence[Finished]) -> List[str]:
 
 
 def emulate(order: Order, rows: Sequence[Row], mobility: Optional[Mobility]) -> Emulated:
-    """For evaluate(), which does without where all runs failed."""
-    finished = finished_of(planned(rows))
+    """For evaluate_ensemble(), which does without where all runs failed."""
+    finished = finished_of(select_planned_rows(rows))
     if not finished:
         return Emulated({}, None)
-    point, places, main = points_of(order.sample, finished), order.sample.places(finished), main_of(order, finished)
+    point, places, main = number_design_points(order.sample, finished), order.sample.places(finished), main_of(order,
+                                                                                                               finished)
     influence = {
         name: emulator.analyse(order.sample.names, places, column(finished, name), point, order.sample.snap)
         for name in main}
@@ -99,51 +100,51 @@ def emulate(order: Order, rows: Sequence[Row], mobility: Optional[Mobility]) -> 
     return Emulated(influence, known_events.emulate(order.sample, order.added, rows, mobility, main))
 
 
-def evaluate(order: Order, rows: Sequence[Row], mobility: Optional[Mobility], emulated: Emulated,
-             draw: Optional[known_events.Draw] = None) -> Optional[Evaluated]:
+def evaluate_ensemble(order: Order, rows: Sequence[Row], mobility: Optional[Mobility], emulated: Emulated,
+                      draw: Optional[known_events.Draw] = None) -> Optional[Evaluated]:
     """What an ensemble says, None where all runs failed.
 
     rows: of study.csv; mobility: of an order with a condition; emulated: of emulate(); draw: see known_events.
     """
-    finished = finished_of(planned(rows))
+    finished = finished_of(select_planned_rows(rows))
     if not finished:
         return None
-    failed = len(planned(rows)) - len(finished)
-    point = points_of(order.sample, finished)
-    of_quantity = {name: (quantities.name_of(name, finished), quantities.ALL[name].unit)
+    failed = len(select_planned_rows(rows)) - len(finished)
+    point = number_design_points(order.sample, finished)
+    of_quantity = {name: (quantities.name_quantity(name, finished), quantities.ALL[name].unit)
                    for name in quantities.known(On.ASKED, finished)}
-    curves = {name: hazard.curve(column(finished, name), point, failed) for name in of_quantity}
+    curves = {name: hazard.compute_hazard_curve(column(finished, name), point, failed) for name in of_quantity}
     known = None
     if order.condition:
         assert order.added and mobility and emulated.known_events
-        known = known_events.evaluate(order.condition, order.sample, order.added, rows, mobility, of_quantity,
-                                      emulated.known_events, draw)
+        known = known_events.evaluate_known_events(order.condition, order.sample, order.added, rows, mobility,
+                                                   of_quantity, emulated.known_events, draw)
     about = ensemble_types.Ensemble(
         design=order.sample.about, runs=len(finished) + failed, finished=len(finished), failed=failed,
         points=len(set(point)), confidence=hazard.CONFIDENCE, of=order.of if order.of in curves else None,
-        quantities={name: numbers(what, unit, column(finished, name), point, failed)
+        quantities={name: summarise_quantity(what, unit, column(finished, name), point, failed)
                     for name, (what, unit) in of_quantity.items()},
         influence=emulated.influence, doubts=[], maps=[], known_events=known.about if known else None, withheld=[])
-    return Evaluated(replace(about, doubts=[*no_effect(finished), *doubts(about)]), curves, finished, len(set(point)),
-                     failed, known)
+    return Evaluated(replace(about, doubts=[*no_effect(finished), *find_ensemble_caveats(about)]), curves, finished,
+                     len(set(point)), failed, known)
 
 
-def write(found: Evaluated, levels: ensemble_maps.Thresholds, output: Path, place: Optional[Place],
-          grids: Optional[str]) -> ensemble_types.Ensemble:
+def write_ensemble(found: Evaluated, levels: ensemble_maps.Thresholds, output: Path, place: Optional[Place],
+                   grids: Optional[str]) -> ensemble_types.Ensemble:
     """Tables and maps; what study.yaml says of the ensemble and of its known events, with the entries of the maps.
 
     place: CRS and offset of the maps; grids: why there can be none.
     """
-    disk.write(output / HAZARD, hazard.table(found.curves))
-    disk.write(output / INFLUENCE, influence_table(found.about.influence))
+    disk.write_file(output / HAZARD, hazard.tabulate_hazard(found.curves))
+    disk.write_file(output / INFLUENCE, influence_table(found.about.influence))
     prefixes = [run_folders.prefix_of(run_folders.summary_of(output, row.summary)) for row in found.finished]
     alike = ensemble_maps.Alike(found.failed, max(1.0, len(prefixes) / found.points))
-    maps = [] if grids else ensemble_maps.write(output / MAPS, prefixes, alike, levels, place)
-    known = known_events.write(found.known, levels, output, place, grids) if found.known else None
+    maps = [] if grids else ensemble_maps.write_ensemble_maps(output / MAPS, prefixes, alike, levels, place)
+    known = known_events.write_known_events(found.known, levels, output, place, grids) if found.known else None
     return replace(found.about, maps=maps, known_events=known)
 
 
-def points_of(sample: Sample, finished: Sequence[Finished]) -> List[int]:
+def number_design_points(sample: Sample, finished: Sequence[Finished]) -> List[int]:
     """Which point of the design each run is of; points whose runs are the same, to the last digit, are one."""
     known: Dict[tuple, int] = {}
     first = combinations.same_as(finished)
@@ -156,10 +157,11 @@ def column(finished: Sequence[Finished], name: str) -> np.ndarray:
 
 # --- numbers ---
 
-def numbers(name: str, unit: str, values: np.ndarray, point: Sequence[int], failed: int) -> ensemble_types.OfRuns:
+def summarise_quantity(name: str, unit: str, values: np.ndarray, point: Sequence[int],
+                       failed: int) -> ensemble_types.OfRuns:
     """Of a quantity: mean, deviation, range and quantiles."""
     quantiles = [one if several(point) else one._replace(low=None, high=None)
-                 for one in hazard.quantiles(values, point, failed)]
+                 for one in hazard.compute_quantiles(values, point, failed)]
     deviation = float(values.std(ddof=1)) if len(values) > 1 else None
     return ensemble_types.OfRuns(name, unit, float(values.mean()), deviation, float(values.min()), float(values.max()),
                                  quantiles)
@@ -182,7 +184,7 @@ def no_effect(finished: Sequence[Finished]) -> List[Finding]:
                                   "then": then}, [finished[k].run for k in same])]
 
 
-def doubts(about: ensemble_types.Ensemble) -> List[Finding]:
+def find_ensemble_caveats(about: ensemble_types.Ensemble) -> List[Finding]:
     """The caveats on the numbers."""
     found = []
     if about.failed:
@@ -217,12 +219,12 @@ def influence_table(influence: Mapping[str, Analysis]) -> str:
 
 # --- words ---
 
-def describe(about: ensemble_types.Ensemble) -> List[str]:
+def describe_ensemble(about: ensemble_types.Ensemble) -> List[str]:
     """The ensemble in a few lines: the quantiles of the main quantity, what it depends on, the caveats."""
     lines = [f"ensemble: {about.finished} runs of {about.points} points; bounds hold with "
              f"{100 * about.confidence:g} %"]
     of = about.of
-    lines += withheld_words.lines(about.withheld) if about.withheld else []
+    lines += withheld_words.describe_withheld(about.withheld) if about.withheld else []
     if of:
         entry = about.quantities[of]
         if not about.withheld:
@@ -230,7 +232,7 @@ def describe(about: ensemble_types.Ensemble) -> List[str]:
                 known_events.quantile_text(KnownQuantile(*one), entry.unit, "the runs") for one in entry.quantiles))
         lines.append(f"{entry.name} depends on " + dependence_text(about.influence[of]))
     lines += [f"caveat: {text}" for text in texts(about.doubts)]
-    return lines + known_events.describe(about)
+    return lines + known_events.describe_known_events(about)
 
 
 def dependence_text(entry: Analysis) -> str:

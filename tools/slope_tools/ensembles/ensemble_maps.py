@@ -67,8 +67,8 @@ class Alike:
 Counts = Union[Alike, conditioned.Standing]
 
 
-def write(folder: Path, prefixes: Sequence[Path], counts: Counts, thresholds: Thresholds,
-          place) -> List[Dict[str, Any]]:
+def write_ensemble_maps(folder: Path, prefixes: Sequence[Path], counts: Counts, thresholds: Thresholds,
+                        place) -> List[Dict[str, Any]]:
     """Write all maps of finished runs (their PREFIXes) to a folder; a dict for each, as study.yaml has it. Not again
     while all that they are made of, and the maps, are as they were.
 

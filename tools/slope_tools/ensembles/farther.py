@@ -19,7 +19,7 @@ import yaml
 
 from .. import disk, schemas
 from ..digits import metres, percent
-from ..schemas import NUMBER, OBJECT, TEXT, listed, mapping, named
+from ..schemas import NUMBER, OBJECT, TEXT, list_of, mapping, dict_of
 from ..statistics import backanalysis, designs, distributions, emulator
 from ..statistics.answer import Code, Reason
 from ..tables import ensemble_types
@@ -27,8 +27,8 @@ from .sample import Sample
 
 FILE = "added.yaml"
 WHAT = "what `slope study --known` wrote"
-SCHEMA = mapping({"variables": OBJECT, "batches": listed(mapping({
-    "box": listed(listed(NUMBER, 2), 1), "points": listed(named(TEXT, 1), 1)}))})
+SCHEMA = mapping({"variables": OBJECT, "batches": list_of(mapping({
+    "box": list_of(list_of(NUMBER, 2), 1), "points": list_of(dict_of(TEXT, 1), 1)}))})
 REACHED = 0.95          # share of the known events that the runs should reach
 NEAR_END = 0.025        # share of them between the longest run and the end of the path: no run can go much farther
 PART = 8                # a batch is this part of the design
@@ -88,7 +88,8 @@ class Added:
 
     def text(self, batch: Batch) -> str:
         """Where a batch lies, in words."""
-        parts = [f"{one.name} {backanalysis.shown(one, low)} to {backanalysis.shown(one, high)}"
+        parts = [f"{one.name} {backanalysis.format_variable_value(one, low)} to "
+                 f"{backanalysis.format_variable_value(one, high)}"
                  for one, (low, high) in zip(self.sample.variables, batch.box)
                  if low > one.places[0] + ROUNDING or high < one.places[1] - ROUNDING]
         return ", ".join(parts) or "all of their ranges"
@@ -99,7 +100,7 @@ class Added:
         for one, (low, high) in zip(self.sample.variables, box):
             least, most = low <= one.places[0] + ROUNDING, high >= one.places[1] - ROUNDING
             if least != most and high - low <= NARROW * (one.places[1] - one.places[0]):
-                found[one.name] = backanalysis.shown(one, low if least else high)
+                found[one.name] = backanalysis.format_variable_value(one, low if least else high)
         return found
 
     def line(self, batch: Batch, lengths: np.ndarray, beyond: np.ndarray) -> str:
@@ -115,18 +116,18 @@ class Added:
 
 # --- of a folder, in which they are kept, so that the study can be continued ---
 
-def read(folder: Path, sample: Sample) -> Added:
+def read_added_runs(folder: Path, sample: Sample) -> Added:
     """Those of a sample, none of another one; SlopeError if the file is none."""
     if not (folder / FILE).is_file():
         return Added(sample)
-    before = schemas.load(folder / FILE, f"{WHAT} (remove it)", SCHEMA)
+    before = schemas.load_checked(folder / FILE, f"{WHAT} (remove it)", SCHEMA)
     same = before["variables"] == sample.about.variables
     return Added(sample, [Batch(one["box"], one["points"]) for one in before["batches"]] if same else [])
 
 
-def keep(folder: Path, added: Added) -> None:
+def write_added_runs(folder: Path, added: Added) -> None:
     """Write the batches, before they are run."""
-    disk.write(folder / FILE, f"# {WHAT}: sides of the boxes as shares of the distributions\n" + yaml.safe_dump(
+    disk.write_file(folder / FILE, f"# {WHAT}: sides of the boxes as shares of the distributions\n" + yaml.safe_dump(
         {"variables": added.sample.about.variables, "batches": [one._asdict() for one in added.batches]},
         sort_keys=False))
 

@@ -46,12 +46,12 @@ class Condition:
     named: bool = True
 
 
-def check(asked: known.Choice, name: Optional[str], site: Optional[Path]) -> Condition:
+def check_condition(asked: known.Choice, name: Optional[str], site: Optional[Path]) -> Condition:
     """The Condition of a choice; SlopeError if a set that was named (name; None: none was) does not cover the body of a
     site's folder, if there is one: of others the landslides count then."""
     found = None
     if site:
-        found = known.of_body(body.of_site(site), asked)
+        found = known.compute_known_mobility(body.read_mobility_body(site), asked)
         if name is not None and not found.strict:
             assert found.by_set
             raise SlopeError("--known", f"must be a set that covers the mass: {'; '.join(found.by_set.outside)}", name)
@@ -71,9 +71,10 @@ def found_of(condition: Condition, folder: Path, summary: Path) -> known.Found:
     if not terrain or not terrain.is_file():
         raise SlopeError(folder, "must have a deck with region terrain, for the ground before the collapse")
     prefix = run_folders.prefix_of(summary)
-    found = deposit.read(prefix, terrain, lambda text: None)
+    found = deposit.read_deposit(prefix, terrain, lambda text: None)
     before, depth = scar.before(found.raster, found.base, terrain)
-    return known.of_body(body.of_arrays(found.raster._replace(z=before), depth, str(prefix)), condition.asked)
+    return known.compute_known_mobility(body.of_arrays(found.raster._replace(z=before), depth, str(prefix)),
+                                        condition.asked)
 
 
 # --- evaluation ---
@@ -128,7 +129,7 @@ class Runs:
 
 def resting(runs: Runs) -> List[str]:
     """Names of the runs on which the quantiles of the headline rest."""
-    found = within(runs.column(REMOVE), runs.mass.share, answer.shares(runs.weights.far), runs.mass.far)
+    found = within(runs.column(REMOVE), runs.mass.share, answer.choose_known_shares(runs.weights.far), runs.mass.far)
     return [sizes.nearest(runs.rows, REMOVE, one).run for one in found if np.isfinite(one)]
 
 
@@ -161,12 +162,12 @@ def emulate(sample: Sample, added: farther.Added, rows: Sequence[Row], found: ex
     design = runs.design() if comparable else None
     effects = {name: design.effect(runs.column(name)) for name in comparable} if design else {}
     return Emulated(comparable, {name: [np.asarray(side).tolist() for side in both] for name, both in effects.items()},
-                    {name: known_influence.evaluate(runs, name) for name in comparable[:1]})
+                    {name: known_influence.evaluate_influence(runs, name) for name in comparable[:1]})
 
 
-def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: Sequence[Row],
-             found: exceedance.Mobility, names: Mapping[str, Tuple[str, str]], emulated: Emulated,
-             draw: Optional[Draw] = None) -> Evaluated:
+def evaluate_known_events(condition: Condition, sample: Sample, added: farther.Added, rows: Sequence[Row],
+                          found: exceedance.Mobility, names: Mapping[str, Tuple[str, str]], emulated: Emulated,
+                          draw: Optional[Draw] = None) -> Evaluated:
     """What the weighted runs say.
 
     rows: of study.csv, finished and failed; found: the mass among known events; names: {column: (what, unit)} of the
@@ -180,8 +181,8 @@ def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: S
     if not weighs(found, runs):
         said = [Finding("no event", {"text": text}) for text in found.outside] or [Finding("few lengths")]
         return Evaluated(replace(known, doubts=said), None, {})
-    curves = {name: conditioned.curve(runs.column(name), runs.mass, emulated.effects.get(name), runs.several,
-                                      runs.failed_share) for name in runs.comparable(names)}
+    curves = {name: conditioned.compute_known_curve(runs.column(name), runs.mass, emulated.effects.get(name),
+                                                    runs.several, runs.failed_share) for name in runs.comparable(names)}
     one, longest = runs.weights, float(runs.lengths.max())
     about = ensemble_types.Weighted(
         **vars(replace(known, reached=one.reached)), short=one.short, far=one.far, runs=len(runs.rows),
@@ -189,34 +190,36 @@ def evaluate(condition: Condition, sample: Sample, added: farther.Added, rows: S
         gaps=[ensemble_types.Gap(gap.low, gap.high, gap.share) for gap in one.gaps],
         shortest_m=float(runs.lengths.min()), longest_m=longest, half_beyond_m=found.length_at(0.5),
         path_m=found.end(longest), beyond_path=found.beyond_path(), added=added.about(),
-        quantities={name: ensemble_types.OfKnown(*names[name], quantiles(curve, runs, name, hazard.SHARES))
+        quantities={name: ensemble_types.OfKnown(*names[name], list_known_quantiles(curve, runs, name, hazard.SHARES))
                     for name, curve in curves.items()},
-        to_remove=transferred(quantiles(curves[REMOVE], runs, REMOVE, answer.shares(one.far)), runs, draw)
+        to_remove=transferred(list_known_quantiles(curves[REMOVE], runs, REMOVE, answer.choose_known_shares(one.far)),
+                              runs, draw)
         if REMOVE in curves else None,
         variables={name: variable(runs, k, emulated.main) for k, name in enumerate(sample.names)},
         influence=emulated.influence, weights=whole_weights(runs), maps=[],
         path_end_m=end if (end := float(found.path.length[-1])) < longest else None)
-    return Evaluated(replace(about, doubts=doubts(about, runs)), runs, curves)
+    return Evaluated(replace(about, doubts=find_known_caveats(about, runs)), runs, curves)
 
 
-def write(one: Evaluated, levels: ensemble_maps.Thresholds, output: Path, place: Optional[Place],
-          grids: Optional[str]) -> ensemble_types.Known:
-    """Tables and maps; what study.yaml says, with the entries of the maps. levels, place, grids: see ensemble.write."""
+def write_known_events(one: Evaluated, levels: ensemble_maps.Thresholds, output: Path, place: Optional[Place],
+                       grids: Optional[str]) -> ensemble_types.Known:
+    """Tables and maps; what study.yaml says, with the entries of the maps. levels, place, grids: see
+    ensemble.write_ensemble."""
     runs = one.runs
     if runs is None:
         for name in (HAZARD, WEIGHTS):
             (output / name).unlink(missing_ok=True)         # of a study before this one
         return one.about
-    disk.write(output / HAZARD, hazard.table(one.curves))
-    disk.write(output / WEIGHTS, weights_table(runs))
+    disk.write_file(output / HAZARD, hazard.tabulate_hazard(one.curves))
+    disk.write_file(output / WEIGHTS, weights_table(runs))
     prefixes = [run_folders.prefix_of(run_folders.summary_of(output, row.summary)) for row in runs.rows]
-    return replace(one.about, maps=[] if grids else ensemble_maps.write(
+    return replace(one.about, maps=[] if grids else ensemble_maps.write_ensemble_maps(
         output / FOLDER, prefixes, conditioned.Standing(runs.mass, runs.several, runs.failed_share), levels, place))
 
 
-def quantiles(curve: hazard.Curve, runs: Runs, name: str, shares: Sequence[float]) -> List[KnownQuantile]:
+def list_known_quantiles(curve: hazard.Curve, runs: Runs, name: str, shares: Sequence[float]) -> List[KnownQuantile]:
     """What study.yaml says of those of a quantity."""
-    found = conditioned.quantiles(curve, shares, runs.column(name), runs.mass)
+    found = conditioned.compute_known_quantiles(curve, shares, runs.column(name), runs.mass)
     if len(set(runs.point)) == 1:       # one run has no bounds
         found = [one._replace(low=None, high=None) for one in found]
     return found
@@ -269,13 +272,14 @@ def rank(x: np.ndarray, y: np.ndarray, share: np.ndarray) -> Optional[float]:
     return float(w @ (both[0] * both[1])) / scale ** 0.5 if scale > 1e-18 else None
 
 
-def doubts(about: ensemble_types.Weighted, runs: Runs) -> List[Finding]:
+def find_known_caveats(about: ensemble_types.Weighted, runs: Runs) -> List[Finding]:
     """The caveats, in the order of their weight."""
     found, stopped, reached = [], about.added.stopped, about.reached or 0.0
     if about.far >= 1 - farther.REACHED:
-        remedy = answer_words.text(answer.Reason.read(stopped)) if stopped else "vary towards more mobile masses"
+        remedy = answer_words.describe_reason(
+            answer.Reason.read(stopped)) if stopped else "vary towards more mobile masses"
         found.append(Finding("events beyond", {
-            "length": metres(about.longest_m), "share": answer_words.beyond(about.far, about.path_end_m),
+            "length": metres(about.longest_m), "share": answer_words.describe_share_beyond(about.far, about.path_end_m),
             "remedy": remedy}))
     if reached < farther.REACHED and about.short > (1 - farther.REACHED) / 2:
         found.append(Finding("events before", {"length": metres(about.shortest_m),
@@ -294,7 +298,7 @@ def doubts(about: ensemble_types.Weighted, runs: Runs) -> List[Finding]:
 
 def whole_weights(runs: Runs) -> Dict[str, float]:
     """The share of known events that each run stands for, those beyond the longest among them."""
-    return {row.run: float(one) for row, one in zip(runs.rows, conditioned.whole(runs.mass))}
+    return {row.run: float(one) for row, one in zip(runs.rows, conditioned.weigh_runs(runs.mass))}
 
 
 # --- tables ---
@@ -309,11 +313,11 @@ def weights_table(runs: Runs) -> str:
 
 # --- words ---
 
-def describe(one: ensemble_types.Ensemble) -> List[str]:
+def describe_known_events(one: ensemble_types.Ensemble) -> List[str]:
     """The weighted ensemble in a few lines: what is reached, by how many runs, the quantiles, the caveats."""
     lines, about, known, of = [], ensemble_types.weighted(one), one.known_events, one.of
     if about:
-        lines = ["known events: " + summary(about)]
+        lines = ["known events: " + summarise_weights(about)]
         if of and of in about.quantities:
             entry = about.quantities[of]
             lines.append(f"{entry.name}: " + "; ".join(
@@ -321,10 +325,10 @@ def describe(one: ensemble_types.Ensemble) -> List[str]:
     return lines + [f"caveat: known events: {text}" for text in texts(known.doubts if known else ())]
 
 
-def summary(about: ensemble_types.Weighted) -> str:
+def summarise_weights(about: ensemble_types.Weighted) -> str:
     added = about.added.points
     more = f" (those of {added} points towards longer ones among them)" if added else ""
-    reached, far = percent(about.reached or 0.0), answer_words.beyond(about.far, about.path_end_m)
+    reached, far = percent(about.reached or 0.0), answer_words.describe_share_beyond(about.far, about.path_end_m)
     return (f"the runs reach from {three_at_least(about.shortest_m)} to {metres(about.longest_m)}, where "
             f"{reached} of {about.events} events of {about.set} end ({percent(about.short)} "
             f"before, {far} beyond{by_lobe(about)}; {about.path}); weighted by them the {about.runs} runs{more} say as "
@@ -345,8 +349,8 @@ def quantile_text(one: KnownQuantile, unit: str, whose: str) -> str:
     share = f"{100 * one.share:g} % of {whose}"
     if one.value is None:
         return f"{share}: unknown, they go beyond the runs"
-    low, high = ("?" if side is None else quantities.number(side) for side in (one.low, one.high))
+    low, high = ("?" if side is None else quantities.format_quantity(side) for side in (one.low, one.high))
     if gap := one.gap:
-        first, last = map(quantities.number, gap)
+        first, last = map(quantities.format_quantity, gap)
         return f"{share}: between {first} and {last} {unit}, as no run ends where they do ({low} to {high})"
-    return f"{share} stay within {quantities.number(one.value)} {unit} ({low} to {high})"
+    return f"{share} stay within {quantities.format_quantity(one.value)} {unit} ({low} to {high})"

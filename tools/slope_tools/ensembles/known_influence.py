@@ -10,7 +10,7 @@ from ..statistics import dependent, emulator
 from ..statistics.entries import Analysis
 
 
-def evaluate(runs, quantity: str) -> Analysis:
+def evaluate_influence(runs, quantity: str) -> Analysis:
     """What study.yaml says of it; runs: a known_events.Runs, quantity: the column that counts."""
     values = runs.column(quantity)
     _, point = np.unique(np.array(runs.point), axis=0, return_inverse=True)

@@ -24,7 +24,7 @@ WIDE = {"friction": (2.0, 30.0), "spacing": (0.2, 0.95)}
 def why_not(site: Path) -> str:
     """Why the runs of a site cannot be compared with known events; empty: they can."""
     try:
-        body.of_site(site).fall_line()
+        body.read_mobility_body(site).fall_line()
     except SlopeError as error:
         return f"the mass cannot be compared with known events: {error}"
     return ""

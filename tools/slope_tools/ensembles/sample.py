@@ -63,8 +63,8 @@ class Sample:
         return designs.snapped(self.variables, u)
 
 
-def check(number: int, kind: str, seed: int, vary: Sequence[str], deck: Path, fixed: Mapping[str, str],
-          repeated: Mapping[str, Sequence[str]], asked: str = "--sample") -> Sample:
+def check_sample(number: int, kind: str, seed: int, vary: Sequence[str], deck: Path, fixed: Mapping[str, str],
+                 repeated: Mapping[str, Sequence[str]], asked: str = "--sample") -> Sample:
     """The Sample of the options; SlopeError if they do not go together. asked: where the number stands."""
     if not vary:
         raise SlopeError("--vary", "must give the variables of the ensemble that --sample asks for")
@@ -82,8 +82,8 @@ def check(number: int, kind: str, seed: int, vary: Sequence[str], deck: Path, fi
     return Sample(number, kind, seed, tuple(variables))
 
 
-def plan(output: Path, sample: Sample, fixed: Mapping[str, str], repeated: Mapping[str, Sequence[str]],
-         defaults: Mapping[str, str]) -> List[repeats.Repeat]:
+def plan_sample(output: Path, sample: Sample, fixed: Mapping[str, str], repeated: Mapping[str, Sequence[str]],
+                defaults: Mapping[str, str]) -> List[repeats.Repeat]:
     """The runs: each point, followed by its repeats."""
     chances = repeats.chances_of(repeated, {**defaults, **fixed})
     if sample.number * (1 + len(chances)) > MOST_RUNS:
@@ -115,13 +115,13 @@ def check_growth(folder: Path, sample: Sample) -> None:
     path = folder / FILE
     if not path.is_file():
         return
-    before = schemas.load(path, WHAT, OBJECT)
-    if designs.LHS in (before.get("kind"), sample.kind) and before != records.plain(sample.about):
+    before = schemas.load_checked(path, WHAT, OBJECT)
+    if designs.LHS in (before.get("kind"), sample.kind) and before != records.encode_record(sample.about):
         raise SlopeError("--design", f"lhs cannot grow or change: {folder} has {before.get('points')} points of "
                          f"{before.get('kind')} with seed {before.get('seed')}; give another -o, or take sobol",
                          f"{sample.number} of {sample.kind} with seed {sample.seed}")
 
 
-def keep(folder: Path, sample: Sample) -> None:
+def write_sample(folder: Path, sample: Sample) -> None:
     """Write design.yaml, before the first run."""
-    disk.write(folder / FILE, disk.yaml_text(WHAT, records.plain(sample.about)))
+    disk.write_file(folder / FILE, disk.yaml_text(WHAT, records.encode_record(sample.about)))

@@ -6,7 +6,7 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 from .. import disk, schemas
 from ..ensembles.sample import Sample
 from ..errors import SlopeError
-from ..schemas import MAYBE, TEXT, listed, mapping, named
+from ..schemas import MAYBE, TEXT, list_of, mapping, dict_of
 from ..statistics import distributions
 from ..tables import ensemble_types
 from .fit import ABOUT
@@ -14,9 +14,10 @@ from .fit import ABOUT
 KIND = "calibrated"
 NUMBER = 32             # of the sets, unless --sample says otherwise
 WHAT = "what `slope calibrate` wrote, with its sets"
-TEXTS = named(TEXT, 1)
-SCHEMA = mapping({"calibration": mapping({"variables": TEXTS}, balls_thick=MAYBE, set=named(TEXT), model=named(TEXT)),
-                  "sets": listed(TEXTS, 2)})
+TEXTS = dict_of(TEXT, 1)
+SCHEMA = mapping({"calibration": mapping({"variables": TEXTS}, balls_thick=MAYBE, set=dict_of(TEXT),
+                                         model=dict_of(TEXT)),
+                  "sets": list_of(TEXTS, 2)})
 
 
 @dataclass(frozen=True)
@@ -35,21 +36,21 @@ class Calibrated(Sample):
 
 def texts_of(folder: Path) -> Dict[str, str]:
     """{variable: distribution} of a calibration's folder."""
-    return load(folder)["calibration"]["variables"]
+    return load_calibration(folder)["calibration"]["variables"]
 
 
-def load(folder: Path) -> Dict[str, Any]:
+def load_calibration(folder: Path) -> Dict[str, Any]:
     """What a calibration's folder holds; SlopeError if it is none."""
     path = folder / ABOUT
     if not path.is_file():
         raise SlopeError("--from", f"must be a folder with {ABOUT}, which slope calibrate writes", folder)
-    return schemas.load(path, WHAT, SCHEMA)
+    return schemas.load_checked(path, WHAT, SCHEMA)
 
 
 def sample(folder: Path, number: Optional[int], deck: Path, fixed: Mapping[str, str],
            repeated: Mapping[str, Sequence[str]]) -> Calibrated:
     """The sets of a calibration's folder for a deck that has its variables; number: of them (None: NUMBER)."""
-    path, found = folder / ABOUT, load(folder)
+    path, found = folder / ABOUT, load_calibration(folder)
     texts = found["calibration"]["variables"]
     variables = distributions.parse([f"{name}={text}" for name, text in texts.items()], deck, "--from", True)
     for option, names in (("--set", fixed), ("--repeat", repeated)):

@@ -9,7 +9,7 @@ from .. import disk, schemas
 from ..deposits import travel_shares
 from ..errors import SlopeError
 from ..runs import repeats
-from ..schemas import OBJECT, TEXT, listed, mapping
+from ..schemas import OBJECT, TEXT, list_of, mapping
 from ..statistics import backanalysis
 
 LEDGER = "calibrate.ledger.yaml"
@@ -26,19 +26,19 @@ class Ledger:
         self.path, self.about, self.variables = folder / LEDGER, dict(about), list(variables)
         self.points: List[Dict[str, str]] = []
         if self.path.is_file():
-            before = schemas.load(self.path, WHAT, mapping({"about": OBJECT, "points": listed(OBJECT)}))
+            before = schemas.load_checked(self.path, WHAT, mapping({"about": OBJECT, "points": list_of(OBJECT)}))
             if before["about"] != self.about:
                 raise SlopeError(self.path, "must be of the same observation, variables and seed: give another -o")
             point = mapping({one.name: TEXT for one in self.variables})
-            schemas.check(before["points"], listed(point), self.path, WHAT)
+            schemas.check_schema(before["points"], list_of(point), self.path, WHAT)
             self.points = before["points"]
 
     def add(self, places: np.ndarray) -> None:
         """Decide on places in the unit cube; written before they are run."""
         self.points += [{one.name: one.value(float(u)) for one, u in zip(self.variables, place)} for place in places]
         self.path.parent.mkdir(parents=True, exist_ok=True)
-        disk.write(self.path, f"# {WHAT}\n" + yaml.safe_dump({"about": self.about, "points": self.points},
-                                                             sort_keys=False))
+        disk.write_file(self.path, f"# {WHAT}\n" + yaml.safe_dump({"about": self.about, "points": self.points},
+                                                                  sort_keys=False))
 
     def places(self, of: Sequence[int]) -> np.ndarray:
         """Where points of some numbers lie in the unit cube."""
@@ -91,7 +91,8 @@ class Calibration:
                 return self.posterior(targets())
             found = self.posterior(targets())
             say(f"{decided} of {self.number} runs: " + "; ".join(
-                f"{one.name} {backanalysis.shown(one, low)} to {backanalysis.shown(one, high)}"
+                f"{one.name} {backanalysis.format_variable_value(one, low)} to "
+                f"{backanalysis.format_variable_value(one, high)}"
                 for one, (low, high) in zip(self.ledger.variables, map(found.interval,
                                                                        range(len(self.ledger.variables))))))
             left = self.number - 1 - decided

@@ -6,10 +6,10 @@ import numpy as np
 
 from .. import disk, provenance
 from ..case import run_folders
-from ..case.settings import as_number
+from ..case.settings import normalise_value
 from ..deposits import deposit, score
 from ..deposits.rest import CUT
-from ..findings import Finding, entries
+from ..findings import Finding, encode_findings
 from ..runs import jobs, repeats
 from ..statistics import backanalysis
 from ..studies import body_depth, mapped, run_rows
@@ -73,14 +73,14 @@ class Fit:
         """The rows of runs, which are made where they are not finished."""
         self.work.store.admit(todo)
         self.work.do(todo)
-        return run_rows.rows_of(self.setup, todo)
+        return run_rows.read_run_rows(self.setup, todo)
 
     def was_cut(self, one: repeats.Repeat, row: Row) -> bool:
         """Whether a run was stopped at its duration before it was at rest, and the duration may be another one."""
         named = {variable.name for variable in self.variables} | self.plan.fixed.keys()
         return (isinstance(row, Finished) and not row.at_rest and row.stop_reason == CUT
                 and DURATION in self.work.defaults and DURATION not in named
-                and isinstance(as_number(one.chosen.get(DURATION, self.work.defaults[DURATION])), float))
+                and isinstance(normalise_value(one.chosen.get(DURATION, self.work.defaults[DURATION])), float))
 
     def longer(self, one: repeats.Repeat) -> repeats.Repeat:
         """The same run with twice its duration."""
@@ -120,7 +120,7 @@ class Fit:
                          predicted[None], found, targets)[0])},
             "variables": {one.name: self.known(found, i) for i, one in enumerate(self.variables)},
             "correlation": [[round(float(value), 3) for value in row] for row in found.correlation()],
-            "misfit": found.misfit, "words": words, "doubts": entries(doubts),
+            "misfit": found.misfit, "words": words, "doubts": encode_findings(doubts),
             "targets": [{"name": one.name, "unit": one.unit, "observed": one.value, "attainable": float(goal),
                          "tolerance": one.deviation, "chance": float(noise),
                          "predicted": None if predicted is None else float(predicted[i])}
@@ -129,12 +129,12 @@ class Fit:
                      for place in backanalysis.sets(found, SETS)],
             "pairs": self.pairs(found)}
         with disk.complete(output, ABOUT) as new:
-            disk.write(new / TABLE, self.table(found))
-            disk.write(new / ABOUT, disk.yaml_text(
+            disk.write_file(new / TABLE, self.table(found))
+            disk.write_file(new / ABOUT, disk.yaml_text(
                 "slope calibrate: lengths in m, areas in m2, volumes in m3 of ground (bulk)", about))
             from . import calibrate_charts
-            calibrate_charts.draw(new / CHART, found, self.variables, plan.ledger.places(plan.finished()),
-                                  f"{self.setup.deck.name}: {len(plan.finished())} runs")
+            calibrate_charts.draw_posterior(new / CHART, found, self.variables, plan.ledger.places(plan.finished()),
+                                            f"{self.setup.deck.name}: {len(plan.finished())} runs")
             names = [TABLE, ABOUT, CHART]
             if self.wanted.observed is not None and predicted is not None:
                 self.draw_map(new / MAP, best)
@@ -226,16 +226,17 @@ class Fit:
         """Predicted against mapped."""
         [row] = [one for one in self.finished if one.run == best.name]
         prefix = run_folders.prefix_of(self.summary(row))
-        run_ = deposit.read(prefix, self.terrain(best), lambda text: None)
+        run_ = deposit.read_deposit(prefix, self.terrain(best), lambda text: None)
         mapped, simulated = self.observed.mapped, run_.raster.z > self.wanted.threshold
         about = {"prefix": best.name, "threshold": self.wanted.threshold,
-                 "area": score.overlap(simulated, mapped, run_.cell), "runout": score.runout(run_, simulated, mapped)}
-        score.draw(path, run_, simulated, mapped, about)
+                 "area": score.overlap(simulated, mapped, run_.cell),
+                 "runout": score.compare_runout(run_, simulated, mapped)}
+        score.draw_score(path, run_, simulated, mapped, about)
 
     @staticmethod
     def comparison(targets: Sequence[Mapping[str, Any]]) -> List[str]:
         """Predicted against observed, a line each."""
-        number_ = quantities.number
+        number_ = quantities.format_quantity
         lines = []
         for one in targets:
             goal = f"{number_(one['attainable'])} at the least" if one["observed"] is None else number_(one["observed"])

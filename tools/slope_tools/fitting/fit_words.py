@@ -5,7 +5,7 @@ from typing import List, Optional, Sequence
 import numpy as np
 
 from ..statistics.backanalysis import Posterior, Target
-from ..tables.quantities import number
+from ..tables.quantities import format_quantity
 
 BEYOND = 2.0            # standard deviations of tolerance and chance together
 
@@ -18,7 +18,8 @@ def misses(found: Posterior, targets: Sequence[Target], predicted: Optional[np.n
     for one, value, noise in zip(targets, predicted, found.noise):
         if one.value is not None and abs(value - one.value) > BEYOND * math.hypot(one.deviation, noise):
             lines.append("the run at the best values misses the observation by more than tolerance and chance "
-                         f"explain: {one.name} {number(value)} instead of {number(one.value)} {one.unit}")
+                         f"explain: {one.name} {format_quantity(value)} instead of {format_quantity(one.value)} "
+                         f"{one.unit}")
     return lines
 
 
@@ -27,9 +28,10 @@ def jumps(found: Posterior, targets: Sequence[Target]) -> List[str]:
     lines = []
     for one, several in zip(targets, found.gaps):
         for gap in several:
-            text = (f"{one.name}: no run gives a value between {number(gap.low)} and {number(gap.high)} {one.unit}, "
+            text = (f"{one.name}: no run gives a value between {format_quantity(gap.low)} and "
+                    f"{format_quantity(gap.high)} {one.unit}, "
                     "where the response jumps, as over a step of the ground")
             if one.value is not None and gap.holds(one.value):
-                text += f"; the observed {number(one.value)} lies there, and no values reproduce it"
+                text += f"; the observed {format_quantity(one.value)} lies there, and no values reproduce it"
             lines.append(text)
     return lines

@@ -111,7 +111,7 @@ class Observations:
 
     def measure(self, summary: Path, terrain: Optional[Path], row: Finished) -> np.ndarray:
         """The outputs of a run, in the order of the targets; row: of the table of `slope study`."""
-        run_ = deposit.read(run_folders.prefix_of(summary), terrain, lambda text: None)
+        run_ = deposit.read_deposit(run_folders.prefix_of(summary), terrain, lambda text: None)
         if not self.targets:
             self._set_targets(run_)
         elif self.shape != run_.raster.z.shape or not self.transform.almost_equals(run_.raster.transform):
@@ -140,7 +140,7 @@ class Observations:
             if not mapped.share.any():
                 raise SlopeError(wanted.observed, f"must be somewhere thicker than {wanted.threshold:g} m on the grid")
             found.append(Target("lack of overlap", "1 - CSI", None, wanted.share("observed")))
-            distance = self.distance = distances(run_)
+            distance = self.distance = compute_cell_distances(run_)
             outline = mapped.thickness is None
             weight: np.ndarray = mapped.share if mapped.thickness is None else mapped.thickness
             of = distance[weight > 0], weight[weight > 0]
@@ -190,7 +190,7 @@ def front(summary: Path, row: Finished, column: str) -> float:
     return found
 
 
-def distances(run_: deposit.Deposit) -> np.ndarray:
+def compute_cell_distances(run_: deposit.Deposit) -> np.ndarray:
     """Plan distance of each cell's centre from the highest released ball, m."""
     x, y = connected.top(run_)[:2]
     rows, columns = np.indices(run_.raster.z.shape)

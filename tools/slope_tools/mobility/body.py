@@ -91,7 +91,7 @@ def of_release(found: release.Body, where: str) -> Body:
     return of_arrays(found.raster, found.depth, where)
 
 
-def of_site(folder: Path) -> Body:
+def read_mobility_body(folder: Path) -> Body:
     """The body of a folder that slope site made, whose site.yaml was read."""
     terrain, depth = folder / site_folder.TERRAIN, folder / f"{site_folder.BODY}.depth.asc"
     raster, found = rasters.read_asc_local(terrain), rasters.read_asc_local(depth, heights=False)

@@ -25,7 +25,7 @@ class Event(NamedTuple):
     confined: bool      # laterally
 
 
-def read(path: Path = OWN) -> List[Event]:
+def read_events(path: Path = OWN) -> List[Event]:
     """The events of a CSV file with columns name, fall_m, length_m, volume_Mm3 and confinement; others are ignored.
 
     Raises SlopeError, which names the line, on a missing column, a number that is not finite and above 0, a word that
@@ -53,9 +53,9 @@ def read(path: Path = OWN) -> List[Event]:
     return events
 
 
-def chosen(path: Path, left_out: Sequence[str]) -> List[Event]:
+def select_events(path: Path, left_out: Sequence[str]) -> List[Event]:
     """The events of a set without those left out (names), all of which it must have."""
-    every = read(path)
+    every = read_events(path)
     names = {one.name for one in every}
     for name in left_out:
         if name not in names:

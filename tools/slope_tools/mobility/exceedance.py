@@ -116,7 +116,7 @@ class Mobility(NamedTuple):
         return self.in_range and bool(self.said[at])
 
 
-def of_body(body: Body, law: Law, chosen: Optional[str] = None, path: Optional[FallPath] = None) -> Mobility:
+def compute_mobility(body: Body, law: Law, chosen: Optional[str] = None, path: Optional[FallPath] = None) -> Mobility:
     """The Mobility of a body; chosen: kind of the curve that counts, None: the law's last one; path: another one.
 
     Raises SlopeError for a body on level ground.
@@ -151,7 +151,7 @@ def outside(mobility: Mobility) -> List[str]:
     low, high = law.volumes
     if not low <= mobility.volume <= high:
         lines.append("the set of known events does not cover this volume, "
-                     f"{digits.volume(1e6 * mobility.volume)}: it has {low:g} to {high:g} million m3")
+                     f"{digits.format_volume(1e6 * mobility.volume)}: it has {low:g} to {high:g} million m3")
     low, high = law.falls
     median = mobility.length_at(HALF)
     fall = float(np.interp(path.length[-1] if median is None else median, path.length, path.fall))

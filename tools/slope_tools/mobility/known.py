@@ -78,21 +78,22 @@ def choice(name: Optional[str] = None, left_out: Sequence[str] = (), confined: s
     """
     path = events.OWN if name in (None, events.OWN.stem) else Path(str(name))
     if path != events.OWN and not path.suffix and not path.is_file():
-        row = landslides.named(str(name))
+        row = landslides.choose_landslide_row(str(name))
         if left_out:
             raise SlopeError("--except", "must be an event of a set, of which --known names none", left_out[0])
         return Choice(path, [], [], row, confined, name)
-    found = Choice(path, events.chosen(path, left_out), left_out, landslides.named(), confined, name)
+    found = Choice(path, events.select_events(path, left_out), left_out, landslides.choose_landslide_row(), confined,
+                   name)
     found.relation      # SlopeError
     return found
 
 
-def of_body(mass: Body, asked: Choice, path: Optional[FallPath] = None) -> Found:
+def compute_known_mobility(mass: Body, asked: Choice, path: Optional[FallPath] = None) -> Found:
     """Both Mobilities of a body, on one fall path; path: another than the steepest descent."""
     law = asked.relation if asked.known else None
     path = path or exceedance.path_of(mass, [law, asked.row] if law else [asked.row])
-    return Found(law and exceedance.of_body(mass, law, CONFINED[asked.confined], path),
-                 exceedance.of_body(mass, asked.row, path=path))
+    return Found(law and exceedance.compute_mobility(mass, law, CONFINED[asked.confined], path),
+                 exceedance.compute_mobility(mass, asked.row, path=path))
 
 
 def of_about(about: Mapping[str, Any]) -> Choice:
@@ -108,7 +109,7 @@ def of_mass(raster: Raster, before: np.ndarray, depth: np.ndarray, about: Mappin
     which is finer than what a run's grid has of it, and the same for all.
     """
     try:
-        mass = body.of_site(site) if site else body.of_arrays(raster._replace(z=before), depth, "the run")
-        return Known(of_body(mass, of_about(about)), "")
+        mass = body.read_mobility_body(site) if site else body.of_arrays(raster._replace(z=before), depth, "the run")
+        return Known(compute_known_mobility(mass, of_about(about)), "")
     except SlopeError as error:
         return Known(None, f"The runs cannot be compared with known events: {error}")

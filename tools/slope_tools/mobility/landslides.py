@@ -86,18 +86,18 @@ class Row(NamedTuple):
 TYPES = "rockfalls", DEFAULT, "debris_flows", "earthflows_and_mudslides"
 
 
-def read() -> List[Row]:
+def read_landslides() -> List[Row]:
     """All rows."""
     with open(OWN, encoding="ascii", newline="") as lines:
         return [Row(one["type"], one["path"], int(one["events"]), *(float(one[name]) for name in Row._fields[3:]))
                 for one in csv.DictReader(lines)]
 
 
-def named(text: str = DEFAULT) -> Row:
+def choose_landslide_row(text: str = DEFAULT) -> Row:
     """The row of TYPE[:PATH], each of which may be shortened; without PATH that of all paths; SlopeError if none is."""
     words = [re.sub(r"[\s_]+", "_", part.strip().lower()).replace("ised", "ized") for part in text.split(":")]
     kind, path = [*words, "all"][:2]
-    rows = read()
+    rows = read_landslides()
     found = [row for row in rows if kind and path and row.type.startswith(kind) and row.path.startswith(path)]
     if len(words) > 2 or len(found) != 1:
         raise SlopeError("--known", "must be a table of events (a file), rock_avalanches, or TYPE[:PATH] of "

@@ -75,9 +75,9 @@ def differ(said: Opinion, counts: Mobility) -> Optional[Band]:
     if not counts.in_range:
         return None
     near, far = (counts.length_at(share) for share in ENDS[::-1])
-    known = Band(0.0 if counts.at_most(ENDS[1]) is not None else beyond(near), beyond(far))
-    return known if known.near > beyond(said.far) or known.far < beyond(said.near) else None
+    known = Band(0.0 if counts.at_most(ENDS[1]) is not None else compute_share_beyond(near), compute_share_beyond(far))
+    return known if known.near > compute_share_beyond(said.far) or known.far < compute_share_beyond(said.near) else None
 
 
-def beyond(length: Optional[float]) -> float:
+def compute_share_beyond(length: Optional[float]) -> float:
     return math.inf if length is None else length

@@ -43,7 +43,7 @@ def slope(mass: Body, path: FallPath) -> Optional[Slope]:
     return Slope(float(beyond.fall[0]), float(beyond.length[0])) if beyond.fall[0] > 0 else None
 
 
-def distances(deposit: Deposit, path: FallPath) -> List[float]:
+def measure_office_distances(deposit: Deposit, path: FallPath) -> List[float]:
     """How far along the path, from the crown, SHARES of the volume on the grid stay, m: cells by their middles."""
     rows, columns = np.nonzero(deposit.raster.z > 0)
     places = np.column_stack(deposit.raster.transform * np.array([columns + 0.5, rows + 0.5]))

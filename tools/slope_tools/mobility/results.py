@@ -7,9 +7,9 @@ from shapely.geometry import LineString
 from shapely.geometry.base import BaseGeometry
 
 from .. import disk
-from ..digits import metres, percent, volume
+from ..digits import metres, percent, format_volume
 from ..errors import SlopeError
-from ..findings import Finding, entries
+from ..findings import Finding, encode_findings
 from ..provenance import version
 from ..sites import site_choices
 from ..survey import geopackage
@@ -18,7 +18,7 @@ from . import body, lucas
 from .body import Body
 from .exceedance import WORDS, Mobility
 from .fall_path import LINE, TERRAIN
-from .known import Choice, Found, choice, of_body
+from .known import Choice, Found, choice, compute_known_mobility
 from .landslides import NOT_OF_ROADS
 from .road import AtRoad
 
@@ -36,7 +36,7 @@ class Source(NamedTuple):
     road: Optional[BaseGeometry]        # local m
 
 
-def columns(found: Found, body: Body) -> Dict[str, np.ndarray]:
+def compute_path_columns(found: Found, body: Body) -> Dict[str, np.ndarray]:
     """The path: length, height below the crown, elevation, place, probability of going beyond by each kind of events.
 
     NaN: the events do not cover the mass, or none of them had this fall.
@@ -48,9 +48,9 @@ def columns(found: Found, body: Body) -> Dict[str, np.ndarray]:
             "y": path.y, **curves}
 
 
-def table(found: Found, body: Body) -> str:
+def tabulate_path(found: Found, body: Body) -> str:
     """The columns as CSV; an empty cell stands for NaN."""
-    values = columns(found, body)
+    values = compute_path_columns(found, body)
     return disk.csv_text(values, ([*(f"{value:.3f}" for value in row[:5]),
                                    *("" if np.isnan(value) else f"{value:.6g}" for value in row[5:])]
                                   for row in zip(*values.values())))
@@ -58,11 +58,12 @@ def table(found: Found, body: Body) -> str:
 
 def write_lines(path: Path, found: Found, body: Body) -> None:
     """The path for a GIS: a piece from each point to the next, with what the table has at its end."""
-    values = columns(found, body)
+    values = compute_path_columns(found, body)
     places = np.column_stack([values.pop("x"), values.pop("y")])
     features = [(LineString(places[k:k + 2]), {name: None if np.isnan(one[k + 1]) else float(one[k + 1])
                                                for name, one in values.items()}) for k in range(len(places) - 1)]
-    geopackage.write(path, {"path": Layer("LineString", dict.fromkeys(values, "float"), features)}, body.raster)
+    geopackage.write_geopackage(path, {"path": Layer("LineString", dict.fromkeys(values, "float"), features)},
+                                body.raster)
 
 
 def second_opinion(mass: Body, found: Found) -> str:
@@ -73,12 +74,12 @@ def second_opinion(mass: Body, found: Found) -> str:
             f"{ends(said.reach, said.toe)} ({ends(said.near, said.toe)} to {ends(said.far, said.toe)})")
 
 
-def of_site(folder: Path) -> Tuple[List[str], List[Finding]]:
+def describe_site_mobility(folder: Path) -> Tuple[List[str], List[Finding]]:
     """Both, of the folder of a site; nothing where its mass has no fall path."""
-    choices = site_choices.load(folder).choices
+    choices = site_choices.load_site(folder).choices
     try:
-        mass = body.of_site(folder)
-        found = of_body(mass, choice(choices.known.set, (), choices.known.confined))
+        mass = body.read_mobility_body(folder)
+        found = compute_known_mobility(mass, choice(choices.known.set, (), choices.known.confined))
     except SlopeError:
         return [], []
     return [second_opinion(mass, found)], [*mass.beside(), *disagreement(mass, found)]
@@ -99,10 +100,10 @@ def disagreement(mass: Body, found: Found) -> List[Finding]:
     return [Finding("second opinion", {
         "name": lucas.NAME, "near": ends(said.near, said.toe), "far": ends(said.far, said.toe),
         "events": found.decides.law.name, "known_near": ends(known.near), "known_far": ends(known.far),
-        "farther": "the events" if known.near > lucas.beyond(said.far) else "that law's masses"})]
+        "farther": "the events" if known.near > lucas.compute_share_beyond(said.far) else "that law's masses"})]
 
 
-def doubts(mass: Body, found: Found) -> List[Finding]:
+def find_mobility_caveats(mass: Body, found: Found) -> List[Finding]:
     """What must be said: several bodies, out of range, or a path that ends too early."""
     counts = found.decides
     several = [*mass.beside()] if counts.path.end != LINE else []
@@ -141,14 +142,14 @@ def at_least(one: Mobility, length: float) -> Optional[float]:
     return float(one.curves[one.chosen][after[0]]) if one.in_range and len(after) else None
 
 
-def about(found: Found, source: Source, road: Optional[AtRoad]) -> Dict[str, Any]:
+def summarise_mobility(found: Found, source: Source, road: Optional[AtRoad]) -> Dict[str, Any]:
     """What SUMMARY holds."""
     counts, by_set, row = found.decides, found.by_set, source.asked.row
     path = counts.path
     whole: Dict[str, Any] = {
         "slope_version": version(), "terrain": source.terrain, "volume_m3": source.body.volume,
         "crown": dict(zip("xyz", path.crown)), "in_range": bool(by_set and by_set.in_range),
-        "warnings": entries(doubts(source.body, found)),
+        "warnings": encode_findings(find_mobility_caveats(source.body, found)),
         "path": {"length_m": path.length[-1], "height_m": path.fall[-1], "ends": path.end},
         "exceedance_is": counts.chosen, "confined_path": source.asked.confined}
     for one in found.each:
@@ -170,11 +171,11 @@ def about(found: Found, source: Source, road: Optional[AtRoad]) -> Dict[str, Any
                                         **lucas.opinion(source.body, path)._asdict()}, "files": list(FILES)}
 
 
-def words(found: Found, source: Source, road: Optional[AtRoad]) -> List[str]:
+def describe_mobility(found: Found, source: Source, road: Optional[AtRoad]) -> List[str]:
     """What the user reads."""
     counts, path = found.decides, found.decides.path
     x, y, z = path.crown
-    lines = [f"{volume(1e6 * counts.volume)}, crown at {x:.1f} {y:.1f}, elevation {z:.1f} m",
+    lines = [f"{format_volume(1e6 * counts.volume)}, crown at {x:.1f} {y:.1f}, elevation {z:.1f} m",
              f"fall path of {metres(path.length[-1])}, down to {metres(path.fall[-1])} below the crown, "
              + path.end]
     for one in found.each:
@@ -189,7 +190,7 @@ def words(found: Found, source: Source, road: Optional[AtRoad]) -> List[str]:
         where = "the road, first met" if road.met else \
             f"the path does not meet the road, and is nearest to it, {metres(road.beside)} beside,"
         lines.append(f"{where} after {metres(road.length)}, {metres(road.fall)} below the crown: "
-                     f"{of_road(counts, road)}")
+                     f"{describe_road_reach(counts, road)}")
     return [*lines, second_opinion(source.body, found)]
 
 
@@ -206,7 +207,7 @@ def lengths(one: Mobility, kind: str) -> str:
             f"{'terrain' if one.path.end == TERRAIN else 'path'}: {percent(one.beyond_path(kind))}")
 
 
-def of_road(counts: Mobility, road: AtRoad) -> str:
+def describe_road_reach(counts: Mobility, road: AtRoad) -> str:
     """What the events that count say of the road."""
     if not counts.says(road.length):
         least = at_least(counts, road.length)
@@ -218,13 +219,13 @@ def of_road(counts: Mobility, road: AtRoad) -> str:
         road.passed > road.length and counts.says(road.passed))
 
 
-def write(folder: Path, found: Found, source: Source, road: Optional[AtRoad]) -> None:
+def write_mobility(folder: Path, found: Found, source: Source, road: Optional[AtRoad]) -> None:
     """All files into a folder."""
     from . import charts        # matplotlib: only once all is there
     with disk.complete(folder, SUMMARY) as new:
-        (new / TABLE).write_text(table(found, source.body), encoding="ascii")
+        (new / TABLE).write_text(tabulate_path(found, source.body), encoding="ascii")
         write_lines(new / LINES, found, source.body)
         charts.draw_map(new / MAP, found.decides, source.body, source.road)
         charts.draw_profile(new / PROFILE, found, source.body, road)
-        disk.write_yaml(new / SUMMARY, about(found, source, road), "slope mobility: m, local x y, volumes in m3; "
-                        "exceedance: share of known events that go farther")
+        disk.write_yaml(new / SUMMARY, summarise_mobility(found, source, road), "slope mobility: m, local x y, volumes "
+                        "in m3; " "exceedance: share of known events that go farther")

@@ -39,7 +39,7 @@ class RunLength(NamedTuple):
     the horizontal, of the fall from the highest released ball to the tip's surface over the distance, None where no
     height is known; lobes: how many count; share: of the released volume in them; mask: their cells, rows from the
     north; on_path: whether there is a fall path; without one the distance is the straight one; others: distance by each
-    of OTHERS, of of_run() only.
+    of OTHERS, of measure_run_length() only.
     """
     distance: float
     straight: float
@@ -79,7 +79,7 @@ def lengths_of(places: np.ndarray, path: Optional[FallPath], deposit: Deposit) -
     highest = top(deposit)
     begin = (path.x[0], path.y[0]) if path else (highest.x, highest.y)
     straight = np.hypot(*(places - begin).T)
-    return (np.maximum(along(path, places), straight) if path else straight), straight
+    return (np.maximum(measure_along_path(path, places), straight) if path else straight), straight
 
 
 def released(deposit: Deposit) -> float:
@@ -98,7 +98,7 @@ def lobes(deposit: Deposit, least: float = LEAST, threshold: float = THRESHOLD) 
     return np.isin(labels, 1 + large), len(large)
 
 
-def along(path: FallPath, places: np.ndarray) -> np.ndarray:
+def measure_along_path(path: FallPath, places: np.ndarray) -> np.ndarray:
     """Length (m) of a path up to its point nearest to each place (n, 2)."""
     points = np.column_stack([path.x, path.y])
     nearest = cKDTree(points).query(places)[1]
@@ -112,7 +112,7 @@ def along(path: FallPath, places: np.ndarray) -> np.ndarray:
     return found
 
 
-def of_run(deposit: Deposit, terrain: Optional[Path]) -> Optional[RunLength]:
+def measure_run_length(deposit: Deposit, terrain: Optional[Path]) -> Optional[RunLength]:
     """The RunLength of a run; terrain: the ground before, None where it is not in reach: there is no fall path then."""
     path = path_of(deposit, terrain)
     found = of_deposit(deposit, path)

@@ -77,7 +77,7 @@ def of_lengths(lengths, exceedance, ratio=None) -> Weights:
     counts = given[order] / averaged(given[order], window)
     smooth = counts * averaged(cells / averaged(counts, window), window)
     weights[order] = smooth
-    upto, before = below[0] + np.cumsum(smooth), gaps(below)
+    upto, before = below[0] + np.cumsum(smooth), find_weight_gaps(below)
     distance = max(np.abs(upto - below).max(), np.abs(upto - smooth - below).max())
     return Weights(weights, reached, float(below[0]), rest, float(reached ** 2 / (smooth ** 2).sum()), float(distance),
                    [Gap(*map(float, (*lengths[order][i:i + 2], below[i + 1] - below[i]))) for i in before], window,
@@ -96,7 +96,7 @@ def averaged(cells: np.ndarray, window: int) -> np.ndarray:
     return np.convolve(wide, np.full(window, 1 / window), "valid")
 
 
-def gaps(below: np.ndarray) -> List[int]:
+def find_weight_gaps(below: np.ndarray) -> List[int]:
     """Behind which run none ends though known events do; below: share of known events up to each, ascending.
 
     The shares of the known events between runs drawn independently are distributed exponentially, about the mean that

@@ -47,7 +47,7 @@ def times(factor):
     return "" if factor == 1 else f", {factor:g} times exaggerated"
 
 
-def section(s, before, base, runs, road, cut, title, bends=(), walls=(), crossings=(), marks=()):
+def draw_section(s, before, base, runs, road, cut, title, bends=(), walls=(), crossings=(), marks=()):
     """Heights along the section, and below them the thickness where it cannot be seen in the heights.
 
     s: distance (m); before, base: ground before, and slip surface with the ground that stays; runs: list of
@@ -308,7 +308,7 @@ def bars(names, values, y_label, title, width=FULL):
         return figures.data_uri(sheet.finish(), "svg")
 
 
-def along(parts, x_label, y_label, title):
+def draw_side_bars(parts, x_label, y_label, title):
     """Bars side by side, coloured by their names; parts: of each from, to, value, name."""
     names = list(dict.fromkeys(name for *_, name in parts))
     with pictures.settings(STYLE):

@@ -159,7 +159,7 @@ def draw_section_line(axes, layers, size):
                   bbox={"boxstyle": "circle,pad=0.12", "fc": "white", "ec": SECTION, "lw": 0.5})
 
 
-def entries(layers):
+def list_legend_entries(layers):
     """What the lines over a map are."""
     found = []
     if layers.release is not None and layers.release.any():
@@ -197,8 +197,8 @@ def frame_of(layers, names, crs_name=""):
 def finish(sheet, layers, size, left):
     """The scale, the legend and the data URI of a sheet whose maps have that size."""
     width = layers.shown[2] - layers.shown[0]
-    sheets.scale_and_legend(sheet, left, size[0] / width, min(width, 2.5 / (size[0] / width)), entries(layers),
-                            layers.raster.crs is not None)
+    sheets.scale_and_legend(sheet, left, size[0] / width, min(width, 2.5 / (size[0] / width)),
+                            list_legend_entries(layers), layers.raster.crs is not None)
     return figures.data_uri(sheet.finish())
 
 

@@ -39,7 +39,7 @@ class Ground:
         self.touched = self.max_thickness > 0
         for other in data.drawn:
             self.touched = self.touched | (other.thickness > 0)
-        self.obstacles = obstacles.of_run(one)
+        self.obstacles = obstacles.find_obstacles(one)
         named = data.study.study.body if data.study else None
         self.mapped, self.site = data.mapped, named and data.folder / named
         self.volume = data.largest_release()

@@ -64,7 +64,7 @@ def on_line(reach: KnownReach, line: LineString) -> Iterator[Tuple[Mark, float]]
             yield mark, line.project(point)
 
 
-def words(reach: KnownReach) -> str:
+def describe_known_reach(reach: KnownReach) -> str:
     """What the marks are, for a caption; "" without marks."""
     if not reach.marks:
         return ""

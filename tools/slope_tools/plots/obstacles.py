@@ -22,17 +22,17 @@ class Obstacles(NamedTuple):
         return {name: footprint(corners) for name, corners in self.walls.items() if len(corners)}
 
 
-def of_run(run) -> Obstacles:
+def find_obstacles(run) -> Obstacles:
     """Those of a data.Result."""
     folder = Path(run.folder)
     walls = {name: structures.polydata(folder / f"{prefix}.vtp")[0]
              for name, prefix in structures.outputs(run.log.settings, "wall/gran/mesh").items()}
     files = {words[1]: folder / words[4] for words in map(str.split, run.log.settings)
              if words[0] == "fix" and words[3:4] == ["control/line"] and len(words) > 4}
-    return Obstacles(walls, {name: points_of(path) for name, path in files.items() if path.is_file()})
+    return Obstacles(walls, {name: read_line_points(path) for name, path in files.items() if path.is_file()})
 
 
-def points_of(path: Path) -> np.ndarray:
+def read_line_points(path: Path) -> np.ndarray:
     """Points of a control line, rows of x y: the file that the fix read."""
     rows = (line.replace(",", " ") for line in path.read_text(encoding="utf-8").splitlines())
     return np.loadtxt(rows, comments="#", ndmin=2, usecols=(0, 1))

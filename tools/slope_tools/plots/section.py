@@ -11,7 +11,7 @@ from shapely.geometry import LineString, Point, box
 from .. import geometry
 from ..deposits import cut, flow_path
 from ..errors import SlopeError
-from ..options import number
+from ..options import parse_number
 from ..survey import lines
 from . import figure_charts, known_reach, obstacles
 
@@ -42,7 +42,7 @@ class Section:
             return self._fall_line(), "through the centroid of the released mass, along its mean fall line"
         if len(asked) == 4:
             try:
-                points = np.reshape([number(value) for value in asked], (2, 2))
+                points = np.reshape([parse_number(value) for value in asked], (2, 2))
             except Exception as error:
                 raise SlopeError("--section", "must be X1 Y1 X2 Y2 (finite numbers, local m), the file of a line, or "
                                  f"{FALL}", " ".join(asked)) from error
@@ -62,8 +62,9 @@ class Section:
             raise SlopeError("--section", f"must be X1 Y1 X2 Y2, the file of a line, or {FALL}", " ".join(asked))
         if not LineString(points).intersection(box(*bounds)).length > 0:
             got = " ".join(f"{v:g}" for v in points.flat) if len(points) == 2 else \
-                geometry.numbers(LineString(points).bounds)
-            raise SlopeError(where, f"must cross the grid of the run, {geometry.numbers(bounds)} (local metres)", got)
+                geometry.format_numbers(LineString(points).bounds)
+            raise SlopeError(where, f"must cross the grid of the run, {geometry.format_numbers(bounds)} (local metres)",
+                             got)
         return points, how
 
     def _default(self):
@@ -207,7 +208,7 @@ class Section:
     def picture(self):
         """The picture's data URI, what it shows, and its caption."""
         spans, height = self.road() if self.data.road is not None else ([], None)
-        uri, factor, thickness_factor = figure_charts.section(
+        uri, factor, thickness_factor = figure_charts.draw_section(
             self.s, self.before, self.base, self.runs, spans, self._where_it_cuts(height), "Section A-A'", self.bends,
             self.walls(), self.crossings(), self.marks())
         (x1, y1), (x2, y2) = self.points[0], self.points[-1]

@@ -21,7 +21,7 @@ TRIAL = {"color": "#1f7a4d", "lw": 1.0, "ls": ":"}
 REACHED = 0.1       # m of thickness
 
 
-def draw(path: Path, layers: Shown, title: str) -> None:
+def draw_site_map(path: Path, layers: Shown, title: str) -> None:
     """Write the map as a PNG."""
     raster, crs = layers.raster, crs_name(layers.raster.crs) if layers.raster.crs is not None else ""
     shown = window(raster, *boxes(layers))
@@ -40,7 +40,7 @@ def draw(path: Path, layers: Shown, title: str) -> None:
             sheets.colour_bar(sheet, image, bounds, "depth of the body (m)", beside, below)
         scale = size[0] / (shown[2] - shown[0])
         sheets.scale_and_legend(sheet, sheets.margins(frame)[0], scale, min(shown[2] - shown[0], 2.5 / scale),
-                                [*figure_maps.entries(base), *entries], raster.crs is not None)
+                                [*figure_maps.list_legend_entries(base), *entries], raster.crs is not None)
         uri = figures.data_uri(sheet.finish())
     path.write_bytes(base64.b64decode(uri.partition(",")[2]))
 

@@ -10,7 +10,7 @@ from pathlib import Path, PurePosixPath
 from typing import Iterator, List, Tuple
 
 from ..errors import SlopeError
-from ..survey.zips import is_of_macos, split, whole
+from ..survey.zips import is_of_macos, split, check_archive
 
 LARGEST = 300_000_000       # bytes of a file; a record of ten minutes has some 3 million
 DEEPEST = 3                 # archives in archives
@@ -40,27 +40,28 @@ def unpacked(name: str, data: bytes, depth: int = 0) -> Iterator[Tuple[str, byte
     if depth > DEEPEST:
         raise SlopeError(name, f"archives must be in at most {DEEPEST} others")
     opened = io.BytesIO(data)
-    with whole(name):
+    with check_archive(name):
         if data[:4] == b"PK\3\4":
             with zipfile.ZipFile(opened) as archive:
                 for one in archive.infolist():
                     if not one.is_dir() and not is_of_macos(one.filename):
                         with archive.open(one) as member:
-                            yield from unpacked(f"{name}/{one.filename}", read(name, member), depth + 1)
+                            yield from unpacked(f"{name}/{one.filename}", read_archive_member(name, member), depth + 1)
         elif data[:2] == b"\x1f\x8b":
             with gzip.open(opened) as member:
-                found = unpacked(name, read(name, member), depth + 1)
+                found = unpacked(name, read_archive_member(name, member), depth + 1)
             yield from ((re.sub(r"\.gz$", "", one, flags=re.I) if one == name else one, text) for one, text in found)
         elif data[257:262] == b"ustar":
             with tarfile.open(fileobj=opened) as tar:
                 for entry in tar:
                     if entry.isfile() and not is_of_macos(entry.name):
-                        yield from unpacked(f"{name}/{entry.name}", read(name, tar.extractfile(entry)), depth + 1)
+                        yield from unpacked(f"{name}/{entry.name}", read_archive_member(name, tar.extractfile(entry)),
+                                            depth + 1)
         else:
             yield name, data
 
 
-def read(name: str, member) -> bytes:
+def read_archive_member(name: str, member) -> bytes:
     data = member.read(LARGEST + 1)
     if len(data) > LARGEST:
         raise SlopeError(name, f"must hold files of at most {LARGEST / 1e6:g} MB")

@@ -13,7 +13,7 @@ NAMES = re.compile(r"\b(?:a(?:cc)?_?([xyz])|([xyz])|t|time)\b", re.IGNORECASE)
 UNITS = re.compile(r"[(\[]([^)\]]*)[)\]]")
 
 
-def read(path) -> np.ndarray:
+def read_motion(path) -> np.ndarray:
     """The rows t ax ay az of a motion, (points, 4); SlopeError with file, line, rule, value."""
     try:
         text = Path(path).read_text(encoding="utf-8")
@@ -28,7 +28,7 @@ def read(path) -> np.ndarray:
             if not rows:
                 check_head(comment, f"{path}: line {number}")
             continue
-        row = [heads.number(word) for word in words]
+        row = [heads.parse_cell(word) for word in words]
         if len(row) != 4 or not np.isfinite(row).all():
             raise SlopeError(f"{path}: line {number}", "must be four numbers, t ax ay az in s and m/s2 (slope quake "
                              "makes it from a record)", line[:60])

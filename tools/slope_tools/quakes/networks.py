@@ -79,7 +79,7 @@ def starts(form: Form, line: str) -> bool:
     return re.match(form.first, line.strip(), re.IGNORECASE) is not None
 
 
-def read(path, lines: Sequence[str], form: Form) -> List[Component]:
+def read_network_record(path, lines: Sequence[str], form: Form) -> List[Component]:
     """The components of a file of one of the formats; SlopeError with file, line, rule, value."""
     begins = [k for k, line in enumerate(lines) if starts(form, line)]
     blocks = zip(begins, [*begins[1:], len(lines)])
@@ -88,7 +88,7 @@ def read(path, lines: Sequence[str], form: Form) -> List[Component]:
 
 def block(path, lines: Sequence[str], begin: int, form: Form) -> List[Component]:
     """Those of one block, from a line on."""
-    first = next((k for k in range(begin, len(lines)) if numbers(lines[k])), len(lines))
+    first = next((k for k in range(begin, len(lines)) if holds_numbers(lines[k])), len(lines))
     head = "\n".join(line.rstrip() for line in lines[begin:first]).rstrip()
     place = path if begin == 0 else f"{path}, line {begin + 1}"
 
@@ -105,15 +105,15 @@ def block(path, lines: Sequence[str], begin: int, form: Form) -> List[Component]
 
     unit, step, what = part(form.unit), part(form.step), said(form.what)
     plain, named = unit[unit.lastgroup or 1], unit.groupdict()
-    factor = (heads.acceleration(plain) or 0.0) * heads.number(named.get("factor") or "1")
+    factor = (heads.acceleration(plain) or 0.0) * heads.parse_cell(named.get("factor") or "1")
     if not factor > 0 or what.upper() not in ("", "ACCELERATION"):
         raise NoAcceleration(place, "must be of an acceleration", ", ".join(filter(None, (plain, what))))
-    dt = heads.number(step[1])
+    dt = heads.parse_cell(step[1])
     dt = 1 / dt if "hz" in step.groupdict() and dt else dt
     if not 0 < dt <= SLOWEST:
         raise SlopeError(place, f"the time step must be > 0 and <= {SLOWEST:g} s, as of {form.step.like}",
                          step[0].strip())
-    columns = columns_of(place, part(form.columns)[1])
+    columns = parse_component_columns(place, part(form.columns)[1])
     rows = values_of(path, [line.replace(",", " ") for line in lines], first + form.more,
                      len(columns) if len(columns) > 1 else 0).reshape(-1, len(columns))
     if form.points:
@@ -133,12 +133,12 @@ def block(path, lines: Sequence[str], begin: int, form: Form) -> List[Component]
     return found
 
 
-def numbers(line: str) -> bool:
+def holds_numbers(line: str) -> bool:
     """Whether a line holds numbers, and nothing else."""
     return bool(numbers_of(line.replace(",", " ")))
 
 
-def columns_of(place, text: str):
+def parse_component_columns(place, text: str):
     """Direction and sign of each column; None of one of times."""
     columns: List[Optional[tuple]] = []
     for name, sign in re.findall(r"([\w-]+)(?:\(([+-])\))?", text):

@@ -36,7 +36,7 @@ def processed(components, wanted: Processing):
     if wanted.baseline == "rest":
         motion = motions.at_rest(motion)
         steps.append("straight line taken off: ends at rest where it began")
-    if not motions.largest(motion) > 0:
+    if not motions.find_largest_acceleration(motion) > 0:
         raise SlopeError(components[0].source, "must hold a motion, the acceleration is constant")
     if wanted.peak and not motions.peak(motion) > 0:
         raise SlopeError("--peak", "needs a horizontal component, whose acceleration it is (--scale takes any)",
@@ -45,14 +45,14 @@ def processed(components, wanted: Processing):
     if factor != 1.0:
         motion = motions.scaled(motion, factor)
         steps.append(f"scaled by {factor:.6g}")
-    if motions.largest(motion) > records.MOST:
+    if motions.find_largest_acceleration(motion) > records.MOST:
         raise SlopeError("--peak" if wanted.peak else "--scale",
                          f"must give a largest acceleration of at most {records.MOST / GAL:g} gal",
-                         f"{motions.largest(motion) / GAL:.6g}")
+                         f"{motions.find_largest_acceleration(motion) / GAL:.6g}")
     return motion, steps
 
 
-def write(path, motion, about):
+def write_quake(path, motion, about):
     """All files beside, then under their names: none is half-written."""
     from . import quake_charts      # matplotlib: only once the input is known to be good
 
@@ -64,9 +64,9 @@ def write(path, motion, about):
         zip(motions.PERIODS, np.asarray(motions.spectrum(motion)) / GAL))
     texts = {path.with_suffix(".spectrum.csv"): spectrum,
              path.with_suffix(".yaml"): yaml.safe_dump(about, sort_keys=False), path: head + rows}
-    with disk.beside(path.with_suffix(".png"), *texts) as (picture, *new):
+    with disk.write_beside(path.with_suffix(".png"), *texts) as (picture, *new):
         for part, content in zip(new, texts.values()):
             part.write_text(content, encoding="utf-8")
         title = (f"{about['peak_gal']:.4g} gal" if about["peak_gal"] > 0 else
                  f"vertical only, {about['axes']['z']['acceleration_gal']:.4g} gal")
-        quake_charts.draw(picture, motion, f"{path.name}: {title}")
+        quake_charts.draw_motion(picture, motion, f"{path.name}: {title}")

@@ -5,7 +5,7 @@ from .quake_motion import AXES, DAMPING, PERIODS, husid, integrals, spectrum
 from .quake_records import GAL
 
 
-def draw(path, motion, title):
+def draw_motion(path, motion, title):
     """Write the picture as PNG."""
     v, d = integrals(motion)
     with pictures.settings(STYLE):

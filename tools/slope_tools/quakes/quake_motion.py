@@ -119,7 +119,7 @@ def peak(motion):
     return float(np.hypot(motion.a[:, 0], motion.a[:, 1]).max())
 
 
-def largest(motion):
+def find_largest_acceleration(motion):
     """Largest acceleration, horizontal or vertical, m/s2."""
     return max(peak(motion), float(np.abs(motion.a[:, 2]).max()))
 

@@ -13,7 +13,7 @@ from . import archives, networks
 from .components import (DIRECTIONS, G, GAL, SLOWEST, UP, Component, NoAcceleration, check_count, direction_of,
                          numbers_of, values_of)
 
-__all__ = ["Component", "G", "GAL", "MOST", "UP", "read"]
+__all__ = ["Component", "G", "GAL", "MOST", "UP", "read_quake_record"]
 MOST = 50.0                 # m/s2; no ground has moved with more
 EVEN = 1e-3                 # of a time step, that steps of a CSV may differ, beside the rounding of its times
 KIK_NET = {"1": 0.0, "2": 90.0, "3": UP, "4": 0.0, "5": 90.0, "6": UP}    # 1 to 3: in the borehole
@@ -23,7 +23,7 @@ FORMATS = ", ".join(["K-NET", "KiK-net", "PEER AT2", *(form.networks for form in
 NAMED = "first line must name the columns, such as time,EW (gal),NS (gal)"
 
 
-def read(path, unit: Optional[str] = None) -> List[Component]:
+def read_quake_record(path, unit: Optional[str] = None) -> List[Component]:
     """The components of a file, or of the one record in an archive; unit: of a CSV that names none.
 
     ARCHIVE/PATTERN takes these of its files.  Raises SlopeError with file, line, rule, value.
@@ -43,16 +43,17 @@ def read(path, unit: Optional[str] = None) -> List[Component]:
     records = {(one.of, one.sensor): one for one in reversed(found)}
     if len(records) != 1 or len(found) > 3:
         raise SlopeError(path, "an archive must hold the components of one record, or these must be named, such as "
-                         f"{' '.join(beside(found)) or 'ARCHIVE/FILE'}; {FORMATS} are read", about(found))
+                         f"{' '.join(list_record_files(found)) or 'ARCHIVE/FILE'}; {FORMATS} are read",
+                         describe_components(found))
     return found
 
 
-def beside(found: Sequence[Component]) -> List[str]:
+def list_record_files(found: Sequence[Component]) -> List[str]:
     """The files of the first record of an archive."""
     return [one.source for one in found if (one.of, one.sensor) == (found[0].of, found[0].sensor)][:3]
 
 
-def about(found: Sequence[Component]) -> str:
+def describe_components(found: Sequence[Component]) -> str:
     records = dict.fromkeys(", ".join(filter(None, (one.of, one.sensor))) for one in found)
     return f"{len(found)} components" + (f" of {len(records)} records: {'; '.join(records)}" if found else "")
 
@@ -81,9 +82,9 @@ def read_text(path, text: str, unit: Optional[str]) -> List[Component]:
     elif is_at2(path, lines):
         found = [at2(path, lines)]
     elif form:
-        found = networks.read(path, lines, form)
+        found = networks.read_network_record(path, lines, form)
     else:
-        found = table(path, lines, unit)
+        found = read_quake_table(path, lines, unit)
     for component in found:
         most = np.abs(component.values - component.values.mean()).max()
         if most > MOST:
@@ -146,7 +147,7 @@ def at2(path, lines):
     after = re.findall("[A-Z]+", lines[3].upper()[size.end():]) if size else []
     unit_of_time = [word for word in after[:2] if word != "DT"][:1]
     in_seconds = {*unit_of_time} <= {"S", "SEC", "SECS", "SECONDS"}
-    if not size or not in_seconds or not 0 < heads.number(size[2]) <= SLOWEST:
+    if not size or not in_seconds or not 0 < heads.parse_cell(size[2]) <= SLOWEST:
         raise SlopeError(f"{path}, line 4", "must be NPTS= n, DT= s SEC", repr(lines[3].strip()))
     place, word = re.fullmatch(r"(.*?)[,\s]*([^,\s]*)", lines[1].strip()).groups()    # type: ignore
     direction = direction_of(word)
@@ -155,13 +156,13 @@ def at2(path, lines):
                          "sensor, write the azimuth from the station's metadata in its place)", repr(lines[1].strip()))
     values = values_of(path, lines, 4)
     check_count(path, values, int(size[1]))
-    return Component(str(path), direction[0], heads.number(size[2]), values * (direction[1] * factor),
+    return Component(str(path), direction[0], heads.parse_cell(size[2]), values * (direction[1] * factor),
                      unit_in_head=True, of=" ".join(place.upper().split()))
 
 
 # --- CSV ---
 
-def table(path, lines, unit):
+def read_quake_table(path, lines, unit):
     """Components of a table: a head that names time and directions, then a line per time, evenly spaced."""
     rows = [(k, line.replace('"', "")) for k, line in enumerate(lines, 1) if line.split("#")[0].strip()]
     if not rows:
@@ -172,9 +173,9 @@ def table(path, lines, unit):
     columns = dict(enumerate(map(heads.column, names)))
     if columns[0][0] not in ("t", "time") and not numbers_of(" ".join(names)):
         raise SlopeError(path, f"must be a record that is read ({FORMATS}), or a CSV whose {NAMED} (page tool_quake)",
-                         shown(head))
+                         escape_head(head))
     if columns[0][0] not in ("t", "time") or len(columns) < 2:
-        raise SlopeError(f"{path}, line {place}", f"the {NAMED}", shown(head))
+        raise SlopeError(f"{path}, line {place}", f"the {NAMED}", escape_head(head))
     for k in list(columns)[1:]:
         name, own = columns[k]
         if name.upper() not in DIRECTIONS:
@@ -201,7 +202,7 @@ def table(path, lines, unit):
     return found
 
 
-def shown(head: str) -> str:
+def escape_head(head: str) -> str:
     """The first line of a file, as far as it is text."""
     return repr(head.strip()[:60]) if head.isprintable() and "\ufffd" not in head[:60] else "a file that is no text"
 
@@ -232,7 +233,7 @@ def row_of(path, place, line, mark, count):
     """The numbers of a line of a table."""
     line = line.split("#")[0]
     words = [word.strip() for word in (line.split(mark) if mark else line.split())]
-    row = [heads.number(word) for word in words]
+    row = [heads.parse_cell(word) for word in words]
     if len(row) != count or not all(map(math.isfinite, row)):
         raise SlopeError(f"{path}, line {place}", f"must be {count} numbers", repr(line.strip()[:60]))
     return row

@@ -6,11 +6,11 @@ BULK = 1 / SOLID                    # volume of the ground / volume of its balls
 FILLED = SOLID * 6 / math.pi        # balls in a cube of their diameter
 
 
-def number(volume: float, diameter: float) -> float:
+def count_balls(volume: float, diameter: float) -> float:
     """The balls of a diameter (m) that fill a volume (m3)."""
     return FILLED * volume / diameter ** 3
 
 
-def diameter(volume: float, balls: float) -> float:
+def compute_diameter(volume: float, balls: float) -> float:
     """The diameter (m) of so many balls that fill a volume (m3)."""
     return (FILLED * volume / balls) ** (1 / 3)

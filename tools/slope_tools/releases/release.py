@@ -79,7 +79,7 @@ class Body(NamedTuple):
 
 def body_of(wanted: Wanted) -> Body:
     """The body; raises SlopeError on bad input."""
-    wanted = check(wanted)
+    wanted = check_wanted_release(wanted)
     raster, geometry = wanted.read or (read_terrain(wanted.terrain), None)
     doubts: List[Finding] = []
     if wanted.polygon and not wanted.read:
@@ -119,11 +119,11 @@ def polygons_in(wanted: Wanted, raster, geometry) -> List[features.Polygon]:
         return features.distinct([features.Polygon("", one) for one in polygons.polygons_of(geometry)], raster)
     assert wanted.polygon
     sized = wanted.shape in OF_EACH and wanted.volume is None and wanted.curvature is None
-    return features.read(wanted.polygon, geometry, raster, wanted.local,
-                         as_crs("--assign-crs", wanted.crs) if wanted.crs else None, sized)
+    return features.read_polygon_features(wanted.polygon, geometry, raster, wanted.local,
+                                          as_crs("--assign-crs", wanted.crs) if wanted.crs else None, sized)
 
 
-def check(wanted: Wanted) -> Wanted:
+def check_wanted_release(wanted: Wanted) -> Wanted:
     """Check what can be checked before any reading; the same, with the shape that is not named."""
     for name in ("depth", "volume"):
         value = getattr(wanted, name)
@@ -216,14 +216,14 @@ def check_pits(raster, geometry, wanted: Wanted) -> None:
     x, y = raster.transform * (column + 0.5, row + 0.5)
     raise SlopeError(wanted.polygon, f"the ground in it must have no pits: {int(found.cells.sum())} cells of "
                      f"{found.shown} lie {found.least:.4g} m or more {found.side} all cells beside them; "
-                     f"{plausible.remedy(found, ground)} (slope terrain, site, route)",
+                     f"{plausible.suggest_pit_remedy(found, ground)} (slope terrain, site, route)",
                      f"the first at east {x + raster.offset[0]:.1f} north {y + raster.offset[1]:.1f}")
 
 
 def scar_of(wanted: Wanted, raster) -> release_scar.Scar:
     assert wanted.scar
     crs = as_crs(f"--assign-crs {wanted.scar}", wanted.scar_crs) if wanted.scar_crs else None
-    return release_scar.read(wanted.scar, wanted.scar_is, raster, wanted.least, crs)
+    return release_scar.read_scar(wanted.scar, wanted.scar_is, raster, wanted.least, crs)
 
 
 def from_scar(wanted: Wanted, scar: release_scar.Scar, geometry):
@@ -257,14 +257,14 @@ def from_shape(wanted: Wanted, raster, geometry):
     elif wanted.shape == "ellipsoid":
         shape = release_bodies.ellipsoid_shape(area, geometry, wanted.where)
     else:
-        assert wanted.dip is not None       # check() has seen to it
+        assert wanted.dip is not None       # check_wanted_release() has seen to it
         direction = release_bodies.bearing(area.downhill) if wanted.direction is None else wanted.direction
         shape = release_bodies.plane_shape(area, float(wanted.dip), direction)
     if wanted.dip == release_dip.LEAST:
         line = release_area.fall_line(area, geometry, wanted.where)
         crs = as_crs("--assign-crs", wanted.foundation_crs) if wanted.foundation_crs else None
         below = release_dip.foundation(wanted.foundation, raster, area, line, crs)
-        free = release_dip.least(area, line, below)
+        free = release_dip.find_least_sagitta(area, line, below)
         depth = release_solve.depths(area, shape.surface(free))
     elif wanted.depth is not None:
         free, depth = release_solve.to_depth(area, shape, wanted.depth, wanted.called("depth"))
@@ -361,7 +361,7 @@ def no_way_out(choices, area) -> Optional[float]:
     return math.degrees(math.atan(fall)) if math.tan(math.radians(choices["dip_degrees"])) > fall else None
 
 
-def text(body: Body) -> str:
+def describe_body(body: Body) -> str:
     """What the user needs to know of the body before anything is written."""
     choices, found, cell = body.choices, body.measures, body.area.cell
     shape = choices["shape"]
@@ -380,14 +380,14 @@ def text(body: Body) -> str:
             what += (f", curvature {choices['curvature_per_m']:.4g} /m (tolerance {choices['tolerance_m']:.4g} m for "
                      f"cells of {cell:g} m)")
         if len(body.made) > 1:
-            what += f" in each of {len(body.made)} polygons\n{release_parts.text(body.made, cell)}"
+            what += f" in each of {len(body.made)} polygons\n{release_parts.describe_parts(body.made, cell)}"
     else:
         toe, shoulder = (" ".join(f"{value:.1f}" for value in choices[end]) for end in ("toe", "shoulder"))
         wide = f", {choices['width_m']:.4g} m wide" if shape == "ellipsoid" else ""
         sagitta = choices["sagitta_m"]
         what = (f"{shape} through toe {toe} and shoulder {shoulder}, {abs(sagitta):.4g} m "
                 f"{'below' if sagitta > 0 else 'above'} its chord of {choices['chord_m']:.4g} m{wide}"
-                f"{release_dip.text(choices) if 'dip_m' in choices else ''}")
+                f"{release_dip.describe_dip(choices) if 'dip_m' in choices else ''}")
     return (f"{what}\n"
             f"volume {rounded(found.volume)} m3, largest depth {found.largest_depth:.4g} m, mean depth "
             f"{found.mean_depth:.4g} m, area {rounded(found.area)} m2 ({found.cells} cells of {cell:g} m)\n"

@@ -59,7 +59,7 @@ def sphere(line: FallLine, sagitta: float) -> Tuple[int, float, np.ndarray, np.n
     return side, radius, (line.toe + line.shoulder) / 2 + side * (radius - sagitta) * normal, east
 
 
-def section(line: FallLine, sagitta: float, share: np.ndarray) -> np.ndarray:
+def compute_cap_section(line: FallLine, sagitta: float, share: np.ndarray) -> np.ndarray:
     """Heights (m) of cap() between toe and shoulder: at shares of the way in plan, 0 at the toe."""
     side, radius, centre, east = sphere(line, sagitta)
     along = share * ((line.shoulder - line.toe)[:2] @ east) - (centre - line.toe)[:2] @ east

@@ -14,7 +14,7 @@ ROOM = 0.35         # of the body's length, beyond each end of the section
 POINTS = 600        # of the section
 
 
-def draw(path, raster: Raster, area: Area, slip: np.ndarray, geometry, title: str) -> None:
+def draw_release(path, raster: Raster, area: Area, slip: np.ndarray, geometry, title: str) -> None:
     """Write the picture. slip: the ground without the body (m) on the nodes of the area; geometry: polygon or None."""
     whole = raster.z.copy()
     rows, columns = slip.shape

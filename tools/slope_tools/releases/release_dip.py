@@ -37,14 +37,14 @@ def foundation(given: Union[float, str, None], raster: Raster, area: Area, line:
         return Foundation(f"the toe's level, {line.toe[2]:.4g} m", float(line.toe[2]))
     if isinstance(given, str):
         row, column = area.corner
-        z = beside.on_cells(given, beside.read(given, raster, crs=crs), raster)
+        z = beside.on_cells(given, beside.read_raster_beside(given, raster, crs=crs), raster)
         return Foundation(given, z[row:row + area.z.shape[0], column:column + area.z.shape[1]])
     if not given < line.shoulder[2]:
         raise SlopeError("--foundation", f"must be lower than the shoulder, {line.shoulder[2]:.6g} m", f"{given:g}")
     return Foundation(f"the level {given:.6g} m", given)
 
 
-def least(area: Area, line: FallLine, below: Foundation) -> float:
+def find_least_sagitta(area: Area, line: FallLine, below: Foundation) -> float:
     """The sagitta (m) of the sphere that dips least and contains the most."""
     share = np.linspace(0, 1, SAMPLES)
     x, y = (line.toe[:2, None] + (line.shoulder - line.toe)[:2, None] * share)
@@ -56,7 +56,7 @@ def least(area: Area, line: FallLine, below: Foundation) -> float:
                          f"none at local x y {x[bad]:.1f} {y[bad]:.1f}")
 
     def dip(sagitta: float) -> float:
-        return float((heights - release_bodies.section(line, sagitta, share)).max())
+        return float((heights - release_bodies.compute_cap_section(line, sagitta, share)).max())
 
     smallest, largest = release_bodies.STRAIGHT * line.chord, line.chord / 2
     most = max(0.0, dip(smallest)) + EXACT * line.chord
@@ -72,7 +72,7 @@ def dips(area: Area, slip: np.ndarray, below: Foundation) -> Dict[str, Union[str
             "below_foundation_m3": float(deep.sum()) * area.cell ** 2}
 
 
-def text(choices: Mapping[str, Any]) -> str:
+def describe_dip(choices: Mapping[str, Any]) -> str:
     """The same in words."""
     return (f"\nof the spheres that dip least below {choices['foundation']}, the one with the most above it: dips "
             f"{choices['dip_m']:.3g} m below it, with {rounded(choices['below_foundation_m3'])} m3")

@@ -8,7 +8,7 @@ from scipy.ndimage import binary_dilation
 
 from ..disk import complete, write_yaml
 from ..errors import SlopeError
-from ..findings import entries
+from ..findings import encode_findings
 from ..provenance import version
 from ..survey import rasters
 from ..survey.rasters import Raster, crs_name
@@ -26,7 +26,7 @@ def paths(name: Path, raised: bool = False) -> List[Path]:
     return [name.with_name(name.name + suffix) for suffix in (*SUFFIXES, *GROUND[:2 * raised])]
 
 
-def check(name: Path, inputs: Iterable[str]) -> None:
+def check_release_files(name: Path, inputs: Iterable[str]) -> None:
     """Raise SlopeError if the files cannot be written to NAME, or would take the place of an input."""
     if name.name in ("", ".", "..") or name.is_dir():
         raise SlopeError("-o", "must be the first part of the files' names, not a folder", name)
@@ -52,8 +52,8 @@ def ground_without(raster: Raster, area: Area, slip: np.ndarray) -> np.ndarray:
     return whole
 
 
-def write(name: Path, terrain: str, raster: Raster, area: Area, slip: np.ndarray, about: dict, geometry,
-          title: str) -> None:
+def write_release_files(name: Path, terrain: str, raster: Raster, area: Area, slip: np.ndarray, about: dict, geometry,
+                        title: str) -> None:
     """Write all files of a body beside their names and then rename them.
 
     slip: the ground without the body (m) on the nodes of the area; about: what NAME.yaml says; geometry: the release
@@ -69,9 +69,10 @@ def write(name: Path, terrain: str, raster: Raster, area: Area, slip: np.ndarray
         made = dict(zip(SUFFIXES, paths(folder / name.name)))
         rasters.write_asc_local(made[".slip.asc"], raster._replace(z=whole), sidecar, exact=True)
         rasters.write_asc_local(made[".depth.asc"], raster._replace(z=depth), sidecar, exact=True)
-        release_chart.draw(made[".png"], raster, area, slip, geometry, title)
+        release_chart.draw_release(made[".png"], raster, area, slip, geometry, title)
         write_yaml(made[".yaml"], about, "slope release: lengths in m, local x y, volumes in m3, angles in degrees")
-        made[".deck.txt"].write_text(release_deck.text(deck_body(name, terrain, raster, area, slip)), encoding="utf-8")
+        made[".deck.txt"].write_text(release_deck.make_deck_lines(deck_body(name, terrain, raster, area, slip)),
+                                     encoding="utf-8")
 
 
 def write_body(name: Path, wanted: Wanted, body: Body, raised: bool = False) -> None:
@@ -82,9 +83,10 @@ def write_body(name: Path, wanted: Wanted, body: Body, raised: bool = False) -> 
     about = {"slope_version": version(), "terrain": wanted.terrain, "polygon": wanted.polygon, **body.choices,
              "body": body.measures._asdict(), "cell": body.area.cell, "crs": crs_name(body.raster.crs),
              "origin": {"east": float(body.raster.offset[0]), "north": float(body.raster.offset[1])},
-             "warnings": entries(body.warnings)}
-    write(name, wanted.terrain, body.raster, body.area, body.slip, about, body.geometry,
-          f"{name.name}: {body.measures.volume:,.0f} m\u00b3, up to {body.measures.largest_depth:.3g} m deep")
+             "warnings": encode_findings(body.warnings)}
+    write_release_files(name, wanted.terrain, body.raster, body.area, body.slip, about, body.geometry,
+                        f"{name.name}: {body.measures.volume:,.0f} m\u00b3, up to {body.measures.largest_depth:.3g} m "
+                        "deep")
     if raised:
         write_ground(ground, given, body)
 
@@ -103,6 +105,6 @@ def deck_body(name: Path, terrain: str, raster: Raster, area: Area, slip: np.nda
     box = (area.x[column.min()], area.x[column.max()], area.y[row.max()], area.y[row.min()],
            float(slip[reached].min()) - ROOM, float(area.z[reached].max()) + ROOM)
     return release_deck.Body(os.path.relpath(terrain, name.parent), name.name + ".slip.asc", name.name,
-                             release_solve.volume(depth, area.cell), area.cell,
+                             release_solve.compute_volume(depth, area.cell), area.cell,
                              max(0.0, float(np.nanmin(raster.z)) - float(np.nanmin(slip))), box,
                              float(np.nanmax(depth)))

@@ -91,7 +91,8 @@ def depths(area: Area, numbers: np.ndarray, several: List[Polygon], shape: str, 
             depth = np.where(part.inside, even, 0.0)
         found[place] += depth
         taken = depth >= release_solve.THINNEST
-        made.append(Made(one.name, cells, int(taken.sum()), release_solve.volume(depth, area.cell), float(depth.max()),
+        made.append(Made(one.name, cells, int(taken.sum()), release_solve.compute_volume(depth, area.cell),
+                         float(depth.max()),
                          float(depth[taken].mean()) if taken.any() else 0.0, asked, attribute, curvature))
     return found, made
 
@@ -143,7 +144,7 @@ def warnings(made: List[Made], shape: str, where: str) -> List[Finding]:
     return doubts
 
 
-def text(made: List[Made], cell: float) -> str:
+def describe_parts(made: List[Made], cell: float) -> str:
     """What is released in each of several polygons, a line each."""
     shown = sorted(made, key=lambda one: one.taken)[:LISTED] if len(made) > LISTED else made
     lines = [f"{one.name}: volume {rounded(one.volume)} m3, up to {one.largest:.4g} m deep"

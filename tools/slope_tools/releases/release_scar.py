@@ -23,7 +23,7 @@ class Scar(NamedTuple):
     above: Optional[np.ndarray]     # m, of heights: the terrain's less the raster's, NaN where either has none
 
 
-def read(path: str, kind: Optional[str], raster: Raster, least: float, crs: Optional[CRS] = None) -> Scar:
+def read_scar(path: str, kind: Optional[str], raster: Raster, least: float, crs: Optional[CRS] = None) -> Scar:
     """The scar of a raster on the nodes of a terrain.
 
     kind: "surface", heights after the event; "depth", of the slip surface below the terrain, positive down; "change",
@@ -88,7 +88,7 @@ def on_nodes(path: str, raster: Raster, heights: bool, crs: Optional[CRS] = None
     Heights are NaN where the raster has none. Depths and changes are 0 there, also between a cell that has one and a
     cell beyond the raster: what they sum up to does not depend on how the file marks the ground beside the scar.
     """
-    scar = beside.read(path, raster, heights, crs)
+    scar = beside.read_raster_beside(path, raster, heights, crs)
     if not heights:
         scar = scar._replace(z=np.pad(np.nan_to_num(scar.z), 1), transform=scar.transform * Affine.translation(-1, -1))
     return beside.on_cells(path, scar, raster)

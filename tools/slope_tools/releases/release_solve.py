@@ -41,7 +41,7 @@ def depths(area: Area, surface: np.ndarray) -> np.ndarray:
         return np.where(area.inside & (surface < area.z), area.z - surface, 0.0)
 
 
-def volume(depth: np.ndarray, cell: float) -> float:
+def compute_volume(depth: np.ndarray, cell: float) -> float:
     """Volume (m3) between two terrains whose nodes differ by depth (m; NaN: none), 0 on the outermost two.
 
     Exact, as a bilinear patch has the mean of its four corners.
@@ -104,7 +104,7 @@ def to_depth(area: Area, shape: Shape, depth: float, called="--depth") -> Tuple[
 
 def to_volume(area: Area, shape: Shape, wanted: float, called="--volume") -> Tuple[float, np.ndarray]:
     """The free number of a shape whose volume (m3) is given, and the depths."""
-    return solved(area, shape, wanted, lambda found: volume(found, area.cell), called, "m3")
+    return solved(area, shape, wanted, lambda found: compute_volume(found, area.cell), called, "m3")
 
 
 def slip_surface(area: Area, depth: np.ndarray, where: str) -> np.ndarray:
@@ -120,7 +120,7 @@ def measures(area: Area, slip: np.ndarray) -> Measures:
     depth = np.where(np.isnan(area.z), 0.0, area.z - slip)      # NODATA beside the body
     body = depth > 0
     east, _ = fall(area.x, area.y, area.z, body)
-    return Measures(volume(depth, area.cell), float(depth.max()), float(depth[body].mean()),
+    return Measures(compute_volume(depth, area.cell), float(depth.max()), float(depth[body].mean()),
                     float(body.sum()) * area.cell ** 2, int(body.sum()), slope_of(area.z, area.cell, body),
                     slope_of(slip, area.cell, body), math.degrees(math.atan2(east[0], east[1])) % 360,
                     wall(depth, area.inside), float(area.z[body].max()), float(area.z[body].min()))

@@ -52,7 +52,7 @@ def is_assigned(site: Dict[str, Any]) -> bool:
 
 def sentence(body: Body) -> str:
     """It, for a client."""
-    about = [f"{volume(body.volume)} of ground would come down"]
+    about = [f"{format_released_volume(body.volume)} of ground would come down"]
     if body.depth and body.area:
         about.append(f", up to {digits.three(body.depth)} m deep and of {digits.three(body.area)} m² in plan")
     about.append(f", above {body.shape}")
@@ -60,16 +60,16 @@ def sentence(body: Body) -> str:
         about.append(f", on ground of {body.slope:.0f} degrees on average")
     text = "".join(about) + "."
     if body.density:
-        text += f" Its bulk density is {whole(body.density)} kg/m³."
+        text += f" Its bulk density is {format_whole(body.density)} kg/m³."
     if body.crs:
         return text + f" Coordinates: {body.crs}{' (assigned)' if body.assigned else ''}."
     return text + " Coordinates: local metres."
 
 
-def volume(value: float) -> str:
+def format_released_volume(value: float) -> str:
     """A released volume, which is known to the cubic metre; in millions from one on."""
-    return f"{whole(value)} m³" if value < digits.MILLION else digits.cubic(value)
+    return f"{format_whole(value)} m³" if value < digits.MILLION else digits.cubic(value)
 
 
-def whole(value: float) -> str:
-    return rounding.text(value, 1.0)
+def format_whole(value: float) -> str:
+    return rounding.format_rounded(value, 1.0)

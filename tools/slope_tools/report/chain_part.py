@@ -23,7 +23,7 @@ HOW = ("The runs release one body each. Bodies that fail together in an earthqua
        "strengths, hazard and model, nor what the masses do to each other on their way.")
 
 
-def section(data: Data, numbers: Numbers):
+def make_chain_section(data: Data, numbers: Numbers):
     """Of a data.Data; None without a chain, or where the volumes of its runs are withheld."""
     about = data.study.chain if data.study else None
     if not about or about.withheld:
@@ -39,7 +39,7 @@ def section(data: Data, numbers: Numbers):
     doubts = texts(about.doubts)
     return Section("chain", "From the earthquake to the road", [
         *(Text(strong(f"{text[0].upper()}{text[1:]}.")) for text in chain_files.sentences(about)), Text(HOW),
-        Figures([Picture(draw(about, per_year(data, about), title), title, caption)]),
+        Figures([Picture(draw_chain(about, per_year(data, about), title), title, caption)]),
         Table("The bodies of slope stability. Share: of the failures in which a body takes part, how many are its.",
               ["body", Cell("volume", "m3"), "share", "runs", "finished"], bodies(about, numbers)),
         parts(about), Listing(doubts) if doubts else None])
@@ -82,7 +82,7 @@ def per_year(data: Data, about: study_types.Chain):
         raise SlopeError(path, f"must be what `slope study --fragility` wrote ({error})") from error
 
 
-def draw(about: study_types.Chain, yearly, title: str) -> str:
+def draw_chain(about: study_types.Chain, yearly, title: str) -> str:
     """Left the curves against the peak, one for each volume; right the annual frequency against the volume."""
     with pictures.settings(figures.STYLE):
         figure, axes = pictures.subplots(1, 1 if yearly is None else 2, squeeze=False,

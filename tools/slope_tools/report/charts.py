@@ -7,8 +7,8 @@ from ..plots import figure_charts
 from ..plots.figure_charts import Series
 from ..runs.repeats import key_of
 from ..statistics import conservative_volume, rounding
-from ..tables.quantities import ALL, REMOVE, name_of
-from .data import Data, is_number
+from ..tables.quantities import ALL, REMOVE, name_quantity
+from .data import Data, is_number_text
 from .numbers import Numbers
 from .sections import Picture
 
@@ -37,7 +37,7 @@ class Charts:
     def variable(self):
         """The first variable with several values, rolling if it has; None if they are no numbers."""
         varied = [name for name, several in self.data.settings.items()
-                  if len(several) > 1 and all(is_number(value) for value in several)]
+                  if len(several) > 1 and all(is_number_text(value) for value in several)]
         return "rolling" if "rolling" in varied else varied[0] if varied else None
 
     def has_removal(self) -> bool:
@@ -57,11 +57,11 @@ class Charts:
         return [self.bars(key) if name is None else self.chart(key, name) for key in wanted]
 
     def title(self, key):
-        what = name_of(key, self.data.finished)
+        what = name_quantity(key, self.data.finished)
         return ALL[key].title or what[0].upper() + what[1:]
 
     def label(self, key):
-        return f"{name_of(key, self.data.finished)} ({ALL[key].unit})"
+        return f"{name_quantity(key, self.data.finished)} ({ALL[key].unit})"
 
     def bars(self, key):
         rows, title = self.data.finished, self.title(key)
@@ -110,7 +110,7 @@ class Charts:
         volume = best.rounded["volume_m3"]
         if best.withheld or volume is None:
             return (float(best.set[name]), best.mean_m3, "governing mean, not usable"), []
-        number = rounding.text(volume, best.place_m3)
+        number = rounding.format_rounded(volume, best.place_m3)
         x = float(best.set[name])
         if best.chance_m3 is None:
             return (x, best.mean_m3, f"{best.kind.split(';')[0]}, {number} m3"), []

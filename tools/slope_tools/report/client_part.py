@@ -17,20 +17,20 @@ from .numbers import MainCard, Numbers
 from .sections import Pairs
 
 
-def content(data: Data, ground, numbers: Numbers, answers: Sequence[Optional[MainCard]], found,
-            listed: int) -> Dict[str, Any]:
+def make_client_content(data: Data, ground, numbers: Numbers, answers: Sequence[Optional[MainCard]], found,
+                        listed: int) -> Dict[str, Any]:
     """What the template takes; answers: those of the study, the first that there is counts where there is no headline;
     found: all findings; listed: how many warnings the appendix has.
     """
     one = letter_of(data, ground)
     main = next((card for card in answers if card), None)
     said = letter_words.say(one, numbers)._replace(down=body.sentence(body.of_data(data, ground)))
-    step, kind = step_of(data), one.number.kind if one.number else Kind.NUMBER.value
+    step, kind = choose_next_step(data), one.number.kind if one.number else Kind.NUMBER.value
     if not one.number and main:     # of an ensemble that no known events weigh
         said = said._replace(clear=of_card(main))
         if main.withheld:
             kind, step = Kind.WITHHELD.value, next_step.first_remedy(next_step.Made(data.of_study, data.folder))
-    return {"letter": said, "kind": kind, "step": step, "table": table(data, ground, numbers, kind),
+    return {"letter": said, "kind": kind, "step": step, "table": tabulate_ranges(data, ground, numbers, kind),
             "caveats": warnings.first_page(unsaid(one, found))[:warnings.MOST], "rest": warnings.rest_of(listed)}
 
 
@@ -48,7 +48,7 @@ def unsaid(one: Letter, found: Sequence[Finding]) -> List[Finding]:
     return [each for each in found if each.kind not in one.lacks]
 
 
-def step_of(data: Data) -> Optional[next_step.Step]:
+def choose_next_step(data: Data) -> Optional[next_step.Step]:
     """The next step of the headline."""
     said = data.study.next_step if data.study else None
     return next_step.Step(**vars(said)) if said else None
@@ -63,7 +63,7 @@ def of_card(main: MainCard) -> str:
 
 # --- what else is found ---
 
-def table(data: Data, ground, numbers: Numbers, kind: str) -> Pairs:
+def tabulate_ranges(data: Data, ground, numbers: Numbers, kind: str) -> Pairs:
     """Of the runs of this page, the least and the most of all, each counted alike."""
     cleared = road_part.on_first_page(data, numbers, kind == Kind.WITHHELD.value)
     rows = [*on_road(data, numbers), *(("clearing", text) for text in cleared), *moving(data, numbers),

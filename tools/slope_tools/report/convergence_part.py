@@ -5,7 +5,7 @@ from .. import schemas
 from ..errors import SlopeError
 from ..plots import figure_charts
 from ..plots.figure_charts import Convergence
-from ..schemas import ABOVE_0, FLAG, MAYBE, NUMBER, TEXT, listed, mapping, named
+from ..schemas import ABOVE_0, FLAG, MAYBE, NUMBER, TEXT, list_of, mapping, dict_of
 from ..statistics import rounding
 from .charts import AXIS
 from .numbers import Numbers
@@ -16,9 +16,9 @@ WHAT = "a converge.yaml of `slope sensitivity --converge`, of this version"
 NAME: Dict[str, Any] = {**TEXT, "minLength": 1}
 CONVERGE = mapping({
     "study": mapping({"variable": TEXT, "deck": TEXT, "finished": NUMBER}),
-    "quantities": named(mapping({
+    "quantities": dict_of(mapping({
         "name": NAME, "unit": TEXT, "resolved": FLAG,
-        "sizes": listed(mapping({"value": ABOVE_0, "mean": NUMBER, "scatter": MAYBE, "balls_thick": MAYBE}), 1)}), 1)})
+        "sizes": list_of(mapping({"value": ABOVE_0, "mean": NUMBER, "scatter": MAYBE, "balls_thick": MAYBE}), 1)}), 1)})
 
 
 def find(asked):
@@ -35,7 +35,7 @@ class Sizes:
     """The quantities in a file."""
 
     def __init__(self, path):
-        about = schemas.load(path, WHAT, CONVERGE)
+        about = schemas.load_checked(path, WHAT, CONVERGE)
         study, self.entries = about["study"], about["quantities"]
         self.variable, self.deck, self.runs = study["variable"], study["deck"], study["finished"]
 
@@ -66,8 +66,8 @@ class Sizes:
         for entry in self.entries.values():
             texts = []
             for size in entry["sizes"]:
-                text = rounding.text(size["mean"], rounding.place(size["scatter"]) if size["scatter"] else
-                                     rounding.place_of_digits(size["mean"]))
+                text = rounding.format_rounded(size["mean"], rounding.choose_rounding(size["scatter"])
+                                               if size["scatter"] else rounding.place_of_digits(size["mean"]))
                 numbers.rows.append((f"{entry['name']} at {self.variable} {size['value']:g}", entry["unit"], "", text,
                                      size["mean"]))
                 thick = size["balls_thick"]

@@ -37,7 +37,7 @@ class Result:
         self.name = self.row.run or self.prefix.name
         terrain = self.log.terrain and self.folder / self.log.terrain
         self.terrain_path = terrain if terrain and terrain.is_file() else None
-        self.deposit = deposit.read(self.prefix, self.terrain_path, lambda text: None)
+        self.deposit = deposit.read_deposit(self.prefix, self.terrain_path, lambda text: None)
 
     def raster(self, name):
         """Values of one of its rasters; they must have the deposit's grid."""
@@ -135,7 +135,8 @@ class Data:
         if road:
             self.removed = self._removed()
             volume = self.result.folder / self._volume() / "volume.yaml"
-            self.volumes = (schemas.load(volume, "what `slope volume` wrote", mapping({"volume": OBJECT}))["volume"]
+            self.volumes = (schemas.load_checked(volume, "what `slope volume` wrote",
+                                                 mapping({"volume": OBJECT}))["volume"]
                             if volume.is_file() else {})
 
     def _read_single(self, shown):
@@ -160,7 +161,7 @@ class Data:
         found = []
         raster = self.result.deposit.raster
         for name in ("volume.tif", "volume_mesh.tif"):
-            one = rasters.read(self.result.folder / self._volume() / name, heights=False)
+            one = rasters.read_raster(self.result.folder / self._volume() / name, heights=False)
             east, north = raster.offset     # the files are in the CRS
             found.append(one._replace(transform=Affine.translation(-east, -north) * one.transform,
                                       z=np.nan_to_num(one.z)))
@@ -220,7 +221,7 @@ class Data:
     def length(self):
         """The run_length.RunLength of the shown run; None where its deposit is nowhere thick enough."""
         from ..mobility import run_length
-        return run_length.of_run(self.result.deposit, self.result.terrain_path)
+        return run_length.measure_run_length(self.result.deposit, self.result.terrain_path)
 
     # --- runs and their names ---
 
@@ -259,7 +260,7 @@ class Data:
         return [f"{name} {value}" for name, value in row.set.items() if len(self.settings.get(name) or ()) > 1]
 
 
-def is_number(text):
+def is_number_text(text):
     try:
         return math.isfinite(float(text))
     except ValueError:

@@ -43,32 +43,32 @@ def write_pictures(output):
     """The written page's PNG pictures, its maps, as files beside it."""
     pictures = re.findall(r"data:image/png;base64,([A-Za-z0-9+/=]+)", output.read_text(encoding="utf-8"))
     for place, picture in enumerate(pictures, 1):
-        disk.write(output.with_suffix(f".{place}.png"), base64.b64decode(picture))
+        disk.write_file(output.with_suffix(f".{place}.png"), base64.b64decode(picture))
     print(f"{output.with_suffix('.1.png')} to {len(pictures)}: its maps")
 
 
 def update(asked: Asked, output: Path) -> List[str]:
-    """write() the page of a study, unless it is there, made of the same numbers and runs by the same tools."""
+    """write_report() the page of a study, unless it is there, made of the same numbers and runs by the same tools."""
     assert asked.study
     made_of = digest_of(asked, asked.study)
     if is_made_of(output, made_of):
         return [f"{output}: unchanged, as all that it is made of"]
-    return write(asked, output, made_of)
+    return write_report(asked, output, made_of)
 
 
-def write(asked: Asked, output: Path, made_of: Optional[str] = None) -> List[str]:
+def write_report(asked: Asked, output: Path, made_of: Optional[str] = None) -> List[str]:
     """Write the page, its tables and its film, if one is asked for; returns lines for the user, the files first.
 
     made_of: digest_of() the page.
     """
-    page, content = make(asked)
+    page, content = make_page(asked)
     tables = {output.with_suffix(".section.csv"): page.section.table(),
               output.with_suffix(".numbers.csv"): page.numbers.table()}
     films = {asked.film: page.film.content} if asked.film and page.film.content else {}
     beside = {**tables, **films}
     html = render({**content, "made_of": made_of_text(made_of if films or not page.film.failed else None, beside)})
     for path, text in {**beside, output: html}.items():     # the page, which says what it is made of, last
-        disk.write(path, text)
+        disk.write_file(path, text)
     view = ", a 3-D view" if 'id="scene"' in html else ""
     written = (f"{output}: {len(html) / 1e6:.1f} MB, {html.count('<figure')} pictures{view}; "
                f"{', '.join(map(str, [*tables, *films]))}")
@@ -80,7 +80,7 @@ def write(asked: Asked, output: Path, made_of: Optional[str] = None) -> List[str
 
 def digest_of(asked: Asked, study: study_types.Study) -> str:
     """Of the page that is asked for on a study: what its runs say, their files, the site, and these tools."""
-    about = study_file.plain(study)
+    about = study_file.encode_study(study)
     about["study"] = {key: value for key, value in about["study"].items() if key not in BESIDE}
     site = site_file(asked.folder)
     # however its folder is named on the command line
@@ -112,7 +112,7 @@ def made_of_text(made_of: Optional[str], beside) -> str:
 
 # --- the page ---
 
-def make(asked: Asked):
+def make_page(asked: Asked):
     """The Page and what its template takes."""
     from .page import Page
     with trusted(asked.folder):
@@ -122,9 +122,9 @@ def make(asked: Asked):
 
 def reproduce(folder: Path) -> List[str]:
     """Lines with the commands, versions and checksums of a folder."""
-    from .reproduce import lines
+    from .reproduce import list_reproduce_commands
     with trusted(folder):
-        return lines(folder)
+        return list_reproduce_commands(folder)
 
 
 @contextmanager
@@ -151,7 +151,7 @@ def templates(more=Path()):
     loader = jinja2.FileSystemLoader([Path(__file__).parent, view.HERE, more])
     environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True,
                                      undefined=jinja2.StrictUndefined, finalize=typeset)
-    environment.filters.update(verbatim=sections.verbatim, kind=sections.kind, cell=sections.cell)
+    environment.filters.update(verbatim=sections.verbatim, kind=sections.kind, cell=sections.make_cell)
     return environment
 
 

@@ -14,7 +14,7 @@ from ..plots import ensemble_charts, figure_maps
 from ..statistics import entries
 from ..tables import ensemble_types, quantities, study_types, withheld_words
 from .charts import AXIS
-from .data import Data, is_number
+from .data import Data, is_number_text
 from .numbers import CardPart, MainCard, Numbers
 from .sections import Cell, Figures, Picture, Section, Table, Text
 
@@ -77,7 +77,8 @@ class Ensemble:
     def section(self, maps) -> Section:
         return Section("ensemble", "How likely, and what matters", [
             Figures([self.curve()], "two-thirds"), Figures(self.indices(), "columns"), self.table(),
-            Figures(self.scatter(), "columns"), Figures(draw(self.data, self.about.maps, maps), "columns")])
+            Figures(self.scatter(), "columns"), Figures(draw_ensemble_maps(self.data, self.about.maps, maps),
+                                                        "columns")])
 
     # --- charts ---
 
@@ -114,7 +115,7 @@ class Ensemble:
         found = []
         for name in names[:MOST_SCATTER]:
             rows = self.data.finished
-            if not all(is_number(row.set[name]) for row in rows):
+            if not all(is_number_text(row.set[name]) for row in rows):
                 continue
             what = self.entry.name
             title = f"{what[0].upper()}{what[1:]} against {name}"
@@ -129,7 +130,7 @@ class Ensemble:
         names, rows = list(self.about.design.variables), []
         for name, entry in self.about.quantities.items():
             found = self.about.influence.get(name)
-            cells = [quantities.number(one.value) for one in entry.quantiles]
+            cells = [quantities.format_quantity(one.value) for one in entry.quantiles]
             of_variables = []
             for key in names:
                 one = found and found.variables[key]
@@ -157,13 +158,14 @@ class KnownEvents:
 
     def section(self, maps) -> Section:
         about = self.about
-        lines = [*([known_events.summary(about)] if about else []), *texts(self.known.doubts if self.known else ())]
+        lines = [*([known_events.summarise_weights(about)] if about else []),
+                 *texts(self.known.doubts if self.known else ())]
         blocks: List[Any] = [Text(f"{text[0].upper()}{text[1:]}.") for text in lines]
         if about:
             curve = self.curve()
             blocks += [*([Figures([curve], "two-thirds")] if curve else []), *self.tables()]
         return Section("known-events", "Weighted by known events", [
-            *blocks, Figures(draw(self.data, about.maps, maps) if about else [], "columns")])
+            *blocks, Figures(draw_ensemble_maps(self.data, about.maps, maps) if about else [], "columns")])
 
     def number(self, what: str, unit: str, value: Optional[float]) -> str:
         return "unknown" if value is None else self.numbers(f"known events: {what}", unit, value)
@@ -215,7 +217,7 @@ def cell_of(one: entries.KnownQuantile) -> str:
     """A quantile in a table."""
     if one.value is None:
         return "?"
-    return " to ".join(map(quantities.number, one.gap or [one.value]))
+    return " to ".join(map(quantities.format_quantity, one.gap or [one.value]))
 
 
 # --- of both ---
@@ -238,7 +240,7 @@ def card(entry: Any, whose: str, confidence: float, number: Callable[[str, str, 
 
 
 def hazard_curve(path: Path, of: str, entry: Any, title: str, whose: str, text: str) -> Optional[Picture]:
-    """The curve of a quantity in a file of hazard.table(); None where it has none."""
+    """The curve of a quantity in a file of hazard.tabulate_hazard(); None where it has none."""
     points = read_curve(path, of)
     named = [entries.KnownQuantile(*one) for one in entry.quantiles if one.value is not None]
     return None if points is None else Picture(
@@ -272,7 +274,7 @@ def read_curve(path, quantity: str):
         raise SlopeError(path, f"must be what `slope study --sample` wrote ({error!r})") from error
 
 
-def shown(entry) -> bool:
+def is_map_on_page(entry) -> bool:
     """Which of the maps are on the page; the others are files."""
     if "threshold" in entry:
         return entry["raster"] in ("thickness", "max_speed", "arrival") and (
@@ -295,11 +297,11 @@ def exceeded(data: Data) -> Optional[figure_maps.Exceeded]:
                                 *((known.far, known.short) if known else ()))
 
 
-def draw(data: Data, several: Sequence[study_types.MapEntry], maps) -> List[Picture]:
+def draw_ensemble_maps(data: Data, several: Sequence[study_types.MapEntry], maps) -> List[Picture]:
     """How likely the mass is there, and what 90 % of the runs stay within, where that is anything."""
     pictures = []
     layers = maps.layers._replace(section=None)
-    for entry in filter(shown, several):
+    for entry in filter(is_map_on_page, several):
         values = data.read_map(entry["file"])
         if not (values > 0).any():
             continue

@@ -3,13 +3,13 @@ from pathlib import Path
 from typing import Any, Dict, NamedTuple, Optional, Sequence
 
 from .. import schemas
-from ..schemas import TEXT, listed, mapping
+from ..schemas import TEXT, list_of, mapping
 from ..sites import site_roads
 from ..sites.site_choices import check_text
 from ..tables import study_types
 
 SITE = "site.yaml"          # of `slope site`; its study is a folder in the site's
-SECTIONS = mapping({}, project=mapping({}, null=True), terrain=mapping({}, null=True, files=listed(TEXT, null=True)),
+SECTIONS = mapping({}, project=mapping({}, null=True), terrain=mapping({}, null=True, files=list_of(TEXT, null=True)),
                    release=mapping({}, null=True), found=mapping({}, null=True, body=mapping({}, null=True)))
 FIELDS = {"project": "name", "client": "client", "author": "author"}      # option: key below `project` in that file
 
@@ -38,7 +38,7 @@ def heading(folder: Path, given: Dict[str, Optional[str]],
     """
     for name, text in given.items():
         check_text(f"--{FIELDS.get(name, name)}", text)
-    found = of_site(folder, site_of(folder) if site is None else site)
+    found = read_site_heading(folder, site_of(folder) if site is None else site)
     return {name: given.get(name) or found.get(name) for name in (*FIELDS, "survey")}
 
 
@@ -51,10 +51,10 @@ def site_file(folder: Path) -> Optional[Path]:
 def site_of(folder: Path) -> Dict[str, Any]:
     """The file of the site of a folder, of whatever version; empty without one."""
     path = site_file(folder)
-    return schemas.load(path, "a file of `slope site`", SECTIONS) if path else {}
+    return schemas.load_checked(path, "a file of `slope site`", SECTIONS) if path else {}
 
 
-def of_site(folder: Path, site: Dict[str, Any]) -> Dict[str, str]:
+def read_site_heading(folder: Path, site: Dict[str, Any]) -> Dict[str, str]:
     """What the file of the site says, in the folder or in the one above it; a site without a name has its folder's."""
     path = site_file(folder)
     if path is None:

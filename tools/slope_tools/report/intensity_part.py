@@ -1,5 +1,5 @@
 """What a report shows of a study over an intensity: volume on the road against it, and how likely more is."""
-from ..digits import chance, measured, percent
+from ..digits import chance, format_measured_share, percent
 from ..drawing.figures import HALF
 from ..plots import figure_charts
 from ..plots.figure_charts import Series
@@ -12,13 +12,13 @@ AXIS = {"peak": "peak acceleration (gal)", "pga": "peak acceleration (gal)"}
 MOST_CURVES = 4         # probabilities in the chart
 
 
-def section(data: Data, numbers: Numbers):
+def make_intensity_section(data: Data, numbers: Numbers):
     """The table and the two charts of a data.Data; None without an intensity."""
     about = data.study.intensity if data.study else None
     if not about:
         return None
     name = about.variable
-    pictures = [volumes(data, about)]
+    pictures = [draw_intensity_volumes(data, about)]
     if about.more_than_m3:
         pictures.append(exceedance(about))
     heads = [*about.lines[0].set, AXIS.get(name, name), "runs", "mean", "smallest", "largest", "of the released",
@@ -39,7 +39,7 @@ def rows(about: study_types.Intensity, numbers: Numbers):
             cells = [numbers(f"on the road, {what}", "m3", value, of)
                      for what, value in (("mean", point.mean_m3), ("smallest", point.smallest_m3),
                                          ("largest", point.largest_m3))]
-            cells.append(measured(point.share_of_released))
+            cells.append(format_measured_share(point.share_of_released))
             cells += [chance(one.probability, one.low, one.high) for one in point.exceed]
             found.append([*line.set.values(), f"{point.at:g}", point.runs, *cells])
     return found
@@ -50,7 +50,7 @@ def rest_of(line: study_types.Line, about: study_types.Intensity):
     return ", ".join(f"{other} {value}" for other, value in line.set.items() if len(about.lines) > 1)
 
 
-def volumes(data: Data, about: study_types.Intensity):
+def draw_intensity_volumes(data: Data, about: study_types.Intensity):
     """The volume on the road against the intensity: runs and means, without a common scatter."""
     name, series = about.variable, []
     for line in about.lines:

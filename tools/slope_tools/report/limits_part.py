@@ -24,11 +24,11 @@ ZONES = ("What the ground is, where: zones as on the maps, and the ground outsid
          "those of the shown run; the stop angle is that of a sheet of three balls whose soil has them, too.")
 
 
-def section(data: Data, ground, numbers: Numbers) -> Section:
+def make_limits_section(data: Data, ground, numbers: Numbers) -> Section:
     """Of the shown run and of its study."""
     return Section("limits", "", [Pairs(
-        [*mobility_part.content(data, ground, numbers), *uncertainty(data, numbers), ("Varied", varied(data)),
-         *resistance(data, ground, numbers), *model(data)],
+        [*mobility_part.list_mobility_limits(data, ground, numbers), *uncertainty(data, numbers),
+         ("Varied", varied(data)), *resistance(data, ground, numbers), *model(data)],
         "How uncertain these numbers are, and what is not in them", "limits")])
 
 
@@ -38,10 +38,10 @@ def resistance(data: Data, ground, numbers: Numbers) -> CONTENT:
     if degrees is None:
         return []
     others = [row.value(STOP) for row in data.compared if row.value(STOP) is not None]
-    text = (f"A sheet of three balls stops on it where the slope is below {shown(numbers, degrees, label)} degrees "
-            f"(stop angle, run {label}")
+    text = (f"A sheet of three balls stops on it where the slope is below {format_stop_angle(numbers, degrees, label)} "
+            "degrees " f"(stop angle, run {label}")
     if max(others) - min(others) > 0.05:
-        text += f"; in all runs {shown(numbers, min(others))} to {shown(numbers, max(others))}"
+        text += f"; in all runs {format_stop_angle(numbers, min(others))} to {format_stop_angle(numbers, max(others))}"
     try:
         share = 100 * ground.below.steeper(degrees)
     except SlopeError:      # a level body has no fall path
@@ -51,7 +51,7 @@ def resistance(data: Data, ground, numbers: Numbers) -> CONTENT:
              "path loses below its toe.")]
 
 
-def shown(numbers, degrees: float, label: str = "") -> str:
+def format_stop_angle(numbers, degrees: float, label: str = "") -> str:
     """A stop angle, which is known to half a degree."""
     numbers.rows.append(("stop angle of the ground", "degrees", label, f"{degrees:.1f}", degrees))
     return f"{degrees:.1f}"
@@ -85,14 +85,14 @@ def uncertainty(data: Data, numbers: Numbers) -> CONTENT:
     if best and best.chance_m3 is not None and not best.mean_m3 and not best.chance_m3:
         found.append(f"In none of the {len(data.finished)} runs anything is to be removed.")
     elif best and best.chance_m3 is not None:
-        low, high = (rounding.text(value, best.place_m3) for value in
+        low, high = (rounding.format_rounded(value, best.place_m3) for value in
                      (max(0.0, best.mean_m3 - best.chance_m3), best.mean_m3 + best.chance_m3))
         found.append(f"Another run with the same values gives {low} to {high} m3 to remove, in 95 % of cases.")
     key = travel_shares.DISTANCE
     scatter = study.scatter.get(key) if study else None
     if scatter:
         deviation = scatter["deviation"]
-        text = rounding.text(deviation, 10 * rounding.place_of_digits(deviation))       # two digits
+        text = rounding.format_rounded(deviation, 10 * rounding.place_of_digits(deviation))       # two digits
         numbers.rows.append(("scatter of a run: 99 % within", "m", "", text, deviation))
         found.append(f"The distance that 99 % of the volume stays within differs by {text} m from run to run "
                      "(standard deviation).")
@@ -139,12 +139,13 @@ def shortly(values) -> str:
 def model(data: Data) -> CONTENT:
     about = data.result.summary
     ball = about["volume"]["released"] / about["balls"]["released"]
-    side = rounding.text(ball ** (1 / 3), 10.0 ** (math.floor(math.log10(ball) / 3) - 2))
+    side = rounding.format_rounded(ball ** (1 / 3), 10.0 ** (math.floor(math.log10(ball) / 3) - 2))
     return [
         ("The body", "Its slip surface and volume were given, not computed: the report does not say whether, or how "
                      "likely, the slope fails. The body is released at once; no trigger is modelled, except with an "
                      "earthquake."),
-        ("The mass", f"Equal balls, each representing {rounding.text(ball, rounding.place_of_digits(ball))} m3 of "
+        ("The mass", f"Equal balls, each representing {rounding.format_rounded(ball, rounding.place_of_digits(ball))} "
+         "m3 of "
                      f"ground, a cube of {side} m: a parameter of the model, not the size of blocks. Speeds and "
                      "energies of single balls are those of such a block. Dry: no water, no pore pressure, no "
                      "liquefaction. No cohesion, no breakage, no bulking on the way."),

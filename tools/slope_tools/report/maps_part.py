@@ -41,7 +41,8 @@ class Maps:
             ground.raster, ground.before,
             ground.window(*ground.boxes(), (*line.min(axis=0), *line.max(axis=0))),
             ground.release, data.road, line, figures.contour_interval(ground.before), ground.obstacles.footprints,
-            ground.obstacles.lines, ground.reach, mobility_part.drawn(data), zones_of(data, ground.raster))
+            ground.obstacles.lines, ground.reach, mobility_part.find_mobility_shape(data),
+            zones_of(data, ground.raster))
 
     def thickness(self, values, title, alt, caption, width=figures.HALF, layers=None):
         """A map of a thickness, in classes that the release does not set."""
@@ -64,7 +65,8 @@ class Maps:
         found["deposit"] = self.thickness(
             one.thickness, "Thickness of the deposit at the end", "Map of the deposit's thickness at the end",
             f"Final thickness, {digits.three(one.deposit.cell)} m cells."
-            + shown_run(data) + known_reach.words(ground.reach) + self.outlines(), figures.FULL, self.with_outlines())
+            + shown_run(data) + known_reach.describe_known_reach(ground.reach) + self.outlines(), figures.FULL,
+            self.with_outlines())
         found["terrain"] = Picture(
             figure_maps.terrain_map(layers._replace(shown=whole), layers.shown, self.crs), "Map of the terrain before",
             "Terrain before the collapse, light from the north-west"

@@ -24,7 +24,7 @@ class Lies(NamedTuple):
     why: str
 
 
-def content(data: Data, ground, numbers: Numbers) -> List[Tuple[str, str]]:
+def list_mobility_limits(data: Data, ground, numbers: Numbers) -> List[Tuple[str, str]]:
     """The row of the table of limits."""
     found = where_lie(data, ground)
     if found.mobility is None:
@@ -92,7 +92,7 @@ def beyond_the_terrain(found: Lies, kinds: Sequence[str], numbers: Numbers, labe
 
 # --- a mapped deposit: how the runs agree with it, whatever the method of the study ---
 
-def drawn(data: Data) -> Any:
+def find_mobility_shape(data: Data) -> Any:
     """What the maps draw of it: its polygon, or the mask of its cells; None without one."""
     if data.mapped is None:
         return None

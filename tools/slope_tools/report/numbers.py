@@ -6,7 +6,7 @@ from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence
 
 from .. import disk
 from ..deposits import rest, travel_shares
-from ..digits import measured, rounded
+from ..digits import format_measured_share, rounded
 from ..findings import Finding
 from ..mobility.run_length import ON_PATH
 from ..statistics import rounding
@@ -14,7 +14,7 @@ from ..statistics.answer import Source
 from ..tables import named_run, withheld_words
 from ..tables.quantities import ALL, KNOWN, LENGTH, REACH, written
 from ..tables.released import over_runs
-from .data import Data, is_number
+from .data import Data, is_number_text
 
 UNKNOWN = "unknown"
 
@@ -29,7 +29,7 @@ class Numbers:
         """A number as text, with three digits."""
         if value is None:
             return UNKNOWN
-        text = rounding.text(value, rounding.place_of_digits(value, unit))
+        text = rounding.format_rounded(value, rounding.place_of_digits(value, unit))
         self.rows.append((what, unit, of, text, value))
         return text
 
@@ -52,7 +52,7 @@ class Numbers:
         if not scatter:
             return self(f"mean: {what}", unit, value, of)
         place = max(10 * rounding.place_of_digits(scatter), rounding.place_of_digits(value) / 10)
-        texts = [rounding.text(one, place) for one in (value, scatter)]
+        texts = [rounding.format_rounded(one, place) for one in (value, scatter)]
         for name, text, one in zip(("mean", "scatter"), texts, (value, scatter)):
             self.rows.append((f"{name}: {what}", unit, of, text, one))
         return " \N{PLUS-MINUS SIGN} ".join(texts)
@@ -121,7 +121,7 @@ def answer(data: Data, numbers: Numbers) -> Optional[MainCard]:
         value = rounded_[key]
         if value is None:
             return None
-        text = rounding.text(value, place)
+        text = rounding.format_rounded(value, place)
         numbers.rows.append((f"conservative: {key}", "m3", who, text, exact))
         return text
 
@@ -132,7 +132,7 @@ def answer(data: Data, numbers: Numbers) -> Optional[MainCard]:
         parts.append(CardPart(
             part("chance_m3", best.chance_m3), "chance",
             f"97.5 % of single runs lie below: t {best.quantile:.3g} x standard deviation of a run "
-            f"{rounding.text(scatter, rounding.place_of_digits(scatter))} m3 x sqrt(1 + 1/{best.repeats}), "
+            f"{rounding.format_rounded(scatter, rounding.place_of_digits(scatter))} m3 x sqrt(1 + 1/{best.repeats}), "
             f"{best.degrees_of_freedom:.3g} degrees of freedom", "+"))
     else:
         parts.append(CardPart(UNKNOWN, "chance", "no run was repeated (study --repeat seed=..., xoffset=...)", "+"))
@@ -212,7 +212,7 @@ def travel_card(data: Data, numbers: Numbers):
 def farthest_of(summary):
     """Distance (m) and reach angle (degrees) of the one farthest ball."""
     far = summary["travel"].get("farthest")
-    if isinstance(far, dict) and all(disk.is_number(far.get(key)) for key in ("distance", "reach_angle")):
+    if isinstance(far, dict) and all(disk.is_finite_number(far.get(key)) for key in ("distance", "reach_angle")):
         return far["distance"], far["reach_angle"]
     return summary["travel"]["front"], summary["travel"]["reach_angle"]
 
@@ -237,7 +237,7 @@ def rest_card(data: Data):
     if data.study:
         note = f"{data.label_of(worst)}: {worst.end}, at {worst.stop_time_s:.1f} s" if worst else \
             "ended by their rest criterion, at most " \
-            f"{measured(max(end.moves_share for end in ends))} of the volume faster than {rest.FAST:g} m/s"
+            f"{format_measured_share(max(end.moves_share for end in ends))} of the volume faster than {rest.FAST:g} m/s"
         return {"what": "At rest at the end", "number": f"{len(resting)} of {len(ends)}", "unit": "runs", "note": note,
                 "status": status}
     return {"what": "At the end of the run", "number": f"{ends[0].stop_time_s:.1f}", "unit": "s", "status": status,
@@ -281,11 +281,11 @@ def values_of(data: Data, of: Mapping[str, Any]) -> str:
     found: Dict[str, str] = {}
     for name, value in of.items():
         if len(data.settings.get(name) or ()) > 1 and WORDS.get(name, CHANCE) != CHANCE:
-            text = rounded(float(value), 3) if is_number(value) else str(value)
+            text = rounded(float(value), 3) if is_number_text(value) else str(value)
             found.setdefault(WORDS[name].removeprefix("the "), text)
-    return listed([f"{name} {text}" for name, text in found.items()])
+    return join_words([f"{name} {text}" for name, text in found.items()])
 
 
-def listed(words: Sequence[str]) -> str:
+def join_words(words: Sequence[str]) -> str:
     several: List[str] = list(words)
     return " and ".join([", ".join(several[:-1]), several[-1]] if len(several) > 1 else several)

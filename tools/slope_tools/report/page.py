@@ -14,7 +14,7 @@ from .maps_part import Maps
 from .numbers import Numbers, answer, cards
 from .sections import Picture
 from .structures_part import Structures
-from .warnings import findings, listed
+from .warnings import findings, rank_warnings
 
 
 class Page:
@@ -24,16 +24,16 @@ class Page:
         self.data = Data(asked.folder, asked.shown, asked.study, asked.site)
         self.ground = Ground(self.data)
         self.section = Section(self.data, self.ground, asked.section, asked.local)
-        self.reference = reference.read(asked.reference, quantities.known(On.ASKED, self.data.compared)) \
+        self.reference = reference.read_reference(asked.reference, quantities.known(On.ASKED, self.data.compared)) \
             if asked.reference else None
         path = convergence_part.find(asked.converge)
         self.sizes = path and convergence_part.Sizes(path)
         self.findings = findings(self.data, self.ground)
-        self.warnings = listed(self.findings, self.data.names())
+        self.warnings = rank_warnings(self.findings, self.data.names())
         self.numbers = Numbers()
         self.heading = heading.heading(asked.folder, {name: getattr(asked, name) for name in heading.FIELDS},
                                        self.data.site)
-        self.frames, self.no_frames = frames.read(self.data.result)
+        self.frames, self.no_frames = frames.read_frames(self.data.result)
         self.film_file, self.film = asked.film, film.Film(None, "")
 
     def content(self):
@@ -49,27 +49,27 @@ class Page:
                "heading": self.heading, "body": body.of_data(data, ground), "warnings": self.warnings,
                "answer": answers[0], "of_ensemble": answers[1], "cards": cards(data, numbers),
                "map": of_run["deposit"], "section": Picture(*self.section.picture()),
-               "view": view.content(data, ground, self.section, self.frames, self.no_frames, self.film.text),
-               "place": ground.raster.crs is not None, "limits": limits_part.section(data, ground, numbers),
+               "view": view.make_view_content(data, ground, self.section, self.frames, self.no_frames, self.film.text),
+               "place": ground.raster.crs is not None, "limits": limits_part.make_limits_section(data, ground, numbers),
                **self.what()}
         sections = [
             *ensemble_part.sections(data, numbers, maps),
-            study_part.section(data, numbers, self.reference, maps),
+            study_part.make_study_section(data, numbers, self.reference, maps),
             mobility_part.mapped(data, numbers),
-            road_part.of_all(data),
-            road_part.section(data, numbers, maps),
+            road_part.make_roads_section(data),
+            road_part.make_road_section(data, numbers, maps),
             limits_part.zones_of_ground(data, numbers),
-            chain_part.section(data, numbers),
-            intensity_part.section(data, numbers),
+            chain_part.make_chain_section(data, numbers),
+            intensity_part.make_intensity_section(data, numbers),
             Structures(data, numbers, ground).section(),
             self.sizes and self.sizes.section(numbers),
-            reference.section(self.reference, data, numbers),
+            reference.make_reference_section(self.reference, data, numbers),
             maps.section(of_run),
             run_part.balance(data, numbers),
             run_part.for_offices(data, ground, numbers),
             run_part.what_was_run(data),
             run_part.origin(data, made)]
-        client = client_part.content(data, ground, numbers, answers, self.findings, len(self.warnings))
+        client = client_part.make_client_content(data, ground, numbers, answers, self.findings, len(self.warnings))
         return {**top, "client": client, "sections": [one for one in sections if one]}
 
     def what(self):

@@ -31,7 +31,7 @@ def require_browser() -> str:
     return found
 
 
-def write(page: Path, pdf: Path) -> None:
+def print_page(page: Path, pdf: Path) -> None:
     """Print a page; the PDF is there whole or not at all. Raises SlopeError with the browser's last words."""
     program = require_browser()
     with tempfile.TemporaryDirectory(prefix="slope", ignore_cleanup_errors=True) as folder:
@@ -40,17 +40,17 @@ def write(page: Path, pdf: Path) -> None:
                  page.absolute().as_uri()]
         if os.geteuid() == 0:       # it refuses to run as root with its sandbox
             words.insert(1, "--no-sandbox")
-        status, said = run(words, Path(folder))
+        status, said = run_browser(words, Path(folder))
         content = printed.read_bytes() if printed.is_file() else b""
         if status is None:
             raise SlopeError("--pdf", f"{program} must print {page} within {PATIENCE:g} s: try again when less runs on "
                              "this machine, or print the page from any browser", "nothing by then")
         if status or not content.startswith(b"%PDF"):
             raise SlopeError("--pdf", f"{program} must print {page}", said or f"status {status}")
-    disk.write(pdf, content)
+    disk.write_file(pdf, content)
 
 
-def run(words: List[str], folder: Path) -> Tuple[Optional[int], str]:
+def run_browser(words: List[str], folder: Path) -> Tuple[Optional[int], str]:
     """Run a browser: its status, None if it had to be ended, and its last words. No process of it is left."""
     with open(folder / "said", "wb") as screen:     # a pipe would wait for processes that the browser leaves
         try:

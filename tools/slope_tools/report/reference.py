@@ -3,7 +3,7 @@ from typing import Dict, List, NamedTuple, Optional, Tuple
 
 from .. import schemas
 from ..errors import SlopeError
-from ..schemas import NUMBER, TEXT, mapping, named
+from ..schemas import NUMBER, TEXT, mapping, dict_of
 from ..tables import quantities
 from .data import Data
 from .numbers import Numbers
@@ -11,12 +11,12 @@ from .sections import Cell, Section, Table, Text
 
 WHAT = "a file of reference values (see the page on `slope report`)"
 NAME = 80       # letters of a name
-LEVELS = named(NUMBER)                                                          # {name: value}
-SERIES = named({**named(NUMBER, 1), "propertyNames": NUMBER})                   # {name: {x: value}}
+LEVELS = dict_of(NUMBER)                                                          # {name: value}
+SERIES = dict_of({**dict_of(NUMBER, 1), "propertyNames": NUMBER})                   # {name: {x: value}}
 QUANTITY = {**mapping({}, variable=TEXT, levels=LEVELS, series=SERIES), "additionalProperties": False,
             "anyOf": [{"required": ["levels"]}, {"required": ["variable", "series"]}],
             "description": "levels: {NAME: VALUE}, or variable and series: {NAME: {X: VALUE}}, or both"}
-SCHEMA = {**mapping({"title": {**TEXT, "minLength": 1}, "quantities": named(QUANTITY, 1)}, remark=TEXT),
+SCHEMA = {**mapping({"title": {**TEXT, "minLength": 1}, "quantities": dict_of(QUANTITY, 1)}, remark=TEXT),
           "additionalProperties": False}
 
 
@@ -34,12 +34,12 @@ class Reference(NamedTuple):
     quantities: Dict[str, Quantity]
 
 
-def read(path, available):
+def read_reference(path, available):
     """The Reference in a file; available: columns of the study with numbers in all runs.
 
     SlopeError names file, entry and rule; among others where the file has no quantities, or one that the study lacks.
     """
-    about = schemas.load(path, WHAT, SCHEMA)
+    about = schemas.load_checked(path, WHAT, SCHEMA)
     unknown = about["quantities"].keys() - set(available)
     if unknown:
         raise SlopeError(f"{path}: quantities", "must be columns that all runs have, " + ", ".join(available),
@@ -56,16 +56,16 @@ def quantity(entry):
                     {str(name)[:NAME]: float(value) for name, value in entry.get("levels", {}).items()})
 
 
-def section(reference, data: Data, numbers: Numbers):
+def make_reference_section(reference, data: Data, numbers: Numbers):
     """A table for each quantity, with the range of the runs' own beside it; None without a reference."""
     if reference is None:
         return None
     return Section("reference", "Numbers from elsewhere", [
         Text(f"{reference.title}.{' ' * bool(reference.remark)}{reference.remark}", "soft"),
-        *(table(key, one, data, numbers) for key, one in reference.quantities.items())])
+        *(tabulate_reference(key, one, data, numbers) for key, one in reference.quantities.items())])
 
 
-def table(key, one, data: Data, numbers: Numbers):
+def tabulate_reference(key, one, data: Data, numbers: Numbers):
     """Of a Quantity: its series and levels."""
     what, unit = quantities.ALL[key].name, quantities.ALL[key].unit
     xs = sorted({x for points in one.series.values() for x, _ in points})

@@ -21,7 +21,7 @@ RESULTS = ("study.yaml", "study.csv", "combinations.csv", "hazard.csv", "influen
 Run = Tuple[str, Path, Mapping[str, Any], Mapping[str, Any]]      # label, folder, of its command, of its end
 
 
-def lines(folder: Path) -> List[str]:
+def list_reproduce_commands(folder: Path) -> List[str]:
     """All of a folder of a study or of a run."""
     data = Data(folder)
     runs = list(runs_of(data))

@@ -22,7 +22,7 @@ COLUMNS = (("length", "m", "length"), ("passable", "m", "passable_width"), ("to 
            ("until a lane is open", "h", "hours_lane"))
 
 
-def section(data: Data, numbers: Numbers, maps) -> Optional[Section]:
+def make_road_section(data: Data, numbers: Numbers, maps) -> Optional[Section]:
     """Of a data.Data; None where no run blocks the road, or of older studies."""
     study = data.study
     about = study.stretches if study else None
@@ -47,22 +47,23 @@ def section(data: Data, numbers: Numbers, maps) -> Optional[Section]:
     heads: List[Any] = ["stretch", Cell("chainage", "m"), Cell("blocked in", f"% of {runs}"),
                         *(Cell(head, unit) for head, unit, _ in columns)]
     return Section("road", "Blocked stretches of the road", [
-        Figures([shares(data, asked, about, runs, maps)], "tall"), *along,
-        Table(caption(asked, about, runs) + gaps(data, about), heads, lines, ())])
+        Figures([draw_road_shares(data, asked, about, runs, maps)], "tall"), *along,
+        Table(caption(asked, about, runs) + describe_gaps(data, about), heads, lines, ())])
 
 
 def bodies_along(entries: Sequence[Mapping[str, Any]]) -> Picture:
     """Which of several bodies brings most to each 10 m of the road: entries of road_runs.by_body()."""
     title = "Which body brings most"
-    return Picture(figure_charts.along([(one["from_m"], one["to_m"], one["mean_m3"], one["body"]) for one in entries],
-                                       "chainage (m)", "m3 on 10 m of the road", title), title,
+    return Picture(figure_charts.draw_side_bars([(one["from_m"], one["to_m"], one["mean_m3"], one["body"]) for one
+                                                 in entries],
+                                                "chainage (m)", "m3 on 10 m of the road", title), title,
                    "Of each 10 m of the road, the body whose runs leave most on it on the mean, given that it fails, "
                    f"and how much. All bodies: {BODIES}.csv.")
 
 
-def of_all(data: Data) -> Optional[Section]:
+def make_roads_section(data: Data) -> Optional[Section]:
     """The roads of a site with several, the worst first; None of a single one."""
-    several = road_numbers.read(data.study) if data.study else []
+    several = road_numbers.read_road_numbers(data.study) if data.study else []
     if not several:
         return None
     rows = [[one.road, one.text, f"{one.reaching} of {one.runs}", f"{FOLDER}/{one.road}/{one.page}"]
@@ -74,7 +75,7 @@ def of_all(data: Data) -> Optional[Section]:
         ["road", "to remove", "runs that reach it", "its page"], rows, (0, 1, 2, 3))])
 
 
-def gaps(data: Data, about: study_types.Stretches) -> str:
+def describe_gaps(data: Data, about: study_types.Stretches) -> str:
     """Where known events end and no run does."""
     known = ensemble_types.weighted(data.of_study.ensemble) if about.of_known_events else None
     text = f" {percent(known.short)} of known events end before all runs and count as the shortest: fewer may block " \
@@ -97,7 +98,7 @@ def rate(asked: Asked) -> str:
     return f"one loader of {asked.clearing:g} m3/h"
 
 
-def shares(data: Data, asked: Asked, about: study_types.Stretches, runs: str, maps):
+def draw_road_shares(data: Data, asked: Asked, about: study_types.Stretches, runs: str, maps):
     """The map of the road, coloured by the share of the runs that block it."""
     raster = data.result.deposit.raster
     axis, _, width = axis_of(data.road_lines, data.road.intersection(box_of(raster)), asked)

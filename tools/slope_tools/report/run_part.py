@@ -73,7 +73,7 @@ def for_offices(data: Data, ground, numbers: Numbers):
     slope = path and offices.slope(mass, path)
     if not (path and slope):
         return None
-    blocks = [over_height(slope, offices.distances(one.deposit, path), numbers)]
+    blocks = [over_height(slope, offices.measure_office_distances(one.deposit, path), numbers)]
     if data.road is not None:
         edge = offices.at_edge(data.road, ground.raster, ground.max_thickness, ground.max_speed)
         blocks.append(at_edge(edge, body.of_data(data, ground).density, numbers))
@@ -114,7 +114,7 @@ def at_edge(edge: offices.Edge, density: Optional[float], numbers: Numbers) -> T
 def travel_rows(data: Data, numbers: Numbers):
     """Shares of the volume, the length along the fall path and the farthest ball of the shown run: distance, angle."""
     one = data.result
-    shares = travel_shares.columns(one.summary)
+    shares = travel_shares.read_share_columns(one.summary)
     rows = []
     for share in travel_shares.SHARES:
         keys = f"distance_{share}_m", f"reach_{share}_deg"

@@ -101,5 +101,5 @@ def kind(block: Any) -> str:
     return type(block).__name__
 
 
-def cell(value: Any) -> Cell:
+def make_cell(value: Any) -> Cell:
     return value if isinstance(value, Cell) else Cell(value)

@@ -71,7 +71,8 @@ class Structures:
         for words in map(str.split, self.data.result.log.settings):
             if words[:1] == ["fix"] and words[3:4] == ["wall/gran/mesh"] and "point" in words[:-3]:
                 at = words.index("point") + 1
-                found.append(f"{words[1]} {' '.join(digits.place(float(word)) for word in words[at:at + 3])}")
+                found.append(f"{words[1]} "
+                             f"{' '.join(digits.format_coordinate(float(word)) for word in words[at:at + 3])}")
         return found
 
     def mine(self, style):
@@ -93,7 +94,7 @@ class Structures:
         rows, study = [], self.data.study
         each = [(self.data.number(row.run), self.data.label_of(row), row.value(what))
                 for row in self.data.finished] or [
-            ("", "", structures.of_run(self.data.result.folder, self.data.result.log.settings)[what])]
+            ("", "", structures.read_run_structures(self.data.result.folder, self.data.result.log.settings)[what])]
         for number, label, found in each:
             for name, numbers in found.items():
                 if what == "structures":

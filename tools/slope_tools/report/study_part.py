@@ -11,7 +11,7 @@ MOST_ROWS, ENDS = 40, 12    # of the study's table, and of each end of a longer 
 VOLUMES = "; volumes in m3 of ground; distances in plan from the highest released ball."
 
 
-def section(data: Data, numbers: Numbers, reference, maps):
+def make_study_section(data: Data, numbers: Numbers, reference, maps):
     """Of a data.Data; None of a run alone."""
     if not data.study:
         return None
@@ -71,7 +71,8 @@ class Runs:
 
     def head(self, one):
         """Head of a quantity in a table: name and unit."""
-        return Cell(quantities.name_of(one.key, self.data.finished) if one.key == LENGTH else one.heading, one.unit)
+        return Cell(quantities.name_quantity(one.key, self.data.finished) if one.key == LENGTH else one.heading,
+                    one.unit)
 
     def beyond(self):
         """The note on the volume beyond the road; "" without a road."""
@@ -138,7 +139,7 @@ class Runs:
             return None
         rows = []
         for key, one in about.quantities.items():
-            name, unit = elastic.name_of(key, about)
+            name, unit = elastic.name_elastic_quantity(key, about)
             usual, study = one.usual, one.study
             rows.append([Cell(name, unit), *(self.numbers(f"{end}: {name}, restitution {about.restitution:g}", unit,
                                                           value)

@@ -42,7 +42,7 @@ def weighed(data: Data) -> bool:
     return data.study is not None and ensemble_types.weighted(data.study.ensemble) is not None
 
 
-def listed(found: Sequence[Finding], names) -> List[Tuple[str, str]]:
+def rank_warnings(found: Sequence[Finding], names) -> List[Tuple[str, str]]:
     """(level, text) of those that are warnings, the most serious first; names: of the runs, by their folders."""
     return sorted(((one.level, one.shown(names)) for one in found if one.level != LIMIT),
                   key=lambda one: one[0] != WARNING)

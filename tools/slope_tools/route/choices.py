@@ -87,10 +87,10 @@ class Choices(NamedTuple):
 def schema() -> Dict[str, Any]:
     """Of route.yaml: the choices."""
     fields = {name: of_hint(hint) for name, hint in get_type_hints(Choices).items()}
-    fields.update(terrain=schemas.listed(schemas.TEXT, 1), keep=schemas.COUNT, sample=schemas.COUNT,
+    fields.update(terrain=schemas.list_of(schemas.TEXT, 1), keep=schemas.COUNT, sample=schemas.COUNT,
                   confined={"enum": ["yes", "no", "unknown"]})
     for name in ("volume", "depth"):
-        fields[name] = {**schemas.listed(schemas.NUMBER, 2, null=True), "maxItems": 2}
+        fields[name] = {**schemas.list_of(schemas.NUMBER, 2, null=True), "maxItems": 2}
     needed = {"slope_route": {"enum": [VERSION]}, **{name: fields.pop(name) for name in NEEDED}}
     return {**schemas.mapping(needed), "properties": {**needed, **fields, SOURCES: schemas.OBJECT},
             "additionalProperties": False}
@@ -101,7 +101,7 @@ def of_hint(hint: Any) -> Dict[str, Any]:
     if get_origin(hint) is Union:
         return {"anyOf": [of_hint(get_args(hint)[0]), {"type": "null"}], "description": "a value of its kind, or null"}
     if get_origin(hint) is list:
-        return schemas.listed(of_hint(get_args(hint)[0]))
+        return schemas.list_of(of_hint(get_args(hint)[0]))
     return {str: schemas.TEXT, float: schemas.NUMBER, int: {"type": "integer"}}[hint]
 
 
@@ -112,8 +112,8 @@ def option(name: str) -> str:
 def settle(folder: Path, given: Mapping[str, Any]) -> Choices:
     """The choices of a folder with those that are given now, checked and kept; SlopeError if they do not fit."""
     path = folder / NAME
-    known, before = (read(folder)._asdict(), sources_in(folder)) if path.is_file() else ({}, {})
-    changed = [name for name, value in given.items() if known and not same(name, known[name], value)]
+    known, before = (read_route_choices(folder)._asdict(), sources_in(folder)) if path.is_file() else ({}, {})
+    changed = [name for name, value in given.items() if known and not is_same_choice(name, known[name], value)]
     for name in changed:
         if name not in LATER and (folder / TABLE).is_file():
             raise SlopeError(option(name), f"must be that of {path}, whose bodies and runs it has made: take another "
@@ -123,7 +123,7 @@ def settle(folder: Path, given: Mapping[str, Any]) -> Choices:
             raise SlopeError(option(name), f"must be given, or the folder of a route with {NAME}")
     none: Dict[str, Any] = dict.fromkeys(STRENGTH)
     found = Choices(**{**none, **known, **given})
-    check(found)
+    check_route_choices(found)
     now = {name: digest for name in READ if (digest := content(getattr(found, name)))}
     for name, digest in now.items():
         if name not in changed and before.get(name, digest) != digest:
@@ -138,7 +138,7 @@ def settle(folder: Path, given: Mapping[str, Any]) -> Choices:
         for place in MADE:
             shutil.rmtree(folder / place, ignore_errors=True)
             (folder / place).unlink(missing_ok=True)
-    keep(folder, found, {**before, **now})
+    write_route_choices(folder, found, {**before, **now})
     return found
 
 
@@ -146,15 +146,15 @@ def content(files: Any) -> str:
     """Digest of what files of an option hold, as far as they are there; "" without any."""
     paths = [zips.split(os.path.normpath(vectors.source(one).path))[0] for one in
              (files if isinstance(files, list) else [files]) if one]
-    return " ".join(file_parts.content(one) for one in paths if os.path.isfile(one))
+    return " ".join(file_parts.digest_content(one) for one in paths if os.path.isfile(one))
 
 
 def sources_in(folder: Path) -> Dict[str, str]:
     """What content() gave of each option when the folder was made; nothing of older ones."""
-    return schemas.load(folder / NAME, f"{WHAT} of this version", schema()).get(SOURCES) or {}
+    return schemas.load_checked(folder / NAME, f"{WHAT} of this version", schema()).get(SOURCES) or {}
 
 
-def keep(folder: Path, found: Choices, sources: Optional[Mapping[str, str]] = None) -> None:
+def write_route_choices(folder: Path, found: Choices, sources: Optional[Mapping[str, str]] = None) -> None:
     """Write route.yaml, unless it says so already; sources: None: those that it has."""
     path = folder / NAME
     sources = sources_in(folder) if sources is None else sources
@@ -162,15 +162,15 @@ def keep(folder: Path, found: Choices, sources: Optional[Mapping[str, str]] = No
     text = disk.yaml_text("slope route: m, m3, Pa, degrees, kg/m3; paths as from here",
                           {"slope_route": VERSION, **about, SOURCES: dict(sources)})
     if not path.is_file() or path.read_text(encoding="utf-8") != text:
-        disk.write(path, text)
+        disk.write_file(path, text)
 
 
-def read(folder: Path) -> Choices:
+def read_route_choices(folder: Path) -> Choices:
     """The choices of a route's folder; paths as from the working folder."""
     path = folder / NAME
     if not path.is_file():
         raise SlopeError(folder, f"must be the folder of a route, with {NAME}")
-    about = schemas.load(path, f"{WHAT} of this version", schema())
+    about = schemas.load_checked(path, f"{WHAT} of this version", schema())
     for name in ("slope_route", SOURCES):
         about.pop(name, None)
     return Choices(**{name: to_here(value, folder) if name in FILES else value for name, value in about.items()})
@@ -188,7 +188,7 @@ def to_here(value: Any, folder: Path) -> Any:
     return value and os.path.normpath(folder / value)
 
 
-def same(name: str, one: Any, other: Any) -> bool:
+def is_same_choice(name: str, one: Any, other: Any) -> bool:
     if name in FILES:
         several = [value if isinstance(value, list) else [value] for value in (one, other)]
         return [[value and os.path.realpath(value) for value in values] for values in several][0] == \
@@ -196,7 +196,7 @@ def same(name: str, one: Any, other: Any) -> bool:
     return one == other
 
 
-def check(found: Choices) -> None:
+def check_route_choices(found: Choices) -> None:
     """The numbers that nothing else checks."""
     numbers: Dict[str, Optional[float]] = {name: getattr(found, name) for name in (
         "road_width", "corridor", "density", "below", "sample", "balls", "minutes")}
@@ -214,4 +214,4 @@ def check(found: Choices) -> None:
         raise SlopeError("--reach", "must be 0 to below 1, a share of known events", f"{found.reach:g}")
     if found.balls and found.minutes:
         raise SlopeError("--minutes", "must be given without --balls", f"{found.minutes:g}")
-    roads.check(found.asked)
+    roads.check_road(found.asked)

@@ -73,17 +73,18 @@ class Corridor(NamedTuple):
         return self.start + self.axis.project(Point(x, y))
 
 
-def make(choices: Choices, folder: Path, tell, warn) -> Corridor:
+def make_corridor(choices: Choices, folder: Path, tell, warn) -> Corridor:
     """The corridor of a folder, whose terrain is written unless it is there."""
     path = folder / TERRAIN
     if not path.is_file():
         wanted = local_terrain.Wanted(choices.crs, None, choices.cell, None, choices.fill, choices.assign_crs, {},
                                       choices.z_unit, choices.nodata or (), pits=False, differ=choices.differ)
-        tell(local_terrain.summary(TERRAIN, local_terrain.make(choices.terrain, path, wanted, tell, warn)))
-    return read(choices, folder, warn)
+        tell(local_terrain.describe_terrain(TERRAIN, local_terrain.make_local_terrain(choices.terrain, path, wanted,
+                                                                                      tell, warn)))
+    return read_corridor(choices, folder, warn)
 
 
-def read(choices: Choices, folder: Path, warn=roads.vectors.ignore) -> Corridor:
+def read_corridor(choices: Choices, folder: Path, warn=roads.vectors.ignore) -> Corridor:
     raster = rasters.read_asc_local(folder / TERRAIN)
     kept = folder / ROAD        # the line as it was first read: what is beside it may have moved
     found = roads.read_local(kept if kept.is_file() else choices.road, raster, choices.asked, warn=warn)
@@ -97,7 +98,8 @@ def read(choices: Choices, folder: Path, warn=roads.vectors.ignore) -> Corridor:
 def write_line(path: Path, line: LineString, raster: Raster) -> None:
     """A line as text in the coordinates of the terrain's CRS, which each part of the terrain has."""
     points = np.round(np.asarray(line.coords)[:, :2] + raster.offset, 4) + 0.0
-    disk.write(path, "# the road's axis, east,north in m\n" + "".join(f"{x!r},{y!r}\n" for x, y in points.tolist()))
+    disk.write_file(path, "# the road's axis, east,north in m\n" + "".join(f"{x!r},{y!r}\n" for x, y
+                                                                           in points.tolist()))
 
 
 def searches(corridor: Corridor) -> Iterator[Tuple[Window, BaseGeometry]]:
@@ -121,7 +123,7 @@ def inside(corridor: Corridor, window: Window) -> BaseGeometry:
     return box(xlo + left, ylo + bottom, xhi - right, yhi - top)
 
 
-def around(corridor: Corridor, xlo: float, ylo: float, xhi: float, yhi: float) -> Tuple[Window, LineString, float]:
+def cut_window(corridor: Corridor, xlo: float, ylo: float, xhi: float, yhi: float) -> Tuple[Window, LineString, float]:
     """The ground for the runs of a body (its box): as far as the corridor reaches around it and the road below it.
 
     Also the road there, in one piece, and the chainage of its first point.

@@ -43,21 +43,21 @@ def sentences(found: Mapping[str, Any]) -> List[str]:
             f"bounds of the runs (90 %), for any dependence: {one['low']:.2g} to {one['high']:.2g}"]
 
 
-def write(choices: Choices, corridor: Corridor, folder: Path, found: Mapping[str, Any], warn) -> None:
+def write_route_page(choices: Choices, corridor: Corridor, folder: Path, found: Mapping[str, Any], warn) -> None:
     """Write route.html."""
     yearly = choices.fragility is not None
     content = {
         "title": choices.name or folder.absolute().name, "client": choices.client, "author": choices.author,
         "made": provenance.now(), "mark": document.mark(folder), "how": how(choices),
         "sentences": [f"{text[0].upper()}{text[1:]}." for text in sentences(found)],
-        "warnings": list(doubts(choices, found)), "maps": list(drawn(corridor, found, yearly)),
-        "sections": [*([along(found)] if len(found["bodies"]) > 1 else []), stretches(found, yearly),
-                     bodies(found, yearly), left_out(found)],
+        "warnings": list(list_route_caveats(choices, found)), "maps": list(draw_route_maps(corridor, found, yearly)),
+        "sections": [*([make_along_section(found)] if len(found["bodies"]) > 1 else []),
+                     make_stretches_section(found, yearly), bodies(found, yearly), left_out(found)],
         "footer": f"{document.MADE_BY.replace('report', 'route')}, SLOPE {provenance.version()}; all numbers: "
                   "results.yaml, stretches.csv, bodies.csv, pieces.csv; who hits what: governing.tif, route.gpkg"}
     for line in content["warnings"]:
         warn(line)
-    disk.write(folder / PAGE, document.render(content, Path(__file__).with_name("route.html.j2")))
+    disk.write_file(folder / PAGE, document.render(content, Path(__file__).with_name("route.html.j2")))
 
 
 def how(choices: Choices) -> str:
@@ -70,7 +70,7 @@ def how(choices: Choices) -> str:
             "given that the body fails; its range is that of so few runs (Clopper and Pearson, 90 %).")
 
 
-def doubts(choices: Choices, found: Mapping[str, Any]) -> Iterator[str]:
+def list_route_caveats(choices: Choices, found: Mapping[str, Any]) -> Iterator[str]:
     failed = [one for one in found["bodies"] if one["failed"]]
     if failed:
         yield f"runs of {len(failed)} bodies failed; their shares are of the others, body {failed[0]['body']} first"
@@ -81,7 +81,7 @@ def doubts(choices: Choices, found: Mapping[str, Any]) -> Iterator[str]:
                "there")
 
 
-def drawn(corridor: Corridor, found: Mapping[str, Any], yearly: bool) -> Iterator[Picture]:
+def draw_route_maps(corridor: Corridor, found: Mapping[str, Any], yearly: bool) -> Iterator[Picture]:
     """Maps of the corridor, of at most ALONG of its road each."""
     length = corridor.axis.length
     number = max(1, math.ceil(length / ALONG))
@@ -126,11 +126,11 @@ def map_of(corridor: Corridor, found: Mapping[str, Any], yearly: bool, bounds, a
 
 # --- tables ---
 
-def table(title: str, heads: List[str], rows: List[List[Any]], caption: str) -> Section:
+def make_table_section(title: str, heads: List[str], rows: List[List[Any]], caption: str) -> Section:
     return Section(title.lower().replace(" ", "_"), title, [Table(caption, heads, rows, ())])
 
 
-def cell(value, form: str = "") -> str:
+def format_route_cell(value, form: str = "") -> str:
     return "-" if value is None else form.format(value) if form else digits.rounded(value, 3)
 
 
@@ -143,43 +143,48 @@ def share(one: Mapping[str, Any], name: str) -> List[str]:
     return [f"{100 * one[name]:.0f} %", f"{100 * one['share_low']:.0f} to {100 * one['share_high']:.0f} %"]
 
 
-def along(found: Mapping[str, Any]) -> Section:
+def make_along_section(found: Mapping[str, Any]) -> Section:
     return Section("along", "Which body brings most", [Figures([road_part.bodies_along(found["along"])])])
 
 
-def stretches(found: Mapping[str, Any], yearly: bool) -> Section:
+def make_stretches_section(found: Mapping[str, Any], yearly: bool) -> Section:
     """Each stretch with the bodies that block it."""
     rows = []
     for one in found["stretches"]:
         for by in one["bodies"]:
-            numbers = [cell(by.get(name, [None] * 3)[k]) for name, k in (
+            numbers = [format_route_cell(by.get(name, [None] * 3)[k]) for name, k in (
                 ("length", 1), ("remove", 1), ("remove", 2), ("remove_lane", 1), ("passable_width", 1),
                 ("hours_lane", 1), ("hours", 1))]
             rows.append([one["stretch"], f"{km(one['from'])} to {km(one['to'])}", *often(one, yearly), by["body"],
-                         cell(by["factor"], "{:.2f}"), *share(by, "share"), *numbers])
+                         format_route_cell(by["factor"], "{:.2f}"), *share(by, "share"), *numbers])
     heads = ["stretch", "km", *(["blocked, per year", "90 %"] if yearly else []), "body", "factor of safety",
              "share of its runs", "90 %", "blocked m", "to remove m3", "95 % of the runs", "for a lane m3",
              "passable m", "hours, lane", "hours"]
-    return table("By stretch", heads, rows, "Medians over the runs of a body, those that do not block the stretch "
-                 "among them.")
+    return make_table_section("By stretch", heads, rows, "Medians over the runs of a body, those that do not block the "
+                              "stretch " "among them.")
 
 
 def bodies(found: Mapping[str, Any], yearly: bool) -> Section:
-    rows = [[one["body"], one["name"], km(one["chainage_m"]), cell(one["factor"], "{:.3f}"), cell(one["volume_m3"]),
-             cell(one["depth_m"]), cell(one["known_share"], "{:.2g}"), one["runs"], *share(one, "share_blocked"),
-             cell(one["on_road_median_m3"]), cell(one["on_road_most_m3"]),
+    rows = [[one["body"], one["name"], km(one["chainage_m"]), format_route_cell(one["factor"], "{:.3f}"),
+             format_route_cell(one["volume_m3"]),
+             format_route_cell(one["depth_m"]), format_route_cell(one["known_share"], "{:.2g}"), one["runs"],
+             *share(one, "share_blocked"),
+             format_route_cell(one["on_road_median_m3"]), format_route_cell(one["on_road_most_m3"]),
              *([f"{one['per_year']['fails']:.2g}", f"{one['per_year']['blocks']:.2g}"] if yearly else [])]
             for one in found["bodies"]]
     heads = ["body", "name", "km", "factor of safety", "volume m3", "depth m", "known events that reach the road",
              "runs", "block the road", "90 %", "on the road m3, median", "most",
              *(["fails, per year", "blocks, per year"] if yearly else [])]
-    return table("By body", heads, rows, "By chainage. Known events: of this volume and height, the share that goes as "
-                 "far as the road.")
+    return make_table_section("By body", heads, rows, "By chainage. Known events: of this volume and height, the share "
+                              "that goes as " "far as the road.")
 
 
 def left_out(found: Mapping[str, Any]) -> Section:
-    rows = [[one["body"], km(one["chainage_m"]), cell(one["factor"], "{:.3f}"), cell(one["volume_m3"]), one["why_not"]]
+    rows = [[one["body"], km(one["chainage_m"]), format_route_cell(one["factor"], "{:.3f}"),
+             format_route_cell(one["volume_m3"]), one["why_not"]]
             for one in found["left_out"]]
-    return table("Left out", ["body", "km", "factor of safety", "volume m3", "why"], rows,
-                 "Bodies that may fail and by known mobility do not come to the road; no number has them. Those of "
-                 "which some known events go so far can: a smaller --reach, in another folder, takes them in.")
+    return make_table_section("Left out", ["body", "km", "factor of safety", "volume m3", "why"], rows,
+                              "Bodies that may fail and by known mobility do not come to the road; no number has them. "
+                              "Those of "
+                              "which some known events go so far can: a smaller --reach, in another folder, takes them "
+                              "in.")

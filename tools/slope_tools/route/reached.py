@@ -78,12 +78,12 @@ class Reached(NamedTuple):
     sets: List[Tuple[Tuple[int, float], ...]]
 
 
-def of(sources: Sequence[Source], ground: Raster, kind: str, limit: float) -> Reached:
+def combine_reached(sources: Sequence[Source], ground: Raster, kind: str, limit: float) -> Reached:
     """Which bodies exceed a limit of a raster of fix deposit/grid (its kind) in the cells of a ground."""
     codes = np.zeros(ground.z.shape, np.int32)
     sets: List[Tuple[Tuple[int, float], ...]] = [()]
     for source in sources:
-        where, share = shares(source, ground, kind, limit)
+        where, share = compute_reached_shares(source, ground, kind, limit)
         if not len(share):
             continue
         known, index = np.unique(share, return_inverse=True)
@@ -94,7 +94,7 @@ def of(sources: Sequence[Source], ground: Raster, kind: str, limit: float) -> Re
     return Reached(codes, sets)
 
 
-def shares(source: Source, ground: Raster, kind: str, limit: float):
+def compute_reached_shares(source: Source, ground: Raster, kind: str, limit: float):
     """Rows and columns of the cells of a ground that runs reach, and the share of the runs that do."""
     total: Optional[np.ndarray] = None
     for prefix, weight in zip(source.prefixes, source.weights):

@@ -66,7 +66,7 @@ def yearly_of(choices: Choices, folder: Path, bodies: Sequence[Mapping[str, Any]
     """The fragilities of the bodies, None if none are given; SlopeError unless they are of these."""
     if choices.fragility is None:
         return None
-    found = fragility_files.read(Path(choices.fragility))
+    found = fragility_files.read_fragility(Path(choices.fragility))
     known = dict(zip(found.bodies, found.bases))
     for one in bodies:
         digest = disk.sha256(folder / search.SLIPS / str(one["body"]) / f"{search.PREFIX}.{one['body']}.base.asc")
@@ -76,7 +76,7 @@ def yearly_of(choices: Choices, folder: Path, bodies: Sequence[Mapping[str, Any]
     return Yearly(found)
 
 
-def make(choices: Choices, corridor: Corridor, folder: Path, table: Mapping[str, Any]) -> Dict[str, Any]:
+def make_route_results(choices: Choices, corridor: Corridor, folder: Path, table: Mapping[str, Any]) -> Dict[str, Any]:
     """All results of a route, written to its folder; what results.yaml says."""
     yearly = yearly_of(choices, folder, table["bodies"])
     bodies = [read_body(folder, about) for about in table["bodies"]]
@@ -88,20 +88,20 @@ def make(choices: Choices, corridor: Corridor, folder: Path, table: Mapping[str,
         "route": route(bodies, yearly), "pieces": pieces(bodies, yearly),
         "along": road_runs.by_body({one.number: [(1.0, row.at_road.by_10_m) for row in one.rows] for one in bodies}),
         "stretches": [stretch(number, span, bodies, yearly) for number, span in enumerate(spans, 1)],
-        "bodies": [of_body(one, yearly) for one in bodies], "left_out": table["left_out"]}
-    hits = reached.of([one.source for one in bodies], corridor.raster, "max_thickness", choices.blocked)
+        "bodies": [make_body_row(one, yearly) for one in bodies], "left_out": table["left_out"]}
+    hits = reached.combine_reached([one.source for one in bodies], corridor.raster, "max_thickness", choices.blocked)
     with disk.complete(folder, RESULTS) as new:
-        disk.write(new / PIECES, disk.csv_text(("from_m", "to_m", "share", "body", *YEAR), (
+        disk.write_file(new / PIECES, disk.csv_text(("from_m", "to_m", "share", "body", *YEAR), (
             (one["from"], one["to"], one["share"], one["body"], *year(one)) for one in about["pieces"])))
         quantiles = [f"{name}_{100 * share:g}" for name in NUMBERS for share in road_runs.SHARES]
-        disk.write(new / STRETCHES, disk.csv_text(
+        disk.write_file(new / STRETCHES, disk.csv_text(
             ("stretch", "from_m", "to_m", *YEAR, "body", "factor", "share", *quantiles),
             ((one["stretch"], one["from"], one["to"], *year(one), by["body"], by["factor"], by["share"],
               *(value for name in NUMBERS for value in by.get(name, [None] * len(road_runs.SHARES))))
              for one in about["stretches"] for by in one["bodies"])))
-        disk.write(new / ALONG, road_runs.table_of_bodies(about["along"]))
+        disk.write_file(new / ALONG, road_runs.table_of_bodies(about["along"]))
         heads = [name for name in about["bodies"][0] if name != "per_year"]
-        disk.write(new / BODIES, disk.csv_text([*heads, "fails_per_year", "blocks_per_year"], (
+        disk.write_file(new / BODIES, disk.csv_text([*heads, "fails_per_year", "blocks_per_year"], (
             [*(one[name] for name in heads), *((one["per_year"] or {}).get(key) for key in ("fails", "blocks"))]
             for one in about["bodies"])))
         of_sets = [governs(one, bodies, yearly) for one in hits.sets]
@@ -159,7 +159,7 @@ def stretch(number: int, span: Span, bodies: Sequence[BodyRuns], yearly: Optiona
             "bodies": each}
 
 
-def of_body(one: BodyRuns, yearly: Optional[Yearly]) -> Dict[str, Any]:
+def make_body_row(one: BodyRuns, yearly: Optional[Yearly]) -> Dict[str, Any]:
     """A row of the table by body."""
     share = one.share()
     low, high = one.source.bounds(share)
@@ -213,7 +213,7 @@ def write_layers(path: Path, corridor: Corridor, folder: Path, about: Mapping[st
             yield as_multi(unary_union(area)), {
                 "body": one["body"], "name": one["name"], "factor": one["factor"], "volume_m3": one["volume_m3"],
                 "why_not": one.get("why_not", ""), "share": one.get("share_blocked")}
-    geopackage.write(path, {
+    geopackage.write_geopackage(path, {
         "road": Layer("LineString", road, ((line(one), values(one)) for one in about["pieces"])),
         "stretches": Layer("LineString", {"stretch": "int", **road}, (
             (line(one), {"stretch": one["stretch"], **values(one)}) for one in about["stretches"])),

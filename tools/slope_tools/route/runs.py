@@ -45,18 +45,19 @@ def folder_of(folder: Path, number: int) -> Path:
     return folder / SITES / str(number)
 
 
-def make_site(choices: Choices, folder: Path, about: Mapping[str, Any], number: int, machine: site.Machine, tell, warn,
-              draw) -> Path:
+def make_body_site(choices: Choices, folder: Path, about: Mapping[str, Any], number: int, machine: site.Machine, tell,
+                   warn, draw) -> Path:
     """The site of a body, unless it is there; number: of bodies, which share the minutes."""
     place, slips = folder_of(folder, about["body"]), folder / SLIPS / str(about["body"])
     if not (place / site_choices.NAME).is_file() or site.site_folder.was_not_made(place):
         place.parent.mkdir(exist_ok=True)
-        site.make(choices_of(choices, slips, about, number), place, machine, tell, warn, draw)
-    made = site_choices.load(place)
-    site_study.check(made)
+        site.make_site(choices_of(choices, slips, about, number), place, machine, tell, warn, draw)
+    made = site_choices.load_site(place)
+    site_study.check_site(made)
     now = made.choices.changed(later(choices, about))
     if now != made.choices:
-        disk.write(place / site_choices.NAME, site_choices.text(now, made.content.get("found") or {}, place))
+        disk.write_file(place / site_choices.NAME, site_choices.make_site_file(now, made.content.get("found") or {},
+                                                                               place))
     return place
 
 
@@ -83,21 +84,21 @@ def choices_of(choices: Choices, slips: Path, about: Mapping[str, Any], number: 
     if zones and site_zones.touch(zones, rasters.read_asc_local(slips / TERRAIN)):
         found = replace(found, ground=Ground(zones.path, zones.table))
     if choices.minutes:     # a site's are those of its own study, which has more runs
-        minutes = choices.minutes / number * site_budget.plan(found).runs / choices.sample
+        minutes = choices.minutes / number * site_budget.plan_budget(found).runs / choices.sample
         found = replace(found, balls=replace(found.balls, minutes=minutes))
-    site_choices.check({"slope_site": site_choices.VERSION, **found.entries()}, str(slips))
+    site_choices.check_site_file({"slope_site": site_choices.VERSION, **found.entries()}, str(slips))
     return found
 
 
-def asked_of(choices: Choices, place: Path, engine: Setup) -> Asked:
+def make_route_study(choices: Choices, place: Path, engine: Setup) -> Asked:
     """The study of a body's site, as `slope study SITE --sample N --seed BODY --vary ...` makes it."""
-    deck, known = place / site_deck.NAME, site_choices.load(place).choices
+    deck, known = place / site_deck.NAME, site_choices.load_site(place).choices
     given = known.road
     road = Road(place / ROAD, given.cut_angle, given.mesh, asked=given.asked)
     setup = engine._replace(deck=deck, output=place / STUDY, site=place, road=road)
     fixed = site_choices.not_varied(known, {words.partition("=")[0] for words in choices.vary})
-    plan = sample.check(choices.sample, designs.SOBOL, int(place.name), choices.vary, deck, fixed, {})
-    todo = sample.plan(setup.runs, plan, fixed, {}, decks.index_variables(deck))
+    plan = sample.check_sample(choices.sample, designs.SOBOL, int(place.name), choices.vary, deck, fixed, {})
+    todo = sample.plan_sample(setup.runs, plan, fixed, {}, decks.index_variables(deck))
     thresholds = list(site_study.THRESHOLDS)
     order = ensemble.Order(plan, ensemble.check_quantity(None, True),
                            ensemble_maps.Thresholds(thresholds, [5.0], [1e5]))
@@ -106,7 +107,7 @@ def asked_of(choices: Choices, place: Path, engine: Setup) -> Asked:
     return Asked(setup, questions, plan, todo)
 
 
-def make(several: Sequence[Asked], tell) -> List[str]:
+def make_route_runs(several: Sequence[Asked], tell) -> List[str]:
     """Make all runs that are not finished, in one queue, and collect those of each body; returns why runs failed."""
     with contextlib.ExitStack() as stack:
         works: Dict[Path, jobs.Work] = {}
@@ -115,7 +116,7 @@ def make(several: Sequence[Asked], tell) -> List[str]:
             work = stack.enter_context(study.prepared(one.setup, files, len(one.todo)))
             works[one.setup.runs] = work
             work.store.admit(one.todo)
-            sample.keep(one.setup.output, one.plan)
+            sample.write_sample(one.setup.output, one.plan)
         todo = [run for one in several for run in one.todo]
         new = {run.folder for run in todo if not run.finished}
         first = next(iter(works.values()))
@@ -123,7 +124,7 @@ def make(several: Sequence[Asked], tell) -> List[str]:
         first.do(todo)
         for k, one in enumerate(several, 1):
             if not is_collected(one, new):
-                results.collect(one.setup, one.questions, one.todo, works[one.setup.runs])
+                results.collect_results(one.setup, one.questions, one.todo, works[one.setup.runs])
                 tell(f"body {one.setup.home.name}, {k} of {len(several)}: its runs are evaluated")
     return [f"body {one.setup.home.name}: {failure}" for one in several
             if (failure := study.failure(one.setup.output, one.todo))]
@@ -144,8 +145,8 @@ def is_collected(one: Asked, new) -> bool:
     return [row.run for row in finished_of(about.runs)] == [run.name for run in one.todo]
 
 
-def listed(several: Sequence[Asked]):
+def list_route_runs(several: Sequence[Asked]):
     """Lines of a dry run."""
     for one in several:
-        for line in study.listed(one.todo):
+        for line in study.list_runs(one.todo):
             yield f"body {one.setup.home.name}: {line}"

@@ -26,7 +26,7 @@ from ..slips import bishop, bodies, failed
 from ..survey import polygons, rasters, vectors
 from ..survey.features import attribute, depth_of, size_of
 from .choices import TABLE, Choices
-from .corridor import TERRAIN, Corridor, Window, around, searches, write_line
+from .corridor import TERRAIN, Corridor, Window, cut_window, searches, write_line
 
 WINDOWS, SLIPS = "windows", "slips"
 DONE = "window.yaml"        # of a window that was searched
@@ -37,7 +37,7 @@ ADVICE = polygons.Advice(polygon_crs="save it from a GIS with one; a .prj file b
 BODY = schemas.mapping({
     "body": schemas.COUNT, "name": schemas.TEXT, "factor": schemas.MAYBE, "known_share": schemas.MAYBE,
     "why_not": schemas.TEXT,
-    **schemas.numbers("chainage_m", "x", "y", "volume_m3", "area_m2", "depth_m", "road_from_m")})
+    **schemas.number_keys("chainage_m", "x", "y", "volume_m3", "area_m2", "depth_m", "road_from_m")})
 NO_BODY = "limits must leave a sphere"      # find_slip, where no body is within its limits
 
 
@@ -55,7 +55,8 @@ class Slip(NamedTuple):
         return np.isfinite(self.base)
 
 
-def make(choices: Choices, corridor: Corridor, folder: Path, lmp: Path, ranks: int, tell, warn) -> Dict[str, Any]:
+def search_route_bodies(choices: Choices, corridor: Corridor, folder: Path, lmp: Path, ranks: int, tell,
+                        warn) -> Dict[str, Any]:
     """The bodies of a route, in its folder: what bodies.yaml says. They are made once."""
     path = folder / TABLE
     if path.is_file():
@@ -80,8 +81,8 @@ def make(choices: Choices, corridor: Corridor, folder: Path, lmp: Path, ranks: i
 
 def table_of(folder: Path) -> Dict[str, Any]:
     """What bodies.yaml of a route says."""
-    return schemas.load(folder / TABLE, WHAT, schemas.mapping({"bodies": schemas.listed(BODY, 1), "left_out":
-                                                               schemas.listed(BODY)}))
+    return schemas.load_checked(folder / TABLE, WHAT, schemas.mapping({"bodies": schemas.list_of(BODY, 1), "left_out":
+                                                                       schemas.list_of(BODY)}))
 
 
 def middle(corridor: Corridor, one: Slip) -> Tuple[float, float]:
@@ -122,7 +123,7 @@ def searched(choices: Choices, corridor: Corridor, folder: Path, lmp: Path, rank
 
 def search(choices: Choices, corridor: Corridor, window: Window, ground, place: Path, lmp: Path, ranks: int) -> None:
     """Search a window; its folder is whole, or not there."""
-    assert choices.cohesion is not None and choices.friction is not None    # choices.check() has seen to it
+    assert choices.cohesion is not None and choices.friction is not None  # choices.check_route_choices() has seen to it
     raster = corridor.clip(window)
     place.parent.mkdir(parents=True, exist_ok=True)
     with disk.complete(place, DONE) as new:
@@ -132,8 +133,8 @@ def search(choices: Choices, corridor: Corridor, window: Window, ground, place: 
                                 keep=choices.keep)
         number, warnings = 0, []
         try:
-            warnings = slip_run.run(asked, ground, raster, new, lmp, ranks, lambda line: None).warnings
-            number = len(bodies.rows_of(new / f"{PREFIX}{bodies.END}"))
+            warnings = slip_run.run_slip_search(asked, ground, raster, new, lmp, ranks, lambda line: None).warnings
+            number = len(bodies.read_body_rows(new / f"{PREFIX}{bodies.END}"))
             slip_run.settle(asked._replace(terrain=place / TERRAIN), raster, new, number, place)
         except SlopeError as error:
             if NO_BODY not in str(error):
@@ -148,11 +149,11 @@ def limits(given_: Optional[List[float]]) -> Optional[Tuple[float, float]]:
 def of_window(place: Path, window: Window) -> List[Slip]:
     """The bodies of a window that was searched."""
     table = place / f"{PREFIX}{bodies.END}"
-    if not schemas.load(place / DONE, WHAT, schemas.mapping({"bodies": {"type": "integer"}}))["bodies"]:
+    if not schemas.load_checked(place / DONE, WHAT, schemas.mapping({"bodies": {"type": "integer"}}))["bodies"]:
         return []
     with open(table, newline="", encoding="utf-8") as source:
         rows = list(csv.DictReader(source))
-    return [Slip(window, rasters.read(place / f"{PREFIX}.{row['rank']}.base.asc").z, float(row["factor"]), row,
+    return [Slip(window, rasters.read_raster(place / f"{PREFIX}.{row['rank']}.base.asc").z, float(row["factor"]), row,
                  bodies.columns_file(table, int(row["rank"]))) for row in rows]
 
 
@@ -188,7 +189,7 @@ def given(choices: Choices, corridor: Corridor, warn) -> List[Slip]:
 
 def features(path: Optional[str], warn):
     """Name, geometry, CRS and size of the polygons of a file; warn is called for those that have no geometry."""
-    found = vectors.read(path, "Polygon")
+    found = vectors.read_vector_layer(path, "Polygon")
     several = len(found.features) + found.empty
     if found.empty:
         first = min(set(range(1, several + 1)) - set(found.numbers))
@@ -223,7 +224,7 @@ def bishop_factor(choices: Choices, raster, path: Path, without: np.ndarray) -> 
 
 def settled(choices: Choices, corridor: Corridor, place: Path, one: Slip, number: int) -> Dict[str, Any]:
     """Write the folder of a body; what bodies.yaml says of it."""
-    window, line, start = around(corridor, *extent_of(corridor.clip(one.window).transform, one.mask))
+    window, line, start = cut_window(corridor, *extent_of(corridor.clip(one.window).transform, one.mask))
     raster, base = corridor.clip(window), np.full(corridor.clip(window).z.shape, np.nan)
     common = one.window.common(window)
     base[common.inside(window)] = one.base[common.inside(one.window)]
@@ -235,8 +236,8 @@ def settled(choices: Choices, corridor: Corridor, place: Path, one: Slip, number
     write_line(place / "road.csv", line, raster)
     if one.row:
         table = place / f"{PREFIX}{bodies.END}"
-        disk.write(table, disk.csv_text(one.row, [{**one.row, "rank": str(number)}.values()]))
-        disk.write(bodies.beside(table, number, bodies.COLUMNS), one.columns.read_bytes())
+        disk.write_file(table, disk.csv_text(one.row, [{**one.row, "rank": str(number)}.values()]))
+        disk.write_file(bodies.name_body_file(table, number, bodies.COLUMNS), one.columns.read_bytes())
     depth = np.nan_to_num(raster.z - base)
     x, y = middle(corridor, one)
     return {"body": number, "name": one.name or f"body {number}", "chainage_m": round(corridor.chainage(x, y), 2),
@@ -250,7 +251,7 @@ def settled(choices: Choices, corridor: Corridor, place: Path, one: Slip, number
 def reaches(choices: Choices, mass: falling.Body, lane) -> Dict[str, Any]:
     """The share of known events that reach the road, and why a body is left out, "" if it is not."""
     try:
-        found = known.of_body(mass, known.choice(confined=choices.confined)).decides
+        found = known.compute_known_mobility(mass, known.choice(confined=choices.confined)).decides
     except SlopeError as error:     # without a fall path nothing says that it does not reach the road
         return {"known_share": None, "known_law": str(error), "why_not": ""}
     met = road.at_road(found.path, lane)
@@ -264,11 +265,11 @@ def reaches(choices: Choices, mass: falling.Body, lane) -> Dict[str, Any]:
     return {"known_share": share, "known_law": found.law.name, "why_not": why}
 
 
-def columns_of(folder: Path, number: int, density: Optional[float]) -> bodies.Body:
+def read_route_body(folder: Path, number: int, density: Optional[float]) -> bodies.Body:
     """A body as `slope fragility` takes it."""
     place = folder / SLIPS / str(number)
     if (place / f"{PREFIX}{bodies.END}").is_file():
-        return bodies.read(place, density)[0]
+        return bodies.read_slip_bodies(place, density)[0]
     if density is None:
         raise SlopeError("--density", "must be given (kg/m3), as the bodies of this route were polygons")
     path = place / f"{PREFIX}.{number}.base.asc"

@@ -84,15 +84,15 @@ def ground_of(name: str, warn) -> Ground:
     """Of a route, of a study or a site, or of one run."""
     folder = Path(name)
     if (folder / choices.NAME).is_file():
-        asked = choices.read(folder)
+        asked = choices.read_route_choices(folder)
         table = search.table_of(folder)
-        return Ground(corridor.read(asked, folder).raster,
+        return Ground(corridor.read_corridor(asked, folder).raster,
                       [results.read_body(folder, about).source for about in table["bodies"]],
                       results.yearly_of(asked, folder, table["bodies"]),
                       {about["body"]: about["known_law"] for about in table["bodies"]})
     study = answered.study_in(folder, weighted=True)
     if study is None and not (folder / "site.yaml").is_file():
-        run = deposit.read(named_run.read(name).prefix, None, warn)
+        run = deposit.read_deposit(named_run.read_named_run(name).prefix, None, warn)
         return Ground(run.raster, [Source(1, [Path(run.prefix)], np.ones(1), 0, run.raster.offset)], None, {})
     study = study or folder
     about = load_study(study / answered.STUDY)
@@ -103,14 +103,14 @@ def ground_of(name: str, warn) -> Ground:
         raise SlopeError(study, "must have finished runs that are counted alike, or have weights")
     prefixes = [run_folders.prefix_of(run_folders.summary_of(study, row.summary)) for row in rows]
     weights = np.array([known[row.run] if known else 1.0 for row in rows])
-    run = deposit.read(str(prefixes[0]), None, warn)
+    run = deposit.read_deposit(str(prefixes[0]), None, warn)
     failed = sum(isinstance(row, Failed) and bool(known or not row.batch) for row in about.runs)
     effect = 1.0 if known else len(rows) / len({str(row.set) for row in rows})
     return Ground(run.raster, [Source(1, prefixes, weights / weights.sum(), failed, run.raster.offset, effect)], None,
                   {1: weighted.set} if weighted else {})
 
 
-def check(ground: Ground, wanted: Sequence[float], name: object, text: str = "") -> None:
+def check_zones(ground: Ground, wanted: Sequence[float], name: object, text: str = "") -> None:
     """Raise SlopeError if the hazard curve does not reach a probability, or the runs without one do not tell shares.
 
     text: that of --zones; 1/100 reads like a return period, which needs a hazard.
@@ -141,8 +141,8 @@ class Zones(NamedTuple):
     body: np.ndarray
 
 
-def of(ground: Ground, limit: Limit, wanted: Sequence[float]) -> Zones:
-    hits = reached.of(ground.sources, ground.raster, QUANTITIES[limit.quantity][0], limit.value)
+def make_zones(ground: Ground, limit: Limit, wanted: Sequence[float]) -> Zones:
+    hits = reached.combine_reached(ground.sources, ground.raster, QUANTITIES[limit.quantity][0], limit.value)
     found = [reached.of_set(one, ground.sources, ground.yearly) for one in hits.sets]
     low, high = np.array([probable(one) if one else (0.0, 0.0) for one in found]).T
     bodies = np.array([one.body if one else 0 for one in found], np.int32)
@@ -179,11 +179,11 @@ def features(ground: Ground, zones: Zones, wanted: Sequence[float]) -> Iterator[
         for part, kind in shapes(classes, classes > 0, connectivity=4, transform=ground.raster.transform):
             area = shape(part)
             yield smoothed(area, cell), {
-                **asked_of(ground, zones.limit, probability), "class": AT_LEAST if kind == 1 else UNSURE,
+                **list_asked_values(ground, zones.limit, probability), "class": AT_LEAST if kind == 1 else UNSURE,
                 "cells": round(area.area / cell ** 2), "area_m2": area.area}
 
 
-def asked_of(ground: Ground, limit: Limit, probability: float) -> Dict[str, Any]:
+def list_asked_values(ground: Ground, limit: Limit, probability: float) -> Dict[str, Any]:
     """The values of ASKED."""
     return {"quantity": limit.quantity, "exceeds": limit.value, "unit": QUANTITIES[limit.quantity][1],
             "probability": probability, "return_period": 1 / probability if ground.yearly else None}
@@ -197,7 +197,7 @@ def points(ground: Ground, zones: Zones, wanted: Sequence[float]) -> Iterator[Tu
             area = shape(part)
             yield area.representative_point(), {
                 "process": PROCESS_OF_MASS, "body": int(body), "known_events": ground.like.get(int(body), ""),
-                **asked_of(ground, zones.limit, probability), "area_m2": area.area}
+                **list_asked_values(ground, zones.limit, probability), "area_m2": area.area}
 
 
 def layers(ground: Ground, several: Sequence[Zones], wanted: Sequence[float]) -> Dict[str, Layer]:
@@ -211,7 +211,7 @@ def asked(ground: Ground, text: str, several: Sequence[Limit]) -> str:
             + ", ".join(f"{one.value:g}" for one in several))
 
 
-def about(ground: Ground, several: Sequence[Zones], wanted: Sequence[float]) -> Dict[str, Any]:
+def summarise_zones(ground: Ground, several: Sequence[Zones], wanted: Sequence[float]) -> Dict[str, Any]:
     """What zones.yaml says."""
     area = float(ground.raster.transform.a) ** 2
     return {"per_year": ground.yearly is not None, "crs": ground.raster.crs and crs_name(ground.raster.crs),

@@ -4,7 +4,7 @@ from shlex import join
 from typing import Any, Dict, List, Mapping, Sequence
 
 from .. import options
-from ..case.settings import middle, values
+from ..case.settings import middle, parse_setting_values
 
 
 def command(asked: Any, **changes: Any) -> str:
@@ -21,7 +21,8 @@ def with_value(asked: Any, name: str, value: str) -> Dict[str, Any]:
 
 def as_ensemble(asked: Any, ranges: Mapping[str, str], **changes: Any) -> Dict[str, Any]:
     """Changes: an ensemble over ranges, in a folder beside; other variables have the value in their middle."""
-    several = {words.partition("=")[0]: values(words, words.partition("=")[2]) for words in without(asked.set, ranges)}
+    several = {words.partition("=")[0]: parse_setting_values(words, words.partition("=")[2]) for words
+               in without(asked.set, ranges)}
     beside = asked.output and asked.output.with_name(f"{asked.output.name}_ensemble")
     return {"set": [f"{name}={middle(one)}" for name, one in several.items()], "repeat": without(asked.repeat, ranges),
             "vary": [f"{name}={text}" for name, text in ranges.items()], "output": beside, "intensity": None,

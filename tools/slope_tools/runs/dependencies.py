@@ -14,7 +14,7 @@ import yaml
 
 from .. import disk, written_yaml
 from ..case import decks, run_folders
-from ..case.settings import as_number
+from ..case.settings import normalise_value
 
 PLUGINS = "LAMMPS_PLUGIN_PATH"      # folders of plugins that LAMMPS loads when it starts
 LIBRARIES = "LD_LIBRARY_PATH"       # folders in which a plugin that a deck loads by its bare name is looked for
@@ -143,14 +143,14 @@ class Dependencies:
 
 def by_value(variables: Mapping[str, str]) -> FrozenSet[Tuple[str, Any]]:
     """What a run is known by: its variables with numbers as numbers, so that 0.1 and 0.10 are one value."""
-    return frozenset((name, as_number(str(value))) for name, value in variables.items())
+    return frozenset((name, normalise_value(str(value))) for name, value in variables.items())
 
 
 def place_of(sidecar: Path) -> Any:
     """What a sidecar says of its raster, without where that came from; as it stands, where that is no mapping."""
     text = sidecar.read_text(encoding="utf-8", errors="surrogateescape")
     try:
-        about = written_yaml.load(text)
+        about = written_yaml.load_yaml(text)
     except (yaml.YAMLError, ValueError, RecursionError):
         return text
     return {key: value for key, value in about.items() if key not in HISTORY} if isinstance(about, dict) else text

@@ -11,7 +11,7 @@ from rich.progress_bar import ProgressBar
 from rich.table import Table
 
 from .. import findings, streams
-from ..case.settings import as_number
+from ..case.settings import normalise_value
 
 DIAMETER = "d"          # variable of a deck: the size of the balls
 TELL = 30.0             # s between two lines about a run, where there is no terminal
@@ -68,7 +68,7 @@ class Display:
     def ended(self, active):
         one, wall = active.run, time.monotonic() - active.began
         self.ended_runs += 1
-        self.walls.setdefault(diameter(one), []).append(wall)
+        self.walls.setdefault(read_run_diameter(one), []).append(wall)
         self._say_share()
         if one.error:
             self.failed += 1
@@ -85,7 +85,7 @@ class Display:
 
     def _ends(self, left):
         """Seconds that so many runs take, as those before of their sizes did."""
-        waiting = [self._wall(diameter(run)) for run in self.queue]
+        waiting = [self._wall(read_run_diameter(run)) for run in self.queue]
         under_way = max(0, left - len(waiting)) * max(map(self._wall, self.walls)) / 2
         return (sum(waiting) + under_way) / self.at_a_time()
 
@@ -148,9 +148,9 @@ class Display:
         return table
 
 
-def diameter(run):
+def read_run_diameter(run):
     """Of the balls of a run, m; 1 where its values do not say it."""
-    value = as_number(run.chosen.get(DIAMETER, ""))
+    value = normalise_value(run.chosen.get(DIAMETER, ""))
     return value if isinstance(value, float) and 0 < value < math.inf else 1.0
 
 

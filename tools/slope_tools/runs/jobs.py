@@ -44,7 +44,7 @@ def slots():
     return min(len(siblings) or 1, cores())
 
 
-def name_of(chosen: Mapping[str, str]) -> str:
+def name_run(chosen: Mapping[str, str]) -> str:
     """The name that a run has by its values."""
     return "_".join(f"{name}_{SAFE.sub('-', value)}" for name, value in chosen.items()) or "base"
 
@@ -54,7 +54,7 @@ class Run:
 
     def __init__(self, output, chosen):
         self.chosen: Dict[str, str] = chosen
-        self.move(Path(output) / name_of(chosen))
+        self.move(Path(output) / name_run(chosen))
         self.varied = self.name     # for a narrow terminal: the values that differ
         self.error = None
         self.changed: Optional[str] = None      # of a finished run that is to be made again: what is another
@@ -141,7 +141,7 @@ class Work:
     """Runs the deck in the run folders, some at a time."""
 
     def __init__(self, deck, digests, inputs, lmp, ranks, jobs, start: Optional[str] = None, older=(), anew=False):
-        """start: the launcher.words of --launcher, None of mpirun; older, anew: see store.Store."""
+        """start: the launcher.list_launcher_words of --launcher, None of mpirun; older, anew: see store.Store."""
         self.deck, self.digests, self.inputs = deck, digests, inputs
         self.lmp, self.ranks, self.jobs, self.start = lmp, ranks, jobs, start
         self.package = provenance.package_version()
@@ -162,7 +162,7 @@ class Work:
 
         Runs of one folder are one: it is made as the first of them. share: cores among fewer runs than at a time.
         """
-        once = store.once(todo)
+        once = store.select_distinct_runs(todo)
         waiting = [run for run in once if not run.finished]
         for run in waiting:
             run.share = self.share_of(len(waiting)) if share else 1
@@ -257,7 +257,8 @@ class Work:
 
     def _line(self, run):
         """The whole command of a run."""
-        return [*launcher.words(self.start, self.ranks_of(run), slots()), str(self.lmp), *self.command(run)]
+        return [*launcher.list_launcher_words(self.start, self.ranks_of(run), slots()), str(self.lmp),
+                *self.command(run)]
 
     def _last_restart(self, run):
         """Step and path of the restart file from which an unfinished run can continue, or None; and why it cannot."""
@@ -279,7 +280,7 @@ class Work:
         about = {**before, "ranks": self.ranks_of(run), "continued": [*before.get("continued", ()), {
             "step": step, "restart": str(path.relative_to(run.folder)), "ranks": self.ranks_of(run),
             "started": provenance.now()}]}
-        disk.write(run.folder / run_folders.VARIABLES, yaml.safe_dump(about, sort_keys=False))
+        disk.write_file(run.folder / run_folders.VARIABLES, yaml.safe_dump(about, sort_keys=False))
         if run.log.path.exists():
             logs.part(run.log.path)
         run.log = logs.Log(run.log.path)
@@ -328,7 +329,7 @@ class Work:
                  "package": self.package, "lmp_sha256": state.program["LAMMPS program"],
                  "started": provenance.now(), "program": state.program, "environment": state.environment,
                  "inputs": {**state.files, **self.digests}}
-        disk.write(new / run_folders.VARIABLES, yaml.safe_dump(about, sort_keys=False))
+        disk.write_file(new / run_folders.VARIABLES, yaml.safe_dump(about, sort_keys=False))
         if run.folder.exists():
             run.folder.rename(old)
         new.rename(run.folder)
@@ -356,7 +357,7 @@ class Work:
                  "environment": {**state.environment, **begun["environment"]},
                  "inputs": {name: begun["inputs"].get(name, digest) for name, digest in state.files.items()}}
         disk.flush_all(run.folder)      # what it says is there, is
-        disk.write(run.marker, yaml.safe_dump(about, sort_keys=False))
+        disk.write_file(run.marker, yaml.safe_dump(about, sort_keys=False))
         run.changed = None
         return None
 

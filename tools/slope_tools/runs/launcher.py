@@ -9,7 +9,7 @@ from ..errors import SlopeError
 RANKS = "{np}"
 
 
-def words(start: Optional[str], ranks: int, slots: int) -> List[str]:
+def list_launcher_words(start: Optional[str], ranks: int, slots: int) -> List[str]:
     """The words before the program; start: of --launcher, or None; slots: what mpirun takes as its number of slots."""
     if start:
         given = shlex.split(start)
@@ -29,7 +29,7 @@ def able(start: Optional[str]) -> bool:
     return start is not None or shutil.which("mpirun") is not None
 
 
-def check(start: Optional[str], ranks: int) -> None:
+def check_launcher(start: Optional[str], ranks: int) -> None:
     """Raise SlopeError unless the launcher is there."""
     if start is None:
         if ranks > 1 and not able(start):

@@ -4,7 +4,7 @@ import math
 import re
 from typing import Dict, Iterable, List, Mapping, Optional, Sequence
 
-from ..case.settings import MOST_RUNS, as_number
+from ..case.settings import MOST_RUNS, normalise_value
 from ..errors import SlopeError
 from . import jobs
 
@@ -38,7 +38,7 @@ def key_of(repeat: Mapping[str, str]) -> str:
     return " ".join(f"{name} {value}" for name, value in repeat.items()) or FIRST
 
 
-def check(names: Sequence[str], equally_good: str) -> None:
+def check_repeats(names: Sequence[str], equally_good: str) -> None:
     """Raise SlopeError unless the variables of --repeat are chance, by name or because --equally-good says so."""
     also = [name for name in equally_good.split(",") if name]
     for name in names:
@@ -50,8 +50,8 @@ def check(names: Sequence[str], equally_good: str) -> None:
             raise SlopeError("--equally-good", "must name variables of --repeat", name)
 
 
-def plan(output, settings: Settings, repeated: Settings, defaults: Mapping[str, str],
-         others: Sequence[Dict[str, str]] = ()) -> List[Repeat]:
+def plan_repeats(output, settings: Settings, repeated: Settings, defaults: Mapping[str, str],
+                 others: Sequence[Dict[str, str]] = ()) -> List[Repeat]:
     """The runs of the product of all settings, the last one varying fastest, each followed by its repeats.
 
     others: combinations beside the product, with the same names, of one run each.
@@ -74,7 +74,7 @@ def plan(output, settings: Settings, repeated: Settings, defaults: Mapping[str, 
 def chances_of(repeated: Settings, base: Mapping[str, str]) -> List[Dict[str, str]]:
     """What each further run of a combination changes: one value of --repeat that is not the first run's (base)."""
     chances = [{name: value} for name, several in repeated.items() for value in several
-               if as_number(value) != as_number(base[name])]
+               if normalise_value(value) != normalise_value(base[name])]
     if repeated and not chances:
         raise SlopeError("--repeat", "must give a value that the first run does not have",
                          ", ".join(f"{name}={','.join(several)}" for name, several in repeated.items()))

@@ -22,17 +22,18 @@ class Found(NamedTuple):
     warnings: List[str]
 
 
-def run(asked: slip_deck.Asked, polygon, raster: rasters.Raster, folder: Path, lmp: Path, ranks: int,
-        tell: Callable[[str], Any]) -> Found:
+def run_slip_search(asked: slip_deck.Asked, polygon, raster: rasters.Raster, folder: Path, lmp: Path, ranks: int,
+                    tell: Callable[[str], Any]) -> Found:
     """Run the search in a folder, and leave its files there; SlopeError with LAMMPS' message.
 
     polygon: where the bodies must lie, in local metres, or None; raster: the terrain; tell: gets how far it is.
     """
-    launcher.check(None, ranks)
+    launcher.check_launcher(None, ranks)
     if polygon is not None:
-        polygons.write(folder / slip_deck.WITHIN, polygon, raster)
-    disk.write(folder / slip_deck.NAME, slip_deck.text(asked, lambda path: str(path.resolve())))
-    words = [*launcher.words(None, ranks, jobs.slots()), str(lmp), "-in", slip_deck.NAME, "-log", logs.LOG]
+        polygons.write_polygon(folder / slip_deck.WITHIN, polygon, raster)
+    disk.write_file(folder / slip_deck.NAME, slip_deck.make_slip_deck(asked, lambda path: str(path.resolve())))
+    words = [*launcher.list_launcher_words(None, ranks, jobs.slots()), str(lmp), "-in", slip_deck.NAME, "-log",
+             logs.LOG]
     with open(folder / SCREEN, "wb") as screen, jobs.signals_interrupt():
         try:
             process = processes.start(words, folder, screen)
@@ -69,11 +70,11 @@ def followed(process, log: Path, tell: Callable[[str], Any]) -> int:
 
 def settle(asked: slip_deck.Asked, raster: rasters.Raster, folder: Path, kept: int, final: Path) -> None:
     """Give the rasters the place of the terrain in their sidecars, and the deck paths from its folder `final` on."""
-    disk.write(folder / slip_deck.NAME,
-               slip_deck.text(asked, lambda path: os.path.relpath(path.resolve(), final.resolve())))
+    disk.write_file(folder / slip_deck.NAME,
+                    slip_deck.make_slip_deck(asked, lambda path: os.path.relpath(path.resolve(), final.resolve())))
     names = [f"{PREFIX}.factor.asc", *(f"{PREFIX}.{k + 1}.base.asc" for k in range(kept))]
     for name in names:
-        values = rasters.read(folder / name, heights=False)
+        values = rasters.read_raster(folder / name, heights=False)
         rasters.write_asc_local(folder / name, raster._replace(z=values.z), {}, exact=True)
 
 

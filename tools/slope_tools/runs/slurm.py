@@ -43,7 +43,7 @@ fi
 """
 
 
-def check(options: str) -> None:
+def check_slurm(options: str) -> None:
     """Raise SlopeError unless Slurm's programs are installed and answer."""
     for name in PROGRAMS:
         if not shutil.which(name):
@@ -223,9 +223,9 @@ class Work(jobs.Work):
     def _submit(self, lines: List[str]) -> str:
         """Submit an array of commands; its number."""
         place = self.folder / f"{len(list(self.folder.glob('*.runs'))) + 1}.runs"
-        disk.write(place, "".join(lines))
+        disk.write_file(place, "".join(lines))
         script = place.with_suffix(".sh")
-        disk.write(script, SCRIPT.format(runs=quoted(str(place.absolute())), status=STATUS))
+        disk.write_file(script, SCRIPT.format(runs=quoted(str(place.absolute())), status=STATUS))
         array = f"0-{len(lines) - 1}" + (f"%{self.throttle}" if self.throttle else "")
         try:
             answer = call("sbatch", "--parsable", f"--array={array}", f"--ntasks={self.ranks}", "--output=/dev/null",
@@ -237,7 +237,7 @@ class Work(jobs.Work):
         number = number_in(answer)
         self.queue.arrays.append(number)
         self.queue.asked = -1e9
-        disk.write(self.folder / KNOWN, "\n".join(self.queue.arrays) + "\n")
+        disk.write_file(self.folder / KNOWN, "\n".join(self.queue.arrays) + "\n")
         return number
 
     def _again(self, active):

@@ -14,7 +14,7 @@ LETTERS = 6             # of a digest, where a name alone does not tell two runs
 Values = FrozenSet[Tuple[str, Any]]     # of dependencies.by_value
 
 
-def once(todo: Iterable[Any]) -> List[Any]:
+def select_distinct_runs(todo: Iterable[Any]) -> List[Any]:
     """The first run (jobs.Run) of each folder."""
     first: Dict[Path, Any] = {}
     for run in todo:

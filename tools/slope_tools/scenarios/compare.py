@@ -32,16 +32,16 @@ class One(NamedTuple):
     studied: Optional[method.Studied]
 
 
-def read(folder: Path) -> List[One]:
+def read_scenarios(folder: Path) -> List[One]:
     """The site of a folder, then its scenarios."""
-    name = site_choices.load(folder).choices.project.name or folder.absolute().name
-    return [one(folder, name), *(one(place, place.name) for place in site_scenarios.of_site(folder))]
+    name = site_choices.load_site(folder).choices.project.name or folder.absolute().name
+    return [one(folder, name), *(one(place, place.name) for place in site_scenarios.list_scenarios(folder))]
 
 
 def one(folder: Path, name: str) -> One:
-    site = site_choices.load(folder)
+    site = site_choices.load_site(folder)
     deck = folder / site_deck.NAME
-    return One(name, site, decks.index_variables(deck) if deck.is_file() else {}, method.read(site))
+    return One(name, site, decks.index_variables(deck) if deck.is_file() else {}, method.read_method(site))
 
 
 def run_of(studied: method.Studied, names: Sequence[str]) -> Path:
@@ -64,26 +64,26 @@ def choices_that_differ(mine: Site, other: Site) -> List[str]:
         for key in about["properties"]:
             if (name, key) in site_choices.OF_MODEL:
                 continue
-            was, now = (plain(site, name, key) for site in (mine, other))
+            was, now = (resolve_choice(site, name, key) for site in (mine, other))
             if was == now:
                 continue
             if now not in (None, (), [], {}):
-                found.append(f"{key.replace('_', ' ')} {text(now)}")
+                found.append(f"{key.replace('_', ' ')} {format_choice(now)}")
             elif (name, key) in FILES:
                 found.append(f"without {name} {key}")
     return found
 
 
-def plain(site: Site, section: str, key: str) -> Any:
+def resolve_choice(site: Site, section: str, key: str) -> Any:
     """A choice, with files by their places."""
     if (section, key) in FILES:
         return [os.path.abspath(one) for one in site.choices.files(section, key)]
     return site.choices.value(section, key)
 
 
-def text(value: Any) -> str:
+def format_choice(value: Any) -> str:
     if isinstance(value, (list, tuple)):
-        return ", ".join(map(text, value))
+        return ", ".join(map(format_choice, value))
     if isinstance(value, float):
         return f"{value:.10g}"
     return Path(value).name if isinstance(value, str) and os.sep in value else str(value)
@@ -96,7 +96,7 @@ def differences(mine: One, other: One) -> Iterator[str]:
     for which in (BALLS, STIFFNESS, GROUND):
         for name, (what, unit) in which.items():
             was, now = (each.variables.get(name) for each in (mine, other))
-            if was is not None and now is not None and not same(was, now):
+            if was is not None and now is not None and not is_same_value(was, now):
                 yield f"{what} {now}{unit and f' {unit}'} instead of {was}"
     if (digests := [terrain(each.site.folder) for each in (mine, other)])[0] != digests[1]:
         yield "another terrain"
@@ -108,7 +108,7 @@ def differences(mine: One, other: One) -> Iterator[str]:
         yield f"stop angles {degrees(angles[1])} instead of {degrees(angles[0])} degrees"
 
 
-def same(one_: str, other: str) -> bool:
+def is_same_value(one_: str, other: str) -> bool:
     try:
         return float(one_) == float(other)
     except ValueError:

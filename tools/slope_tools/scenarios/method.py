@@ -31,7 +31,7 @@ class Studied(NamedTuple):
         return [name for name in answered.INSIDE if all(name in one for one in self.roads.values())]
 
 
-def read(site: Site) -> Optional[Studied]:
+def read_method(site: Site) -> Optional[Studied]:
     """None without a study of the site as it is now."""
     governs = answered.study_in(site.folder)
     if governs is None or outdated.changed(site.folder, governs):
@@ -95,12 +95,12 @@ def headline_of(studies: Studies, names: Sequence[str]) -> Optional[Headline]:
     return found.about() if found else None
 
 
-def rows_of(studies: Studies, names: Sequence[str]) -> List[Finished]:
+def list_finished_rows(studies: Studies, names: Sequence[str]) -> List[Finished]:
     """The runs that finished."""
     return [row for about in taken(studies, names) for row in finished_of(about.runs)]
 
 
-def farthest(studies: Studies, names: Sequence[str]) -> Optional[float]:
+def find_farthest_reach(studies: Studies, names: Sequence[str]) -> Optional[float]:
     """m, within which 99 % of the volume of all runs stay; None: it is not known of all."""
     found = [about.largest.get(travel_shares.DISTANCE) for about in taken(studies, names)]
     return max(one.value for one in found if one) if found and all(found) else None

@@ -19,7 +19,7 @@ from ..survey import rasters, roads
 from ..survey.rasters import Raster, crs_name
 from ..tables import answer_words, usable
 from . import method
-from .compare import One, choices_that_differ, differences, read, run_of
+from .compare import One, choices_that_differ, differences, read_scenarios, run_of
 
 PAGE = "scenarios.html"
 BODY = f"{NAME_OF_BODY}.depth.asc"
@@ -43,10 +43,10 @@ class Shown(NamedTuple):
     body: Optional[Outline]
 
 
-def write(folder: Path, output: Path, overwrite: bool) -> str:
+def write_scenarios_page(folder: Path, output: Path, overwrite: bool) -> str:
     """Write the page of a site's folder beside its report; a line for the user."""
     disk.check_standing(output, [output], [document.MADE_BY], overwrite, f"slope report {quote(str(folder))}")
-    several = read(folder)
+    several = read_scenarios(folder)
     said = method.difference({one.name: one.studied for one in several},
                              {one.name: one.site.folder for one in several})
     content = {
@@ -54,17 +54,18 @@ def write(folder: Path, output: Path, overwrite: bool) -> str:
         "author": several[0].site.choices.project.author, "made": provenance.now(),
         "mark": document.mark(folder),
         "sections": [Section("scenarios", "Side by side", [
-            *([Text(said, "caveat")] if said else []), table(several), Figures([drawn(several)], "two-thirds")]),
+            *([Text(said, "caveat")] if said else []), tabulate_scenarios(several),
+            Figures([draw_scenarios(several)], "two-thirds")]),
                      Section("models", "In what the models differ", [Listing(list(models(several)))])],
         "footer": f"{document.MADE_BY}, SLOPE {provenance.version()}; each scenario has a report of its own."}
-    disk.write(output, document.render(content, Path(__file__).with_name("scenarios.html.j2")))
+    disk.write_file(output, document.render(content, Path(__file__).with_name("scenarios.html.j2")))
     return f"{output}: the site and its {len(several) - 1} scenarios" + (f". {said}" if said else "")
 
 
 def refresh(site: Path) -> str:
     """The page of a site anew after a study of it or of a scenario; why not, where it is none of ours."""
     try:
-        return write(site, site / PAGE, False)
+        return write_scenarios_page(site, site / PAGE, False)
     except SlopeError as error:
         return f"{PAGE} is not made: {error}"
 
@@ -79,11 +80,11 @@ def models(several: Sequence[One]) -> Iterator[str]:
 
 # --- the table ---
 
-def table(several: Sequence[One]) -> Table:
+def tabulate_scenarios(several: Sequence[One]) -> Table:
     names = method.common([one.studied for one in several])
     roads = list(dict.fromkeys(road for one in several for road in (one.studied.roads if one.studied else ())))
     rows = [[one.name, "" if one is several[0] else "; ".join(choices_that_differ(several[0].site, one.site))
-             or "nothing else", *numbers(one, names, roads)] for one in several]
+             or "nothing else", *list_scenario_numbers(one, names, roads)] for one in several]
     return Table("Released: of the body. 99 %: the distance within which so much of the volume stays, the largest of "
                  "all runs, in plan from the highest point of the body. Length: along the fall path, of the longest "
                  "run. To remove: the number of the first page of each report, where all have the same studies.",
@@ -92,7 +93,7 @@ def table(several: Sequence[One]) -> Table:
                  rows, (0, 1))
 
 
-def numbers(one: One, names: Sequence[str], roads: Sequence[str]) -> List[str]:
+def list_scenario_numbers(one: One, names: Sequence[str], roads: Sequence[str]) -> List[str]:
     """Of a row: what is released, how far it goes, what is to be removed from each road, how many runs finished.
 
     names: of the studies that count (method.common)."""
@@ -101,7 +102,7 @@ def numbers(one: One, names: Sequence[str], roads: Sequence[str]) -> List[str]:
     if studied is None:
         return [released, "-", "-", *["-"] * max(1, len(roads)), "not studied as it is"]
     first = next(iter(studied.roads.values()))
-    finished, far = method.rows_of(first, names), method.farthest(first, names)
+    finished, far = method.list_finished_rows(first, names), method.find_farthest_reach(first, names)
     length = usable.longest(finished)
     return [released, "unknown" if far is None else digits.three(far), "-" if length is None else digits.three(length),
             *(to_remove(method.headline_of(studied.roads[road], names)) if road in studied.roads else "-"
@@ -110,12 +111,12 @@ def numbers(one: One, names: Sequence[str], roads: Sequence[str]) -> List[str]:
 
 def to_remove(headline: Optional[Headline]) -> str:
     """The number of a headline, as page 1 has it."""
-    return answer_words.volume(headline.kind, headline.volume_m3) if headline else "-"
+    return answer_words.describe_volume(headline.kind, headline.volume_m3) if headline else "-"
 
 
 # --- the map ---
 
-def drawn(several: Sequence[One]) -> Optional[Picture]:
+def draw_scenarios(several: Sequence[One]) -> Optional[Picture]:
     """The outlines of the deposits of the governing runs; None where there are none."""
     mine, shown = several[0].site, []
     names = method.common([one.studied for one in several])
@@ -171,5 +172,5 @@ def map_of(layers: figure_maps.Layers, shown: Sequence[Shown], title: str) -> st
         sheets.draw_axes(axes, frame, size)
         scale = size[0] / frame.width
         sheets.scale_and_legend(sheet, sheets.margins(frame)[0], scale, min(frame.width, 2.5 / scale),
-                                [*entries, *figure_maps.entries(layers)], raster.crs is not None)
+                                [*entries, *figure_maps.list_legend_entries(layers)], raster.crs is not None)
         return figures.data_uri(sheet.finish())

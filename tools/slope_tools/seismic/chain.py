@@ -5,8 +5,8 @@ The bodies that fail together at a peak are a set. Of each body there are runs, 
 set the volumes are added, once rank by rank and once as independent ones, and the larger probability counts: how they
 depend is not known, as the runs release one body each. P(V > v | peak) is the mean over the samples, the annual
 frequency its integral over the hazard curve; the set is constant between two capacities, so that this integral is a
-sum. Bounds: those of the runs (hazard.curve), all bodies at their upper or lower one together, for any dependence
-(together.py), and the scatter between the sequences of samples. Every function is pure.
+sum. Bounds: those of the runs (hazard.compute_hazard_curve), all bodies at their upper or lower one together, for any
+dependence (together.py), and the scatter between the sequences of samples. Every function is pure.
 """
 from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple
 
@@ -37,15 +37,15 @@ def steps(values: np.ndarray, exceeded: np.ndarray, most: float) -> Steps:
     return Steps(np.concatenate([[most], values[::-1]]), np.concatenate([exceeded[::-1], [1.0]]))
 
 
-def left(values: Sequence[float], point: Sequence[int], most: float, failed: int = 0) -> Left:
+def compute_left_volume(values: Sequence[float], point: Sequence[int], most: float, failed: int = 0) -> Left:
     """What the runs of a body leave on the road; most: its whole volume, which counts where no run says less.
 
-    point: of each run, see hazard.curve; failed: further runs that gave none.
+    point: of each run, see hazard.compute_hazard_curve; failed: further runs that gave none.
     """
     if not len(values):
         all_of_it, nothing = Steps(np.array([most]), np.ones(1)), Steps(np.zeros(1), np.ones(1))
         return Left(all_of_it, nothing, all_of_it)
-    found = hazard.curve(values, point, failed)
+    found = hazard.compute_hazard_curve(values, point, failed)
     at, most = np.maximum(found.values, 0.0), max(most, float(np.max(values)))
     low = np.minimum.accumulate(found.low)
     high = np.maximum.accumulate(found.high[::-1])[::-1]

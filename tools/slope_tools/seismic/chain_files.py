@@ -37,7 +37,7 @@ class Chain(NamedTuple):
 
 # --- before the runs ---
 
-def check(found: Fragility, here: Mapping[str, SlipBody], site: Path, more_than: Sequence[float]) -> Chain:
+def check_chain(found: Fragility, here: Mapping[str, SlipBody], site: Path, more_than: Sequence[float]) -> Chain:
     """The Chain of a site whose bodies (site.yaml: found) are those of a fragility; SlopeError if they are not."""
     if not here:
         raise SlopeError("--fragility", "needs a site with bodies of slope stability, which slope site --slips makes",
@@ -68,19 +68,20 @@ def options(asked: Chain) -> Tuple[List[str], List[str]]:
 
 # --- after them ---
 
-def left(asked: Chain, rows: Sequence[Row]) -> List[chain.Left]:
+def list_left_volumes(asked: Chain, rows: Sequence[Row]) -> List[chain.Left]:
     """What each body leaves on the road; of those that never fail nothing."""
     found = []
     for name in asked.fragility.bodies:
         if name not in asked.weights:
-            found.append(chain.left([0.0], [0], 0.0))
+            found.append(chain.compute_left_volume([0.0], [0], 0.0))
             continue
         mine = [row for row in rows if row.set[VARIABLE] == name]
         done = finished_of(mine)
         point = [tuple(row.set.values()) for row in done]
         known = {one: k for k, one in enumerate(dict.fromkeys(point))}
-        found.append(chain.left([row.at_road.remove_on_road_m3 for row in done], [known[one] for one in point],
-                                asked.volumes[name], len(mine) - len(done)))
+        found.append(chain.compute_left_volume([row.at_road.remove_on_road_m3 for row in done],
+                                               [known[one] for one in point],
+                                               asked.volumes[name], len(mine) - len(done)))
     return found
 
 
@@ -90,17 +91,17 @@ class Evaluated(NamedTuple):
     tables: Dict[str, str]
 
 
-def evaluate(asked: Chain, rows: Sequence[Row], withheld: Sequence[Finding], sizes: bool) -> Evaluated:
+def evaluate_chain(asked: Chain, rows: Sequence[Row], withheld: Sequence[Finding], sizes: bool) -> Evaluated:
     """What the runs say; rows: of study.csv; withheld: why their volumes may not be used; sizes: whether several were
     run."""
-    found, bodies = asked.fragility, left(asked, rows)
+    found, bodies = asked.fragility, list_left_volumes(asked, rows)
     seen = [row.at_road.remove_on_road_m3 for row in finished_of(rows)]
     more_than = list(asked.more_than) or intensity.round_volumes(max(seen)) or [0.0]
     largest = sum(float(one.value.volumes[1:].max(initial=0.0)) for one in bodies)
     volumes = np.unique([*np.linspace(0.0, max(largest, 1.0), LEVELS), *more_than])
     at = np.searchsorted(volumes, more_than)
     family = chain.family(found.capacity, found.peaks, bodies, volumes)
-    tables = {CURVES: table(
+    tables = {CURVES: format_chain_table(
         ("peak_gal", "volume_m3", "probability", "low", "high"),
         ((peak, volume, *(side[i, k] for side in family)) for i, peak in enumerate(found.peaks)
          for k, volume in enumerate(volumes)))}
@@ -109,23 +110,24 @@ def evaluate(asked: Chain, rows: Sequence[Row], withheld: Sequence[Finding], siz
     per_year = None
     if found.rate is not None:
         yearly = chain.frequency(found.capacity, found.rate, found.peaks, bodies, volumes)
-        tables[PER_YEAR] = table(("volume_m3", "per_year", "low", "high"), zip(volumes, *yearly.total))
+        tables[PER_YEAR] = format_chain_table(("volume_m3", "per_year", "low", "high"), zip(volumes, *yearly.total))
         per_year = [of_year(yearly, volume, k) for volume, k in zip(more_than, at)]
     about = study_types.Chain(
-        found.folder.name, QUANTITY, hazard.CONFIDENCE, [of_body(asked, name, rows) for name in found.bodies],
+        found.folder.name, QUANTITY, hazard.CONFIDENCE, [summarise_chain_body(asked, name, rows) for name
+                                                         in found.bodies],
         more_than, found.peaks.tolist(), curves, per_year, list(withheld), list(tables), [])
     coarse = [] if sizes else [Finding("chain size")]
-    return Evaluated(replace(about, doubts=[*doubts(about, found.warnings), *coarse]), tables)
+    return Evaluated(replace(about, doubts=[*find_chain_caveats(about, found.warnings), *coarse]), tables)
 
 
-def write(found: Evaluated, output: Path) -> None:
+def write_chain(found: Evaluated, output: Path) -> None:
     """The tables."""
     (output / PER_YEAR).unlink(missing_ok=True)      # of a study before this one in the folder
     for name, text in found.tables.items():
-        disk.write(output / name, text)
+        disk.write_file(output / name, text)
 
 
-def of_body(asked: Chain, name: str, rows: Sequence[Row]) -> study_types.ChainBody:
+def summarise_chain_body(asked: Chain, name: str, rows: Sequence[Row]) -> study_types.ChainBody:
     """What study.yaml says of a body."""
     mine = [row for row in rows if row.set[VARIABLE] == name]
     return study_types.ChainBody(name, asked.weights.get(name, 0.0), asked.volumes.get(name), len(mine),
@@ -141,7 +143,7 @@ def of_year(yearly: chain.Frequency, volume: float, k: int) -> study_types.PerYe
          for a, b, part in yearly.parts])
 
 
-def doubts(about: study_types.Chain, warnings: Sequence[Any]) -> List[Finding]:
+def find_chain_caveats(about: study_types.Chain, warnings: Sequence[Any]) -> List[Finding]:
     """The caveats; warnings: of the fragility."""
     return [*(finding(one)._replace(part="fragility") for one in warnings),
             *(Finding("body without run", {"body": one.body, "volume": one.volume_m3})
@@ -150,7 +152,7 @@ def doubts(about: study_types.Chain, warnings: Sequence[Any]) -> List[Finding]:
               for one in about.per_year or () if one.more_at_most > BEYOND * one.value)]
 
 
-def table(head: Sequence[str], rows: Iterable[Sequence[float]]) -> str:
+def format_chain_table(head: Sequence[str], rows: Iterable[Sequence[float]]) -> str:
     return disk.csv_text(head, ([f"{value:.6g}" for value in row] for row in rows))
 
 
@@ -171,8 +173,8 @@ def sentences(about: study_types.Chain) -> List[str]:
     return found
 
 
-def describe(about: study_types.Chain, output: Path) -> List[str]:
-    """The lines of the console; ensemble.describe() says why volumes are withheld."""
+def describe_chain(about: study_types.Chain, output: Path) -> List[str]:
+    """The lines of the console; ensemble.describe_ensemble() says why volumes are withheld."""
     lines = [f"caveat: {text}" for text in texts(about.doubts)]
     if about.withheld:
         lines.append("how likely the road is blocked is withheld, as the volumes are")

@@ -111,7 +111,7 @@ def slide_capacity(k: np.ndarray, record: np.ndarray, direction: float, limit: f
     """
     t, a = record[:, 0], record[:, 1:]
     peak = motion_file.peak(record)
-    largest = float(np.abs(newmark.along(a, direction)).max() + abs(lift) * np.abs(a[:, 2]).max())
+    largest = float(np.abs(newmark.project_acceleration(a, direction)).max() + abs(lift) * np.abs(a[:, 2]).max())
     if not largest > 1e-9 * peak:
         return np.where(k > 0, np.inf, 0.0)
     way = newmark.both_ways(t, a, direction, RATIOS * largest, lift)
@@ -147,7 +147,7 @@ def shares_below(capacity: np.ndarray, peaks: np.ndarray) -> np.ndarray:
     return np.array([np.searchsorted(one, peaks, "left") for one in ordered]) / ordered.shape[1]
 
 
-def curve(capacity: np.ndarray, peaks: np.ndarray) -> Band:
+def compute_fragility_curve(capacity: np.ndarray, peaks: np.ndarray) -> Band:
     """P(failure | peak) of capacities (samples, records), with bands of the sampling."""
     band = banded(shares_below(capacity, peaks))
     n = len(capacity)
@@ -169,7 +169,7 @@ def lognormal(peaks: np.ndarray, share: np.ndarray) -> Optional[Tuple[float, flo
     return float(np.exp(found.x[0])), float(np.exp(-found.x[1]))
 
 
-def fit(capacity: np.ndarray, peaks: np.ndarray) -> Optional[Fit]:
+def fit_lognormal(capacity: np.ndarray, peaks: np.ndarray) -> Optional[Fit]:
     """The lognormal Fit to the curve of capacities (samples, records); None if the peaks do not show one.
 
     beta^2 is shared as the variances of the logarithms of positive capacities are: within a strength, between records,

@@ -9,15 +9,15 @@ from scipy import stats
 
 from .. import disk, schemas
 from ..errors import SlopeError
-from ..schemas import FINDINGS, NUMBER, TEXT, listed, mapping
+from ..schemas import FINDINGS, NUMBER, TEXT, list_of, mapping
 from .fragility import REPLICATES, Band, Fit, Frequency, Hazard
 
 ANY = "any"
 ABOUT, CAPACITIES = "fragility.yaml", "capacities.csv"
 FILES = ["fragility.csv", "fragility.png", CAPACITIES, ABOUT]
 WHAT = "what `slope fragility` wrote"
-SCHEMA = mapping({"bodies": listed(mapping({"body": TEXT, "base_sha256": TEXT}), 1), "peaks_gal": listed(NUMBER, 1),
-                  "hazard_curve": listed(listed(NUMBER, 2), 2, null=True), "warnings": FINDINGS})
+SCHEMA = mapping({"bodies": list_of(mapping({"body": TEXT, "base_sha256": TEXT}), 1), "peaks_gal": list_of(NUMBER, 1),
+                  "hazard_curve": list_of(list_of(NUMBER, 2), 2, null=True), "warnings": FINDINGS})
 
 
 class Curve(NamedTuple):
@@ -45,9 +45,9 @@ class Fragility(NamedTuple):
     warnings: List[Any]
 
 
-def read(folder: Path) -> Fragility:
+def read_fragility(folder: Path) -> Fragility:
     """What `slope fragility` left in a folder; SlopeError if it is not whole."""
-    about = schemas.load(folder / ABOUT, WHAT, SCHEMA)
+    about = schemas.load_checked(folder / ABOUT, WHAT, SCHEMA)
     path, curve = folder / CAPACITIES, about["hazard_curve"]
     names = [one["body"] for one in about["bodies"]]
     try:
@@ -83,8 +83,8 @@ def about_curve(one: Curve) -> Dict[str, Any]:
     return about
 
 
-def write(folder: Path, peaks: np.ndarray, curves: Sequence[Curve], capacity: np.ndarray,
-          about: Dict[str, Any]) -> None:
+def write_fragility(folder: Path, peaks: np.ndarray, curves: Sequence[Curve], capacity: np.ndarray,
+                    about: Dict[str, Any]) -> None:
     """FILES, all of them or none; capacity (gal): samples, records, bodies."""
     with disk.complete(folder, ABOUT) as new:
         with open(new / "fragility.csv", "w", encoding="ascii", newline="") as out:
@@ -95,7 +95,7 @@ def write(folder: Path, peaks: np.ndarray, curves: Sequence[Curve], capacity: np
                 for k, peak in enumerate(peaks):
                     band = (f"{value[k]:.6g}" for value in one.band)
                     rows.writerow([one.name, f"{peak:g}", *band, "" if fitted is None else f"{fitted[k]:.6g}"])
-        draw(new / "fragility.png", peaks, curves)
+        draw_fragility(new / "fragility.png", peaks, curves)
         samples, records = capacity.shape[:2]
         sample, record = (one.ravel() + 1 for one in np.indices((samples, records)))
         np.savetxt(new / CAPACITIES, np.column_stack([sample, record, capacity.reshape(samples * records, -1)]),
@@ -110,7 +110,7 @@ def fitted_at(fit: Optional[Fit], peaks: np.ndarray) -> Optional[np.ndarray]:
     return None if fit is None else stats.norm.cdf(np.log(peaks / fit.median) / fit.beta)
 
 
-def draw(path: Path, peaks: np.ndarray, curves: Sequence[Curve]) -> None:
+def draw_fragility(path: Path, peaks: np.ndarray, curves: Sequence[Curve]) -> None:
     """The curves with their bands and fits; with a hazard curve also where the frequency of the last one comes from."""
     from ..drawing import figures, pictures
     parts = curves[-1].frequency

@@ -8,7 +8,7 @@ from typing import Callable, List, NamedTuple, Optional, Sequence, Tuple
 import numpy as np
 
 from ..errors import SlopeError
-from ..heads import Column, acceleration, column, number
+from ..heads import Column, acceleration, column, parse_cell
 from ..quakes.quake_records import GAL
 from .fragility import Hazard
 
@@ -31,7 +31,7 @@ class Head(NamedTuple):
     rate: Callable[[float], float] = float
 
 
-def read(path: Path) -> Hazard:
+def read_seismic_hazard(path: Path) -> Hazard:
     """Lines "peak,exceedance" (gal, per year), perhaps under a head that says more; SlopeError if it does not fall."""
     try:
         with open(path, newline="", encoding="utf-8-sig") as source:
@@ -48,7 +48,7 @@ def read(path: Path) -> Hazard:
                 head = head_of(path, row) or head       # of a comment
             continue
         place += 1
-        if place == 1 and all(math.isnan(number(word)) for word in row):
+        if place == 1 and all(math.isnan(parse_cell(word)) for word in row):
             head = head_of(path, row)
             if head is None:
                 raise SlopeError(f"{path}: row 1", RULE, line.strip()[:60])
@@ -71,7 +71,7 @@ def cells(line: str) -> List[str]:
 
 def point_of(path: Path, place: int, row: Sequence[str], head: Head, before: Sequence[Sequence[float]]) -> List[float]:
     """Peak (gal) and exceedances per year of a row."""
-    values = [number(word) for word in row]
+    values = [parse_cell(word) for word in row]
     if len(values) != 2 or not all(math.isfinite(one) and one > 0 for one in values):
         raise SlopeError(f"{path}: row {place}", "must be a peak (gal) and how often it is exceeded per year, both > 0",
                          ",".join(row)[:60])

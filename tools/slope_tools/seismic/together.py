@@ -20,7 +20,7 @@ class Steps(NamedTuple):
     shares: np.ndarray
 
 
-def above(one: Steps, volumes: np.ndarray) -> np.ndarray:
+def compute_share_above(one: Steps, volumes: np.ndarray) -> np.ndarray:
     """P(V > v) of one body."""
     larger = len(one.volumes) - np.searchsorted(one.volumes[::-1], volumes, "right")
     return np.concatenate([[0.0], one.shares])[larger]
@@ -32,7 +32,7 @@ def rank_by_rank(bodies: Sequence[Steps], volumes: np.ndarray) -> np.ndarray:
     total = np.zeros(len(ends))
     for one in bodies:      # up to a share its volume is that of the first one that reaches it
         total += one.volumes[np.searchsorted(one.shares, ends, "left")]
-    return above(Steps(total, ends), volumes)
+    return compute_share_above(Steps(total, ends), volumes)
 
 
 def independent(bodies: Sequence[Steps], volumes: np.ndarray) -> np.ndarray:
@@ -61,9 +61,9 @@ def at_most(bodies: Sequence[Steps], volumes: np.ndarray) -> np.ndarray:
     """The largest P(V > v) that any dependence may give."""
     parts, chance = np.zeros(1), np.zeros(1)
     for one in bodies[:-1]:
-        parts, chance = best(parts, chance, one.volumes, above(one, one.volumes), -1)
+        parts, chance = best(parts, chance, one.volumes, compute_share_above(one, one.volumes), -1)
     last = bodies[-1]
-    return np.array([np.where(parts <= volume, above(last, volume - parts) + chance, 1.0).min(initial=1.0)
+    return np.array([np.where(parts <= volume, compute_share_above(last, volume - parts) + chance, 1.0).min(initial=1.0)
                      for volume in volumes])
 
 
@@ -71,10 +71,11 @@ def at_least(bodies: Sequence[Steps], volumes: np.ndarray) -> np.ndarray:
     """The smallest P(V > v) that any dependence may give."""
     parts, chance = np.zeros(1), np.zeros(1)
     for one in bodies[:-1]:
-        below = 1.0 - above(one, np.nextafter(one.volumes, -1.0))
+        below = 1.0 - compute_share_above(one, np.nextafter(one.volumes, -1.0))
         parts, chance = best(parts, chance, one.volumes, below, 1)
     last = bodies[-1]
-    return np.array([1.0 - (1.0 - above(last, volume - parts) + chance).min(initial=1.0) for volume in volumes])
+    return np.array([1.0 - (1.0 - compute_share_above(last, volume - parts) + chance).min(initial=1.0) for volume
+                     in volumes])
 
 
 def best(parts: np.ndarray, chance: np.ndarray, more: np.ndarray, with_chance: np.ndarray,

@@ -65,9 +65,9 @@ Draw = Callable[[Path, Shown, str], None]       # of the map: file, what it show
 Build = Callable[..., Made]     # arguments of build()
 
 
-def make(choices: Choices, folder: Path, machine: Machine, tell: Callable[[str], Any],
-         warn: Callable[[str], Any], draw: Draw, again: bool = False,
-         known: Optional[Derived] = None, how: Optional[Build] = None) -> Made:
+def make_site(choices: Choices, folder: Path, machine: Machine, tell: Callable[[str], Any],
+              warn: Callable[[str], Any], draw: Draw, again: bool = False,
+              known: Optional[Derived] = None, how: Optional[Build] = None) -> Made:
     """Make a site's folder, or rebuild it, from complete choices whose paths are relative to the working folder.
 
     tell and warn are called with lines for the user, draw draws the map; again: the folder is a site, which is
@@ -80,7 +80,7 @@ def make(choices: Choices, folder: Path, machine: Machine, tell: Callable[[str],
     check_target(folder, again)
     known_files = again or site_folder.was_not_made(folder)
     old = set(site_choices.found(folder).files) if known_files else set()
-    site_folder.check(choices, folder, old)
+    site_folder.check_site_folder(choices, folder, old)
     try:
         with disk.alone_in(folder) if again else contextlib.nullcontext():
             new.mkdir()
@@ -126,11 +126,11 @@ def build(given: OfMass, known: Derived, new: Path, folder: Path, machine: Machi
         rasters.write_asc_local(new / TERRAIN, found.raster, {"filled_cells": about["filled_cells"],
                                                               "sources": about["sources"], "steps": steps}, exact=True)
         raster = found.raster
-    tell(release.text(found))
+    tell(release.describe_body(found))
     for line in found.warnings:
         keep(line)
-    several = site_bodies.write(given, new, BODY, wanted, keep)
-    body = site_bodies.around(write_body(new, wanted, found), BODY, several)
+    several = site_bodies.write_site_bodies(given, new, BODY, wanted, keep)
+    body = site_bodies.widen_body(write_body(new, wanted, found), BODY, several)
     body = body._replace(thick=max(body.thick, given.model.least_thick or 0.0))
     layers = read_layers(given, raster, new, tell, keep)
     title = given.project.name or folder.absolute().name
@@ -140,31 +140,32 @@ def build(given: OfMass, known: Derived, new: Path, folder: Path, machine: Machi
     first = tried(choices, known, parts, found, new, folder, machine, tell)
     trial = first and first.trial
     if first:
-        site_trial.keep(new, first, raster)
+        site_trial.write_trial(new, first, raster)
     choices, size = settled(choices, parts, found, trial, machine, raster)
-    for one in of_road(choices, found, layers, size):
+    for one in check_site_road(choices, found, layers, size):
         keep(one)
     derived = site_choices.derived(given, choices, known)
     say_size(choices, size, found, machine, tell)
     for one in (*site_warnings.of_resistance(choices), *site_warnings.of_zones(layers.zones),
                 *site_warnings.site_warnings(found.measures, size, trial),
                 *site_warnings.of_cells(found.area.z - found.slip, found.area.cell, surveyed),
-                *(one for name, road in layers.roads.items() for one in site_warnings.of_road(
+                *(one for name, road in layers.roads.items() for one in site_warnings.check_road_resolution(
                     road, choices.road.width, size.diameter, max(found.area.cell, choices.model.cell or 0.0),
                     name)),
                 *site_warnings.of_walls(layers.structures, size.diameter)):
         keep(one)
-    site_warnings.write(new, warnings)
-    deck = site_deck.text(choices, parts, numbers(choices, soil_of(choices.model, parts), trial, size))
-    disk.write(new / site_deck.NAME, deck)
-    draw(new / MAP, shown(choices, found, layers, first and first.reached),
+    site_warnings.write_site_warnings(new, warnings)
+    deck = site_deck.make_site_deck(choices, parts, find_deck_numbers(choices, soil_of(choices.model, parts), trial,
+                                                                      size))
+    disk.write_file(new / site_deck.NAME, deck)
+    draw(new / MAP, collect_map_layers(choices, found, layers, first and first.reached),
          f"{title}: {found.measures.volume:,.0f} m\u00b3")
     about = {**about_made(choices, new, folder, raster, layers), "derived": derived,
-             "body": found.measures._asdict(), "bodies": site_bodies.about(several), "balls": size.balls,
-             "trial": trial and trial._asdict(), "trial_of": first and first.about,
+             "body": found.measures._asdict(), "bodies": site_bodies.summarise_site_bodies(several),
+             "balls": size.balls, "trial": trial and trial._asdict(), "trial_of": first and first.about,
              "study": {"runs": size.runs, "seconds": size.seconds, "gigabytes": size.gigabytes,
                        "at_a_time": machine.jobs}}
-    disk.write(new / site_choices.NAME, site_choices.text(choices, about, folder.absolute()))
+    disk.write_file(new / site_choices.NAME, site_choices.make_site_file(choices, about, folder.absolute()))
     return Made(folder, about["files"])
 
 
@@ -180,7 +181,7 @@ def about_made(choices: Choices, new: Path, folder: Path, raster: Raster, layers
             "roads": list(layers.roads) if len(layers.roads) > 1 else []}
 
 
-def of_road(choices: OfMass, found: release.Body, layers: Layers, size: Size) -> List[Finding]:
+def check_site_road(choices: OfMass, found: release.Body, layers: Layers, size: Size) -> List[Finding]:
     """That a road, or a part of it, lies on the body, or that the slip surface comes out under it."""
     raster, said = found.raster, []
     for name, road in layers.roads.items():
@@ -204,7 +205,7 @@ def wanted_body(choices: OfMass, new: Path) -> release.Wanted:
     site_choices.check_assigned(choices)
     crs, scar_crs, foundation_crs = (isinstance(path, str) and site_choices.assigned(choices, path) or None
                                      for path in (one.polygon, one.scar, one.foundation))
-    return release.check(release.Wanted(
+    return release.check_wanted_release(release.Wanted(
         str(new / TERRAIN), one.polygon, one.shape, one.depth, one.volume, one.curvature, one.dip, one.direction,
         one.scar, one.scar_is, one.least, crs, scar_crs, one.foundation, foundation_crs,
         advice=advice(choices, where)))
@@ -217,8 +218,8 @@ def terrain(choices: Choices, new: Path, tell, warn) -> Tuple[Raster, Dict[str, 
     nodata = given.nodata if isinstance(given.nodata, tuple) else () if given.nodata is None else (given.nodata,)
     wanted = local_terrain.Wanted(given.crs, None, given.cell, given.bounds, given.fill, given.assign_crs, own,
                                   given.z_unit, nodata, pits=False, differ=given.differ)
-    about = local_terrain.make(given.files, new / TERRAIN, wanted, tell, warn)
-    tell(local_terrain.summary(TERRAIN, about))
+    about = local_terrain.make_local_terrain(given.files, new / TERRAIN, wanted, tell, warn)
+    tell(local_terrain.describe_terrain(TERRAIN, about))
     return rasters.read_asc_local(new / TERRAIN), about
 
 
@@ -242,7 +243,7 @@ def write_body(new: Path, wanted: release.Wanted, found: release.Body):
     release_files.write_body(name, wanted._replace(terrain=TERRAIN), found)
     name.with_name(BODY_DECK).unlink()
     if found.geometry is not None:
-        polygons.write(new / f"{BODY}.csv", found.geometry, found.raster)
+        polygons.write_polygon(new / f"{BODY}.csv", found.geometry, found.raster)
     return release_files.deck_body(name, wanted.terrain, found.raster, found.area, found.slip)
 
 
@@ -259,8 +260,8 @@ def soil_of(model: MassModel, parts: site_deck.Parts) -> site_budget.Soil:
     return site_budget.Soil(model.density, parts.body.thick, model.speed or site_budget.SLOW, spacing)
 
 
-def numbers(choices: OfMass, soil: site_budget.Soil, trial: Optional[Trial], size: Optional[Size],
-            diameter: Optional[float] = None):
+def find_deck_numbers(choices: OfMass, soil: site_budget.Soil, trial: Optional[Trial], size: Optional[Size],
+                      diameter: Optional[float] = None):
     """What the choices leave open, for the deck."""
     model = choices.model
     d = diameter or (size.diameter if size else 0.0)
@@ -293,7 +294,7 @@ def tried(choices: OfMass, known: Derived, parts: site_deck.Parts, found: releas
     fixed = all((choices.model.speed, choices.model.duration, choices.model.film, choices.model.cell,
                  choices.balls.diameter))
     place = trial_folder(site_budget.trial_diameter(own.balls, parts.body.volume), own, parts, found, new)
-    about = site_trial.about(place, site_deck.NAME, machine.lmp, [least, middle])
+    about = site_trial.summarise_trial(place, site_deck.NAME, machine.lmp, [least, middle])
     before = site_trial.kept(folder, about, fixed)
     if before and (fixed or not own.balls.minutes):
         shutil.rmtree(place)
@@ -317,7 +318,8 @@ def trial_folder(d: float, choices: OfMass, parts: site_deck.Parts, found: relea
         if path.suffix in (".asc", ".stl", ".csv", ".txt"):
             os.symlink(f"../{path.name}", folder / path.name)
     soil = soil_of(coarse.model, parts)
-    disk.write(folder / site_deck.NAME, site_deck.text(coarse, parts, numbers(coarse, soil, None, None, d)))
+    disk.write_file(folder / site_deck.NAME, site_deck.make_site_deck(coarse, parts,
+                                                                      find_deck_numbers(coarse, soil, None, None, d)))
     return folder
 
 
@@ -331,7 +333,7 @@ def tried_with(folder: Path, rolling: float, choices: OfMass, found: release.Bod
         if choices.motion.file and choices.motion.peak_friction is not None:
             site_warnings.require_standing(error, choices.motion.peak_friction, found.measures.mean_slope)
         raise
-    reached = rasters.read(next(iter(folder.glob("*.max_thickness.asc"))), heights=False)
+    reached = rasters.read_raster(next(iter(folder.glob("*.max_thickness.asc"))), heights=False)
     shutil.rmtree(folder)
     tell(f"{what}, {trial_text(trial)}; took {trial.seconds:.1f} s")
     return trial, reached
@@ -372,7 +374,7 @@ def say_size(choices: OfMass, size: Size, found: release.Body, machine: Machine,
 
 # --- map ---
 
-def shown(choices: OfMass, found: release.Body, layers: Layers, reached: Optional[Raster]) -> Shown:
+def collect_map_layers(choices: OfMass, found: release.Body, layers: Layers, reached: Optional[Raster]) -> Shown:
     """What the map shows; reached: the largest thickness of the trial run."""
     return Shown(found.raster, found.depth, found.geometry, layers.road, layers.observed, layers.structures,
                  layers.lines, reached, layers.zones, {"set": choices.known.set, "confined": choices.known.confined})

@@ -26,13 +26,13 @@ def slip_name(name: str, rank: object) -> str:
     return f"{name}.{rank}.slip.asc"
 
 
-def planned(choices: Choices, name: str) -> Set[str]:
-    """Names of the files that write() makes."""
+def list_body_files(choices: Choices, name: str) -> Set[str]:
+    """Names of the files that write_site_bodies() makes."""
     slips = {slip_name(name, rank_of(Path(path))) for path in choices.files("release", "bodies")}
     return slips | {str(Path(one).with_suffix(".yaml")) for one in slips}
 
 
-def write(choices: OfMass, folder: Path, name: str, wanted: release.Wanted, warn) -> Dict[int, Known]:
+def write_site_bodies(choices: OfMass, folder: Path, name: str, wanted: release.Wanted, warn) -> Dict[int, Known]:
     """The ground without each of the bodies, in a folder; {rank: what is known of it}."""
     found = {}
     for path in choices.release.bodies:
@@ -49,7 +49,7 @@ def write(choices: OfMass, folder: Path, name: str, wanted: release.Wanted, warn
     return found
 
 
-def around(body: release_deck.Body, name: str, several: Dict[int, Known]) -> release_deck.Body:
+def widen_body(body: release_deck.Body, name: str, several: Dict[int, Known]) -> release_deck.Body:
     """What the deck needs to know: of the site's body, with room for all others."""
     if not several:
         return body
@@ -60,7 +60,7 @@ def around(body: release_deck.Body, name: str, several: Dict[int, Known]) -> rel
                          box=(low[0], high[1], low[2], high[3], low[4], high[5]))
 
 
-def about(several: Dict[int, Known]) -> Dict[int, Dict[str, Any]]:
+def summarise_site_bodies(several: Dict[int, Known]) -> Dict[int, Dict[str, Any]]:
     """What site.yaml says of them."""
     return {rank: {"volume_m3": one.deck.volume, "mean_depth_m": one.mean_depth, "base_sha256": one.base_sha256}
             for rank, one in several.items()}

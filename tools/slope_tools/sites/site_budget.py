@@ -15,7 +15,7 @@ from typing import Callable, List, Mapping, NamedTuple, Optional, Sequence, Tupl
 
 from .. import processes
 from ..case import last_words, logs, run_folders
-from ..case.settings import as_number
+from ..case.settings import normalise_value
 from ..digits import rounded
 from ..errors import SlopeError
 from ..releases import packing
@@ -125,7 +125,7 @@ def time_step(d: float, soil: Soil) -> float:
 
 def in_steps(rest: float, spacing: Optional[str]) -> float:
     """The time (s) of a collapse, longer where it has more steps; spacing: of the ground's balls, a deck's variable."""
-    close = as_number(spacing or "")
+    close = normalise_value(spacing or "")
     return rest * (STEP if isinstance(close, float) and close < CLOSE else 1.0)
 
 
@@ -140,10 +140,10 @@ def trial_diameter(balls: Balls, volume: float) -> float:
     number: float = TRIAL
     if balls.diameter:
         number_of(balls, volume, balls.diameter)
-        number = min(number, packing.number(volume, balls.diameter))
+        number = min(number, packing.count_balls(volume, balls.diameter))
     elif balls.number:
         number = min(number, balls.number)
-    return three_digits(packing.diameter(volume, max(number, 1)))
+    return three_digits(packing.compute_diameter(volume, max(number, 1)))
 
 
 def other_diameter(balls: Balls, trial: Trial) -> Optional[float]:
@@ -224,7 +224,7 @@ class Plan(NamedTuple):
         return self.paper + self.elastic + self.points
 
 
-def plan(choices: OfMass) -> Plan:
+def plan_budget(choices: OfMass) -> Plan:
     """Of the sweep, and of the ensemble that is weighted by known events."""
     study, points, grounds = choices.study, choices.study.points, choices.other_grounds
     each = 1 + len(study.packing)
@@ -282,7 +282,7 @@ def time_of(d: float, volume: float, trial: Trial, soil: Soil, wanted: Plan, job
     whole = 60 * (minutes or MINUTES) - study_seconds(d, volume, trial, soil, wanted, jobs, ())[0]
 
     def one(k: int, rest: float) -> float:
-        return trial.run_of(d / 2 ** k, packing.number(volume, d / 2 ** k), soil, rest) + COLLECT * jobs
+        return trial.run_of(d / 2 ** k, packing.count_balls(volume, d / 2 ** k), soil, rest) + COLLECT * jobs
 
     return Time(one, LONGER * trial.typical, whole * jobs)
 
@@ -305,7 +305,7 @@ def study_seconds(d: float, volume: float, trial: Trial, soil: Soil, wanted: Pla
     numbers: of points with each of the finer balls.
     """
     def run(size: float, longer: float = 1.0) -> float:
-        return trial.run(size, packing.number(volume, size), soil, longer)
+        return trial.run(size, packing.count_balls(volume, size), soil, longer)
 
     total = (wanted.paper + wanted.elastic) * run(d)
     total += sum(number * run(d / 2 ** k, LONGER) for k, number in enumerate(numbers, 1))
@@ -318,12 +318,12 @@ def study_seconds(d: float, volume: float, trial: Trial, soil: Soil, wanted: Pla
 
 def gigabytes(d: float, volume: float, cells: int, jobs: int, sizes: int) -> float:
     """The memory of all runs that are active at a time, with the finest balls; sizes: of balls."""
-    return jobs * (PER_RUN + PER_CELL * cells + PER_BALL * packing.number(volume, d / 2 ** (sizes - 1)))
+    return jobs * (PER_RUN + PER_CELL * cells + PER_BALL * packing.count_balls(volume, d / 2 ** (sizes - 1)))
 
 
-def fit(budget: float, cost: Callable[[float], float], volume: float, option: str, unit: str) -> float:
+def fit_budget(budget: float, cost: Callable[[float], float], volume: float, option: str, unit: str) -> float:
     """The smallest diameter (m) whose cost(d), which falls with d, is within a budget; SlopeError if none is."""
-    low, high = packing.diameter(volume, MOST), packing.diameter(volume, FEWEST)
+    low, high = packing.compute_diameter(volume, MOST), packing.compute_diameter(volume, FEWEST)
     if cost(high) > budget:
         raise SlopeError(option, f"must be at least {cost(high):.3g} {unit}, which a study with {FEWEST} balls takes",
                          f"{budget:g}")
@@ -351,16 +351,16 @@ def size(choices: OfMass, volume: float, depth: float, soil: Soil, trial: Option
 
     volume: of the body, m3; depth: its mean thickness, m; cells: of the terrain.
     """
-    balls, wanted, levels = choices.balls, plan(choices), choices.study.levels
+    balls, wanted, levels = choices.balls, plan_budget(choices), choices.study.levels
     if balls.diameter:
         d = balls.diameter
     elif balls.number:
-        d = three_digits(packing.diameter(volume, balls.number))
+        d = three_digits(packing.compute_diameter(volume, balls.number))
     elif balls.memory:
-        d = up(fit(balls.memory, lambda one: gigabytes(one, volume, cells, jobs, levels or SIZES), volume, "--memory",
-                   "GB"))
+        d = up(fit_budget(balls.memory, lambda one: gigabytes(one, volume, cells, jobs, levels or SIZES), volume,
+                          "--memory", "GB"))
     else:
-        least, most = (packing.diameter(volume, number) for number in (MANY, DEFAULT))
+        least, most = (packing.compute_diameter(volume, number) for number in (MANY, DEFAULT))
         d = three_digits(min(most, max(least, depth / THIN)))
     time = time_of(d, volume, trial, soil, wanted, jobs, balls.minutes) if trial else None
     numbers = finer(wanted.paper + wanted.points, time, balls.minutes, levels)
@@ -378,7 +378,7 @@ def finer_text(numbers: Sequence[int]) -> str:
 
 def number_of(balls: Balls, volume: float, d: float) -> int:
     """The balls of diameter d (m) that a body (m3) is made of; SlopeError if they are too large or too many."""
-    number = round(packing.number(volume, d))
+    number = round(packing.count_balls(volume, d))
     if not 1 <= number <= MOST:
         raise SlopeError("--diameter" if balls.diameter else "--balls", f"must make 1 to {MOST:,} balls "
                          f"of a body of {rounded(volume)} m3: {'smaller' if number < 1 else 'larger'} ones",

@@ -68,12 +68,12 @@ def of_now(given: Any) -> Any:
     found = {name: {key: value for key, value in entries.items() if key not in gone.get(name, ())}
              if isinstance(entries, dict) else entries for name, entries in given.items()}
     model = found["model"] if isinstance(found.get("model"), dict) else {}
-    if "model" in was and disk.is_number(model.get("spacing")):
+    if "model" in was and disk.is_finite_number(model.get("spacing")):
         model["spacing"] = min(model["spacing"], widest())
     if "study" in was:
         moved = sum(len(several) for several in was["study"].values() if isinstance(several, list))
         found["study"][PACKING] = list(range(2, 2 + moved))
-        if disk.is_number(model.get("density")):
+        if disk.is_finite_number(model.get("density")):
             model["density"] = round(model["density"] * math.pi / 6 * packing.BULK, 1)
     return found
 
@@ -90,7 +90,7 @@ def not_varied(choices: OfMass, varied: Collection[str]) -> Dict[str, str]:
     return {} if "rolling" in varied else {"rolling": f"{choices.study.rolling[0]:.10g}"}
 
 
-def check(given: Any, where: str, options: Optional[Mapping[Tuple[str, str], str]] = None) -> None:
+def check_site_file(given: Any, where: str, options: Optional[Mapping[Tuple[str, str], str]] = None) -> None:
     """Raise SlopeError, which names the key, unless it is a site.yaml of this version.
 
     options: what to name instead of a section and key, such as an option that gave it.
@@ -148,7 +148,7 @@ class Folder(Generic[K]):
             path, member = zips.split(os.path.normpath(vectors.source(place).path))
             if os.path.isfile(path):
                 own = os.path.normpath(vectors.source(name).path)
-                digests[own.removesuffix(f"/{member}")] = file_parts.content(path)
+                digests[own.removesuffix(f"/{member}")] = file_parts.digest_content(path)
         return digests
 
 
@@ -160,7 +160,7 @@ def unread(choices: C, folder: Path) -> Folder[C]:
     return Folder(folder, choices, with_files(choices, lambda name: in_folder(name, folder)), Found(), {})
 
 
-def load(folder: Path) -> Site:
+def load_site(folder: Path) -> Site:
     """The Site of a mass in a folder; SlopeError unless its site.yaml is one of this version."""
     return load_kind(folder, OfMass)
 
@@ -174,16 +174,16 @@ def load_kind(folder: Path, kind: Type[C]) -> Folder[C]:
     if kind_of(content) != kind.KIND:
         raise SlopeError(folder, f"must be a site of {kind.KIND or 'a mass'} here",
                          f"one of {kind_of(content) or 'a mass'}")
-    check(of_now(content), str(path))
-    schemas.check(content, site_found.SCHEMA, path, WHAT)
+    check_site_file(of_now(content), str(path))
+    schemas.check_schema(content, site_found.SCHEMA, path, WHAT)
     written, place = kind.of(content), real(folder)
     return Folder(folder, with_files(written, lambda name: os.path.normpath(place / name)), written,
                   Found.of(content), content)
 
 
-def around(deck: Path) -> Optional[Site]:
+def find_site_of_deck(deck: Path) -> Optional[Site]:
     """The Site in whose folder a deck lies; None of any other deck."""
-    return load(deck.parent) if (deck.parent / NAME).is_file() else None
+    return load_site(deck.parent) if (deck.parent / NAME).is_file() else None
 
 
 def kind_in(folder: Path) -> Type[Choices]:
@@ -196,7 +196,7 @@ def kind_in(folder: Path) -> Type[Choices]:
 
 def found(folder: Path) -> Found:
     """What slope site found when it made a folder."""
-    return Found.of(schemas.load(folder / NAME, WHAT, site_found.SCHEMA))
+    return Found.of(schemas.load_checked(folder / NAME, WHAT, site_found.SCHEMA))
 
 
 def real(folder: Path) -> Path:
@@ -227,7 +227,7 @@ def with_files(choices: C, change: Callable[[str], str]) -> C:
     """The choices with all names of files changed by a function."""
     new: Dict[Key, Any] = {}
     for section, key in FILES:
-        if (value := choices.value(section, key)) and not disk.is_number(value):
+        if (value := choices.value(section, key)) and not disk.is_finite_number(value):
             new[section, key] = change(value) if isinstance(value, str) else [change(one) for one in value]
     return choices.changed(new)
 
@@ -276,7 +276,7 @@ def check_assigned(choices: Choices) -> None:
         as_crs(f"--assign-crs {key}", crs)
 
 
-def text(choices: Choices, found_: Mapping[str, Any], folder: Path) -> str:
+def make_site_file(choices: Choices, found_: Mapping[str, Any], folder: Path) -> str:
     """site.yaml for a folder: the choices, each with its meaning, and what was found; checked before it is given."""
     seen, kind = with_files(choices, lambda name: in_folder(name, folder)), choices.KIND
     about = schema(kind)
@@ -288,14 +288,14 @@ def text(choices: Choices, found_: Mapping[str, Any], folder: Path) -> str:
             comment = f"    # {entry['description']}" if "description" in entry else ""
             lines.append(f"  {key}: {flow(seen.value(name, key))}{comment}")
     lines += ["", f"found:    # {about['properties']['found']['description']}"]
-    lines += [f"  {line}" for line in yaml.safe_dump(disk.plain(found_), sort_keys=False, allow_unicode=True,
+    lines += [f"  {line}" for line in yaml.safe_dump(disk.make_plain(found_), sort_keys=False, allow_unicode=True,
                                                      width=1000).splitlines()]
     whole = "\n".join(lines) + "\n"
-    check(written_yaml.load(whole), NAME)
+    check_site_file(written_yaml.load_yaml(whole), NAME)
     return whole
 
 
 def flow(value: object) -> str:
     """A value as YAML on one line."""
-    line: str = yaml.safe_dump(disk.plain(value), default_flow_style=True, allow_unicode=True, width=10 ** 9)
+    line: str = yaml.safe_dump(disk.make_plain(value), default_flow_style=True, allow_unicode=True, width=10 ** 9)
     return line.strip().removesuffix("...").strip()

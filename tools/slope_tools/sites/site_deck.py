@@ -13,7 +13,7 @@ from ..slips.bodies import rank_of
 from . import site_budget
 from .site_inputs import Line, Motion, Structure
 from .site_sections import Model, OfMass, widest
-from .site_zones import LIMITS, VALUES, Zone, whole
+from .site_zones import LIMITS, VALUES, Zone, find_site_value
 
 NAME = "in.site"
 TEMPLATE = "in.site.j2"
@@ -54,9 +54,9 @@ class Numbers(NamedTuple):
     run_seconds: Optional[float] = None
 
 
-def text(choices: OfMass, parts: Parts, numbers: Numbers) -> str:
+def make_site_deck(choices: OfMass, parts: Parts, numbers: Numbers) -> str:
     """The deck."""
-    return filled(Path(__file__).with_name(TEMPLATE), values(choices, parts, numbers))
+    return filled(Path(__file__).with_name(TEMPLATE), fill_deck_values(choices, parts, numbers))
 
 
 @functools.lru_cache
@@ -71,22 +71,23 @@ def filled(template: Path, parameters: Mapping[str, Any]) -> str:
     return aligned(templates(template.parent).get_template(template.name).render(parameters))
 
 
-def values(choices: OfMass, parts: Parts, numbers: Numbers) -> Dict[str, Any]:
+def fill_deck_values(choices: OfMass, parts: Parts, numbers: Numbers) -> Dict[str, Any]:
     """What the template is filled in with."""
     model, motion, body = choices.model, choices.motion, parts.body
-    balls = packing.number(body.volume, numbers.diameter)
+    balls = packing.count_balls(body.volume, numbers.diameter)
     parameters: Dict[str, Any] = {
         "title": parts.title, "terrain": parts.terrain, "deck": NAME, "volume": f"{body.volume:,.0f}",
         "balls": f"about {balls:,.0f}", "rest_s": "some" if numbers.rest is None else f"{numbers.rest:.0f}",
         "run_time": run_time(numbers.run_seconds), "lower": math.ceil(body.lower),
-        "box": " ".join(plain(value) for value in body.box), "types": types_before(parts) + len(parts.zones),
-        "zones": zone_values(parts.zones, types_before(parts), model),
+        "box": " ".join(format_deck_number(value) for value in body.box), "types": types_before(parts) +
+        len(parts.zones), "zones": zone_values(parts.zones, types_before(parts), model),
         "bins": bins(parts.room, body.volume),
         "slip_file": body.slip, "body": choices.release.bodies and rank_of(Path(choices.release.scar or "")),
-        "structures": [{"name": one.name, "file": one.file, "point": words(one.point),
-                        "move": f" move {words(one.move)}" if any(one.move) else ""} for one in parts.structures],
+        "structures": [{"name": one.name, "file": one.file, "point": join_deck_numbers(one.point),
+                        "move": f" move {join_deck_numbers(one.move)}" if any(one.move) else ""} for one
+                       in parts.structures],
         "lines": parts.lines, "motion": parts.motion.file if parts.motion else "", }
-    parameters.update({name: plain(value) for name, value in (
+    parameters.update({name: format_deck_number(value) for name, value in (
         ("d", numbers.diameter), ("spacing", model.spacing), ("widest", widest()),
         ("rolling", ROLLING), ("friction", model.friction), ("slip", model.slip_friction),
         ("restitution", model.restitution), ("field_e", model.field_restitution), ("density", model.density),
@@ -118,14 +119,14 @@ def zone_values(zones: Sequence[Zone], before: int, model: Model) -> List[Dict[s
         for name, value in zone.values.items():
             variable = VALUES[name]
             mine = f"{variable}_{zone.word}"
-            own.append({"name": mine, "value": plain(value), "what": OF_ZONE[name]})
+            own.append({"name": mine, "value": format_deck_number(value), "what": OF_ZONE[name]})
             used[variable] = f"${{{mine}}}"
-            of = whole(name, model)
+            of = find_site_value(name, model)
             if not of:
                 continue
-            low, high = map(plain, LIMITS[name])
+            low, high = map(format_deck_number, LIMITS[name])
             own_ = f"v_{mine}"
-            now += [{"name": f"x_{mine}", "formula": f"{own_}*(v_{variable}/{plain(of)})"},
+            now += [{"name": f"x_{mine}", "formula": f"{own_}*(v_{variable}/{format_deck_number(of)})"},
                     {"name": f"low_{mine}", "formula": f"({own_}<{low})*{own_}+({own_}>={low})*{low}"},
                     {"name": f"high_{mine}", "formula": f"({own_}>{high})*{own_}+({own_}<={high})*{high}"},
                     {"name": f"now_{mine}", "formula": limited(f"v_x_{mine}", f"v_low_{mine}", f"v_high_{mine}")}]
@@ -145,13 +146,13 @@ def bins(room: float, volume: float) -> str:
     return f"{min(side, WIDEST):.3g}" if side > LEAST else ""
 
 
-def plain(value: float) -> str:
+def format_deck_number(value: float) -> str:
     """A number as a word of a deck."""
     return f"{value:.10g}"
 
 
-def words(numbers: Sequence[float]) -> str:
-    return " ".join(plain(value) for value in numbers)
+def join_deck_numbers(numbers: Sequence[float]) -> str:
+    return " ".join(format_deck_number(value) for value in numbers)
 
 
 def frame(rest: float) -> float:

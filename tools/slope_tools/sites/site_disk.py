@@ -28,9 +28,9 @@ def study(folder: Path, choices: OfMass, found: Found, numbers: Sequence[int]) -
 
     numbers: of points with each of the finer balls.
     """
-    d, body, plan = choices.balls.diameter, found.body, site_budget.plan(choices)
+    d, body, plan = choices.balls.diameter, found.body, site_budget.plan_budget(choices)
     assert d and body and choices.model.duration and choices.model.film and choices.model.cell
-    of_site = packing.number(body.volume, d)
+    of_site = packing.count_balls(body.volume, d)
     inputs = sum(path.stat().st_size for path in folder.iterdir() if path.is_file() and not OUTPUTS.search(path.name))
     rest = found.trial and found.trial.rest or choices.model.duration / site_budget.PATIENCE
     frames = 1 + rest / choices.model.film
@@ -46,7 +46,7 @@ def study(folder: Path, choices: OfMass, found: Found, numbers: Sequence[int]) -
 def reached(folder: Path) -> float:
     """Area (m2) of the rectangle that a run's rasters cover."""
     try:
-        raster = rasters.read(folder / site_trial.REACHED, heights=False)
+        raster = rasters.read_raster(folder / site_trial.REACHED, heights=False)
     except SlopeError:
         return 0.0
     rows, columns = np.nonzero(np.nan_to_num(raster.z) > 0)
@@ -55,6 +55,6 @@ def reached(folder: Path) -> float:
     return ROOM * float(np.ptp(rows) + 1) * float(np.ptp(columns) + 1) * raster.transform.a ** 2
 
 
-def text(size: float) -> str:
+def format_disk_size(size: float) -> str:
     """In words."""
     return f"{three(size / 1e9)} GB" if size >= 1e9 else f"{three(size / 1e6)} MB"

@@ -9,7 +9,7 @@ from ..survey import vectors
 from ..survey.rasters import is_raster
 from . import site_bodies, site_choices, site_deck, site_inputs, site_trial, site_warnings, site_zones
 from .site_layers import OBSERVED
-from .site_roads import ROAD, file_name, listed, named
+from .site_roads import ROAD, file_name, list_road_files, name_road
 from .site_sections import Choices
 
 MAP = "map.png"
@@ -18,17 +18,17 @@ BODY = "release"        # first part of the names of the body's files
 BODY_DECK = f"{BODY}.deck.txt"      # is not kept: its lines are in the deck
 
 
-def planned(choices: Choices) -> Set[str]:
+def list_site_files(choices: Choices) -> Set[str]:
     """Names of the files that will be made, with a trial run."""
     names = {MAP, TERRAIN, Path(TERRAIN).with_suffix(".yaml").name, f"{BODY}.csv", site_deck.NAME, site_choices.NAME,
              site_warnings.NAME, site_trial.REACHED,
              *(path.name for path in release_files.paths(Path(BODY)))} - {BODY_DECK}
-    names |= site_bodies.planned(choices, BODY)
+    names |= site_bodies.list_body_files(choices, BODY)
     for observed in choices.files("observed", "file"):
         names.add(OBSERVED + (".tif" if is_raster(observed) else ".csv"))
-    if several := listed(choices):
+    if several := list_road_files(choices):
         taken_: Set[str] = set()
-        names |= {ROAD, *(file_name(named(site_inputs.stem(file), taken_)) for file in several
+        names |= {ROAD, *(file_name(name_road(site_inputs.stem(file), taken_)) for file in several
                           if len(several) > 1)}
     if choices.files("motion", "file"):
         names.add(site_inputs.MOTION)
@@ -57,12 +57,12 @@ def keep_choices(choices: Choices, folder: Path, error: SlopeError) -> None:
     """Write the choices of a site that could not be made into its folder, to be changed."""
     folder.mkdir(exist_ok=True)
     about = {"failed": str(error), "files": [site_choices.NAME]}
-    disk.write(folder / site_choices.NAME, site_choices.text(choices, about, folder.absolute()))
+    disk.write_file(folder / site_choices.NAME, site_choices.make_site_file(choices, about, folder.absolute()))
 
 
-def check(choices: Choices, folder: Path, old: Set[str]) -> None:
+def check_site_folder(choices: Choices, folder: Path, old: Set[str]) -> None:
     """Raise SlopeError if rebuilding a folder would replace a file of the user's; old: names that slope site made."""
-    names = planned(choices)
+    names = list_site_files(choices)
     for source in (Path(vectors.source(name).path) for name in site_choices.source_files(choices)):
         if source.name in names | old and source.parent.resolve() == folder.resolve():
             raise SlopeError(source, f"must not have the name of a file that slope site makes in {folder}: rename it, "

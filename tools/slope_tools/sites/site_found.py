@@ -2,18 +2,18 @@
 from dataclasses import dataclass, field, fields
 from typing import Any, Dict, Mapping, Optional, Tuple
 
-from ..schemas import NUMBER, TEXT, listed, mapping, named
+from ..schemas import NUMBER, TEXT, list_of, mapping, dict_of
 from .site_budget import Trial
 from .site_sections import Numbers, Texts, frozen
 
 PART = mapping({}, null=True)
-BODIES = {**named(mapping({"volume_m3": NUMBER})), "type": ["object", "null"]}
-ZONES = listed(mapping({"name": TEXT, "variables": TEXT}, share=NUMBER), null=True)
+BODIES = {**dict_of(mapping({"volume_m3": NUMBER})), "type": ["object", "null"]}
+ZONES = list_of(mapping({"name": TEXT, "variables": TEXT}, share=NUMBER), null=True)
 SCHEMA = mapping({}, found=mapping(
     {}, null=True, **dict.fromkeys(("derived", "sources_sha256", "trial", "trial_of"), PART),
-    files=listed(TEXT, null=True), roads=listed(TEXT, null=True), bodies=BODIES, zones=ZONES,
+    files=list_of(TEXT, null=True), roads=list_of(TEXT, null=True), bodies=BODIES, zones=ZONES,
     body=mapping({}, null=True, volume=NUMBER), origin=mapping({}, null=True, east=NUMBER, north=NUMBER),
-    blocks=mapping({}, null=True, down=listed(NUMBER))))
+    blocks=mapping({}, null=True, down=list_of(NUMBER))))
 
 
 @dataclass(frozen=True)

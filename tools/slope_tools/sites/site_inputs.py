@@ -112,9 +112,9 @@ def structure(path: str, raster: Raster, folder: Path, taken: Set[str]) -> Struc
             break
     else:
         raise SlopeError(path, "must lie within the terrain, in m, x east and y north: local "
-                         f"{polygons.numbers((xlo, ylo, xhi, yhi))}, or that plus {polygons.numbers(raster.offset)} in "
-                         f"{crs_name(raster.crs)}",
-                         polygons.numbers((*low[:2], *high[:2])))
+                         f"{polygons.format_numbers((xlo, ylo, xhi, yhi))}, or that plus "
+                         f"{polygons.format_numbers(raster.offset)} in " f"{crs_name(raster.crs)}",
+                         polygons.format_numbers((*low[:2], *high[:2])))
     bottom, top = np.nanmin(raster.z), np.nanmax(raster.z)
     if not (a[2] <= top and b[2] >= bottom):
         raise SlopeError(path, f"must have heights (m) of the terrain, {bottom:.6g} to {top:.6g}",
@@ -143,7 +143,7 @@ def walls(drawn: Iterable["Drawn"], raster: Raster, height: Optional[float], wid
         line = one_line(lines.read_local(path, raster, False, advice=advice, crs=crs, warn=warn), path)
         wall = np.round(site_walls.triangles(path, line, raster, height, width or site_walls.WIDTH), 4)
         name = unused(stem(path), taken)
-        disk.write(folder / f"{name}.stl", site_walls.stl(name, wall))
+        disk.write_file(folder / f"{name}.stl", site_walls.stl(name, wall))
         found.append(placed(name, wall, height))
     return found
 
@@ -172,8 +172,9 @@ def control_lines(files: Iterable[Drawn], raster: Raster, folder: Path, taken: S
         points = np.round(np.asarray(line.coords)[:, :2], 4) + 0.0
         xlo, ylo, xhi, yhi = extent(raster)
         if not ((points >= (xlo, ylo)) & (points <= (xhi, yhi))).all():
-            raise SlopeError(path, f"must lie within the terrain, local x y {polygons.numbers((xlo, ylo, xhi, yhi))}",
-                             polygons.numbers((*points.min(axis=0), *points.max(axis=0))))
+            raise SlopeError(path, "must lie within the terrain, local x y "
+                             f"{polygons.format_numbers((xlo, ylo, xhi, yhi))}",
+                             polygons.format_numbers((*points.min(axis=0), *points.max(axis=0))))
         name = unused(stem(path), taken)
         rows = "".join(f"{x:.10g},{y:.10g}\n" for x, y in points.tolist())
         head = "# control line, local x,y in m; forward is from its left to its right\n"
@@ -186,7 +187,7 @@ def control_lines(files: Iterable[Drawn], raster: Raster, folder: Path, taken: S
 
 def motion(path: str, folder: Path) -> Motion:
     """Copy the motion of the ground, lines "t ax ay az" in s and m/s2, into a folder."""
-    values = motion_file.read(path)
+    values = motion_file.read_motion(path)
     copy(path, folder / MOTION)
     return Motion(MOTION, float(values[-1, 0]), motion_file.peak(values))
 

@@ -61,7 +61,7 @@ def with_missing(choices: OfMass, check: Callable[[], T]) -> T:
         checked.append(check())
     except SlopeError as error:
         missing.append(error)
-    missing += [SlopeError(path, roads.WITHOUT_WIDTH) for path in site_roads.listed(choices)
+    missing += [SlopeError(path, roads.WITHOUT_WIDTH) for path in site_roads.list_road_files(choices)
                 if road.width is None and roads.is_line(path)]
     if along.walls and along.height is None:
         missing.append(SlopeError("--height", site_inputs.WITHOUT_HEIGHT))
@@ -84,9 +84,9 @@ def read_layers(choices: Choices, raster: Raster, folder: Path, tell, warn) -> L
     if mass:
         along = mass.structures
         structures = site_inputs.structures(along.files, raster, folder, taken)
-        structures += site_inputs.walls(drawn(choices, along.walls), raster, along.height, along.width, folder, taken,
-                                        warn)
-    lines = site_inputs.control_lines(drawn(choices, choices.lines.files), raster, folder, taken, warn)
+        structures += site_inputs.walls(read_drawn_lines(choices, along.walls), raster, along.height, along.width,
+                                        folder, taken, warn)
+    lines = site_inputs.control_lines(read_drawn_lines(choices, choices.lines.files), raster, folder, taken, warn)
     motion = site_inputs.motion(mass.motion.file, folder) if mass and mass.motion.file else None
     path = choices.ground.file
     zones = site_zones.of_choices(site_zones.Source(path, choices.ground.table, assigned(choices, path),
@@ -101,7 +101,7 @@ def read_layers(choices: Choices, raster: Raster, folder: Path, tell, warn) -> L
     return Layers(road, observed, structures, lines, motion, zones)
 
 
-def drawn(choices: Choices, files: Sequence[str]) -> List[site_inputs.Drawn]:
+def read_drawn_lines(choices: Choices, files: Sequence[str]) -> List[site_inputs.Drawn]:
     """Files with lines."""
     return [site_inputs.Drawn(path, assigned(choices, path), advice(choices, path)) for path in files]
 
@@ -166,23 +166,23 @@ def polygon_layer(choices: Choices, path: Optional[str], raster: Raster, target:
         return None
     geometry = polygons.read_local(path, raster, crs=assigned(choices, path), advice=advice(choices, path), warn=warn)
     warn_outside(path, geometry, raster, warn)
-    geometry = polygons.write(target, geometry, raster)
+    geometry = polygons.write_polygon(target, geometry, raster)
     tell(f"{target.name}: {len(polygons.polygons_of(geometry))} polygon, {geometry.area:,.0f} m2")
     return geometry
 
 
 def road_layers(choices: Choices, raster: Raster, folder: Path, tell, warn) -> Dict[str, BaseGeometry]:
     """The roads in local metres, written for the study; of several the first one also as that of the site."""
-    found = site_roads.read(choices, raster, lambda path: assigned(choices, path),
-                            lambda path: advice(choices, path), warn)
+    found = site_roads.read_site_roads(choices, raster, lambda path: assigned(choices, path),
+                                       lambda path: advice(choices, path), warn)
     written = {}
     for name, (path, road) in found.items():
         if road.line is None:
             warn_outside(path, road.polygon, raster, warn)
         target = folder / site_roads.file_name(name if len(found) > 1 else "")
-        written[name] = geometry = roads.write(target, road, raster)
+        written[name] = geometry = roads.write_road(target, road, raster)
         if len(written) == 1 and len(found) > 1:
-            roads.write(folder / site_roads.ROAD, road, raster)
+            roads.write_road(folder / site_roads.ROAD, road, raster)
         what = "polygon" if road.line is None else \
             f"line{'s' * (len(road.lines) > 1)} of {' and '.join(f'{line.length:,.0f}' for line in road.lines)} m, " \
             f"{choices.road.width:g} m wide"
@@ -204,7 +204,7 @@ def observed_layer(choices: OfMass, raster: Raster, folder: Path, tell, warn):
         return None
     if not rasters.is_raster(path):
         return polygon_layer(choices, path, raster, folder / f"{OBSERVED}.csv", tell, warn)
-    mapped = beside.read(path, raster, False, assigned(choices, path), warn=warn)
+    mapped = beside.read_raster_beside(path, raster, False, assigned(choices, path), warn=warn)
     if not same_crs(mapped.crs, raster.crs):
         raise SlopeError(path, f"must be in the CRS of the terrain, {crs_name(raster.crs)} (gdalwarp -t_srs "
                          "reprojects)", crs_name(mapped.crs))

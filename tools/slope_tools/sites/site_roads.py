@@ -48,7 +48,7 @@ def worst(site: Site, name: str) -> Site:
     return replace(site, road="")
 
 
-def named(name: str, taken: Set[str]) -> str:
+def name_road(name: str, taken: Set[str]) -> str:
     """The name of a road that no other has, for its files and pages; case does not count."""
     name = re.sub(r"[^\w.-]+", "_", name).strip("._-")[:LONGEST] or "road"
     found, k = name, 1
@@ -67,19 +67,19 @@ def home(study: Path) -> Optional[Path]:
     return found if found is None or study.is_absolute() else Path(os.path.relpath(found))
 
 
-def listed(choices: Choices) -> List[str]:
+def list_road_files(choices: Choices) -> List[str]:
     """The files of roads."""
     return choices.files("road", "file") + choices.files("road", "others")
 
 
-def read(choices: Choices, raster: Raster, crs, advice, warn) -> Dict[str, Tuple[str, roads.Road]]:
+def read_site_roads(choices: Choices, raster: Raster, crs, advice, warn) -> Dict[str, Tuple[str, roads.Road]]:
     """{name: (file, road in local metres)}; crs, advice: functions of a file, see site_layers."""
     taken: Set[str] = set()
     asked, found = choices.road.asked, {}
-    roads.check(asked)
-    for path in listed(choices):
+    roads.check_road(asked)
+    for path in list_road_files(choices):
         for name, road in roads.read_each(path, raster, asked, crs(path), advice(path), warn).items():
-            found[named(name, taken)] = path, road
+            found[name_road(name, taken)] = path, road
     if len(found) > 1 and choices.KIND:
         raise SlopeError("--road", ONE, ", ".join(found))
     for said in roads.meetings(found, raster):

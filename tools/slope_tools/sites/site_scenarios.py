@@ -20,7 +20,7 @@ FOLDER = "scenarios"        # in that of the site
 NAMES = re.compile(r"\w[\w.-]*")
 
 
-def place(site: Path, name: str) -> Path:
+def choose_scenario_folder(site: Path, name: str) -> Path:
     """The folder of a new scenario; SlopeError if the name is none, or is there, or the site is a scenario itself."""
     if not NAMES.fullmatch(name):
         raise SlopeError("--scenario", "must be a folder's name: letters, digits, _ - and ., of which the first is a "
@@ -40,7 +40,7 @@ def site_of(folder: Path) -> Optional[Path]:
     return above[1] if above[0].name == FOLDER and (above[1] / site_choices.NAME).is_file() else None
 
 
-def of_site(site: Path) -> List[Path]:
+def list_scenarios(site: Path) -> List[Path]:
     """The folders of its scenarios, those too that could not be made."""
     return sorted(path.parent for path in (site / FOLDER).glob(f"*/{site_choices.NAME}"))
 

@@ -220,7 +220,7 @@ class Choices:
         found: Dict[str, Any] = {"kind": self.KIND} if self.KIND else {}
         for name, about in sections(self.KIND):
             own = {key: self.value(name, key) for key in about["properties"]}
-            found[name] = disk.plain({**own, **self.older.get(name, {})})
+            found[name] = disk.make_plain({**own, **self.older.get(name, {})})
         return found
 
     def has(self, section: str, key: str) -> bool:
@@ -233,7 +233,7 @@ class Choices:
     def files(self, section: str, key: str) -> List[str]:
         """Those of a key that holds one file, several, or none."""
         value = self.value(section, key)
-        return [value] if isinstance(value, str) else [] if disk.is_number(value) else list(value or ())
+        return [value] if isinstance(value, str) else [] if disk.is_finite_number(value) else list(value or ())
 
     def changed(self: C, values: Mapping[Key, Any]) -> C:
         """The same with other values of these sections and keys."""

@@ -23,7 +23,7 @@ class Tried(NamedTuple):
     about: Mapping[str, Any]    # digest of deck, data and machine; the rolling resistances, which those do not hold
 
 
-def about(folder: Path, deck: str, lmp: Path, rolling: List[float]) -> Dict[str, Any]:
+def summarise_trial(folder: Path, deck: str, lmp: Path, rolling: List[float]) -> Dict[str, Any]:
     """Of a trial run whose files are in a folder."""
     named, _ = decks.named_files(folder / deck)     # a road or a mapped deposit is no matter
     parts = [repr(decks.without_comments(folder / deck)), disk.sha256(lmp), provenance.machine()["processor"]]
@@ -45,14 +45,14 @@ def kept(folder: Path, wanted: Dict[str, Any], settled: bool) -> Optional[Tried]
             found.trial is None:
         return None
     try:
-        raster = rasters.read(folder / REACHED, heights=False)
+        raster = rasters.read_raster(folder / REACHED, heights=False)
     except SlopeError:
         return None
     to_local = Affine.translation(-found.origin.east, -found.origin.north)
     return Tried(found.trial, raster._replace(transform=to_local * raster.transform, crs=None), had)
 
 
-def keep(folder: Path, tried: Tried, terrain: Raster) -> None:
+def write_trial(folder: Path, tried: Tried, terrain: Raster) -> None:
     """Write where the mass went into a site's folder, in the terrain's CRS."""
     rasters.write_geotiff(folder / REACHED, {"largest thickness of the trial run, m": tried.reached.z},
                           tried.reached._replace(crs=terrain.crs, offset=terrain.offset))

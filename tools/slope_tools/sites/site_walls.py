@@ -38,7 +38,7 @@ def triangles(path: str, line: LineString, raster: Raster, height: float, width:
     lowest, highest = ground(raster, left, right)
     if not (xlo <= low[0] and ylo <= low[1] and high[0] <= xhi and high[1] <= yhi and np.isfinite(highest).all()):
         raise SlopeError(path, "must lie within the terrain, where its height is known, local x y "
-                         f"{polygons.numbers((xlo, ylo, xhi, yhi))}", polygons.numbers((*low, *high)))
+                         f"{polygons.format_numbers((xlo, ylo, xhi, yhi))}", polygons.format_numbers((*low, *high)))
     foot = np.full(len(left), float(lowest.min()) - height)
     return strip(np.column_stack([left, foot]), np.column_stack([right, foot]),
                  np.column_stack([left, highest + height]), np.column_stack([right, highest + height]))

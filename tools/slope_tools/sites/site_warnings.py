@@ -12,7 +12,7 @@ from .. import disk
 from ..digits import at_most, three
 from ..errors import SlopeError
 from ..finding_words import words_of
-from ..findings import WARNING, Finding, entries, finding
+from ..findings import WARNING, Finding, encode_findings, finding
 from ..releases.release_solve import Measures
 from .site_budget import Size, Trial
 from .site_inputs import Structure
@@ -106,7 +106,8 @@ def of_thickness(mean: float, largest: float) -> List[Finding]:
     return []
 
 
-def of_road(road: Optional[BaseGeometry], width: Optional[float], d: float, cell: float, name="road") -> List[Finding]:
+def check_road_resolution(road: Optional[BaseGeometry], width: Optional[float], d: float, cell: float,
+                          name="road") -> List[Finding]:
     """Whether balls (d, m) and cells (m) are small enough for a road; width: of a line, m; name: of the road."""
     if road is None:
         return []
@@ -175,10 +176,11 @@ def heaviest(several: Sequence[Finding]) -> List[Finding]:
 def add(folder: Path, several: Sequence[Finding]) -> None:
     """More of them, to those in a site's folder."""
     path = folder / NAME
-    write(folder, [finding(one) for one in [*yaml.safe_load(path.read_text(encoding="utf-8")), *several]])
+    write_site_warnings(folder, [finding(one) for one in [*yaml.safe_load(path.read_text(encoding="utf-8")), *several]])
 
 
-def write(folder: Path, several: Sequence[Finding]) -> None:
+def write_site_warnings(folder: Path, several: Sequence[Finding]) -> None:
     """All warnings of a site into its folder: a YAML list, empty if there are none."""
     about = "# slope site: what makes this site doubtful\n"
-    disk.write(folder / NAME, about + yaml.safe_dump(entries(several), allow_unicode=True, sort_keys=False))
+    disk.write_file(folder / NAME, about + yaml.safe_dump(encode_findings(several), allow_unicode=True,
+                                                          sort_keys=False))

@@ -67,7 +67,7 @@ class Source(NamedTuple):
     advice: polygons.Advice
 
 
-def read(source: Source, raster: Raster, warn) -> List[Zone]:
+def read_site_zones(source: Source, raster: Raster, warn) -> List[Zone]:
     """The zones on a terrain. Where features overlap the later one counts.
 
     Raises SlopeError, which names file and feature, where attributes are missing, unknown or out of range.
@@ -99,7 +99,7 @@ def of_features(source: Source, raster: Raster, warn) -> Iterator[Zone]:
     """The features of a file of a GIS that lie on the terrain."""
     if polygons.read_text(source.path) is not None:
         raise SlopeError(source.path, f"must have attributes, {', '.join(VALUES)}: GeoJSON, shapefile, GeoPackage")
-    found = vectors.read(source.path, "Polygon", warn)
+    found = vectors.read_vector_layer(source.path, "Polygon", warn)
     crs = source.crs or found.known_crs(source.path, source.advice.wrong_crs)
     for (where, geometry), about in zip(found.features, found.attributes):
         given = meant(source.path, about)
@@ -110,7 +110,7 @@ def of_raster(source: Source, raster: Raster, warn) -> Iterator[Zone]:
     """The classes of a raster that have a line in the table, where they lie on the terrain."""
     assert source.table is not None
     rows = read_table(source.table)
-    found = beside.read(source.path, raster, False, source.crs, warn=warn)
+    found = beside.read_raster_beside(source.path, raster, False, source.crs, warn=warn)
     known = np.isfinite(found.z)
     wrong = found.z[known & (found.z != np.round(found.z))]
     if wrong.size:
@@ -141,7 +141,7 @@ def read_table(path: str) -> Dict[float, Dict[str, Any]]:
         raise SlopeError(path, f"must have the columns {CLASS} and {', '.join(VALUES)}", " ".join(heads) or "none")
     found: Dict[float, Dict[str, Any]] = {}
     for line, row in enumerate(rows, 2):
-        number = as_number(f"{path}: line {line}: {CLASS}", row.pop(CLASS))
+        number = convert_zone_number(f"{path}: line {line}: {CLASS}", row.pop(CLASS))
         if number is None or number in found:
             raise SlopeError(f"{path}: line {line}: {CLASS}", "must be a number that no other line has", number)
         found[number] = {NAME: f"{number:g}", **meant(path, row)}
@@ -162,7 +162,7 @@ def meant(path: str, about: Mapping[str, Any]) -> Dict[str, Any]:
     return given
 
 
-def as_number(where: str, value: Any) -> Optional[float]:
+def convert_zone_number(where: str, value: Any) -> Optional[float]:
     """A number, also in a text; None of nothing."""
     if value is None or not str(value).strip():
         return None
@@ -179,7 +179,7 @@ def on_terrain(where: str, geometry, crs, given: Mapping[str, Any], source: Sour
     """A feature as a zone, with its values checked; none where it lies beside the terrain."""
     values = {}
     for name in VALUES:
-        number = as_number(f"{where}: {name}", given.get(name))
+        number = convert_zone_number(f"{where}: {name}", given.get(name))
         if number is None:
             continue
         if wrong := schemas.first_error(number, range_of(name)):
@@ -232,18 +232,18 @@ def together(path: str, parts: List[Zone], warn) -> List[Zone]:
     return [zone if zone.name else zone._replace(name=f"zone {k}") for k, zone in enumerate(left_over, 1)]
 
 
-def write(zones: List[Zone], raster: Raster, folder: Path) -> None:
+def write_site_zones(zones: List[Zone], raster: Raster, folder: Path) -> None:
     """A file for each zone, for the deck, and one of all for a GIS."""
     for zone in zones:
-        polygons.write(folder / zone.file, zone.geometry, raster)
+        polygons.write_polygon(folder / zone.file, zone.geometry, raster)
     kinds = {"name": "str", "variables": "str", **dict.fromkeys((*VALUES, "area_m2", "share"), "float")}
     rows = [(MultiPolygon(polygons_of(zone.geometry)), {**dict.fromkeys(kinds), **zone.about(raster)})
             for zone in zones]
-    geopackage.write(folder / ALL, {"ground": geopackage.Layer("MultiPolygon", kinds, rows)}, raster)
+    geopackage.write_geopackage(folder / ALL, {"ground": geopackage.Layer("MultiPolygon", kinds, rows)}, raster)
 
 
 def outlines(folder: Path, zones: Sequence[Known], raster: Raster) -> Dict[str, BaseGeometry]:
-    """{name: polygon}, as write() left them in a site's folder."""
+    """{name: polygon}, as write_site_zones() left them in a site's folder."""
     files = {zone.name: folder / FILE.format(zone.variables) for zone in zones}
     return {name: polygons.read_local(path, raster, True) for name, path in files.items() if path.is_file()}
 
@@ -255,7 +255,7 @@ def with_rest(zones: Sequence[Known]) -> List[Known]:
 
 # --- what the values are in a run ---
 
-def whole(name: str, model: Model) -> float:
+def find_site_value(name: str, model: Model) -> float:
     """The site's value, with which that of a zone changes; 0: it does not, as a rolling resistance, which may be 0."""
     return {"friction": model.friction, "restitution": model.field_restitution, "spacing": model.spacing}.get(name, 0.0)
 
@@ -267,7 +267,7 @@ def now(zone: Known, model: Model, variables: Mapping[str, Any]) -> Dict[str, fl
         value = float(variables[variable])
         if name in zone.values:
             own = float(variables.get(f"{variable}_{zone.variables}", zone.values[name]))
-            of = whole(name, model)
+            of = find_site_value(name, model)
             low, high = LIMITS.get(name, (0.0, 0.0))
             value = min(max(own * (value / of), min(own, low)), max(own, high)) if of else own
         found[variable] = value
@@ -276,8 +276,8 @@ def now(zone: Known, model: Model, variables: Mapping[str, Any]) -> Dict[str, fl
 
 def of_choices(source: Source, raster: Raster, folder: Path, tell, warn) -> List[Zone]:
     """Read the zones of a site, say what they are, and write them into its folder."""
-    zones = read(source, raster, warn)
-    write(zones, raster, folder)
+    zones = read_site_zones(source, raster, warn)
+    write_site_zones(zones, raster, folder)
     for zone in zones:
         about = zone.about(raster)
         tell(f"{zone.file}: zone {zone.name}, {cents(about['share'], 3)} of the terrain, {about['area_m2']:,.0f} m2: "

@@ -47,7 +47,7 @@ class Grounds(NamedTuple):
 
 
 @lru_cache(maxsize=None)
-def measured() -> Grounds:
+def list_measured_grounds() -> Grounds:
     """The grounds of the table, with a sheet of three layers."""
     with open(TABLE, encoding="utf-8", newline="") as lines:
         rows = [row for row in csv.DictReader(lines) if float(row["layers"]) == LAYERS]
@@ -61,7 +61,7 @@ def ranges_of(pattern: str) -> Dict[str, Tuple[float, float]]:
 
     What else the other pattern was measured with counts too: the difference between the two changes little with it.
     """
-    places = measured().places
+    places = list_measured_grounds().places
     own = places[places[:, -1] == PATTERNS.index(pattern)]
     found = {}
     for k, (name, (_, scale)) in enumerate(AXES.items()):
@@ -73,7 +73,7 @@ def ranges_of(pattern: str) -> Dict[str, Tuple[float, float]]:
 @lru_cache(maxsize=None)
 def left_out() -> Tuple[float, ...]:
     """Each ground that is not the last one on an axis: interpolated from the others, less measured, degrees."""
-    every, errors = measured(), []
+    every, errors = list_measured_grounds(), []
     for k, (place, degrees) in enumerate(zip(*every)):
         rest = every.without(k)
         if (place >= rest.places.min(axis=0)).all() and (place <= rest.places.max(axis=0)).all():
@@ -97,4 +97,4 @@ def stop_angle(spacing: float, friction: float, rolling: float, restitution: flo
                         if not low - ROUNDING <= values[name] <= high + ROUNDING)
     error = float(np.sqrt(np.mean(np.square(left_out()))))
     place = np.array([*(values[name] / scale for name, (_, scale) in AXES.items()), PATTERNS.index(pattern)])
-    return StopAngle(None if outside else measured().at(place), error, ranges, outside)
+    return StopAngle(None if outside else list_measured_grounds().at(place), error, ranges, outside)

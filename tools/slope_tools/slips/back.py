@@ -56,7 +56,7 @@ def plane_of(points: np.ndarray) -> Tuple[np.ndarray, np.ndarray, float]:
     return middle, normal, float(np.sqrt(np.mean((off @ normal) ** 2)))
 
 
-def points_of(raster: Raster, bottom: np.ndarray, inside: np.ndarray) -> np.ndarray:
+def list_base_points(raster: Raster, bottom: np.ndarray, inside: np.ndarray) -> np.ndarray:
     """x, y, z of a base under the middle of each cell, (number, 3)."""
     return np.column_stack([*(one[inside] for one in centres(raster)), bottom[inside]])
 

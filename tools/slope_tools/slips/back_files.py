@@ -12,18 +12,18 @@ from .back import Line
 FILES = ["back.csv", "back.png", "back.yaml"]
 
 
-def write(folder: Path, line: Line, far: Optional[Line], about: Dict[str, Any]) -> None:
+def write_back_analysis(folder: Path, line: Line, far: Optional[Line], about: Dict[str, Any]) -> None:
     """back.csv, .png and .yaml, all of them or none; far: the line about a far axis."""
     with disk.complete(folder, FILES[-1]) as new:
         with open(new / FILES[0], "w", encoding="ascii", newline="") as out:
             rows = csv.writer(out, lineterminator="\n")
             rows.writerow(["friction_degrees", "cohesion_pa"])
             rows.writerows([f"{phi:.8g}", f"{c:.8g}"] for phi, c in zip(*line))
-        draw(new / FILES[1], line, far, about)
+        draw_back_analysis(new / FILES[1], line, far, about)
         disk.write_yaml(new / FILES[2], about, "slope stability --failed: F = 1 on the line; Pa, degrees, m")
 
 
-def draw(path: Path, line: Line, far: Optional[Line], about: Dict[str, Any]) -> None:
+def draw_back_analysis(path: Path, line: Line, far: Optional[Line], about: Dict[str, Any]) -> None:
     with pictures.settings(figures.STYLE):
         figure, axes = pictures.subplots(figsize=(figures.WIDE, 2.9))
         unit, name = unit_of(line)
@@ -45,7 +45,7 @@ def unit_of(line: Line) -> Tuple[float, str]:
     return (1e6, "MPa") if line.cohesion.max() >= 2e6 else (1e3, "kPa")
 
 
-def summary(line: Line, about: Dict[str, Any]) -> str:
+def describe_back_analysis(line: Line, about: Dict[str, Any]) -> str:
     """Points of the line for the user."""
     unit, name = unit_of(line)
     lines = [f"body of {about['volume']:.6g} m3, sliding to {about['bearing']:.1f} degrees",

@@ -35,7 +35,7 @@ def table_of(path: Path) -> Path:
     return found[0]
 
 
-def rows_of(path: Path, names: Sequence[str] = NUMBERS, unknown: Sequence[str] = ()) -> List[Dict[str, float]]:
+def read_body_rows(path: Path, names: Sequence[str] = NUMBERS, unknown: Sequence[str] = ()) -> List[Dict[str, float]]:
     """The rows of the table, with the rank, these columns and columns.Shape's; those of `unknown` may have NaN.
 
     A table without columns.Shape's is of spheres.
@@ -73,16 +73,16 @@ def shape_of(row: Dict[str, float]) -> columns.Shape:
 
 def mask_of(path: Path) -> np.ndarray:
     """The cells of a body: those with a value in PREFIX.N.base.asc."""
-    return np.isfinite(rasters.read(path).z)
+    return np.isfinite(rasters.read_raster(path).z)
 
 
 def base_file(path: Path, rank: int) -> Path:
     """PREFIX.N.base.asc of a body in a table, or in a folder with one."""
     source = table_of(path)
-    known = [int(row["rank"]) for row in rows_of(source)]
+    known = [int(row["rank"]) for row in read_body_rows(source)]
     if rank not in known:
         raise SlopeError("--body", f"must be one of {source}, {', '.join(map(str, known))}", rank)
-    found = beside(source, rank, BASE)
+    found = name_body_file(source, rank, BASE)
     if not found.is_file():
         raise SlopeError(found, "must be an existing file, beside the table")
     return found
@@ -98,10 +98,10 @@ def rank_of(base: Path) -> int:
 
 def base_files(path: Path) -> List[Path]:
     """PREFIX.N.base.asc of all bodies in a table, or in a folder with one."""
-    return [base_file(path, int(row["rank"])) for row in rows_of(table_of(path))]
+    return [base_file(path, int(row["rank"])) for row in read_body_rows(table_of(path))]
 
 
-def beside(table: Path, rank: int, end: str) -> Path:
+def name_body_file(table: Path, rank: int, end: str) -> Path:
     """A file of a body, beside the table."""
     prefix = table.name[:-len(END)] if table.name.endswith(END) else table.stem
     return table.with_name(f"{prefix}.{rank}{end}")
@@ -109,31 +109,31 @@ def beside(table: Path, rank: int, end: str) -> Path:
 
 def columns_file(table: Path, rank: int) -> Path:
     """PREFIX.N.columns.csv of a body in a table."""
-    found = beside(table, rank, COLUMNS)
+    found = name_body_file(table, rank, COLUMNS)
     if not found.is_file():
         raise SlopeError(found, "must be an existing file, which find_slip writes since 27 November 2026: search again")
     return found
 
 
-def read(path: Path, density: Optional[float] = None) -> List[Body]:
-    """The bodies of a table, or of a folder with one; density as in columns_of()."""
+def read_slip_bodies(path: Path, density: Optional[float] = None) -> List[Body]:
+    """The bodies of a table, or of a folder with one; density as in read_body_columns()."""
     source = table_of(path)
     found = []
-    for row in rows_of(source):
+    for row in read_body_rows(source):
         file = base_file(source, int(row["rank"]))
-        found.append(Body(f"{row['rank']:g}", row["direction"], columns_of(source, row, density), file,
+        found.append(Body(f"{row['rank']:g}", row["direction"], read_body_columns(source, row, density), file,
                           int(mask_of(file).sum())))
     return found
 
 
-def columns_of(table: Path, row: Dict[str, float], density: Optional[float] = None,
-               direction: Optional[float] = None, level: Optional[Callable] = None) -> columns.Columns:
+def read_body_columns(table: Path, row: Dict[str, float], density: Optional[float] = None,
+                      direction: Optional[float] = None, level: Optional[Callable] = None) -> columns.Columns:
     """The columns with which find_slip computed the body of a row; without the options as find_slip had it.
 
-    density: kg/m3, of the body as a whole; direction: of sliding; level: of the water, see columns.read().
+    density: kg/m3, of the body as a whole; direction: of sliding; level: of the water, see columns.read_slip_columns().
     """
     file = columns_file(table, int(row["rank"]))
-    found = columns.read(file, row["direction"] if direction is None else direction, level)
+    found = columns.read_slip_columns(file, row["direction"] if direction is None else direction, level)
     if not abs(found.area.sum() / row["area"] - 1) <= SAME_AREA:
         raise SlopeError(file, f"must be of the body of {table.name}, which has {row['area']:.8g} m2 in plan",
                          f"{found.area.sum():.8g} m2")

@@ -22,8 +22,8 @@ ROOM = 0.35         # of the body's length, beyond each end of its section
 POINTS = 600
 
 
-def draw(path: Path, raster: Raster, factor: np.ndarray, rows: Sequence[Dict[str, float]], masks: List[np.ndarray],
-         title: str, rock: Optional[np.ndarray] = None) -> None:
+def draw_slips(path: Path, raster: Raster, factor: np.ndarray, rows: Sequence[Dict[str, float]],
+               masks: List[np.ndarray], title: str, rock: Optional[np.ndarray] = None) -> None:
     """Write the picture.
 
     factor: the least one in each cell; masks: the cells of each body, as in rows; rock: heights of the bedrock.
@@ -42,8 +42,8 @@ def draw(path: Path, raster: Raster, factor: np.ndarray, rows: Sequence[Dict[str
             colour = COLOURS[k % len(COLOURS)]
             draw_body(axes, raster, row, mask, colour)
             if k < sections:
-                draw_section(figure.add_subplot(grid[1 + k // 2, k % 2]), raster, row, mask, colour,
-                             rock)
+                draw_slip_section(figure.add_subplot(grid[1 + k // 2, k % 2]), raster, row, mask, colour,
+                                  rock)
         axes.set_title(title)
         pictures.save(figure, path, bbox_inches="tight")
 
@@ -83,8 +83,8 @@ def draw_body(axes, raster: Raster, row: Dict[str, float], mask: np.ndarray, col
                   bbox={"boxstyle": "circle,pad=0.15", "fc": "white", "ec": colour, "lw": 0.8})
 
 
-def draw_section(axes, raster: Raster, row: Dict[str, float], mask: np.ndarray, colour: str,
-                 rock: Optional[np.ndarray] = None) -> None:
+def draw_slip_section(axes, raster: Raster, row: Dict[str, float], mask: np.ndarray, colour: str,
+                      rock: Optional[np.ndarray] = None) -> None:
     """Ground, bedrock and base along the direction of sliding through the middle of a body, down to the right."""
     along = np.array([math.cos(math.radians(row["direction"])), math.sin(math.radians(row["direction"]))])
     long = length(raster, mask, row["direction"])
@@ -93,7 +93,7 @@ def draw_section(axes, raster: Raster, row: Dict[str, float], mask: np.ndarray, 
     ground = sample(raster, x, y)
     base = columns.height_at(x, y, bodies.centre_of(row), row["radius"], row["direction"], bodies.shape_of(row))
     below = None if rock is None else sample(raster._replace(z=rock), x, y)
-    base = columns.above(base, below)
+    base = columns.limit_by_rock(base, below)
     inside = sample(raster._replace(z=mask.astype(float)), x, y) > 0.25     # other parts above it do not slide
     with np.errstate(invalid="ignore"):
         there = inside & (ground > base)

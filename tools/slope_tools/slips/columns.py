@@ -56,7 +56,7 @@ def centres(raster: Raster):
 
 def height_at(x, y, centre: Sequence[float], radius: float, direction: float = 0.0, shape: Shape = SPHERE):
     """Height of the lower half of a surface at places, NaN beside it; direction of sliding in degrees from +x."""
-    u, v = turned(x - centre[0], y - centre[1], direction)
+    u, v = turn_distances(x - centre[0], y - centre[1], direction)
     left = radius ** 2 - (u / shape.along) ** 2 - (shape.beyond(v) / shape.across) ** 2
     return centre[2] - np.sqrt(np.where(left > 0, left, np.nan))
 
@@ -68,7 +68,7 @@ def base_of(raster: Raster, centre: Sequence[float], radius: float, direction: f
     return height_at(x, y, centre, radius, direction, shape)
 
 
-def largest(raster: Raster, base: np.ndarray) -> np.ndarray:
+def find_largest_part(raster: Raster, base: np.ndarray) -> np.ndarray:
     """The largest connected part of where the ground is above the base, as a mask; SlopeError without any."""
     with np.errstate(invalid="ignore"):
         parts, count = ndimage.label(raster.z > base)
@@ -77,12 +77,12 @@ def largest(raster: Raster, base: np.ndarray) -> np.ndarray:
     return parts == 1 + np.argmax(np.bincount(parts.ravel())[1:])
 
 
-def above(surface: np.ndarray, rock: Optional[np.ndarray]) -> np.ndarray:
+def limit_by_rock(surface: np.ndarray, rock: Optional[np.ndarray]) -> np.ndarray:
     """Heights of the base of a body: of the surface, or of the bedrock where that is higher; NaN beside the surface."""
     return surface if rock is None else np.where(np.isfinite(surface), np.fmax(surface, rock), np.nan)
 
 
-def read(path: Path, direction: float, level: Optional[Callable] = None) -> Columns:
+def read_slip_columns(path: Path, direction: float, level: Optional[Callable] = None) -> Columns:
     """Of PREFIX.N.columns.csv, without the volume; direction of sliding in degrees counterclockwise from +x.
 
     level: the height of another water table over the centre of the surface, of dx and dy.
@@ -98,21 +98,22 @@ def read(path: Path, direction: float, level: Optional[Callable] = None) -> Colu
     dx, dy, e, area, slope_x, slope_y, weight, depth, pressed = rows.T
     if level is not None:
         pressed = pressure(level(dx, dy) + e)
-    dip, across = turned(slope_x, slope_y, direction)
-    return balanced(area, turned(dx, dy, direction)[0], e, dip, across, weight, depth,
+    dip, across = turn_distances(slope_x, slope_y, direction)
+    return balanced(area, turn_distances(dx, dy, direction)[0], e, dip, across, weight, depth,
                     pressed if pressed.any() else None)
 
 
 def of_sphere(ground: Raster, centre: Sequence[float], radius: float, direction: float, density: float,
               table: Optional[np.ndarray] = None, rock: Optional[np.ndarray] = None) -> Columns:
-    """The columns of the largest connected part of what is above a sphere; direction as in read(), density kg/m3.
+    """The columns of the largest connected part of what is above a sphere; direction as in read_slip_columns(), density
+    kg/m3.
 
     table: heights of the water table, NaN where there is no water. It does not change the density. rock: heights of
     the bedrock, NaN where there is none.
     """
     surface = base_of(ground, centre, radius)
-    bottom = above(surface, rock)
-    kept = largest(ground, bottom)
+    bottom = limit_by_rock(surface, rock)
+    kept = find_largest_part(ground, bottom)
     u, v = from_axis(ground, kept, centre, direction)
     e = centre[2] - surface[kept]
     dip, across = u / e, v / e
@@ -179,10 +180,10 @@ def dips(gradient: Tuple[np.ndarray, np.ndarray], kept: np.ndarray,
 def from_axis(ground: Raster, kept: np.ndarray, centre: Sequence[float], direction: float):
     """u and v of the cells of a mask, m."""
     x, y = (one[kept] for one in centres(ground))
-    return turned(x - centre[0], y - centre[1], direction)
+    return turn_distances(x - centre[0], y - centre[1], direction)
 
 
-def turned(dx, dy, direction: float):
+def turn_distances(dx, dy, direction: float):
     """u, against the direction of sliding, and v, across it, of distances in x and y."""
     along = np.cos(np.radians(direction)), np.sin(np.radians(direction))
     return -(dx * along[0] + dy * along[1]), dy * along[0] - dx * along[1]

@@ -46,8 +46,8 @@ def near_limits(row: Dict[str, float], name: str, limits: Tuple[float, float]) -
         yield Finding(f"{name} high", {"body": int(row["rank"]), "limit": high})
 
 
-def of_body(raster: Raster, row: Dict[str, float], inside: np.ndarray, volume: Optional[Tuple[float, float]],
-            depth: Optional[Tuple[float, float]], allowed: Optional[np.ndarray]) -> List[Finding]:
+def find_body_doubts(raster: Raster, row: Dict[str, float], inside: np.ndarray, volume: Optional[Tuple[float, float]],
+                     depth: Optional[Tuple[float, float]], allowed: Optional[np.ndarray]) -> List[Finding]:
     """Of one body: row of the table, mask of its cells; limits that were given, cells of the polygon within."""
     found = []
 
@@ -72,8 +72,9 @@ def of_body(raster: Raster, row: Dict[str, float], inside: np.ndarray, volume: O
     return found
 
 
-def of_all(raster: Raster, rows: Sequence[Dict[str, float]], masks: Sequence[np.ndarray],
-           volume: Optional[Tuple[float, float]], depth: Optional[Tuple[float, float]],
-           allowed: Optional[np.ndarray]) -> List[Finding]:
-    """of_body() of all bodies."""
-    return [one for row, inside in zip(rows, masks) for one in of_body(raster, row, inside, volume, depth, allowed)]
+def find_all_doubts(raster: Raster, rows: Sequence[Dict[str, float]], masks: Sequence[np.ndarray],
+                    volume: Optional[Tuple[float, float]], depth: Optional[Tuple[float, float]],
+                    allowed: Optional[np.ndarray]) -> List[Finding]:
+    """find_body_doubts() of all bodies."""
+    return [one for row, inside in zip(rows, masks) for one in find_body_doubts(raster, row, inside, volume, depth,
+                                                                                allowed)]

@@ -23,7 +23,7 @@ class Failed(NamedTuple):
     radius: float                       # m; inf: the base is no hollow, and the axis is the far one
 
 
-def numbers(text: str):
+def parse_sphere(text: str):
     """X,Y,Z,R as numbers; None if it is something else."""
     try:
         found = [float(word) for word in text.split(",")]
@@ -34,8 +34,8 @@ def numbers(text: str):
 
 def of_sphere(raster: Raster, centre, radius: float, direction: Optional[float], density: float, table,
               rock=None) -> Failed:
-    base = columns.above(columns.base_of(raster, centre, radius), rock)
-    inside = columns.largest(raster, base)
+    base = columns.limit_by_rock(columns.base_of(raster, centre, radius), rock)
+    inside = columns.find_largest_part(raster, base)
     way = back.steepest(raster, base, inside, centre) if direction is None else direction
     return Failed(columns.of_sphere(raster, centre, radius, way, density, table, rock), int(inside.sum()), None, way,
                   np.asarray(centre, float), radius)
@@ -44,25 +44,25 @@ def of_sphere(raster: Raster, centre, radius: float, direction: Optional[float],
 def of_search(path: Path, raster: Raster, direction: Optional[float], density: float, table) -> Failed:
     """The first body of find_slip, with the water that it had, or below a table on the terrain's cells."""
     source = bodies.table_of(path)
-    row = bodies.rows_of(source)[0]
+    row = bodies.read_body_rows(source)[0]
     x, y, z = centre = bodies.centre_of(row)
 
     def level(dx, dy):
         return sample(raster._replace(z=table), x + dx, y + dy) - z
 
-    found = bodies.columns_of(source, row, density, direction, None if table is None else level)
+    found = bodies.read_body_columns(source, row, density, direction, None if table is None else level)
     return Failed(found, int(bodies.mask_of(bodies.base_file(source, int(row["rank"]))).sum()), None,
                   row["direction"] if direction is None else direction, np.asarray(centre), row["radius"])
 
 
 def of_base(raster: Raster, path: Path, direction: Optional[float], density: float, table) -> Failed:
     """Of a raster with the heights of the ground without the body, on the cells of the terrain."""
-    found = beside.read(path, raster, local=beside.Local(guessed=True))
+    found = beside.read_raster_beside(path, raster, local=beside.Local(guessed=True))
     if not beside.has_cells(found, raster):
         raise SlopeError(path, "must be on the cells of the terrain")
     base = beside.on_cells(path, found, raster)
-    inside = columns.largest(raster, base + LEAST) & np.isfinite(np.gradient(base)).all(axis=0)
-    points = back.points_of(raster, base, inside)
+    inside = columns.find_largest_part(raster, base + LEAST) & np.isfinite(np.gradient(base)).all(axis=0)
+    points = back.list_base_points(raster, base, inside)
     centre, radius = back.sphere_of(points)
     way = back.steepest(raster, base, inside, centre) if direction is None else direction
 
@@ -73,15 +73,15 @@ def of_base(raster: Raster, path: Path, direction: Optional[float], density: flo
     return Failed(about(centre), int(inside.sum()), far, way, centre, radius)
 
 
-def read(text: str, raster: Raster, direction: Optional[float], density: float,
-         table: Optional[np.ndarray] = None, rock: Optional[np.ndarray] = None) -> Failed:
+def read_failed_body(text: str, raster: Raster, direction: Optional[float], density: float,
+                     table: Optional[np.ndarray] = None, rock: Optional[np.ndarray] = None) -> Failed:
     """The body that BODY names: X,Y,Z,R; the table of find_slip or a folder with it; a raster.
 
     direction: degrees counterclockwise from +x; None: where the weight has the largest moment about the centre. table,
     rock: heights of the water table, and of the bedrock that cuts a sphere; what find_slip wrote has its own.
     """
-    if numbers(text):
-        *centre, radius = numbers(text)
+    if parse_sphere(text):
+        *centre, radius = parse_sphere(text)
         return of_sphere(raster, centre, radius, direction, density, table, rock)
     path = Path(text)
     if rock is not None:

@@ -50,7 +50,7 @@ def first_zero(h: float, slope: np.ndarray, first: np.ndarray, speed: np.ndarray
     return np.where((time > 0) & (time < h), time, h)
 
 
-def along(acceleration: np.ndarray, direction: float) -> np.ndarray:
+def project_acceleration(acceleration: np.ndarray, direction: float) -> np.ndarray:
     """Horizontal acceleration (points,) towards a direction, degrees counterclockwise from +x, of (points, 2 or 3)."""
     turned = np.radians(direction)
     return acceleration[:, 0] * np.cos(turned) + acceleration[:, 1] * np.sin(turned)
@@ -60,10 +60,10 @@ def both_ways(t: np.ndarray, acceleration: np.ndarray, direction: float, yields:
               vertical: float = 0.0) -> np.ndarray:
     """The larger displacement (m) of the record and of its negative, for each yield acceleration (m/s2).
 
-    acceleration: of the ground, (points, 3) in m/s2; direction as in along(). vertical: how much the yield
-    acceleration grows per upward acceleration of the ground, which makes the body heavier; 0 without the vertical
+    acceleration: of the ground, (points, 3) in m/s2; direction as in project_acceleration(). vertical: how much the
+    yield acceleration grows per upward acceleration of the ground, which makes the body heavier; 0 without the vertical
     component. For a dry body without cohesion it is the yield coefficient.
     """
-    horizontal = along(acceleration, direction)
+    horizontal = project_acceleration(acceleration, direction)
     lift = vertical * acceleration[:, 2]
     return np.maximum(displacement(t, horizontal - lift, yields), displacement(t, -horizontal - lift, yields))

@@ -150,7 +150,7 @@ class Paper(NamedTuple):
 
 
 class Ensemble(NamedTuple):
-    """A weighted ensemble: quantiles (m3) of shares().
+    """A weighted ensemble: quantiles (m3) of choose_known_shares().
 
     far: share of the known events beyond all runs; longest: m; stopped: why no more runs were added, None: enough were.
     most: m3, of a run; size, released, runs: as of Paper; path_end: m, of a fall path that ends before the longest run:
@@ -171,7 +171,7 @@ class Ensemble(NamedTuple):
         return next((one for one in self.quantiles if one.share == share), None)
 
 
-def shares(far: float) -> List[float]:
+def choose_known_shares(far: float) -> List[float]:
     """Shares of the known events whose quantiles count; far: the share that lies beyond all runs.
 
     SHARE; where the runs reach less, also what they reach, in whole per cents: the number is of that share then.
@@ -224,8 +224,8 @@ def of_paper(one: Paper, beside: bool) -> Optional[Part]:
     if one.volume is not None:
         known = one.least is not None       # chance
         band = [Share(Cause.RUNS.value, max(0.0, one.volume - one.least), 0.0)] if one.least is not None else []
-        return number(Part(Kind.NUMBER, one.volume, None, [*band, Share(Cause.TRANSFER.value, *one.transfer)],
-                           bound=known), one.size)
+        return correct_part(Part(Kind.NUMBER, one.volume, None, [*band, Share(Cause.TRANSFER.value, *one.transfer)],
+                                 bound=known), one.size)
     grave = [rule for rule in one.withheld if not (beside and rule.rule in HARMLESS)]
     if not grave:
         return None
@@ -246,7 +246,7 @@ def of_ensemble(one: Ensemble, road: Optional[Road]) -> Part:
         return Part(Kind.NUMBER, 0.0, SHARE, reasons=said)
     best = max((each for each in one.quantiles if each.value is not None), key=lambda each: each.share, default=None)
     if best is None or best.value is None:
-        return Part(Kind.FLOOR, 0.0, 0.0, reasons=[beyond(one), *stopped])
+        return Part(Kind.FLOOR, 0.0, 0.0, reasons=[explain_known_beyond(one), *stopped])
     high = max(best.value, one.most) if best.high is None else best.high        # what no run exceeded
     band = [Share(Cause.RUNS.value, best.value - (best.low or 0.0), high - best.value),
             Share(Cause.TRANSFER.value, *(best.transfer or (0.0, 0.0)))]
@@ -255,17 +255,17 @@ def of_ensemble(one: Ensemble, road: Optional[Road]) -> Part:
         # a terrain that ends behind the road is no reason against its number
         ends = any(reason.code is Code.TERRAIN and not (road and road.far < reason.numbers["path_m"])
                    for reason in stopped)
-        part = part._replace(kind=Kind.FLOOR if ends else Kind.NUMBER, reasons=[beyond(one), *stopped])
-    return number(part, one.size)
+        part = part._replace(kind=Kind.FLOOR if ends else Kind.NUMBER, reasons=[explain_known_beyond(one), *stopped])
+    return correct_part(part, one.size)
 
 
-def beyond(one: Ensemble) -> Reason:
+def explain_known_beyond(one: Ensemble) -> Reason:
     """That known events go beyond all runs."""
     end = {} if one.path_end is None else {"path_end_m": one.path_end}
     return Reason(Code.BEYOND, {"far": one.far, "longest_m": one.longest, "most_m3": one.most, "runs": one.runs, **end})
 
 
-def number(part: Part, size: Size) -> Part:
+def correct_part(part: Part, size: Size) -> Part:
     """A number with what finer balls would change; a floor where that is not known; nothing stays nothing."""
     if not part.volume:
         return part
@@ -277,7 +277,7 @@ def number(part: Part, size: Size) -> Part:
     return part._replace(kind=Kind.FLOOR, reasons=reasons)
 
 
-def of(paper: Optional[Paper], ensemble: Optional[Ensemble], road: Optional[Road]) -> Optional[Answer]:
+def combine_answers(paper: Optional[Paper], ensemble: Optional[Ensemble], road: Optional[Road]) -> Optional[Answer]:
     """The larger of both, with the higher of their upper ends; None without either.
 
     Where one of them is withheld for a reason that the other does not make up for, the other is a floor; so is 0 where

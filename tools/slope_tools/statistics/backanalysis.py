@@ -23,7 +23,7 @@ from scipy.stats import qmc
 
 from ..statistics import designs, tempering
 from ..statistics.emulator import Emulator
-from ..statistics.gaps import Gap, gaps as gaps_of
+from ..statistics.gaps import Gap, find_gaps as gaps_of
 
 CLOUD = 4096            # points that stand for the cube
 ENOUGH = 300.0          # of them that must count, or others are drawn where the likelihood is
@@ -148,7 +148,7 @@ def posterior(points: np.ndarray, outputs: np.ndarray, targets: Sequence[Target]
 
     cloud = qmc.Sobol(dimensions, scramble=True, seed=SEED).random(CLOUD)
     chi2, logdet = measured(cloud)
-    misfit = tempering.least(lambda some: measured(some)[0], cloud, chi2, SEED) / most
+    misfit = tempering.minimise_function(lambda some: measured(some)[0], cloud, chi2, SEED) / most
 
     freedom = max(LEAST_FREEDOM, min(one.freedom for one in emulators))
 
@@ -160,7 +160,7 @@ def posterior(points: np.ndarray, outputs: np.ndarray, targets: Sequence[Target]
     weights = tempering.weights_of(logs)
     box = np.zeros(dimensions), np.ones(dimensions)
     if tempering.effective(weights) < ENOUGH:
-        cloud, logs = tempering.draw(lambda some: log_likelihood(*measured(some)), cloud, logs, SEED)
+        cloud, logs = tempering.sample_likelihood(lambda some: log_likelihood(*measured(some)), cloud, logs, SEED)
         weights = np.full(len(cloud), 1 / len(cloud))
         low, high = cloud.min(axis=0), cloud.max(axis=0)
         room = MARGIN * (high - low) + 1e-6
@@ -243,7 +243,7 @@ def judgement(found: Posterior, variables: Sequence) -> List[str]:
     for i, one in enumerate(variables):
         low, high = found.interval(i)
         width = high - low
-        best, least, most = (shown(one, u) for u in (float(found.best[i]), low, high))
+        best, least, most = (format_variable_value(one, u) for u in (float(found.best[i]), low, high))
         text = f"{one.name}: {best}, {least} to {most} ({100 * SHARE:g} %)"
         if width > UNKNOWN:
             loose.append(one.name)
@@ -266,7 +266,7 @@ def judgement(found: Posterior, variables: Sequence) -> List[str]:
     return lines
 
 
-def shown(variable, u: float) -> str:
+def format_variable_value(variable, u: float) -> str:
     """A value to a thousandth of the width of its distribution."""
     digits = max(0, 3 - math.floor(math.log10(variable.width)) - 1)
     return f"{float(variable.value(u)):.{digits}f}"

@@ -179,8 +179,8 @@ def joined(value: float, *parts: Tuple[float, float]) -> Finest:
 
 # --- the models ---
 
-def fit(coarse: Sequence[float], fine: Sequence[float], at: Any, finer: float = 2.0,
-        ball: float = 0.0, before: Optional[Step] = None) -> Step:
+def fit_step(coarse: Sequence[float], fine: Sequence[float], at: Any, finer: float = 2.0,
+             ball: float = 0.0, before: Optional[Step] = None) -> Step:
     """The Step that pairs tell: values (>= 0) with either balls, and their parameters (n, p), of similar ranges.
 
     ball: volume of a coarse ball, 0 of lengths; before: the step from the size before, which tells of the scatter, too.
@@ -319,7 +319,7 @@ class Left:
     observed: bool
 
 
-def left(steps: Sequence[Step]) -> Optional[Left]:
+def estimate_remaining_step(steps: Sequence[Step]) -> Optional[Left]:
     """By the last of at least two steps; None where they do not tell it, as where all values are few balls.
 
     With the order p and the factor r of the sizes a change g leaves SAFETY g / (r^p - 1), with its standard error.
@@ -349,7 +349,7 @@ def observed_order(before: Model, last: Model, finer: float) -> Optional[float]:
     return max(order, ORDERS[0]) if order <= ORDERS[1] else None
 
 
-def spread(places: np.ndarray, first: Sequence[int], number: int) -> List[int]:
+def order_spread_points(places: np.ndarray, first: Sequence[int], number: int) -> List[int]:
     """An order of points (n, d) that spreads out: first ones, then always the one that is farthest from all before."""
     count = len(places)
     scale = np.ptp(places, axis=0)

@@ -93,7 +93,7 @@ class ConservativeVolume:
         digits = rounding.place_of_digits(self.volume)
         if self.scatter is None or not self.scatter.deviation > 0:
             return digits
-        return min(rounding.place(self.scatter.deviation), digits)
+        return min(rounding.choose_rounding(self.scatter.deviation), digits)
 
     def rounded(self) -> Dict[str, Optional[float]]:
         """volume, mean and chance, each rounded up to what is known, so that the rounded parts add up."""

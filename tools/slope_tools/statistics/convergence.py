@@ -85,7 +85,7 @@ def chance(scatter: Optional[Scatter], *runs: int) -> Optional[float]:
 
 # --- in words ---
 
-def words(result: Convergence, name: str, what: str, unit: str, number) -> List[str]:
+def describe_convergence(result: Convergence, name: str, what: str, unit: str, number) -> List[str]:
     """Plain sentences on a quantity; name: the variable's, number: writes a value of the quantity as text."""
     found = []
     for one in result.halvings:

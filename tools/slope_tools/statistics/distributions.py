@@ -47,7 +47,7 @@ class Range:
             text = f"{x:.{DIGITS}g}"
         if not low <= float(text) <= high:        # rounded out of the range
             text = repr(x)
-        return settings.plain(decimal.Decimal(text))
+        return settings.format_decimal(decimal.Decimal(text))
 
     def unit(self, text: str) -> float:
         """The share of the distribution below a value: the inverse of value(), outside of the bounds, too."""
@@ -154,7 +154,7 @@ def distribution(name: str, text: str, option: str, words: str):
     if kind not in FORMS:
         kind, rest = "uniform", text
     if kind == "list":
-        return listed(name, rest, option, words)
+        return parse_listed(name, rest, option, words)
     try:
         numbers = [float(part) for part in rest.split(":")]
     except ValueError:
@@ -204,14 +204,14 @@ def frozen(kind: str, numbers: Sequence[float], option: str, words: str):
     return Exponential(drawn) if kind == "lognormal" else drawn
 
 
-def listed(name: str, rest: str, option: str, words: str) -> Listed:
+def parse_listed(name: str, rest: str, option: str, words: str) -> Listed:
     """A list V1@WEIGHT,V2@WEIGHT,...; without weights all values weigh the same."""
     entries: Dict[str, float] = {}
     for part in rest.split(","):
         value, at, weight = part.rpartition("@") if "@" in part else (part, "", "1")
         if not (value.strip() and re.fullmatch(r"[0-9]*\.?[0-9]+(?:[eE][+-]?[0-9]+)?", weight) and float(weight) > 0):
             raise SlopeError(option, f"must be NAME=list:{FORMS['list']} with weights > 0", words)
-        if settings.as_number(value) in map(settings.as_number, entries):
+        if settings.normalise_value(value) in map(settings.normalise_value, entries):
             raise SlopeError(option, "must have every value once", words)
         entries[value] = float(weight)
     if len(entries) < 2:

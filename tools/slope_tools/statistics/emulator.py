@@ -13,7 +13,7 @@ import numpy as np
 from scipy import linalg, stats
 from scipy.stats import qmc
 
-from ..digits import measured
+from ..digits import format_measured_share
 from . import dependent
 from .entries import Analysis, Check, Influence
 
@@ -161,7 +161,7 @@ def analyse(names: Sequence[str], points: np.ndarray, values: np.ndarray, point:
     whole, parts, check = validated(points, values, of)
     if check.verdict == "bad":
         return without("no indices: of runs that it has not seen the emulator explains "
-                       f"{measured(max(check.explained, 0.0))} of the variance", check)
+                       f"{format_measured_share(max(check.explained, 0.0))} of the variance", check)
     if weighting is None:
         first, total = indices(whole, len(names), snap)
         many = np.array([indices(part, len(names), snap, BASE_OF_FOLD) for part in parts])
@@ -171,7 +171,8 @@ def analyse(names: Sequence[str], points: np.ndarray, values: np.ndarray, point:
                          for part, weight in zip(parts, weighting.parts)])
     jackknife = (len(parts) - 1) / len(parts) * ((many - many.mean(axis=0)) ** 2).sum(axis=0)
     errors = np.sqrt(jackknife + check.unseen ** 2 + (weighting.unseen ** 2 if weighting else 0))
-    text = f"the emulator explains {measured(max(check.explained, 0.0))} of the variance of runs that it has not seen"
+    text = (f"the emulator explains {format_measured_share(max(check.explained, 0.0))} of the variance of runs that it "
+            "has not seen")
     if check.verdict == "rough":
         text += ": take the indices as rough"
     return Analysis(text, check, {name: Influence(*ranks[i], float(first[i]), float(errors[0][i]), float(total[i]),

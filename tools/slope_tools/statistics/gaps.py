@@ -23,7 +23,7 @@ class Gap(NamedTuple):
         return self.low < value < self.high
 
 
-def gaps(values: np.ndarray, emulator: Emulator) -> List[Gap]:
+def find_gaps(values: np.ndarray, emulator: Emulator) -> List[Gap]:
     """Of values (n) of the runs that an emulator was fitted to, from the lowest."""
     edges = np.unique(values)
     if len(edges) < 2:

@@ -99,8 +99,8 @@ def effect_of(exceeding: np.ndarray, point: np.ndarray) -> float:
     return min(max(1.0, between / (share * (1 - share) / n)), several)
 
 
-def quantiles(values: Values, point: Sequence[int], failed: int = 0,
-              shares: Sequence[float] = SHARES) -> List[Quantile]:
+def compute_quantiles(values: Values, point: Sequence[int], failed: int = 0,
+                      shares: Sequence[float] = SHARES) -> List[Quantile]:
     """Quantiles of finished runs; point: which point of the design each run is of; failed: runs that gave none."""
     given = np.asarray(values, float)
     ordered = np.sort(given)
@@ -113,7 +113,7 @@ def quantiles(values: Values, point: Sequence[int], failed: int = 0,
     return found
 
 
-def curve(values: Values, point: Sequence[int], failed: int = 0) -> Curve:
+def compute_hazard_curve(values: Values, point: Sequence[int], failed: int = 0) -> Curve:
     """The share of the runs above each of their values, and above what lies below all of them: levels_of()."""
     given, of = np.asarray(values, float), np.asarray(point)
     n = len(given)
@@ -133,7 +133,7 @@ def levels_of(given: np.ndarray) -> np.ndarray:
     return np.unique(np.concatenate([[start], given]))
 
 
-def table(curves: Mapping[str, Curve]) -> str:
+def tabulate_hazard(curves: Mapping[str, Curve]) -> str:
     """The CSV of hazard curves of quantities: the share above each value, with bounds."""
     rows = []
     for name, one in curves.items():

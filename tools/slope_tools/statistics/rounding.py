@@ -6,7 +6,7 @@ from ..digits import SIGNIFICANT
 NOISE = dict.fromkeys(("m", "m2", "m3", "m/s"), 1e-6)      # of a unit: what sums of areas and lengths leave
 
 
-def place(uncertainty: float) -> float:
+def choose_rounding(uncertainty: float) -> float:
     """The power of ten that a number with this standard deviation (> 0) is rounded to: a 5th to a 50th of it."""
     return 10.0 ** math.floor(math.log10(uncertainty / 5) + 1e-9)
 
@@ -32,7 +32,7 @@ def nearest(value: float, step: float) -> float:
     return round(value, -math.floor(math.log10(step) + 0.5))
 
 
-def text(value: float, step: float) -> str:
+def format_rounded(value: float, step: float) -> str:
     """A value rounded to a power of ten, with commas: 14,760 of 14757.3 and 10."""
     digits = max(0, -math.floor(math.log10(step) + 0.5))
     return f"{nearest(value, step):,.{digits}f}"

@@ -44,7 +44,8 @@ def rise(logs: np.ndarray, power: float) -> float:
     return power + max(low, 1e-9)
 
 
-def draw(log_likelihood: Function, points: np.ndarray, logs: np.ndarray, seed: int) -> Tuple[np.ndarray, np.ndarray]:
+def sample_likelihood(log_likelihood: Function, points: np.ndarray, logs: np.ndarray, seed: int) -> Tuple[np.ndarray,
+                                                                                                          np.ndarray]:
     """DRAWN points of the likelihood and its logarithms there; points: spread evenly over the cube, with theirs."""
     rng = np.random.default_rng(seed)
     power = 0.0
@@ -78,7 +79,7 @@ def moved(log_likelihood: Function, points: np.ndarray, logs: np.ndarray, power:
     return points, logs
 
 
-def least(function: Function, points: np.ndarray, values: np.ndarray, seed: int) -> float:
+def minimise_function(function: Function, points: np.ndarray, values: np.ndarray, seed: int) -> float:
     """The least value of a function in the unit cube, looked for from the least of its values at points (SciPy)."""
     near = points[np.argsort(values)[:POPULATION]]
     found = optimize.differential_evolution(lambda some: function(some.T), [(0, 1)] * points.shape[1], init=near,

@@ -55,7 +55,7 @@ def short(facts: Facts) -> Optional[Finding]:
     return Finding(Kind.MOBILITY.value, {"number": facts.length, "bound": facts.median, "longest": longest})
 
 
-def left(facts: Facts) -> Optional[Finding]:
+def judge_lost_mass(facts: Facts) -> Optional[Finding]:
     if facts.left <= LEFT:
         return None
     return Finding(Kind.LEFT.value, {"number": facts.left, "bound": LEFT, "percent": 100 * facts.left,
@@ -70,7 +70,7 @@ def unfinished(facts: Facts) -> Optional[Finding]:
                                      "most": 100 * UNFINISHED})
 
 
-RULES = (few_balls, short, left, unfinished)
+RULES = (few_balls, short, judge_lost_mass, unfinished)
 
 
 def reasons(facts: Facts) -> List[Finding]:

@@ -35,27 +35,27 @@ class Ahead(NamedTuple):
         return said + (f"; up to {self.more} more where known events go farther" if self.more else "")
 
 
-def of_site(site: Site, engine: Setup, points: int, asked: site_study.Asked = site_study.Asked()) -> Ahead:
+def look_ahead(site: Site, engine: Setup, points: int, asked: site_study.Asked = site_study.Asked()) -> Ahead:
     """Of the study that site.yaml describes; points: of the ensemble, 0: the sweep alone.
 
     SlopeError on bad input, and if a run is there with other data and engine.anew does not ask for it again.
     """
-    planned = site_study.plan(site, engine)
+    planned = site_study.plan_site_study(site, engine)
     setup = planned.setup
     files = data_files(setup.deck, {**planned.settings, **planned.repeated})
     depends = dependencies.Dependencies(setup.deck, {name: disk.sha256(path) for name, path in files.items()},
                                         study.program_of(setup))
     runs = store.Store(setup.runs, depends, setup.older, setup.anew)
     runs.admit(planned.runs)
-    once = store.once(planned.runs)
+    once = store.select_distinct_runs(planned.runs)
     wanted = [one for one in once if not one.finished]
     there, more = len(once) - len(wanted), 0
     design: List[repeats.Repeat] = []
     points_at = [*planned.todo]
     if points:
-        todo, more = points_of(planned, points)
+        todo, more = plan_weighted_points(planned, points)
         runs.admit(todo)
-        once = store.once(todo)
+        once = store.select_distinct_runs(todo)
         design = [one for one in once if not one.finished]
         there += len(once) - len(design)
         points_at += todo
@@ -71,16 +71,16 @@ def of_site(site: Site, engine: Setup, points: int, asked: site_study.Asked = si
                  if known else None, more)
 
 
-def points_of(planned: site_study.Planned, points: int):
+def plan_weighted_points(planned: site_study.Planned, points: int):
     """The runs of the ensemble that is weighted by known events, with those that were added; how many more may be."""
     chance = site_choices.chance(planned.variables)
     vary = [*known_study.VARY, chance]
     fixed = site_choices.not_varied(planned.choices, {words.partition("=")[0] for words in vary})
     asked = f"{(planned.setup.site or Path()) / site_choices.NAME}: study.points"
-    plan = sample.check(points, designs.SOBOL, SEED, vary, planned.setup.deck, fixed, {}, asked)
+    plan = sample.check_sample(points, designs.SOBOL, SEED, vary, planned.setup.deck, fixed, {}, asked)
     plan = plan.widened(known_study.WIDE)
-    todo = sample.plan(planned.setup.runs, plan, fixed, {}, planned.variables)
-    added = farther.read(planned.setup.output.parent / site_study.ENSEMBLE, plan)
+    todo = sample.plan_sample(planned.setup.runs, plan, fixed, {}, planned.variables)
+    added = farther.read_added_runs(planned.setup.output.parent / site_study.ENSEMBLE, plan)
     for batch in added.batches:
         todo += repeats.with_repeats(planned.setup.runs, [{**fixed, **one} for one in batch.points], (), plan.names)
     return todo, int(farther.MOST * points) - added.number
@@ -92,7 +92,7 @@ def seconds(site: Site, planned: site_study.Planned, paper: int, half: bool, poi
     found = site.found
     if found.trial is None or found.body is None:
         return None
-    wanted = site_budget.plan(planned.choices)._replace(paper=paper, elastic=0, half_step=half, points=points)
+    wanted = site_budget.plan_budget(planned.choices)._replace(paper=paper, elastic=0, half_step=half, points=points)
     return site_budget.study_seconds(float(planned.variables[VARIABLE]), found.body.volume, found.trial,
                                      site_study.soil_of(site, planned), wanted, site_study.jobs_of(planned.setup),
                                      numbers)[0]

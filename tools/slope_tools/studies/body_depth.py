@@ -5,7 +5,7 @@ from typing import Optional, Sequence
 import numpy as np
 
 from ..case import run_folders
-from ..case.settings import as_number
+from ..case.settings import normalise_value
 from ..sites import site_choices, site_deck
 from ..sites.site_bodies import VARIABLE
 from ..tables.rows import Finished
@@ -31,7 +31,7 @@ def mean(setup: Setup, row: Finished) -> Optional[float]:
 
 def in_balls(setup: Setup, finished: Sequence[Finished]) -> Optional[float]:
     """Balls over it, the fewest of some runs; None where no variable of the deck is their diameter."""
-    sizes = [as_number(row.variables.get(DIAMETER, "")) for row in finished]
+    sizes = [normalise_value(row.variables.get(DIAMETER, "")) for row in finished]
     if not finished or not all(isinstance(d, float) and d > 0 for d in sizes):
         return None
     depth = mean(setup, finished[sizes.index(min(sizes))])

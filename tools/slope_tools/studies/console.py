@@ -19,7 +19,7 @@ def tell(outcome: Outcome, about: study_types.Study, output: Path, say: Callable
         say(intensity.shown_of(about.intensity))
         say(f"{output / intensity.FILE}: volume on the road against {about.intensity.variable}, and how likely "
             "more is")
-    for table in structures.shown(finished):
+    for table in structures.list_structure_tables(finished):
         say(table)
     files = [str(output / name) for what, name in structures.FILES.items() if any(row.value(what) for row in finished)]
     if files:
@@ -37,9 +37,9 @@ def tell(outcome: Outcome, about: study_types.Study, output: Path, say: Callable
     say(f"{output / 'study.yaml'}, {output / 'study.csv'}, {output / 'combinations.csv'}: all numbers")
     tell_numbers(about, output, say)
     if about.observed:
-        say("\n".join(mapped.describe(about.observed, rows)))
+        say("\n".join(mapped.describe_mapped(about.observed, rows)))
     if about.chain:
-        say("\n".join(chain_files.describe(about.chain, output)))
+        say("\n".join(chain_files.describe_chain(about.chain, output)))
     if finished and asked.method not in known_study.OF_BOTH:
         say("\n".join(tell_letter(about)))
     for entry in [*(about.envelope or {}).values(), *(about.exceedance or ())]:
@@ -49,18 +49,19 @@ def tell(outcome: Outcome, about: study_types.Study, output: Path, say: Callable
 def tell_letter(about: study_types.Study) -> List[str]:
     """What the first page begins with; a line each."""
     step = about.next_step
-    return [*letter_words.lines(letter.of_study(about)), *([str(next_step.Step(**vars(step)))] if step else [])]
+    return [*letter_words.list_letter_lines(letter.of_study(about)),
+            *([str(next_step.Step(**vars(step)))] if step else [])]
 
 
 def tell_numbers(about: study_types.Study, output: Path, say: Callable[[Any], Any]) -> None:
     """The conservative volume, the effects of step and size, the ensemble."""
     if about.conservative:
-        say("\n".join(combinations.describe(about.conservative)))
+        say("\n".join(combinations.describe_combinations(about.conservative)))
         if about.step:
             say(about.step.text)
     if about.largest_restitution:
         say(about.largest_restitution.text)
     if about.ensemble:
-        say("\n".join(ensemble.describe(about.ensemble)))
+        say("\n".join(ensemble.describe_ensemble(about.ensemble)))
         say(f"{output / ensemble.HAZARD}, {output / ensemble.INFLUENCE}: all curves and indices; "
             f"{output / ensemble.MAPS}: {len(about.ensemble.maps)} maps of quantiles and exceedance")

@@ -14,14 +14,15 @@ from . import run_rows, size_runs
 from .setup import Setup
 
 
-def make(setup: Setup, order: Order, fixed: Mapping[str, str], chances: Sequence[Dict[str, str]],
-         todo: List[repeats.Repeat], work: jobs.Work, wanted: Optional[size_runs.Wanted] = None) -> farther.Added:
+def make_farther_runs(setup: Setup, order: Order, fixed: Mapping[str, str], chances: Sequence[Dict[str, str]],
+                      todo: List[repeats.Repeat], work: jobs.Work,
+                      wanted: Optional[size_runs.Wanted] = None) -> farther.Added:
     """Add runs to todo, which were made, until they reach far enough or farther.next_runs has no more; all that were
     added, and why no more.
 
-    fixed, chances: of all runs, see sample.plan; wanted: their coarsest balls.
+    fixed, chances: of all runs, see sample.plan_sample; wanted: their coarsest balls.
     """
-    added, rows = order.added, rows_of(setup, todo)
+    added, rows = order.added, read_farther_rows(setup, todo)
     assert added and order.condition
     for k, one in enumerate(added.batches, 1):
         rows += batch(setup, order, fixed, chances, todo, work, one, k, wanted)
@@ -38,7 +39,7 @@ def make(setup: Setup, order: Order, fixed: Mapping[str, str], chances: Sequence
             return more
         added = more
         setup.tell(added.line(added.batches[-1], runs.lengths, runs.beyond))
-        farther.keep(setup.output, added)
+        farther.write_added_runs(setup.output, added)
         rows += batch(setup, order, fixed, chances, todo, work, added.batches[-1], len(added.batches), wanted)
     return added
 
@@ -76,9 +77,9 @@ def batch(setup: Setup, order: Order, fixed: Mapping[str, str], chances: Sequenc
     work.store.admit(more)
     work.do(more)
     todo += more
-    return rows_of(setup, more)
+    return read_farther_rows(setup, more)
 
 
-def rows_of(setup: Setup, todo: Sequence[repeats.Repeat]) -> List[Row]:
+def read_farther_rows(setup: Setup, todo: Sequence[repeats.Repeat]) -> List[Row]:
     """The runs' rows of study.csv, without the road."""
-    return run_rows.rows_of(setup._replace(road=None), todo)
+    return run_rows.read_run_rows(setup._replace(road=None), todo)

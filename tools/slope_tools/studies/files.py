@@ -12,27 +12,29 @@ from ..tables import (answered, combinations, elastic, intensity, road_runs, str
 from .outcome import Outcome
 
 
-def write(outcome: Outcome, about: study_types.Study, output: Path,
-          place: Optional[Place]) -> study_types.Study:
+def write_study_files(outcome: Outcome, about: study_types.Study, output: Path,
+                      place: Optional[Place]) -> study_types.Study:
     """All of them; what study.yaml says: about, with the maps of an ensemble. place: CRS and offset of maps, None
     without."""
     asked, read = outcome.questions, outcome.read
     if outcome.ensemble:
         assert asked.order
-        about = replace(about, ensemble=ensemble.write(outcome.ensemble, asked.order.levels, output, place,
-                                                       read.problem))
+        about = replace(about, ensemble=ensemble.write_ensemble(outcome.ensemble, asked.order.levels, output, place,
+                                                                read.problem))
     if stretches := about.stretches:
         head, *lines = road_runs.rows(stretches)
-        disk.write(output / road_runs.FILE, disk.csv_text(head, lines))
+        disk.write_file(output / road_runs.FILE, disk.csv_text(head, lines))
         write_or_remove(output / f"{road_runs.BODIES}.csv",
                         road_runs.table_of_bodies(stretches.bodies) if stretches.bodies else None)
     if outcome.chain:
-        chain_files.write(outcome.chain, output)
-    write_or_remove(output / intensity.FILE, intensity.table(about.intensity) if about.intensity else None)
-    write_or_remove(output / elastic.FILE, read.elastic and elastic.table(read.elastic))
-    structures.write(output, read.finished)
-    disk.write(output / "study.csv", study_table.table(asked.settings, asked.repeated, read.rows, read.defaults))
-    disk.write(output / "combinations.csv", combinations.table(outcome.groups, outcome.names, asked.settings))
+        chain_files.write_chain(outcome.chain, output)
+    write_or_remove(output / intensity.FILE, intensity.tabulate_intensity(about.intensity) if about.intensity else None)
+    write_or_remove(output / elastic.FILE, read.elastic and elastic.tabulate_elastic(read.elastic))
+    structures.write_structures(output, read.finished)
+    disk.write_file(output / "study.csv", study_table.tabulate_study(asked.settings, asked.repeated, read.rows,
+                                                                     read.defaults))
+    disk.write_file(output / "combinations.csv", combinations.tabulate_combinations(outcome.groups, outcome.names,
+                                                                                    asked.settings))
     if asked.alone:
         write_abouts({output: about})
     return about
@@ -41,13 +43,13 @@ def write(outcome: Outcome, about: study_types.Study, output: Path,
 def write_or_remove(path: Path, text: Optional[str]) -> None:
     """A file, or none of a study before this one in the folder."""
     if text:
-        disk.write(path, text)
+        disk.write_file(path, text)
     else:
         path.unlink(missing_ok=True)
 
 
 def write_abouts(abouts: Mapping[Path, study_types.Study]) -> None:
     """study.yaml in one folder, or in those of both studies of a site, one right after the other."""
-    with disk.beside(*(output / answered.STUDY for output in abouts)) as new:
+    with disk.write_beside(*(output / answered.STUDY for output in abouts)) as new:
         for path, about in zip(new, abouts.values()):
-            path.write_text(disk.yaml_text(answered.TITLE, study_file.plain(about)), encoding="utf-8")
+            path.write_text(disk.yaml_text(answered.TITLE, study_file.encode_study(about)), encoding="utf-8")

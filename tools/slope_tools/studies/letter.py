@@ -6,7 +6,7 @@ from ..mobility.how_far import Reach
 from ..statistics.entries import Headline
 from ..tables import ensemble_types, judged, sizes, study_types
 from ..tables.rows import finished_of
-from .road_numbers import Number, read
+from .road_numbers import Number, read_road_numbers
 
 
 class Letter(NamedTuple):
@@ -34,8 +34,8 @@ def of_study(about: study_types.Study) -> Letter:
     known = ensemble_types.weighted(about.ensemble)
     gap = next((one.gap for one in known.to_remove or () if one.share == number.share), None) \
         if known and number and number.source == "ensemble" else None
-    return Letter(max((row.released_m3 for row in rows), default=0.0), number, gap, about.reach, read(about),
-                  [one.kind for one in judged.limits(about, bool(about.study.repeat))],
+    return Letter(max((row.released_m3 for row in rows), default=0.0), number, gap, about.reach,
+                  read_road_numbers(about), [one.kind for one in judged.limits(about, bool(about.study.repeat))],
                   about.size.text if about.size else sizes.alone(max(
                       (row.released_m3 / row.ball_m3 for row in rows), default=0.0)),
                   about.study.road["cut_angle"] if about.study.road else None, known.events if known else None)

@@ -37,12 +37,12 @@ class Said(NamedTuple):
     size: str
 
 
-def plain(_: str, __: str, value: float) -> str:
+def format_console_number(_: str, __: str, value: float) -> str:
     """A number on the console."""
     return three(value)
 
 
-def say(one: Letter, write: Write = plain) -> Said:
+def say(one: Letter, write: Write = format_console_number) -> Said:
     number = one.number
     return Said(f"{three(one.released)} m3 of ground would come down.", clear(number, write) if number else "",
                 f"{taken(one)} {basis(number, one, write)}".strip() if number else "", far(one.reach, write),
@@ -53,7 +53,7 @@ def say(one: Letter, write: Write = plain) -> Said:
                         share.cause == Cause.SIZE.value for share in number.band)))
 
 
-def lines(one: Letter) -> List[str]:
+def list_letter_lines(one: Letter) -> List[str]:
     """For the console."""
     return ["for a letter:", *(f"  {text}" for text in say(one) if text)]
 
@@ -159,11 +159,11 @@ def basis(number: Headline, one: Letter, write: Write) -> str:
         low, high = (write(f"{REMOVE}, {end} of the gap where no run ends", "m3", value)
                      for end, value in zip(("begin", "end"), one.gap))
         text += f"; no run ends where these events do, between {low} and {high} m3, of which the larger counts"
-    parts = shares(number) if number.high_m3 is not None else ""
+    parts = describe_band_shares(number) if number.high_m3 is not None else ""
     return f"{text}." + (f" The band, as the root of the squares: {parts}." if parts else "")
 
 
-def shares(number: Headline) -> str:
+def describe_band_shares(number: Headline) -> str:
     """What makes the band."""
     return ", ".join(CAUSES.get(one.cause, one.cause) + f" -{three(abs(one.below_m3))}" * bool(one.below_m3) +
                      f" +{three(one.above_m3)}" * bool(one.above_m3) + " m3"
@@ -193,15 +193,15 @@ def far(reach: Optional[Reach], write: Write) -> str:
     rule = f"by {runs}"
     if reach.events:
         rule = f"{runs} and {EVENTS} count half each; {percent(TAIL)} end before these bounds, {percent(TAIL)} beyond"
-    text = f"{distances(reach, write)} {reach.along} from the crown. {capital(rule)}"
+    text = f"{describe_distances(reach, write)} {reach.along} from the crown. {capital(rule)}"
     if reach.farther:
         text += f" The two differ by more than their bands: {reach.farther} go farther."
     return text + ("" if reach.events or not reach.why else f" {capital(reach.why)}")
 
 
-def distances(reach: Reach, write: Write) -> str:
+def describe_distances(reach: Reach, write: Write) -> str:
     near, middle, last = (
-        beyond(reach, write) if value is None else length(reach, value, write, name)
+        describe_beyond(reach, write) if value is None else length(reach, value, write, name)
         for value, name in ((reach.near_m, "near end"), (reach.middle_m, "middle"), (reach.far_m, "far end")))
     if near == last:
         return f"It goes {middle}"
@@ -210,7 +210,7 @@ def distances(reach: Reach, write: Write) -> str:
     return f"It goes about {middle} ({near.removesuffix(' m') if last.endswith(' m') else near} to {last})"
 
 
-def beyond(reach: Reach, write: Write) -> str:
+def describe_beyond(reach: Reach, write: Write) -> str:
     end = f" {write('how far, end of the elevation model', 'm', reach.end_m)} m that" if reach.end_m else " way that"
     return f"beyond the{end} the elevation model shows"
 
@@ -228,17 +228,17 @@ def roads(one: Letter, write: Write) -> str:
     text = at_road(road, both, write) if road else ""
     if not one.roads:
         return text
-    others = "; ".join(map(of_road, one.roads[1:]))
+    others = "; ".join(map(describe_road_number, one.roads[1:]))
     return f"{text} Of {len(one.roads)} roads this is the worst, {quoted(one.roads[0].road)}; {others}.".strip()
 
 
 def at_road(road: HeadlineRoad, both: str, write: Write) -> str:
     some = f"{road.brought.reach or 'none'} of {counted(road.brought.runs)}{both}"
     return (f"The road begins after {write('road, near edge', 'm', road.near_m)} m: "
-            f"{answer_words.shares(road.reached)} of {EVENTS}, and {some}, reach it.")
+            f"{answer_words.format_shares(road.reached)} of {EVENTS}, and {some}, reach it.")
 
 
-def of_road(one: Number) -> str:
+def describe_road_number(one: Number) -> str:
     events = f" and up to {percent(one.reached)} of known events" if one.reached else ""
     return f"{quoted(one.road)}: {one.text}, {one.reaching or 'none'} of {one.runs} runs{events} reach it"
 

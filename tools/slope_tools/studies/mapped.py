@@ -25,15 +25,15 @@ HALF = 0.5              # of a cell, which an outline covers
 SAME_MASS = 0.1         # of the released volume: a mapped deposit that holds so much less or more is not the same mass
 
 
-def of_site(site: Optional[Path]) -> Optional[Path]:
+def find_mapped_deposit(site: Optional[Path]) -> Optional[Path]:
     """The mapped deposit of a site's folder: its outline, or its thickness; None without one."""
     files = [site / f"{OBSERVED}{suffix}" for suffix in (".csv", ".tif")] if site else []
     return next((one for one in files if one.is_file()), None)
 
 
-def check(site: Path) -> None:
+def check_mapped_deposit(site: Path) -> None:
     """Raise SlopeError unless the mapped deposit of a site, if it has one, can be compared with its runs."""
-    path = of_site(site)
+    path = find_mapped_deposit(site)
     if path:
         score.read_observed(path, rasters.read_asc_local(site / TERRAIN), score.THRESHOLD, False)
 
@@ -53,7 +53,7 @@ def compare(path: Optional[Path], output: Path, rows: Sequence[Row],
             found.append(row)
             continue
         prefix = run_folders.prefix_of(run_folders.summary_of(output, row.summary))
-        run_ = deposit.read(prefix, terrain, lambda text: None)
+        run_ = deposit.read_deposit(prefix, terrain, lambda text: None)
         observed = score.read_observed(path, run_.raster, score.THRESHOLD, False)
         length = length_of(run_, terrain, observed)
         area = score.overlap(run_.raster.z > score.THRESHOLD, observed, run_.cell)
@@ -90,7 +90,7 @@ def length_of(run_: deposit.Deposit, terrain: Optional[Path], observed: score.Ob
     return float(run_length.lengths_of(points, path, run_)[0].max()) if len(points) else None
 
 
-def describe(about: study_types.Observed, rows: Sequence[Row]) -> List[str]:
+def describe_mapped(about: study_types.Observed, rows: Sequence[Row]) -> List[str]:
     """The comparison on the console, a line each."""
     found = of_rows(rows)
     best, mine = next((row, one) for row, one in found if row.run == about.best)

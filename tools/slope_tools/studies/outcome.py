@@ -8,7 +8,7 @@ from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tup
 
 import numpy as np
 
-from ..case.settings import as_number
+from ..case.settings import normalise_value
 from ..deposits import travel_shares
 from ..ensembles import ensemble
 from ..ensembles.known_events import TAILS, Draw
@@ -47,7 +47,8 @@ class Questions(NamedTuple):
     method: str = ""                                # of a site's study, in words
     chain: Optional[chain_files.Chain] = None       # of an ensemble: how likely its bodies fail in an earthquake
     known: Mapping[str, Any] = {}                   # of site.yaml: with which known events the runs are compared
-    roads: Sequence[Mapping[str, Any]] = ()         # of a site with several, whose worst is asked: road_numbers.entries
+    # of a site with several, whose worst is asked: road_numbers.list_road_entries
+    roads: Sequence[Mapping[str, Any]] = ()
     alone: bool = True                              # else study.yaml waits for the other study of the site
 
     @property
@@ -102,48 +103,50 @@ class Outcome:
     about: study_types.Study
 
 
-def evaluate(questions: Questions, read: Read, header: study_types.Header) -> Outcome:
+def evaluate_study(questions: Questions, read: Read, header: study_types.Header) -> Outcome:
     """The Outcome of a study; of an ensemble one run at least has finished."""
     rows, finished, order = read.rows, read.finished, questions.order
     groups = combinations.grouped(rows)
     names, scatters = combinations.averaged(groups), combinations.scatters(groups)
     keys = ["front_m", "thickness_m", "max_thickness_m", "max_speed_m_s"]
     keys += [key for key in (travel_shares.DISTANCE, "length_m") if key in names]
-    warnings = warnings_of(questions, read)
+    warnings = collect_study_warnings(questions, read)
     several = best = step = at_intensities = None
     if order:
         assert read.emulated is not None
-        several = ensemble.evaluate(order, rows, read.mobility, read.emulated, read.draw)
+        several = ensemble.evaluate_ensemble(order, rows, read.mobility, read.emulated, read.draw)
         if several:
             several = several._replace(about=replace(several.about, withheld=reasons(read)))
     elif read.road and finished:
         best, step = conservative(questions, read, groups)
     if finished and not order:      # drawn values have one run
-        at_intensities = intensity.evaluate(questions.intensity, questions.more_than, questions.settings, read.road,
-                                            groups)
+        at_intensities = intensity.evaluate_intensity(questions.intensity, questions.more_than, questions.settings,
+                                                      read.road, groups)
     if at_intensities and best:
-        best = replace(best, doubts=[*best.doubts, *intensity.doubts(at_intensities)])
-    chain = chain_files.evaluate(questions.chain, rows, reasons(read), read.size is not None) \
+        best = replace(best, doubts=[*best.doubts, *intensity.find_intensity_caveats(at_intensities)])
+    chain = chain_files.evaluate_chain(questions.chain, rows, reasons(read), read.size is not None) \
         if questions.chain and several and finished else None
     weighted = several.about if several else None
     source = Source.ENSEMBLE if order else Source.PAPER
     about = study_types.Study(
-        study=header, largest={key: largest(finished, key) for key in keys if finished},
-        farthest=travel_shares.farthest(finished).run if finished else None, conservative=best, size=read.size,
-        ensemble=weighted, step=step, largest_restitution=elastic.evaluate(read.elastic) if read.elastic else None,
+        study=header, largest={key: find_largest_row(finished, key) for key in keys if finished},
+        farthest=travel_shares.find_farthest_run(finished).run if finished else None, conservative=best, size=read.size,
+        ensemble=weighted, step=step, largest_restitution=elastic.evaluate_elastic(read.elastic) if read.elastic
+        else None,
         scatter={name: {"deviation": one.deviation, "degrees_of_freedom": one.degrees_of_freedom} if one else None
                  for name, one in scatters.items()},
-        combinations=combinations.entries(groups, names), envelope=None, exceedance=None, observed=read.observed,
+        combinations=combinations.list_combination_entries(groups, names), envelope=None, exceedance=None,
+        observed=read.observed,
         roads=[dict(one) for one in questions.roads], warnings=warnings, runs=rows, headline=None,
         reach=usable.reach(finished, source, read.among),
-        stretches=stretches(finished, known_weights(weighted)) if read.road and finished else None,
+        stretches=evaluate_stretches(finished, known_weights(weighted)) if read.road and finished else None,
         chain=chain.about if chain else None, intensity=at_intensities, next_step=None)
     said = answered.of_study(about, read.events and read.events.road(finished))
     return Outcome(questions, read, groups, names, scatters, warnings, several, chain,
                    replace(about, headline=said.about() if said else None))
 
 
-def warnings_of(questions: Questions, read: Read) -> List[Finding]:
+def collect_study_warnings(questions: Questions, read: Read) -> List[Finding]:
     """Those of before the study, then those on its runs of other kinds."""
     found = [finding(one) for one in questions.notes]
     warned = {one.kind for one in found if not one.part}
@@ -169,7 +172,7 @@ def other_settings(found: Mapping[str, str], here: Mapping[str, str]) -> Optiona
     """That they were found with such values of other variables of the deck, and are used with others; size and time of
     the runs have words of their own."""
     differ = [name for name in found.keys() & here.keys() - {*OF_ITS_OWN}
-              if as_number(found[name]) != as_number(here[name])]
+              if normalise_value(found[name]) != normalise_value(here[name])]
     said = (", ".join(f"{name} {one[name]}" for name in sorted(differ)) for one in (found, here))
     return Finding("other settings", dict(zip(("found", "here"), said))) if differ else None
 
@@ -213,11 +216,11 @@ def unseen(repeated: Mapping[str, Sequence[str]], defaults: Mapping[str, str]) -
         if offsets else []
 
 
-def stretches(rows: Sequence[Finished], known: Optional[Mapping[str, float]]) -> study_types.Stretches:
+def evaluate_stretches(rows: Sequence[Finished], known: Optional[Mapping[str, float]]) -> study_types.Stretches:
     """Of the road that finished runs block; known: weights by known events, or None."""
     weights = known or {row.run: 1.0 for row in rows if not row.batch}
-    found = road_runs.evaluate([road_runs.Run(weights[row.run], row.at_road.stretches, row.at_road.clearing)
-                                for row in rows if row.run in weights])
+    found = road_runs.evaluate_road_runs([road_runs.Run(weights[row.run], row.at_road.stretches, row.at_road.clearing)
+                                          for row in rows if row.run in weights])
     bodies: Dict[str, List[Any]] = {}
     for row in rows:
         if row.run in weights and VARIABLE in row.variables:
@@ -225,7 +228,7 @@ def stretches(rows: Sequence[Finished], known: Optional[Mapping[str, float]]) ->
     return replace(found, of_known_events=bool(known), bodies=road_runs.by_body(bodies) if len(bodies) > 1 else None)
 
 
-def largest(rows: Sequence[Finished], key: str) -> study_types.Largest:
+def find_largest_row(rows: Sequence[Finished], key: str) -> study_types.Largest:
     """The largest value of a column and the first run that has it."""
     values = [float(row.value(key)) for row in rows]
     k = values.index(max(values))

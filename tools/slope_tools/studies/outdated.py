@@ -9,11 +9,11 @@ from ..case import run_folders
 from ..case.data_files import data_files
 from ..errors import SlopeError
 from ..runs import dependencies, jobs
-from ..schemas import OBJECT, listed, mapping
+from ..schemas import OBJECT, list_of, mapping
 from ..sites import site_choices, site_deck, site_roads
 from ..tables import named_run
 
-SCHEMA = mapping({}, study=mapping({}, road=mapping({}, null=True)), roads=listed(OBJECT))
+SCHEMA = mapping({}, study=mapping({}, road=mapping({}, null=True)), roads=list_of(OBJECT))
 
 
 def changed(site: Path, study: Path) -> Optional[str]:
@@ -34,7 +34,8 @@ def changed(site: Path, study: Path) -> Optional[str]:
 def road_changed(folder: Path, study: Path) -> Optional[str]:
     """That the road of a study, or how it is cleared, is another one than the site's; else None, as where an older one
     does not say it."""
-    site, about = site_choices.load(folder), schemas.load(study / named_run.STUDY, "what `slope study` wrote", SCHEMA)
+    site, about = site_choices.load_site(folder), schemas.load_checked(study / named_run.STUDY,
+                                                                       "what `slope study` wrote", SCHEMA)
     if "study" not in about:
         return None
     road, had, above = site.choices.road, about["study"].get("road"), Path(os.path.abspath(study)).parent
@@ -54,7 +55,7 @@ def road_changed(folder: Path, study: Path) -> Optional[str]:
     return next((f"{key} of the road" for key, value in now.items() if had.get(key, value) != value), None)
 
 
-def check(folder: Path, study: Optional[Path]) -> None:
+def check_study_current(folder: Path, study: Optional[Path]) -> None:
     """Raise SlopeError if a folder is that of a site or a road, and its study is of other data or of another deck."""
     site = None if study is None or study == folder else site_roads.home(study)
     if site is None or study is None:

@@ -21,16 +21,16 @@ SIDES = (("west", "east"), ("south", "north"))
 FARTHEST = 20.0         # times as far as the path may the end of known events be looked for
 
 
-def lines(folder: Path) -> List[str]:
+def describe_outlook(folder: Path) -> List[str]:
     """In words: what is known without a run, what the study takes, and what kind of number it can be."""
-    site = site_choices.load(folder)
+    site = site_choices.load_site(folder)
     choices, found = site.choices, site.found
     said: List[str] = []
     floors: List[str] = []
     try:
-        mass = body.of_site(folder)
+        mass = body.read_mobility_body(folder)
         asked = known.choice(choices.known.set, (), choices.known.confined)
-        decides = known.of_body(mass, asked)
+        decides = known.compute_known_mobility(mass, asked)
     except SlopeError as error:
         said.append(f"the mass cannot be compared with known events: {error}")
     else:
@@ -46,9 +46,10 @@ def lines(folder: Path) -> List[str]:
             # behind all roads it is no reason against their numbers
             behind = met and all(one.passed < counts.path.length[-1] for one in met.values())
             (said if behind else floors).append(why)
-    numbers = site_study.wanted(site, site_study.plan(site, Setup(Path(), Path())), site_study.Asked(),
+    numbers = site_study.wanted(site, site_study.plan_site_study(site, Setup(Path(), Path())), site_study.Asked(),
                                 choices.study.points).points
-    said.append(f"the study takes about {site_disk.text(site_disk.study(folder, choices, found, numbers))} of disk")
+    said.append(f"the study takes about {site_disk.format_disk_size(site_disk.study(folder, choices, found, numbers))} "
+                "of disk")
     if why := coarse(1 + len(numbers)):
         said.append(f"the number will have neither a lower nor an upper bound, because {why}")
     elif floors:
@@ -65,7 +66,8 @@ def events_text(counts: Mobility, asked: known.Choice) -> str:
 def road_text(counts: Mobility, met: road.AtRoad, name: str) -> str:
     """Which share of known events reaches and passes the road; name: of one of several."""
     where = "first met" if met.met else f"which the fall path passes {rounded(met.beside, 4)} m beside,"
-    return f"the road{name and f' {name}'}, {where} after {rounded(met.length, 4)} m: {results.of_road(counts, met)}"
+    return (f"the road{name and f' {name}'}, {where} after {rounded(met.length, 4)} m: "
+            f"{results.describe_road_reach(counts, met)}")
 
 
 def terrain_ends(counts: Mobility, raster: Raster) -> Optional[str]:

@@ -18,38 +18,40 @@ from ..survey import geopackage, roads
 from ..tables import elastic, next_step, road_runs, study_maps, study_types, usable, withheld_words
 from ..tables.rows import Finished, Row, finished_of
 from . import body_depth, console, files, mapped, size_runs
-from .outcome import Questions, Read, evaluate
-from .run_rows import placed, prefix_of, rows_of, terrain_of, terrain_place
+from .outcome import Questions, Read, evaluate_study
+from .run_rows import placed, prefix_of, read_run_rows, terrain_of, terrain_place
 from .setup import Road, Setup
 
 
-def collect(setup: Setup, questions: Questions, todo: Sequence[Repeat], work: jobs.Work) -> Optional[study_types.Study]:
+def collect_results(setup: Setup, questions: Questions, todo: Sequence[Repeat],
+                    work: jobs.Work) -> Optional[study_types.Study]:
     """Read the runs, evaluate them, write and tell what they say; what study.yaml says, None where no run of an
     ensemble finished."""
     if questions.order and all(run.error for run in todo):
         return None     # study.perform says so
     at = questions.sizes or size_runs.AtFinest(size_runs.Made(todo, {}), None)
     todo = at.runs(todo)
-    raw, done = rows_of(setup, todo), [run for run in todo if not run.error]
+    raw, done = read_run_rows(setup, todo), [run for run in todo if not run.error]
     rows = at.rows(raw)
     first = done[0] if done else None
     place = terrain_place(first) if first else None
-    maps = study_maps.write([study_maps.Source(run.name, prefix_of(run), not run.batch) for run in done],
-                            questions.thresholds, setup.output, place)
-    found = read(setup, questions, todo, rows, maps.problem, work.defaults)._replace(draw=at.draw(raw))
+    maps = study_maps.write_study_maps([study_maps.Source(run.name, prefix_of(run), not run.batch) for run in done],
+                                       questions.thresholds, setup.output, place)
+    found = read_results(setup, questions, todo, rows, maps.problem, work.defaults)._replace(draw=at.draw(raw))
     header = study_types.Header(
-        deck=setup.deck.name, known=questions.among, set=listed(questions.settings), repeat=listed(questions.repeated),
+        deck=setup.deck.name, known=questions.among, set=list_settings(questions.settings),
+        repeat=list_settings(questions.repeated),
         runs=len(found.rows), finished=len(found.finished), method=questions.method, ranks=work.ranks, jobs=work.jobs,
         package=work.package, governs=setup.output.name, balls_thick=found.balls_thick, collected=provenance.now(),
         machine=provenance.machine(),
         body=os.path.relpath(setup.body.resolve(), setup.output.resolve()) if setup.body else None,
-        road=write_road(setup.output, setup.road, first) if setup.road and first else None)
-    outcome = evaluate(questions, found, header)
+        road=write_study_road(setup.output, setup.road, first) if setup.road and first else None)
+    outcome = evaluate_study(questions, found, header)
     made = next_step.Made(outcome.about, setup.output, given=setup.given)
     step = next_step.of_studies([made], outcome.about.headline)
-    size_runs.write(setup, at, questions.settings, questions.repeated, work.defaults)
-    about = files.write(outcome, replace(outcome.about, envelope=maps.envelope, exceedance=maps.exceedance,
-                                         next_step=step.about() if step else None), setup.output, place)
+    size_runs.write_levels(setup, at, questions.settings, questions.repeated, work.defaults)
+    about = files.write_study_files(outcome, replace(outcome.about, envelope=maps.envelope, exceedance=maps.exceedance,
+                                                     next_step=step.about() if step else None), setup.output, place)
     bodies_along = setup.output / f"{road_runs.BODIES}.gpkg"
     if about.stretches and about.stretches.bodies and setup.road and first:
         write_bodies(bodies_along, setup.road, first, about.stretches.bodies)
@@ -59,15 +61,15 @@ def collect(setup: Setup, questions: Questions, todo: Sequence[Repeat], work: jo
     return about
 
 
-def listed(several: Mapping[str, Sequence[str]]) -> study_types.Settings:
+def list_settings(several: Mapping[str, Sequence[str]]) -> study_types.Settings:
     """Values as study.yaml has them."""
     return {name: list(values) for name, values in several.items()}
 
 
-def read(setup: Setup, questions: Questions, todo: Sequence[Repeat], rows: Sequence[Row], problem: Optional[str],
-         defaults: Mapping[str, str]) -> Read:
+def read_results(setup: Setup, questions: Questions, todo: Sequence[Repeat], rows: Sequence[Row],
+                 problem: Optional[str], defaults: Mapping[str, str]) -> Read:
     """What an Outcome is evaluated from; problem: why there are no maps over all runs."""
-    rows, observed = mapped.compare(mapped.of_site(questions.site), setup.output, rows,
+    rows, observed = mapped.compare(mapped.find_mapped_deposit(questions.site), setup.output, rows,
                                     [terrain_of(run.folder, run.log) for run in todo])
     first, finished = next((run for run in todo if not run.error), None), finished_of(rows)
     row = finished[0] if finished else None
@@ -88,8 +90,9 @@ def read(setup: Setup, questions: Questions, todo: Sequence[Repeat], rows: Seque
         summary = run_folders.summary_of(setup.output, row.summary)
         mobility = known_events.mobility_of(questions.order.condition, summary.parent, summary)
     emulated = emulated_of(setup, questions.order, rows, mobility) if questions.order else None
-    most = elastic.read(questions.most_elastic, rows, setup.output) if row and questions.most_elastic else None
-    size = size_runs.about(setup, questions.sizes) if row and questions.sizes else None
+    most = elastic.read_elastic_runs(questions.most_elastic, rows,
+                                     setup.output) if row and questions.most_elastic else None
+    size = size_runs.summarise_finer_runs(setup, questions.sizes) if row and questions.sizes else None
     return Read(rows, setup.road is not None, among, events, mobility, emulated, observed, size, None, most, problem,
                 case_of(setup, questions, row) if row else None,
                 body_depth.in_balls(setup, finished), defaults)
@@ -100,8 +103,9 @@ def emulated_of(setup: Setup, order: ensemble.Order, rows: Sequence[Row],
     """What emulators say of the runs of an ensemble, kept with the study."""
     made_of = [order.sample.about, order.of, order.added and order.added.batches, rows,
                mobility and [mobility.outside, mobility.path.length, mobility.curves[mobility.chosen]]]
-    return records.read(ensemble.Emulated, kept.value(setup.output / ".emulated.json", made_of, lambda: records.plain(
-        ensemble.emulate(order, rows, mobility))))
+    return records.read_record(ensemble.Emulated, kept.value(
+        setup.output / ".emulated.json", made_of, lambda: records.encode_record(
+            ensemble.emulate(order, rows, mobility))))
 
 
 def case_of(setup: Setup, questions: Questions, row: Finished) -> withheld_words.Case:
@@ -114,12 +118,12 @@ def write_bodies(path: Path, road: Road, run: Repeat, entries: Sequence[Mapping[
     raster = placed(run_folders.load_raster(prefix_of(run), "thickness"), run)
     given = road.read(raster)
     axis, *_ = axis_of(given.lines, as_multi(given.polygon.intersection(box_of(raster))), road.asked)
-    geopackage.write(path, {
+    geopackage.write_geopackage(path, {
         road_runs.BODIES: road_runs.layer_of_bodies(entries, axes_of(axis, road.asked))}, raster)
 
 
-def write_road(output: Path, road: Road, run: Repeat) -> Dict[str, Any]:
+def write_study_road(output: Path, road: Road, run: Repeat) -> Dict[str, Any]:
     """Keep the road, in local metres, with the study; what study.yaml says of it."""
     raster = placed(run_folders.load_raster(prefix_of(run), "thickness"), run)
-    roads.write(output / "road.csv", road.read(raster), raster)
+    roads.write_road(output / "road.csv", road.read(raster), raster)
     return {**road.about(), "local": "road.csv"}

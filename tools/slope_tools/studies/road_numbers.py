@@ -61,11 +61,11 @@ class Number(NamedTuple):
         """The number with its unit, as the first page of the road has it."""
         if self.volume_m3 is None and self.kind != Kind.WITHHELD.value:
             return f"no number, up to {digits.three(self.most_m3)} m3 in a run"
-        return answer_words.volume(self.kind, self.volume_m3, "m3")
+        return answer_words.describe_volume(self.kind, self.volume_m3, "m3")
 
 
-def of_all(site: Site, several: bool, tell: Callable[[Any], Any],
-           make: Callable[[Site, Sequence[Mapping[str, Any]], bool], Made]) -> Made:
+def evaluate_all_roads(site: Site, several: bool, tell: Callable[[Any], Any],
+                       make: Callable[[Site, Sequence[Mapping[str, Any]], bool], Made]) -> Made:
     """The studies of a site by make(site with the road that is asked, entries of all roads, whether it is quiet).
 
     several: whether each of several roads is asked, then the worst as if it were alone; else the first one.
@@ -78,16 +78,16 @@ def of_all(site: Site, several: bool, tell: Callable[[Any], Any],
     made = {name: make(replace(site, road=name), (), True) for name in names}
     if not all(one.abouts for one in made.values()):
         return next(one for one in made.values() if not one.abouts)
-    found = in_order([number(name, one) for name, one in made.items()])
-    write(site.folder, {name: one.abouts for name, one in made.items()})
-    worst = make(site_roads.worst(site, found[0].road), entries(found), False)
-    tell(shown(found))
+    found = in_order([choose_road_number(name, one) for name, one in made.items()])
+    write_road_numbers(site.folder, {name: one.abouts for name, one in made.items()})
+    worst = make(site_roads.worst(site, found[0].road), list_road_entries(found), False)
+    tell(tabulate_road_numbers(found))
     tell(f"{site.folder / site_roads.TABLE}: each run, for each road; {site.folder / worst.page} is of the worst, "
          f"{found[0].road}")
     return worst._replace(failed=next((one.failed for one in (*made.values(), worst) if one.failed), None))
 
 
-def number(road: str, made: Made) -> Number:
+def choose_road_number(road: str, made: Made) -> Number:
     """Of a road, whose study that governs tells it; the largest of the runs of all its studies."""
     about, *_ = made.abouts
     said, rows = about.headline, finished_of(about.runs)
@@ -103,17 +103,17 @@ def in_order(numbers: Sequence[Number]) -> List[Number]:
     return sorted(numbers, key=lambda one: one.order, reverse=True)
 
 
-def entries(numbers: Sequence[Number]) -> List[Dict[str, Any]]:
+def list_road_entries(numbers: Sequence[Number]) -> List[Dict[str, Any]]:
     """For study.yaml."""
     return [one._asdict() for one in numbers]
 
 
-def read(about: study_types.Study) -> List[Number]:
+def read_road_numbers(about: study_types.Study) -> List[Number]:
     """Those of a study; none of a site with one road."""
     return [Number(**one) for one in about.roads]
 
 
-def shown(numbers: Sequence[Number]) -> Table:
+def tabulate_road_numbers(numbers: Sequence[Number]) -> Table:
     """A table for the console."""
     found = Table(title="to remove from each road")
     for head in ("road", "to remove", "runs that reach it", "page"):
@@ -135,10 +135,10 @@ def check_table(folder: Path, needed: bool) -> None:
         path.unlink()
 
 
-def write(folder: Path, studies: Mapping[str, Sequence[study_types.Study]]) -> None:
+def write_road_numbers(folder: Path, studies: Mapping[str, Sequence[study_types.Study]]) -> None:
     """roads.csv: a line for each road and finished run; studies: {road: what its study.yaml say}."""
     lines = []
     for road, several in studies.items():
         rows = {row.run: row for about in several for row in finished_of(about.runs)}
         lines += [[run, road, *(row.value(key) for key in KEYS)] for run, row in rows.items()]
-    disk.write(folder / site_roads.TABLE, disk.csv_text(HEAD.split(","), lines))
+    disk.write_file(folder / site_roads.TABLE, disk.csv_text(HEAD.split(","), lines))

@@ -9,7 +9,7 @@ import numpy as np
 
 from .. import disk, kept, records
 from ..case import logs, run_folders
-from ..findings import Finding, entries
+from ..findings import Finding, encode_findings
 from ..releases import release_toe
 from ..runs.repeats import Repeat
 from ..survey import file_parts, rasters
@@ -22,7 +22,7 @@ NAMELESS: Dict[str, Any] = {"run": "", "set": {}, "repeat": {}, "batch": 0}
 OF_SUMMARY = ("moves", "not counted")      # kinds of warnings
 
 
-def rows_of(setup: Setup, todo: Sequence[Repeat]) -> List[Row]:
+def read_run_rows(setup: Setup, todo: Sequence[Repeat]) -> List[Row]:
     """A row for each run, finished or failed."""
     found: List[Row] = []
     for run in rasters.progress(todo, "collecting the runs"):
@@ -43,25 +43,25 @@ def finished(run: Repeat, output: Path) -> Finished:
     run.log.update()
 
     def read() -> Finished:
-        found = kept.value(run.folder / ".row.json", state_of(run), lambda: measured(
+        found = kept.value(run.folder / ".row.json", state_of(run), lambda: measure_run(
             run.folder, run_folders.ended(run.folder)["summary"], run.log))
-        return records.read(Finished, {**NAMELESS, **found})
-    row: Finished = kept.once((run.folder, disk.stamp_of(run.marker)), read)
+        return records.read_record(Finished, {**NAMELESS, **found})
+    row: Finished = kept.make_once((run.folder, disk.stamp_of(run.marker)), read)
     return replace(row, run=run.name, set=run.combination, repeat=run.repeat, batch=run.batch,
                    summary=os.path.relpath(run.folder / row.summary, output))
 
 
 def state_of(run: Repeat) -> str:
-    state: str = kept.once(("state", run.folder, disk.stamp_of(run.marker)), lambda: run_folders.state(run.folder))
+    state: str = kept.make_once(("state", run.folder, disk.stamp_of(run.marker)), lambda: run_folders.state(run.folder))
     return state
 
 
 def alone(folder: Path, summary: Path, log: logs.Log) -> Finished:
     """The row of a run that is none of a study: it has no name."""
-    return records.read(Finished, {**NAMELESS, **disk.plain(measured(folder, summary.name, log))})
+    return records.read_record(Finished, {**NAMELESS, **disk.make_plain(measure_run(folder, summary.name, log))})
 
 
-def measured(folder: Path, summary_name: str, log: logs.Log) -> Dict[str, Any]:
+def measure_run(folder: Path, summary_name: str, log: logs.Log) -> Dict[str, Any]:
     """The fields of a Finished, but for what is asked of it; the summary as named in the run's folder."""
     from ..deposits import deposit, gone
     from ..mobility import run_length
@@ -74,30 +74,30 @@ def measured(folder: Path, summary_name: str, log: logs.Log) -> Dict[str, Any]:
     on_grid = float(np.nansum(thickness.z)) * thickness.transform.a ** 2
     base = run_folders.load_raster(prefix, "surface").z - thickness.z
     left = deposit.Deposit(str(prefix), thickness, base, summary, None)
-    length = run_length.of_run(left, terrain_of(folder, log))
+    length = run_length.measure_run_length(left, terrain_of(folder, log))
     return {"variables": about.get("variables") or {},
             quantities.STOP: site_ground.of_variables(about.get("variables")), "ranks": about.get("ranks"),
             "package": about.get("package"),
-            **quantities.of_length(length), "left": gone.entries(left),
+            **quantities.of_length(length), "left": gone.list_gone_groups(left),
             "ball_m3": volume["released"] / summary["balls"]["released"],
             "mass_error": (on_grid - stays) / volume["released"],
-            **quantities.of_summary(summary), **judged.columns(summary, log), "change_rate": summary.get("change_rate"),
-            "wall_s": marker.get("wall_seconds"), "summary": summary_name,
+            **quantities.of_summary(summary), **judged.list_ending_columns(summary, log),
+            "change_rate": summary.get("change_rate"), "wall_s": marker.get("wall_seconds"), "summary": summary_name,
             "slope_version": summary["slope_version"], "lammps_version": summary["lammps_version"],
-            "lmp_sha256": about.get("lmp_sha256"), **structures.of_run(folder, log.settings)}
+            "lmp_sha256": about.get("lmp_sha256"), **structures.read_run_structures(folder, log.settings)}
 
 
 def with_road(run: Repeat, road: Road, row: Finished) -> Finished:
     """With what `slope volume` says of it, which goes to the folder volume of the run, without the picture, and is kept
     there; and with what lies beyond."""
     def read() -> Tuple[OnRoad, Any]:
-        content = kept.once(("road", road.file), lambda: file_parts.content(str(road.file)))
+        content = kept.make_once(("road", road.file), lambda: file_parts.digest_content(str(road.file)))
         made_of = {"run": state_of(run), "road": road._replace(file=Path(road.file.name))._asdict(), "file": content}
         folder = run.folder / quantities.volume_folder(road.name)
         found = kept.value(folder / "row.json", made_of, functools.partial(measured_on, road, run, row),
                            lambda: [folder / name for name in ("volume.yaml", "volume.tif", "volume_mesh.tif")])
-        return records.read(OnRoad, found), found["left"]
-    on_road, left = kept.once((run.folder, disk.stamp_of(run.marker), road), read)
+        return records.read_record(OnRoad, found), found["left"]
+    on_road, left = kept.make_once((run.folder, disk.stamp_of(run.marker), road), read)
     return replace(row, road=on_road, left=left)
 
 
@@ -107,9 +107,9 @@ def measured_on(road: Road, run: Repeat, row: Finished) -> Dict[str, Any]:
     prefix = prefix_of(run)
     terrain, thickness = terrain_of(run.folder, run.log), run_folders.load_raster(prefix, "thickness")
     wanted = volume.Wanted(road.file, road.mesh, road.cut_angle, road.local, asked=road.asked)
-    found = volume.of_run(str(prefix), wanted, terrain)
-    volume.write(found, run.folder / quantities.volume_folder(road.name), picture=False)
-    about = disk.plain(found.about)       # numpy has no place in study.yaml
+    found = volume.compute_removal(str(prefix), wanted, terrain)
+    volume.write_removal(found, run.folder / quantities.volume_folder(road.name), picture=False)
+    about = disk.make_plain(found.about)       # numpy has no place in study.yaml
     released = run_folders.load_raster(prefix, "arrival").z == 0
     polygon, total = road.read(placed(thickness, run)).polygon, about["clearing"]
     taken = release_toe.on_body(body_depth.body_of(released, thickness, row.ball_m3), thickness, polygon,
@@ -125,8 +125,8 @@ def measured_on(road: Road, run: Repeat, row: Finished) -> Dict[str, Any]:
             "clear_hours": total.get("hours"), "stretches": about["stretches"], "clearing": total,
             "axis_m": about["axis"]["length"], "by_10_m": about["by_10_m"],
             # what it says of the summary is in the table
-            "road_warnings": entries(in_folder(one, run.folder) for one in found.warnings
-                                     if one.kind not in OF_SUMMARY)}
+            "road_warnings": encode_findings(in_folder(one, run.folder) for one in found.warnings
+                                             if one.kind not in OF_SUMMARY)}
 
 
 def in_folder(one: Finding, folder: Path) -> Finding:

@@ -7,16 +7,16 @@ from rich.table import Table
 
 from .. import disk, provenance
 from ..case import decks
-from ..case.settings import as_number
+from ..case.settings import normalise_value
 from ..deposits import travel_shares
 from ..errors import SlopeError
-from ..findings import Finding, entries
+from ..findings import Finding, encode_findings
 from ..runs import repeats
 from ..statistics.conservative_volume import Scatter
 from ..tables import judged, study_table
-from ..tables.quantities import ALL, NEED_ROAD, On, keys, number
-from ..tables.rows import Finished, plain
-from .run_rows import rows_of
+from ..tables.quantities import ALL, NEED_ROAD, On, keys, format_quantity
+from ..tables.rows import Finished, encode_row
+from .run_rows import read_run_rows
 from .setup import Setup
 
 OF_ROAD = "remove_m3,remove_on_road_m3"
@@ -57,7 +57,7 @@ def quantities(wanted: Optional[str], road: bool, converge: bool) -> List[str]:
     return of
 
 
-def plan(setup: Setup, base: Mapping[str, str], kinds) -> List[Trial]:
+def plan_trials(setup: Setup, base: Mapping[str, str], kinds) -> List[Trial]:
     """The base run, and one for each value of each variable that is not the base's."""
     first = Trial(setup.runs, base, "base")
     defaults = {**decks.index_variables(setup.deck), **base}
@@ -65,7 +65,7 @@ def plan(setup: Setup, base: Mapping[str, str], kinds) -> List[Trial]:
     for kind, variables in kinds.items():
         for name, several in variables.items():
             for value in several:
-                if as_number(value) == as_number(defaults[name]):
+                if normalise_value(value) == normalise_value(defaults[name]):
                     continue
                 todo.append(Trial(setup.runs, {**base, name: value}, kind, name))
     if len(todo) == 1:
@@ -73,12 +73,12 @@ def plan(setup: Setup, base: Mapping[str, str], kinds) -> List[Trial]:
     return todo
 
 
-def collect(setup: Setup, base, of, todo, work):
+def collect_trials(setup: Setup, base, of, todo, work):
     """Table, chart and sensitivity.yaml over all runs that finished."""
     defaults = {**work.defaults, **base}
     tried: List[Tried] = []
     warnings = []
-    for one, row in zip(todo, rows_of(setup, todo)):
+    for one, row in zip(todo, read_run_rows(setup, todo)):
         if isinstance(row, Finished):
             tried.append(Tried(one.kind, one.variable, one.chosen[one.variable] if one.variable else None, row))
         else:
@@ -90,17 +90,17 @@ def collect(setup: Setup, base, of, todo, work):
             if one.row.value(name) is None:
                 raise SlopeError("--of", f"must be known of every run; {name} is not of {one.row.run}")
     warnings += judged.not_at_rest([one.row for one in tried])
-    scatter = {name: spread(tried, name) for name in of}
+    scatter = {name: measure_spread(tried, name) for name in of}
     about = {"study": {"deck": setup.deck.name, "base": defaults, "runs": len(todo), "finished": len(tried),
                        "ranks": work.ranks, "package": work.package, "collected": provenance.now(),
                        "machine": provenance.machine(),
                        "road": setup.road.about() if setup.road else None},
              "scatter": scatter, "trust": [trust(tried, name, scatter[name]) for name in of],
-             "warnings": entries(warnings)}
+             "warnings": encode_findings(warnings)}
     for one in warnings:
         setup.warn(one)
-    disk.write(setup.output / "sensitivity.csv", table(tried, of, scatter, defaults))
-    disk.write(setup.output / "sensitivity.yaml", disk.yaml_text(
+    disk.write_file(setup.output / "sensitivity.csv", tabulate_sensitivity(tried, of, scatter, defaults))
+    disk.write_file(setup.output / "sensitivity.yaml", disk.yaml_text(
         "slope sensitivity: volumes in m3 of ground (bulk), lengths in m, angles in degrees", about))
     from ..drawing import figures
     figures.tornado(setup.output / "sensitivity.png", panels(tried, of, scatter), bars(tried, defaults),
@@ -113,7 +113,7 @@ def collect(setup: Setup, base, of, todo, work):
 
 # --- numbers ---
 
-def spread(tried: Sequence[Tried], name):
+def measure_spread(tried: Sequence[Tried], name):
     """Mean, standard deviation and range of the base run and its repeats; the deviation is None without repeats."""
     values = [one.of(name) for one in tried if one.kind != "vary"]
     return {"runs": len(values), "mean": statistics.fmean(values), "smallest": min(values), "largest": max(values),
@@ -143,19 +143,20 @@ def trust(tried: Sequence[Tried], name, about):
     what, unit = ALL[name].name, ALL[name].unit
     mean, deviation = about["mean"], about["standard_deviation"]
     if deviation is None:
-        text = f"{what}: {number(mean)} {unit} in the base run; without --repeat its scatter is unknown"
+        text = f"{what}: {format_quantity(mean)} {unit} in the base run; without --repeat its scatter is unknown"
     else:
         one = scatter_of(about).quantile * deviation
-        text = (f"{what}: {about['runs']} equivalent runs give {number(about['smallest'])} to "
-                f"{number(about['largest'])} {unit}, mean {number(mean)}, standard deviation {number(deviation)}"
-                f"{share(deviation, mean)}: one run is accurate to +- {number(one)} {unit}"
+        text = (f"{what}: {about['runs']} equivalent runs give {format_quantity(about['smallest'])} to "
+                f"{format_quantity(about['largest'])} {unit}, mean {format_quantity(mean)}, standard deviation "
+                f"{format_quantity(deviation)}"
+                f"{share(deviation, mean)}: one run is accurate to +- {format_quantity(one)} {unit}"
                 f"{share(one, mean)}, and two runs are different only if they differ by more "
-                f"than {number(math.sqrt(2) * one)} {unit}")
+                f"than {format_quantity(math.sqrt(2) * one)} {unit}")
     varied = [one for one in tried if one.kind == "vary"]
     if varied:
         most = max(varied, key=lambda one: abs(effect(one, name, about)))
         by = effect(most, name, about)
-        text += (f". Of the choices, {most.variable} {most.value} changes it most, by {number(by, '+')} {unit}"
+        text += (f". Of the choices, {most.variable} {most.value} changes it most, by {format_quantity(by, '+')} {unit}"
                  f"{share(by, mean, '+')}")
         if deviation is not None:
             clear = sum(is_clear(one, name, about) for one in varied)
@@ -169,12 +170,12 @@ def share(value, mean, sign=""):
 
 # --- output ---
 
-def table(tried: Sequence[Tried], of, scatter, defaults):
+def tabulate_sensitivity(tried: Sequence[Tried], of, scatter, defaults):
     """The CSV over all runs."""
-    columns = study_table.columns_of([one.row for one in tried])
+    columns = study_table.list_study_columns([one.row for one in tried])
 
     def line(one: Tried):
-        cells = {**plain(one.row), "moving": answer(one.row.moving), "at_rest": answer(one.row.at_rest)}
+        cells = {**encode_row(one.row), "moving": answer(one.row.moving), "at_rest": answer(one.row.at_rest)}
         mine = [cell for name in of for cell in (effect(one, name, scatter[name]),
                                                  answer(is_clear(one, name, scatter[name])))]
         return [one.row.run, one.kind, one.variable, one.value, defaults.get(one.variable), *mine,
@@ -215,10 +216,11 @@ def shown_of(tried: Sequence[Tried], of, scatter, defaults, deck) -> Table:
         shown.add_column("against the mean", justify="right")
     for one in tried:
         cells = [one.variable or "base", defaults.get(one.variable, ""), one.value or "",
-                 number(one.row.released_m3)]
+                 format_quantity(one.row.released_m3)]
         for name in of:
             by = effect(one, name, scatter[name])
             star = "*" if one.kind == "vary" and is_clear(one, name, scatter[name]) else " "
-            cells += [number(one.of(name)), f"{number(by, '+')}{share(by, scatter[name]['mean'], '+')}{star}"]
+            cells += [format_quantity(one.of(name)),
+                      f"{format_quantity(by, '+')}{share(by, scatter[name]['mean'], '+')}{star}"]
         shown.add_row(*cells, style="dim" if one.kind == "repeat" else None)
     return shown

@@ -52,11 +52,11 @@ def stop_angles(site: Site, others: bool = False) -> Dict[str, Dict[str, float]]
     return found
 
 
-def lines(site: Site, others: bool = False) -> List[str]:
+def describe_grounds(site: Site, others: bool = False) -> List[str]:
     """In words, a line for each ground; none where the stop angle is unknown."""
     grounds = stop_angles(site, others)
     try:
-        slope = steeper.below(body.of_site(site.folder)) if grounds else None
+        slope = steeper.below(body.read_mobility_body(site.folder)) if grounds else None
     except SlopeError:      # a level body has no fall path
         slope = None
     texts = []

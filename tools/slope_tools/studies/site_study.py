@@ -27,7 +27,7 @@ from ..tables.rows import Failed, finished_of
 from ..tables.sizes import VARIABLE
 from ..tables.step_check import Step, half_of
 from . import mapped, results, size_runs, study
-from .run_rows import rows_of
+from .run_rows import read_run_rows
 from .setup import Road, Setup
 
 # folders in the site's
@@ -36,7 +36,7 @@ LEDGER = "ledger"       # a deck's variable
 THRESHOLDS = (0.1, 0.5, 1.0)        # m, of the maps of exceedance
 
 
-def words(numbers: Iterable[float]) -> List[str]:
+def format_deck_values(numbers: Iterable[float]) -> List[str]:
     """Numbers as values of a deck's variable."""
     return [f"{value:.10g}" for value in numbers]
 
@@ -47,7 +47,7 @@ class Asked(NamedTuple):
     minutes: Optional[float] = None
 
 
-def asked_of(levels: Optional[str], minutes: Optional[float]) -> Asked:
+def parse_asked(levels: Optional[str], minutes: Optional[float]) -> Asked:
     """Of the words of options; SlopeError if they are none."""
     if levels is not None and not re.fullmatch(f"[1-{site_budget.MOST_SIZES}]", levels):
         raise SlopeError(size_runs.OPTION, f"must be 1 to {site_budget.MOST_SIZES} for a site, how many sizes of balls",
@@ -94,7 +94,7 @@ class Beside:
         return self.at
 
 
-def plan(site: Site, engine: Setup) -> Planned:
+def plan_site_study(site: Site, engine: Setup) -> Planned:
     """All runs of the sweep of a site, but for those with finer balls."""
     folder, choices = site.folder, site.choices
     deck, road, several = folder / site_deck.NAME, choices.road, choices.study
@@ -102,14 +102,14 @@ def plan(site: Site, engine: Setup) -> Planned:
     if road.file:
         setup = setup._replace(road=Road(site_roads.file_of(site), road.cut_angle, road.mesh, asked=road.asked,
                                          name=site.road))
-    settings, variables = {"rolling": words(several.rolling)}, decks.index_variables(deck)
+    settings, variables = {"rolling": format_deck_values(several.rolling)}, decks.index_variables(deck)
     chances: Dict[str, Any] = {PACKING: several.packing, **choices.older.get("study", {})}
-    repeated = {name: words(values) for name, values in chances.items() if name in variables and values}
+    repeated = {name: format_deck_values(values) for name, values in chances.items() if name in variables and values}
     middle = middle_of(settings["rolling"])
     others = grounds(choices, variables)
     if others:
         settings["spacing"] = [variables["spacing"]]
-    todo = repeats.plan(setup.runs, settings, repeated, variables, others)
+    todo = repeats.plan_repeats(setup.runs, settings, repeated, variables, others)
     if others:
         settings["spacing"] = list(dict.fromkeys([*settings["spacing"], *(one["spacing"] for one in others)]))
     half = half_steps(setup, middle, variables) if setup.road else []
@@ -120,7 +120,7 @@ def plan(site: Site, engine: Setup) -> Planned:
 def wanted(site: Site, planned: Planned, asked: Asked, points=0, alone=False) -> size_runs.Wanted:
     """The runs with finer balls; points: of the ensemble beside, or, alone, of one without a sweep."""
     found, levels = site.found, asked.levels or planned.choices.study.levels
-    plan_ = site_budget.plan(planned.choices)._replace(points=points)
+    plan_ = site_budget.plan_budget(planned.choices)._replace(points=points)
     if alone:
         plan_ = plan_._replace(paper=0, elastic=0, half_step=False)
     minutes, time = asked.minutes or planned.choices.balls.minutes, None
@@ -144,32 +144,33 @@ def jobs_of(setup: Setup) -> int:
     return setup.jobs or max(1, jobs.cores() // setup.ranks)
 
 
-def make(planned: Planned) -> None:
+def make_site_runs(planned: Planned) -> None:
     """Make or continue the runs of a site with the coarsest balls; what failed is known by them."""
-    with contextlib.suppress(study.RunsFailed):     # collect() says so
+    with contextlib.suppress(study.RunsFailed):     # collect_site_results() says so
         study.perform(planned.setup, {**planned.settings, **planned.repeated}, planned.runs, lambda *_: None,
                       first=planned.half)
 
 
-def run(site: Site, engine: Setup, method: str, asked: Asked, roads: Sequence[Mapping[str, Any]] = ()) -> Done:
+def run_site_study(site: Site, engine: Setup, method: str, asked: Asked,
+                   roads: Sequence[Mapping[str, Any]] = ()) -> Done:
     """Make or continue the sweep of a site, and its results.
 
     engine: how the runs are made; its deck, output and road do not count; method: of the study, in words; roads: of
     Questions. Raises SlopeError on bad input, and if no run of the study finished.
     """
-    planned = plan(site, engine)
+    planned = plan_site_study(site, engine)
 
     def finer(work: jobs.Work) -> size_runs.AtFinest:
         return size_runs.settle(planned.setup, work, [one for one in planned.todo if not one.error],
                                 wanted(site, planned, asked))
 
-    return collect(site, planned, method, finer, roads)
+    return collect_site_results(site, planned, method, finer, roads)
 
 
-def collect(site: Site, planned: Planned, method: str, finer: Callable[[jobs.Work], size_runs.AtFinest],
-            roads: Sequence[Mapping[str, Any]] = (), alone: bool = True, made: bool = False) -> Done:
-    """The results of the runs of a site, which are made first, unless make() did it (made); finer: makes those with
-    finer balls and says what these tell; the others as of run() and Questions."""
+def collect_site_results(site: Site, planned: Planned, method: str, finer: Callable[[jobs.Work], size_runs.AtFinest],
+                         roads: Sequence[Mapping[str, Any]] = (), alone: bool = True, made: bool = False) -> Done:
+    """The results of the runs of a site, which are made first, unless make_site_runs() did it (made); finer: makes
+    those with finer balls and says what these tell; the others as of run_site_study() and Questions."""
     folder, setup, todo, half = site.folder, planned.setup, planned.todo, planned.half
 
     def results_of(_, work):
@@ -177,9 +178,9 @@ def collect(site: Site, planned: Planned, method: str, finer: Callable[[jobs.Wor
         questions = results.Questions(
             planned.settings, planned.repeated, THRESHOLDS, notes=[*notes_of(site, roads), *at.warnings], site=folder,
             sizes=at, most_elastic=elastic_of(setup, planned.elastics, at),
-            step=step_of(setup, half[0], planned.middle, planned.variables, at) if half else None, method=method,
+            step=judge_step_run(setup, half[0], planned.middle, planned.variables, at) if half else None, method=method,
             known=asdict(planned.choices.known), roads=roads, alone=alone)
-        return results.collect(setup, questions, todo, work)
+        return results.collect_results(setup, questions, todo, work)
 
     failed: Optional[Exception] = None
     try:
@@ -202,7 +203,7 @@ def collect(site: Site, planned: Planned, method: str, finer: Callable[[jobs.Wor
     return Done(setup.output, about, failed)
 
 
-def check(site: Folder[Choices]) -> None:
+def check_site(site: Folder[Choices]) -> None:
     """Raise SlopeError unless all files of a site exist and match its choices."""
     folder, found = site.folder, site.found
     for name in (site_deck.NAME, *found.files):
@@ -220,7 +221,7 @@ def check(site: Folder[Choices]) -> None:
         if found.sources_sha256.get(name, digest) != digest:
             raise SlopeError(folder / name, f"must not have changed since {site_deck.NAME} was made from it: "
                              f"`slope site {quote(str(folder))}` rebuilds the deck")
-    mapped.check(folder)
+    mapped.check_mapped_deposit(folder)
 
 
 def digests(site: Site) -> Dict[str, str]:
@@ -229,10 +230,10 @@ def digests(site: Site) -> Dict[str, str]:
             if name != site_choices.NAME and (site.folder / name).is_file()}
 
 
-def warnings_of(folder: Path) -> List[Finding]:
+def read_site_warnings(folder: Path) -> List[Finding]:
     """The warnings of `slope site`, which the results repeat; none for a site of an older version."""
     path = folder / site_warnings.NAME
-    said = schemas.load(path, "what `slope site` wrote", FINDINGS) if path.is_file() else None
+    said = schemas.load_checked(path, "what `slope site` wrote", FINDINGS) if path.is_file() else None
     return [finding(one) for one in said or ()]
 
 
@@ -240,12 +241,13 @@ def notes_of(site: Site, roads: Sequence[Mapping[str, Any]]) -> List[Finding]:
     """The same without those of other roads; roads: of Questions."""
     mine = roads[0]["road"] if roads else site.road
     others = set(site_roads.names(site)) - {mine}
-    return [one for one in warnings_of(site.folder) if one.numbers.get("file") not in others]
+    return [one for one in read_site_warnings(site.folder) if one.numbers.get("file") not in others]
 
 
 def grounds(choices: OfMass, variables: Dict[str, str]) -> List[Dict[str, str]]:
     """The runs on other grounds; none for a deck of an older version, whose ground is a plan grid."""
-    return [{"rolling": rolling, "spacing": spacing} for spacing, rolling in map(words, choices.other_grounds)] \
+    return [{"rolling": rolling, "spacing": spacing} for spacing, rolling
+            in map(format_deck_values, choices.other_grounds)] \
         if ground.SEED in variables else []
 
 
@@ -253,17 +255,17 @@ def half_steps(setup: Setup, rolling: str, variables: Dict[str, str]) -> List[re
     """One run with half the time step, which keeps account of its energy, too, unless the deck is of a version that
     cannot."""
     settings = {"rolling": [rolling], "step": [half_of(variables)], **({LEDGER: ["1"]} if LEDGER in variables else {})}
-    return repeats.plan(setup.runs, settings, {}, variables)
+    return repeats.plan_repeats(setup.runs, settings, {}, variables)
 
 
-def step_of(setup: Setup, run_: repeats.Repeat, rolling: str, variables: Dict[str, str],
-            at: size_runs.AtFinest) -> Step:
+def judge_step_run(setup: Setup, run_: repeats.Repeat, rolling: str, variables: Dict[str, str],
+                   at: size_runs.AtFinest) -> Step:
     """What that run tells, at the finest size as the others."""
-    [row] = at.rows(rows_of(setup, [run_]))
+    [row] = at.rows(read_run_rows(setup, [run_]))
     if isinstance(row, Failed):
         return Step(rolling, None, f"{run_.name}: {row.error}", step=float(run_.chosen["step"]))
     prefix = run_folders.prefix_of(run_folders.summary_of(setup.output, row.summary))
-    return Step(rolling, row.at_road.remove_m3, energy=energy.read(Path(f"{prefix}.{energy.SUFFIX}"))
+    return Step(rolling, row.at_road.remove_m3, energy=energy.read_energies(Path(f"{prefix}.{energy.SUFFIX}"))
                 if LEDGER in variables else None, spacing=variables.get("spacing"),
                 step=float(run_.chosen["step"]))
 
@@ -276,14 +278,14 @@ def elastic_runs(setup: Setup, largest: Optional[float], rolling: List[str], rep
         return []
     most = [f"{max(largest, *(float(variables[name]) for name in elastic.VARIABLES)):.10g}"]
     settings = {"rolling": [min(rolling, key=float)], **dict.fromkeys(elastic.VARIABLES, most)}
-    return repeats.plan(setup.runs, settings, repeated, variables)
+    return repeats.plan_repeats(setup.runs, settings, repeated, variables)
 
 
 def elastic_of(setup: Setup, runs: List[repeats.Repeat], at: size_runs.AtFinest) -> Optional[elastic.Made]:
     """What these runs tell at the finest size, whatever the road; None: there are none."""
     if not runs:
         return None
-    rows = at.rows(rows_of(setup._replace(road=None), runs))
+    rows = at.rows(read_run_rows(setup._replace(road=None), runs))
     return elastic.Made(float(runs[0].chosen[elastic.VARIABLES[0]]), runs[0].chosen["rolling"], rows)
 
 
@@ -295,5 +297,5 @@ def scored(folder: Path, setup: Setup, about: study_types.Study) -> None:
                    if row.run == name)
     outline = folder / f"{OBSERVED}.csv"
     setup.tell(f"{name} against the mapped deposit:")
-    setup.tell(score_run.make(str(run_folders.prefix_of(summary)),
-                              outline if outline.is_file() else folder / f"{OBSERVED}.tif", folder / SCORE))
+    setup.tell(score_run.make_score(str(run_folders.prefix_of(summary)),
+                                    outline if outline.is_file() else folder / f"{OBSERVED}.tif", folder / SCORE))

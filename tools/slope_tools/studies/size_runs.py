@@ -12,7 +12,7 @@ from typing import Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence
 import numpy as np
 
 from .. import disk
-from ..case.settings import as_number, check_settings
+from ..case.settings import normalise_value, check_settings
 from ..deposits import travel_shares
 from ..errors import SlopeError
 from ..findings import Finding
@@ -25,7 +25,7 @@ from ..tables.quantities import REMOVE
 from ..tables.rows import Finished, Row, finished_of
 from ..tables.sizes import VARIABLE, Sizes
 from . import body_depth
-from .run_rows import rows_of
+from .run_rows import read_run_rows
 from .setup import Setup
 
 OPTION = "--levels"
@@ -75,7 +75,7 @@ class SizeRun(Repeat):
         super().__init__(output, point.combination, point.repeat)
         self.batch = point.batch
         self.chosen = {**self.chosen, VARIABLE: value}
-        self.move(Path(output) / jobs.name_of(self.chosen))
+        self.move(Path(output) / jobs.name_run(self.chosen))
         self.varied = f"{point.varied}, {VARIABLE} {value}"
 
     def made(self, runs: store.Store) -> bool:
@@ -127,10 +127,10 @@ class AtFinest(NamedTuple):
         by_name, found = {row.run: row for row in finished_of(raw)}, self.sizes
         if found is None:
             return None
-        return functools.partial(drawn, found, by_name)
+        return functools.partial(correct_drawn_values, found, by_name)
 
 
-def drawn(found: Sizes, raw: Mapping[str, Finished], rows: Sequence[Finished], key: str) -> np.ndarray:
+def correct_drawn_values(found: Sizes, raw: Mapping[str, Finished], rows: Sequence[Finished], key: str) -> np.ndarray:
     return found.draws([raw[row.run] for row in rows], key, DRAWS)
 
 
@@ -145,7 +145,7 @@ def of_deck(option: Optional[str], deck: Path, points: int, names: Sequence[str]
     if VARIABLE in names:
         raise SlopeError(OPTION, "must not name a variable that --set, --vary or --repeat names", VARIABLE)
     [(name, values)] = check_settings([option], deck, OPTION).items()
-    numbers = [as_number(value) for value in values]
+    numbers = [normalise_value(value) for value in values]
     if name != VARIABLE:
         raise SlopeError(OPTION, f"must name {VARIABLE}, the variable of the deck that is the diameter of the balls",
                          name)
@@ -163,7 +163,7 @@ def halved_times(diameter: str, number: int) -> str:
 
 def halved(diameter: str, numbers: Sequence[int], time: Optional[site_budget.Time] = None, more=False) -> Wanted:
     """Diameters d, d/2, d/4 and so on; time, more: as of Wanted."""
-    d = as_number(diameter)
+    d = normalise_value(diameter)
     if not (isinstance(d, float) and d > 0):
         raise SlopeError(OPTION, f"must be of a deck whose variable {VARIABLE} is the diameter of the balls", diameter)
     return Wanted([diameter, *(halved_times(diameter, k) for k in range(1, len(numbers) + 1))], numbers, time, more)
@@ -191,19 +191,19 @@ def pick_largest(rows: Sequence[Finished]) -> Pick:
     lengths = lengths_of(rows)
     along = lengths / max(lengths.max(initial=0.0), 1e-9)
     if not rows or not rows[0].road:
-        return Pick([travel_shares.farthest(rows).run] if rows else [], along)
+        return Pick([travel_shares.find_farthest_run(rows).run] if rows else [], along)
     groups = combinations.grouped(rows)
     best = conservative_volume.predict([one.of(REMOVE) for one in groups]).combination
     rows = next(one.rows for one in groups if one.name == best)
     return Pick([max(rows, key=lambda row: row.at_road.remove_m3).run], along)
 
 
-def make(setup: Setup, work: jobs.Work, points: Sequence[Repeat], wanted: Optional[Wanted],
-         pick: Callable[[Sequence[Finished]], Pick] = pick_largest) -> Made:
+def make_finer_runs(setup: Setup, work: jobs.Work, points: Sequence[Repeat], wanted: Optional[Wanted],
+                    pick: Callable[[Sequence[Finished]], Pick] = pick_largest) -> Made:
     """Make the runs with finer balls of points that ran with the coarsest ones, the longest first; pick: of the rows of
     these.  Runs of before that are not wanted any more are taken."""
     common = setup.road is not None and setup.road.name != ""       # studies of several roads have these runs in common
-    known = finished_of(rows_of(setup._replace(road=None) if common else setup, points)) \
+    known = finished_of(read_run_rows(setup._replace(road=None) if common else setup, points)) \
         if wanted and wanted.values[1:] else []
     if not wanted or not known:
         return Made(points, {})
@@ -237,8 +237,8 @@ def orders_of(times: np.ndarray, first: np.ndarray, where: np.ndarray, numbers: 
     """
     def ordered(limits, start: Sequence[int]) -> List[int]:
         inside = np.flatnonzero(times <= limits)
-        return inside[ball_sizes.spread(where[inside], [int(k) for k in np.searchsorted(inside, start)],
-                                        len(inside))].tolist()
+        return inside[ball_sizes.order_spread_points(where[inside], [int(k) for k in np.searchsorted(inside, start)],
+                                                     len(inside))].tolist()
 
     quick = np.where(first, SLOW, LONG)
     fine = ordered(quick, np.flatnonzero(first & (times <= SLOW))[:1].tolist())
@@ -255,17 +255,17 @@ def add(setup: Setup, made: Made, wanted: Wanted, point: Repeat, k: int) -> Size
 
 def settle(setup: Setup, work: jobs.Work, points: Sequence[Repeat], wanted: Optional[Wanted],
            pick: Callable[[Sequence[Finished]], Pick] = pick_largest) -> AtFinest:
-    """make(), then the finest runs of those on which numbers rest once all rows are at the finest size, as these change
-    what others are there; at last of others, so that there are as many as were wanted."""
+    """make_finer_runs(), then the finest runs of those on which numbers rest once all rows are at the finest size, as
+    these change what others are there; at last of others, so that there are as many as were wanted."""
     if wanted:
         wanted = wanted.with_finished(
             lambda value: sum(SizeRun(setup.runs, one, value).made(work.store) for one in points))
-    made = make(setup, work, points, wanted, pick)
+    made = make_finer_runs(setup, work, points, wanted, pick)
     at, left = at_finest(setup, made), made.late
     for _ in range(ROUNDS):
         if not at.sizes or not wanted or not wanted.points:
             break
-        rows = [replace(row, run=one.name) for one, row in zip(points, at.rows(rows_of(setup, at.runs(points))))]
+        rows = [replace(row, run=one.name) for one, row in zip(points, at.rows(read_run_rows(setup, at.runs(points))))]
         first = pick(finished_of(rows)).first
         without = [one for one in made.next if not made.has(one, len(wanted.points) - 1)]
         now = [one for one in without if one.name in first][:max(left, 1)] or without[:left]
@@ -301,29 +301,30 @@ def at_finest(setup: Setup, made: Made) -> AtFinest:
     if not made.finer:
         return AtFinest(made, None)
     failed = [run for several in made.finer.values() for run in several if run and run.error]
-    warnings = judged.failed([row for row in rows_of(setup, failed) if not isinstance(row, Finished)])
-    several = [[run and rows_of(setup, [run])[0] for run in made.runs(one)] for one in made.points]
+    warnings = judged.failed([row for row in read_run_rows(setup, failed) if not isinstance(row, Finished)])
+    several = [[run and read_run_rows(setup, [run])[0] for run in made.runs(one)] for one in made.points]
     points = [[row if isinstance(row, Finished) else None for row in one] for one in several]
-    return AtFinest(made, sizes.of(points), warnings)
+    return AtFinest(made, sizes.combine_sizes(points), warnings)
 
 
-def write(setup: Setup, found: AtFinest, settings, repeated, defaults) -> None:
+def write_levels(setup: Setup, found: AtFinest, settings, repeated, defaults) -> None:
     """levels.csv: all runs of points with several sizes, as they were run; none of one size."""
     path = setup.output / FILE
     if not found.sizes:
         path.unlink(missing_ok=True)
         return
     runs = [run for one in found.made.points if one.folder in found.made.finer for run in found.made.runs(one) if run]
-    rows = [row for row in rows_of(setup, runs) if isinstance(row, Finished)]
-    disk.write(path, study_table.table({**settings, VARIABLE: []}, repeated, rows, defaults))
+    rows = [row for row in read_run_rows(setup, runs) if isinstance(row, Finished)]
+    disk.write_file(path, study_table.tabulate_study({**settings, VARIABLE: []}, repeated, rows, defaults))
 
 
-def about(setup: Setup, found: AtFinest) -> Optional[study_types.Size]:
+def summarise_finer_runs(setup: Setup, found: AtFinest) -> Optional[study_types.Size]:
     """The entry of study.yaml."""
     if not found.sizes:
         return None
     finest = max((run for one in found.made.points for run in found.made.runs(one) if run),
                  key=lambda run: -float(run.chosen.get(VARIABLE, "inf")))
-    [row] = finished_of(rows_of(setup._replace(road=None), [finest]))
+    [row] = finished_of(read_run_rows(setup._replace(road=None), [finest]))
     of_run = row.released_m3 / row.ball_m3 * float(row.variables[VARIABLE]) ** 3
-    return sizes.about(found.sizes, body_depth.mean(setup, row), [of_run / d ** 3 for d in found.sizes.diameters])
+    return sizes.summarise_sizes(found.sizes, body_depth.mean(setup, row),
+                                 [of_run / d ** 3 for d in found.sizes.diameters])

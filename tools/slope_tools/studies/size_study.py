@@ -9,16 +9,16 @@ from rich.table import Table
 
 from .. import disk, provenance
 from ..case import decks
-from ..case.settings import as_number, check_settings
+from ..case.settings import normalise_value, check_settings
 from ..errors import SlopeError
-from ..findings import entries
+from ..findings import encode_findings
 from ..runs import repeats
 from ..statistics import convergence, rounding
 from ..tables import combinations, judged, sizes, study_table
 from ..tables.quantities import ALL
 from ..tables.rows import finished_of
 from . import body_depth, study
-from .run_rows import rows_of
+from .run_rows import read_run_rows
 from .setup import Setup
 
 OPTION = "--converge"
@@ -33,17 +33,18 @@ class Plan(NamedTuple):
     todo: List[repeats.Repeat]
 
 
-def run(setup: Setup, converge: str, base, repeated, of) -> None:
+def run_size_study(setup: Setup, converge: str, base, repeated, of) -> None:
     """Do it; base: {name: value} of all runs, of: columns of the study's table."""
-    planned = plan(setup, converge, base, repeated)
-    study.perform(setup, {**planned.settings, **repeated}, planned.todo, lambda _, work: collect(planned, of, work))
+    planned = plan_size_study(setup, converge, base, repeated)
+    study.perform(setup, {**planned.settings, **repeated}, planned.todo, lambda _,
+                  work: collect_sizes(planned, of, work))
 
 
-def plan(setup: Setup, converge: str, base, repeated) -> Plan:
-    """See run(); SlopeError on bad input."""
+def plan_size_study(setup: Setup, converge: str, base, repeated) -> Plan:
+    """See run_size_study(); SlopeError on bad input."""
     [(variable, values)] = check_settings([converge], setup.deck, OPTION).items()
     for value in values:
-        number = as_number(value)
+        number = normalise_value(value)
         if not (isinstance(number, float) and 0 < number < float("inf")):
             raise SlopeError(OPTION, f"must give numbers > 0 for {variable}", value)
     if len(values) < 2:
@@ -54,14 +55,14 @@ def plan(setup: Setup, converge: str, base, repeated) -> Plan:
             raise SlopeError(OPTION, f"must not name a variable of {option}", variable)
     settings = {**{name: [value] for name, value in base.items()}, variable: values}
     return Plan(setup, settings, repeated, variable,
-                repeats.plan(setup.runs, settings, repeated, decks.index_variables(setup.deck)))
+                repeats.plan_repeats(setup.runs, settings, repeated, decks.index_variables(setup.deck)))
 
 
-def collect(planned: Plan, of, work) -> None:
+def collect_sizes(planned: Plan, of, work) -> None:
     """Compare and write what the finished runs tell."""
     setup, settings, repeated, variable, todo = planned
     names = {name: (ALL[name].name, ALL[name].unit) for name in of}
-    rows = rows_of(setup, todo)
+    rows = read_run_rows(setup, todo)
     finished = finished_of(rows)
     groups = combinations.grouped(rows)
     if len(groups) < 2:     # nothing to compare; perform() names the run that failed
@@ -77,7 +78,8 @@ def collect(planned: Plan, of, work) -> None:
     balls = [depth and depth / float(group.set[variable]) for group in groups]
     found = {name: convergence.compare([(float(group.set[variable]), list(group.of(name).volumes.values()))
                                         for group in groups], balls) for name in of}
-    sentences = {name: convergence.words(one, variable, *names[name], writer(one)) for name, one in found.items()}
+    sentences = {name: convergence.describe_convergence(one, variable, *names[name], writer(one)) for name, one
+                 in found.items()}
     base = {**work.defaults, **{name: several[0] for name, several in settings.items() if name != variable}}
     base.pop(variable)
     about = {"study": {"deck": setup.deck.name, "variable": variable, "values": settings[variable], "base": base,
@@ -85,16 +87,17 @@ def collect(planned: Plan, of, work) -> None:
                        "package": work.package, "collected": provenance.now(), "machine": provenance.machine(),
                        "road": setup.road.about() if setup.road else None},
              "quantities": {name: entry(one, names[name], sentences[name]) for name, one in found.items()},
-             "warnings": entries(warnings)}
+             "warnings": encode_findings(warnings)}
     for one in warnings:
         setup.warn(one)
     setup.output.mkdir(exist_ok=True)
-    disk.write(setup.output / "converge.csv", table(found, variable))
-    disk.write(setup.output / "converge_runs.csv", study_table.table(settings, repeated, rows, work.defaults))
-    disk.write(setup.output / "converge.yaml", disk.yaml_text(
+    disk.write_file(setup.output / "converge.csv", tabulate_sizes(found, variable))
+    disk.write_file(setup.output / "converge_runs.csv", study_table.tabulate_study(settings, repeated, rows,
+                                                                                   work.defaults))
+    disk.write_file(setup.output / "converge.yaml", disk.yaml_text(
         f"slope sensitivity --converge: values of {variable}; volumes in m3 of ground (bulk), lengths in m", about))
     from ..tables import convergence_chart
-    convergence_chart.draw(
+    convergence_chart.draw_convergence(
         setup.output / "converge.png", variable, [(*names[name], found[name], [
             (float(group.set[variable]), row.value(name)) for group in groups for row in group.rows]) for name in of],
         f"{setup.deck.name}: {len(finished)} runs, {len(groups)} values of {variable}")
@@ -107,8 +110,8 @@ def collect(planned: Plan, of, work) -> None:
 def writer(found: convergence.Convergence):
     """A function that writes a value rounded to what is known, by the largest scatter of a run."""
     scatter = max((size.scatter or 0.0 for size in found.sizes), default=0.0)
-    step = rounding.place(scatter) if scatter else rounding.place_of_digits(found.sizes[0].mean)
-    return lambda value: rounding.text(value, step)
+    step = rounding.choose_rounding(scatter) if scatter else rounding.place_of_digits(found.sizes[0].mean)
+    return lambda value: rounding.format_rounded(value, step)
 
 
 def entry(found: convergence.Convergence, name, sentences):
@@ -122,7 +125,7 @@ def entry(found: convergence.Convergence, name, sentences):
         "words": sentences}
 
 
-def table(found, variable):
+def tabulate_sizes(found, variable):
     """The CSV: a row per quantity and size, with the difference from the size that was halved."""
     rows = []
     for name, one in found.items():

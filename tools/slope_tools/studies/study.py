@@ -12,7 +12,7 @@ from ..ensembles import known_events
 from ..errors import SlopeError
 from ..findings import Finding
 from ..mobility import known
-from ..options import number
+from ..options import parse_number
 from ..programs import find_lmp
 from ..runs import dependencies, jobs, launcher, slurm, store
 from ..statistics import designs
@@ -31,19 +31,19 @@ def perform(setup: Setup, settings, todo, collect, begin=None, first=(), made=Fa
     """
     files = data_files(setup.deck, settings)
     if setup.road:
-        check_road(setup.road, setup.deck, settings)
+        check_deck_road(setup.road, setup.deck, settings)
     check_output(setup)
     if setup.dry_run:
         digests = {name: disk.sha256(source) for name, source in files.items()}
         depends = dependencies.Dependencies(setup.deck, digests, program_of(setup))
         store.Store(setup.runs, depends, setup.older, setup.anew).admit(todo)
-        setup.tell("\n".join(listed(store.once(todo))))
+        setup.tell("\n".join(list_runs(store.select_distinct_runs(todo))))
         return None
     with prepared(setup, files, len(todo)) as work:
         work.store.admit(todo)
         if begin:
             begin()
-        once = store.once(todo)     # of runs that share a folder the first in todo is made
+        once = store.select_distinct_runs(todo)     # of runs that share a folder the first in todo is made
         if not made:
             work.do([*(run for run in first if run in once), *todo])
         found = collect(todo, work)
@@ -90,9 +90,9 @@ def prepared(setup: Setup, files, number):
     cores = jobs.cores()
     most = setup.jobs or max(1, cores // setup.ranks)
     make: Callable[..., jobs.Work] = jobs.Work
-    launcher.check(setup.launcher, setup.ranks)
+    launcher.check_launcher(setup.launcher, setup.ranks)
     if setup.engine == "slurm":
-        slurm.check(setup.slurm)
+        slurm.check_slurm(setup.slurm)
         make = functools.partial(slurm.Work, options=setup.slurm, throttle=setup.jobs)
     elif setup.slurm:
         raise SlopeError("--slurm", "must be given with --engine slurm", setup.slurm)
@@ -150,7 +150,7 @@ class OfAKind(NamedTuple):
 
 def check_more_than(volumes: Sequence[float], variable: Optional[str], settings, road: bool) -> None:
     """Raise SlopeError if volumes are given that no intensity has; variable: of --intensity."""
-    if volumes and not intensity.check(variable, settings, road):
+    if volumes and not intensity.check_intensity(variable, settings, road):
         raise SlopeError("--more-than", "needs an intensity (--intensity, or a variable of several values called peak, "
                          "pga or ...intensity) and --road", ",".join(f"{one:g}" for one in volumes))
 
@@ -159,7 +159,7 @@ def condition_of(choice: Optional[known.Choice], named: Optional[str], site: Opt
                  confined: Optional[str]) -> Optional[known_events.Condition]:
     """The condition that known events make, None without a choice of them; SlopeError if these say more of none."""
     if choice:
-        return known_events.check(choice, named, site)
+        return known_events.check_condition(choice, named, site)
     for name, given in (("--except", left_out), ("--confined or --unconfined", confined is not None)):
         if given:
             raise SlopeError(name, "must be given with --known")
@@ -173,7 +173,7 @@ def check_thresholds(text, option="--exceed", what="thicknesses"):
     found = []
     for part in text.split(","):
         try:
-            value = number(part)
+            value = parse_number(part)
         except argparse.ArgumentTypeError:
             value = -1.0
         if value < 0 or value in found:
@@ -182,10 +182,10 @@ def check_thresholds(text, option="--exceed", what="thicknesses"):
     return found
 
 
-def check_road(road: Road, deck: Path, settings) -> None:
+def check_deck_road(road: Road, deck: Path, settings) -> None:
     """Raise SlopeError now if the road cannot be used after the runs, as far as the deck names its terrain."""
     from ..survey import roads, vectors
-    roads.check(road.asked)
+    roads.check_road(road.asked)
     if not vectors.is_there(road.file):
         raise SlopeError("--road", "must be an existing file", road.file)
     if not 0 < road.cut_angle < 90:
@@ -215,7 +215,7 @@ def check_output(setup: Setup) -> None:
         raise SlopeError("-o", "must not be the folder of the deck", setup.output)
 
 
-def listed(todo):
+def list_runs(todo):
     """A line for each run, and one for all."""
     for one in todo:
         values = " ".join(f"{name} {value}" for name, value in one.chosen.items())

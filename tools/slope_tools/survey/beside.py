@@ -12,7 +12,7 @@ from rasterio.crs import CRS
 
 from ..errors import SlopeError
 from ..findings import Finding
-from ..geometry import extent, numbers
+from ..geometry import extent, format_numbers
 from . import rasters
 from .crs import same_crs, transform
 from .rasters import Raster, crs_name
@@ -27,8 +27,9 @@ class Local(NamedTuple):
     guessed: bool = False       # they may be: they are where that alone puts the raster on the terrain
 
 
-def read(path: Union[str, Path], terrain: Raster, heights: bool = True, crs: Optional[CRS] = None,
-         local: Local = Local(), warn: Optional[Callable[[Finding], Any]] = None, remedy: str = "") -> Raster:
+def read_raster_beside(path: Union[str, Path], terrain: Raster, heights: bool = True, crs: Optional[CRS] = None,
+                       local: Local = Local(), warn: Optional[Callable[[Finding], Any]] = None,
+                       remedy: str = "") -> Raster:
     """A raster file, in a CRS if the terrain has one: coordinates are transform * (column, row) + offset.
 
     heights: the values are, and become metres; crs: of the raster, whatever it says. warn: called with what is taken
@@ -53,7 +54,8 @@ def read(path: Union[str, Path], terrain: Raster, heights: bool = True, crs: Opt
 
 def unexplained(path: Union[str, Path], of_survey: Raster, terrain: Raster, guess: bool,
                 warn: Optional[Callable[[Finding], Any]], remedy: str) -> Raster:
-    """A raster without a CRS in the survey's coordinates, or by a guess in the terrain's local metres, see read()."""
+    """A raster without a CRS in the survey's coordinates, or by a guess in the terrain's local metres, see
+    read_raster_beside()."""
     as_local = of_survey._replace(offset=terrain.offset)
     if guess and terrain.offset != (0.0, 0.0) and touches(as_local, terrain):
         if not touches(of_survey, terrain):
@@ -90,7 +92,7 @@ def touches(found: Raster, terrain: Raster) -> bool:
 
 
 def on_cells(path: Union[str, Path], found: Raster, terrain: Raster) -> np.ndarray:
-    """The values of read() at the cells of the terrain: bilinear, exact at the raster's own centres.
+    """The values of read_raster_beside() at the cells of the terrain: bilinear, exact at the raster's own centres.
 
     NaN where it has none; raises SlopeError if it has none on the whole terrain.
     """
@@ -107,15 +109,16 @@ def on_cells(path: Union[str, Path], found: Raster, terrain: Raster) -> np.ndarr
     if np.isfinite(values).any():
         return values
     origins = "" if found.offset == terrain.offset else (
-        f" (origin {numbers(found.offset)}, the terrain's {numbers(terrain.offset)})")
-    raise SlopeError(path, f"must overlap the terrain, local x y {numbers(extent(terrain))}",
-                     (numbers(box(found, terrain)) if same else f"coordinates in {crs_name(found.crs)}") + origins)
+        f" (origin {format_numbers(found.offset)}, the terrain's {format_numbers(terrain.offset)})")
+    raise SlopeError(path, f"must overlap the terrain, local x y {format_numbers(extent(terrain))}",
+                     (format_numbers(box(found, terrain)) if same else f"coordinates in {crs_name(found.crs)}") +
+                     origins)
 
 
 def heights_on(path: Union[str, Path], terrain: Raster, local: bool = False,
                warn: Optional[Callable[[Finding], Any]] = None) -> np.ndarray:
     """Heights (m) of a raster file at the cells of a terrain; local: those that no file places are in local metres."""
-    return on_cells(path, read(path, terrain, local=Local(local, True), warn=warn), terrain)
+    return on_cells(path, read_raster_beside(path, terrain, local=Local(local, True), warn=warn), terrain)
 
 
 def check_unit(path: Union[str, Path], found: Raster, terrain: Raster, unit: str) -> None:

@@ -13,7 +13,7 @@ from rasterio.errors import CRSError
 
 from ..errors import SlopeError
 from ..findings import Finding
-from ..geometry import numbers
+from ..geometry import format_numbers
 
 # without the database of PROJ coordinates come out hundreds of metres wrong in another CRS, without a word
 KNOWN = 30169       # EPSG, one of the many that PROJ knows by its database only
@@ -125,12 +125,12 @@ def sister(crs) -> Optional[str]:
             if area and one.area_of_use and one.area_of_use.east - one.area_of_use.west > 3 * (area.east - area.west):
                 continue        # of the world or a continent; there are many
             found = CRS.from_authority(one.auth_name, one.code)
-            if {axis.direction for axis in found.axis_info} == {"east", "north"} and same(found, wanted):
+            if {axis.direction for axis in found.axis_info} == {"east", "north"} and is_same_crs(found, wanted):
                 return f"{one.auth_name}:{one.code}"
     return None
 
 
-def same(found, wanted) -> bool:
+def is_same_crs(found, wanted) -> bool:
     """Whether two systems (of pyproj) have one datum and one projection, but for their axes."""
     if found.geodetic_crs.datum.name != wanted.geodetic_crs.datum.name:
         return False
@@ -187,4 +187,4 @@ def require_degrees(crs, bounds, where, remedy="--assign-crs EPSG:n overrides a 
     west, south, east, north = bounds
     if max(-west, east) > 360 or max(-south, north) > 90:
         raise SlopeError(where, f"coordinates in {crs_name(crs)} must be longitude and latitude; {remedy}",
-                         numbers(bounds))
+                         format_numbers(bounds))

@@ -27,7 +27,7 @@ def attribute(about: Mapping[str, Any], name: str) -> Any:
     return next((value for key, value in about.items() if key.lower() == name and value not in (None, "")), None)
 
 
-def name_of(about: Mapping[str, Any], number: int) -> str:
+def name_feature(about: Mapping[str, Any], number: int) -> str:
     """What messages call a feature: its attribute `name`, else its number in the file, from 1."""
     name = attribute(about, "name")
     return f"feature {number}" if name is None else str(name)
@@ -57,13 +57,13 @@ def depths(path: str) -> Dict[str, Optional[float]]:
     """{name: depth (m) or None} of the features of a file; none of a text, which has no attributes."""
     if polygons.read_text(path) is not None:
         return {}
-    found = vectors.read(path, "Polygon")
-    return {f"{name_of(about, number)} (feature {number})": depth_of(vectors.source(path).path, number, about)[0]
+    found = vectors.read_vector_layer(path, "Polygon")
+    return {f"{name_feature(about, number)} (feature {number})": depth_of(vectors.source(path).path, number, about)[0]
             for number, about in zip(found.numbers, found.attributes)}
 
 
-def read(path: str, geometry: BaseGeometry, raster, local=False, crs=None, sized=True,
-         advice=polygons.ADVICE) -> List[Polygon]:
+def read_polygon_features(path: str, geometry: BaseGeometry, raster, local=False, crs=None, sized=True,
+                          advice=polygons.ADVICE) -> List[Polygon]:
     """The polygons of a file whose geometry polygons.read_local() gave; its other arguments.
 
     Features that overlap or touch are one polygon, unless their depths differ: then the ground that several have is of
@@ -71,13 +71,13 @@ def read(path: str, geometry: BaseGeometry, raster, local=False, crs=None, sized
     """
     if polygons.read_text(path) is not None:
         return distinct([Polygon("", one) for one in polygons_of(geometry)], raster)
-    where, found = vectors.source(path).path, vectors.read(path, "Polygon")
+    where, found = vectors.source(path).path, vectors.read_vector_layer(path, "Polygon")
     own = None if local else crs or found.known_crs(path, advice.wrong_crs)
     each = []
     for number, (at, shape), about in zip(found.numbers, found.features, found.attributes):
         depth = depth_of(where, number, about) if sized else (None, "")
         if not shape.is_empty:
-            each.append(Polygon(name_of(about, number), polygons.of_feature(
+            each.append(Polygon(name_feature(about, number), polygons.of_feature(
                 at, shape, raster, own, advice, anywhere=True, local=local), *depth))
     groups: Dict[Tuple[Optional[float], str], List[Polygon]] = {}
     for one in each:
@@ -96,10 +96,10 @@ def distinct(several: List[Polygon], raster) -> List[Polygon]:
     """The same, with the place of those that no name tells apart."""
     names = [one.name for one in several]
     return [one if one.name and names.count(one.name) == 1 else
-            one._replace(name=f"{one.name or 'the polygon'} {place(one.geometry, raster)}") for one in several]
+            one._replace(name=f"{one.name or 'the polygon'} {locate_feature(one.geometry, raster)}") for one in several]
 
 
-def place(geometry: BaseGeometry, raster) -> str:
+def locate_feature(geometry: BaseGeometry, raster) -> str:
     """Where a geometry in local metres lies, in coordinates of the survey."""
     x, y = geometry.representative_point().coords[0]
     return f"at east {x + raster.offset[0]:.1f} north {y + raster.offset[1]:.1f}"

@@ -65,7 +65,7 @@ def is_one(path):
 
 # --- files ---
 
-def read(path):
+def read_fggml_tiles(path):
     """All tiles of an .xml or .zip, a list of Tile; SlopeError if there are none or one is broken."""
     try:
         with open(path, "rb") as source:
@@ -78,7 +78,7 @@ def read(path):
             return _tiles(source, str(path))
     except NotTiles as error:
         raise SlopeError(path, "must be a raster or FG-GML elevation data (Dataset with a DEM)"
-                         + zips.remedy(str(path)), error) from None
+                         + zips.suggest_zip_remedy(str(path)), error) from None
     except OSError as error:
         raise SlopeError(path, f"cannot be read: {error.strerror or error}") from error
 
@@ -127,7 +127,7 @@ def _read_zip(source, where, room=None):
             raise SlopeError(name, f"is damaged ({str(error)[:LONGEST]})") from error
     if outer and not tiles:
         inside = [member.filename for member in archive.infolist() if not zips.is_of_macos(member.filename)]
-        other = next((way for name in inside if (way := zips.remedy(name))), "")
+        other = next((way for name in inside if (way := zips.suggest_zip_remedy(name))), "")
         raise SlopeError(where, f"must hold FG-GML elevation tiles (.xml), it has none{other}",
                          f"{len(archive.infolist())} files")
     return tiles

@@ -20,7 +20,7 @@ SOURCE = re.compile(r"<(?:Source(?:Filename|Dataset)|SrcDataSource)([^>]*)>([^<]
 RELATIVE = re.compile(r"""relativetovrt\s*=\s*["']?(1|yes|true|on)""", re.IGNORECASE)
 
 
-def content(path: str) -> str:
+def digest_content(path: str) -> str:
     """Digest of a file, with the files that it reads and those beside it that say what it means."""
     parts = [os.path.basename(one) + digest(one) for one in of_file(path)]
     return hashlib.sha256("\n".join(parts).encode("utf-8")).hexdigest()

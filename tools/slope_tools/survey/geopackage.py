@@ -30,7 +30,7 @@ OF_STYLE = {"f_table_catalog": "str", "f_table_schema": "str", "f_table_name": "
             "owner": "str", "ui": "str", "update_time": "datetime"}
 
 
-def write(path: Path, layers: Dict[str, Layer], raster: Raster, styles: Mapping[str, str] = {}) -> None:
+def write_geopackage(path: Path, layers: Dict[str, Layer], raster: Raster, styles: Mapping[str, str] = {}) -> None:
     """Write layers, from the local metres of a raster to its CRS; styles: of QGIS (QML), {layer: text}."""
     crs = raster.crs.to_wkt() if raster.crs is not None else None
     with fiona.Env(OGR_CURRENT_DATE=NO_DATE), MemoryFile(ext=".gpkg") as memory:    # on disk it would be half-written
@@ -47,7 +47,7 @@ def write(path: Path, layers: Dict[str, Layer], raster: Raster, styles: Mapping[
                     **dict.fromkeys(OF_STYLE, ""), "f_table_name": name, "f_geometry_column": "geom", "styleName": name,
                     "styleQML": text, "useAsDefault": True, "update_time": NO_DATE}} for name, text in styles.items())
         data = bytes(memory.getbuffer())
-    disk.write(path, data if crs else cartesian(data))
+    disk.write_file(path, data if crs else cartesian(data))
 
 
 def cartesian(data: bytes) -> bytes:

@@ -37,7 +37,7 @@ def joined(lines):
     return MultiLineString(list(getattr(merged, "geoms", [merged])))
 
 
-def once(lines):
+def remove_doubled_lines(lines):
     """Lines with what is drawn more than once, or there and back, drawn once; which share of the length that is.
 
     Each with the number of the first of the lines there, whose direction it has.
@@ -79,7 +79,7 @@ def read_drawn(path, raster, local, what="line", advice=None, crs=None, warn=vec
         text_, named = vectors.plain_text(path, text_)
         crs = crs or (None if local else named)
     if text_ is None:
-        found = vectors.read(path, "Line", warn)
+        found = vectors.read_vector_layer(path, "Line", warn)
         own = None if local or crs else found.known_crs(path, (advice or polygons.ADVICE).wrong_crs)
         geometry, abouts = GeometryCollection([one for _, one in found.features]), found.attributes
     else:
@@ -98,7 +98,7 @@ def read_drawn(path, raster, local, what="line", advice=None, crs=None, warn=vec
     others = [one for one in getattr(geometry, "geoms", []) if not parts_of(one)]
     if left_out := kinds(GeometryCollection(others)):
         warn(Finding("no line", {"file": path, "kinds": left_out}))
-    pieces, twice = once(parts)
+    pieces, twice = remove_doubled_lines(parts)
     if twice:
         warn(Finding("drawn twice", {"file": path, "percent": 100 * twice}))
     about = [each[number][1] for _, number in pieces]
@@ -155,7 +155,7 @@ def text_geometry(path, text):
         if polygons.WKT.match(re.sub("#.*", "", text).lstrip()):
             each = [wkt.loads(one) for _, one in vectors.statements(text)]
             return each[0] if len(each) == 1 else GeometryCollection(each), None
-        found = text_points.read(text, fail)
+        found = text_points.read_text_points(text, fail)
         return MultiLineString([[point for _, point in block] for block in found.blocks]), found.head.unit
     except (ShapelyError, ValueError, TypeError, AttributeError) as error:
         raise SlopeError(path, "must be a line: GeoJSON, shapefile, WKT, or CSV with x,y in its lines "

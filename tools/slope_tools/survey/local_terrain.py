@@ -12,11 +12,11 @@ from rasterio.crs import CRS
 
 from ..errors import SlopeError
 from ..findings import Finding
-from ..geometry import numbers
+from ..geometry import format_numbers
 from . import fggml, plausible, rasters, zips
 from .crs import as_crs, require_axes, require_metres, warn_of_north, warn_of_stretch
 from .holes import fill, small_holes
-from .marks import Marks, text
+from .marks import Marks, format_mark
 from .rasters import Raster
 from .resampling import needed, regrid
 from .terrain import DIFFER, Tile, declare, merge, read_fggml
@@ -49,7 +49,7 @@ def checked_crs(wanted: Wanted) -> Tuple[Optional[CRS], Optional[CRS]]:
     if wanted.fill < 0:
         raise SlopeError("--fill", "must be >= 0", wanted.fill)
     if wanted.bounds and not (wanted.bounds[0] < wanted.bounds[2] and wanted.bounds[1] < wanted.bounds[3]):
-        raise SlopeError("--bounds", "W S E N must have W < E and S < N", numbers(wanted.bounds))
+        raise SlopeError("--bounds", "W S E N must have W < E and S < N", format_numbers(wanted.bounds))
     crs = assigned = None
     if wanted.crs:
         crs = as_crs("--crs", wanted.crs)
@@ -65,8 +65,8 @@ def own_crs(path: str, wanted: Wanted, assigned: Optional[CRS]) -> Optional[CRS]
     return as_crs(f"--assign-crs {path}", wanted.own[path]) if path in wanted.own else assigned
 
 
-def make(inputs: Sequence[str], output: Path, wanted: Wanted, tell: Callable[[str], Any],
-         warn: Callable[[Finding], Any]) -> Dict[str, Any]:
+def make_local_terrain(inputs: Sequence[str], output: Path, wanted: Wanted, tell: Callable[[str], Any],
+                       warn: Callable[[Finding], Any]) -> Dict[str, Any]:
     """Write the terrain of survey files to output (.asc, with its sidecar); returns the sidecar, and surveyed_cell: the
     size (m) of the largest cells of the files, about; 0 for FG-GML.
 
@@ -105,7 +105,7 @@ def make(inputs: Sequence[str], output: Path, wanted: Wanted, tell: Callable[[st
             regrid(raster, crs, cell, wanted.bounds, keep, warn, tile.whole)        # says what is wrong with them
         raise SlopeError(", ".join(inputs), "must have a height, all cells are NODATA")
     for absent in marks.not_found:
-        warn(Finding("no such cell", {"value": text(absent), "low": float(np.nanmin(raster.z)),
+        warn(Finding("no such cell", {"value": format_mark(absent), "low": float(np.nanmin(raster.z)),
                                       "high": float(np.nanmax(raster.z))}))
     check_pits(raster, marks, ", ".join(inputs), wanted.pits, warn)
     plausible.warn_of_picture(raster, warn)
@@ -148,7 +148,7 @@ def check_pits(raster: Raster, marks: Marks, where: str, allowed: bool, warn: Ca
     warn(said)
 
 
-def summary(name: object, about: Dict[str, Any]) -> str:
+def describe_terrain(name: object, about: Dict[str, Any]) -> str:
     """What the user needs to know of a terrain."""
     size, extent, height, origin = (about[key] for key in ("size", "extent", "height", "origin"))
     return (f"{name}: {size['columns']} x {size['rows']} cells of {about['cell']:.6g} m, "

@@ -48,7 +48,7 @@ def cells_of(stored: np.ndarray, value: float) -> np.ndarray:
     return at
 
 
-def text(value: Union[np.generic, float]) -> str:
+def format_mark(value: Union[np.generic, float]) -> str:
     """A value with the digits that tell it from all others of its type, as --nodata takes it."""
     found = str(value)
     return found[:-2] if found.endswith(".0") else found
@@ -81,7 +81,7 @@ class Marks:
                               if limits is None or one.is_integer() and limits.min <= one <= limits.max]),
                 (self.extremes, [heights.min(), heights.max()] if heights.size else [])):
             metres = scale.metres(scale.in_unit(np.array(values, stored.dtype)))
-            found.update((height, text(value)) for height, value in zip(metres.tolist(), values))
+            found.update((height, format_mark(value)) for height, value in zip(metres.tolist(), values))
 
     @property
     def not_found(self) -> List[float]:
@@ -90,7 +90,7 @@ class Marks:
 
     def options(self, value: str) -> str:
         """--nodata with what is given and another value."""
-        return " ".join(f"--nodata {one}" for one in (*map(text, self.given), value))
+        return " ".join(f"--nodata {one}" for one in (*map(format_mark, self.given), value))
 
 
 def in_metres(z: np.ndarray) -> Marks:

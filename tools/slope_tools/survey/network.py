@@ -327,7 +327,7 @@ def side_by_side(roads: Sequence[One], width: float) -> List[List[int]]:
     """Which roads are the carriageways of one: of one name, or without any and next to each other."""
     pairs = [(k, j) for (k, one), (j, other) in combinations(enumerate(roads), 2)
              if (one.words & other.words or not one.words | other.words)
-             and beside(one.line, other.line, APART if one.words else WIDTHS * width)]
+             and is_beside(one.line, other.line, APART if one.words else WIDTHS * width)]
     if not pairs:
         return []
     rows, columns = np.transpose(pairs)
@@ -337,7 +337,7 @@ def side_by_side(roads: Sequence[One], width: float) -> List[List[int]]:
     return [group for group in groups if len(group) > 1]
 
 
-def beside(one: LineString, other: LineString, apart: float) -> bool:
+def is_beside(one: LineString, other: LineString, apart: float) -> bool:
     """Whether the shorter of two lines runs along the other for half of its length or more, no farther than that."""
     short, long = sorted((one, other), key=lambda line: line.length)
     chord = math.dist(short.coords[0][:2], short.coords[-1][:2])

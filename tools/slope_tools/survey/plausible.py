@@ -7,7 +7,7 @@ import numpy as np
 from ..errors import SlopeError
 from ..findings import Finding
 from .grids import UNITS, Raster
-from .marks import Marks, text
+from .marks import Marks, format_mark
 
 DEEP = 10.0         # m; a pit is deeper than this and than STEEP_SIDES cells, on all sides
 STEEP_SIDES = 2.0
@@ -58,7 +58,7 @@ def apart(z: np.ndarray, marks: Marks, deep: float) -> Optional[Pits]:
         if span > 0 and gap > max(deep, span):
             at = z == last
             mark = float(last)
-            return Pits(mark, marks.extremes.get(mark, text(mark)), at, largest_group(at), float(gap), side)
+            return Pits(mark, marks.extremes.get(mark, format_mark(mark)), at, largest_group(at), float(gap), side)
     return None
 
 
@@ -83,7 +83,7 @@ def pits_of(z: np.ndarray, at: np.ndarray, mark: float, stored: str, deep: float
     return Pits(mark, stored, is_pit[groups], int(sizes[is_pit].max()), float(depth[is_pit[1:]].min()))
 
 
-def remedy(found: Pits, marks: Marks) -> str:
+def suggest_pit_remedy(found: Pits, marks: Marks) -> str:
     """What can be done about pits."""
     at_edge = any(side.any() for side in (found.cells[[0, -1]], found.cells[:, [0, -1]]))
     return f"{marks.options(found.stored)} makes them NODATA, " + (
@@ -99,7 +99,8 @@ def pits_said(raster: Raster, marks: Marks) -> Optional[Finding]:
     x, y = raster.transform * (column + 0.5, row + 0.5)
     x, y = x + raster.offset[0], y + raster.offset[1]
     return Finding("pits", {"cells": int(found.cells.sum()), "mark": found.shown, "depth": found.least,
-                            "side": found.side, "east": float(x), "north": float(y), "remedy": remedy(found, marks)})
+                            "side": found.side, "east": float(x), "north": float(y),
+                            "remedy": suggest_pit_remedy(found, marks)})
 
 
 def warn_of_picture(raster: Raster, warn: Callable[[Finding], Any]) -> None:

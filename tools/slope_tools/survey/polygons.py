@@ -1,7 +1,8 @@
 """Reading polygons (GeoJSON, shapefile, CSV, WKT) to the local metres of a terrain: the one place that does it.
 
-The deck's own format, which `region polygon` reads and write() writes: rings of lines `x,y`, a blank line between two
-rings, # starts a comment. A point is inside if it is inside an odd number of rings, so that holes are rings, too.
+The deck's own format, which `region polygon` reads and write_polygon() writes: rings of lines `x,y`, a blank line
+between two rings, # starts a comment. A point is inside if it is inside an odd number of rings, so that holes are
+rings, too.
 """
 import logging
 import re
@@ -20,7 +21,7 @@ from shapely.validation import explain_validity
 
 from .. import disk
 from ..errors import SlopeError
-from ..geometry import extent, numbers, polygons_of
+from ..geometry import extent, format_numbers, polygons_of
 from . import text_points, vectors
 from .crs import require_degrees, same_crs
 from .text_points import FARTHEST
@@ -31,7 +32,7 @@ CUT = 1e-3         # m, between the halves of a cut geometry in another CRS
 DIGITS = 6     # decimals of a written coordinate, m: beyond them is the noise of origins and projections
 EXCHANGED = " (with x and y exchanged it would)"
 NO_PLACE = (SlopeError, ShapelyError, ValueError)       # raised for points where a CRS has no coordinates
-HEAD = "local metres:"       # in the first line of what write() wrote
+HEAD = "local metres:"       # in the first line of what write_polygon() wrote
 PLACE = re.compile(rf"^# {HEAD} .+", re.MULTILINE)
 WKT = re.compile(vectors.KINDS, re.IGNORECASE)
 
@@ -57,10 +58,10 @@ def read_local(path, raster, local=False, crs=None, advice=ADVICE, warn=vectors.
 
     raster: the terrain, a Raster of rasters.read_asc_local() or a Place of rasters.read_place(). Format by content and
     suffix: the deck's format (.csv), text with WKT, else what fiona opens. Coordinates of a file with a CRS are
-    reprojected to the terrain's; those of CSV and WKT are taken to be in the terrain's CRS, but of a file that write()
-    wrote, which are local already. local=True: the file's coordinates are local, whatever CRS it names. crs: the CRS of
-    the file, whatever it names; a layer of it: FILE|layername=NAME. Polygons that overlap or touch become one. warn is
-    called with a line for each doubt. Raises SlopeError, which names file and place.
+    reprojected to the terrain's; those of CSV and WKT are taken to be in the terrain's CRS, but of a file that
+    write_polygon() wrote, which are local already. local=True: the file's coordinates are local, whatever CRS it names.
+    crs: the CRS of the file, whatever it names; a layer of it: FILE|layername=NAME. Polygons that overlap or touch
+    become one. warn is called with a line for each doubt. Raises SlopeError, which names file and place.
     """
     vectors.require_file(path)
     try:
@@ -129,7 +130,7 @@ def fits_exchanged(geometry, to_local, bounds):
 
 def decimetres(values):
     """Coordinates or bounds (m) in a message that says where something lies."""
-    return numbers(round(float(value), 1) + 0.0 for value in values)
+    return format_numbers(round(float(value), 1) + 0.0 for value in values)
 
 
 def read_text(path):
@@ -149,7 +150,7 @@ def read_text(path):
 
 def _read_layer(path, warn, advice):
     """Polygons of a file of a GIS, and its CRS or None; advice: None where the CRS does not matter."""
-    found = vectors.read(path, "Polygon", warn)
+    found = vectors.read_vector_layer(path, "Polygon", warn)
     polygons = [part for where, geometry in found.features for part in _parts(where, geometry)]
     if not polygons:
         raise SlopeError(path, "must hold a polygon, it is empty")
@@ -204,7 +205,7 @@ def crossing(where, geometry):
 def _read_rings(path, text):
     """The polygons that the rings of a text in the deck's format make by the even-odd rule; the unit of its head."""
     rings: List[Tuple[int, Polygon]] = []       # the line it starts at, its polygon
-    found = text_points.read(text, fail_in(path))
+    found = text_points.read_text_points(text, fail_in(path))
     for block in found.blocks:
         first, ring = block[0][0], [point for _, point in block]
         where = f"{path}: line {first}"
@@ -252,7 +253,7 @@ def _even_odd(path, rings):
             elif rings[j][1].overlaps(polygon):
                 x, y = rings[j][1].intersection(polygon).representative_point().coords[0]
                 raise SlopeError(f"{path}: line {line}", f"a ring must not cross another one, line {rings[j][0]}",
-                                 f"an overlap at {numbers((x, y))}")
+                                 f"an overlap at {format_numbers((x, y))}")
         depth.append(len(around))
         if depth[i] % 2:
             holes[max(around, key=lambda j: depth[j])].append(polygon)
@@ -267,7 +268,7 @@ def _with_holes(polygon, holes):
 
 
 def is_local(path, text, raster):
-    """Whether a text was written by write(); SlopeError if it was for a terrain at another place.
+    """Whether a text was written by write_polygon(); SlopeError if it was for a terrain at another place.
 
     A run without a terrain that tells its place (no CRS, origin 0 0) is in the local metres of whatever terrain.
     """
@@ -326,7 +327,7 @@ def _reproject(path, geometry, crs, target):
             points = np.array([[np.nan, np.nan]])
         if not np.isfinite(points).all():
             raise SlopeError(path, f"must lie where {crs_name(target)}, the CRS of the terrain, covers it",
-                             f"{numbers(geometry.bounds)} in {crs_name(crs)}")
+                             f"{format_numbers(geometry.bounds)} in {crs_name(crs)}")
         return points
     return map_points(geometry, points_in_target)
 
@@ -349,7 +350,7 @@ def rings_of(geometry):
             for ring in (part.exterior, *part.interiors)]
 
 
-def write(path, geometry, raster):
+def write_polygon(path, geometry, raster):
     """Write a valid geometry in the local metres of a terrain to path, for region polygon; return it as it is written.
 
     The file is complete or not touched.
@@ -358,5 +359,5 @@ def write(path, geometry, raster):
     if rounded.is_valid and rounded.area > 0:
         geometry = rounded
     rings = "\n".join("".join(f"{x!r},{y!r}\n" for x, y in ring.tolist()) for ring in rings_of(geometry))
-    disk.write(path, f"{place_line(raster)}\n{rings}")
+    disk.write_file(path, f"{place_line(raster)}\n{rings}")
     return geometry

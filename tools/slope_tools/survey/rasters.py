@@ -20,16 +20,16 @@ from rasterio.windows import Window
 
 from .. import disk, schemas
 from ..errors import SlopeError
-from ..schemas import COUNT, TEXT, mapping, numbers
+from ..schemas import COUNT, TEXT, mapping, number_keys
 from . import plausible, text_grids, xyz, zips
 from .crs import crs_name, epsg, require_axes
 from .grids import UNITS, Raster, check_memory, progress
-from .marks import Scale, cells_of, text
+from .marks import Scale, cells_of, format_mark
 
 WHAT_SIDECAR = "a sidecar that `slope terrain` wrote"
 ORIGIN, EXTENT = ("east", "north"), ("xlo", "ylo", "xhi", "yhi")
-SIDECAR = mapping({"crs": mapping({"wkt": TEXT}, null=True), "origin": mapping(numbers(*ORIGIN)),
-                   "size": mapping({"rows": COUNT, "columns": COUNT}), "extent": mapping(numbers(*EXTENT))})
+SIDECAR = mapping({"crs": mapping({"wkt": TEXT}, null=True), "origin": mapping(number_keys(*ORIGIN)),
+                   "size": mapping({"rows": COUNT, "columns": COUNT}), "extent": mapping(number_keys(*EXTENT))})
 NODATA = -9999             # in written files
 HIGHEST = 9000.0           # m; beyond +-HIGHEST a value is a NODATA mark that the file does not declare (-9999, -32768)
 TAGS = {"m": "m", "metre": "m", "meter": "m", "metres": "m", "meters": "m", "ft": "ft", "foot": "ft", "feet": "ft",
@@ -52,7 +52,7 @@ class File(NamedTuple):
     is_picture: bool = False            # values of 8 bits as they are, as a hillshade has
 
 
-def read(path, heights=True, unit=None, marks=None, ask=True):
+def read_raster(path, heights=True, unit=None, marks=None, ask=True):
     """Read a single-band raster (GeoTIFF, ESRI ASCII grid, list of points on a grid, or another format of GDAL), also
     in a .zip that holds one, into a Raster.
 
@@ -66,7 +66,7 @@ def read(path, heights=True, unit=None, marks=None, ask=True):
 
 
 def in_metres(path, found, heights=True, unit=None, marks=None, assigned=None, ask=True):
-    """The Raster of a File, see read() and opened()."""
+    """The Raster of a File, see read_raster() and opened()."""
     own = unit or found.unit or "m"
     scale = Scale(found.scale, found.shift, UNITS[own])
     if marks:
@@ -84,7 +84,7 @@ def in_metres(path, found, heights=True, unit=None, marks=None, assigned=None, a
 
 
 def opened(path, heights=True, unit=None, part=None, assigned=None):
-    """The File of a path, see read().
+    """The File of a path, see read_raster().
 
     part: which of its cells, (top, bottom, left, right), of a Raster without heights; points are read as a whole.
     assigned: the CRS of its coordinates, whatever it says.
@@ -92,7 +92,7 @@ def opened(path, heights=True, unit=None, part=None, assigned=None):
     name = only(path)
     form = xyz.form_of(name)
     if form:
-        grid = xyz.read(name, form)
+        grid = xyz.read_xyz_grid(name, form)
         if grid.degrees and not (assigned is not None and assigned.is_geographic):
             raise SlopeError(path, "columns in degrees must have a CRS in degrees; --assign-crs EPSG:n gives one",
                              crs_name(assigned))
@@ -110,7 +110,7 @@ def opened(path, heights=True, unit=None, part=None, assigned=None):
 def unreadable(path, name, error):
     """The SlopeError on what GDAL cannot read, with what can be done."""
     reason = str(error).replace(zips.gdal_name(name), name)
-    way = zips.remedy(name) or text_grids.remedy(name)
+    way = zips.suggest_zip_remedy(name) or text_grids.suggest_grid_remedy(name)
     return SlopeError(path, f"must be a raster that GDAL can read ({reason}){way}")
 
 
@@ -144,7 +144,7 @@ def check_heights(path, z, found, unit, may_be_feet, marks):
         return
     row, column = wrong[0]
     value, stored = z[row, column], found.stored[row, column]
-    shown = text(stored)
+    shown = format_mark(stored)
     row, column = row + found.first[0], column + found.first[1]
     remedy = f"{marks.options(shown)} if it means none" if marks else f"gdal_translate -a_nodata {shown} declares it"
     name = "metres" if unit == "m" else unit
@@ -214,10 +214,10 @@ def read_asc_local(path, heights=True, unit=None, marks=None, ask=True):
     """Read an .asc that write_asc_local wrote, and its sidecar, into a Raster: (z, transform, crs, offset).
 
     The transform gives local x, y; adding the offset (east, north) gives coordinates in crs. A raster without a
-    sidecar is read as by read(); the others as there. Raises SlopeError if either file is broken or they
+    sidecar is read as by read_raster(); the others as there. Raises SlopeError if either file is broken or they
     do not belong together.
     """
-    raster = placed(path, read(path, heights, unit, marks, ask))
+    raster = placed(path, read_raster(path, heights, unit, marks, ask))
     if heights and ask:
         require_axes(raster.crs, path)
     return raster
@@ -246,7 +246,7 @@ def read_sidecar(path: Union[str, Path]) -> Optional[Place]:
     sidecar = Path(path).with_suffix(".yaml")
     if Path(path).suffix != ".asc" or not sidecar.exists():
         return None
-    about = schemas.load(sidecar, WHAT_SIDECAR, SIDECAR)
+    about = schemas.load_checked(sidecar, WHAT_SIDECAR, SIDECAR)
     try:
         with rasterio.Env():  # GDAL's own messages are not for stderr
             crs = about["crs"] and CRS.from_wkt(about["crs"]["wkt"])
@@ -265,7 +265,7 @@ def read_place(path):
         return place
     form = xyz.form_of(name)
     if form:
-        grid = xyz.read(name, form)
+        grid = xyz.read_xyz_grid(name, form)
         rows, columns = grid.z.shape
         (xlo, ylo), (xhi, yhi) = grid.transform * (0, rows), grid.transform * (columns, 0)
         return Place(None, (0.0, 0.0), (rows, columns), (xlo, ylo, xhi, yhi))
@@ -301,7 +301,7 @@ def write_asc_local(path, raster, about, exact=False):
         "nodata_cells": int(np.isnan(raster.z).sum()),
         **about,
     }
-    with disk.beside(path.with_suffix(".yaml"), path) as (new_yaml, new_asc):
+    with disk.write_beside(path.with_suffix(".yaml"), path) as (new_yaml, new_asc):
         with open(new_asc, "w", encoding="ascii") as out:
             digits = 15 if exact else 12
             form = "{!r}".format if exact else "{:.3f}".format
@@ -325,7 +325,7 @@ def write_geotiff(path, bands, raster, tags=None):
     """
     rows, columns = next(iter(bands.values())).shape
     try:
-        with disk.beside(path) as (new,), warnings.catch_warnings(), rasterio.Env():
+        with disk.write_beside(path) as (new,), warnings.catch_warnings(), rasterio.Env():
             warnings.simplefilter("ignore", NotGeoreferencedWarning)
             with rasterio.open(new, "w", driver="GTiff", height=rows, width=columns, count=len(bands), dtype="float64",
                                crs=raster.crs, transform=Affine.translation(*raster.offset) * raster.transform,

@@ -8,7 +8,7 @@ from affine import Affine
 
 from ..errors import SlopeError
 from ..findings import Finding
-from ..geometry import numbers
+from ..geometry import format_numbers
 from .crs import not_covered, same_crs, transform
 from .grids import check_memory, progress
 from .rasters import Raster, crs_name
@@ -37,9 +37,9 @@ def regrid(raster, crs, cell, bounds, tell, warn, whole=None):
     if bounds:
         wanted = *np.maximum(bounds[:2], extent[:2]), *np.minimum(bounds[2:], extent[2:])
         if wanted[0] >= wanted[2] or wanted[1] >= wanted[3]:
-            raise SlopeError("--bounds", f"must overlap the input, {numbers(extent)}", numbers(bounds))
+            raise SlopeError("--bounds", f"must overlap the input, {format_numbers(extent)}", format_numbers(bounds))
         if not np.allclose(wanted, bounds, rtol=0, atol=cell * SAME_CELL):
-            warn(Finding("cut to input", {"extent": numbers(extent)}))
+            warn(Finding("cut to input", {"extent": format_numbers(extent)}))
 
     if not np.isfinite(raster.z).any():
         raise SlopeError("--bounds", "must hold a height, all cells are NODATA")

@@ -17,7 +17,7 @@ from shapely.ops import nearest_points, unary_union
 from .. import disk
 from ..errors import SlopeError
 from ..findings import Finding
-from ..geometry import extent, numbers
+from ..geometry import extent, format_numbers
 from . import features, lines, network, polygons, vectors
 
 ARCS = 45       # pieces of a quarter of a circle, outside of bends
@@ -71,7 +71,7 @@ WITHOUT_WIDTH = "is a line, whose width must be given: --road-width"
 MARK = "# the line of a road, whose width is given apart"
 
 
-def check(asked: Asked) -> None:
+def check_road(asked: Asked) -> None:
     """Raise SlopeError, which names the option, unless the values make sense together."""
     for field in ("width", "lane", "clearing"):
         value = getattr(asked, field)
@@ -117,7 +117,7 @@ def read_local(path, raster, asked: Asked = NOTHING, local=False, crs=None, advi
     if len(found) != 1:
         met = network.meetings(found)
         raise SlopeError(path, "must hold one line, for --road-width" + "; save it alone" * bool(met), f"{len(found)} "
-                         "that " + (f"meet {features.place(met[0][2], raster)}" if met else "do not meet"))
+                         "that " + (f"meet {features.locate_feature(met[0][2], raster)}" if met else "do not meet"))
     return together(path, [found[0].line], raster, asked)
 
 
@@ -159,7 +159,8 @@ def meetings(several: Mapping[str, Tuple[str, Road]], raster) -> List[Finding]:
             continue
         ways = [road.line or road.polygon for road in (one, other)]
         found.append((round(ways[0].distance(ways[1]), 3),
-                      f"{name} and {beside} {features.place(nearest_points(*ways)[0], raster)}", file, other_file))
+                      f"{name} and {beside} {features.locate_feature(nearest_points(*ways)[0], raster)}", file,
+                      other_file))
     if not found:
         return []
     found.sort(key=lambda one: one[0])
@@ -195,7 +196,8 @@ def is_line(path) -> bool:
     try:
         text = polygons.read_text(path)
         text = None if text is None else vectors.plain_text(path, text)[0]
-        geometry = unary_union([one for _, one in vectors.read(path, "Line").features]) if text is None else \
+        geometry = unary_union([one for _, one in vectors.read_vector_layer(path,
+                                                                            "Line").features]) if text is None else \
             lines.text_geometry(path, text)[0]
         if text is not None and not polygons.WKT.match(re.sub("#.*", "", text).lstrip()):
             return sum(len(one.coords) for one in geometry.geoms) == 2
@@ -212,7 +214,7 @@ def check_line(path, line: LineString, within, start: float) -> None:
     """
     if line.length < SHORTEST:
         raise SlopeError(path, f"must be a line of {SHORTEST:g} m at least; are its coordinates in degrees? Then name "
-                         "their CRS, such as EPSG:4326", f"{line.length:.2g} m at {numbers(line.coords[0])}")
+                         "their CRS, such as EPSG:4326", f"{line.length:.2g} m at {format_numbers(line.coords[0])}")
 
     def chainage(length):
         return f"{1000 * start + length:.1f} m"
@@ -220,7 +222,7 @@ def check_line(path, line: LineString, within, start: float) -> None:
         noded = unary_union(line)
         crossed = min((Point(one.coords[-1]) for one in getattr(noded, "geoms", [noded])), key=line.project)
         raise SlopeError(path, "must be a line that does not cross itself; it does at the chainage "
-                         f"{chainage(line.project(crossed))}", numbers(crossed.coords[0]))
+                         f"{chainage(line.project(crossed))}", format_numbers(crossed.coords[0]))
     outside = line.difference(box(*within).buffer(SLACK))
     if not outside.is_empty:
         first = min((Point(one.coords[0]) for one in getattr(outside, "geoms", [outside])), key=line.project)
@@ -228,13 +230,13 @@ def check_line(path, line: LineString, within, start: float) -> None:
                          f"chainage {chainage(line.project(first))}", polygons.decimetres(first.coords[0]))
 
 
-def write(path: Path, road: Road, raster) -> BaseGeometry:
+def write_road(path: Path, road: Road, raster) -> BaseGeometry:
     """Write a road in the local metres of a terrain, for read_local() with the same width; its polygon as written."""
     if road.line is None:
-        return polygons.write(path, road.polygon, raster)
+        return polygons.write_polygon(path, road.polygon, raster)
     texts = []
     for line in road.lines:
         points = np.round(np.asarray(line.coords)[:, :2], polygons.DIGITS) + 0.0
         texts.append("".join(f"{x!r},{y!r}\n" for x, y in points.tolist()))
-    disk.write(path, f"{polygons.place_line(raster)}\n{MARK}\n" + "\n".join(texts))
+    disk.write_file(path, f"{polygons.place_line(raster)}\n{MARK}\n" + "\n".join(texts))
     return road.polygon

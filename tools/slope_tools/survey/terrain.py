@@ -31,7 +31,7 @@ def declare(path, crs, tell, warn, assigned=None, unit=None, marks=None, part=No
     None.
 
     assigned: the CRS of its coordinates, unit: that of its heights, whatever the file says; marks: see
-    rasters.read(); part: which of its cells are wanted, see there.
+    rasters.read_raster(); part: which of its cells are wanted, see there.
     """
     place = []      # of a file that is not read as a whole
 
@@ -79,7 +79,7 @@ def read_fggml(paths, crs, cell, tell, warn, marks=None, differ=DIFFER):
     for path in paths:
         if not fggml.is_one(path):
             raise SlopeError(path, "must be FG-GML as other inputs are: make a terrain of each kind")
-        found = [fggml.without(tile, marks or Marks()) for tile in fggml.read(path)]
+        found = [fggml.without(tile, marks or Marks()) for tile in fggml.read_fggml_tiles(path)]
         sizes = {f"{z.shape[1]} x {z.shape[0]} cells" for z in (tile.raster.z for tile in found)}
         tell(f"{path}: FG-GML, {len(found)} tile{'s' * (len(found) > 1)} of {' or '.join(sorted(sizes))}, "
              f"{' and '.join(sorted({tile.datum for tile in found}))}")
@@ -145,11 +145,11 @@ def merge(tiles, tell, warn, cell=None, differ=DIFFER):
     base = min(tiles, key=lambda tile: abs(tile.whole.transform.determinant)).whole if others else first.whole
     if others:
         tell(f"{len(others)} of {len(tiles)} rasters resampled to the grid of the finest, {grid(base)}, bilinear")
-    whole = around(base, [tile.whole for tile in tiles])
+    whole = make_grid_around(base, [tile.whole for tile in tiles])
     used = [tile for tile in tiles if tile.raster.z.size]
     if not used:
         return Tile(first.name, first.raster, whole)
-    merged = around(base, [tile.raster for tile in used])
+    merged = make_grid_around(base, [tile.raster for tile in used])
     check_memory(len(merged.z), merged.z.shape[1], "merged raster")
     z, found = np.full(merged.z.shape, np.nan), []
     beyond = []         # by up to half a cell, of tiles on another grid: they may leave a gap where they meet
@@ -207,7 +207,7 @@ def box(raster, base):
                                    (across.max(), False)))
 
 
-def around(base, parts):
+def make_grid_around(base, parts):
     """A Raster on a grid around others, without heights."""
     boxes = np.array([box(part, base) for part in parts])
     (top, left), (bottom, right) = boxes[:, ::2].min(axis=0), boxes[:, 1::2].max(axis=0)

@@ -58,7 +58,7 @@ def heights(path: str, driver: str, rows: int, columns: int, top: int = 0,
             words = line.split()
             if number <= head.lines or not words:
                 continue
-            values = numbers(path, number, words, head.null)
+            values = read_line_numbers(path, number, words, head.null)
             if len(values) != columns and odd_line is None:
                 odd_line = f"line {number}, which has {len(values)}"
             begin, end = max(count, first), min(count + len(values), last)
@@ -74,7 +74,7 @@ def heights(path: str, driver: str, rows: int, columns: int, top: int = 0,
     return z.reshape(-1, columns) * head.factor, head.nodata
 
 
-def numbers(path: str, line: int, words: List[str], null: str = "") -> List[float]:
+def read_line_numbers(path: str, line: int, words: List[str], null: str = "") -> List[float]:
     """The numbers of a line, NaN for a mark of none; SlopeError where it holds something else."""
     try:
         if any("_" in word for word in words):     # Python's float takes 1_5 for 15
@@ -127,7 +127,8 @@ def grass_head(path: str, lines: Any) -> Head:
             break
         number += 1
         if key.strip().lower() in head:
-            head[key.strip().lower()] = None if value.strip() == NULL else numbers(path, number, value.split())[0]
+            head[key.strip().lower()] = None if value.strip() == NULL else read_line_numbers(path, number,
+                                                                                             value.split())[0]
     return Head(number, head["null"], head["multiplier"] or 1.0, NULL)
 
 
@@ -139,17 +140,17 @@ def check_numbers(path: str, driver: str) -> None:
         for number, line in enumerate(lines, 1):
             if times:
                 if driver == "ZMap" and times == 1 and not width:       # fields of a width, which may touch
-                    width = int(numbers(path, number, [line.split(",")[0].strip()])[0])
+                    width = int(read_line_numbers(path, number, [line.split(",")[0].strip()])[0])
                 packed = packed or driver == "GXF" and line.lower().startswith("#gtype")
                 times -= line.strip().lower().startswith(end)
             elif packed or line.startswith("#"):
                 break
             else:
                 words = [line[k:k + width] for k in range(0, len(line), width)] if width else line.split()
-                numbers(path, number, [word.strip() for word in words if word.strip()])
+                read_line_numbers(path, number, [word.strip() for word in words if word.strip()])
 
 
-def remedy(path: str) -> str:
+def suggest_grid_remedy(path: str) -> str:
     """What can be done about a grid whose head has each value before its key, as GeoClaw and D-Claw write it, for a
     message; "" of any other."""
     try:
@@ -158,6 +159,6 @@ def remedy(path: str) -> str:
     except (OSError, UnicodeDecodeError):
         return ""
     turned = [f"{TURNED[words[1].lower()]} {words[0]}" for words in head
-              if len(words) == 2 and words[1].lower() in TURNED and math.isfinite(heads.number(words[0]))]
+              if len(words) == 2 and words[1].lower() in TURNED and math.isfinite(heads.parse_cell(words[0]))]
     return f"; its head has the values before the keys, as GeoClaw: write {', '.join(turned)}, a line each" * (
         len(turned) >= 4)

@@ -34,7 +34,7 @@ class Points(NamedTuple):
     head: Head
 
 
-def read(text: str, fail: Fail) -> Points:
+def read_text_points(text: str, fail: Fail) -> Points:
     """The points of a text: x,y in its lines, a blank line between two blocks, # before a comment.
 
     The first line may be a head, and so may a comment before it. SlopeError of fail() where the text is something else.
@@ -56,7 +56,7 @@ def read(text: str, fail: Fail) -> Points:
                 head = found or head
             continue
         words = [word.strip() for word in content.split(",")]
-        if not begun and len(words) > 1 and all(cell(word) is None for word in words):
+        if not begun and len(words) > 1 and all(parse_coordinate(word) is None for word in words):
             head = head_of(words, lambda: fail(place, RULE, content[:60]))
             if head is None:
                 fail(place, RULE, content[:60])
@@ -68,7 +68,7 @@ def read(text: str, fail: Fail) -> Points:
     return Points([block for block in blocks if block], head or Head())
 
 
-def cell(word: str) -> Optional[float]:
+def parse_coordinate(word: str) -> Optional[float]:
     """A number, perhaps nan; None of anything else. Python would take 1_5 for 15."""
     try:
         return None if "_" in word else float(word)
@@ -101,7 +101,7 @@ def head_of(words: Sequence[str], wrong_unit: Callable[[], object], others: bool
 
 def point_of(place: int, content: str, words: Sequence[str], head: Head, fail: Fail) -> Tuple[float, float]:
     """The point of a line."""
-    values = [cell(word) for word in words]
+    values = [parse_coordinate(word) for word in words]
     what = "numbers, x,y" if head.width == 2 else "numbers, x,y and z"
     many = "two" if head.width == 2 else "three"
     if len(words) != head.width or None in values:

@@ -70,7 +70,7 @@ def source(name: object) -> Source:
     return Source(path, next((word[len(MARK):] for word in more if word.startswith(MARK)), None))
 
 
-def named(name: object, layer: Optional[str], option: str = "--layer") -> str:
+def name_layer(name: object, layer: Optional[str], option: str = "--layer") -> str:
     """FILE|layername=NAME of a file and of the layer that an option names; SlopeError if both name one."""
     if layer is None:
         return str(name)
@@ -92,7 +92,7 @@ def require_file(name: object) -> Source:
     return found
 
 
-def read(name: object, kind: str, warn: Callable[[Finding], Any] = ignore) -> Found:
+def read_vector_layer(name: object, kind: str, warn: Callable[[Finding], Any] = ignore) -> Found:
     """The features of a file, of the layer that it names or the one with geometries of a kind ("Polygon", "Line").
 
     Raises SlopeError, which names the file.
@@ -139,7 +139,7 @@ def unknown_crs(path: str, member: Optional[str], taken: Optional[CRS]) -> Optio
     GDAL takes what it does not know for longitude and latitude.
     """
     if member:
-        with zips.whole(path), zipfile.ZipFile(path) as archive:
+        with zips.check_archive(path), zipfile.ZipFile(path) as archive:
             content = archive.read(member)
     else:
         content = Path(path).read_bytes()

@@ -56,7 +56,7 @@ def form_of(path: str) -> Optional[Form]:
     said: Optional[Tuple[int, bool, str]] = None    # of a line of words: its number, whether it may be a head, its text
     for number, content in enumerate(map(str.strip, first)):
         words, delimiter, comma = split(content)
-        numbers = [text_points.cell(word.replace(",", ".")) is not None for word in words]
+        numbers = [text_points.parse_coordinate(word.replace(",", ".")) is not None for word in words]
         if is_point(numbers, head):
             if said is not None and not head:
                 if not said[1]:
@@ -102,12 +102,12 @@ def split(line: str) -> Tuple[List[str], Optional[str], bool]:
     return line.split(), None, "," in line
 
 
-def read(path: str, form: Form) -> Grid:
+def read_xyz_grid(path: str, form: Form) -> Grid:
     """The grid of a list; SlopeError if its points are on none."""
     head = form.head or text_points.Head(0, 1, form.columns, None, 2)
     assert head.z is not None
     wanted = [head.x, head.y, head.z]
-    points = values(path, form, wanted if form.head or form.columns < 4 else [0, 1, 2, 3])
+    points = read_xyz_columns(path, form, wanted if form.head or form.columns < 4 else [0, 1, 2, 3])
     found = on_grid(points[:, :3])
     if found is None and points.shape[1] == 4:      # a number first
         found = on_grid(points[:, 1:])
@@ -127,7 +127,7 @@ def read(path: str, form: Form) -> Grid:
     return Grid(grid, transform, head.z_unit, head.unit == "degrees")
 
 
-def values(path: str, form: Form, columns: List[int]) -> np.ndarray:
+def read_xyz_columns(path: str, form: Form, columns: List[int]) -> np.ndarray:
     """These columns of all points, an array (points, columns)."""
     found = [np.empty((0, len(columns)))]
     with open_text(path) as lines:
@@ -157,7 +157,7 @@ def wrong_line(path: str, lines: List[str], form: Form, columns: List[int], firs
         if not words:
             continue
         fields = [word.strip() for word in words.split(form.delimiter)]
-        if len(fields) <= max(columns) or any(text_points.cell(fields[k]) is None for k in columns):
+        if len(fields) <= max(columns) or any(text_points.parse_coordinate(fields[k]) is None for k in columns):
             return SlopeError(f"{path}: line {number}", "must hold numbers, x, y and z, where the first line has them",
                               words[:60])
     return SlopeError(path, "must hold numbers, x, y and z, in its lines")

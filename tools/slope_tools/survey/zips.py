@@ -31,7 +31,7 @@ FAULTS = (zipfile.BadZipFile, tarfile.TarError, lzma.LZMAError, zlib.error, OSEr
 
 
 @contextmanager
-def whole(name: str) -> Iterator[None]:
+def check_archive(name: str) -> Iterator[None]:
     """Raise SlopeError if an archive turns out to be damaged, or to have a password."""
     try:
         yield
@@ -68,7 +68,7 @@ def layer_in(path: str, layer: Optional[str] = None) -> Optional[str]:
     """
     if Path(path).suffix.lower() != ".zip" or not zipfile.is_zipfile(path):
         return None
-    with whole(path), zipfile.ZipFile(path) as archive:
+    with check_archive(path), zipfile.ZipFile(path) as archive:
         names = archive.namelist()
         found = [name for name in names if name.lower().endswith(LAYERS) and not is_of_macos(name)]
         if len(found) > 1 and layer is not None:
@@ -97,7 +97,7 @@ def require_open(archive: zipfile.ZipFile, names: Sequence[str]) -> None:
 
 # --- rasters ---
 
-def remedy(name: str) -> str:
+def suggest_zip_remedy(name: str) -> str:
     """What can be done about a file of this name that is no raster, after a semicolon; nothing of others."""
     ending = Path(name).suffix.lower()
     for endings, way in ((CLOUDS, OF_POINTS), (MESHES, OF_MESH), (SHAPES, OF_LAYER)):
@@ -110,7 +110,7 @@ def rasters_in(path: str, alone: bool = False) -> List[str]:
     """The rasters in a .zip, each as ZIP/MEMBER; none of other files, or, alone, of one that holds a layer, too."""
     if not zipfile.is_zipfile(path):
         return []
-    with whole(path), zipfile.ZipFile(path) as archive:
+    with check_archive(path), zipfile.ZipFile(path) as archive:
         names = [name for name in archive.namelist() if not is_of_macos(name)]
         if alone and any(name.lower().endswith(LAYERS) for name in names):
             return []
@@ -142,7 +142,7 @@ def open_text(name: str) -> Iterator[TextIO]:
     """A file, one in a .zip, or one that is packed by gzip, as text; what is no UTF-8 becomes U+FFFD."""
     path, member = split(name)
     packed = path.lower().endswith(".gz")
-    with whole(name) if member or packed else nullcontext(), ExitStack() as opened:
+    with check_archive(name) if member or packed else nullcontext(), ExitStack() as opened:
         if member:
             data = opened.enter_context(opened.enter_context(zipfile.ZipFile(path)).open(member))
         else:

@@ -10,7 +10,7 @@ STUDY = {Source.PAPER.value: "the sweep", Source.ENSEMBLE.value: "the runs weigh
 CLIENT = {Source.PAPER.value: "runs with chosen settings", Source.ENSEMBLE.value: "runs weighted by known events"}
 
 
-def volume(kind: str, value: Optional[float], unit: str = "") -> str:
+def describe_volume(kind: str, value: Optional[float], unit: str = "") -> str:
     """A number and what it is, for tables."""
     text = f"{three(value or 0.0)} {unit}".strip()
     if kind == Kind.WITHHELD.value:
@@ -30,7 +30,7 @@ def told(about: study_types.Headline) -> List[Reason]:
     return list(found.values())
 
 
-def text(reason: Reason) -> str:
+def describe_reason(reason: Reason) -> str:
     """A reason as a sentence without its full stop."""
     return finding(reason).text
 
@@ -51,11 +51,11 @@ def finding(reason: Reason) -> Finding:
         return Finding("rule", {"study": STUDY[of["source"]], "rule": of["rule"]})
     if code is Code.SIZE:
         return of_size(of)
-    words = {"far": lambda: percent(of["far"]), "most": lambda: f"{quantities.number(of['most_m3'])} m3",
+    words = {"far": lambda: percent(of["far"]), "most": lambda: f"{quantities.format_quantity(of['most_m3'])} m3",
              "runs": lambda: f"{of['runs']}", "path": lambda: metres(of["path_m"]),
-             "share": lambda: percent(of["share"]), "shares": lambda: shares((of["low"], of["high"])),
-             "reach": lambda: f"{of['reach']} of {of['runs']}", "left": lambda: left(of), "ends": lambda: ends(of),
-             "points": lambda: f"{of['points']:g}"}
+             "share": lambda: percent(of["share"]), "shares": lambda: format_shares((of["low"], of["high"])),
+             "reach": lambda: f"{of['reach']} of {of['runs']}", "left": lambda: describe_left_volume(of),
+             "ends": lambda: ends(of), "points": lambda: f"{of['points']:g}"}
     return Finding(code.value, {name: words[name]() for name in TAKES.get(code, ())})
 
 
@@ -72,14 +72,14 @@ TAKES = {Code.BEYOND: ("far", "runs", "most"), Code.ONE_SCATTER: ("shares",), Co
          Code.RANGE: ("ends",), Code.RUNS: ("points",), Code.SOME: ("reach", "left")}
 
 
-def beyond(far: float, path_end: Optional[float]) -> str:
+def describe_share_beyond(far: float, path_end: Optional[float]) -> str:
     """The share of known events beyond all runs, and where it is counted if that is not where the longest ends."""
     return percent(far) + ("" if path_end is None else f" (beyond {metres(path_end)}, where the fall path ends)")
 
 
-def left(of: Mapping[str, Any]) -> str:
+def describe_left_volume(of: Mapping[str, Any]) -> str:
     """What is to be removed after the runs that leave something, "" if none does."""
-    least, most = (quantities.number(of[key]) for key in ("least_m3", "most_m3"))
+    least, most = (quantities.format_quantity(of[key]) for key in ("least_m3", "most_m3"))
     return f", which leave {least if least == most else f'{least} to {most}'} m3 to remove" * bool(of["most_m3"])
 
 
@@ -90,6 +90,6 @@ def ends(of: Mapping[str, Any]) -> str:
     return f", which end at {ranges}," if ranges else ""
 
 
-def shares(several: Iterable[float]) -> str:
+def format_shares(several: Iterable[float]) -> str:
     """Shares by the smaller and the larger scatter, as one text."""
     return " to ".join(dict.fromkeys(map(percent, several)))

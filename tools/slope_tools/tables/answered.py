@@ -27,7 +27,7 @@ SCHEMA = mapping({}, conservative=mapping({}, null=True), ensemble=mapping({}, n
 
 def of_study(about: study_types.Study, road: Optional[Road]) -> Optional[Answer]:
     """Of one study.yaml; None without a road, and of an ensemble that no known events weigh."""
-    return answer.of(paper_of(about), ensemble_of(about), road)
+    return answer.combine_answers(paper_of(about), ensemble_of(about), road)
 
 
 def paper_of(about: study_types.Study) -> Optional[Paper]:
@@ -95,7 +95,7 @@ def governing(paper: Path, ensemble: Path) -> Path:
     there = [one for one in (ensemble, paper) if (one / STUDY).is_file()]
     if len(there) < 2:
         return there[0] if there else paper
-    said = {one: schemas.load(one / STUDY, "what `slope study` wrote", SCHEMA) for one in there}
+    said = {one: schemas.load_checked(one / STUDY, "what `slope study` wrote", SCHEMA) for one in there}
     names = {(about.get("study") or {}).get("governs") for about in said.values()}
     if len(names) == 1 and (named := [one for one in there if one.name in names]):
         return named[0]
@@ -121,7 +121,7 @@ def weighs(study: Path) -> bool:
     """Whether a folder has a study whose runs known events weigh."""
     if not (study / STUDY).is_file():
         return False
-    about = schemas.load(study / STUDY, "what `slope study` wrote", SCHEMA).get("ensemble") or {}
+    about = schemas.load_checked(study / STUDY, "what `slope study` wrote", SCHEMA).get("ensemble") or {}
     return bool((about.get("known_events") or {}).get("weights"))
 
 
@@ -146,4 +146,4 @@ def of_both(paper: study_types.Study, ensemble: study_types.Study) -> Optional[A
     road = roads[-1]._replace(
         longest=max((one.longest for one in roads if one.longest is not None), default=None),
         brought=functools.reduce(AtRoad.and_of, [one.brought for one in roads])) if roads else None
-    return answer.of(paper_of(paper), ensemble_of(ensemble), road)
+    return answer.combine_answers(paper_of(paper), ensemble_of(ensemble), road)

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from .. import disk
-from ..case.settings import as_number
+from ..case.settings import normalise_value
 from ..findings import Finding, texts
 from ..runs import jobs
 from ..runs.repeats import Settings, key_of
@@ -41,7 +41,7 @@ def grouped(rows: Sequence[Row]) -> List[Group]:
     """The finished runs by their combinations, in the order of the rows."""
     found: Dict[tuple, Group] = {}
     for row in finished_of(rows):
-        group = found.setdefault(tuple(row.set.values()), Group(jobs.name_of(row.set), row.set))
+        group = found.setdefault(tuple(row.set.values()), Group(jobs.name_run(row.set), row.set))
         group.rows.append(row)
     for group in found.values():
         mine = group.rows
@@ -61,7 +61,7 @@ def scatters(groups: Sequence[Group]) -> Dict[str, Optional[Scatter]]:
     return {name: conservative_volume.pooled([group.of(name) for group in groups]) for name in averaged(groups)}
 
 
-def entries(groups: Sequence[Group], names: Sequence[str]) -> List[Dict[str, Any]]:
+def list_combination_entries(groups: Sequence[Group], names: Sequence[str]) -> List[Dict[str, Any]]:
     """What study.yaml says of each combination: of each column mean, scatter (None of one run), smallest, largest."""
     found = []
     for group in groups:
@@ -76,7 +76,7 @@ def entries(groups: Sequence[Group], names: Sequence[str]) -> List[Dict[str, Any
     return found
 
 
-def table(groups: Sequence[Group], names: Sequence[str], settings: Mapping[str, Sequence[str]]) -> str:
+def tabulate_combinations(groups: Sequence[Group], names: Sequence[str], settings: Mapping[str, Sequence[str]]) -> str:
     """The CSV over all combinations."""
     return disk.csv_text(
         ["combination", *settings, "repeats", *(f"{name}_{what}" for name in names for what in ("mean", "scatter"))],
@@ -143,13 +143,13 @@ def conservative(settings: Settings, rows: Sequence[Row], groups: Sequence[Group
         quantile=scatter.quantile if scatter else None,
         starts_m3=[min(volumes), max(volumes)] if len(volumes) > 1 else None,   # of the same combination
         run=largest.run, remove_m3=largest.at_road.remove_m3,                   # the one whose maps represent it
-        differences=differences, doubts=doubts(settings, rows, groups, best, differences),
+        differences=differences, doubts=find_combination_caveats(settings, rows, groups, best, differences),
         withheld=[], zero=None)     # see usable.judge
 
 
-def doubts(settings: Settings, rows: Sequence[Row], groups: Sequence[Group],
-           best: conservative_volume.ConservativeVolume,
-           differences: Sequence[study_types.Difference]) -> List[Finding]:
+def find_combination_caveats(settings: Settings, rows: Sequence[Row], groups: Sequence[Group],
+                             best: conservative_volume.ConservativeVolume,
+                             differences: Sequence[study_types.Difference]) -> List[Finding]:
     """Reasons why the volume may be larger than the conservative one."""
     found = []
     finished = finished_of(rows)
@@ -160,9 +160,9 @@ def doubts(settings: Settings, rows: Sequence[Row], groups: Sequence[Group],
     chosen = next(group.set for group in groups if group.name == best.combination)
     for entry in differences:
         name = entry.variable
-        numbers = [as_number(value) for value in settings[name]]
-        value = as_number(chosen[name])
-        if entry.clear is not False and value == as_number(entry.largest_at) and value != 0 \
+        numbers = [normalise_value(value) for value in settings[name]]
+        value = normalise_value(chosen[name])
+        if entry.clear is not False and value == normalise_value(entry.largest_at) and value != 0 \
                 and all(isinstance(one, float) for one in numbers) and value in (min(numbers), max(numbers)):
             found.append(Finding("end of range", {"variable": name, "low": min(numbers), "high": max(numbers)}))
     found += no_effect(groups)
@@ -181,7 +181,7 @@ def doubts(settings: Settings, rows: Sequence[Row], groups: Sequence[Group],
     parts = [group.of("remove_m3") for group in groups]
     odd = conservative_volume.odd_one(parts, best.combination)
     if odd:
-        mine, others = (rounding.nearest(one, rounding.place(odd[1] or odd[0])) for one in odd)
+        mine, others = (rounding.nearest(one, rounding.choose_rounding(odd[1] or odd[0])) for one in odd)
         found.append(Finding("scatters more", {"mine": mine, "others": others}))
     return found
 
@@ -227,21 +227,21 @@ def starts(best: study_types.Conservative) -> List[str]:
     """What only another start of the balls gives: the range over the repeats of the governing combination, a line."""
     if not best.starts_m3:       # one run
         return []
-    low, high = (rounding.text(value, best.place_m3) for value in best.starts_m3)
+    low, high = (rounding.format_rounded(value, best.place_m3) for value in best.starts_m3)
     number = f"{low} to {high}" if low != high else high
     return [f"another start of the balls gives {number} m3 on the same site ({best.repeats} runs)"]
 
 
-def describe(best: study_types.Conservative) -> List[str]:
+def describe_combinations(best: study_types.Conservative) -> List[str]:
     """The conservative volume and its parts, rounded to what is known, differences and caveats; a line each.
 
     In its place why it is withheld, if it is.
     """
     def number(value: Any) -> str:
-        return rounding.text(value, best.place_m3)
+        return rounding.format_rounded(value, best.place_m3)
 
     if best.withheld:
-        return [*withheld_words.lines(best.withheld), *(f"caveat: {text}" for text in texts(best.doubts))]
+        return [*withheld_words.describe_withheld(best.withheld), *(f"caveat: {text}" for text in texts(best.doubts))]
     parts = {name: best.rounded[f"{name}_m3"] for name in ("volume", "mean", "chance")}
     if parts["chance"] is None:
         text = f"{best.kind}: {number(parts['volume'])} m3 to remove; run {best.run}"
@@ -254,7 +254,7 @@ def describe(best: study_types.Conservative) -> List[str]:
     for entry in best.differences:
         if entry.clear is not None and entry.chance_m3 is not None:
             word = "more than" if entry.clear else "no more than"
-            by, chance = (rounding.text(value, rounding.place_of_digits(entry.chance_m3))
+            by, chance = (rounding.format_rounded(value, rounding.place_of_digits(entry.chance_m3))
                           for value in (entry.by_m3, entry.chance_m3))
             lines.append(f"{entry.variable}: {by} m3 between {entry.smallest_at} and {entry.largest_at}, "
                          f"{word} expected by chance, {chance} m3")

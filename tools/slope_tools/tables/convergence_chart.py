@@ -5,7 +5,7 @@ from ..drawing import pictures
 from ..drawing.figures import COLOURS, FULL, GRAY, STYLE
 
 
-def draw(path, variable, panels, title):
+def draw_convergence(path, variable, panels, title):
     """Write the chart (PNG); panels: list of (name, unit, Convergence, [(size, value of a run), ...])."""
     with pictures.settings(STYLE):
         width = FULL if len(panels) > 1 else 0.6 * FULL

@@ -44,12 +44,12 @@ class Runs(NamedTuple):
     others: Sequence[Spread]
 
 
-def read(made: Made, rows: Sequence[Row], output: Path) -> Runs:
+def read_elastic_runs(made: Made, rows: Sequence[Row], output: Path) -> Runs:
     """rows: of the study's own runs, in whose folder their summaries are named."""
     return Runs(made, with_area(made.rows, output), with_area([row for row in rows if not row.batch], output))
 
 
-def evaluate(runs: Runs) -> study_types.Elastic:
+def evaluate_elastic(runs: Runs) -> study_types.Elastic:
     """The entry of study.yaml."""
     made, elastic, others = runs
     quantities: Dict[str, study_types.ElasticQuantity] = {}
@@ -58,15 +58,15 @@ def evaluate(runs: Runs) -> study_types.Elastic:
         same = [one for one in others if all(one.row.variables.get(name) == first.get(name)
                                              for name in one.row.set if name not in VARIABLES)]
         for key in COMPARED:
-            found = spread(elastic, key)
+            found = measure_span(elastic, key)
             if found is not None:
-                quantities[key] = study_types.ElasticQuantity(found.mean, found.low, found.high, spread(same, key),
-                                                              spread(others, key))
+                quantities[key] = study_types.ElasticQuantity(found.mean, found.low, found.high,
+                                                              measure_span(same, key), measure_span(others, key))
     about = study_types.Elastic(
         made.restitution, made.rolling, THICK, [one.row.run for one in elastic],
         [row.run for row in made.rows if isinstance(row, Failed)],
         [one.row.run for one in elastic if not one.row.at_rest], quantities, "")
-    return replace(about, text=words(about))
+    return replace(about, text=describe_elastic(about))
 
 
 def with_area(rows: Sequence[Row], output: Path) -> List[Spread]:
@@ -79,7 +79,7 @@ def with_area(rows: Sequence[Row], output: Path) -> List[Spread]:
     return found
 
 
-def spread(runs: Sequence[Spread], key: str) -> Optional[study_types.Span]:
+def measure_span(runs: Sequence[Spread], key: str) -> Optional[study_types.Span]:
     """Mean and ends; None where there are no runs, or one without a number."""
     values = [value for one in runs if (value := one.value(key)) is not None]
     if not values or len(values) < len(runs):
@@ -87,7 +87,7 @@ def spread(runs: Sequence[Spread], key: str) -> Optional[study_types.Span]:
     return study_types.Span(sum(values) / len(values), min(values), max(values))
 
 
-def table(runs: Runs) -> str:
+def tabulate_elastic(runs: Runs) -> str:
     """The CSV: a line for each run, those with the largest restitution first; "" where none of these finished."""
     if not runs.elastic:
         return ""
@@ -98,7 +98,7 @@ def table(runs: Runs) -> str:
 
 # --- words ---
 
-def words(about: study_types.Elastic) -> str:
+def describe_elastic(about: study_types.Elastic) -> str:
     """A sentence without its full stop."""
     runs = len(about.runs)
     if not runs:
@@ -109,16 +109,16 @@ def words(about: study_types.Elastic) -> str:
     if distance is None:
         text += "how far the mass goes is not known, as more than 1 % of it left the terrain"
     else:
-        text += f"99 % of the volume stays within {shown(distance, 'm')}{instead(distance, 'm')}"
+        text += f"99 % of the volume stays within {format_span(distance, 'm')}{instead(distance, 'm')}"
     if area:
-        text += f"; the deposit covers {shown(area, 'm2')}{instead(area, 'm2')}"
+        text += f"; the deposit covers {format_span(area, 'm2')}{instead(area, 'm2')}"
     for which, what in ((about.failed, "failed"), (about.moving, "had not come to rest")):
         if which:
             text += f"; {len(which)} {what}"
     return text
 
 
-def shown(one: study_types.Span, unit: str) -> str:
+def format_span(one: study_types.Span, unit: str) -> str:
     ends = [rounded(end, 3) for end in (one.low, one.high)]
     return f"{rounded(one.mean, 3)} {unit}" + (f" ({' to '.join(ends)})" if ends[0] != ends[1] else "")
 
@@ -127,10 +127,10 @@ def instead(one: study_types.ElasticQuantity, unit: str) -> str:
     """What the study's own runs have: the same ones otherwise, and the largest of all."""
     if not one.usual or not one.study:
         return ""
-    return f" instead of {shown(one.usual, unit)}; all other runs, up to {rounded(one.study.high, 3)} {unit}"
+    return f" instead of {format_span(one.usual, unit)}; all other runs, up to {rounded(one.study.high, 3)} {unit}"
 
 
-def name_of(key: str, about: study_types.Elastic) -> Tuple[str, str]:
+def name_elastic_quantity(key: str, about: study_types.Elastic) -> Tuple[str, str]:
     """What one of COMPARED is called, and its unit."""
     if key == AREA:
         return f"area under more than {about.thicker_than_m:g} m", "m2"

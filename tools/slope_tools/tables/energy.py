@@ -5,7 +5,7 @@ from typing import Any, Dict, List, Optional, Sequence
 
 import numpy as np
 
-from ..digits import measured, si
+from ..digits import format_measured_share, si
 from ..errors import SlopeError
 
 SUFFIX = "energy"       # of the file, after the run's prefix
@@ -16,7 +16,7 @@ TAKEN = {"sliding": "sliding", "rolling": "rolling resistance", "normal_dashpots
          "begin_end": "the finite step at the start and end of contacts"}
 
 
-def read(path: Path) -> Optional[Dict[str, Any]]:
+def read_energies(path: Path) -> Optional[Dict[str, Any]]:
     """Energies in J at the last full second of a run, with a sentence; None where the run was continued.
 
     A ledger is not in restart files, so that of a continued run lacks what came before. Raises SlopeError if the file
@@ -31,7 +31,7 @@ def read(path: Path) -> Optional[Dict[str, Any]]:
         raise SlopeError(path, f"must be what the run wrote of its energy ({error})") from error
     if table[0, 0] != 0:
         return None
-    return {**joules, "text": words(joules)}
+    return {**joules, "text": describe_energy(joules)}
 
 
 def items_of(path: Path, count: int) -> Sequence[str]:
@@ -51,12 +51,12 @@ def items_of(path: Path, count: int) -> Sequence[str]:
     return ITEMS
 
 
-def words(joules: Dict[str, float]) -> str:
+def describe_energy(joules: Dict[str, float]) -> str:
     taken = sum(joules[name] for name in TAKEN)
     if not taken > 0:
         return "nothing has moved"
     gained = joules["gravity"] + joules["ground_motion"]
-    shares = ", ".join(f"{measured(joules[name] / taken)} by {what}" for name, what in TAKEN.items())
+    shares = ", ".join(f"{format_measured_share(joules[name] / taken)} by {what}" for name, what in TAKEN.items())
     left = f"; {si(joules['left'], 'J')} left with balls" if joules["left"] > 0 else ""
     return (f"of {si(gained, 'J')} that weight and ground motion put in, {si(taken, 'J')} was taken: {shares}{left}; "
-            f"not accounted for: {measured(abs(joules['residual']) / taken)}")
+            f"not accounted for: {format_measured_share(abs(joules['residual']) / taken)}")

@@ -66,8 +66,8 @@ class Known:
 
 @dataclass(frozen=True)
 class Weighted(Known):
-    """An ensemble that known events weigh (known_events.evaluate): how much of them the runs reach, as how many runs
-    these count, and their numbers."""
+    """An ensemble that known events weigh (known_events.evaluate_known_events): how much of them the runs reach, as how
+    many runs these count, and their numbers."""
     short: float
     far: float
     runs: int
@@ -104,7 +104,7 @@ class Design:
 
 @dataclass(frozen=True)
 class Ensemble:
-    """An ensemble (ensemble.evaluate)."""
+    """An ensemble (ensemble.evaluate_ensemble)."""
     design: Design
     runs: int
     finished: int

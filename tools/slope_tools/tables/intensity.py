@@ -12,7 +12,7 @@ from rich.table import Table
 
 from .. import disk
 from ..digits import chance
-from ..case.settings import as_number
+from ..case.settings import normalise_value
 from ..errors import SlopeError
 from ..findings import Finding
 from ..runs.repeats import Settings
@@ -28,7 +28,7 @@ FILE = "intensity.csv"
 REACHES = 0.01          # of the released volume: less on the road, and the mass has not reached it
 
 
-def check(named: Optional[str], settings: Settings, road: bool) -> Optional[str]:
+def check_intensity(named: Optional[str], settings: Settings, road: bool) -> Optional[str]:
     """The variable that is an intensity, or None; SlopeError if the one of --intensity cannot be."""
     if named is None:
         return find(settings) if road else None
@@ -36,7 +36,7 @@ def check(named: Optional[str], settings: Settings, road: bool) -> Optional[str]
         raise SlopeError("--intensity", "must name a variable of --set", named)
     if not road:
         raise SlopeError("--intensity", "needs --road: what counts is the volume on it", named)
-    if not numbers(settings[named]) or len(settings[named]) < 2:
+    if not are_axis_points(settings[named]) or len(settings[named]) < 2:
         raise SlopeError("--intensity", "must have several values, all of them numbers", ",".join(settings[named]))
     return named
 
@@ -44,14 +44,14 @@ def check(named: Optional[str], settings: Settings, road: bool) -> Optional[str]
 def find(settings: Settings) -> Optional[str]:
     """The first variable of several numbers that is called like an intensity."""
     for name, several in settings.items():
-        if NAME.fullmatch(name) and len(several) > 1 and numbers(several):
+        if NAME.fullmatch(name) and len(several) > 1 and are_axis_points(several):
             return name
     return None
 
 
-def numbers(several: Sequence[str]) -> bool:
+def are_axis_points(several: Sequence[str]) -> bool:
     """Whether all are numbers that can be points of an axis; as_number takes nan and inf for numbers, too."""
-    found = [as_number(one) for one in several]
+    found = [normalise_value(one) for one in several]
     return all(isinstance(one, float) and math.isfinite(one) for one in found)
 
 
@@ -104,7 +104,7 @@ def point(at: float, group: Group, volumes: Sequence[float]) -> study_types.Poin
                              one.mean / released, len(few), stood(few, group.rows), exceed)
 
 
-def doubts(about: study_types.Intensity) -> List[Finding]:
+def find_intensity_caveats(about: study_types.Intensity) -> List[Finding]:
     """The caveat on a common scatter of all runs: chance decides whether the slope fails, or the mass reaches the road.
     """
     mixed = [one for line in about.lines for one in line.points if 0 < one.not_on_road < one.runs]
@@ -117,7 +117,7 @@ def doubts(about: study_types.Intensity) -> List[Finding]:
     return found
 
 
-def table(about: study_types.Intensity) -> str:
+def tabulate_intensity(about: study_types.Intensity) -> str:
     """The CSV: a row for each point."""
     columns = ("runs", "mean_m3", "scatter_m3", "smallest_m3", "largest_m3", "share_of_released")
 
@@ -147,8 +147,8 @@ def shown_of(about: study_types.Intensity) -> Table:
     return shown
 
 
-def evaluate(named: Optional[str], more_than: Sequence[float], settings: Settings, road: bool,
-             groups: Sequence[Group]) -> Optional[study_types.Intensity]:
+def evaluate_intensity(named: Optional[str], more_than: Sequence[float], settings: Settings, road: bool,
+                       groups: Sequence[Group]) -> Optional[study_types.Intensity]:
     """The entry of study.yaml, None without an intensity."""
-    name = check(named, settings, road)
+    name = check_intensity(named, settings, road)
     return entry(name, groups, more_than) if name else None

@@ -19,7 +19,7 @@ SOFT = 1e4              # stiffness number: with softer contacts a mass goes too
 VERSIONS = ("slope_version", "lammps_version", "lmp_sha256")
 
 
-def columns(summary: Mapping[str, Any], log) -> Dict[str, Any]:
+def list_ending_columns(summary: Mapping[str, Any], log) -> Dict[str, Any]:
     """What a row has, beside its quantities, of how a run ended, by its summary and its Log."""
     state, motion = rest.state(summary), summary["motion"]
     return {"at_rest": state.at_rest, "end": state.text, "end_short": state.short, "moves_share": state.share,
@@ -33,17 +33,17 @@ def of_runs(rows: Sequence[Row]) -> List[Finding]:
     """On runs, finished or failed."""
     finished = finished_of(rows)
     return [*failed(rows), *not_at_rest(finished), *lost(finished), *released(finished), *soft(finished),
-            *large(finished), *balance(finished), *programs(finished), *of_road(finished)]
+            *large(finished), *balance(finished), *programs(finished), *judge_road(finished)]
 
 
-def of(row: Row) -> Sequence[str]:
+def name_row(row: Row) -> Sequence[str]:
     """The name of a row's run; a run alone has none."""
     return (row.run,) if row.run else ()
 
 
 def failed(rows: Sequence[Row]) -> List[Finding]:
     """By their errors, whose numbers may differ."""
-    return gathered((Finding("failed", {"error": row.error}, of(row)) for row in rows
+    return gathered((Finding("failed", {"error": row.error}, name_row(row)) for row in rows
                      if isinstance(row, Failed)), len(rows), lambda one: kind(one.numbers["error"]))
 
 
@@ -55,7 +55,7 @@ def not_at_rest(finished: Sequence[Finished]) -> List[Finding]:
         cut = sum(row.stop_reason == rest.CUT for row in mine)
         among = f", {cut} of them stopped at their duration" if cut and len(mine) > 1 else ""
         found += [Finding(name, {"end": row.end, "time": row.stop_time_s, "share": row.moves_share,
-                                 "among": among}, of(row)) for row in mine]
+                                 "among": among}, name_row(row)) for row in mine]
     return gathered(found, len(finished))
 
 
@@ -72,18 +72,18 @@ def lost(finished: Sequence[Finished]) -> List[Finding]:
         "volume": most, "percent": 100 * most / gone[0].released_m3, "up_to": "up to " * (len(gone) > 1),
         "where": f" ({left_words.where(left)})" if left else "",
         "add": f" by {left_words.to_add(left)}" if left else "",
-        "of": len(finished)}, tuple(name for row in gone for name in of(row)))]
+        "of": len(finished)}, tuple(name for row in gone for name in name_row(row)))]
 
 
 def released(finished: Sequence[Finished]) -> List[Finding]:
-    return gathered((one._replace(runs=of(row)) for row in finished for one in row.release.doubts),
+    return gathered((one._replace(runs=name_row(row)) for row in finished for one in row.release.doubts),
                     len(finished))
 
 
 def soft(finished: Sequence[Finished]) -> List[Finding]:
     """Contacts that are too soft for the weight on them; none is known of runs of older versions, and others."""
     found = sorted(((row.stiffness_number or SOFT, row) for row in finished), key=lambda one: one[0])
-    return gathered((Finding("soft", {"number": float(number), "limit": SOFT}, of(row))
+    return gathered((Finding("soft", {"number": float(number), "limit": SOFT}, name_row(row))
                      for number, row in found if number < SOFT), len(finished))
 
 
@@ -94,7 +94,8 @@ def large(finished: Sequence[Finished]) -> List[Finding]:
 def balance(finished: Sequence[Finished]) -> List[Finding]:
     found = sorted((row for row in finished if not abs(row.mass_error) <= BALANCE),
                    key=lambda row: -abs(row.mass_error))
-    return gathered((Finding("balance", {"share": float(row.mass_error)}, of(row)) for row in found), len(finished))
+    return gathered((Finding("balance", {"share": float(row.mass_error)}, name_row(row)) for row in found),
+                    len(finished))
 
 
 def programs(finished: Sequence[Finished]) -> List[Finding]:
@@ -103,16 +104,16 @@ def programs(finished: Sequence[Finished]) -> List[Finding]:
             if len(several := {str(row.value(what)) for row in finished}) > 1]
 
 
-def of_road(finished: Sequence[Finished]) -> List[Finding]:
+def judge_road(finished: Sequence[Finished]) -> List[Finding]:
     """What `slope volume` said."""
-    found = gathered((one._replace(runs=of(row)) for row in finished if row.road
+    found = gathered((one._replace(runs=name_row(row)) for row in finished if row.road
                       for one in row.road.road_warnings), len(finished))
     return [one._replace(runs=()) if len(one.runs) == len(finished) else one for one in found]
 
 
 def of_logs(rows: Sequence[Row], said: Iterable[str]) -> List[Finding]:
     """What LAMMPS and its styles warned of; said: kinds of lines that other findings cover."""
-    return gathered((Finding("LAMMPS", {"line": line}, of(row)) for row in rows
+    return gathered((Finding("LAMMPS", {"line": line}, name_row(row)) for row in rows
                      for line in row.log_warnings if kind(line) not in said), len(rows),
                     lambda one: kind(one.numbers["line"]))
 

@@ -44,7 +44,7 @@ def governing(about: study_types.Study) -> str:
         if at is None:      # events beyond the runs decide
             return max(having, key=lambda row: row.value(of)).run
         return sizes.nearest(having, of, at).run
-    return best.run if best else travel_shares.farthest(rows).run
+    return best.run if best else travel_shares.find_farthest_run(rows).run
 
 
 def of_headline(about: study_types.Study, rows: Sequence[Finished]) -> Optional[str]:
@@ -70,7 +70,7 @@ def governing_run(study: Path) -> Tuple[str, Path]:
     return name, next(summary_of(study, row.summary).parent for row in finished_of(about.runs) if row.run == name)
 
 
-def read(name: str) -> Named:
+def read_named_run(name: str) -> Named:
     """The run of a prefix, of one of its rasters or its summary, of its folder, or the governing run of a study's or a
     site's folder; SlopeError if there is none, or several.
     """

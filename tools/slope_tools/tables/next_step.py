@@ -106,11 +106,11 @@ def of_studies(studies: Sequence[Made], about: Optional[study_types.Headline]) -
         source = {Code.RULE: reason.numbers.get("source"), Code.SIZE: governs}.get(reason.code)
         return by_source.get(Source(source or Source.ENSEMBLE)) or studies[0]
 
-    found = (step_of(of(one), one.code, one.numbers) for one in answer_words.told(about))
+    found = (make_next_step(of(one), one.code, one.numbers) for one in answer_words.told(about))
     return next((step for step in found if step), None) or (more_runs(ensemble) if ensemble else None)
 
 
-def step_of(made: Made, code: Code, of: Mapping[str, Any]) -> Optional[Step]:
+def make_next_step(made: Made, code: Code, of: Mapping[str, Any]) -> Optional[Step]:
     if code is Code.TERRAIN:
         return Step(*larger_terrain(made), made.whole)
     if code in (Code.RUNS, Code.FEW):
@@ -133,7 +133,7 @@ def step_of(made: Made, code: Code, of: Mapping[str, Any]) -> Optional[Step]:
 
 def first_remedy(made: Made) -> Optional[Step]:
     """Of a study whose number is withheld: what mends the first of its reasons."""
-    found = [step_of(made, Code.RULE, {**one.numbers, "rule": one.kind}) for one in made.withheld]
+    found = [make_next_step(made, Code.RULE, {**one.numbers, "rule": one.kind}) for one in made.withheld]
     return found[0] if found else None
 
 
@@ -176,7 +176,7 @@ def more_sizes(made: Made, sizes: int) -> Step:
     levels, rows = str(max(3, sizes + 1)), finished_of(made.study.runs)
     if made.site is None:
         d = rows[0].variables.get(VARIABLE, "") if rows else ""
-        if not is_number(d):
+        if not is_number_word(d):
             return Step("a finer model", f"a deck whose variable {VARIABLE} is the diameter of the balls, "
                         f"and the same command with --levels {VARIABLE}=5,2.5,1.25", None)
         coarsest = made.study.size.sizes[0].d if made.study.size else float(d)
@@ -237,10 +237,10 @@ def ranges_of(made: Made) -> Mapping[str, str]:
 def widened(text: str, least: float) -> str:
     """A range with half its least value, or down to a least one."""
     low, colon, high = text.removeprefix("uniform:").partition(":")
-    if not (colon and is_number(low) and is_number(high)):
+    if not (colon and is_number_word(low) and is_number_word(high)):
         return text
     return f"{max(float(low) / 2, min(least, float(low))):.10g}:{float(high):.10g}"
 
 
-def is_number(text: str) -> bool:
-    return math.isfinite(heads.number(text))
+def is_number_word(text: str) -> bool:
+    return math.isfinite(heads.parse_cell(text))

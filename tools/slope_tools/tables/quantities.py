@@ -7,7 +7,7 @@ from enum import Flag, auto
 from typing import Any, Callable, Dict, Iterable, List, Mapping, NamedTuple, Optional, Union
 
 from ..deposits import travel_shares
-from ..digits import measured, to_three
+from ..digits import format_measured_share, to_three
 from ..mobility.run_length import ON_PATH, STRAIGHT
 from .rows import Finished
 
@@ -93,7 +93,7 @@ OF_RUN = (
     Quantity("at_rest", "at rest", ""),
     Quantity("end", "how the run ended", ""),
     Quantity("end_short", "end", "", On.HIDDEN, screen=AS_IS, keeps=13),
-    Quantity("moves_share", "moves", "", On.HIDDEN, screen=measured, keeps=5),
+    Quantity("moves_share", "moves", "", On.HIDDEN, screen=format_measured_share, keeps=5),
     Quantity("wall_s", "wall time", "s", head="wall", screen=WHOLE, keeps=1, maybe=True))
 # of runs with a road
 OF_ROAD = (
@@ -143,7 +143,7 @@ def known(where: On, rows: Iterable[Finished]) -> List[str]:
     return [key for key in keys(where) if all(row.value(key) is not None for row in several)]
 
 
-def name_of(key: str, rows: Iterable[Finished]) -> str:
+def name_quantity(key: str, rows: Iterable[Finished]) -> str:
     """What a quantity of some runs is called: a length is straight where a run has no fall path."""
     if key != LENGTH:
         return ALL[key].name
@@ -167,7 +167,7 @@ def of_summary(summary: Mapping[str, Any]) -> Dict[str, Any]:
             found = found[word]
         return found
 
-    return {**{one.key: value(one.at.split()) for one in OF_RUN if one.at}, **travel_shares.columns(summary)}
+    return {**{one.key: value(one.at.split()) for one in OF_RUN if one.at}, **travel_shares.read_share_columns(summary)}
 
 
 def of_length(length) -> Dict[str, Any]:
@@ -186,7 +186,7 @@ def of_division(divided: Optional[Mapping[str, Any]], left: Optional[Mapping[str
             "left_before_road_m3": left and left["road_ahead"]}
 
 
-def number(value, sign=""):
+def format_quantity(value, sign=""):
     """Three digits, whole numbers from 100 on: as a page has it."""
     value = to_three(value)
     return f"{value:{sign},.0f}" if abs(value) >= 100 else f"{value:{sign}.3g}"

@@ -4,7 +4,7 @@ from typing import List, NamedTuple, Optional
 
 from .. import digits, disk
 from ..case import logs
-from ..digits import measured
+from ..digits import format_measured_share
 from ..findings import Finding
 from ..releases import packing
 
@@ -50,13 +50,14 @@ class Release(NamedTuple):
             why = "there are more balls than the body has room for" if self.off < 0 else (
                 f"the balls fill only {100 / (1 + self.off):.0f} % of the body, and each stands for more ground "
                 "than it has room for")
-            return [Finding("bulk factor", {"factor": self.factor, "off": measured(abs(self.off)), "why": why,
+            return [Finding("bulk factor", {"factor": self.factor, "off": format_measured_share(abs(self.off)),
+                                            "why": why,
                                             "usual": self.usual, "side": "below" if self.off < 0 else "above", **also})]
         if self.left_out is not None and abs(self.left_out) > DOUBTFUL:
-            return [Finding("body volume", {"off": measured(abs(self.left_out)), "body": self.body,
+            return [Finding("body volume", {"off": format_measured_share(abs(self.left_out)), "body": self.body,
                                             "side": "less" if self.left_out > 0 else "more", **also})]
         if self.body is None and self.removed is not None and 1 / (1 - self.removed) > 1 + DOUBTFUL:
-            return [Finding("balls removed", {"off": measured(self.removed), **also})]
+            return [Finding("balls removed", {"off": format_measured_share(self.removed), **also})]
         return []
 
 
@@ -66,12 +67,12 @@ def over_runs(releases, factor=True):
     about = [span(bodies)] if bodies and len(bodies) == len(releases) else ["body unknown"]
     removed = sorted(one.removed for one in releases if one.removed is not None)
     if removed and removed[-1] > 0:
-        about.append(f"{span([measured(removed[0]), measured(removed[-1])])} of the balls overlapped the slip surface "
-                     "or the ground and were removed")
+        about.append(f"{span([format_measured_share(removed[0]), format_measured_share(removed[-1])])} of the balls "
+                     "overlapped the slip surface " "or the ground and were removed")
     if releases and factor:
         factors = sorted(one.factor for one in releases)
         farthest = max(releases, key=lambda one: abs(one.off))
-        side = f"{measured(abs(farthest.off))} {'above' if farthest.off > 0 else 'below'} {farthest.usual}"
+        side = f"{format_measured_share(abs(farthest.off))} {'above' if farthest.off > 0 else 'below'} {farthest.usual}"
         most = "at most " if factors[0] < factors[-1] else ""
         about.append(f"bulk factor {span([f'{factors[0]:.4g}', f'{factors[-1]:.4g}'])}, "
                      + (farthest.usual if abs(farthest.off) < 5e-4 else most + side)
@@ -83,7 +84,8 @@ def released_share(left_out):
     """What became of the body; left_out: the share of it that is not released, < 0 if more is."""
     if abs(left_out) < NOTHING:
         return "all of it released"
-    return f"{measured(left_out)} of it not released" if left_out > 0 else f"{measured(-left_out)} more released"
+    return (f"{format_measured_share(left_out)} of it not released" if left_out > 0
+            else f"{format_measured_share(-left_out)} more released")
 
 
 def span(texts):
@@ -94,6 +96,6 @@ def release(summary, texts):
     """The Release of a run by its summary; texts: notes and warnings of its log."""
     about = summary.get("release") if isinstance(summary.get("release"), dict) else {}
     body, factor, off = (about.get(key) for key in ("body_volume", "bulk_factor", "from_cubic"))
-    factor = factor if disk.is_number(factor) and factor > 0 else summary["bulk_factor"]
-    return Release(summary["volume"]["released"], body if disk.is_number(body) and body > 0 else None, factor,
-                   off if disk.is_number(off) else factor / CUBIC - 1, logs.removed(texts), logs.packed(texts))
+    factor = factor if disk.is_finite_number(factor) and factor > 0 else summary["bulk_factor"]
+    return Release(summary["volume"]["released"], body if disk.is_finite_number(body) and body > 0 else None, factor,
+                   off if disk.is_finite_number(off) else factor / CUBIC - 1, logs.removed(texts), logs.packed(texts))

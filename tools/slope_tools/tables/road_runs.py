@@ -29,16 +29,18 @@ class Run(NamedTuple):
     totals: Mapping[str, Any]
 
 
-def evaluate(runs: Sequence[Run]) -> study_types.Stretches:
+def evaluate_road_runs(runs: Sequence[Run]) -> study_types.Stretches:
     """What study.yaml has of the road; there must be a run."""
     weights = np.array([run.weight for run in runs])
     weights = weights / weights.sum()
     blocked = [np.array([(one["from"], one["to"]) for one in run.stretches]).reshape(-1, 2) for run in runs]
     spans = merged([Span(*one) for ends in blocked for one in ends.tolist()], SAME)
-    totals = quantiles([{"length": run.totals["blocked_length"],
-                         **{name: run.totals[name] for name in SUMS if name in run.totals}} for run in runs], weights)
+    totals = compute_road_quantiles([{"length": run.totals["blocked_length"],
+                                      **{name: run.totals[name] for name in SUMS if name in run.totals}} for run
+                                     in runs], weights)
     return study_types.Stretches(len(runs), float(weights @ [len(ends) > 0 for ends in blocked]), totals,
-                                 [stretch(span, runs, weights) for span in spans], shares(blocked, weights))
+                                 [stretch(span, runs, weights) for span in spans],
+                                 compute_blocked_shares(blocked, weights))
 
 
 def stretch(span: Span, runs: Sequence[Run], weights: np.ndarray) -> Dict[str, Any]:
@@ -49,15 +51,15 @@ def stretch(span: Span, runs: Sequence[Run], weights: np.ndarray) -> Dict[str, A
                 **{name: sum(one[name] for one in several) for name in SUMS if name in run.totals}}
                for run, several in zip(runs, inside)]
     return {"from": span.low, "to": span.high, "share": float(weights @ [bool(several) for several in inside]),
-            **quantiles(numbers, weights)}
+            **compute_road_quantiles(numbers, weights)}
 
 
-def quantiles(numbers: Sequence[Mapping[str, float]], weights: np.ndarray) -> Dict[str, List[float]]:
+def compute_road_quantiles(numbers: Sequence[Mapping[str, float]], weights: np.ndarray) -> Dict[str, List[float]]:
     """Of each number of the runs, in the order of SHARES."""
     return {name: within([one[name] for one in numbers], weights, SHARES).tolist() for name in numbers[0]}
 
 
-def shares(blocked: Sequence[np.ndarray], weights: np.ndarray) -> List[List[float]]:
+def compute_blocked_shares(blocked: Sequence[np.ndarray], weights: np.ndarray) -> List[List[float]]:
     """From, to (m) and the share of the runs that block the road there, where any does; of neighbours it differs."""
     ends = np.unique(np.concatenate([one.ravel() for one in blocked]))
     found: List[List[float]] = []
@@ -102,7 +104,7 @@ def layer_of_bodies(entries: Sequence[Mapping[str, Any]], axes: Sequence[Axis]) 
 
 
 def rows(about: study_types.Stretches) -> Iterator[List[Any]]:
-    """Names, then a line for each stretch of evaluate(); of the last one, all of them, the range is empty."""
+    """Names, then a line for each stretch of evaluate_road_runs(); of the last one, all of them, the range is empty."""
     names = [name for name in ("length", "passable_width", *SUMS) if name in about.totals or
              name == "passable_width" and about.stretches]
     yield ["stretch", "from", "to", "share", *(f"{name}_{100 * share:g}" for name in names for share in SHARES)]

@@ -140,21 +140,21 @@ def finished_of(rows: Iterable[Row]) -> List[Finished]:
     return [row for row in rows if isinstance(row, Finished)]
 
 
-def plain(row: Row) -> Dict[str, Any]:
+def encode_row(row: Row) -> Dict[str, Any]:
     """What study.yaml has of it."""
-    about: Dict[str, Any] = records.plain(row)
+    about: Dict[str, Any] = records.encode_record(row)
     parts = [about.pop(part, None) or {} for part in PARTS]
     status = FINISHED if isinstance(row, Finished) else FAILED
     return {"run": about.pop("run"), "status": status, **about, **parts[0], **parts[1]}
 
 
-def read(about: Mapping[str, Any]) -> Row:
+def read_row(about: Mapping[str, Any]) -> Row:
     """The same back, of a mapping with a status; NoRecord if it is none."""
     if about["status"] not in (FAILED, FINISHED):
         raise records.NoRecord(f"status: must be {FAILED} or {FINISHED}, got {about['status']!r:.60}")
     if about["status"] == FAILED:
-        return records.read(Failed, about)
+        return records.read_record(Failed, about)
     parts: Dict[str, Any] = {part: {one.name: about[one.name] for one in fields(kind) if one.name in about}
                              for part, kind in PARTS.items()}
-    return replace(records.read(Finished, {**about, **dict.fromkeys(PARTS)}),
-                   **{part: records.read(PARTS[part], mine) for part, mine in parts.items() if mine})
+    return replace(records.read_record(Finished, {**about, **dict.fromkeys(PARTS)}),
+                   **{part: records.read_record(PARTS[part], mine) for part, mine in parts.items() if mine})

@@ -9,7 +9,7 @@ from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tup
 
 import numpy as np
 
-from ..case.settings import as_number
+from ..case.settings import normalise_value
 from ..runs import repeats
 from ..statistics import ball_sizes
 from ..statistics.ball_sizes import Finest, Step
@@ -38,7 +38,7 @@ class Places(NamedTuple):
     width: np.ndarray
 
     def of(self, row: Finished) -> np.ndarray:
-        values = np.array([as_number(row.variables[name]) for name in self.names], float)
+        values = np.array([normalise_value(row.variables[name]) for name in self.names], float)
         return (values - self.low) / self.width
 
 
@@ -120,39 +120,39 @@ def scaled_parts(road: OnRoad, on_road: float) -> List[List[float]]:
 
 # --- of the runs ---
 
-def of(points: Sequence[Point]) -> Optional[Sizes]:
+def combine_sizes(points: Sequence[Point]) -> Optional[Sizes]:
     """What points tell of sizes; None where there is one size only."""
     levels = max(map(len, points), default=0)
     points = [[*one, *[None] * (levels - len(one))] for one in points]
     used = 1
-    while used < levels and sum(pair(one, used - 1) is not None for one in points) >= FEWEST:
+    while used < levels and sum(find_size_pair(one, used - 1) is not None for one in points) >= FEWEST:
         used += 1
     first = [one[0] for one in points if one[0]]
     if used < 2:
         return None
     diameters = [next(float(row.variables[VARIABLE]) for one in points if (row := one[k])) for k in range(used)]
     places = places_of(first)
-    steps: Dict[str, List[Step]] = {key: [] for key in columns(first)}
+    steps: Dict[str, List[Step]] = {key: [] for key in list_step_columns(first)}
     for key, found in steps.items():
         volume = quantities.ALL[key].unit in VOLUMES
         for k in range(used - 1):
-            pairs = [both for one in points if (both := pair(one, k))
+            pairs = [both for one in points if (both := find_size_pair(one, k))
                      and all(row.value(key) is not None for row in both)]
             ball = max(both[0].ball_m3 for both in pairs) if volume and pairs else 0.0
-            found.append(ball_sizes.fit(
+            found.append(ball_sizes.fit_step(
                 [float(both[0].value(key)) for both in pairs], [float(both[1].value(key)) for both in pairs],
                 [places.of(both[0]) for both in pairs], diameters[k] / diameters[k + 1], ball,
                 found[-1] if found else None))
     return Sizes(diameters, [sum(one[k] is not None for one in points) for k in range(used)], places, steps)
 
 
-def pair(one: Point, k: int) -> Optional[Tuple[Finished, Finished]]:
+def find_size_pair(one: Point, k: int) -> Optional[Tuple[Finished, Finished]]:
     """The runs of a point with the k-th size and the next finer one; None where one of them is not there."""
     both = one[k:k + 2]
     return (both[0], both[1]) if len(both) == 2 and both[0] and both[1] else None
 
 
-def columns(rows: Sequence[Finished]) -> List[str]:
+def list_step_columns(rows: Sequence[Finished]) -> List[str]:
     """Those that a step changes, of which a run has a number."""
     return [key for key in quantities.keys(On.ASKED) if key not in NOT
             and any(row.value(key) is not None for row in rows)] + ["on_road_m3"] * any(row.road for row in rows)
@@ -162,7 +162,7 @@ def places_of(rows: Sequence[Finished]) -> Places:
     """Of the variables that are numbers and differ between runs, but for the size and what is chance."""
     names, values = [], []
     for name in rows[0].variables:
-        several = [as_number(row.variables.get(name, "")) for row in rows]
+        several = [normalise_value(row.variables.get(name, "")) for row in rows]
         if name != VARIABLE and not repeats.CHANCE.fullmatch(name) and len(set(several)) > 1 \
                 and all(isinstance(one, float) for one in several):
             names.append(name)
@@ -173,13 +173,13 @@ def places_of(rows: Sequence[Finished]) -> Places:
 
 # --- for study.yaml, and in words ---
 
-def about(found: Sizes, depth: Optional[float], balls: Sequence[float]) -> study_types.Size:
+def summarise_sizes(found: Sizes, depth: Optional[float], balls: Sequence[float]) -> study_types.Size:
     """The entry of study.yaml; depth: mean thickness of the body (m), balls: in it, of each size."""
     levels = [study_types.SizeRuns(d, round(number), depth and depth / d, runs)
               for d, number, runs in zip(found.diameters, balls, found.runs)]
     effects = {key: effect(steps) for key, steps in found.steps.items()}
     one = study_types.Size(levels, list(found.places.names), effects, "")
-    return replace(one, text=words(one))
+    return replace(one, text=describe_size(one))
 
 
 def effect(steps: Sequence[Step]) -> study_types.SizeEffect:
@@ -189,10 +189,10 @@ def effect(steps: Sequence[Step]) -> study_types.SizeEffect:
                               step.ratio and float(np.exp(step.ratio.constant)),
                               step.ratio and step.ratio.deviation, bool(step.ratio and step.ratio.slopes.any()))
          for step in steps],
-        ball_sizes.left(steps))
+        ball_sizes.estimate_remaining_step(steps))
 
 
-def words(one: study_types.Size) -> str:
+def describe_size(one: study_types.Size) -> str:
     """How many balls were computed, and what finer ones would change, a sentence without its full stop."""
     key = next((key for key in (quantities.REMOVE, quantities.LENGTH, quantities.DISTANCE) if key in one.effects), None)
     said = f"computed with {one.sizes[0].balls:,} balls"

@@ -16,7 +16,7 @@ class Step(NamedTuple):
     rolling: str                # its rolling resistance
     volume: Optional[float]     # m3 to remove
     why: str = ""
-    energy: Optional[Dict[str, Any]] = None     # of energy.read()
+    energy: Optional[Dict[str, Any]] = None     # of energy.read_energies()
     spacing: Optional[str] = None       # of its ground
     step: Optional[float] = None        # of the rule's: half of the deck's
 
@@ -51,17 +51,18 @@ def compare(step: Step, groups: Sequence[Group]) -> Tuple[study_types.HalfStep, 
     if not step.volume and not volumes.mean:
         return entry(f"{text}nothing to remove, as with the whole step", volumes.mean, 0.0, True), []
     by = f", {100 * difference / volumes.mean:+.1f} %" if volumes.mean > 0 else ""
-    text += f"{shown(step.volume)} m3 instead of {shown(volumes.mean)} to remove{by}"
+    text += f"{format_step_volume(step.volume)} m3 instead of {format_step_volume(volumes.mean)} to remove{by}"
     scatter = conservative_volume.scatter_of(parts, volumes) if volumes.mean > 0 else conservative_volume.pooled(parts)
     if scatter is None:
         return entry(f"{text}; chance unknown", volumes.mean), []
     chance = scatter.chance(volumes.runs)
     within = abs(difference) <= chance
-    numbers = {"rolling": step.rolling, "volume": shown(step.volume), "mean": shown(volumes.mean), "by": by,
-               "more": "no more" if within else "more", "chance": shown(chance)}
+    numbers = {"rolling": step.rolling, "volume": format_step_volume(step.volume),
+               "mean": format_step_volume(volumes.mean), "by": by,
+               "more": "no more" if within else "more", "chance": format_step_volume(chance)}
     found = Finding("half step", numbers)
     return entry(found.text, volumes.mean, chance, within), [] if within else [found]
 
 
-def shown(volume: float) -> str:
+def format_step_volume(volume: float) -> str:
     return rounded(to_three(volume))

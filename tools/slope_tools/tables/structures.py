@@ -21,7 +21,7 @@ WINDOW = 0.5            # s, of the mean force: single impacts are those of the 
 SHARES = (0.5, 0.9, 0.95, 0.99)
 SERIES = ("time", "fx", "fy", "fz", "mx", "my", "mz", "jx", "jy", "jz", "contacts", "largest_force")
 FILES = {"structures": "structures.csv", "lines": "lines.csv"}
-SIDE = schemas.mapping(schemas.numbers("volume", "crossings"))
+SIDE = schemas.mapping(schemas.number_keys("volume", "crossings"))
 LINE = schemas.mapping({"forward": SIDE, "back": SIDE, "net_volume": schemas.NUMBER})
 
 
@@ -122,7 +122,7 @@ def of_structure(folder: Path, prefix: str) -> Dict[str, Any]:
 
 def of_line(folder: Path, prefix: str) -> Dict[str, Any]:
     """Numbers of a control line; speeds, heights, energies of the crossings in the direction of the mass, all alike."""
-    about = schemas.load(folder / f"{prefix}.line.yaml", "what fix control/line wrote", LINE)
+    about = schemas.load_checked(folder / f"{prefix}.line.yaml", "what fix control/line wrote", LINE)
     found = crossings(folder, prefix)
     forward, back = about["forward"]["volume"], about["back"]["volume"]
     main = "back" if back > forward else "forward"      # as the fix has it
@@ -146,7 +146,7 @@ def in_direction(found: Mapping[str, np.ndarray], main: str) -> np.ndarray:
     return found["direction"] * (1 if main == "forward" else -1) > 0
 
 
-def of_run(folder, settings: Sequence[str]) -> Dict[str, Dict[str, Dict[str, Any]]]:
+def read_run_structures(folder, settings: Sequence[str]) -> Dict[str, Dict[str, Dict[str, Any]]]:
     """{"structures": {ID: numbers}, "lines": {ID: numbers}} of a run with these commands in its log."""
     folder = Path(folder)
     return {"structures": {name: of_structure(folder, prefix)
@@ -174,7 +174,7 @@ def scatter_at_rest(rows: Sequence[Finished]) -> Dict[str, Tuple[float, int]]:
     return found
 
 
-def table(rows: Sequence[Finished], what: str) -> str:
+def tabulate_structures(rows: Sequence[Finished], what: str) -> str:
     """The CSV over all runs: a row for each structure, or line, of each; '' if there is none."""
     entries = [(row, name, numbers) for row in rows for name, numbers in row.value(what).items()]
     if not entries:
@@ -197,24 +197,24 @@ TITLES = {"structures": f"forces on structures: the largest, and the largest mea
           "lines": "what crossed the lines; quantiles in the direction in which more crossed"}
 
 
-def cell(value, unit):
+def format_structure_cell(value, unit):
     return "-" if value is None else f"{value / unit:,.3g}" if abs(value) < 1000 * unit else f"{value / unit:,.0f}"
 
 
-def write(output: Path, rows: Sequence[Finished]) -> List[Path]:
+def write_structures(output: Path, rows: Sequence[Finished]) -> List[Path]:
     """structures.csv and lines.csv, where there is something; the files."""
     written = []
     for what, file in FILES.items():
-        text = table(rows, what)
+        text = tabulate_structures(rows, what)
         if not text:
             (output / file).unlink(missing_ok=True)     # of an earlier collection
             continue
-        disk.write(output / file, text)
+        disk.write_file(output / file, text)
         written.append(output / file)
     return written
 
 
-def shown(rows: Sequence[Finished]) -> Iterator[Table]:
+def list_structure_tables(rows: Sequence[Finished]) -> Iterator[Table]:
     """The tables on the screen."""
     for what, heads in SHOWN.items():
         if not any(row.value(what) for row in rows):
@@ -224,5 +224,5 @@ def shown(rows: Sequence[Finished]) -> Iterator[Table]:
             one.add_column(head, justify="right")
         for row in rows:
             for name, numbers in row.value(what).items():
-                one.add_row(row.run, name, *(cell(numbers.get(key), unit) for _, key, unit in heads))
+                one.add_row(row.run, name, *(format_structure_cell(numbers.get(key), unit) for _, key, unit in heads))
         yield one

@@ -8,20 +8,20 @@ from ..case import run_folders
 from ..errors import SlopeError
 from ..findings import OTHER
 from ..records import NoRecord
-from ..schemas import TEXT, listed, mapping
+from ..schemas import TEXT, list_of, mapping
 from . import rows as rows_, study_types
 from .answered import STUDY as STUDY_FILE, study_in
 from .rows import finished_of
 
 WHAT = "what `slope study` wrote, of this version (the same command rewrites it, and keeps the runs)"
-SCHEMA = mapping({"runs": listed(mapping({"run": TEXT, "status": TEXT}))})
+SCHEMA = mapping({"runs": list_of(mapping({"run": TEXT, "status": TEXT}))})
 
 
 def load_study(path: Path) -> study_types.Study:
     """The study of a study.yaml; SlopeError if it is none of this version."""
-    held = schemas.load(path, WHAT, SCHEMA)
+    held = schemas.load_checked(path, WHAT, SCHEMA)
     try:
-        study = records.read(study_types.Study, {**held, "runs": []})
+        study = records.read_record(study_types.Study, {**held, "runs": []})
     except NoRecord as error:
         raise SlopeError(path, f"must be {WHAT}: {error}") from None
     study = replace(study, runs=[row_of(path, one) for one in held["runs"]])
@@ -43,18 +43,18 @@ def load_study(path: Path) -> study_types.Study:
 
 def read_study(path: Path) -> Dict[str, Any]:
     """The same for scripts: of values that YAML knows."""
-    return plain(load_study(path))
+    return encode_study(load_study(path))
 
 
-def plain(study: study_types.Study) -> Dict[str, Any]:
+def encode_study(study: study_types.Study) -> Dict[str, Any]:
     """What study.yaml has of a study: values that YAML and JSON know."""
-    return {**records.plain(study), "runs": [rows_.plain(row) for row in study.runs]}
+    return {**records.encode_record(study), "runs": [rows_.encode_row(row) for row in study.runs]}
 
 
 def row_of(path: Path, one: Mapping[str, Any]) -> rows_.Row:
     """The row of an entry of study.yaml."""
     try:
-        return rows_.read(one)
+        return rows_.read_row(one)
     except NoRecord as error:
         raise SlopeError(f"{path}: run {one['run']}", f"must be {WHAT}: {error}") from None
 
@@ -77,7 +77,7 @@ class Study(NamedTuple):
         return self.about["runs"]
 
     def prefix(self, run: str) -> Path:
-        """Prefix of the rasters of a finished run, for deposits.deposit.read and others."""
+        """Prefix of the rasters of a finished run, for deposits.deposit.read_deposit and others."""
         for row in self.runs:
             if row["run"] == run and "summary" in row:
                 return run_folders.prefix_of(run_folders.summary_of(self.folder, row["summary"]))

@@ -26,7 +26,8 @@ class OverAll(NamedTuple):
     problem: Optional[str]
 
 
-def write(runs: Sequence[Source], thresholds: Sequence[float], output: Path, place: Optional[rasters.Place]) -> OverAll:
+def write_study_maps(runs: Sequence[Source], thresholds: Sequence[float], output: Path,
+                     place: Optional[rasters.Place]) -> OverAll:
     """Write all rasters, remove those of an earlier call. They are not made again while runs and rasters are as they
     were.
 

@@ -8,7 +8,7 @@ from ..mobility.run_length import STRAIGHT
 from ..statistics import rounding
 from . import combinations, quantities
 from .quantities import KNOWN, OF_ROAD, OF_RUN, On, shown_on, written
-from .rows import Failed, Finished, Row, finished_of, plain
+from .rows import Failed, Finished, Row, finished_of, encode_row
 
 COLUMNS, ROAD_COLUMNS, IF_KNOWN = ([one.key for one in several if On.HIDDEN not in one.on]
                                    for several in (OF_RUN, OF_ROAD, quantities.IF_KNOWN))
@@ -17,22 +17,23 @@ ANSWER: Dict[Optional[bool], str] = {True: "yes", False: "no"}
 LESS = [one.on_screen for one in sorted(shown_on("screen"), key=lambda one: one.keeps)]
 
 
-def columns_of(finished: Sequence[Finished]) -> List[str]:
+def list_study_columns(finished: Sequence[Finished]) -> List[str]:
     """Those of every run, and with a road of that."""
     return [*COLUMNS, *(ROAD_COLUMNS if any(row.road for row in finished) else ())]
 
 
-def table(settings, repeated, rows: Sequence[Row], defaults):
+def tabulate_study(settings, repeated, rows: Sequence[Row], defaults):
     """The CSV over all runs."""
     finished = finished_of(rows)
-    columns = [*columns_of(finished), *(key for key in IF_KNOWN if any(row.value(key) is not None for row in finished)),
+    columns = [*list_study_columns(finished), *(key for key in IF_KNOWN
+                                                if any(row.value(key) is not None for row in finished)),
                "status", "error"]
     if any(row.length_is == STRAIGHT for row in finished):
         columns.insert(columns.index("length_deg") + 1, "length_is")
     more = [name for name in repeated if name not in settings]
 
     def line(row: Row):
-        cells = plain(row)
+        cells = encode_row(row)
         cells.update({name: ANSWER.get(cells.get(name)) for name in ("moving", "at_rest")})
         own = row.variables if isinstance(row, Finished) else {}
         chosen = {**defaults, **own, **row.set, **row.repeat}
@@ -41,12 +42,12 @@ def table(settings, repeated, rows: Sequence[Row], defaults):
     return disk.csv_text(["run", *settings, *more, *columns], map(line, rows))
 
 
-def volume(value, scatter):
+def round_volume(value, scatter):
     """A volume rounded to what is known: by its scatter, else to three digits; if repeats agree, to whole m3."""
     if scatter is not None and scatter.deviation > 0:
-        return rounding.text(value, rounding.place(scatter.deviation))
+        return rounding.format_rounded(value, rounding.choose_rounding(scatter.deviation))
     place = rounding.place_of_digits(value, "m3")
-    return rounding.text(value, min(1.0, place) if scatter else place)
+    return rounding.format_rounded(value, min(1.0, place) if scatter else place)
 
 
 def varied(settings):
@@ -58,14 +59,14 @@ def varied(settings):
 
 def width_of(shown: Table) -> int:
     """Characters that a table needs so that no cell is cut; its heads may be broken between words."""
-    return 1 + sum(3 + least(column) for column in shown.columns)
+    return 1 + sum(3 + measure_least_width(column) for column in shown.columns)
 
 
-def least(column) -> int:
+def measure_least_width(column) -> int:
     return max(map(len, (*str(column.header).split(), *column.cells)), default=0)
 
 
-def fit(shown: Table, width: int) -> List[str]:
+def fit_width(shown: Table, width: int) -> List[str]:
     """Take columns out of a table until it fits a width; their heads."""
     left_out = []
     while width_of(shown) > width and len(shown.columns) > 1:
@@ -75,8 +76,8 @@ def fit(shown: Table, width: int) -> List[str]:
         left_out.append(head)
     room = width - width_of(shown)
     for k, column in enumerate(shown.columns):
-        more = min(max(room, 0), max(len(str(column.header)) - least(column), 0))
-        column.width, column._index, room = least(column) + more, k, room - more
+        more = min(max(room, 0), max(len(str(column.header)) - measure_least_width(column), 0))
+        column.width, column._index, room = measure_least_width(column) + more, k, room - more
     return left_out
 
 
@@ -96,7 +97,7 @@ def runs_shown(settings, rows: Sequence[Row], scatters, title) -> Table:
         if isinstance(row, Failed):
             cells += ["failed"]
         else:
-            cells += ["-" if row.value(one.key) is None else volume(row.value(one.key), scatters.get(one.key))
+            cells += ["-" if row.value(one.key) is None else round_volume(row.value(one.key), scatters.get(one.key))
                       if one.screen == KNOWN else written(one.screen, row.value(one.key)) for one in columns]
         shown.add_row(*cells)
     return shown
@@ -110,8 +111,8 @@ def combinations_shown(settings, groups, scatters) -> Table:
         shown.add_column(head, justify="right")
 
     def cell(value, deviation, scatter):
-        text = volume(value, scatter)
-        return text if deviation is None else f"{text} s {volume(deviation, scatter)}"
+        text = round_volume(value, scatter)
+        return text if deviation is None else f"{text} s {round_volume(deviation, scatter)}"
 
     for group in groups:
         several = {key: group.of(key) for key in scatters}
@@ -119,5 +120,5 @@ def combinations_shown(settings, groups, scatters) -> Table:
                       *(cell(one.mean, one.scatter, scatters[key]) for key, one in several.items()))
     shown.add_section()
     shown.add_row(*[""] * len(names), "all",
-                  *(f"s {volume(one.deviation, one)}" if one else "" for one in scatters.values()))
+                  *(f"s {round_volume(one.deviation, one)}" if one else "" for one in scatters.values()))
     return shown

@@ -148,7 +148,7 @@ class HalfStep:
     mean_m3: Optional[float]
     chance_m3: Optional[float]
     within_chance: Optional[bool]
-    energy: Optional[Mapping[str, Any]]         # energy.read()
+    energy: Optional[Mapping[str, Any]]         # energy.read_energies()
     text: str
 
 
@@ -167,7 +167,7 @@ class ElasticQuantity(Span):
 
 @dataclass(frozen=True)
 class Elastic:
-    """Reach and area with the largest restitution (elastic.evaluate)."""
+    """Reach and area with the largest restitution (elastic.evaluate_elastic)."""
     restitution: float
     rolling: str
     thicker_than_m: float
@@ -264,7 +264,7 @@ class PerYear:
 
 @dataclass(frozen=True)
 class Chain:
-    """From the earthquake to the blocked road (chain_files.evaluate)."""
+    """From the earthquake to the blocked road (chain_files.evaluate_chain)."""
     fragility: str
     quantity: str
     confidence: float
@@ -288,7 +288,8 @@ class NextStep:
 
 @dataclass(frozen=True)
 class Stretches:
-    """The stretches of the road that runs block (road_runs.evaluate); of_known_events: whether these weigh the runs."""
+    """The stretches of the road that runs block (road_runs.evaluate_road_runs); of_known_events: whether these weigh
+    the runs."""
     runs: int
     share_blocked: float
     totals: Dict[str, List[float]]
@@ -310,11 +311,11 @@ class Study:
     step: Optional[HalfStep]
     largest_restitution: Optional[Elastic]
     scatter: Mapping[str, Optional[Mapping[str, float]]]
-    combinations: List[Dict[str, Any]]          # combinations.entries()
+    combinations: List[Dict[str, Any]]          # combinations.list_combination_entries()
     envelope: Optional[Dict[str, MapEntry]]
     exceedance: Optional[List[MapEntry]]
     observed: Optional[Observed]
-    roads: List[Dict[str, Any]]     # road_numbers.entries()
+    roads: List[Dict[str, Any]]     # road_numbers.list_road_entries()
     warnings: List[Finding]
     runs: List[Row]
     headline: Optional[Headline]

@@ -39,7 +39,7 @@ def known_of(prefix: Path, terrain: Optional[Path], about: Mapping[str, Any],
              site: Optional[Path] = None) -> known.Known:
     """The mass of a run among known events; prefix: of its deposit; terrain: the ground before it; about: of the
     events, see known.of_about(); site: see known.of_mass()."""
-    read = deposit.read(prefix, terrain, lambda text: None)
+    read = deposit.read_deposit(prefix, terrain, lambda text: None)
     return known.of_mass(read.raster, *scar.before(read.raster, read.base, terrain), about, site)
 
 

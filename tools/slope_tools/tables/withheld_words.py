@@ -24,7 +24,7 @@ class Case(NamedTuple):
     given: Any = None               # the request of the study; None: not known
 
 
-def remedy(reason: Finding, case: Case) -> str:
+def suggest_withheld_remedy(reason: Finding, case: Case) -> str:
     """The command that mends it."""
     if reason.kind == Kind.BALLS:
         return finer(case, times_the_balls(reason.numbers["number"]))
@@ -35,7 +35,7 @@ def remedy(reason: Finding, case: Case) -> str:
         return changed(case, f"a larger elevation model{more} (terrain.files, terrain.bounds)",
                        f"a larger terrain and box in the deck{more}")
     if 2 * reason.numbers["failed"] > reason.numbers["number"]:
-        return f"once the cause of the failures is removed: {same(case, 'the same command again')}"
+        return f"once the cause of the failures is removed: {repeat_command(case, 'the same command again')}"
     if case.site is None and "duration" in case.variables:
         return with_value(case, "duration", twice(case))
     return changed(case, "more time (model.duration)", "more time in the deck")
@@ -83,7 +83,7 @@ def mobile(case: Case) -> str:
 def changed(case: Case, in_site: str, in_deck: str) -> str:
     """What must be changed, and what is run then."""
     if not case.site:
-        return f"{in_deck}, then: {same(case, 'the same command with --anew', anew=True)}"
+        return f"{in_deck}, then: {repeat_command(case, 'the same command with --anew', anew=True)}"
     return f"{in_site} in {quote(str(case.site))}/site.yaml, then: {anew(case)}"
 
 
@@ -93,7 +93,7 @@ def anew(case: Case, options: str = "") -> str:
     return f"tools/slope site {quote(str(case.site))}{options}{study}"
 
 
-def same(case: Case, words: str, **changes: Any) -> str:
+def repeat_command(case: Case, words: str, **changes: Any) -> str:
     """The command once more; words: for it, where it is not known."""
     return again.command(case.given, **changes) if case.given else words
 
@@ -113,10 +113,10 @@ def twice(case: Case) -> str:
 
 def with_remedies(found: Sequence[Finding], case: Case) -> List[Finding]:
     """Reasons with what mends each."""
-    return [one._replace(remedy=remedy(one, case)) for one in found]
+    return [one._replace(remedy=suggest_withheld_remedy(one, case)) for one in found]
 
 
-def lines(withheld: Sequence[Finding]) -> List[str]:
+def describe_withheld(withheld: Sequence[Finding]) -> List[str]:
     """What stands in the place of the number, of with_remedies()."""
     return [f"{UNUSABLE}:", *(f"  {text}" for text in texts(withheld))]
 

@@ -15,7 +15,7 @@ from .. import disk, findings, processes, provenance, schemas, streams
 from ..case import last_words, logs
 from ..errors import SlopeError
 from ..runs import jobs
-from ..schemas import ANY, OBJECT, listed, mapping, numbers
+from ..schemas import ANY, OBJECT, list_of, mapping, number_keys
 from . import verification
 from .verification.claims import INPUTS, Result
 from .verification.errata import errata
@@ -28,9 +28,9 @@ COLUMNS = ("case", "claim", "name", "source", "unit", "expected", "tolerance", "
 TABLE = INPUTS / "20_embankment" / "reference.yaml"
 # crosscheck.yaml
 PEERS = mapping({
-    "crosscheck": mapping({"versions": OBJECT, "package": ANY, "finished": ANY, **numbers("compared", "failed")}),
-    "checks": listed(mapping(dict.fromkeys(("case", "quantity", "code", "against", "value", "expected", "tolerance",
-                                            "passed"), ANY))), "differs": OBJECT})
+    "crosscheck": mapping({"versions": OBJECT, "package": ANY, "finished": ANY, **number_keys("compared", "failed")}),
+    "checks": list_of(mapping(dict.fromkeys(("case", "quantity", "code", "against", "value", "expected", "tolerance",
+                                             "passed"), ANY))), "differs": OBJECT})
 
 
 # --- runs ---
@@ -167,7 +167,7 @@ def judged(claim, got, broken, package="", date=""):
                    broken == broken and not claim.bound.holds(broken), package, date)
 
 
-def text(got):
+def format_claim_value(got):
     """A number or a word, for people."""
     return got if isinstance(got, str) else f"{got:.5g}"
 
@@ -176,8 +176,9 @@ def line(outcome):
     claim = outcome.claim
     expected, tolerance = claim.bound.texts()
     verdict = "pass" if outcome.right else "FAIL"
-    control = "" if outcome.control_fails else f"; its control does not fail: {text(outcome.control_got)}"
-    return f"{verdict} {claim.case} {claim.name}: {text(outcome.got)}, expected {expected} ({tolerance}){control}"
+    control = "" if outcome.control_fails else f"; its control does not fail: {format_claim_value(outcome.control_got)}"
+    return (f"{verdict} {claim.case} {claim.name}: {format_claim_value(outcome.got)}, expected {expected} "
+            f"({tolerance}){control}")
 
 
 # --- the report ---
@@ -210,10 +211,10 @@ def row(outcome):
 
 def compared(path):
     """What `slope crosscheck` wrote, for the report."""
-    found = schemas.load(path, "what `slope crosscheck` wrote", PEERS)
+    found = schemas.load_checked(path, "what `slope crosscheck` wrote", PEERS)
     about = found["crosscheck"]
-    rows = [{**check, "value": text(check["value"]), "expected": text(check["expected"]),
-             "tolerance": "for information" if check["tolerance"] is None else text(check["tolerance"])}
+    rows = [{**check, "value": format_claim_value(check["value"]), "expected": format_claim_value(check["expected"]),
+             "tolerance": "for information" if check["tolerance"] is None else format_claim_value(check["tolerance"])}
             for check in found["checks"]]
     return {"rows": rows, "differs": found["differs"], "date": about["finished"],
             **{key: about[key] for key in ("versions", "package", "compared", "failed")}}
@@ -229,21 +230,21 @@ def second_table() -> Dict[str, Any]:
     return {"heads": ["", *(f"{x:.2f}" for x in heads)], "rows": rows, "remark": " ".join(about["remark"].split())}
 
 
-def write(output, outcomes, about, peers=None, seen=()):
+def write_verification(output, outcomes, about, peers=None, seen=()):
     """The report in its four forms, and the numbers of each case.
 
     seen: (Seen, number or word).
     """
     rows = [row(outcome) for outcome in outcomes]
     table = disk.csv_text(COLUMNS, ({**entry, "commands": "; ".join(entry["commands"])}.values() for entry in rows))
-    found = content(outcomes, peers)
+    found = make_verification_content(outcomes, peers)
     whole = yaml.safe_dump({**about, "results": rows}, sort_keys=False)
     (output / NUMBERS).mkdir(exist_ok=True)
     for case, kept in kept_numbers(outcomes, seen).items():
-        disk.write(output / NUMBERS / f"{case}.yaml", yaml.safe_dump(kept, sort_keys=False))
+        disk.write_file(output / NUMBERS / f"{case}.yaml", yaml.safe_dump(kept, sort_keys=False))
     for name, data in ((".csv", table), (".yaml", whole), (".rst", render("verify.rst.j2", found)),
                        (".html", render("verify.html.j2", {**found, "about": about}))):
-        disk.write(output / f"{NAME}{name}", data)
+        disk.write_file(output / f"{NAME}{name}", data)
 
 
 def kept_numbers(outcomes, seen) -> Dict[str, Dict[str, Any]]:
@@ -273,7 +274,7 @@ def kept_outcomes(inputs=INPUTS):
     return found
 
 
-def content(outcomes, peers=None) -> Dict[str, Any]:
+def make_verification_content(outcomes, peers=None) -> Dict[str, Any]:
     """What the page shows of outcomes."""
     rows = [{**row(one), "package": one.package, "date": one.date} for one in outcomes]
 
@@ -284,7 +285,8 @@ def content(outcomes, peers=None) -> Dict[str, Any]:
     cases = [{"folder": case.CASE, "title": case.__doc__.splitlines()[0],
               "intro": " ".join(case.__doc__.split("\n", 1)[1].split()),
               "made": ", ".join(dict.fromkeys(f"{entry['package']} of {entry['date']}" for entry in of_module(case))),
-              "rows": [{**entry, "got": text(entry["got"]), "control_got": text(entry["control_got"])}
+              "rows": [{**entry, "got": format_claim_value(entry["got"]),
+                        "control_got": format_claim_value(entry["control_got"])}
                        for entry in of_module(case)],
               "commands": list(dict.fromkeys(command for entry in of_module(case) for command in entry["commands"]))}
              for case in verification.cases()]
@@ -297,7 +299,7 @@ def content(outcomes, peers=None) -> Dict[str, Any]:
 
 def page(outcomes) -> str:
     """doc/src/verification.rst of outcomes."""
-    return render("verify.rst.j2", content(outcomes))
+    return render("verify.rst.j2", make_verification_content(outcomes))
 
 
 def render(template, content):

@@ -78,7 +78,7 @@ def frames_of(result):
     return tuple(result.frames(f"cylinder.{when}.dump") for when in ("start", "end"))
 
 
-def runout(result):
+def measure_axisymmetric_runout(result):
     """The same, of a run."""
     return runout_of(*frames_of(result))
 
@@ -142,7 +142,7 @@ CLAIMS = [
               DECK(radius=radius, seed=seed, friction=60, rolling=1) for radius, seed in ((8, 1), (8, 2), (12, 1)))),
           quick=False, remark="Glass beads are not met: 1.34 for 1.00."),
     Claim("axisymmetric_sand", "Height over radius 1, sand, radius 12 d, smooth floor: run-out over radius", "",
-          "Lube et al. (2004)", (WIDE(floor="plane"),), runout, Near(lube(1), 0.15, True),
+          "Lube et al. (2004)", (WIDE(floor="plane"),), measure_axisymmetric_runout, Near(lube(1), 0.15, True),
           Control("the rough floor", (WIDE,)), quick=False,
           remark="Bound set before, case chosen afterwards: on fixed balls, and with a radius of 8 d, it is not met."),
 ]

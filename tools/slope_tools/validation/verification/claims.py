@@ -100,7 +100,7 @@ class Result:
 
     def number(self, name, start):
         """The number after a name in the first line that was printed with this start."""
-        return number(name, self.printed(start)[0])
+        return find_number(name, self.printed(start)[0])
 
     def curve(self, name):
         """A .csv file with a title: columns by name."""
@@ -108,15 +108,15 @@ class Result:
 
     def frames(self, name):
         """A dump of a constant number of atoms, sorted: {column: array of frames by atoms}."""
-        return read_frames(self.folder / name)
+        return read_claim_frames(self.folder / name)
 
 
-def number(name, line):
+def find_number(name, line):
     """The number after a name in a line."""
     return float(re.findall(rf"\b{name} (\S+)", line)[0].rstrip(":"))
 
 
-def read_frames(path):
+def read_claim_frames(path):
     """See Result.frames."""
     found = dumps.frames(path)
     columns, values = found[0][0], np.array([values for _, values in found])

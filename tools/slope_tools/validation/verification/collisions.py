@@ -20,7 +20,7 @@ def vectors(balls, *names):
     return np.stack([balls[name] for name in names], axis=2)
 
 
-def pair(result):
+def read_ball_pair(result):
     """mass, place, velocity, spin, radius of the two balls, frame by frame."""
     balls = result.frames("pair.dump")
     return (balls["mass"], vectors(balls, "x", "y", "z"), vectors(balls, "vx", "vy", "vz"),
@@ -29,14 +29,14 @@ def pair(result):
 
 def momentum(result):
     """Its change over the impulse."""
-    mass, _, v, _, _ = pair(result)
+    mass, _, v, _, _ = read_ball_pair(result)
     each = mass[:, :, None] * v
     return np.linalg.norm(each.sum(1)[-1] - each.sum(1)[0]) / np.linalg.norm(each[-1, 0] - each[0, 0])
 
 
 def angular_momentum(result):
     """Its change over impulse times sum of the radii."""
-    mass, x, v, w, radius = pair(result)
+    mass, x, v, w, radius = read_ball_pair(result)
     each = mass[:, :, None] * v
     total = (np.cross(x, each) + 0.4 * (mass * radius ** 2)[:, :, None] * w).sum(1)
     impulse = np.linalg.norm(each[-1, 0] - each[0, 0])
@@ -45,7 +45,7 @@ def angular_momentum(result):
 
 def overlap_share(result):
     """Of the largest overlap in the sum of the radii."""
-    _, x, _, _, radius = pair(result)
+    _, x, _, _, radius = read_ball_pair(result)
     return 1 - np.linalg.norm(x[:, 1] - x[:, 0], axis=1).min() / radius[0].sum()
 
 
@@ -55,7 +55,7 @@ def angular_momentum_over_overlap(result):
 
 def impulse(result):
     """Of the normal, over m_1 m_2/(m_1+m_2) times the speed of approach: 1 + e."""
-    mass, x, v, _, radius = pair(result)
+    mass, x, v, _, radius = read_ball_pair(result)
     m1, m2 = mass[0]
     touching = np.argmax(np.linalg.norm(x[:, 1] - x[:, 0], axis=1) < radius[0].sum())
     normal = x[touching, 0] - x[touching, 1]
@@ -65,7 +65,7 @@ def impulse(result):
 
 def restitution(result):
     """Of two balls that meet head on."""
-    _, _, v, _, _ = pair(result)
+    _, _, v, _, _ = read_ball_pair(result)
     return -(v[-1, 0, 0] - v[-1, 1, 0]) / (v[0, 0, 0] - v[0, 1, 0])
 
 
@@ -96,7 +96,7 @@ def growth(result):
     return max(np.diff(energy).max() / energy[0], 0.0)
 
 
-def left(result):
+def measure_energy_left(result):
     """Share of the energy that is left."""
     energy = energies(result)
     return energy[-1] / energy[0]
@@ -143,4 +143,5 @@ CLAIMS = [
     _keeps("energy_damped_rule", "The same at steps of the rule: largest gain of energy", DAMPED(part=1, steps=20000),
            growth, 1e-9, "undamped, scheme plain", GAS(scheme="plain", part=1, steps=20000)),
 ]
-SEEN = [Seen("left", (DAMPED,), left, chance=0.1), Seen("left_rule", (DAMPED(part=1, steps=20000),), left, chance=0.1)]
+SEEN = [Seen("left", (DAMPED,), measure_energy_left, chance=0.1), Seen("left_rule", (DAMPED(part=1, steps=20000),),
+                                                                       measure_energy_left, chance=0.1)]

@@ -40,21 +40,22 @@ def runout_of(start, end):
     return (np.argmax(layers < 0.5) - length) / length
 
 
-def runout(result):
+def measure_column_runout(result):
     """The same, of a run."""
     return runout_of(*(result.frames(f"column.{when}.dump") for when in ("start", "end")))
 
 
 def exponent(*results):
     """Of run-out against a, from a first half of runs to a second one of columns twice as slender."""
-    first, second = np.reshape([runout(result) for result in results], (2, -1)).mean(axis=1)
+    first, second = np.reshape([measure_column_runout(result) for result in results], (2, -1)).mean(axis=1)
     return np.log2(second / first)
 
 
 def _claim(a, run, control, quick=False):
     which = f"a = {a:g}" + (", small" if quick else "")
     return Claim(f"runout_{a:g}" + "_small" * quick, f"Height over length {which}: run-out over length", "", SOURCE,
-                 (run,), runout, Between(law(a, LUBE), law(a, LAJEUNESSE), MARGIN_SMALL if quick else MARGIN), control,
+                 (run,), measure_column_runout, Between(law(a, LUBE), law(a, LAJEUNESSE), MARGIN_SMALL if quick
+                                                        else MARGIN), control,
                  quick)
 
 

@@ -31,7 +31,7 @@ def gas(result):
     return total / total[0]
 
 
-def gaps(result):
+def measure_gap_ratio(result):
     """Of the balls of a run of in.slot, over the overlap at which an impact of their speed ends."""
     balls = result.frames("slot.dump")
     line, = result.printed("slot:")

@@ -46,7 +46,7 @@ def front(result):
     return d * np.argmax(layers < 0.5)
 
 
-def runout(result):
+def measure_flume_runout(result):
     """The same from the gate."""
     return front(result) - states(result)[2]
 
@@ -71,7 +71,7 @@ CLAIMS = [
     Claim("dam_break_toe", "Sand 0.4 m deep, balls of 20 mm: front, from the back", "m", EVANGELISTA, (DEEP,), front,
           Near(1.1, 0.1), Control(STIFF, (DEEP(**SLOW),)), quick=False),
     Claim("glass_front", "Column of glass beads 0.2 m long, 0.14 m high, balls of 10 mm: front beyond the gate", "m",
-          "Lube et al. (2005), Lajeunesse et al. (2005)", fillings(BEADS), mean(runout),
+          "Lube et al. (2005), Lajeunesse et al. (2005)", fillings(BEADS), mean(measure_flume_runout),
           Between(1.2 * 0.14, 1.8 * 0.14, 0.25), Control(STIFF, (BEADS(**SLOW),)),
           remark="Mangeney et al. (2010) measured 0.275 m: not met, 0.160 to 0.190 m in the three fillings, 0.215 m "
                  "with balls of 5 mm. Margin of small columns, as in inputs/11."),
@@ -79,5 +79,6 @@ CLAIMS = [
           Near(0.14, 0.01), Control(SLIPPERY, (BEADS(**SLIDING),))),
 ]
 SEEN = [Seen(f"glass.{name}.{what}", fillings(BEADS), lambda *results, of=of, end=end: end(map(of, results)))
-        for name, of in (("front", runout), ("height", thickness(NEAR))) for what, end in (("low", min), ("high", max))]
+        for name, of in (("front", measure_flume_runout), ("height", thickness(NEAR))) for what, end
+        in (("low", min), ("high", max))]
 SEEN.append(Seen("sand.sliding_08", (SAND(**SLIDING),), thickness(0.8)))

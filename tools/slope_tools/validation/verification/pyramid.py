@@ -12,7 +12,7 @@ DECK = Run("17_pyramid/in.pyramid")
 SOURCE = "symmetry; the rotation test of AvaFrame"
 
 
-def turned(deck, seeds=(1, 2)):
+def turn_pyramid_deck(deck, seeds=(1, 2)):
     return tuple(deck(azimuth=azimuth, seed=seed) for azimuth in AZIMUTHS for seed in seeds)
 
 
@@ -30,7 +30,7 @@ def travels(results):
     return np.moveaxis(np.reshape(found, (len(AZIMUTHS), -1, len(FACES), 2)), -1, 0)
 
 
-def spread(*results):
+def measure_face_spread(*results):
     """Largest difference of a face's mean travel from that of all eight, over the latter."""
     travel = travels(results)[0].mean(axis=1)
     return np.abs(travel - travel.mean()).max() / travel.mean()
@@ -38,6 +38,6 @@ def spread(*results):
 
 CLAIMS = [
     Claim("pyramid_travel", "Four faces, turned by 0 and 45 degrees: largest difference of the travel from the mean, "
-          "over that", "", SOURCE, turned(DECK), spread, AtMost(0.04),
-          Control("plan grid, spacing 1 d", turned(DECK(pattern="grid", spacing=1))), quick=False),
+          "over that", "", SOURCE, turn_pyramid_deck(DECK), measure_face_spread, AtMost(0.04),
+          Control("plan grid, spacing 1 d", turn_pyramid_deck(DECK(pattern="grid", spacing=1))), quick=False),
 ]

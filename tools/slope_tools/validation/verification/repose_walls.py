@@ -17,7 +17,7 @@ PART = 0.15, 0.85       # of the half-width
 SOURCE = "Zhou et al. (2002)"
 
 
-def measured(d, thickness=None):
+def measure_repose_angle(d, thickness=None):
     """Degrees; d in mm, thickness between front and rear wall in diameters, None without them."""
     wall = 0.0 if thickness is None else np.exp(-0.18 * thickness)
     return 29.6 * d ** -0.206 * (1 + wall)
@@ -48,7 +48,7 @@ def angle(*results):
 WITHOUT = tuple(DECK(walls="no", thickness=8, seed=seed) for seed in SEEDS)
 CLAIMS = [
     Claim("repose_without_walls", "Angle of repose of beads of 10 mm, no front and rear wall, three fillings",
-          "degrees", SOURCE, WITHOUT, angle, Near(measured(10), 2.0),
+          "degrees", SOURCE, WITHOUT, angle, Near(measure_repose_angle(10), 2.0),
           Control("rolling resistance 0.1", (WITHOUT[0](rolling=0.1),)), quick=False,
           remark="The rolling resistance, 0.033, was fitted on the first of these fillings."),
 ]

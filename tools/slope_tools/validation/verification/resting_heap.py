@@ -40,7 +40,7 @@ def overlaps(result):
     return result.frames("rest.dump")["v_overlap"][0]
 
 
-def farthest(*results):
+def measure_farthest_shift(*results):
     """Displacement of the ball that moved most between the looks, over its radius; a lost ball is infinitely far."""
     return max(np.inf if one.lost else one.most for one in map(moved, results))
 
@@ -61,7 +61,7 @@ AT_REST = "what rests stays"
 def _heaps(name, title, which, broken, **more):
     plain = Control("scheme plain, twice the rule's step", (broken(scheme="plain", part=2),))
     yield Claim(f"heap_stays_{name}", f"{title}: largest displacement of a ball over its radius", "", AT_REST,
-                tuple(which), farthest, AtMost(1e-3), plain, **more)
+                tuple(which), measure_farthest_shift, AtMost(1e-3), plain, **more)
     yield Claim(f"heap_centroid_{name}", f"{title}: displacement of the centroid over the radius", "", AT_REST,
                 tuple(which), centroid, AtMost(1e-5), plain, **more)
 

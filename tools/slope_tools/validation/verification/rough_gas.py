@@ -27,7 +27,7 @@ def loss(result):
 
 def slot_change(result):
     """Largest change of the energy at any moment, of the balls that fly between impacts."""
-    return np.abs(energy.slot(result)[:, energy.gaps(result) >= 0.5] - 1).max()
+    return np.abs(energy.slot(result)[:, energy.measure_gap_ratio(result) >= 0.5] - 1).max()
 
 
 def slot_most(result):
@@ -85,7 +85,7 @@ def slot_close(result):
 
 def slot_squeezed(result):
     """The largest loss of the gaps that squeeze the ball."""
-    return 1 - energy.slot(result)[:, energy.gaps(result) < 0].min()
+    return 1 - energy.slot(result)[:, energy.measure_gap_ratio(result) < 0].min()
 
 
 SEEN = [Seen(f"{scheme}.{name}", (SLOT(scheme=scheme),), got) for scheme in ("exact", "plain") for name, got in (

@@ -51,7 +51,7 @@ def slipping(result):
     return abs(curve["sliding"][-1] / curve["path"][-1])
 
 
-def turned(result):
+def measure_rolled_share(result):
     """Share of the path that is rolled."""
     curve = result.curve("slide_roll.csv")
     return abs(0.5 * D * curve["rotation"][-1] / curve["path"][-1])
@@ -66,8 +66,8 @@ SLIDE = 0.5 * G * math.sin(math.radians(30)) * 0.02 ** 2
 CLAIMS = [
     _path("slide", "Without friction: path after 0.02 s, 0.5 g sin(phi) t^2", FIGURES, SLIDE, 0, 10),
     _path("roll", "Friction 10 degrees: path after 0.02 s, 5/7 of that", FIGURES, 5 / 7 * SLIDE, 10, 0),
-    Claim("slide_only", "Without friction: share of the path that is rolled", "", FIGURES, (START(theta=0),), turned,
-          AtMost(1e-9), Control("friction 10 degrees", (START(theta=10),))),
+    Claim("slide_only", "Without friction: share of the path that is rolled", "", FIGURES, (START(theta=0),),
+          measure_rolled_share, AtMost(1e-9), Control("friction 10 degrees", (START(theta=10),))),
     Claim("roll_only", "Friction 10 degrees: share of the path that is slid", "", FIGURES, (START(theta=10),), slipping,
           AtMost(1e-3), Control("friction 9 degrees, below the threshold of 9.37", (START(theta=9),)),
           remark="3 tan(10) > tan(30), the paper's condition, is not met; 3.5 tan(10) > tan(30), a sphere's, is."),

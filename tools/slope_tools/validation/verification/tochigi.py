@@ -1,7 +1,7 @@
 """Tochigi's experiment: 177 rocks down a slope come to rest within the axes of the paper's figure
 
-inputs/10_tochigi: the drawing is read from its lengths, and of the paper's curves only the axes are known: -5 to 3 m along
-the slope, -4 to 4 m across it. All rocks must lie within the axes, and the farthest not far from
+inputs/10_tochigi: the drawing is read from its lengths, and of the paper's curves only the axes are known: -5 to 3 m
+along the slope, -4 to 4 m across it. All rocks must lie within the axes, and the farthest not far from
 their ends: at most 2 m along and 1.5 m across. Each seed is a draw of 177 rocks: the draws must be of one distribution.
 """  # noqa: E501
 import numpy as np
@@ -22,7 +22,7 @@ def at_rest(results):
     return np.concatenate([np.column_stack([frame[axis][0] for axis in "xy"]) for frame in frames])
 
 
-def farthest(*results):
+def find_farthest_rock(*results):
     return at_rest(results)[:, 0].min()
 
 
@@ -49,7 +49,7 @@ CLAIMS = [
           AtMost(1.95 * (1 / 177 + 1 / 1593) ** 0.5),
           Control("one of the ten with rolling resistance 0.1", SEEDS[1:] + HELD[1]), quick=False),
     Claim("tochigi_along", "Farthest of 1,770 rocks (ten seeds) along the slope, from its toe", "m", FIGURE, SEEDS,
-          farthest, Between(-5.0, -3.0), Control(*HELD), quick=False,
+          find_farthest_rock, Between(-5.0, -3.0), Control(*HELD), quick=False,
           remark="Bounds set after these runs: -5 to -4 m, set before, failed with -3.87 m. The farthest of one run is "
                  "chance: -2.1 to -4.5 m in twenty."),
     Claim("tochigi_across", "Farthest of 1,770 rocks (ten seeds) across the slope, from its middle", "m", FIGURE, SEEDS,
@@ -61,7 +61,7 @@ CLAIMS = [
 IRREGULAR = tuple(ROCKS(seed=seed, pattern="scattered 1", spacing=0.95) for seed in range(1, 11))
 
 
-def of_all(what):
+def list_rock_places(what):
     """A number of the places (m, along and across) of all rocks of all seeds."""
     return lambda *results: what(at_rest(results))
 
@@ -96,6 +96,6 @@ ALONE = {"along_5": lambda at: np.percentile(at[:, 0], 5), "along_95": lambda at
          "mean": lambda at: at[:, 0].mean(), "behind": lambda at: (at[:, 0] > 0).sum(),
          "far_behind": lambda at: (at[:, 0] > 0.05).sum()}
 SEEN = [Seen(f"{ground}.{name}", runs, got, False) for ground, runs in (("grid", SEEDS), ("irregular", IRREGULAR))
-        for name, got in [*((name, of_all(what)) for name, what in {**RANGED, **ALONE}.items()), ("run_out", run_out),
-                          *((f"{name}.{end}", of_each(what, k)) for name, what in RANGED.items()
-                            for k, end in enumerate(("low", "high")))]]
+        for name, got in [*((name, list_rock_places(what)) for name, what in {**RANGED, **ALONE}.items()),
+                          ("run_out", run_out), *((f"{name}.{end}", of_each(what, k)) for name, what in RANGED.items()
+                                                  for k, end in enumerate(("low", "high")))]]
