@@ -1,5 +1,6 @@
 """The rooms of the Python package: see doc/src/architecture.rst."""
 import ast
+import collections
 import contextlib
 import importlib
 import os
@@ -20,6 +21,10 @@ ROOMS = ("", "drawing", "survey", "case", "quakes", "releases", "slips", "sites"
          "runs", "tables", "ensembles", "seismic", "studies", "fitting", "plots", "animation", "report", "scenarios",
          "blocks", "route", "validation", "commands")
 MOST = 25           # modules of a room; its __init__.py is one
+ALIKE = 3           # public functions of one name
+# names that say nothing of a value: not of a parameter, nor of what is used on more than LIVES lines
+SAY_NOTHING = {"one", "found", "about", "said", "item", "it", "thing"}
+LIVES = 5
 
 
 def imported(text, path):
@@ -98,6 +103,59 @@ def test_rooms_take_no_arguments_of_the_command_line():
             if isinstance(node, (ast.FunctionDef, ast.Lambda)):
                 assert "args" not in [one.arg for one in (*node.args.args, *node.args.kwonlyargs)], f"{path}: {node}"
             assert not (isinstance(node, ast.Attribute) and node.attr in ("parse_args", "ArgumentParser")), path
+
+
+def homonyms(texts):
+    """{name: how many} of public functions, methods apart, where more than ALIKE modules have one."""
+    names = collections.Counter(node.name for text in texts for node in ast.parse(text).body
+                                if isinstance(node, ast.FunctionDef) and not node.name.startswith("_"))
+    return {name: number for name, number in names.items() if number > ALIKE}
+
+
+def test_public_functions_have_names_of_their_own():
+    assert homonyms(["def read(): pass"] * 4 + ["def _f(): pass\nclass A:\n    def go(self): pass"] * 4) == {"read": 4}
+    assert homonyms(path.read_text(encoding="utf-8") for path in MODULES) == {}
+
+
+def say_nothing(text):
+    """(line, name) of parameters, and of values that are used on more than LIVES lines, whose names say nothing."""
+    for function in ast.walk(ast.parse(text)):
+        if not isinstance(function, (ast.FunctionDef, ast.Lambda)):
+            continue
+        given = function.args
+        every = [*given.posonlyargs, *given.args, *given.kwonlyargs, *filter(None, (given.vararg, given.kwarg))]
+        yield from ((arg.lineno, arg.arg) for arg in every if arg.arg in SAY_NOTHING)
+        own = {node.id: node.lineno for node in sorted(own_names(function), key=lambda node: -node.lineno)
+               if node.id in SAY_NOTHING.difference(arg.arg for arg in every)}
+        used = names_in(function) if own else ()
+        last = {node.id: node.lineno for node in sorted(used, key=lambda node: node.lineno)}
+        yield from ((line, name) for name, line in own.items() if last[name] - line > LIVES)
+
+
+def names_in(node):
+    return (part for part in ast.walk(node) if isinstance(part, ast.Name))
+
+
+def own_names(function):
+    """Names that a function itself assigns, not a function or a comprehension in it."""
+    waiting = list(ast.iter_child_nodes(function))
+    while waiting:
+        node = waiting.pop()
+        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
+            yield node
+        if not isinstance(node, (ast.FunctionDef, ast.Lambda, ast.ClassDef, ast.comprehension)):
+            waiting += ast.iter_child_nodes(node)
+
+
+def test_names_say_what_they_hold():
+    assert list(say_nothing("def f(one, *, x):\n    pass\n")) == [(1, "one")]
+    assert list(say_nothing("f = lambda found: found\n")) == [(1, "found")]
+    long = "def f():\n    about = 1\n" + "    g()\n" * LIVES + "    return {}\n"
+    assert list(say_nothing(long.format("about"))) == [(2, "about")]
+    assert list(say_nothing(long.format("[about for about in x]").replace("about = 1", "y = 1"))) == []
+    assert list(say_nothing("def f():\n    one = 1\n    return one\n")) == []
+    assert {path.relative_to(PACKAGE).as_posix(): wrong for path in MODULES
+            if (wrong := list(say_nothing(path.read_text(encoding="utf-8"))))} == {}
 
 
 # the line of an error, a warning, progress, the names of a report's pictures

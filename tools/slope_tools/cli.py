@@ -105,7 +105,7 @@ def add_command(commands, name, module, **kwargs):
                                  description=module.DESCRIPTION, **kwargs)
     parser.add_argument("--describe", action=options.Describe)
     options.declare(parser, module.Request)
-    parser.set_defaults(run=lambda found: run_command(name, module, options.request(module.Request, found)))
+    parser.set_defaults(run=lambda namespace: run_command(name, module, options.request(module.Request, namespace)))
     return parser
 
 

@@ -312,11 +312,11 @@ def make_plain(value: Any) -> Any:
     return str(value) if isinstance(value, Path) else value
 
 
-def yaml_text(comment, about) -> str:
+def yaml_text(comment, content) -> str:
     """A YAML file with a comment on its first line; what is in it twice is written twice, not as an alias."""
-    return f"# {comment}\n" + yaml.dump(make_plain(about), Dumper=written_yaml.DUMPER, sort_keys=False,
+    return f"# {comment}\n" + yaml.dump(make_plain(content), Dumper=written_yaml.DUMPER, sort_keys=False,
                                         allow_unicode=True)
 
 
-def write_yaml(path, about, comment):
-    Path(path).write_text(yaml_text(comment, about), encoding="utf-8")
+def write_yaml(path, content, comment):
+    Path(path).write_text(yaml_text(comment, content), encoding="utf-8")

@@ -83,19 +83,19 @@ def who(count: int, runs: int) -> str:
     return "The run" if runs == 1 else f"All {runs} runs" if count == runs else f"{count} of {runs} runs"
 
 
-def finding(said: Said) -> Finding:
+def finding(entry: Said) -> Finding:
     """The Finding of one, of its entry in a file, or of a line; a file of another version may have unknown kinds."""
-    if isinstance(said, Finding):
-        return said
-    if not isinstance(said, Mapping):
-        return Finding(OTHER, {"text": str(said)})
-    remedy = str(said.get("remedy") or "")
+    if isinstance(entry, Finding):
+        return entry
+    if not isinstance(entry, Mapping):
+        return Finding(OTHER, {"text": str(entry)})
+    remedy = str(entry.get("remedy") or "")
     try:
-        found = Finding(str(said.get("kind")), said.get("numbers") or {}, tuple(said.get("runs") or ()),
-                        str(said.get("part") or ""), remedy)
+        found = Finding(str(entry.get("kind")), entry.get("numbers") or {}, tuple(entry.get("runs") or ()),
+                        str(entry.get("part") or ""), remedy)
         str(found)
     except (KeyError, ValueError, TypeError, AttributeError):
-        return Finding(OTHER, {"text": str(said.get("text"))}, remedy=remedy)
+        return Finding(OTHER, {"text": str(entry.get("text"))}, remedy=remedy)
     return found
 
 
@@ -109,24 +109,24 @@ def texts(several: Iterable[Said]) -> List[str]:
     return [str(finding(one)) for one in several]
 
 
-def _alike(one: Finding):
-    return one.part, one.kind, one.text if one.kind == OTHER else None
+def _alike(finding_: Finding):
+    return finding_.part, finding_.kind, finding_.text if finding_.kind == OTHER else None
 
 
 def gathered(several: Iterable[Finding], of: Optional[int] = None,
              alike: Callable[[Finding], Any] = _alike) -> List[Finding]:
     """One for all that are alike, with the numbers of the first; of: how many runs there are, None: as they have it."""
     groups: Dict[Any, List[Finding]] = {}
-    for one in several:
-        groups.setdefault(alike(one), []).append(one)
-    found = []
+    for finding_ in several:
+        groups.setdefault(alike(finding_), []).append(finding_)
+    merged = []
     for first, *others in groups.values():
         runs = tuple(dict.fromkeys(run for one in (first, *others) for run in one.runs))
         numbers = {**first.numbers, **({"of": of} if runs and of is not None else {})}
         if any(dict(one.numbers) != dict(first.numbers) for one in others):
             numbers["differ"] = True
-        found.append(first._replace(numbers=numbers, runs=runs))
-    return found
+        merged.append(first._replace(numbers=numbers, runs=runs))
+    return merged
 
 
 # --- on standard error: words, or after `slope --progress json` an object a line ---
@@ -143,15 +143,15 @@ def printer(command: str) -> Callable[[Said], None]:
     """A function that prints a finding of a command, once."""
     told = set()
 
-    def tell(said):
-        one = finding(said)
-        if str(one) in told:
+    def tell(entry):
+        finding_ = finding(entry)
+        if str(finding_) in told:
             return
-        told.add(str(one))
+        told.add(str(finding_))
         if as_json:
-            say_json(**{"command": command, **one.entry()})
+            say_json(**{"command": command, **finding_.entry()})
         else:
-            print(f"slope {command}: {one.level}: {one}", file=sys.stderr)
+            print(f"slope {command}: {finding_.level}: {finding_}", file=sys.stderr)
     return tell
 
 
@@ -159,9 +159,9 @@ def warner(command: str) -> Tuple[Callable[[Said], None], List[Dict[str, Any]]]:
     """The same, and the list of what a file has of those that it printed."""
     tell, kept = printer(command), []
 
-    def warn(said):
-        entry = finding(said).entry()
+    def warn(message):
+        entry = finding(message).entry()
         if entry not in kept:
             kept.append(entry)
-            tell(said)
+            tell(message)
     return warn, kept

@@ -28,7 +28,7 @@ def tools() -> str:
 def digest(made_of: Any) -> str:
     """Of values that JSON knows, dataclasses of them, and what has a text; and of these tools. 0 and 0.0 are one."""
     text = json.dumps([tools(), disk.make_plain(made_of)], sort_keys=True,
-                      default=lambda one: disk.make_plain(vars(one)) if dataclasses.is_dataclass(one) else str(one))
+                      default=lambda part: disk.make_plain(vars(part)) if dataclasses.is_dataclass(part) else str(part))
     text = json.dumps(json.loads(text, parse_float=by_value))
     return hashlib.sha256(text.encode("utf-8")).hexdigest()
 
@@ -91,7 +91,7 @@ def recall(path: Path) -> None:
     """Know what a command before knew of files; but for digests, only of the same tools."""
     with contextlib.suppress(OSError, ValueError, LookupError, TypeError):      # none, or damaged
         made_by, entries = json.loads(path.read_text(encoding="utf-8"))
-        for kind, name, stamp, when, value_ in sorted(entries, key=lambda one: one[0] != disk.DIGEST):
+        for kind, name, stamp, when, value_ in sorted(entries, key=lambda entry: entry[0] != disk.DIGEST):
             if kind == disk.DIGEST or made_by == tools():
                 disk.known.setdefault((kind, name), disk.Known(tuple(stamp), when, value_))
 
@@ -102,14 +102,14 @@ def remember(path: Path) -> None:
     Of a digest that was made at once after the file was written: it is made anew, as it may have changed in between.
     """
     entries, now = [], time.time()
-    for (kind, name), one in sorted(disk.known.items()):
+    for (kind, name), entry in sorted(disk.known.items()):
         with contextlib.suppress(OSError):
             stamp = disk.stamp_of(name)
             changed = stamp[-1] / 1e9
-            if stamp != one.stamp or now - changed < SETTLED:
+            if stamp != entry.stamp or now - changed < SETTLED:
                 continue
-            if one.when - changed >= SETTLED:
-                entries.append([kind, name, stamp, one.when, one.value])
+            if entry.when - changed >= SETTLED:
+                entries.append([kind, name, stamp, entry.when, entry.value])
             elif kind == disk.DIGEST:
                 entries.append([kind, name, stamp, now, disk.digest_of(name)])
     text = json.dumps([tools(), entries])

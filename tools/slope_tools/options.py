@@ -104,18 +104,19 @@ class Describe(argparse.Action):
 
 def described(parser: argparse.ArgumentParser) -> Dict[str, Dict[str, Any]]:
     """{name of the field: what there is to know of the option} of a parser; option: "" of a word without one."""
-    found: Dict[str, Dict[str, Any]] = {}
-    for one in parser._actions:     # pylint: disable=protected-access
-        if one.dest in found or one.help == argparse.SUPPRESS or isinstance(one, argparse._HelpAction):
+    options: Dict[str, Dict[str, Any]] = {}
+    for action in parser._actions:     # pylint: disable=protected-access
+        if action.dest in options or action.help == argparse.SUPPRESS or isinstance(action, argparse._HelpAction):
             continue
-        kind = "switch" if one.nargs == 0 else "choice" if one.choices else KINDS.get(one.type, "text")
-        default = None if one.default is False or one.default == [] else one.default
-        found[one.dest] = {
-            "option": next((name for name in one.option_strings if name.startswith("--")), "".join(one.option_strings)),
-            "kind": kind, "default": default, "needed": one.required, "choices": list(one.choices or ()),
-            "several": one.nargs not in (None, 0, "?") or isinstance(one, argparse._AppendAction),
-            "metavar": one.metavar, "help": one.help and one.help.replace("%%", "%")}
-    return found
+        kind = "switch" if action.nargs == 0 else "choice" if action.choices else KINDS.get(action.type, "text")
+        default = None if action.default is False or action.default == [] else action.default
+        options[action.dest] = {
+            "option": next((name for name in action.option_strings if name.startswith("--")),
+                           "".join(action.option_strings)),
+            "kind": kind, "default": default, "needed": action.required, "choices": list(action.choices or ()),
+            "several": action.nargs not in (None, 0, "?") or isinstance(action, argparse._AppendAction),
+            "metavar": action.metavar, "help": action.help and action.help.replace("%%", "%")}
+    return options
 
 
 def reader(hint: Any) -> Tuple[bool, Optional[Callable[[str], Any]]]:
@@ -127,34 +128,34 @@ def reader(hint: Any) -> Tuple[bool, Optional[Callable[[str], Any]]]:
     return optional, READ.get(hint)
 
 
-def request(kind: Type[R], found: argparse.Namespace) -> R:
+def request(kind: Type[R], namespace: argparse.Namespace) -> R:
     """The request of what a parser found."""
     names = {field.name for field in dataclasses.fields(kind)}
     return kind(**{name: list(value) if isinstance(value, list) else value
-                   for name, value in vars(found).items() if name in names})
+                   for name, value in vars(namespace).items() if name in names})
 
 
 def words_of(asked: Any) -> List[str]:
     """The words of a command line that give a request: what is as it is by default is left out."""
-    found: List[str] = []
+    words: List[str] = []
     for field in dataclasses.fields(asked):
-        value, about = getattr(asked, field.name), field.metadata
-        if not about or value == about["words"]["default"]:
+        value, metadata = getattr(asked, field.name), field.metadata
+        if not metadata or value == metadata["words"]["default"]:
             continue
-        name = next(iter(about["names"]), f"--{field.name.replace('_', '-')}")
-        if about["words"].get("action") == "store_true":
-            found.append(name)
-        elif about["words"].get("action") == "append":
-            found += [word for one in value for word in (name, worded(one))]
-        elif isinstance(value, list) and "nargs" in about["words"]:
-            found += [name, *map(worded, value)]
+        name = next(iter(metadata["names"]), f"--{field.name.replace('_', '-')}")
+        if metadata["words"].get("action") == "store_true":
+            words.append(name)
+        elif metadata["words"].get("action") == "append":
+            words += [word for one in value for word in (name, worded(one))]
+        elif isinstance(value, list) and "nargs" in metadata["words"]:
+            words += [name, *map(worded, value)]
         else:
             text = ",".join(map(worded, value)) if isinstance(value, list) else worded(value)
             if name == "":
-                found.insert(0, text)
+                words.insert(0, text)
             else:
-                found += [f"{name}={text}"] if text.startswith("-") else [name, text]
-    return found
+                words += [f"{name}={text}"] if text.startswith("-") else [name, text]
+    return words
 
 
 def worded(value: Any) -> str:

@@ -61,12 +61,12 @@ def stop_session(process: subprocess.Popen) -> None:
 def stop(running: Iterable) -> None:
     """End programs, each by its own process id; those that do not listen are killed."""
     waiting = [one for one in running if one.poll() is None]
-    for one in waiting:
-        one.terminate()
+    for process in waiting:
+        process.terminate()
     deadline = time.monotonic() + PATIENCE
-    for one in waiting:
+    for process in waiting:
         try:
-            one.wait(max(0.1, deadline - time.monotonic()))
+            process.wait(max(0.1, deadline - time.monotonic()))
         except subprocess.TimeoutExpired:
-            one.kill()
-            one.wait()
+            process.kill()
+            process.wait()

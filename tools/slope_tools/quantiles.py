@@ -13,12 +13,12 @@ def within(values, weights, share, lost=0.0):
     values, shares = np.asarray(values), np.reshape(share, -1)
     order = np.argsort(values, axis=0, kind="stable")
     upto = np.cumsum(np.asarray(weights, float)[order], axis=0)
-    found = np.full((len(shares), *values.shape[1:]), math.nan)
+    quantiles = np.full((len(shares), *values.shape[1:]), math.nan)
     if len(upto) and np.max(upto[-1]) > 0:
         ordered = np.take_along_axis(values, order, axis=0)
         for k, wanted in enumerate(np.multiply.outer(shares, upto[-1] + lost)):     # whatever the rounding
             at = (upto < np.minimum(wanted, upto[-1]) * (1 - 1e-12)).sum(axis=0, keepdims=True)
             one = np.take_along_axis(ordered, at, axis=0)[0]
-            found[k] = np.where(wanted > upto[-1] * (1 + 1e-9), math.inf, one)
-    found = found.reshape(np.shape(share) + values.shape[1:])
-    return found if found.shape else float(found)
+            quantiles[k] = np.where(wanted > upto[-1] * (1 + 1e-9), math.inf, one)
+    quantiles = quantiles.reshape(np.shape(share) + values.shape[1:])
+    return quantiles if quantiles.shape else float(quantiles)

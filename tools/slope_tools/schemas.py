@@ -76,7 +76,8 @@ def validator():
 
 def first_error(value: Any, schema: Mapping[str, Any]) -> Optional[Tuple[List[Any], str]]:
     """Keys (texts) and indices of the first place that does not fit, and the rule; None if all does."""
-    errors = sorted(validator()(schema).iter_errors(value), key=lambda one: [str(part) for part in one.absolute_path])
+    errors = sorted(validator()(schema).iter_errors(value), key=lambda error: [str(part) for part
+                                                                               in error.absolute_path])
     if not errors:
         return None
     place: List[Any] = []

@@ -57,8 +57,8 @@ class _Checked(yaml.constructor.SafeConstructor):
         raise Misleading(node, "must be a number, or a text in quotes, of which YAML makes no date", node.value)
 
 
-def not_decimal(node, found) -> Misleading:
-    return Misleading(node, f"must be a decimal number, or a text in quotes (YAML takes it for {found:.12g})",
+def not_decimal(node, match) -> Misleading:
+    return Misleading(node, f"must be a decimal number, or a text in quotes (YAML takes it for {match:.12g})",
                       node.value)
 
 

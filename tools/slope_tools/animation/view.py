@@ -31,17 +31,17 @@ OTHERWISE, ARISING FROM, OUT OF OR IN CONNECTION WITH THE SOFTWARE OR THE USE OR
 
 def make_view_content(data, ground, section, frames: Optional[Frames], why: str, film: str) -> Dict[str, Any]:
     """What the template takes: scene (JSON) and scripts, with a caption, or why there is none; and film, a sentence."""
-    found: Dict[str, Any] = {"title": "The collapse in three dimensions", "scene": None, "scripts": [], "why": why,
-                             "caption": "", "film": film}
+    content: Dict[str, Any] = {"title": "The collapse in three dimensions", "scene": None, "scripts": [], "why": why,
+                               "caption": "", "film": film}
     if frames is None:
-        return found
+        return content
     scripts = library()
     if scripts is None:
-        return {**found, "why": f"It needs the JavaScript library three.js: install the Debian package {PACKAGE} and "
-                                "make the report again."}
+        return {**content, "why": f"It needs the JavaScript library three.js: install the Debian package {PACKAGE} and "
+                                  "make the report again."}
     about = scene(data, ground, section, frames)
     # in a script element, only the end of an element must not stand in a text
-    return {**found, "scene": json.dumps(about, separators=(",", ":"), allow_nan=False).replace("</", "<\\/"),
+    return {**content, "scene": json.dumps(about, separators=(",", ":"), allow_nan=False).replace("</", "<\\/"),
             "scripts": scripts, "caption": caption(data, about, frames)}
 
 
@@ -56,19 +56,19 @@ def library():
     return None
 
 
-def caption(data, about, frames: Frames) -> str:
+def caption(data, scene_, frames: Frames) -> str:
     """What is seen, what was left out, and what is drawn between the snapshots."""
-    shown, times = about["balls"]["count"], len(about["times"])
+    shown, times = scene_["balls"]["count"], len(scene_["times"])
     balls = f"All {shown:,} balls" if frames.factor == 1 else \
         (f"{shown:,} of the {frames.balls:,} balls, chosen at random; each stands for {frames.factor:.3g} and is drawn "
          f"with their volume, {frames.factor ** (1 / 3):.2g} times as wide")
     every = f"all {times} snapshots" if times == frames.dumped else f"{times} of the {frames.dumped} snapshots"
-    left_out = [one["name"] for one in about["structures"] if not one["triangles"]]
+    left_out = [one["name"] for one in scene_["structures"] if not one["triangles"]]
     walls = f" Not drawn, for its size: {', '.join(left_out)}." if left_out else ""
     gap = (frames.time[-1] - frames.time[0]) / max(1, times - 1)
     run = f"Run: {data.label(data.result)}. " if data.study else ""
     return (f"{run}{balls}, at {every} that the run wrote, {gap:.2g} s apart on average; between two of them each ball "
             f"is drawn on a straight line. The ground is the one without the body, so that the slip surface shows; "
-            f"heights are not exaggerated; contours every {about['ground']['interval']:g} m, grid of "
-            f"{about['ground']['grid']:g} m. Drag turns the view, with the right button it moves, the wheel zooms "
+            f"heights are not exaggerated; contours every {scene_['ground']['interval']:g} m, grid of "
+            f"{scene_['ground']['grid']:g} m. Drag turns the view, with the right button it moves, the wheel zooms "
             f"after a click. The scale bar is valid at the centre of the view.{walls}")

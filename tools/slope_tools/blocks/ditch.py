@@ -33,7 +33,7 @@ def feet(raster: Raster, start: np.ndarray, end: np.ndarray, down: np.ndarray, r
     along = np.arange(0.0, length.max() + 2 * step, step)
     on_road = np.zeros(raster.z.shape, bool) if road is None else geometry_mask(
         [road], raster.z.shape, raster.transform, all_touched=True, invert=True)
-    found = np.empty((2, len(start)))
+    places = np.empty((2, len(start)))
     each = max(1, CHUNK // len(along))
     for some in (slice(first, first + each) for first in range(0, len(start), each)):
         x, y = (start[some, k, None] + unit[some, k, None] * along for k in (0, 1))
@@ -45,6 +45,6 @@ def feet(raster: Raster, start: np.ndarray, end: np.ndarray, down: np.ndarray, r
         low = sample(raster, x, y) + GENTLE * along
         low[np.isnan(low) | (np.arange(len(along)) >= first_on[:, None])] = np.inf
         foot = along[low.argmin(axis=1)]
-        found[0, some] = np.maximum(0.0, length[some] - foot)
-        found[1, some] = np.where(there, np.append(along, 0.0)[first_on] - foot, np.nan)
-    return Feet(*found)
+        places[0, some] = np.maximum(0.0, length[some] - foot)
+        places[1, some] = np.where(there, np.append(along, 0.0)[first_on] - foot, np.nan)
+    return Feet(*places)

@@ -59,13 +59,13 @@ def combine_largest(runs: List[Run], name: str, place: Raster) -> Raster:
 def paths(runs: List[Run]) -> Iterator[Tuple[Run, int, np.ndarray]]:
     """(run, block, x y z at each snapshot) of up to SHOWN blocks, as many of each run."""
     each = max(1, SHOWN // len(runs))
-    for one in runs[:SHOWN]:
-        series: Dict[int, List[np.ndarray]] = {k: [place] for k, place in enumerate(one.start[:each], 1)}
-        for path in snapshots(one.folder, 10 ** 12):
+    for run in runs[:SHOWN]:
+        series: Dict[int, List[np.ndarray]] = {k: [place] for k, place in enumerate(run.start[:each], 1)}
+        for path in snapshots(run.folder, 10 ** 12):
             for columns, rows in dumps.frames(path):
                 for row in rows[rows[:, 0] <= each]:
                     series[int(row[0])].append(row[columns.index("x"):columns.index("z") + 1])
-        yield from ((one, block, np.array(places)) for block, places in series.items())
+        yield from ((run, block, np.array(places)) for block, places in series.items())
 
 
 def write_gis(folder: Path, known) -> None:

@@ -27,39 +27,39 @@ def run_by_kind(command: str, module: Any, request: Any, tell: Any) -> None:
         if field.metadata and field.name not in (folder, *taken) and getattr(request, field.name) != default:
             name = next(iter(field.metadata["names"]), "") or f"--{field.name.replace('_', '-')}"
             raise SlopeError(name, WRONG)
-    found = site_choices.load_kind(Path(named), OfBlocks)
-    site_study.check_site(found)
+    site_folder = site_choices.load_kind(Path(named), OfBlocks)
+    site_study.check_site(site_folder)
     if command == "study":
         from . import study
-        return study.run_block_study(found, module.setup_of(request))
+        return study.run_block_study(site_folder, module.setup_of(request))
     if command == "vtk":
         from . import page, runs, study as of_blocks
-        shown = page.choose_shown_run(of_blocks.read_block_runs(found, of_blocks.plan_block_runs(found)))
+        shown = page.choose_shown_run(of_blocks.read_block_runs(site_folder, of_blocks.plan_block_runs(site_folder)))
         tell(f"{shown.name}, the run with the farthest block: {shown.folder}")
-        return module.convert(str(shown.folder / runs.PREFIX), request.output, found.folder, request.single)
-    return (export if command == "export" else report)(found, request.output, request.overwrite, tell)
+        return module.convert(str(shown.folder / runs.PREFIX), request.output, site_folder.folder, request.single)
+    return (export if command == "export" else report)(site_folder, request.output, request.overwrite, tell)
 
 
-def export(found: site_choices.Folder[OfBlocks], output, overwrite: bool, tell) -> None:
+def export(site_folder: site_choices.Folder[OfBlocks], output, overwrite: bool, tell) -> None:
     """The files for a GIS."""
     from . import files, study as of_blocks
-    folder = output or found.folder / "export"
-    disk.check_folder(folder, [*files.NAMES, "export.yaml"], [found.folder], overwrite)
-    known = of_blocks.read_block_runs(found, of_blocks.plan_block_runs(found))
+    folder = output or site_folder.folder / "export"
+    disk.check_folder(folder, [*files.NAMES, "export.yaml"], [site_folder.folder], overwrite)
+    known = of_blocks.read_block_runs(site_folder, of_blocks.plan_block_runs(site_folder))
     with disk.complete(folder, "export.yaml") as new:
         files.write_gis(new, known)
-        disk.write_yaml(new / "export.yaml", {"of": found.folder, "files": files.NAMES}, "slope export: m/s, J")
+        disk.write_yaml(new / "export.yaml", {"of": site_folder.folder, "files": files.NAMES}, "slope export: m/s, J")
     tell(f"written to {folder}: {' '.join(files.NAMES)} export.yaml")
 
 
-def report(found: site_choices.Folder[OfBlocks], output, overwrite: bool, tell) -> None:
+def report(site_folder: site_choices.Folder[OfBlocks], output, overwrite: bool, tell) -> None:
     """The page once more."""
     from ..report import document
     from . import page, study as of_blocks
-    path = output or found.folder / page.NAME
+    path = output or site_folder.folder / page.NAME
     disk.check_file(path, ".html")
-    document.check_standing(path, found.folder, overwrite, path.resolve().parent == found.folder.resolve())
-    tell(page.write_block_page(of_blocks.read_block_runs(found, of_blocks.plan_block_runs(found)), path))
+    document.check_standing(path, site_folder.folder, overwrite, path.resolve().parent == site_folder.folder.resolve())
+    tell(page.write_block_page(of_blocks.read_block_runs(site_folder, of_blocks.plan_block_runs(site_folder)), path))
 
 
 # --- slope site ---

@@ -92,8 +92,8 @@ class Outcome:
 
     def hardest(self, place: str, quantity: str) -> Result:
         """The result with the largest 95 % of a quantity at a place, to which blocks come."""
-        def most(one: Result) -> float:
-            found = one.at[place][quantity]
+        def most(result: Result) -> float:
+            found = result.at[place][quantity]
             return found.most if found else -np.inf
         return max(self.results, key=most)
 
@@ -122,8 +122,8 @@ def evaluate_blocks(runs: Sequence[Run]) -> Outcome:
     ditch = np.concatenate([one.ditch for one in runs])
     results = [result_of([one for one in runs if one.rolling == rolling], widths)
                for rolling in dict.fromkeys(one.rolling for one in runs)]
-    best = max(results, key=lambda one: (one.reach.share if one.reach else 0.0, one.left - one.away,
-                                         one.travel["distance"].most))
+    best = max(results, key=lambda result: (result.reach.share if result.reach else 0.0, result.left - result.away,
+                                            result.travel["distance"].most))
     return Outcome(results, best, withheld.exceeded_at_most(min(one.grounds for one in results)),
                    max(one.overlap for one in runs), widths,
                    None if np.isnan(ditch).all() else float(np.nanmedian(ditch)))
@@ -140,7 +140,7 @@ def result_of(runs: Sequence[Run], widths: Sequence[float]) -> Result:
     def joined(get) -> np.ndarray:
         return np.concatenate([get(one) for one in runs])
     ground = np.repeat([one.ground for one in runs], [len(one.left) for one in runs])
-    left, moving = joined(lambda one: one.left), joined(lambda one: one.moving)
+    left, moving = joined(lambda run: run.left), joined(lambda run: run.moving)
 
     def share(seen: np.ndarray, may: np.ndarray) -> Share:
         unknown, number = int((may & ~seen).sum()), int(seen.sum())
@@ -155,17 +155,17 @@ def result_of(runs: Sequence[Run], widths: Sequence[float]) -> Result:
         return Quantity(int(there.sum()), hazard.compute_quantiles(values[there], ground[there], shares=SHARES),
                         float(values[there].max())) if there.any() else None
 
-    at = {place: {name: joined(lambda one: one.at[place][name]) for name in QUANTITIES} for place in runs[0].at}
-    ahead = {place: joined(lambda one: one.ahead[place]) | moving for place in at}
+    at = {place: {name: joined(lambda run: run.at[place][name]) for name in QUANTITIES} for place in runs[0].at}
+    ahead = {place: joined(lambda run: run.ahead[place]) | moving for place in at}
     crossed = {place: share(np.isfinite(values["energy"]), ahead[place]) for place, values in at.items()}
     reach, past = crossed.pop(AT_ROAD, None), None
     if reach:       # what passes has reached it
-        past = share(joined(lambda one: one.passed), ahead[AT_ROAD])
+        past = share(joined(lambda run: run.passed), ahead[AT_ROAD])
         reach, past = replace(reach, low=max(reach.low, past.low)), replace(past, high=min(reach.high, past.high))
-    travel = {name: quantity(joined(lambda one: one.travel[name])) for name in runs[0].travel}
-    still = joined(lambda one: one.travel["distance"] < STILL * one.diameter) & ~left
+    travel = {name: quantity(joined(lambda run: run.travel[name])) for name in runs[0].travel}
+    still = joined(lambda run: run.travel["distance"] < STILL * run.diameter) & ~left
     away = int((left & ~ahead[AT_ROAD]).sum()) if reach else 0
-    behind, beyond = joined(lambda one: one.behind), joined(lambda one: one.travel[DITCH])
+    behind, beyond = joined(lambda run: run.behind), joined(lambda run: run.travel[DITCH])
     open_ = (left | moving) & ~behind
     retained = [share(behind | ~open_ & (beyond <= width + 1e-9), open_) for width in widths]
     return Result(runs[0].rolling, len(ground), len(runs), int(left.sum()), away, int(moving.sum()),

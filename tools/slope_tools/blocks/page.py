@@ -68,13 +68,14 @@ def sentences(known) -> Iterator[str]:
            f"{digits.percent(of.another)}")
 
 
-def cells(one: Optional[Quantity], unit: str, prefix: str = "") -> List[str]:
+def cells(quantity: Optional[Quantity], unit: str, prefix: str = "") -> List[str]:
     """Quantiles with their bounds, the largest, and of how many blocks."""
-    if one is None:
+    if quantity is None:
         return ["-", "-", "-", "0"]
     return [*(f"{prefix}{format_block_number(at.value, unit)} ({format_block_number(at.low, unit)} to "
               f"{format_block_number(at.high, unit)})"
-              for at in one.quantiles), prefix + format_block_number(one.largest, unit), f"{one.blocks:,}"]
+              for at in quantity.quantiles), prefix + format_block_number(quantity.largest, unit),
+            f"{quantity.blocks:,}"]
 
 
 def tables(known) -> Iterator[Section]:
@@ -145,8 +146,8 @@ def widths(known, marks: List[str]) -> Table:
     """How wide a ditch must be."""
     of = known.outcome
 
-    def width(one: Result, share: float) -> str:
-        found = one.width(share, of.widths)
+    def width(result: Result, share: float) -> str:
+        found = result.width(share, of.widths)
         return f"> {of.widths[-1]:g} m" if found is None else f"{found:g} m"
     return Table("Width of a ditch at the foot of the slope that retains so many blocks, to a step of the curve.",
                  ["rolling resistance", *(f"{100 * share:g} %" for share in KEPT)],
@@ -155,7 +156,7 @@ def widths(known, marks: List[str]) -> Table:
 
 def maps(known, data: Data, ground: Ground) -> Dict[str, Picture]:
     """The largest energy and speed over all runs."""
-    raster, crs, found = ground.raster, ground.raster.crs, {}
+    raster, crs, drawings = ground.raster, ground.raster.crs, {}
     several = {name: files.combine_largest(known.runs, name, raster).z for name in files.LARGEST}
     shown = ground.window(extent_of(raster.transform, several["max_speed"] > 0),
                           *([data.road.bounds] if data.road else []))
@@ -168,18 +169,18 @@ def maps(known, data: Data, ground: Ground) -> Dict[str, Picture]:
     for name, unit in files.LARGEST.items():
         factor, prefix = digits.prefix(several[name].max())
         values, what = several[name] / factor, name.replace("max_", "")
-        found[what] = Picture(figure_maps.value_map(
+        drawings[what] = Picture(figure_maps.value_map(
             layers, values, f"Largest {what} of a block", f"{what} ({prefix}{unit})",
             figures.even_to_most(values[values > 0]), palettes.PATH if unit == "J" else palettes.SPEED, figures.FULL,
             crs_name(crs) if crs is not None else "", values > 0), f"Map of the largest {what}",
             f"Largest {what} of a block over all {len(known.runs)} runs, as sampled, not smoothed.")
-    return found
+    return drawings
 
 
 def choose_shown_run(known) -> Run:
     """The run with the farthest block of those that govern."""
     return max((one for one in known.runs if one.rolling == known.outcome.best.rolling),
-               key=lambda one: one.travel["distance"].max())
+               key=lambda run: run.travel["distance"].max())
 
 
 def write_block_page(known, output: Path) -> str:
@@ -189,15 +190,16 @@ def write_block_page(known, output: Path) -> str:
     data.road = known.terrain.road and known.terrain.road.polygon
     ground = Ground(data)
     shots, why = frames.read_frames(data.result)
-    about = view.make_view_content(data, ground, Profile(data, ground, None, False), shots, why, "")
-    caption = f"Run with the farthest block, {run.name}: {about['caption'].partition(' The ground is')[0]}"
+    view_content = view.make_view_content(data, ground, Profile(data, ground, None, False), shots, why, "")
+    caption = f"Run with the farthest block, {run.name}: {view_content['caption'].partition(' The ground is')[0]}"
     head = heading.heading(site.folder, {}, site.content)
     html = document.render({
         "title": f"Single blocks: {head['project']}", "name": head["project"], "heading": head,
         "made": provenance.now(), "mark": document.mark(site.folder), "place": ground.raster.crs is not None,
         "sentences": [f"{text[0].upper()}{text[1:]}." for text in sentences(known)], "how": how(site),
         "warnings": [(one.level, one.shown({})) for one in known.doubts], "maps": maps(known, data, ground),
-        "sections": list(tables(known)), "view": {**about, "caption": caption, "title": "Blocks in three dimensions"},
+        "sections": list(tables(known)), "view": {**view_content, "caption": caption,
+                                                  "title": "Blocks in three dimensions"},
         "footer": f"{document.MADE_BY}, SLOPE {provenance.version()}; all numbers: study/{files.RESULTS}, "
                   f"study/{files.BLOCKS}; for a GIS: study/{', study/'.join(files.NAMES)}"},
         Path(__file__).with_name("blocks.html.j2"))

@@ -132,8 +132,8 @@ def beyond_road(crossed: Columns, end: np.ndarray, sides: road_sides.Sides) -> n
     return found
 
 
-def spread_over_blocks(left: np.ndarray, found: np.ndarray) -> np.ndarray:
+def spread_over_blocks(left: np.ndarray, values: np.ndarray) -> np.ndarray:
     """What was found of those that left the terrain, of all blocks."""
     every = np.zeros(len(left), bool)
-    every[left] = found
+    every[left] = values
     return every

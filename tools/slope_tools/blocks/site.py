@@ -69,9 +69,9 @@ def build(given: OfBlocks, known: Derived, new: Path, folder: Path, machine: sit
     """Everything, into the folder `new`, which will be `folder`: as site.build() of a mass."""
     warnings: List[Finding] = []
 
-    def keep(said) -> None:
-        warnings.append(finding(said))
-        warn(said)
+    def keep(entry) -> None:
+        warnings.append(finding(entry))
+        warn(entry)
     site_choices.check_assigned(given)
     several, grounds = given.study.rolling, given.blocks.grounds
     runs = len(several) * grounds
@@ -82,8 +82,8 @@ def build(given: OfBlocks, known: Derived, new: Path, folder: Path, machine: sit
     layers = site_layers.read_layers(given, raster, new, tell, keep)
     start = start._replace(types=FIELD + len(layers.zones))
     title = given.project.name or folder.absolute().name
-    said = deck_values(given, title, start, [*layers.lines, *edges(given, layers, start, new)], layers.zones)
-    trial = tried(given, start, said, new, machine, tell)
+    findings = deck_values(given, title, start, [*layers.lines, *edges(given, layers, start, new)], layers.zones)
+    trial = tried(given, start, findings, new, machine, tell)
     choices = settled(given, start, trial)
     for ground in range(1, grounds + 1):
         disk.write_file(new / f"blocks.{ground}.data", start.data(ground, each))
@@ -96,7 +96,7 @@ def build(given: OfBlocks, known: Derived, new: Path, folder: Path, machine: sit
                 *site_warnings.of_zones(layers.zones), *find_block_caveats(start)):
         keep(one)
     site_warnings.write_site_warnings(new, warnings)
-    disk.write_file(new / site_deck.NAME, deck(choices, said, f"{each:,}", site_deck.run_time(seconds)))
+    disk.write_file(new / site_deck.NAME, deck(choices, findings, f"{each:,}", site_deck.run_time(seconds)))
     draw(new / MAP, site_layers.Shown(raster, np.zeros(raster.z.shape), start.polygon, layers.road, None, (),
                                       layers.lines, None, layers.zones), f"{title}: {each * runs:,} blocks")
     about = {**site.about_made(choices, new, folder, raster, layers), "trial": trial and trial._asdict(),
@@ -196,7 +196,7 @@ def edges(choices: OfBlocks, layers: site_layers.Layers, start: Start, new: Path
     if line := site_layers.swapped(choices, start.raster):
         raise SlopeError("--release, --road", "must not be swapped, blocks fall from the release area onto the road",
                          line)
-    road, found = touched(layers.road, start.sizes[1], start.raster), []
+    road, lines = touched(layers.road, start.sizes[1], start.raster), []
     if road.intersects(start.polygon):
         raise SlopeError("--release", f"must be at least half a block, {start.sizes[1] / 2:g} m, away from the road",
                          f"{start.polygon.distance(layers.road):.3g} m")
@@ -206,10 +206,10 @@ def edges(choices: OfBlocks, layers: site_layers.Layers, start: Start, new: Path
     for k, ring in enumerate((ring for part in parts for ring in (part.exterior, *part.interiors)), 1):
         points = np.round(np.asarray(ring.coords)[:, :2], 4) + 0.0
         points = points[np.append(True, (points[1:] != points[:-1]).any(axis=1))]
-        found.append(Line(f"{EDGE}_{k}", f"{EDGE}_{k}.csv", points))
-        disk.write_file(new / found[-1].file, "# around the road, local x,y in m; forward is onto it\n"
+        lines.append(Line(f"{EDGE}_{k}", f"{EDGE}_{k}.csv", points))
+        disk.write_file(new / lines[-1].file, "# around the road, local x,y in m; forward is onto it\n"
                         + "".join(f"{x!r},{y!r}\n" for x, y in points.tolist()))
-    return found
+    return lines
 
 
 # --- deck, and a trial of it ---
@@ -231,17 +231,17 @@ def deck_values(choices: OfBlocks, title: str, start: Start, lines, zones) -> Di
                 ("start", choices.blocks.speed), ("step", site_budget.STEP), ("close", site_budget.CLOSE))}}
 
 
-def deck(choices: OfBlocks, said: Dict[str, Any], blocks: str, run_time: str) -> str:
+def deck(choices: OfBlocks, values: Dict[str, Any], blocks: str, run_time: str) -> str:
     model = choices.model
     assert model.speed and model.duration and model.cell and model.film       # settled
     return site_deck.filled(TEMPLATE, {
-        **said, "speed": site_deck.format_deck_number(model.speed),
+        **values, "speed": site_deck.format_deck_number(model.speed),
         "duration": site_deck.format_deck_number(model.duration),
         "cell": site_deck.format_deck_number(model.cell), "film": site_deck.format_deck_number(model.film),
         "blocks": blocks, "run_time": run_time})
 
 
-def tried(choices: OfBlocks, start: Start, said: Dict[str, Any], new: Path, machine: site.Machine,
+def tried(choices: OfBlocks, start: Start, values: Dict[str, Any], new: Path, machine: site.Machine,
           tell) -> Optional[Trial]:
     """What a run of some blocks with the least rolling resistance measures; None where there is no LAMMPS."""
     if machine.lmp is None:
@@ -251,7 +251,7 @@ def tried(choices: OfBlocks, start: Start, said: Dict[str, Any], new: Path, mach
     for path in (*new.glob("*.asc"), *new.glob("*.csv")):
         os.symlink(f"../{path.name}", folder / path.name)
     disk.write_file(folder / "blocks.1.data", start.data(1, TRIAL))
-    disk.write_file(folder / site_deck.NAME, deck(settled(choices, start, None), said, f"{TRIAL}", "some seconds"))
+    disk.write_file(folder / site_deck.NAME, deck(settled(choices, start, None), values, f"{TRIAL}", "some seconds"))
     found = site_budget.measure(folder, site_deck.NAME, machine.lmp, {})
     shutil.rmtree(folder)
     tell(f"trial run, {site.trial_text(found._replace(diameter=start.sizes[0]))}; took {found.seconds:.1f} s")

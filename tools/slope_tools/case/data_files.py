@@ -29,7 +29,7 @@ def data_files(deck, settings):
     left: Set[str] = set()
     for summary in run_folders.summaries(folder):
         left.update(run_folders.load_summary(summary, WRITTEN).get("files") or ())
-    found = {}
+    files = {}
     for path in sorted(folder.iterdir()):
         if not disk.is_utf8(path.name):
             if os.fsencode(path.name).decode("utf-8", "replace") in words:      # as decks.commands() reads it
@@ -37,8 +37,8 @@ def data_files(deck, settings):
             continue
         output = OUTPUTS.search(path.name) or path.name in left or path.name in written
         if path.is_file() and (path.name in words or not output):
-            found[path.name] = path
-    found[deck.name] = deck
+            files[path.name] = path
+    files[deck.name] = deck
     for word in sorted({*words, *(path for word in words for path in decks.PATHS.findall(word))}):
         if "/" not in word or word.startswith("/") or "$" in word or not (folder / word).is_file():
             continue
@@ -46,5 +46,5 @@ def data_files(deck, settings):
         if inside.startswith(".."):
             raise SlopeError(deck, "must find its data in its own folder (a symbolic link will do) or by an absolute "
                              "path", word)
-        found[inside] = folder / word
-    return found
+        files[inside] = folder / word
+    return files

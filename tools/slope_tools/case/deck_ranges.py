@@ -50,21 +50,21 @@ PLACES = {"create_balls": {2: ABOVE_ZERO, 3: ABOVE_ZERO}}
 
 def ranges(deck: Path) -> Dict[str, Bounds]:
     """{variable: its Bounds} of those whose range is known; a stated one counts before that of a command."""
-    found: Dict[str, Bounds] = {}
+    known: Dict[str, Bounds] = {}
     for words in decks.commands(deck):
         for place, (keyword, word) in enumerate(zip(words, words[1:]), 1):
             match = re.fullmatch(r"\$(?:\{(\w+)\}|(\w))", word)
             bounds: Optional[Bounds] = (KEYWORDS.get(words[0], {}).get(keyword)
                                         or PLACES.get(words[0], {}).get(place))
             if match and bounds:
-                found[match[1] or match[2]] = bounds
+                known[match[1] or match[2]] = bounds
     text = Path(deck).read_text(encoding="utf-8", errors="replace")
     for name, comment in LINE.findall(text):
         stated = STATED.search(comment)
         if stated:
             low, first, second, high = stated.groups()
-            found[name] = Bounds(float(low), float(high), first == "<=", second == "<=")
-    return found
+            known[name] = Bounds(float(low), float(high), first == "<=", second == "<=")
+    return known
 
 
 class Checks:

@@ -46,7 +46,7 @@ def without_comments(deck: Path, defaults=True) -> List[List[str]]:
 
 def commands(deck):
     """The commands of a deck and of the files that it includes by name: lists of words, comments taken off."""
-    found, waiting, seen = [], [Path(deck)], set()
+    words_of_lines, waiting, seen = [], [Path(deck)], set()
     while waiting:
         path = waiting.pop(0)
         seen.add(path)
@@ -58,11 +58,11 @@ def commands(deck):
             words = words_of(line)
             if not words:
                 continue
-            found.append(words)
+            words_of_lines.append(words)
             included = Path(deck).parent / words[-1]
             if words[0] == "include" and included.is_file() and included not in seen:
                 waiting.append(included)
-    return found
+    return words_of_lines
 
 
 def variables(deck):
@@ -112,9 +112,9 @@ def named_files(deck):
     return read, written
 
 
-def read_words(found: Iterable[Sequence[str]]) -> Set[str]:
+def read_words(commands_: Iterable[Sequence[str]]) -> Set[str]:
     """The words of commands that may name files which they read."""
-    return {word for words in found for k, word in enumerate(words) if not names_output(words, k)}
+    return {word for words in commands_ for k, word in enumerate(words) if not names_output(words, k)}
 
 
 def names_output(words, k):

@@ -25,8 +25,8 @@ def middle(several):
 
 def check_names(names, deck, option, options):
     """The names that options NAME=... give, all of them different index variables of the deck; SlopeError otherwise."""
-    found = decks.variables(deck)
-    known = {name for name, (style, _) in found.items() if style == "index"}
+    variables = decks.variables(deck)
+    known = {name for name, (style, _) in variables.items() if style == "index"}
     fixes = [words for words in decks.commands(deck) if words[0] == "fix" and words[3:4] == ["deposit/grid"]]
     if len(fixes) != 1:
         raise SlopeError(deck, "must have one fix deposit/grid, which gives the deposit", len(fixes))
@@ -34,7 +34,7 @@ def check_names(names, deck, option, options):
         if not name or "=" not in words:
             raise SlopeError(option, "must be NAME=V1,V2,... or NAME=A:B:STEP", words)
         if name not in known:
-            style = f"{name} of style {found[name][0]}" if name in found else name
+            style = f"{name} of style {variables[name][0]}" if name in variables else name
             raise SlopeError(option, f"must name an index variable of {deck} ({', '.join(sorted(known)) or 'none'})",
                              style)
         if name in names[:i]:
@@ -49,19 +49,19 @@ def check_settings(options, deck, option="--set"):
     """
     names = check_names([words.partition("=")[0] for words in options], deck, option, options)
     checks = deck_ranges.Checks(deck)
-    found = {}
+    settings = {}
     for name, words in zip(names, options):
-        found[name] = parse_setting_values(words, words.partition("=")[2], option)
-        if option != "--set" or len(found[name]) > 1:
+        settings[name] = parse_setting_values(words, words.partition("=")[2], option)
+        if option != "--set" or len(settings[name]) > 1:
             checks.vary(option, name, words)
-        for value in found[name]:
+        for value in settings[name]:
             checks.value(option, name, value, words)
-    return found
+    return settings
 
 
 def parse_setting_values(words, text, option="--set"):
     """The values that the right side of an option NAME=VALUES stands for, as text; words: all of it."""
-    found = []
+    values = []
     for part in text.split(","):
         ends = part.split(":")
         if not part.strip():
@@ -71,19 +71,19 @@ def parse_setting_values(words, text, option="--set"):
         except decimal.InvalidOperation:
             numbers = None
         if numbers is None:
-            found.append(part)
+            values.append(part)
             continue
         start, stop, step = numbers
         if not all(end.is_finite() for end in numbers) or step == 0 or (stop - start) / step < 0:
             raise SlopeError(option, "A:B:STEP must have a STEP that leads from A to B", words)
         if (stop - start) / step >= MOST_RUNS:
             raise SlopeError(option, f"must make at most {MOST_RUNS} runs", words)
-        found += [format_decimal(start + i * step) for i in range(int((stop - start) / step) + 1)]
-    keys = [normalise_value(value) for value in found]
+        values += [format_decimal(start + i * step) for i in range(int((stop - start) / step) + 1)]
+    keys = [normalise_value(value) for value in values]
     for i, key in enumerate(keys):
         if key in keys[:i]:
-            raise SlopeError(option, "must have every value once", f"{words} with {found[i]} twice")
-    return found
+            raise SlopeError(option, "must have every value once", f"{words} with {values[i]} twice")
+    return values
 
 
 def format_decimal(value):

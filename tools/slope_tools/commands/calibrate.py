@@ -84,10 +84,10 @@ def run_calibrate(args: Request) -> None:
     fixed = one_value_each(check_settings(args.set, args.deck), "--set", "--vary")
     repeated = check_settings(args.repeat, args.deck, "--repeat")
     repeats.check_repeats(list(repeated), args.equally_good)
-    for one in variables:
+    for variable in variables:
         for given, names in (("--set", fixed), ("--repeat", repeated)):
-            if one.name in names:
-                raise SlopeError("--vary", f"must not name a variable of {given}", one.name)
+            if variable.name in names:
+                raise SlopeError("--vary", f"must not name a variable of {given}", variable.name)
     least = 2 * len(variables) + 3
     if args.runs < least:
         raise SlopeError("--runs", f"must be at least {least} for {len(variables)} parameters", args.runs)

@@ -40,7 +40,7 @@ def list_option_words(parser: argparse.ArgumentParser, options: Mapping[str, Any
     known = {name[2:].replace("-", "_"): (name, action) for action in parser._actions
              for name in action.option_strings if name.startswith("--")}
     known["output"] = "-o", parser._option_string_actions["-o"]
-    found: List[str] = []
+    words: List[str] = []
     for name, value in options.items():
         if name.rstrip("_") not in known:       # from_, of which Python makes something else
             raise SlopeError(f"slope_tools.{parser.prog}", "must have arguments that are options of `slope "
@@ -48,13 +48,13 @@ def list_option_words(parser: argparse.ArgumentParser, options: Mapping[str, Any
         option, action = known[name.rstrip("_")]
         equals = "=" if option.startswith("--") else ""
         if value is True and action.nargs in (0, "?"):
-            found.append(option)
+            words.append(option)
         elif isinstance(value, Mapping):
-            found += [f"{option}={key}={format_option_value(one)}" for key, one in value.items()]
+            words += [f"{option}={key}={format_option_value(one)}" for key, one in value.items()]
         elif value is not None and value is not False:
             several = value if isinstance(action, argparse._AppendAction) and is_list_option(value) else [value]
-            found += [f"{option}{equals}{format_option_value(one)}" for one in several]
-    return found
+            words += [f"{option}{equals}{format_option_value(one)}" for one in several]
+    return words
 
 
 def is_list_option(value: Any) -> bool:

@@ -79,18 +79,19 @@ def run_zones(args: Request, zones_: str) -> None:
     asked = zones.asked(ground, zones_, limits)
     disk.check_folder(folder, ["zones.gpkg", "zones.yaml"], [args.prefix, asked], args.overwrite)
     several = [zones.make_zones(ground, limit, wanted) for limit in limits]
-    about: Dict[str, Any] = {"of": args.prefix, "asked": asked, **zones.summarise_zones(ground, several, wanted)}
+    summary: Dict[str, Any] = {"of": args.prefix, "asked": asked, **zones.summarise_zones(ground, several, wanted)}
     with disk.complete(folder, "zones.yaml") as new:
         geopackage.write_geopackage(new / "zones.gpkg", zones.layers(ground, several, wanted), ground.raster,
-                                    {zones.LAYER: zones.style(several, wanted, about["per_year"])})
-        disk.write_yaml(new / "zones.yaml", about, "slope export --zones: m2; probabilities per year, or of the runs")
-    for one in about["zones"]:
-        print(f"{one['quantity']} > {one['exceeds']:g}, {'per year' if about['per_year'] else 'of the runs'} at least "
+                                    {zones.LAYER: zones.style(several, wanted, summary["per_year"])})
+        disk.write_yaml(new / "zones.yaml", summary, "slope export --zones: m2; probabilities per year, or of the runs")
+    for one in summary["zones"]:
+        print(f"{one['quantity']} > {one['exceeds']:g}, {'per year' if summary['per_year'] else 'of the runs'} at "
+              "least "
               f"{one['probability']:.4g}: {one['at_least_m2']:,.0f} m2, and {one['cannot_tell_m2']:,.0f} m2 of which "
-              f"{about['runs']} runs cannot tell")
-    if about["unreached_at_most"] >= wanted[-1]:
-        print(f"where no run comes it may be up to {about['unreached_at_most']:.2g}: beside the zones {about['runs']} "
-              "runs do not show less than they ask for")
+              f"{summary['runs']} runs cannot tell")
+    if summary["unreached_at_most"] >= wanted[-1]:
+        print(f"where no run comes it may be up to {summary['unreached_at_most']:.2g}: beside the zones "
+              f"{summary['runs']} " "runs do not show less than they ask for")
     if study:
         print(f"of the runs of {study}")
     print(f"written to {folder}: zones.gpkg zones.yaml")
@@ -105,20 +106,21 @@ def run_rasters(args: Request) -> None:
     folder = args.output or (named.folder / "export" if named.folder else Path(f"{named.prefix}.export"))
     which = named.study and f"{named.run}, the governing run of {named.study}"
     place = run_.raster
-    found = layers(named.prefix)
-    disk.check_folder(folder, [*(file_of(layer) for layer in found), "export.yaml"], [named.prefix], args.overwrite)
-    about = {"prefix": run_.prefix, "terrain": run_.terrain, "crs": None if place.crs is None else crs_name(place.crs),
-             "origin": {"east": place.offset[0], "north": place.offset[1]}, "cell": run_.cell,
-             "run": {"name": named.run, "study": named.study and str(named.study),
-                     "slope_version": run_.summary.get("slope_version"), "time": run_.summary["time"]}, "rasters": []}
-    if not any(layer.kind == "base" for layer in found):
+    written = layers(named.prefix)
+    disk.check_folder(folder, [*(file_of(layer) for layer in written), "export.yaml"], [named.prefix], args.overwrite)
+    summary = {"prefix": run_.prefix, "terrain": run_.terrain, "crs": None if place.crs is None
+               else crs_name(place.crs),
+               "origin": {"east": place.offset[0], "north": place.offset[1]}, "cell": run_.cell,
+               "run": {"name": named.run, "study": named.study and str(named.study),
+                       "slope_version": run_.summary.get("slope_version"), "time": run_.summary["time"]}, "rasters": []}
+    if not any(layer.kind == "base" for layer in written):
         warn(findings.Finding("no base", {"file": f"{named.prefix}.base.asc"}))
     with disk.complete(folder, "export.yaml") as new:
-        for layer in rasters.progress(found, "writing GeoTIFFs"):
-            about["rasters"].append(write_layer(new, layer, place, {"run": which or named.prefix}))
-        about["warnings"] = warnings
-        disk.write_yaml(new / "export.yaml", about, "slope export: rasters of a run as GeoTIFFs; m, m/s, J, s")
+        for layer in rasters.progress(written, "writing GeoTIFFs"):
+            summary["rasters"].append(write_layer(new, layer, place, {"run": which or named.prefix}))
+        summary["warnings"] = warnings
+        disk.write_yaml(new / "export.yaml", summary, "slope export: rasters of a run as GeoTIFFs; m, m/s, J, s")
     if which:
         print(f"{which}: {named.prefix}")
-    print(f"{len(found)} rasters, {about['crs'] or 'local metres, no CRS'}, cells of {run_.cell:g} m\n"
-          f"written to {folder}: {' '.join(one['file'] for one in about['rasters'])} export.yaml")
+    print(f"{len(written)} rasters, {summary['crs'] or 'local metres, no CRS'}, cells of {run_.cell:g} m\n"
+          f"written to {folder}: {' '.join(one['file'] for one in summary['rasters'])} export.yaml")

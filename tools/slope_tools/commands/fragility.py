@@ -70,12 +70,12 @@ def run_fragility(args: Request) -> None:
     limit = 0.1 if args.displacement is None else args.displacement
     failure: Any = fragility.PseudoStatic(args.pseudo_static) if args.pseudo_static is not None else \
         fragility.Slide(limit, [motion_file.read_motion(path) for path in args.record], args.vertical)
-    found = bodies_of(args)
+    bodies = bodies_of(args)
     strengths = fragility.strengths_of(soil, math.ceil(args.sample / fragility.REPLICATES), args.seed)
-    capacity = fragility.capacities(found, strengths, failure)
-    names = [body.name for body in found]
-    columns = [capacity[:, :, k] for k in range(len(found))]
-    if len(found) > 1:
+    capacity = fragility.capacities(bodies, strengths, failure)
+    names = [body.name for body in bodies]
+    columns = [capacity[:, :, k] for k in range(len(bodies))]
+    if len(bodies) > 1:
         names.append(files.ANY)
         columns.append(capacity.min(axis=2))
     curves = [files.Curve(name, fragility.compute_fragility_curve(one, peaks), fragility.fit_lognormal(one, peaks),
@@ -83,18 +83,18 @@ def run_fragility(args: Request) -> None:
                           float((one <= 0).all(axis=1).mean()), float(np.median(one)))
               for name, one in zip(names, columns)]
     warn, kept = findings.warner("fragility")
-    for one in find_fragility_warnings(curves, peaks, found, args.pseudo_static, len(args.record), hazard):
+    for one in find_fragility_warnings(curves, peaks, bodies, args.pseudo_static, len(args.record), hazard):
         warn(one)
-    about = {"bodies": [{"body": body.name, "volume_m3": body.columns.volume,
-                         "base_sha256": disk.sha256(body.base)} for body in found],
-             "peaks": args.peaks, "peaks_gal": peaks.tolist(),
-             "hazard_curve": np.column_stack(hazard).tolist() if hazard else None, "slips": args.slips,
-             "density": args.density, "cohesion": args.cohesion, "friction": args.friction,
-             "water": args.water, "correlation": args.correlation, "samples": len(capacity), "seed": args.seed,
-             "records": args.record, "vertical": args.vertical,
-             "displacement": None if args.pseudo_static is not None else limit,
-             "pseudo_static": args.pseudo_static, "hazard": args.hazard, "warnings": kept}
-    files.write_fragility(args.output, peaks, curves, capacity, about)
+    summary = {"bodies": [{"body": body.name, "volume_m3": body.columns.volume,
+                           "base_sha256": disk.sha256(body.base)} for body in bodies],
+               "peaks": args.peaks, "peaks_gal": peaks.tolist(),
+               "hazard_curve": np.column_stack(hazard).tolist() if hazard else None, "slips": args.slips,
+               "density": args.density, "cohesion": args.cohesion, "friction": args.friction,
+               "water": args.water, "correlation": args.correlation, "samples": len(capacity), "seed": args.seed,
+               "records": args.record, "vertical": args.vertical,
+               "displacement": None if args.pseudo_static is not None else limit,
+               "pseudo_static": args.pseudo_static, "hazard": args.hazard, "warnings": kept}
+    files.write_fragility(args.output, peaks, curves, capacity, summary)
     print(describe_fragility(curves, args.output, files.FILES))
 
 
@@ -104,13 +104,13 @@ def bodies_of(args: Request) -> Any:
     from ..slips import bodies
 
     if (args.slips / choices.NAME).is_file():
-        found = [search.read_route_body(args.slips, one["body"], args.density)
+        slips = [search.read_route_body(args.slips, one["body"], args.density)
                  for one in search.table_of(args.slips)["bodies"]]
     else:
-        found = bodies.read_slip_bodies(args.slips, args.density)
+        slips = bodies.read_slip_bodies(args.slips, args.density)
     if args.water is None:
-        return found
-    return [body._replace(columns=body.columns._replace(pressure=None)) for body in found]
+        return slips
+    return [body._replace(columns=body.columns._replace(pressure=None)) for body in slips]
 
 
 def check_fragility_request(args: Request) -> None:
@@ -166,20 +166,20 @@ def parse_drawn_number(option, text, low, high, unit):
     from ..statistics import distributions
 
     try:
-        one: Any = float(text)
-        values = [one]
+        number: Any = float(text)
+        values = [number]
     except ValueError:
-        one = distributions.distribution(option[2:], text, option, text)
+        number = distributions.distribution(option[2:], text, option, text)
         try:
-            values = [float(value) for value in one.limits]
+            values = [float(value) for value in number.limits]
         except ValueError:
             raise SlopeError(option, "must have numbers in its list", text) from None
     if not all(low <= value <= high for value in values):
         raise SlopeError(option, f"must be from {low:g} to {high:g} {unit}", text)
-    return one
+    return number
 
 
-def find_fragility_warnings(curves, peaks, found, pseudo_static, records, hazard):
+def find_fragility_warnings(curves, peaks, bodies, pseudo_static, records, hazard):
     """What a reader must know."""
     from ..slips.columns import FEWEST
 
@@ -189,30 +189,31 @@ def find_fragility_warnings(curves, peaks, found, pseudo_static, records, hazard
         yield findings.Finding("pseudo-static", {"factor": pseudo_static, "judged": judged})
     elif records == 1:
         yield findings.Finding("one record")
-    for body in found:
+    for body in bodies:
         if body.cells < FEWEST:
             yield findings.Finding("columns", {"body": body.name, "value": body.cells, "limit": FEWEST})
-    for one in curves:
-        standing = one.at_rest * hazard.rates[0] / one.frequency.total.value \
-            if one.frequency and one.frequency.total.value > 0 else 0.0
-        if one.at_rest > 0.01 or standing > 0.05:
+    for curve in curves:
+        standing = curve.at_rest * hazard.rates[0] / curve.frequency.total.value \
+            if curve.frequency and curve.frequency.total.value > 0 else 0.0
+        if curve.at_rest > 0.01 or standing > 0.05:
             makes = f", which makes {cents(standing)} of the frequency" if standing > 0.05 else ""
-            yield findings.Finding("at rest", {"which": one.title, "percent": 100 * one.at_rest, "makes": makes})
-        for k, outside, end, remedy in ((-1, peaks[-1] < one.half < math.inf, "largest", "larger"),
-                                        (0, 0 < one.half < peaks[0], "smallest", "smaller")):
+            yield findings.Finding("at rest", {"which": curve.title, "percent": 100 * curve.at_rest, "makes": makes})
+        for k, outside, end, remedy in ((-1, peaks[-1] < curve.half < math.inf, "largest", "larger"),
+                                        (0, 0 < curve.half < peaks[0], "smallest", "smaller")):
             if outside:
                 yield findings.Finding("peaks", {
-                    "which": one.title, "peak": float(peaks[k]), "end": end, "remedy": remedy,
-                    "percent": 100 * float(one.band.value[k]), "half": one.half})
-        if one.fit is None:
-            yield findings.Finding("no fit", {"which": one.title})
-        elif one.fit.off > 0.05:
-            yield findings.Finding("fit is off", {"which": one.title, "difference": float(one.fit.off)})
-        if one.fit and one.fit.at_hclpf > 1.5 * one.fit.at_hclpf_fitted:
-            yield findings.Finding("HCLPF", {"which": one.title, "percent": 100 * float(one.fit.at_hclpf),
-                                             "fitted": 100 * float(one.fit.at_hclpf_fitted)})
-        if one.frequency and one.frequency.beyond > 0.1 * one.frequency.total.value:
-            yield findings.Finding("beyond the curve", {"which": one.title, "per_year": float(one.frequency.beyond)})
+                    "which": curve.title, "peak": float(peaks[k]), "end": end, "remedy": remedy,
+                    "percent": 100 * float(curve.band.value[k]), "half": curve.half})
+        if curve.fit is None:
+            yield findings.Finding("no fit", {"which": curve.title})
+        elif curve.fit.off > 0.05:
+            yield findings.Finding("fit is off", {"which": curve.title, "difference": float(curve.fit.off)})
+        if curve.fit and curve.fit.at_hclpf > 1.5 * curve.fit.at_hclpf_fitted:
+            yield findings.Finding("HCLPF", {"which": curve.title, "percent": 100 * float(curve.fit.at_hclpf),
+                                             "fitted": 100 * float(curve.fit.at_hclpf_fitted)})
+        if curve.frequency and curve.frequency.beyond > 0.1 * curve.frequency.total.value:
+            yield findings.Finding("beyond the curve", {"which": curve.title,
+                                                        "per_year": float(curve.frequency.beyond)})
 
 
 def describe_fragility(curves, folder, files):
@@ -220,17 +221,17 @@ def describe_fragility(curves, folder, files):
     from ..seismic.fragility_files import ANY
 
     lines = []
-    for one in curves:
-        line = one.title
-        if one.fit:
-            line += (f": median {one.fit.median:.4g} gal (standard error {one.fit.median_error:.2g}), beta_r "
-                     f"{one.fit.beta_r:.2f}, beta_u {one.fit.beta_u:.2f}, HCLPF {one.fit.hclpf:.4g} gal")
-        if one.frequency:
-            total = one.frequency.total
+    for curve in curves:
+        line = curve.title
+        if curve.fit:
+            line += (f": median {curve.fit.median:.4g} gal (standard error {curve.fit.median_error:.2g}), beta_r "
+                     f"{curve.fit.beta_r:.2f}, beta_u {curve.fit.beta_u:.2f}, HCLPF {curve.fit.hclpf:.4g} gal")
+        if curve.frequency:
+            total = curve.frequency.total
             line += (f"; fails {float(total.value):.3g} times per year (90 %: {float(total.low):.3g} to "
                      f"{float(total.high):.3g})")
-            if one.name == ANY:
-                most = sum(other.frequency.total.value for other in curves if other is not one)
+            if curve.name == ANY:
+                most = sum(other.frequency.total.value for other in curves if other is not curve)
                 line += f", {float(most):.3g} at most if each body may have a strength of its own"
         lines.append(line)
     return "\n".join([*lines, f"written to {folder}: {' '.join(files)}"])

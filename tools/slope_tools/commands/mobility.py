@@ -55,17 +55,17 @@ def run_mobility(args: Request) -> None:
     mass = read_site_body(args) if site else of_release(args, tell)
     lane = road_of(args, site, mass)
     path = fall_path.given(mass, line_of(args.path, args.local, mass), args.path) if args.path else None
-    found = known.compute_known_mobility(mass, asked, path)
-    met = lane and road.at_road(found.decides.path, lane)
+    mobilities = known.compute_known_mobility(mass, asked, path)
+    met = lane and road.at_road(mobilities.decides.path, lane)
     source = results.Source(args.terrain, mass, asked, lane)
-    results.write_mobility(args.output, found, source, met)
-    print("\n".join(results.describe_mobility(found, source, met)))
+    results.write_mobility(args.output, mobilities, source, met)
+    print("\n".join(results.describe_mobility(mobilities, source, met)))
     if site and not args.road:
         for name in site_roads.names(site):
             other = roads.read_local(site.folder / site_roads.file_name(name), mass.raster, site.choices.road.asked,
                                      local=True).polygon
-            print(outlook.road_text(found.decides, road.at_road(found.decides.path, other), name))
-    for line in (*results.find_mobility_caveats(mass, found), *results.disagreement(mass, found)):
+            print(outlook.road_text(mobilities.decides, road.at_road(mobilities.decides.path, other), name))
+    for line in (*results.find_mobility_caveats(mass, mobilities), *results.disagreement(mass, mobilities)):
         tell(line)
     print(f"wrote {', '.join(str(args.output / name) for name in results.FILES)}")
 

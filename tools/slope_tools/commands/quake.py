@@ -69,15 +69,15 @@ def check_quake_request(args: Request) -> None:
         raise SlopeError("--azimuth", "must be a compass bearing, 0 to 360 degrees", f"{args.azimuth:g}")
 
 
-def describe_motion(path, about):
+def describe_motion(path, summary):
     """What the user needs to know of the motion, and the line for the deck."""
-    lines = [f"{path}: {about['points']} points every {about['dt']:g} s, {about['length']:g} s; "
-             f"{'; '.join(about['processing'])}",
-             f"largest horizontal acceleration {about['peak_gal']:.5g} gal, Arias intensity "
-             f"{about['arias_horizontal']:.4g} m/s, D5-95 {about['duration_5_95_horizontal']:.4g} s"
-             if about["peak_gal"] > 0 else "no horizontal component: the ground moves up and down only",
+    lines = [f"{path}: {summary['points']} points every {summary['dt']:g} s, {summary['length']:g} s; "
+             f"{'; '.join(summary['processing'])}",
+             f"largest horizontal acceleration {summary['peak_gal']:.5g} gal, Arias intensity "
+             f"{summary['arias_horizontal']:.4g} m/s, D5-95 {summary['duration_5_95_horizontal']:.4g} s"
+             if summary["peak_gal"] > 0 else "no horizontal component: the ground moves up and down only",
              "axis  acc. gal  vel. m/s  disp. m   end vel.  end disp.  Arias m/s  D5-95 s"]
-    for axis, a in about["axes"].items():
+    for axis, a in summary["axes"].items():
         lines.append(f"{axis:<5} {a['acceleration_gal']:<9.4g} {a['velocity']:<9.4g} {a['displacement']:<9.4g} "
                      f"{a['end_velocity']:<9.2g} {a['end_displacement']:<10.2g} {a['arias']:<10.4g} "
                      f"{a['duration_5_95']:.4g}")

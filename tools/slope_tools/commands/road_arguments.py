@@ -43,13 +43,13 @@ def asked(args: Width) -> roads.Asked:
 
 def list_road_options(asked: Site) -> Dict[str, Any]:
     """The options of the road that is asked of a site, as far as they are not by default; none without one."""
-    about = asked.choices.road
-    if not about.file:
+    road = asked.choices.road
+    if not road.file:
         return {}
-    given = {name: getattr(about.asked, field) for name, field in OPTIONS.items()
-             if getattr(about.asked, field) != getattr(roads.NOTHING, field)}
-    return {**given, "road": site_roads.file_of(asked), "road_name": asked.road, "cut_angle": about.cut_angle,
-            "mesh": about.mesh}
+    given = {name: getattr(road.asked, field) for name, field in OPTIONS.items()
+             if getattr(road.asked, field) != getattr(roads.NOTHING, field)}
+    return {**given, "road": site_roads.file_of(asked), "road_name": asked.road, "cut_angle": road.cut_angle,
+            "mesh": road.mesh}
 
 
 def otherwise(args: Any) -> str:

@@ -126,13 +126,13 @@ def run_route(args: Request) -> None:
                 raise
             machine = site.Machine(lmp, args.jobs or jobs.cores())
             several = []
-            for about in table["bodies"]:
-                new = not runs.folder_of(folder, about["body"]).exists()
-                place = runs.make_body_site(choices, folder, about, len(table["bodies"]), machine, quiet, quiet,
+            for body in table["bodies"]:
+                new = not runs.folder_of(folder, body["body"]).exists()
+                place = runs.make_body_site(choices, folder, body, len(table["bodies"]), machine, quiet, quiet,
                                             site_map.draw_site_map)
                 if new:
-                    factor = "" if about["factor"] is None else f", factor of safety {about['factor']:.3f}"
-                    tell(f"body {about['body']} at {about['chainage_m']:.0f} m: {about['volume_m3']:,.0f} m3{factor}")
+                    factor = "" if body["factor"] is None else f", factor of safety {body['factor']:.3f}"
+                    tell(f"body {body['body']} at {body['chainage_m']:.0f} m: {body['volume_m3']:,.0f} m3{factor}")
                 several.append(runs.make_route_study(choices, place, engine_of(args)))
             if args.dry_run:
                 tell("\n".join(runs.list_route_runs(several)))

@@ -262,8 +262,8 @@ def run_site(args: Request) -> None:
     doubts: Dict[str, Finding] = {}
     warn = printer("site")
 
-    def keep(said) -> None:
-        doubts.setdefault(str(one := finding(said)), one)
+    def keep(entry) -> None:
+        doubts.setdefault(str(one := finding(entry)), one)
     if isinstance(choices, OfMass) and any(getattr(args, option) is not None for option in OF_SOIL):
         lines.append(site_deck.soil(choices))
     cores, first = args.jobs or jobs.cores(), None

@@ -104,8 +104,8 @@ def run_stability(args: Request) -> None:
         for beside in given:
             rasters.write_asc_local(folder / beside.name, raster._replace(z=beside.z), {"sources": [beside.source]},
                                     exact=True)
-        said = slip_run.run_slip_search(asked, polygon, raster, folder, lmp, args.np or 1,
-                                        lambda line: print(line, flush=True))
+        output = slip_run.run_slip_search(asked, polygon, raster, folder, lmp, args.np or 1,
+                                          lambda line: print(line, flush=True))
         rows = bodies.read_body_rows(folder / f"{PREFIX}.slips.csv", (*bodies.NUMBERS, "factor", "area", "depth"),
                                      ("yield",))
         if rows[0]["factor"] > HUGE:
@@ -113,17 +113,17 @@ def run_stability(args: Request) -> None:
                              f"below {HUGE:g} somewhere", f"{rows[0]['factor']:.4g}")
         masks = [bodies.mask_of(folder / f"{PREFIX}.{k + 1}.base.asc") for k in range(len(rows))]
         rock = next((one.z for one in given if one.name == slip_deck.BEDROCK), None)
-        for one in [*placed, *find_stability_warnings(asked.strength.cohesion, args.density, rows, masks, given),
-                    *said.warnings, *doubts.find_all_doubts(raster, rows, masks, asked.volume, asked.depth,
-                                                            polygon and doubts.cells_in(raster, polygon))]:
-            warn(one)
+        for finding in [*placed, *find_stability_warnings(asked.strength.cohesion, args.density, rows, masks, given),
+                        *output.warnings, *doubts.find_all_doubts(raster, rows, masks, asked.volume, asked.depth,
+                                                                  polygon and doubts.cells_in(raster, polygon))]:
+            warn(finding)
         table = [numbers_of(raster, row, mask) for row, mask in zip(rows, masks)]
         write_stability(folder, args, raster, rows, masks, rock, {"method": asked.method, "shape": asked.shape,
                                                                   "keep": asked.keep, "bodies": table,
                                                                   "warnings": kept})
         slip_run.settle(asked, raster, folder, len(rows), args.output)
     slip_run.remove_others(args.output, len(rows), [one.name for one in given])
-    print(describe_stability(table, args.output, said.notes))
+    print(describe_stability(table, args.output, output.notes))
 
 
 class Given(NamedTuple):
@@ -204,13 +204,13 @@ def numbers_of(raster, row: Dict[str, float], mask) -> Dict[str, float]:
             "cells": int(mask.sum()), **{name: row[name] for name in ("x", "y", "z", "radius", "across")}}
 
 
-def write_stability(folder: Path, args: Request, raster, rows, masks, rock, found) -> None:
+def write_stability(folder: Path, args: Request, raster, rows, masks, rock, table) -> None:
     """stability.csv, .png and .yaml; rock: heights of the bedrock in the cells of the terrain, or None."""
     from ..slips import chart
     from ..survey import rasters
 
-    disk.write_file(folder / FILES[0], disk.csv_text(found["bodies"][0], (
-        [f"{value:.8g}" for value in row.values()] for row in found["bodies"])))
+    disk.write_file(folder / FILES[0], disk.csv_text(table["bodies"][0], (
+        [f"{value:.8g}" for value in row.values()] for row in table["bodies"])))
     factor = rasters.read_raster(folder / f"{PREFIX}.factor.asc", heights=False).z
     title = f"c {args.cohesion:g} Pa, friction {args.friction:g} degrees" + (
         f", k {args.seismic[0]:g}" if args.seismic else "")
@@ -218,7 +218,7 @@ def write_stability(folder: Path, args: Request, raster, rows, masks, rock, foun
     about = {name: getattr(args, name) for name in ("terrain", "cohesion", "friction", "density", "layer", "water",
                                                     "water_table", "bedrock", "seismic", "volume", "depth",
                                                     "within", "local", "direction")}
-    disk.write_yaml(folder / FILES[2], {**about, **found}, "slope stability: Pa, degrees, kg/m3, m, m3; bearings")
+    disk.write_yaml(folder / FILES[2], {**about, **table}, "slope stability: Pa, degrees, kg/m3, m, m3; bearings")
 
 
 def describe_stability(table, folder, notes) -> str:
@@ -257,15 +257,15 @@ def run_failed(args: Any) -> None:
     far = back.line(body.far, horizontal, vertical, ratio) if body.far else None
     for one in failed_warnings(body, line, far):
         warn(one)
-    about = {"terrain": args.terrain, "failed": args.failed, "density": args.density, "seismic": shaking,
-             "water": args.water, "water_table": args.water_table,
-             "bedrock": args.bedrock, "volume": body.columns.volume,
-             "cells": body.cells, "bearing": (90.0 - body.direction) % 360.0, "centre": body.centre,
-             "radius": body.radius, "cohesion_without_friction": line.cohesion[0],
-             "friction_without_cohesion": line.friction[-1] if line.cohesion[-1] < 1e-6 * line.cohesion[0] else None,
-             "warnings": kept}
-    back_files.write_back_analysis(args.output, line, far, about)
-    print(back_files.describe_back_analysis(line, about))
+    summary = {"terrain": args.terrain, "failed": args.failed, "density": args.density, "seismic": shaking,
+               "water": args.water, "water_table": args.water_table,
+               "bedrock": args.bedrock, "volume": body.columns.volume,
+               "cells": body.cells, "bearing": (90.0 - body.direction) % 360.0, "centre": body.centre,
+               "radius": body.radius, "cohesion_without_friction": line.cohesion[0],
+               "friction_without_cohesion": line.friction[-1] if line.cohesion[-1] < 1e-6 * line.cohesion[0] else None,
+               "warnings": kept}
+    back_files.write_back_analysis(args.output, line, far, summary)
+    print(back_files.describe_back_analysis(line, summary))
     print(f"written to {args.output}: {' '.join(back_files.FILES)}")
 
 

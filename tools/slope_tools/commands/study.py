@@ -117,9 +117,9 @@ def run_folder(args: Request) -> None:
     """The studies of a site's folder: of its road, or of each of several, and of the worst as if it were alone."""
     check_request(args)
     site = site_choices.load_site(args.deck)
-    made = road_numbers.evaluate_all_roads(site, not args.dry_run, setup_of(args).tell, lambda one, several,
+    made = road_numbers.evaluate_all_roads(site, not args.dry_run, setup_of(args).tell, lambda site, several,
                                            quiet: run_site_of(
-        replace(args, roads=several, quiet=quiet), one))
+        replace(args, roads=several, quiet=quiet), site))
     above = site_scenarios.site_of(args.deck) or args.deck
     if made.abouts and site_scenarios.list_scenarios(above):
         from ..scenarios import page        # with pictures: half a second
@@ -193,9 +193,9 @@ def run_both(args: Request, asked: Site, points: int) -> Made:
                           next_step=step.about() if step else None, reach=paper.about.reach,
                           largest_restitution=paper.about.largest_restitution) for name, about in made.items()}
     files.write_abouts({site / name: about for name, about in made.items()})
-    for name, about in made.items():
+    for name, study_ in made.items():
         if name != governs:
-            write_site_report(site / name, site / PAGES[name], about, asked, film=False, quiet=args.quiet)
+            write_site_report(site / name, site / PAGES[name], study_, asked, film=False, quiet=args.quiet)
     if not args.quiet:
         print("\n".join(console.tell_letter(made[governs])))
     write_site_report(site / governs, site / road_numbers.PAGE, made[governs], asked, quiet=args.quiet)
@@ -314,11 +314,11 @@ def refuse(args: Request, names, where="") -> None:
                              None if first is True else f"{first:g}" if isinstance(first, float) else first)
 
 
-def write_site_report(folder: Path, page: Path, about: study_types.Study, site: Site, film=True, quiet=False) -> None:
+def write_site_report(folder: Path, page: Path, study_: study_types.Study, site: Site, film=True, quiet=False) -> None:
     """The page on a study, of which study.yaml says this, unless it is there; one of several roads has no film."""
     from ..report import document
     from ..report.heading import Asked
-    asked = Asked(folder, film=page.with_suffix(".mp4") if film and not site.road else None, study=about,
+    asked = Asked(folder, film=page.with_suffix(".mp4") if film and not site.road else None, study=study_,
                   site=site.content)
     said = document.update(asked, page)
     if not quiet:

@@ -59,29 +59,29 @@ def run_travel(args: Request) -> None:
     print(describe_travel(about, args.output))
 
 
-def missing(about):
+def missing(summary):
     """How many balls are missing, in the run that lacks most."""
-    of, balls = max((one["missing"], one["missing"] + one["balls"]) for one in about["each_run"])
+    of, balls = max((one["missing"], one["missing"] + one["balls"]) for one in summary["each_run"])
     return f"{of} of {balls} balls of the start are missing"
 
 
-def describe_travel(about, folder):
+def describe_travel(summary, folder):
     """What the user needs to know."""
-    lines = [f"{about['balls']} balls of {about['runs']} run{'s' if about['runs'] > 1 else ''}"]
+    lines = [f"{summary['balls']} balls of {summary['runs']} run{'s' if summary['runs'] > 1 else ''}"]
     for name in ("along", "across", "travel"):
-        if name in about:
-            of = about[name]["all"]
-            between = about[name]["over_runs"]["p50"]
-            band = f" ({between['lowest']:.3f} to {between['highest']:.3f} in the runs)" if about["runs"] > 1 else ""
+        if name in summary:
+            of = summary[name]["all"]
+            between = summary[name]["over_runs"]["p50"]
+            band = f" ({between['lowest']:.3f} to {between['highest']:.3f} in the runs)" if summary["runs"] > 1 else ""
             lines.append(f"{name}: median {of['p50']:.3f} m{band}, 5 to 95 % {of['p5']:.3f} to {of['p95']:.3f} m, "
                          f"all {of['min']:.3f} to {of['max']:.3f} m")
-    if "runout" in about:
-        most = about["runout"]["quantiles"][-1]
-        of_runs = " (the farthest and the flattest of the runs)" if about["runs"] > 1 else ""
+    if "runout" in summary:
+        most = summary["runout"]["quantiles"][-1]
+        of_runs = " (the farthest and the flattest of the runs)" if summary["runs"] > 1 else ""
         lines.append(f"run-out: {100 * most['share']:g} % within {most['distance']['highest']:.3f} m, reach angle "
                      f"{most['reach_angle']['lowest']:.1f} degrees{of_runs}" if most["distance"]["highest"] is not None
-                     else f"run-out: {100 * most['share']:g} % within an unknown distance: {missing(about)}")
-        far, flat = about["runout"]["distance"]["highest"], about["runout"]["reach_angle"]["lowest"]
+                     else f"run-out: {100 * most['share']:g} % within an unknown distance: {missing(summary)}")
+        far, flat = summary["runout"]["distance"]["highest"], summary["runout"]["reach_angle"]["lowest"]
         lines.append(f"farthest ball: {far:.3f} m, reach angle {flat:.1f} degrees")
-    lines.append(f"written to {folder}: {' '.join(about['files'])}")
+    lines.append(f"written to {folder}: {' '.join(summary['files'])}")
     return "\n".join(lines)

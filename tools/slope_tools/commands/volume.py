@@ -74,35 +74,35 @@ def run_volume(args: Request) -> None:
     print(describe_removal(found.about, folder))
 
 
-def describe_removal(about, folder):
+def describe_removal(summary, folder):
     """What the user needs to know."""
-    volume, axis = about["volume"], about["axis"]
+    volume, axis = summary["volume"], summary["axis"]
     below = volume["remove_where_cut_below_ground"]
     lines = [f"to remove: {volume['remove']:.1f} m3 of {volume['deposit']:.1f} m3: {volume['remove_on_road']:.1f} m3 "
              f"on the road, {volume['remove_beside_road']:.1f} m3 beside it above a cut of "
-             f"{about['cut_angle']:g} degrees"]
+             f"{summary['cut_angle']:g} degrees"]
     if below > 0:
         share = below / volume["remove"]
         lines.append(f"{below:.1f} m3 of that ({cents(share, 3)}) where the cut surface lies below the ground before "
-                     f"the collapse, which is steeper than {about['cut_angle']:g} degrees there"
+                     f"the collapse, which is steeper than {summary['cut_angle']:g} degrees there"
                      + (": is the cut angle right?" if share > MUCH_BELOW else ""))
-    lines.append(f"bulk factor {about['bulk_factor']:.6g}, the run's")
-    if "other_bulk_factor" in about:
-        lines[-1] += (f"; at {about['other_bulk_factor']:.6g}: {about['volume_at_other_bulk_factor']['remove']:.1f} m3 "
-                      "to remove")
+    lines.append(f"bulk factor {summary['bulk_factor']:.6g}, the run's")
+    if "other_bulk_factor" in summary:
+        lines[-1] += (f"; at {summary['other_bulk_factor']:.6g}: "
+                      f"{summary['volume_at_other_bulk_factor']['remove']:.1f} m3 " "to remove")
     lines.append(f"axis: thicker than {axis['blocked_above']:g} m over {axis['blocked_length']:.1f} of "
                  f"{axis['length']:.1f} m, up to {axis['largest_thickness']:.2f} m")
-    lines += of_stretches(about["stretches"], about["clearing"])
-    lines += of_mass(about["divided"], about["left"])
-    lines.append(f"mesh of {about['mesh']['size']:g} m: {about['mesh']['cells_to_clear']} cells to clear")
-    lines.append(f"written to {folder}: {' '.join(about['files'])}")
+    lines += of_stretches(summary["stretches"], summary["clearing"])
+    lines += of_mass(summary["divided"], summary["left"])
+    lines.append(f"mesh of {summary['mesh']['size']:g} m: {summary['mesh']['cells_to_clear']} cells to clear")
+    lines.append(f"written to {folder}: {' '.join(summary['files'])}")
     return "\n".join(lines)
 
 
 def of_stretches(stretches, total):
     """Lines on the blocked stretches, one for each, and on all of them."""
-    def with_hours(one, volume, hours):
-        return f"{one[volume]:.1f} m3" + (f" ({one[hours]:.1f} hours)" if hours in one else "")
+    def with_hours(stretch, volume, hours):
+        return f"{stretch[volume]:.1f} m3" + (f" ({stretch[hours]:.1f} hours)" if hours in stretch else "")
 
     for number_, one in enumerate(stretches, 1):
         lane = f"; a lane: {with_hours(one, 'remove_lane', 'hours_lane')}, {one['lane_offset']:+.2f} m from the axis" \

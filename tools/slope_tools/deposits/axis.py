@@ -138,13 +138,13 @@ class Axis:
 
 def merged(spans: Sequence[Span], gap: float = 0.0) -> List[Span]:
     """The union of ranges, ascending; those that are no farther apart than a gap become one."""
-    found: List[Span] = []
+    union: List[Span] = []
     for one in sorted(spans):
-        if found and one.low <= found[-1].high + gap:
-            found[-1] = Span(found[-1].low, max(found[-1].high, one.high))
+        if union and one.low <= union[-1].high + gap:
+            union[-1] = Span(union[-1].low, max(union[-1].high, one.high))
         else:
-            found.append(one)
-    return found
+            union.append(one)
+    return union
 
 
 def longest_gap(spans: Sequence[Span], within: Span) -> float:

@@ -33,21 +33,22 @@ def evaluate_clearing(run_, result, profile, axes: Sequence[Axis], width: float,
     result: volume.Result; profile: along the axis; width: of the road, m; road: see lanes.find_lane_stretches; angle:
     of the cut, degrees.
     """
-    found = lanes.find_lane_stretches(run_.raster, axes, width, asked.blocked, road)
+    stretches = lanes.find_lane_stretches(run_.raster, axes, width, asked.blocked, road)
     entries = [{"from": round(one.along.low, DIGITS), "to": round(one.along.high, DIGITS),
                 "largest_thickness_on_axis": thickest(profile, one), "passable_width": round(one.passable, DIGITS),
-                "remove": result.rounded(volume)} for one, volume in zip(found,
-                                                                         compute_stretch_volumes(run_, result, found))]
+                "remove": result.rounded(volume)} for one, volume in zip(stretches,
+                                                                         compute_stretch_volumes(run_, result,
+                                                                                                 stretches))]
     totals = {"road_width": round(width, DIGITS), "blocked_above": asked.blocked,
-              "blocked_length": round(sum(one.along.high - one.along.low for one in found), DIGITS),
+              "blocked_length": round(sum(one.along.high - one.along.low for one in stretches), DIGITS),
               "remove": result.total(result.volume)}
     areas, by_mesh = [], None
     if asked.lane is not None:
         lane = min(asked.lane, width)
         cutter = lanes.Cutter(run_.raster, run_.base, angle, samples)
-        for one, entry in zip(found, entries):
-            place = cutter.least(one, width, lane)
-            areas.append(cutter.area(one, place.offset, lane))
+        for stretch, entry in zip(stretches, entries):
+            place = cutter.least(stretch, width, lane)
+            areas.append(cutter.area(stretch, place.offset, lane))
             steep = cutter.removed(areas[-1:]).steep * run_.cell ** 2
             entry.update(lane_offset=round(place.offset, DIGITS), remove_lane=result.rounded(place.volume),
                          remove_lane_where_cut_below_ground=result.rounded(steep))
@@ -61,7 +62,7 @@ def evaluate_clearing(run_, result, profile, axes: Sequence[Axis], width: float,
         for entry in (*entries, totals):
             entry.update({hours: round(entry[volume] * asked.hours, DIGITS) for hours, volume in
                           (("hours", "remove"), ("hours_lane", "remove_lane")) if volume in entry})
-    return Clearing(found, entries, totals, areas, by_mesh)
+    return Clearing(stretches, entries, totals, areas, by_mesh)
 
 
 def thickest(profile, stretch: Stretch) -> float:
@@ -70,10 +71,10 @@ def thickest(profile, stretch: Stretch) -> float:
     return round(float(profile["thickness"][inside].max(initial=0.0)), DIGITS)
 
 
-def compute_stretch_volumes(run_, result, found: Sequence[Stretch]) -> np.ndarray:
+def compute_stretch_volumes(run_, result, stretches: Sequence[Stretch]) -> np.ndarray:
     """What must be removed of each stretch, m3; together all of it."""
     row, column = np.nonzero(result.removed > 0)
-    if not (found and len(row)):
-        return np.zeros(len(found))
-    mine = lanes.nearest(found, *(run_.raster.transform * (column + 0.5, row + 0.5)))
-    return np.bincount(mine, result.removed[row, column], len(found)) * run_.cell ** 2
+    if not (stretches and len(row)):
+        return np.zeros(len(stretches))
+    mine = lanes.nearest(stretches, *(run_.raster.transform * (column + 0.5, row + 0.5)))
+    return np.bincount(mine, result.removed[row, column], len(stretches)) * run_.cell ** 2

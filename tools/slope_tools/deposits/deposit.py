@@ -100,27 +100,27 @@ def read_base(prefix, thickness, surface):
 
 def find_terrain(prefix, terrain, raster, warn):
     """The file that tells where the run's grid lies and its Place; a warning and None, None without one."""
-    found = terrain or Path(prefix).with_name("terrain.asc")
-    if terrain is None and not found.is_file():
-        warn(Finding("no terrain", {"file": str(found)}))
+    path = terrain or Path(prefix).with_name("terrain.asc")
+    if terrain is None and not path.is_file():
+        warn(Finding("no terrain", {"file": str(path)}))
         return None, None
-    place = rasters.read_place(found)
+    place = rasters.read_place(path)
     grid, slack = extent(raster), 1e-6 * raster.transform.a
     # fix deposit/grid covers its extent with whole cells from the south-west corner on: the last ones, in the east and
     # in the north, may reach beyond the terrain
     slack = np.array([slack, slack, raster.transform.a, raster.transform.a])
     outside = np.subtract(place.extent, grid) * [1, 1, -1, -1] > slack
     if outside.any():
-        raise SlopeError(found, f"must be the terrain of the run, whose grid is {format_numbers(grid)}; --terrain "
+        raise SlopeError(path, f"must be the terrain of the run, whose grid is {format_numbers(grid)}; --terrain "
                          "names " "another", format_numbers(place.extent))
     own = Path(prefix).with_name("terrain.asc")
-    if own.is_file() and not os.path.samefile(own, found):
+    if own.is_file() and not os.path.samefile(own, path):
         there = rasters.read_place(own)
         if (there.crs, there.offset) not in ((None, (0, 0)), (place.crs, place.offset)):
-            raise SlopeError(found, f"must lie where the run's terrain.asc does, {there.crs}, origin "
+            raise SlopeError(path, f"must lie where the run's terrain.asc does, {there.crs}, origin "
                              f"{format_numbers(there.offset)}; --terrain names another",
                              f"{place.crs}, {format_numbers(place.offset)}")
     if place.crs is None:
-        warn(Finding("no CRS", {"file": str(found), "coordinates": "metres as in that file" if place.offset != (0, 0)
+        warn(Finding("no CRS", {"file": str(path), "coordinates": "metres as in that file" if place.offset != (0, 0)
                                 else "the local metres of the run"}))
-    return str(found), place
+    return str(path), place

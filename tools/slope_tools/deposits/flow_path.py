@@ -62,20 +62,21 @@ def outward(track, bands):
 
 def followed(points, others):
     """Points, and as many of the others as go on in about the same direction."""
-    found = list(points)
+    places = list(points)
     for point in others:
-        step = point - found[-1]
+        step = point - places[-1]
         if not np.hypot(*step) > 0:
             continue
-        if len(found) > 1:
+        if len(places) > 1:
             # over some length: the last points of a centroid that comes to rest are close to each other
-            back = next((one for one in found[-2::-1] if np.hypot(*(found[-1] - one)) >= np.hypot(*step) / 2), found[0])
-            way = found[-1] - back
+            back = next((one for one in places[-2::-1] if np.hypot(*(places[-1] - one)) >= np.hypot(*step) / 2),
+                        places[0])
+            way = places[-1] - back
             turn = math.atan2(way[0] * step[1] - way[1] * step[0], way @ step)
             if np.hypot(*way) > 0 and abs(turn) > math.radians(SHARPEST):
                 break
-        found.append(point)
-    return np.array(found)
+        places.append(point)
+    return np.array(places)
 
 
 # --- bands across the flow ---
@@ -145,17 +146,17 @@ def compute_path_distances(within, start, cell):
     """Distance (m) of each cell from the nearest start, over neighbours (8) within a mask; inf where none leads to."""
     number = np.full(within.shape, -1)
     number[within] = np.arange(np.count_nonzero(within))
-    one, other, length = [], [], []
+    starts, other, length = [], [], []
     rows, columns = within.shape
     for down, right in ((0, 1), (1, 0), (1, 1), (1, -1)):
         a = number[:rows - down, max(0, -right):columns - max(0, right)]
         b = number[down:, max(0, right):columns + min(0, right)]
         both = (a >= 0) & (b >= 0)
-        one.append(a[both])
+        starts.append(a[both])
         other.append(b[both])
         length.append(np.full(np.count_nonzero(both), np.hypot(down, right) * cell))
     count = np.count_nonzero(within)
-    graph = sparse.csr_matrix((np.concatenate(length), (np.concatenate(one), np.concatenate(other))), (count, count))
+    graph = sparse.csr_matrix((np.concatenate(length), (np.concatenate(starts), np.concatenate(other))), (count, count))
     found = np.full(within.shape, np.inf)
     found[within] = csgraph.dijkstra(graph, directed=False, indices=number[start], min_only=True)
     return found
@@ -181,13 +182,13 @@ def smooth(points):
 
 def centroids(result) -> Optional[np.ndarray]:
     """Where the centroid was, in plan, in the order of time; None without several dumps of the mass."""
-    found = snapshots(result.folder, result.summary["stop"]["step"])
-    step = max(1, -(-len(found) // MOST_DUMPS))
-    found = found[::-1][::step][::-1]       # the last one among them
-    if len(found) < 3 or sum(path.stat().st_size for path in found) > MOST_BYTES:
+    shots = snapshots(result.folder, result.summary["stop"]["step"])
+    step = max(1, -(-len(shots) // MOST_DUMPS))
+    shots = shots[::-1][::step][::-1]       # the last one among them
+    if len(shots) < 3 or sum(path.stat().st_size for path in shots) > MOST_BYTES:
         return None
     places: List[np.ndarray] = []
-    for path in found:
+    for path in shots:
         try:
             shot = dumps.last(path, ("diameter", "radius"))
         except SlopeError:      # of another kind, or not complete

@@ -117,7 +117,7 @@ def of_file(path: Path) -> Gone:
 
 def of_dumps(paths: List[Path], ground: Ground) -> Optional[Gone]:
     """To within a frame; None where they are no dumps of the mass alone."""
-    about, seen = ground.summary, np.empty(0)
+    summary, seen = ground.summary, np.empty(0)
     start = last = beyond = speed = np.empty((0, 2))
     size, out, there, steps = np.empty(0), np.empty(0, bool), np.empty(0, bool), []
     for path in paths:
@@ -125,7 +125,7 @@ def of_dumps(paths: List[Path], ground: Ground) -> Optional[Gone]:
             shot = dumps.last(path, ("diameter", "radius", "vx", "vy"))
         except SlopeError:
             return None
-        if len(shot.of["id"]) > about["balls"]["released"]:
+        if len(shot.of["id"]) > summary["balls"]["released"]:
             return None
         ids, place = shot.of["id"], shot.place[:, :2]
         steps.append(shot.step)
@@ -151,13 +151,13 @@ def of_dumps(paths: List[Path], ground: Ground) -> Optional[Gone]:
         for key in ("diameter", "radius"):
             if key in shot.of:
                 size[at] = shot.of[key] ** 3
-    interval = np.diff(steps).max() * about["dt"]
+    interval = np.diff(steps).max() * summary["dt"]
     unseen = ~there & ~out      # gone between two looks: as far as it was fast
     beyond[unseen] = last[unseen] + np.nan_to_num(speed[unseen]) * interval
     mine = out | ~there
     last = np.where(np.isnan(last), beyond, last)
     place = edge(last[mine], beyond[mine], ground)
-    volume = about["volume"]["released"] * size / size.sum()
+    volume = summary["volume"]["released"] * size / size.sum()
     return Gone(volume[mine], place, start[mine], np.hypot(*(beyond - last)[mine].T), DUMPS)
 
 
@@ -224,15 +224,15 @@ def groups(gone: Gone, ground: Ground, where: Optional[np.ndarray] = None,
     """
     side = sides(gone, ground)
     part = np.full(len(side), "") if where is None else where
-    found: List[Dict[str, Any]] = []
+    sums: List[Dict[str, Any]] = []
     for name, beside in sorted(set(zip(side.tolist(), part.tolist()))):
         mine = (side == name) & (part == beside)
         one: Dict[str, Any] = {"side": name, "volume": float(gone.volume[mine].sum()), "balls": int(mine.sum())}
         if where is not None and distance is not None:
             one.update(where=beside, distance=float(np.average(distance[mine], weights=gone.volume[mine])))
         one["add"] = None if name == HOLE else terrain_to_add(gone.place[mine], ground)
-        found.append(one)
-    return sorted(found, key=lambda one: -one["volume"])
+        sums.append(one)
+    return sorted(sums, key=lambda group: -group["volume"])
 
 
 def list_gone_groups(run: Deposit) -> Optional[List[Dict[str, Any]]]:

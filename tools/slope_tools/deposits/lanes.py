@@ -52,7 +52,7 @@ def find_lane_stretches(deposit: Raster, axes: Sequence[Axis], width: float, blo
     deposit: thickness (m) in local metres; axes: the parts of the road's axis; width: W, m; blocked: T0, m; road: only
     what lies in this area counts, too.
     """
-    mask, found = deposit.z > blocked, []
+    mask, stretches = deposit.z > blocked, []
     for axis in axes:
         near = box(*LineString(axis.points).buffer(width).bounds)
         if not parts_of_mask(mask, deposit.transform, near):        # of many runs: nothing on the road
@@ -65,16 +65,16 @@ def find_lane_stretches(deposit: Raster, axes: Sequence[Axis], width: float, blo
         spans = [axis.spans(piece, part) for piece, part in parts if part.area > 0]
         for along in merged([s for s, _ in spans], SAME):
             across = [n for s, n in spans if along.low <= s.low <= along.high]
-            found.append(Stretch(axis, along, longest_gap(across, Span(-width / 2, width / 2))))
-    return found
+            stretches.append(Stretch(axis, along, longest_gap(across, Span(-width / 2, width / 2))))
+    return stretches
 
 
-def nearest(found: Sequence[Stretch], x, y):
+def nearest(stretches: Sequence[Stretch], x, y):
     """The index of the stretch that is nearest along the axis to points x, y (1-d arrays); there must be one."""
-    places = {axis: axis.locate(x, y) for axis in {one.axis for one in found}}
+    places = {axis: axis.locate(x, y) for axis in {one.axis for one in stretches}}
     far = [np.abs(places[one.axis][1]) + np.clip(np.maximum(one.along.low - places[one.axis][0],
                                                             places[one.axis][0] - one.along.high), 0, None)
-           for one in found]        # of several axes, the one beside which they lie
+           for one in stretches]        # of several axes, the one beside which they lie
     return np.argmin(far, axis=0)
 
 
@@ -122,6 +122,6 @@ def minimise_offset(volume: Callable[[float], float], most: float, step: float, 
 
     if count:
         between = max(-most, best() - most / count), min(most, best() + most / count)
-        minimize_scalar(lambda one: known.setdefault(float(one), volume(float(one))), bounds=between, method="bounded",
-                        options={"xatol": fine})
+        minimize_scalar(lambda offset: known.setdefault(float(offset), volume(float(offset))), bounds=between,
+                        method="bounded", options={"xatol": fine})
     return best()

@@ -20,13 +20,13 @@ def where(entries: Sequence[Entry]) -> str:
     return "; ".join([*named, *([f"{rounded(rest, 3)} m3 elsewhere"] if rest > 0 else [])])
 
 
-def side(one: Entry) -> str:
-    return "in a hole of the terrain" if one["side"] == HOLE else f"in the {one['side']}"
+def side(entry: Entry) -> str:
+    return "in a hole of the terrain" if entry["side"] == HOLE else f"in the {entry['side']}"
 
 
-def describe_side(one: Entry) -> str:
+def describe_side(entry: Entry) -> str:
     """On which side of the road; "" without one."""
-    return ", " + BESIDE[one["where"]].format(one["distance"]) if "where" in one else ""
+    return ", " + BESIDE[entry["where"]].format(entry["distance"]) if "where" in entry else ""
 
 
 def to_add(entries: Sequence[Entry]) -> str:
@@ -37,14 +37,14 @@ def to_add(entries: Sequence[Entry]) -> str:
             most.setdefault(HOLE, None)
         else:
             most[one["side"]] = max(most.get(one["side"]) or 0.0, one["add"])
-    sides = sorted(((name, add) for name, add in most.items() if add is not None), key=lambda one: -one[1])
+    sides = sorted(((name, add) for name, add in most.items() if add is not None), key=lambda pair: -pair[1])
     named = [f"about {add:,.0f} m in the {name}" for name, add in sides]
     return ", ".join([*named, *(["heights in the hole (slope terrain --fill)"] if HOLE in most else [])])
 
 
-def sentence(about: Optional[Mapping[str, Any]]) -> str:
+def sentence(left: Optional[Mapping[str, Any]]) -> str:
     """Of `left` of volume.yaml, a sentence without its full stop; "" where nothing left."""
-    if about is None or not about["sides"]:
+    if left is None or not left["sides"]:
         return ""
-    known = f" (from dumps, to {about['within']:,.0f} m)" if about["source"] == DUMPS else ""
-    return f"{where(about['sides'])}{known}; for what left to come to rest on the terrain add {to_add(about['sides'])}"
+    known = f" (from dumps, to {left['within']:,.0f} m)" if left["source"] == DUMPS else ""
+    return f"{where(left['sides'])}{known}; for what left to come to rest on the terrain add {to_add(left['sides'])}"

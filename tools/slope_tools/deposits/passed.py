@@ -50,19 +50,19 @@ def of_mass(ground: Ground, sides: Sides, left: Optional[Gone]) -> Dict[str, Any
         np.where(ground.known, ground.raster.z, 0.0), np.where(rim(ground.known), ground.raster.z, 0.0)))
     around = on_cells(np.where(ground.known, ground.raster.z, 0.0), sides.past.difference(sides.straight), ground)
     unknown = ground.gone
-    about: Optional[Dict[str, Any]] = None
+    numbers: Optional[Dict[str, Any]] = None
     if left is not None:
         balls = sort_by_side(left, sides)
-        about = of_balls(left, balls, ground)
-        around += about["past_end"]
-        over = ground.gone - about["volume"]      # halves of balls at the edge, above ground or not
+        numbers = of_balls(left, balls, ground)
+        around += numbers["past_end"]
+        over = ground.gone - numbers["volume"]      # halves of balls at the edge, above ground or not
         total = sum(edge.values())
         for name in PARTS:
-            mass[name] += about[name] + over * (edge[name] / total if total > 0 else float(name == BEFORE))
+            mass[name] += numbers[name] + over * (edge[name] / total if total > 0 else float(name == BEFORE))
         unknown = 0.0
     divided = {**mass, "past_end": min(around, mass[PAST]), "unknown": unknown}
     least = ROUNDING * sum(mass.values())
-    return {"divided": {name: value if abs(value) > least else 0.0 for name, value in divided.items()}, "left": about}
+    return {"divided": {name: value if abs(value) > least else 0.0 for name, value in divided.items()}, "left": numbers}
 
 
 def per_part(values: np.ndarray, ground: Ground, sides: Sides) -> Dict[str, float]:

@@ -152,14 +152,14 @@ def folded(piece: Polygon) -> Tuple[np.ndarray, float]:
 
 def ends_along(number: int, line: np.ndarray, width: float) -> List[End]:
     """Both ends of a line: from a width inside on, in the direction of the two widths before."""
-    found = []
+    ends = []
     for points in (line, line[::-1]):
         one = LineString(points)
         inside = min(width, one.length / 4)
         place, before = (np.array(one.interpolate(at).coords[0]) for at in (inside, min(3 * width, one.length / 2)))
         way = place - before
-        found.append(End(number, place, way / max(np.hypot(*way), 1e-30)))
-    return found
+        ends.append(End(number, place, way / max(np.hypot(*way), 1e-30)))
+    return ends
 
 
 # --- roads of pieces ---
@@ -170,24 +170,24 @@ def barriers_of(pieces: Sequence[Polygon], ends: Sequence[End], far: float) -> L
     lines: List[Tuple[int, LineString]] = []
     free = list(ends)
     pairs = sorted(itertools.combinations(ends, 2), key=lambda pair: np.hypot(*(pair[0].place - pair[1].place)))
-    for one, other in pairs:
-        both_free = sum(end is one or end is other for end in free) == 2
-        if group[one.piece] == group[other.piece] or not both_free or not follow(one, other):
+    for last, other in pairs:
+        both_free = sum(end is last or end is other for end in free) == 2
+        if group[last.piece] == group[other.piece] or not both_free or not follow(last, other):
             continue
-        free = [end for end in free if end is not one and end is not other]
-        lines.append((one.piece, LineString([one.place, other.place])))
+        free = [end for end in free if end is not last and end is not other]
+        lines.append((last.piece, LineString([last.place, other.place])))
         old = group[other.piece]
-        group = [group[one.piece] if number == old else number for number in group]
+        group = [group[last.piece] if number == old else number for number in group]
     lines += [(end.piece, LineString([end.place, end.place + far * end.way])) for end in free]
     return [Barrier(unary_union([piece for piece, mine in zip(pieces, group) if mine == number]),
                     [line for piece, line in lines if group[piece] == number]) for number in sorted(set(group))]
 
 
-def follow(one: End, other: End) -> bool:
+def follow(end: End, other: End) -> bool:
     """Whether each lies in the direction of the other."""
-    way = other.place - one.place
+    way = other.place - end.place
     length = np.hypot(*way)
-    return bool(length > 0 and one.way @ way > AHEAD * length and other.way @ -way > AHEAD * length)
+    return bool(length > 0 and end.way @ way > AHEAD * length and other.way @ -way > AHEAD * length)
 
 
 # --- areas ---

@@ -17,10 +17,10 @@ def before(raster: rasters.Raster, base: np.ndarray, terrain: Optional[Path]) ->
     is not in reach: the ground is then the base, and there is no body.
     """
     rows, columns = base.shape
-    found = np.full(base.shape, np.nan)
+    heights = np.full(base.shape, np.nan)
     if terrain:
         x, y = raster.transform * np.meshgrid(np.arange(columns) + 0.5, np.arange(rows) + 0.5)
-        found = sample(rasters.read_asc_local(terrain), x, y)
-    found = np.where(np.isfinite(found), found, base)
+        heights = sample(rasters.read_asc_local(terrain), x, y)
+    heights = np.where(np.isfinite(heights), heights, base)
     with np.errstate(invalid="ignore"):
-        return found, np.where(found - base > SCAR, found - base, 0)
+        return heights, np.where(heights - base > SCAR, heights - base, 0)

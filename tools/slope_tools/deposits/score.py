@@ -133,9 +133,9 @@ def compare_runout(run_, simulated, observed):
     """Distances in plan of the farthest points of both from the highest released point, and along the fall line (m)."""
     x, y, _, source = top(run_)
     points = corners(run_.raster.transform, simulated)
-    found = {"from": [round(x, 9), round(y, 9)], "from_source": source}
+    runout = {"from": [round(x, 9), round(y, 9)], "from_source": source}
     if not len(points) or not len(observed.points):
-        return {**found, "simulated": None, "observed": None, "difference": None}
+        return {**runout, "simulated": None, "observed": None, "difference": None}
     centre = centroid(observed, run_.raster)
     way = np.subtract(centre, (x, y))
     length = math.hypot(*way)
@@ -149,12 +149,12 @@ def compare_runout(run_, simulated, observed):
         numbers = {"simulated": ours, "observed": theirs, "difference": round(ours - theirs, 9)}
         if name:
             # clockwise from north, as a compass has it
-            found[name] = {"azimuth": round(math.degrees(math.atan2(*way)) % 360, 9), **numbers}
+            runout[name] = {"azimuth": round(math.degrees(math.atan2(*way)) % 360, 9), **numbers}
         else:
-            found.update(numbers)
-    found["quantiles_of"] = "area" if observed.thickness is None else "volume"
-    found["quantiles"] = compare_quantiles(run_, simulated, observed, (x, y))
-    return found
+            runout.update(numbers)
+    runout["quantiles_of"] = "area" if observed.thickness is None else "volume"
+    runout["quantiles"] = compare_quantiles(run_, simulated, observed, (x, y))
+    return runout
 
 
 def compare_quantiles(run_, simulated, observed, place):
@@ -178,14 +178,14 @@ def connected_runout(run_, threshold, observed):
     part = connected(run_, threshold)
     if part is None:
         return None
-    found = {"parts": part.parts, "area": round(part.area, 9), "volume": round(part.volume, 9),
-             "share_of_volume": round(part.share, 9), "distance": round(part.distance, 9),
-             "reach_angle": None if part.reach_angle is None else round(part.reach_angle, 9)}
+    numbers = {"parts": part.parts, "area": round(part.area, 9), "volume": round(part.volume, 9),
+               "share_of_volume": round(part.share, 9), "distance": round(part.distance, 9),
+               "reach_angle": None if part.reach_angle is None else round(part.reach_angle, 9)}
     if len(observed.points):
         x, y = top(run_)[:2]
         far = round(float(np.hypot(*(observed.points - (x, y)).T).max()), 9)
-        found.update(observed=far, difference=round(found["distance"] - far, 9))
-    return found
+        numbers.update(observed=far, difference=round(numbers["distance"] - far, 9))
+    return numbers
 
 
 def balls(run_):
@@ -222,14 +222,14 @@ def compare_volumes(observed, table):
     ours = math.fsum(table["simulated_volume"].ravel())
     theirs = math.fsum(table["observed_volume"].ravel()) + observed.volume_outside
     error = table["volume_error"][(table["simulated_volume"] > 0) | (table["observed_volume"] > 0)]
-    found = {"simulated": round(ours, 9), "observed": round(theirs, 9), "error": round(ours - theirs, 9),
-             "relative_error": round((ours - theirs) / theirs, 9) if theirs > 0 else None,
-             "mesh_cells": len(error)}
+    numbers = {"simulated": round(ours, 9), "observed": round(theirs, 9), "error": round(ours - theirs, 9),
+               "relative_error": round((ours - theirs) / theirs, 9) if theirs > 0 else None,
+               "mesh_cells": len(error)}
     if len(error):
-        found["mean_absolute_error_of_mesh_cells"] = round(float(np.abs(error).mean()), 9)
-        found["rms_error_of_mesh_cells"] = round(float(np.sqrt((error ** 2).mean())), 9)
-        found["share_in_wrong_mesh_cells"] = round(float(np.abs(error).sum()) / (ours + theirs), 9)
-    return found
+        numbers["mean_absolute_error_of_mesh_cells"] = round(float(np.abs(error).mean()), 9)
+        numbers["rms_error_of_mesh_cells"] = round(float(np.sqrt((error ** 2).mean())), 9)
+        numbers["share_in_wrong_mesh_cells"] = round(float(np.abs(error).sum()) / (ours + theirs), 9)
+    return numbers
 
 
 # --- output ---
@@ -248,7 +248,7 @@ def write_score_csv(path, run_, mesh, table):
                                         (line(row, column) for row, column in listed.tolist())))
 
 
-def draw_score(path, run_, simulated, observed, about):
+def draw_score(path, run_, simulated, observed, summary):
     from ..drawing import maps, pictures        # matplotlib, which a study that draws nothing does not need
 
     raster = run_.raster
@@ -256,13 +256,13 @@ def draw_score(path, run_, simulated, observed, about):
     bounds: List[Tuple] = [geometry.extent_of(raster.transform, kind > 0)] if kind.any() else []
     if observed.polygon is not None:
         bounds.append(geometry.as_multi(observed.polygon.intersection(geometry.box_of(raster))).bounds)
-    bounds.append((*about["runout"]["from"], *about["runout"]["from"]))
+    bounds.append((*summary["runout"]["from"], *summary["runout"]["from"]))
     shown = maps.window(raster, *bounds)
-    area = about["area"]
+    area = summary["area"]
     jaccard = "none" if area["jaccard"] is None else f"{area['jaccard']:.3f}"
     with pictures.settings():
-        figure, axes = maps.relief(raster, run_.base, shown, f"{about['prefix']}: Jaccard {jaccard}, thicker than "
-                                                             f"{about['threshold']:g} m")
+        figure, axes = maps.relief(raster, run_.base, shown, f"{summary['prefix']}: Jaccard {jaccard}, thicker than "
+                                                             f"{summary['threshold']:g} m")
         classes = {1: ("tab:green", "both"), 2: ("tab:orange", "simulated only"), 3: ("tab:blue", "mapped only")}
         values, where = maps.part(raster, kind, shown)
         colours = maps.ListedColormap([colour for colour, _ in classes.values()])
@@ -272,6 +272,7 @@ def draw_score(path, run_, simulated, observed, about):
             axes.plot([], [], "s", color=colour, alpha=0.65, label=name)
         if observed.polygon is not None:
             maps.outline(axes, observed.polygon, color="black", linewidth=1.0, label="mapped outline")
-        axes.plot(*about["runout"]["from"], "k^", markersize=6, label=about["runout"]["from_source"].split(": ")[-1])
+        axes.plot(*summary["runout"]["from"], "k^", markersize=6,
+                  label=summary["runout"]["from_source"].split(": ")[-1])
         axes.legend(loc="upper right", fontsize=8)
         maps.save(figure, path)

@@ -34,32 +34,32 @@ def make_score(prefix: str, mapped: Path, folder: Path, threshold: float = THRES
     simulated = run_.raster.z > threshold
     if not simulated.any():
         warn(findings.Finding("nowhere thicker", {"file": f"{run_.prefix}.thickness.asc", "threshold": threshold}))
-    about = {"prefix": run_.prefix, "observed": mapped, "terrain": run_.terrain,
-             "crs": None if run_.raster.crs is None else crs_name(run_.raster.crs),
-             "run": {"slope_version": run_.summary.get("slope_version"), "time": run_.summary["time"],
-                     "moving": run_.summary["moving"]},
-             "threshold": threshold, "cell": run_.cell, "mesh": squares.size,
-             "area": overlap(simulated, observed, run_.cell),
-             "runout": {**compare_runout(run_, simulated, observed), "balls": balls(run_),
-                        "connected": connected_runout(run_, threshold, observed)}}
+    summary = {"prefix": run_.prefix, "observed": mapped, "terrain": run_.terrain,
+               "crs": None if run_.raster.crs is None else crs_name(run_.raster.crs),
+               "run": {"slope_version": run_.summary.get("slope_version"), "time": run_.summary["time"],
+                       "moving": run_.summary["moving"]},
+               "threshold": threshold, "cell": run_.cell, "mesh": squares.size,
+               "area": overlap(simulated, observed, run_.cell),
+               "runout": {**compare_runout(run_, simulated, observed), "balls": balls(run_),
+                          "connected": connected_runout(run_, threshold, observed)}}
     table = mesh_table(run_, simulated, observed, squares)
     if observed.thickness is not None:
-        about["bulk_factor"] = run_.bulk
-        about["volume"] = compare_volumes(observed, table)
-    about["warnings"] = warnings
+        summary["bulk_factor"] = run_.bulk
+        summary["volume"] = compare_volumes(observed, table)
+    summary["warnings"] = warnings
     with disk.complete(folder, "score.yaml") as new:
         write_score_csv(new / "score.csv", run_, squares, table)
-        draw_score(new / "score.png", run_, simulated, observed, about)
-        about["files"] = list(FILES)
-        disk.write_yaml(new / "score.yaml", about, "slope score: simulated against mapped; m, m2, m3, degrees")
-    return describe_score(about, folder)
+        draw_score(new / "score.png", run_, simulated, observed, summary)
+        summary["files"] = list(FILES)
+        disk.write_yaml(new / "score.yaml", summary, "slope score: simulated against mapped; m, m2, m3, degrees")
+    return describe_score(summary, folder)
 
 
-def describe_score(about, folder):
+def describe_score(summary, folder):
     """What the user needs to know."""
-    area, out = about["area"], about["runout"]
+    area, out = summary["area"], summary["runout"]
     jaccard = "none" if area["jaccard"] is None else f"{area['jaccard']:.3f}"
-    lines = [f"thicker than {about['threshold']:g} m: {area['true_positive']:.1f} m2 in both, "
+    lines = [f"thicker than {summary['threshold']:g} m: {area['true_positive']:.1f} m2 in both, "
              f"{area['false_positive']:.1f} m2 simulated only, {area['false_negative']:.1f} m2 mapped only; "
              f"Jaccard {jaccard}"]
     if out["difference"] is not None:
@@ -73,9 +73,9 @@ def describe_score(about, folder):
         most = out["quantiles"][-1]
         lines.append(f"{100 * most['share']:g} % of the {out['quantiles_of']}: within {most['simulated']:.1f} m "
                      f"simulated, {most['observed']:.1f} m mapped: {most['difference']:+.1f} m")
-    if "volume" in about:
-        volume = about["volume"]
-        lines.append(f"volume: {volume['simulated']:.1f} m3 simulated (bulk factor {about['bulk_factor']:.6g}), "
+    if "volume" in summary:
+        volume = summary["volume"]
+        lines.append(f"volume: {volume['simulated']:.1f} m3 simulated (bulk factor {summary['bulk_factor']:.6g}), "
                      f"{volume['observed']:.1f} m3 mapped: {volume['error']:+.1f} m3")
-    lines.append(f"written to {folder}: {' '.join(about['files'])}")
+    lines.append(f"written to {folder}: {' '.join(summary['files'])}")
     return "\n".join(lines)

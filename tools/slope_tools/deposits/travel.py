@@ -72,38 +72,39 @@ def of_dumps(paths: Sequence[str], starts: Optional[Sequence[str]], wanted: Want
                 rasters.progress(list(zip(paths, each_start)), "reading the dumps")]
     warnings: List[Dict[str, Any]] = []
 
-    def warn(one):
-        warnings.append(one.entry())
-        tell(one)
+    def warn(finding):
+        warnings.append(finding.entry())
+        tell(finding)
 
-    for one in arrivals:
-        if one.moving:
-            warn(Finding("not arrived", {"file": one.name, "moving": one.moving, "balls": len(one.id),
+    for arrival in arrivals:
+        if arrival.moving:
+            warn(Finding("not arrived", {"file": arrival.name, "moving": arrival.moving, "balls": len(arrival.id),
                                          "speed": MOVING}))
-        if one.missing:
-            warn(Finding("missing", {"file": one.name, "missing": one.missing, "balls": one.missing + len(one.id)}))
+        if arrival.missing:
+            warn(Finding("missing", {"file": arrival.name, "missing": arrival.missing, "balls": arrival.missing +
+                                     len(arrival.id)}))
     tables = {name: distribution(arrivals, name, wanted.limits(name), warn) for name in DIRECTIONS}
-    about: Dict[str, Any] = {
+    summary: Dict[str, Any] = {
         "axis": {"along": wanted.axis, "across": wanted.axis + 90, "origin": wanted.origin}, "types": wanted.types,
         "balls": sum(len(one.id) for one in arrivals), "runs": len(arrivals),
         **{name: statistics([one.at[name] for one in arrivals]) for name in DIRECTIONS}}
     single = [each(one) for one in arrivals]
     if starts:
-        about["travel"] = statistics([measure_plan_length(one.place - one.start) for one in arrivals])
-        about["runout"] = {key: spread_over_runs([one["runout"][key] for one in single]) for key in
-                           ("distance", "drop", "reach_angle")}
-        about["runout"]["quantiles"] = [
+        summary["travel"] = statistics([measure_plan_length(one.place - one.start) for one in arrivals])
+        summary["runout"] = {key: spread_over_runs([one["runout"][key] for one in single]) for key in
+                             ("distance", "drop", "reach_angle")}
+        summary["runout"]["quantiles"] = [
             {"share": share, **{key: spread_over_runs([one["runout"]["quantiles"][k][key] for one in single])
                                 for key in ("distance", "reach_angle")}} for k, share in enumerate(reach.SHARES)]
-    about["each_run"] = [known(one) for one in single]
-    about["warnings"] = warnings
+    summary["each_run"] = [known(one) for one in single]
+    summary["warnings"] = warnings
     with disk.complete(folder, "travel.yaml") as new:
         write_travel_csv(new / "travel.csv", arrivals, tables)
         write_balls(new / "balls.csv", arrivals)
         draw_travel(new / "travel.png", arrivals, tables, wanted)
-        about["files"] = list(FILES)
-        disk.write_yaml(new / "travel.yaml", about, "slope travel: arrival positions; m, degrees")
-    return about
+        summary["files"] = list(FILES)
+        disk.write_yaml(new / "travel.yaml", summary, "slope travel: arrival positions; m, degrees")
+    return summary
 
 
 # --- the balls ---
@@ -205,41 +206,41 @@ def measure_plan_length(difference):
     return np.hypot(difference[..., 0], difference[..., 1])
 
 
-def measure_runout(one):
+def measure_runout(arrival):
     """From the highest ball at the start to the farthest one now: distance in plan (m), drop (m), angle (degrees).
 
     And quantiles: what shares of the volume (of the balls, where a dump has no diameter) stay within, infinite where
     the farthest of those are missing.
     """
-    distance = measure_plan_length(one.place - one.top)
+    distance = measure_plan_length(arrival.place - arrival.top)
     far = distance.argmax()
-    drop = one.top[2] - one.place[far, 2]
-    by_volume = one.volume is not None and (one.lost is not None or not one.missing)
-    weights = (one.volume, one.lost or 0.0) if by_volume else (np.ones(len(distance)), float(one.missing))
+    drop = arrival.top[2] - arrival.place[far, 2]
+    by_volume = arrival.volume is not None and (arrival.lost is not None or not arrival.missing)
+    weights = (arrival.volume, arrival.lost or 0.0) if by_volume else (np.ones(len(distance)), float(arrival.missing))
     shares = [{"share": share, "distance": within, "reach_angle": angle}
-              for share, within, angle in reach.compute_reach_quantiles(one.place, one.top, *weights)]
+              for share, within, angle in reach.compute_reach_quantiles(arrival.place, arrival.top, *weights)]
     return {"distance": round(float(distance[far]), 9), "drop": round(float(drop), 9),
-            "reach_angle": round(math.degrees(math.atan2(drop, distance[far])), 9), "ball": int(one.id[far]),
+            "reach_angle": round(math.degrees(math.atan2(drop, distance[far])), 9), "ball": int(arrival.id[far]),
             "quantiles_of": "volume" if by_volume else "balls", "quantiles": shares}
 
 
-def each(one):
+def each(arrival):
     """What travel.yaml tells of one run."""
-    about = {"dump": one.name, "step": one.step, "balls": len(one.id), "moving": one.moving,
-             **{name: percentiles(values) for name, values in one.at.items()}}
-    if one.start is not None:
-        about.update(missing=one.missing, travel=percentiles(measure_plan_length(one.place - one.start)),
-                     runout=measure_runout(one))
+    about = {"dump": arrival.name, "step": arrival.step, "balls": len(arrival.id), "moving": arrival.moving,
+             **{name: percentiles(values) for name, values in arrival.at.items()}}
+    if arrival.start is not None:
+        about.update(missing=arrival.missing, travel=percentiles(measure_plan_length(arrival.place - arrival.start)),
+                     runout=measure_runout(arrival))
     return about
 
 
-def known(one):
+def known(numbers):
     """What each() gave, with None for what is infinite."""
-    if "runout" not in one:
-        return one
+    if "runout" not in numbers:
+        return numbers
     shares = [{"share": of["share"], "distance": finite(of["distance"]), "reach_angle": finite(of["reach_angle"])}
-              for of in one["runout"]["quantiles"]]
-    return {**one, "runout": {**one["runout"], "quantiles": shares}}
+              for of in numbers["runout"]["quantiles"]]
+    return {**numbers, "runout": {**numbers["runout"], "quantiles": shares}}
 
 
 # --- output ---
@@ -256,13 +257,14 @@ def write_balls(path, arrivals):
     """Where each ball is, and how far, how deep and at which angle it came from its start."""
     moved = arrivals[0].start is not None
     rows: List[List[Any]] = []
-    for one in arrivals:
-        columns = [one.at["along"], one.at["across"], one.place[:, 2]]
+    for arrival in arrivals:
+        columns = [arrival.at["along"], arrival.at["across"], arrival.place[:, 2]]
         if moved:
-            distance, drop = measure_plan_length(one.place - one.start), one.start[:, 2] - one.place[:, 2]
+            distance, drop = measure_plan_length(arrival.place - arrival.start), arrival.start[:, 2] - arrival.place[:,
+                                                                                                                     2]
             columns += [distance, drop, np.degrees(np.arctan2(drop, distance))]
-        rows += [[one.name, ball, *(f"{value:.9g}" for value in row)] for ball, row in
-                 sorted(zip(one.id.tolist(), np.column_stack(columns)))]
+        rows += [[arrival.name, ball, *(f"{value:.9g}" for value in row)] for ball, row in
+                 sorted(zip(arrival.id.tolist(), np.column_stack(columns)))]
     disk.write_file(path, disk.csv_text(["run", "id", "along", "across", "z",
                                          *(("travel", "drop", "angle") if moved else ())], rows))
 

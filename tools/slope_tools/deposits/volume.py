@@ -63,9 +63,9 @@ def compute_removal(prefix, wanted: Wanted, terrain=None, tell: Callable[[str], 
     check_wanted_volume(wanted)
     warnings: List[Finding] = []
 
-    def warn(said):
-        warnings.append(finding(said))
-        tell(said)
+    def warn(entry):
+        warnings.append(finding(entry))
+        tell(entry)
 
     for one in of_angles({"--cut-angle": wanted.cut_angle}):
         warn(one)
@@ -91,21 +91,21 @@ def compute_removal(prefix, wanted: Wanted, terrain=None, tell: Callable[[str], 
         x, y = run.raster.transform * error.args[0]
         raise SlopeError(wanted.road, "ground at the edge of the road must have a height, it has none at",
                          f"{x:.3f} {y:.3f} (local metres)") from None
-    about = totals(wanted, run, mesh, result, profile, source)
-    about.update(clearing=cleared.totals, stretches=cleared.entries, by_10_m=by_chainage(run, road, axes),
-                 **passed.evaluate_passed(run, road, given.line))
+    summary = totals(wanted, run, mesh, result, profile, source)
+    summary.update(clearing=cleared.totals, stretches=cleared.entries, by_10_m=by_chainage(run, road, axes),
+                   **passed.evaluate_passed(run, road, given.line))
     if result.unknown > 0:
         warn(Finding("no ground", {"volume": float(result.unknown)}))
-        about["volume"]["unknown"] = result.unknown
-    about["warnings"] = encode_findings(warnings)
+        summary["volume"]["unknown"] = result.unknown
+    summary["warnings"] = encode_findings(warnings)
     return Removal(run, road, axis, mesh, result, profile, cleared, wanted.bulk / run.bulk if wanted.bulk else None,
-                   disk.make_plain(about), warnings)
+                   disk.make_plain(summary), warnings)
 
 
-def write_removal(found: Removal, folder: Path, picture: bool = True) -> None:
-    """Tables, rasters, GeoJSON, map and volume.yaml, all of them or none; found.about gets their names."""
-    run, mesh, result, about = found.run, found.mesh, found.result, found.about
-    cells = volume_files.Cells(run, mesh, result, found.factor, found.clearing.mesh)
+def write_removal(removal: Removal, folder: Path, picture: bool = True) -> None:
+    """Tables, rasters, GeoJSON, map and volume.yaml, all of them or none; removal.about gets their names."""
+    run, mesh, result, summary = removal.run, removal.mesh, removal.result, removal.about
+    cells = volume_files.Cells(run, mesh, result, removal.factor, removal.clearing.mesh)
     with disk.complete(folder, "volume.yaml") as new:
         volume_files.write_cells_csv(new / "volume.csv", cells)
         volume_files.write_geojson(new / "volume.geojson", run, mesh, cells)
@@ -113,14 +113,14 @@ def write_removal(found: Removal, folder: Path, picture: bool = True) -> None:
             np.isfinite(run.base) | (run.raster.z > 0), result.removed, np.nan)}, run.raster)
         rasters.write_geotiff(new / "volume_mesh.tif", {"volume to remove (m3)": result.volume},
                               run.raster._replace(transform=mesh.transform))
-        volume_files.write_profile(new / "axis.csv", run, found.profile)
-        stretch_files.write_stretches_csv(new / "stretches.csv", run, found.clearing)
-        stretch_files.write_stretches_geopackage(new / "stretches.gpkg", run, found.clearing)
+        volume_files.write_profile(new / "axis.csv", run, removal.profile)
+        stretch_files.write_stretches_csv(new / "stretches.csv", run, removal.clearing)
+        stretch_files.write_stretches_geopackage(new / "stretches.gpkg", run, removal.clearing)
         if picture:
-            volume_files.draw_removal(new / "volume.png", run, found.road, found.axis, mesh, result, about,
-                                      found.clearing)
-        about["files"] = sorted(path.name for path in new.iterdir()) + ["volume.yaml"]
-        disk.write_yaml(new / "volume.yaml", about, "slope volume: what must be removed; m, m2, m3, degrees")
+            volume_files.draw_removal(new / "volume.png", run, removal.road, removal.axis, mesh, result, summary,
+                                      removal.clearing)
+        summary["files"] = sorted(path.name for path in new.iterdir()) + ["volume.yaml"]
+        disk.write_yaml(new / "volume.yaml", summary, "slope volume: what must be removed; m, m2, m3, degrees")
     if not picture:
         (folder / "volume.png").unlink(missing_ok=True)     # of another result
 
@@ -210,7 +210,7 @@ def totals(wanted: Wanted, run_, mesh, result, profile, source) -> Dict[str, Any
     volume["stays"] = round(volume["deposit"] - volume["remove"], result.digits)
     thickest = int(np.argmax(profile["thickness"]))
     blocked = find_profile_stretches(profile)
-    about = {
+    numbers = {
         "prefix": run_.prefix, "road": wanted.road, "cut_angle": wanted.cut_angle,
         "terrain": run_.terrain, "crs": None if place.crs is None else crs_name(place.crs),
         "origin": {"east": place.offset[0], "north": place.offset[1]},
@@ -222,12 +222,12 @@ def totals(wanted: Wanted, run_, mesh, result, profile, source) -> Dict[str, Any
         "volume": volume,
     }
     if wanted.bulk:
-        about["other_bulk_factor"] = wanted.bulk
-        about["volume_at_other_bulk_factor"] = {key: round(value * wanted.bulk / run_.bulk, result.digits)
-                                                for key, value in volume.items()}
-    about["road_area"] = result.total(result.road_area)
-    about["largest_removed_thickness"] = round(float(result.removed.max()), 6)
-    about["axis"] = {
+        numbers["other_bulk_factor"] = wanted.bulk
+        numbers["volume_at_other_bulk_factor"] = {key: round(value * wanted.bulk / run_.bulk, result.digits)
+                                                  for key, value in volume.items()}
+    numbers["road_area"] = result.total(result.road_area)
+    numbers["largest_removed_thickness"] = round(float(result.removed.max()), 6)
+    numbers["axis"] = {
         "source": source,
         "length": round(profile["to"][-1] - profile["from"][0], 6),
         "blocked_above": wanted.asked.blocked,
@@ -236,4 +236,4 @@ def totals(wanted: Wanted, run_, mesh, result, profile, source) -> Dict[str, Any
         "largest_thickness": round(profile["thickness"][thickest], 6),
         "largest_thickness_at": [round(profile[key][thickest], 3) for key in ("x", "y")],
     }
-    return about
+    return numbers

@@ -81,7 +81,7 @@ def write_profile(path, run_, profile):
                                                 for values in zip(*(columns[key].tolist() for key in order)))))
 
 
-def draw_removal(path, run_, road, axis, mesh, result, about, cleared):
+def draw_removal(path, run_, road, axis, mesh, result, summary, cleared):
     from matplotlib.patches import Rectangle
 
     from ..drawing import maps, pictures
@@ -92,11 +92,11 @@ def draw_removal(path, run_, road, axis, mesh, result, about, cleared):
         (top, left), (bottom, right) = full.min(axis=0), full.max(axis=0)
         deposited = *mesh.corner(bottom, left), *np.add(mesh.corner(top, right), mesh.size)
     shown = maps.window(raster, road.bounds, deposited)
-    volume = about["volume"]
+    volume = summary["volume"]
     with pictures.settings():
         figure, axes = maps.relief(raster, run_.base, shown,
-                                   f"{about['prefix']}: {volume['remove']:,.0f} m3 to remove above a cut of "
-                                   f"{about['cut_angle']:g} degrees, {volume['remove_on_road']:,.0f} m3 of it on the "
+                                   f"{summary['prefix']}: {volume['remove']:,.0f} m3 to remove above a cut of "
+                                   f"{summary['cut_angle']:g} degrees, {volume['remove_on_road']:,.0f} m3 of it on the "
                                    "road")
         maps.values_on(axes, raster, result.removed, shown, "thickness to remove (m)")
         thickness, where = maps.part(raster, raster.z, shown)
@@ -112,7 +112,7 @@ def draw_removal(path, run_, road, axis, mesh, result, about, cleared):
             axes.plot(*np.asarray(one.axis.line(one.along).coords).T, color="tab:red", linewidth=2.4, alpha=0.8,
                       label=None if number_ else "blocked stretch")
         for number_, lane in enumerate(cleared.lanes):
-            clearing = about["clearing"]
+            clearing = summary["clearing"]
             maps.outline(axes, lane, color="tab:green", linewidth=1.2, label=None if number_ else
                          f"lane of {clearing['lane']:g} m, {clearing['remove_lane']:,.0f} m3 to remove")
         listed = np.argwhere(result.volume > 0)

@@ -99,14 +99,14 @@ def ticks(low, high, most):
         return []
     step = nice((high - low) / (most + 1))
     while True:
-        found = np.arange(math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9) + 1) * step
-        if len(found) <= most:
+        places = np.arange(math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9) + 1) * step
+        if len(places) <= most:
             break
         step = nice(2.5 * step)
-    if not len(found):      # one only, and the step leads past all of them
+    if not len(places):      # one only, and the step leads past all of them
         step = nice((high - low) / 2)
-        found = [round((low + high) / 2 / step) * step]
-    return [round(float(value), 9) + 0.0 for value in found]
+        places = [round((low + high) / 2 / step) * step]
+    return [round(float(value), 9) + 0.0 for value in places]
 
 
 def contour_interval(ground):
@@ -188,20 +188,20 @@ def tornado(path, panels, variables, title):
     with pictures.settings(STYLE):
         figure, axes = pictures.subplots(1, len(panels), figsize=(FULL, 0.9 + 0.26 * len(order)), sharey=True,
                                          squeeze=False)
-        for axis, (name, unit, scatter, found) in zip(axes[0], panels):
+        for axis, (name, unit, scatter, effects) in zip(axes[0], panels):
             mean, deviation = scatter["mean"], scatter["standard_deviation"]
             if deviation is not None:
                 axis.axvspan(mean - 2 * deviation, mean + 2 * deviation, color="#e8e8e8", lw=0, zorder=0)
             axis.axvline(mean, color=GRAY, lw=0.8, zorder=1)
             for y, variable in enumerate(order):
-                values = [result for _, result in found[variable]]
+                values = [result for _, result in effects[variable]]
                 low, high = min(mean, *values), max(mean, *values)
                 grey = variables[variable][0] == "repeat"
                 axis.barh(y, high - low, left=low, height=0.5, color="#b5b5b5" if grey else COLOURS[0], alpha=0.85,
                           zorder=2)
                 axis.plot(values, [y] * len(values), "|", color="black", ms=7, mew=0.8, zorder=3)
                 if not grey:
-                    label_ends(axis, y, mean, found[variable])
+                    label_ends(axis, y, mean, effects[variable])
             axis.set_title(f"{name} ({unit})", loc="left")
             axis.use_sticky_edges = False       # bars have them: no room for the labels
             axis.margins(x=0.12, y=0.02)
@@ -218,10 +218,10 @@ def tornado(path, panels, variables, title):
         pictures.save(figure, path)
 
 
-def label_ends(axis, y, mean, found):
+def label_ends(axis, y, mean, effect):
     """Write the values of a variable beside the two ends of its bar."""
     for side, ha in ((-1, "right"), (1, "left")):
-        beyond = [(value, result) for value, result in found if side * (result - mean) > 0]
+        beyond = [(value, result) for value, result in effect if side * (result - mean) > 0]
         if beyond:
             value, result = max(beyond, key=lambda pair: side * pair[1])
             axis.annotate(value, (result, y), xytext=(3 * side, 0), textcoords="offset points", ha=ha, va="center",

@@ -51,30 +51,30 @@ class Masses:
     either: Optional[Tuple[np.ndarray, np.ndarray]] = None
 
 
-def masses(found: weights.Weights) -> Masses:
-    first, early = found.order[:found.window], np.zeros(len(found.order))
-    early[first] = found.short * found.ratio[first] / found.ratio[first].sum()
-    share = found.weights + early
+def masses(weights_: weights.Weights) -> Masses:
+    first, early = weights_.order[:weights_.window], np.zeros(len(weights_.order))
+    early[first] = weights_.short * weights_.ratio[first] / weights_.ratio[first].sum()
+    share = weights_.weights + early
     inside = share.sum()
     effective = float(inside ** 2 / (share ** 2).sum()) if inside > 0 else 0.0
-    return Masses(share, found.far, found.order, effective, found.window, early, either_side(share, found))
+    return Masses(share, weights_.far, weights_.order, effective, weights_.window, early, either_side(share, weights_))
 
 
-def either_side(share: np.ndarray, found: weights.Weights) -> Optional[Tuple[np.ndarray, np.ndarray]]:
+def either_side(share: np.ndarray, weights_: weights.Weights) -> Optional[Tuple[np.ndarray, np.ndarray]]:
     """The shares with the events in the gaps on the run before, and on the one after; None without gaps."""
-    if not found.before:
+    if not weights_.before:
         return None
-    of, begins = share[found.order], [0, *(i + 1 for i in found.before)]
-    ends = np.append(found.below[found.before], found.below[-1])        # of the known events, before each gap
-    starts = np.append(0.0, found.below[begins[1:]])
+    of, begins = share[weights_.order], [0, *(i + 1 for i in weights_.before)]
+    ends = np.append(weights_.below[weights_.before], weights_.below[-1])        # of the known events, before each gap
+    starts = np.append(0.0, weights_.below[begins[1:]])
     parts = np.split(of, begins[1:])
     inside = np.concatenate([part * (end - start) / part.sum() if part.sum() > 0 else part
                              for part, start, end in zip(parts, starts, ends)])
     both = []
     for after in (0, 1):
         one = np.empty_like(share)
-        one[found.order] = inside
-        one[found.order[np.array(found.before) + after]] += starts[1:] - ends[:-1]
+        one[weights_.order] = inside
+        one[weights_.order[np.array(weights_.before) + after]] += starts[1:] - ends[:-1]
         both.append(one)
     return both[0], both[1]
 
@@ -149,16 +149,16 @@ def compute_known_curve(values: hazard.Values, mass: Masses, effect: Optional[Se
     return hazard.Curve(at, part + mass.far, np.minimum.accumulate(low), np.minimum(high, 1.0))
 
 
-def bounds(share: np.ndarray, found: np.ndarray, runs: float):
+def bounds(share: np.ndarray, shares: np.ndarray, runs: float):
     """Wilson's bounds of shares with variances; none is less sure than of so many independent runs."""
-    number = np.maximum(share * (1 - share) / found, runs)
+    number = np.maximum(share * (1 - share) / shares, runs)
     square = NORMAL ** 2
     middle = (share + square / (2 * number)) / (1 + square / number)
     half = NORMAL / (1 + square / number) * np.sqrt(share * (1 - share) / number + square / (4 * number ** 2))
     return np.clip(middle - half, 0, share), np.clip(middle + half, share, 1)
 
 
-def compute_known_quantiles(found: hazard.Curve, shares: Sequence[float] = hazard.SHARES,
+def compute_known_quantiles(curve: hazard.Curve, shares: Sequence[float] = hazard.SHARES,
                             values: Optional[hazard.Values] = None,
                             mass: Optional[Masses] = None) -> List[KnownQuantile]:
     """Values that shares of the known events stay within; None where events beyond the longest run decide.
@@ -166,8 +166,8 @@ def compute_known_quantiles(found: hazard.Curve, shares: Sequence[float] = hazar
     values, mass: of the runs of the curve, which tell whether events decide that end where no run does.
     """
     # a curve may begin just below its runs
-    levels = np.maximum(found.values, min(found.values[1], 0.0))
-    sides = found.share, found.low, found.high
+    levels = np.maximum(curve.values, min(curve.values[1], 0.0))
+    sides = curve.share, curve.low, curve.high
     several = []
     for share in shares:
         value, low, high = (first_within(levels, one, 1 - share) for one in sides)
@@ -178,13 +178,13 @@ def compute_known_quantiles(found: hazard.Curve, shares: Sequence[float] = hazar
     return [in_gap(one, *(within(given, side, one.share, mass.far) for side in mass.either)) for one in several]
 
 
-def in_gap(one: KnownQuantile, before: float, after: float) -> KnownQuantile:
+def in_gap(quantile: KnownQuantile, before: float, after: float) -> KnownQuantile:
     """A quantile, given its values with the events in gaps on either side; infinite beyond the runs."""
-    if one.value is None or not np.isfinite([before, after]).all() or before == after:
-        return one
+    if quantile.value is None or not np.isfinite([before, after]).all() or before == after:
+        return quantile
     low, high = sorted((before, after))
-    return one._replace(value=high, gap=(low, high), low=None if one.low is None else min(one.low, low),
-                        high=None if one.high is None else max(one.high, high))
+    return quantile._replace(value=high, gap=(low, high), low=None if quantile.low is None else min(quantile.low, low),
+                             high=None if quantile.high is None else max(quantile.high, high))
 
 
 def first_within(values: np.ndarray, share: np.ndarray, left: float) -> Optional[float]:

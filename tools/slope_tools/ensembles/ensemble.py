@@ -119,29 +119,29 @@ def evaluate_ensemble(order: Order, rows: Sequence[Row], mobility: Optional[Mobi
         assert order.added and mobility and emulated.known_events
         known = known_events.evaluate_known_events(order.condition, order.sample, order.added, rows, mobility,
                                                    of_quantity, emulated.known_events, draw)
-    about = ensemble_types.Ensemble(
+    ensemble = ensemble_types.Ensemble(
         design=order.sample.about, runs=len(finished) + failed, finished=len(finished), failed=failed,
         points=len(set(point)), confidence=hazard.CONFIDENCE, of=order.of if order.of in curves else None,
         quantities={name: summarise_quantity(what, unit, column(finished, name), point, failed)
                     for name, (what, unit) in of_quantity.items()},
         influence=emulated.influence, doubts=[], maps=[], known_events=known.about if known else None, withheld=[])
-    return Evaluated(replace(about, doubts=[*no_effect(finished), *find_ensemble_caveats(about)]), curves, finished,
-                     len(set(point)), failed, known)
+    return Evaluated(replace(ensemble, doubts=[*no_effect(finished), *find_ensemble_caveats(ensemble)]), curves,
+                     finished, len(set(point)), failed, known)
 
 
-def write_ensemble(found: Evaluated, levels: ensemble_maps.Thresholds, output: Path, place: Optional[Place],
+def write_ensemble(evaluated: Evaluated, levels: ensemble_maps.Thresholds, output: Path, place: Optional[Place],
                    grids: Optional[str]) -> ensemble_types.Ensemble:
     """Tables and maps; what study.yaml says of the ensemble and of its known events, with the entries of the maps.
 
     place: CRS and offset of the maps; grids: why there can be none.
     """
-    disk.write_file(output / HAZARD, hazard.tabulate_hazard(found.curves))
-    disk.write_file(output / INFLUENCE, influence_table(found.about.influence))
-    prefixes = [run_folders.prefix_of(run_folders.summary_of(output, row.summary)) for row in found.finished]
-    alike = ensemble_maps.Alike(found.failed, max(1.0, len(prefixes) / found.points))
+    disk.write_file(output / HAZARD, hazard.tabulate_hazard(evaluated.curves))
+    disk.write_file(output / INFLUENCE, influence_table(evaluated.about.influence))
+    prefixes = [run_folders.prefix_of(run_folders.summary_of(output, row.summary)) for row in evaluated.finished]
+    alike = ensemble_maps.Alike(evaluated.failed, max(1.0, len(prefixes) / evaluated.points))
     maps = [] if grids else ensemble_maps.write_ensemble_maps(output / MAPS, prefixes, alike, levels, place)
-    known = known_events.write_known_events(found.known, levels, output, place, grids) if found.known else None
-    return replace(found.about, maps=maps, known_events=known)
+    known = known_events.write_known_events(evaluated.known, levels, output, place, grids) if evaluated.known else None
+    return replace(evaluated.about, maps=maps, known_events=known)
 
 
 def number_design_points(sample: Sample, finished: Sequence[Finished]) -> List[int]:
@@ -184,32 +184,33 @@ def no_effect(finished: Sequence[Finished]) -> List[Finding]:
                                   "then": then}, [finished[k].run for k in same])]
 
 
-def find_ensemble_caveats(about: ensemble_types.Ensemble) -> List[Finding]:
+def find_ensemble_caveats(ensemble: ensemble_types.Ensemble) -> List[Finding]:
     """The caveats on the numbers."""
-    found = []
-    if about.failed:
-        wide = about.failed / about.runs > FEW
-        found.append(Finding("failed points", {"failed": about.failed, "runs": about.runs,
-                                               "wide": ", so they are wide" * wide}))
-    of = about.of
+    caveats = []
+    if ensemble.failed:
+        wide = ensemble.failed / ensemble.runs > FEW
+        caveats.append(Finding("failed points", {"failed": ensemble.failed, "runs": ensemble.runs,
+                                                 "wide": ", so they are wide" * wide}))
+    of = ensemble.of
     if of:
-        quantity, one = about.quantities[of].name, about.influence[of]
-        open_ = [entry.share for entry in about.quantities[of].quantiles if entry.high is None]
+        quantity, influence = ensemble.quantities[of].name, ensemble.influence[of]
+        open_ = [entry.share for entry in ensemble.quantities[of].quantiles if entry.high is None]
         if open_:
-            found.append(Finding("unbounded", {"finished": about.finished, "quantity": quantity,
-                                               "shares": ", ".join(f"{100 * share:g} %" for share in open_)}))
-        if one.emulator and one.emulator.verdict != "good":
-            found.append(Finding("emulator", {"quantity": quantity, "verdict": one.text}))
-    return found
+            caveats.append(Finding("unbounded", {"finished": ensemble.finished, "quantity": quantity,
+                                                 "shares": ", ".join(f"{100 * share:g} %" for share in open_)}))
+        if influence.emulator and influence.emulator.verdict != "good":
+            caveats.append(Finding("emulator", {"quantity": quantity, "verdict": influence.text}))
+    return caveats
 
 
 # --- tables ---
 
 def influence_table(influence: Mapping[str, Analysis]) -> str:
     """The CSV of ranks and indices; a cell is empty where the emulator says nothing."""
-    def line(name: str, variable: str, one: Influence, check: Optional[Check]) -> Sequence[Any]:
-        return (name, variable, one.rank, "yes" if one.rank_clear else "no", one.first, one.first_error,
-                one.total, one.total_error, *((check.explained, check.error) if check else (None, None)))
+    def line(name: str, variable: str, influence: Influence, check: Optional[Check]) -> Sequence[Any]:
+        return (name, variable, influence.rank, "yes" if influence.rank_clear else "no", influence.first,
+                influence.first_error,
+                influence.total, influence.total_error, *((check.explained, check.error) if check else (None, None)))
 
     return disk.csv_text(
         ["quantity", "variable", "rank", "rank_clear", *emulator.SIGN, "emulator_explains", "emulator_error"],
@@ -219,20 +220,20 @@ def influence_table(influence: Mapping[str, Analysis]) -> str:
 
 # --- words ---
 
-def describe_ensemble(about: ensemble_types.Ensemble) -> List[str]:
+def describe_ensemble(ensemble: ensemble_types.Ensemble) -> List[str]:
     """The ensemble in a few lines: the quantiles of the main quantity, what it depends on, the caveats."""
-    lines = [f"ensemble: {about.finished} runs of {about.points} points; bounds hold with "
-             f"{100 * about.confidence:g} %"]
-    of = about.of
-    lines += withheld_words.describe_withheld(about.withheld) if about.withheld else []
+    lines = [f"ensemble: {ensemble.finished} runs of {ensemble.points} points; bounds hold with "
+             f"{100 * ensemble.confidence:g} %"]
+    of = ensemble.of
+    lines += withheld_words.describe_withheld(ensemble.withheld) if ensemble.withheld else []
     if of:
-        entry = about.quantities[of]
-        if not about.withheld:
+        entry = ensemble.quantities[of]
+        if not ensemble.withheld:
             lines.append(f"{entry.name}: " + "; ".join(
                 known_events.quantile_text(KnownQuantile(*one), entry.unit, "the runs") for one in entry.quantiles))
-        lines.append(f"{entry.name} depends on " + dependence_text(about.influence[of]))
-    lines += [f"caveat: {text}" for text in texts(about.doubts)]
-    return lines + known_events.describe_known_events(about)
+        lines.append(f"{entry.name} depends on " + dependence_text(ensemble.influence[of]))
+    lines += [f"caveat: {text}" for text in texts(ensemble.doubts)]
+    return lines + known_events.describe_known_events(ensemble)
 
 
 def dependence_text(entry: Analysis) -> str:

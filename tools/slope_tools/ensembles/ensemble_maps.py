@@ -78,14 +78,14 @@ def write_ensemble_maps(folder: Path, prefixes: Sequence[Path], counts: Counts, 
         folder.mkdir(exist_ok=True)
         for old in maps_in(folder):
             old.unlink()
-        found = []
+        entries = []
         for kind in rasters.progress(KINDS, f"maps of {counts.whose}"):
             grid = run_folders.load_raster(prefixes[0], kind.name, heights=False)
             if place:
                 grid = grid._replace(crs=place.crs, offset=place.offset)
             stack = Stack(kind, prefixes, grid.z.shape, folder)
-            found += of_kind(folder, kind, stack, grid, counts, thresholds.of(kind))
-        return found
+            entries += of_kind(folder, kind, stack, grid, counts, thresholds.of(kind))
+        return entries
 
     runs = [(prefix.parent.name, run_folders.stamps(prefix, [kind.name for kind in KINDS])) for prefix in prefixes]
     return kept.value(folder / ".maps.json", [runs, counts, thresholds, place], make, lambda: sorted(maps_in(folder)))
@@ -128,10 +128,10 @@ def of_kind(folder: Path, kind: Kind, stack: Stack, grid, counts: Counts,
         text, bounded = quantile_text(kind, share, counts.whose), len(several) > 1
         for side, z in zip(SIDES, several):
             bands[text + (BOUND_EARLY if kind.early else BOUND)[side]] = np.where(np.isfinite(z), z, np.nan)
-        about: Dict[str, Any] = {"quantile": share}
+        entry: Dict[str, Any] = {"quantile": share}
         if bounded:
-            about["bounded"] = not np.isnan(several[-1]).all()
-        central.append((about, f"q{100 * share:g}", text, f"{text}, {kind.unit}", file if bounded else None))
+            entry["bounded"] = not np.isnan(several[-1]).all()
+        central.append((entry, f"q{100 * share:g}", text, f"{text}, {kind.unit}", file if bounded else None))
     for level, several in zip(levels, np.concatenate(above, axis=-1)):
         text = f"share of {counts.whose} " + ("that arrive" if kind.early else
                                               f"with a {kind.what} > {level:g} {kind.unit}")
@@ -139,15 +139,15 @@ def of_kind(folder: Path, kind: Kind, stack: Stack, grid, counts: Counts,
         central.append(({"threshold": level}, "reached" if kind.early else f"above_{level:g}", text, text, file))
     bands = {text: z.reshape(stack.shape) for text, z in bands.items()}
     rasters.write_geotiff(folder / f"{kind.name}.tif", bands, grid)
-    found = []
-    for about, name, text, what, bounds in central:
+    maps = []
+    for entry, name, text, what, bounds in central:
         if not np.isfinite(bands[text]).any():      # so many never arrive anywhere
             continue
         path = folder / f"{kind.name}_{name}.asc"
         rasters.write_asc_local(path, grid._replace(z=bands[text]), {"what": what})
-        found.append({"file": f"{folder.name}/{path.name}", "raster": kind.name, "what": what, "unit": kind.unit,
-                      **about, "bounds": bounds})
-    return found
+        maps.append({"file": f"{folder.name}/{path.name}", "raster": kind.name, "what": what, "unit": kind.unit,
+                     **entry, "bounds": bounds})
+    return maps
 
 
 def quantile_text(kind: Kind, share: float, whose: str) -> str:

@@ -49,13 +49,13 @@ class Condition:
 def check_condition(asked: known.Choice, name: Optional[str], site: Optional[Path]) -> Condition:
     """The Condition of a choice; SlopeError if a set that was named (name; None: none was) does not cover the body of a
     site's folder, if there is one: of others the landslides count then."""
-    found = None
+    bodies = None
     if site:
-        found = known.compute_known_mobility(body.read_mobility_body(site), asked)
-        if name is not None and not found.strict:
-            assert found.by_set
-            raise SlopeError("--known", f"must be a set that covers the mass: {'; '.join(found.by_set.outside)}", name)
-    return Condition(asked, found, name is not None)
+        bodies = known.compute_known_mobility(body.read_mobility_body(site), asked)
+        if name is not None and not bodies.strict:
+            assert bodies.by_set
+            raise SlopeError("--known", f"must be a set that covers the mass: {'; '.join(bodies.by_set.outside)}", name)
+    return Condition(asked, bodies, name is not None)
 
 
 def mobility_of(condition: Condition, folder: Path, summary: Path) -> exceedance.Mobility:
@@ -83,15 +83,15 @@ class Runs:
     """Those runs of an ensemble that have a length: rows; point: of the design; failed: number of others."""
 
     def __init__(self, sample: Sample, added: Sequence[farther.Batch], rows: Sequence[Row],
-                 found: exceedance.Mobility):
+                 mobility: exceedance.Mobility):
         self.sample, self.added = sample, added
         self.rows = [row for row in finished_of(rows) if row.length_m is not None]
         self.failed = len(rows) - len(self.rows)
         first = combinations.same_as(self.rows)         # the same run, to the last digit, is one point
         self.point = [tuple(self.rows[k].set[name] for name in sample.names) for k in first]
         self.lengths = self.column("length_m") if self.rows else np.empty(0)
-        self.exceedance = found.exceedance
-        self.beyond = np.asarray(found.exceedance(self.lengths), float)
+        self.exceedance = mobility.exceedance
+        self.beyond = np.asarray(mobility.exceedance(self.lengths), float)
         if len(self.rows) >= 2:
             ratio = farther.ratio(self.places, [row.batch for row in self.rows], added) if added else None
             self.weights = weights.of_lengths(self.lengths, self.beyond, ratio)
@@ -133,9 +133,9 @@ def resting(runs: Runs) -> List[str]:
     return [sizes.nearest(runs.rows, REMOVE, one).run for one in found if np.isfinite(one)]
 
 
-def weighs(found: exceedance.Mobility, runs: Runs) -> bool:
+def weighs(mobility: exceedance.Mobility, runs: Runs) -> bool:
     """Whether known events weigh the runs."""
-    return not found.outside and len(runs.rows) >= 2
+    return not mobility.outside and len(runs.rows) >= 2
 
 
 class Evaluated(NamedTuple):
@@ -154,11 +154,11 @@ class Emulated:
     influence: Dict[str, Analysis]
 
 
-def emulate(sample: Sample, added: farther.Added, rows: Sequence[Row], found: exceedance.Mobility,
+def emulate(sample: Sample, added: farther.Added, rows: Sequence[Row], mobility: exceedance.Mobility,
             main: Sequence[str]) -> Emulated:
     """main: quantities whose dependence counts, the one of the curve first."""
-    runs = Runs(sample, added.batches, rows, found)
-    comparable = runs.comparable(main) if weighs(found, runs) else []
+    runs = Runs(sample, added.batches, rows, mobility)
+    comparable = runs.comparable(main) if weighs(mobility, runs) else []
     design = runs.design() if comparable else None
     effects = {name: design.effect(runs.column(name)) for name in comparable} if design else {}
     return Emulated(comparable, {name: [np.asarray(side).tolist() for side in both] for name, both in effects.items()},
@@ -166,54 +166,56 @@ def emulate(sample: Sample, added: farther.Added, rows: Sequence[Row], found: ex
 
 
 def evaluate_known_events(condition: Condition, sample: Sample, added: farther.Added, rows: Sequence[Row],
-                          found: exceedance.Mobility, names: Mapping[str, Tuple[str, str]], emulated: Emulated,
+                          mobility: exceedance.Mobility, names: Mapping[str, Tuple[str, str]], emulated: Emulated,
                           draw: Optional[Draw] = None) -> Evaluated:
     """What the weighted runs say.
 
-    rows: of study.csv, finished and failed; found: the mass among known events; names: {column: (what, unit)} of the
+    rows: of study.csv, finished and failed; mobility: the mass among known events; names: {column: (what, unit)} of the
     quantities; emulated: of emulate(); draw: of runs that are transferred to the finest balls.
     """
     asked = condition.asked
     known = ensemble_types.Known(
-        asked.name(found), asked.number(found), list(asked.left_out), asked.confined, exceedance.WORDS[found.chosen],
-        found.volume, found.outside, None, [])
-    runs = Runs(sample, added.batches, rows, found)
-    if not weighs(found, runs):
-        said = [Finding("no event", {"text": text}) for text in found.outside] or [Finding("few lengths")]
+        asked.name(mobility), asked.number(mobility), list(asked.left_out), asked.confined,
+        exceedance.WORDS[mobility.chosen], mobility.volume, mobility.outside, None, [])
+    runs = Runs(sample, added.batches, rows, mobility)
+    if not weighs(mobility, runs):
+        said = [Finding("no event", {"text": text}) for text in mobility.outside] or [Finding("few lengths")]
         return Evaluated(replace(known, doubts=said), None, {})
     curves = {name: conditioned.compute_known_curve(runs.column(name), runs.mass, emulated.effects.get(name),
                                                     runs.several, runs.failed_share) for name in runs.comparable(names)}
-    one, longest = runs.weights, float(runs.lengths.max())
-    about = ensemble_types.Weighted(
-        **vars(replace(known, reached=one.reached)), short=one.short, far=one.far, runs=len(runs.rows),
-        failed=runs.failed, effective=one.effective, distance=one.distance, far_by_lobe=far_by_lobe(runs, found),
-        gaps=[ensemble_types.Gap(gap.low, gap.high, gap.share) for gap in one.gaps],
-        shortest_m=float(runs.lengths.min()), longest_m=longest, half_beyond_m=found.length_at(0.5),
-        path_m=found.end(longest), beyond_path=found.beyond_path(), added=added.about(),
+    weights_, longest = runs.weights, float(runs.lengths.max())
+    weighted = ensemble_types.Weighted(
+        **vars(replace(known, reached=weights_.reached)), short=weights_.short, far=weights_.far, runs=len(runs.rows),
+        failed=runs.failed, effective=weights_.effective, distance=weights_.distance,
+        far_by_lobe=far_by_lobe(runs, mobility),
+        gaps=[ensemble_types.Gap(gap.low, gap.high, gap.share) for gap in weights_.gaps],
+        shortest_m=float(runs.lengths.min()), longest_m=longest, half_beyond_m=mobility.length_at(0.5),
+        path_m=mobility.end(longest), beyond_path=mobility.beyond_path(), added=added.about(),
         quantities={name: ensemble_types.OfKnown(*names[name], list_known_quantiles(curve, runs, name, hazard.SHARES))
                     for name, curve in curves.items()},
-        to_remove=transferred(list_known_quantiles(curves[REMOVE], runs, REMOVE, answer.choose_known_shares(one.far)),
+        to_remove=transferred(list_known_quantiles(curves[REMOVE], runs, REMOVE,
+                                                   answer.choose_known_shares(weights_.far)),
                               runs, draw)
         if REMOVE in curves else None,
         variables={name: variable(runs, k, emulated.main) for k, name in enumerate(sample.names)},
         influence=emulated.influence, weights=whole_weights(runs), maps=[],
-        path_end_m=end if (end := float(found.path.length[-1])) < longest else None)
-    return Evaluated(replace(about, doubts=find_known_caveats(about, runs)), runs, curves)
+        path_end_m=end if (end := float(mobility.path.length[-1])) < longest else None)
+    return Evaluated(replace(weighted, doubts=find_known_caveats(weighted, runs)), runs, curves)
 
 
-def write_known_events(one: Evaluated, levels: ensemble_maps.Thresholds, output: Path, place: Optional[Place],
+def write_known_events(evaluated: Evaluated, levels: ensemble_maps.Thresholds, output: Path, place: Optional[Place],
                        grids: Optional[str]) -> ensemble_types.Known:
     """Tables and maps; what study.yaml says, with the entries of the maps. levels, place, grids: see
     ensemble.write_ensemble."""
-    runs = one.runs
+    runs = evaluated.runs
     if runs is None:
         for name in (HAZARD, WEIGHTS):
             (output / name).unlink(missing_ok=True)         # of a study before this one
-        return one.about
-    disk.write_file(output / HAZARD, hazard.tabulate_hazard(one.curves))
+        return evaluated.about
+    disk.write_file(output / HAZARD, hazard.tabulate_hazard(evaluated.curves))
     disk.write_file(output / WEIGHTS, weights_table(runs))
     prefixes = [run_folders.prefix_of(run_folders.summary_of(output, row.summary)) for row in runs.rows]
-    return replace(one.about, maps=[] if grids else ensemble_maps.write_ensemble_maps(
+    return replace(evaluated.about, maps=[] if grids else ensemble_maps.write_ensemble_maps(
         output / FOLDER, prefixes, conditioned.Standing(runs.mass, runs.several, runs.failed_share), levels, place))
 
 
@@ -233,20 +235,20 @@ def transferred(several: Sequence[KnownQuantile], runs: Runs, draw: Optional[Dra
     lengths, volumes = (draw(runs.rows, key) for key in ("length_m", REMOVE))
     masses = [conditioned.masses(weights.of_lengths(one, np.asarray(runs.exceedance(one), float), runs.weights.ratio))
               for one in lengths]
-    found = []
-    for one in several:
-        low, high = np.quantile([np.fmin(within(volume, mass.share, one.share, mass.far), volume.max())
+    caveats = []
+    for caveat in several:
+        low, high = np.quantile([np.fmin(within(volume, mass.share, caveat.share, mass.far), volume.max())
                                  for volume, mass in zip(volumes, masses)], TAILS).tolist()
-        if one.value is not None:       # errors of runs raise a high quantile: it is no lower than it is with them
-            value = max(one.value, low)
-            one = one._replace(value=value, transfer=[value - min(value, low), max(value, high) - value])
-        found.append(one)
-    return found
+        if caveat.value is not None:       # errors of runs raise a high quantile: it is no lower than it is with them
+            value = max(caveat.value, low)
+            caveat = caveat._replace(value=value, transfer=[value - min(value, low), max(value, high) - value])
+        caveats.append(caveat)
+    return caveats
 
 
-def far_by_lobe(runs: Runs, found: exceedance.Mobility) -> List[float]:
+def far_by_lobe(runs: Runs, mobility: exceedance.Mobility) -> List[float]:
     """The shares of known events beyond the runs if other lobes count."""
-    return [float(found.exceedance(max(row.length_by_lobe_m[k] for row in runs.rows if row.length_by_lobe_m)))
+    return [float(mobility.exceedance(max(row.length_by_lobe_m[k] for row in runs.rows if row.length_by_lobe_m)))
             for k in range(len(run_length.OTHERS))]
 
 
@@ -272,28 +274,29 @@ def rank(x: np.ndarray, y: np.ndarray, share: np.ndarray) -> Optional[float]:
     return float(w @ (both[0] * both[1])) / scale ** 0.5 if scale > 1e-18 else None
 
 
-def find_known_caveats(about: ensemble_types.Weighted, runs: Runs) -> List[Finding]:
+def find_known_caveats(weighted: ensemble_types.Weighted, runs: Runs) -> List[Finding]:
     """The caveats, in the order of their weight."""
-    found, stopped, reached = [], about.added.stopped, about.reached or 0.0
-    if about.far >= 1 - farther.REACHED:
+    caveats, stopped, reached = [], weighted.added.stopped, weighted.reached or 0.0
+    if weighted.far >= 1 - farther.REACHED:
         remedy = answer_words.describe_reason(
             answer.Reason.read(stopped)) if stopped else "vary towards more mobile masses"
-        found.append(Finding("events beyond", {
-            "length": metres(about.longest_m), "share": answer_words.describe_share_beyond(about.far, about.path_end_m),
+        caveats.append(Finding("events beyond", {
+            "length": metres(weighted.longest_m), "share": answer_words.describe_share_beyond(weighted.far,
+                                                                                              weighted.path_end_m),
             "remedy": remedy}))
-    if reached < farther.REACHED and about.short > (1 - farther.REACHED) / 2:
-        found.append(Finding("events before", {"length": metres(about.shortest_m),
-                                               "share": percent(about.short)}))
-    found += [Finding("gap", {"low": three_at_least(gap.low_m), "high": metres(gap.high_m),
-                              "share": percent(gap.share)}) for gap in about.gaps]
-    if about.effective < LEAST_EFFECTIVE:
-        found.append(Finding("few effective", {"effective": about.effective}))
+    if reached < farther.REACHED and weighted.short > (1 - farther.REACHED) / 2:
+        caveats.append(Finding("events before", {"length": metres(weighted.shortest_m),
+                                                 "share": percent(weighted.short)}))
+    caveats += [Finding("gap", {"low": three_at_least(gap.low_m), "high": metres(gap.high_m),
+                                "share": percent(gap.share)}) for gap in weighted.gaps]
+    if weighted.effective < LEAST_EFFECTIVE:
+        caveats.append(Finding("few effective", {"effective": weighted.effective}))
     if runs.failed:
-        found.append(Finding("no length", {"failed": runs.failed, "runs": len(runs.rows) + runs.failed}))
+        caveats.append(Finding("no length", {"failed": runs.failed, "runs": len(runs.rows) + runs.failed}))
     left = sum(row.off_grid_m3 + row.lost_m3 > LEFT * row.released_m3 for row in runs.rows)
     if left:
-        found.append(Finding("lengths lost", {"lost": left, "runs": len(runs.rows), "percent": 100 * LEFT}))
-    return found
+        caveats.append(Finding("lengths lost", {"lost": left, "runs": len(runs.rows), "percent": 100 * LEFT}))
+    return caveats
 
 
 def whole_weights(runs: Runs) -> Dict[str, float]:
@@ -313,9 +316,9 @@ def weights_table(runs: Runs) -> str:
 
 # --- words ---
 
-def describe_known_events(one: ensemble_types.Ensemble) -> List[str]:
+def describe_known_events(ensemble: ensemble_types.Ensemble) -> List[str]:
     """The weighted ensemble in a few lines: what is reached, by how many runs, the quantiles, the caveats."""
-    lines, about, known, of = [], ensemble_types.weighted(one), one.known_events, one.of
+    lines, about, known, of = [], ensemble_types.weighted(ensemble), ensemble.known_events, ensemble.of
     if about:
         lines = ["known events: " + summarise_weights(about)]
         if of and of in about.quantities:
@@ -325,32 +328,33 @@ def describe_known_events(one: ensemble_types.Ensemble) -> List[str]:
     return lines + [f"caveat: known events: {text}" for text in texts(known.doubts if known else ())]
 
 
-def summarise_weights(about: ensemble_types.Weighted) -> str:
-    added = about.added.points
+def summarise_weights(weighted: ensemble_types.Weighted) -> str:
+    added = weighted.added.points
     more = f" (those of {added} points towards longer ones among them)" if added else ""
-    reached, far = percent(about.reached or 0.0), answer_words.describe_share_beyond(about.far, about.path_end_m)
-    return (f"the runs reach from {three_at_least(about.shortest_m)} to {metres(about.longest_m)}, where "
-            f"{reached} of {about.events} events of {about.set} end ({percent(about.short)} "
-            f"before, {far} beyond{by_lobe(about)}; {about.path}); weighted by them the {about.runs} runs{more} say as "
-            f"much as {about.effective:.0f}")
+    reached, far = percent(weighted.reached or 0.0), answer_words.describe_share_beyond(weighted.far,
+                                                                                        weighted.path_end_m)
+    return (f"the runs reach from {three_at_least(weighted.shortest_m)} to {metres(weighted.longest_m)}, where "
+            f"{reached} of {weighted.events} events of {weighted.set} end ({percent(weighted.short)} "
+            f"before, {far} beyond{by_lobe(weighted)}; {weighted.path}); weighted by them the {weighted.runs} "
+            f"runs{more} say as " f"much as {weighted.effective:.0f}")
 
 
-def by_lobe(about: ensemble_types.Weighted) -> str:
+def by_lobe(weighted: ensemble_types.Weighted) -> str:
     """What share lies beyond if other lobes count, where that is another one."""
-    shares = [percent(one) for one in about.far_by_lobe]
-    if all(one == percent(about.far) for one in shares):
+    shares = [percent(one) for one in weighted.far_by_lobe]
+    if all(one == percent(weighted.far) for one in shares):
         return ""
     least = " and ".join(percent(one) for one in run_length.OTHERS)
     return f" (with lobes of {least} {' and '.join(shares)})"
 
 
-def quantile_text(one: KnownQuantile, unit: str, whose: str) -> str:
+def quantile_text(quantile: KnownQuantile, unit: str, whose: str) -> str:
     """A quantile with its bounds; without a value, what is known instead."""
-    share = f"{100 * one.share:g} % of {whose}"
-    if one.value is None:
+    share = f"{100 * quantile.share:g} % of {whose}"
+    if quantile.value is None:
         return f"{share}: unknown, they go beyond the runs"
-    low, high = ("?" if side is None else quantities.format_quantity(side) for side in (one.low, one.high))
-    if gap := one.gap:
+    low, high = ("?" if side is None else quantities.format_quantity(side) for side in (quantile.low, quantile.high))
+    if gap := quantile.gap:
         first, last = map(quantities.format_quantity, gap)
         return f"{share}: between {first} and {last} {unit}, as no run ends where they do ({low} to {high})"
-    return f"{share} stay within {quantities.format_quantity(one.value)} {unit} ({low} to {high})"
+    return f"{share} stay within {quantities.format_quantity(quantile.value)} {unit} ({low} to {high})"

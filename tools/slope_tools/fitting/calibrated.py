@@ -50,20 +50,20 @@ def load_calibration(folder: Path) -> Dict[str, Any]:
 def sample(folder: Path, number: Optional[int], deck: Path, fixed: Mapping[str, str],
            repeated: Mapping[str, Sequence[str]]) -> Calibrated:
     """The sets of a calibration's folder for a deck that has its variables; number: of them (None: NUMBER)."""
-    path, found = folder / ABOUT, load_calibration(folder)
-    texts = found["calibration"]["variables"]
+    path, calibration = folder / ABOUT, load_calibration(folder)
+    texts = calibration["calibration"]["variables"]
     variables = distributions.parse([f"{name}={text}" for name, text in texts.items()], deck, "--from", True)
     for option, names in (("--set", fixed), ("--repeat", repeated)):
         both = sorted(texts.keys() & set(names))
         if both:
             raise SlopeError("--from", f"must not have a variable of {option}", ", ".join(both))
-    if any(list(one) != list(texts) for one in found["sets"]):
+    if any(list(one) != list(texts) for one in calibration["sets"]):
         raise SlopeError(path, f"must be {WHAT}, each of them with {', '.join(texts)}")
-    different = list({tuple(one.values()): one for one in found["sets"]}.values())
+    different = list({tuple(one.values()): one for one in calibration["sets"]}.values())
     if number is not None and not len(variables) < number <= len(different):
         raise SlopeError("--sample", f"must be from {len(variables) + 1} to {len(different)} with --from {folder}, of "
                          "which that many sets differ", number)
-    made = found["calibration"]
+    made = calibration["calibration"]
     beside = {**made.get("model", {}), **made.get("set", {})}
     return Calibrated(number or min(NUMBER, len(different)), KIND, made.get("seed", 1), tuple(variables),
                       made.get("balls_thick"), beside, tuple(different), disk.sha256(path))

@@ -22,8 +22,8 @@ class Ledger:
     about: what the calibration is of; a folder with another one is refused.
     """
 
-    def __init__(self, folder: Path, about: Mapping[str, Any], variables: Sequence):
-        self.path, self.about, self.variables = folder / LEDGER, dict(about), list(variables)
+    def __init__(self, folder: Path, summary: Mapping[str, Any], variables: Sequence):
+        self.path, self.about, self.variables = folder / LEDGER, dict(summary), list(variables)
         self.points: List[Dict[str, str]] = []
         if self.path.is_file():
             before = schemas.load_checked(self.path, WHAT, mapping({"about": OBJECT, "points": list_of(OBJECT)}))
@@ -89,16 +89,16 @@ class Calibration:
             decided = len(self.ledger.points)
             if decided == self.number:
                 return self.posterior(targets())
-            found = self.posterior(targets())
+            posterior = self.posterior(targets())
             say(f"{decided} of {self.number} runs: " + "; ".join(
                 f"{one.name} {backanalysis.format_variable_value(one, low)} to "
                 f"{backanalysis.format_variable_value(one, high)}"
-                for one, (low, high) in zip(self.ledger.variables, map(found.interval,
+                for one, (low, high) in zip(self.ledger.variables, map(posterior.interval,
                                                                        range(len(self.ledger.variables))))))
             left = self.number - 1 - decided
             taken = self.ledger.places(range(decided))
-            self.ledger.add(backanalysis.propose(found, taken, min(self.batch, left)) if left > 0
-                            else found.best[None])
+            self.ledger.add(backanalysis.propose(posterior, taken, min(self.batch, left)) if left > 0
+                            else posterior.best[None])
 
     def finished(self) -> List[int]:
         """Numbers of the runs that count: not those that failed, and not the one at the best values."""

@@ -58,14 +58,14 @@ class Fit:
             times = ", ".join(sorted({one.chosen[DURATION] for one in longer.values()}))
             self.setup.tell(f"{len(longer)} run{'s' * (len(longer) > 1)} not at rest at the end of the duration: again "
                             f"with twice as much, {times} s")
-            for (i, one), row in zip(longer.items(), self.made(list(longer.values()))):
+            for (i, run), row in zip(longer.items(), self.made(list(longer.values()))):
                 if isinstance(row, Finished):         # else the shorter one stays
-                    self.plan.replace(todo[i], one)
-                    todo[i], rows[i] = one, row
+                    self.plan.replace(todo[i], run)
+                    todo[i], rows[i] = run, row
         found: List[Optional[np.ndarray]] = []
-        for one, row in zip(todo, rows):
-            self.rows[one.name] = row
-            found.append(self.observed.measure(self.summary(row), self.terrain(one), row)
+        for run, row in zip(todo, rows):
+            self.rows[run.name] = row
+            found.append(self.observed.measure(self.summary(row), self.terrain(run), row)
                          if isinstance(row, Finished) and self.observed.told_by(row) else None)
         return found
 
@@ -75,17 +75,17 @@ class Fit:
         self.work.do(todo)
         return run_rows.read_run_rows(self.setup, todo)
 
-    def was_cut(self, one: repeats.Repeat, row: Row) -> bool:
+    def was_cut(self, run: repeats.Repeat, row: Row) -> bool:
         """Whether a run was stopped at its duration before it was at rest, and the duration may be another one."""
         named = {variable.name for variable in self.variables} | self.plan.fixed.keys()
         return (isinstance(row, Finished) and not row.at_rest and row.stop_reason == CUT
                 and DURATION in self.work.defaults and DURATION not in named
-                and isinstance(normalise_value(one.chosen.get(DURATION, self.work.defaults[DURATION])), float))
+                and isinstance(normalise_value(run.chosen.get(DURATION, self.work.defaults[DURATION])), float))
 
-    def longer(self, one: repeats.Repeat) -> repeats.Repeat:
+    def longer(self, run: repeats.Repeat) -> repeats.Repeat:
         """The same run with twice its duration."""
-        seconds = float(one.chosen.get(DURATION, self.work.defaults[DURATION]))
-        return repeats.Repeat(self.setup.output, {**one.combination, DURATION: f"{2 * seconds:.10g}"}, one.repeat)
+        seconds = float(run.chosen.get(DURATION, self.work.defaults[DURATION]))
+        return repeats.Repeat(self.setup.output, {**run.combination, DURATION: f"{2 * seconds:.10g}"}, run.repeat)
 
     @property
     def finished(self) -> List[Finished]:
@@ -95,55 +95,55 @@ class Fit:
         return run_folders.summary_of(self.setup.output, row.summary)
 
     @staticmethod
-    def terrain(one: repeats.Repeat) -> Optional[Path]:
-        path = one.log.terrain and one.folder / one.log.terrain
+    def terrain(run: repeats.Repeat) -> Optional[Path]:
+        path = run.log.terrain and run.folder / run.log.terrain
         return path if path and path.is_file() else None
 
     # --- results ---
 
-    def write(self, found: backanalysis.Posterior) -> None:
+    def write(self, posterior: backanalysis.Posterior) -> None:
         """Table, YAML, chart, and the map of the run at the best values."""
         output, plan, targets = self.setup.output, self.plan, self.observed.targets
         best = plan.runs[plan.number - 1]
         predicted = plan.outputs[plan.number - 1]
-        words = [*fit_words.misses(found, targets, predicted), *fit_words.jumps(found, targets),
-                 *backanalysis.judgement(found, self.variables)]
-        doubts = self.doubts(found)
+        words = [*fit_words.misses(posterior, targets, predicted), *fit_words.jumps(posterior, targets),
+                 *backanalysis.judgement(posterior, self.variables)]
+        doubts = self.doubts(posterior)
         failed = [one.name for one in plan.runs if one.error]
         thick = body_depth.in_balls(self.setup, self.finished)
-        about: Dict[str, Any] = {
+        summary: Dict[str, Any] = {
             "calibration": {**plan.ledger.about, "runs": plan.number, "failed": len(failed), "balls_thick": thick,
                             "model": self.model(), "package": self.work.package, "collected": provenance.now(),
                             "machine": provenance.machine()},
             "best": {"set": plan.ledger.points[plan.number - 1], "run": best.name,
                      "score": None if predicted is None else float(backanalysis.misfits(
-                         predicted[None], found, targets)[0])},
-            "variables": {one.name: self.known(found, i) for i, one in enumerate(self.variables)},
-            "correlation": [[round(float(value), 3) for value in row] for row in found.correlation()],
-            "misfit": found.misfit, "words": words, "doubts": encode_findings(doubts),
+                         predicted[None], posterior, targets)[0])},
+            "variables": {one.name: self.known(posterior, i) for i, one in enumerate(self.variables)},
+            "correlation": [[round(float(value), 3) for value in row] for row in posterior.correlation()],
+            "misfit": posterior.misfit, "words": words, "doubts": encode_findings(doubts),
             "targets": [{"name": one.name, "unit": one.unit, "observed": one.value, "attainable": float(goal),
                          "tolerance": one.deviation, "chance": float(noise),
                          "predicted": None if predicted is None else float(predicted[i])}
-                        for i, (one, goal, noise) in enumerate(zip(targets, found.goals, found.noise))],
+                        for i, (one, goal, noise) in enumerate(zip(targets, posterior.goals, posterior.noise))],
             "sets": [{one.name: one.value(float(u)) for one, u in zip(self.variables, place)}
-                     for place in backanalysis.sets(found, SETS)],
-            "pairs": self.pairs(found)}
+                     for place in backanalysis.sets(posterior, SETS)],
+            "pairs": self.pairs(posterior)}
         with disk.complete(output, ABOUT) as new:
-            disk.write_file(new / TABLE, self.table(found))
+            disk.write_file(new / TABLE, self.table(posterior))
             disk.write_file(new / ABOUT, disk.yaml_text(
-                "slope calibrate: lengths in m, areas in m2, volumes in m3 of ground (bulk)", about))
+                "slope calibrate: lengths in m, areas in m2, volumes in m3 of ground (bulk)", summary))
             from . import calibrate_charts
-            calibrate_charts.draw_posterior(new / CHART, found, self.variables, plan.ledger.places(plan.finished()),
+            calibrate_charts.draw_posterior(new / CHART, posterior, self.variables, plan.ledger.places(plan.finished()),
                                             f"{self.setup.deck.name}: {len(plan.finished())} runs")
             names = [TABLE, ABOUT, CHART]
             if self.wanted.observed is not None and predicted is not None:
                 self.draw_map(new / MAP, best)
                 names.append(MAP)
-        self.setup.tell("\n".join([*words, *self.comparison(about["targets"]),
+        self.setup.tell("\n".join([*words, *self.comparison(summary["targets"]),
                                    *(f"caveat: {text}" for text in doubts)]))
         self.setup.tell(f"best values: run {best.name}; written to {output}: {' '.join(names)}")
 
-    def doubts(self, found: backanalysis.Posterior) -> List[Finding]:
+    def doubts(self, posterior: backanalysis.Posterior) -> List[Finding]:
         """The caveats on the result."""
         plan, targets = self.plan, self.observed.targets
         failed, gone, runs = [one.name for one in plan.runs if one.error], self.gone(), len(plan.runs)
@@ -158,7 +158,7 @@ class Fit:
             known, asked = len(targets), len(self.variables)
             several.append(Finding("underdetermined", {
                 "known": f"{in_words(known)} observed number{'s' * (known > 1)}", "asked": in_words(asked)}))
-        blind = [target.name for target, one in zip(targets, found.emulators) if not one.noise_seen]
+        blind = [target.name for target, one in zip(targets, posterior.emulators) if not one.noise_seen]
         if blind:
             several.append(Finding("no scatter", {"which": ", ".join(blind)}))
         offsets = repeats.unmoved([*(name for one in plan.chances for name in one),
@@ -186,21 +186,21 @@ class Fit:
         return {name: values[name] for name in MODEL
                 if name in values and name not in {one.name for one in self.variables}}
 
-    def known(self, found: backanalysis.Posterior, i: int) -> Dict[str, Any]:
+    def known(self, posterior: backanalysis.Posterior, i: int) -> Dict[str, Any]:
         """What is known of a variable."""
         one = self.variables[i]
-        low, high = found.interval(i)
+        low, high = posterior.interval(i)
         return {"best": float(self.plan.ledger.points[self.plan.number - 1][one.name]), "low": float(one.value(low)),
                 "high": float(one.value(high)), "share_of_range": high - low,
                 "identifiable": "no" if high - low > backanalysis.UNKNOWN else
                 "roughly" if high - low > backanalysis.ROUGH else "yes"}
 
-    def pairs(self, found: backanalysis.Posterior) -> List[Dict[str, Any]]:
+    def pairs(self, posterior: backanalysis.Posterior) -> List[Dict[str, Any]]:
         """The regions over pairs of variables: rows of bins, x for those that belong to it."""
         pairs = []
         for j in range(len(self.variables)):
             for i in range(j):
-                pair = found.pair(i, j)
+                pair = posterior.pair(i, j)
                 sides = {self.variables[k].name: [float(self.variables[k].value(pair.low[n])),
                                                   float(self.variables[k].value(pair.high[n]))]
                          for n, k in enumerate((i, j))}
@@ -208,17 +208,18 @@ class Fit:
                               "region": ["".join(".x"[int(one)] for one in row) for row in pair.inside.T]})
         return pairs
 
-    def table(self, found: backanalysis.Posterior) -> str:
+    def table(self, posterior: backanalysis.Posterior) -> str:
         """The CSV over all runs: values, outputs, score."""
         targets, plan = self.observed.targets, self.plan
         names = [one.name for one in self.variables]
         rows = []
-        for i, one in enumerate(plan.runs):
+        for i, run in enumerate(plan.runs):
             outputs = plan.outputs[i]
             cells = [""] * (1 + len(targets)) if outputs is None else [
-                f"{backanalysis.misfits(outputs[None], found, targets)[0]:.6g}", *(f"{value:.9g}" for value in outputs)]
-            rows.append([one.name, *(plan.ledger.points[i][name] for name in names), one.key, *cells,
-                         "failed" if one.error else "finished" if outputs is not None else "left the terrain"])
+                f"{backanalysis.misfits(outputs[None], posterior, targets)[0]:.6g}",
+                *(f"{value:.9g}" for value in outputs)]
+            rows.append([run.name, *(plan.ledger.points[i][name] for name in names), run.key, *cells,
+                         "failed" if run.error else "finished" if outputs is not None else "left the terrain"])
         return disk.csv_text(["run", *names, "repeat", "score", *(f"{one.name} ({one.unit})" for one in targets),
                               "status"], rows)
 

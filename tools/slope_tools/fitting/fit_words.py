@@ -10,12 +10,12 @@ from ..tables.quantities import format_quantity
 BEYOND = 2.0            # standard deviations of tolerance and chance together
 
 
-def misses(found: Posterior, targets: Sequence[Target], predicted: Optional[np.ndarray]) -> List[str]:
+def misses(posterior: Posterior, targets: Sequence[Target], predicted: Optional[np.ndarray]) -> List[str]:
     """The observed numbers that the run at the best values is far from; predicted: its outputs, None if it has none."""
     if predicted is None:
         return ["the run at the best values says nothing: it failed, or left the terrain"]
     lines = []
-    for one, value, noise in zip(targets, predicted, found.noise):
+    for one, value, noise in zip(targets, predicted, posterior.noise):
         if one.value is not None and abs(value - one.value) > BEYOND * math.hypot(one.deviation, noise):
             lines.append("the run at the best values misses the observation by more than tolerance and chance "
                          f"explain: {one.name} {format_quantity(value)} instead of {format_quantity(one.value)} "
@@ -23,15 +23,15 @@ def misses(found: Posterior, targets: Sequence[Target], predicted: Optional[np.n
     return lines
 
 
-def jumps(found: Posterior, targets: Sequence[Target]) -> List[str]:
+def jumps(posterior: Posterior, targets: Sequence[Target]) -> List[str]:
     """The gaps of the observed numbers."""
     lines = []
-    for one, several in zip(targets, found.gaps):
+    for target, several in zip(targets, posterior.gaps):
         for gap in several:
-            text = (f"{one.name}: no run gives a value between {format_quantity(gap.low)} and "
-                    f"{format_quantity(gap.high)} {one.unit}, "
+            text = (f"{target.name}: no run gives a value between {format_quantity(gap.low)} and "
+                    f"{format_quantity(gap.high)} {target.unit}, "
                     "where the response jumps, as over a step of the ground")
-            if one.value is not None and gap.holds(one.value):
-                text += f"; the observed {format_quantity(one.value)} lies there, and no values reproduce it"
+            if target.value is not None and gap.holds(target.value):
+                text += f"; the observed {format_quantity(target.value)} lies there, and no values reproduce it"
             lines.append(text)
     return lines

@@ -128,18 +128,18 @@ class Observations:
 
     def _set_targets(self, run_: deposit.Deposit) -> None:
         wanted = self.wanted
-        found: List[Target] = []
+        targets: List[Target] = []
         self.shape, self.transform = run_.raster.z.shape, run_.raster.transform
 
         def relative(name, unit, value, whole=None, kind="observed"):
             scale = value if whole is None else whole
-            found.append(Target(name, unit, float(value), float(wanted.share(kind) * scale)))
+            targets.append(Target(name, unit, float(value), float(wanted.share(kind) * scale)))
 
         if wanted.observed is not None:
             mapped = self.mapped = score.read_observed(wanted.observed, run_.raster, wanted.threshold, wanted.local)
             if not mapped.share.any():
                 raise SlopeError(wanted.observed, f"must be somewhere thicker than {wanted.threshold:g} m on the grid")
-            found.append(Target("lack of overlap", "1 - CSI", None, wanted.share("observed")))
+            targets.append(Target("lack of overlap", "1 - CSI", None, wanted.share("observed")))
             distance = self.distance = compute_cell_distances(run_)
             outline = mapped.thickness is None
             weight: np.ndarray = mapped.share if mapped.thickness is None else mapped.thickness
@@ -158,7 +158,7 @@ class Observations:
                                  ("volume on the road", "m3", "volume")):
             if getattr(wanted, kind) is not None:
                 relative(name, unit, getattr(wanted, kind), kind=kind)
-        self.targets = found
+        self.targets = targets
 
     def _of_map(self, run_: deposit.Deposit, mapped: score.Observed) -> List[float]:
         simulated = run_.raster.z > self.wanted.threshold
@@ -181,13 +181,13 @@ class Observations:
 
 def front(summary: Path, row: Finished, column: str) -> float:
     """The front (m) of a run of which it is known; 0 where nothing is left of the deposit."""
-    found = row.value(column)
-    if found is None and column == FRONTS["length"][1]:
+    length = row.value(column)
+    if length is None and column == FRONTS["length"][1]:
         return 0.0
-    if found is None:
+    if length is None:
         raise SlopeError(summary, "must have the distance of a share of the volume (travel: quantiles), which runs of "
                          "older versions lack")
-    return found
+    return length
 
 
 def compute_cell_distances(run_: deposit.Deposit) -> np.ndarray:

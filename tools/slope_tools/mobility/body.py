@@ -87,8 +87,8 @@ def of_arrays(raster: Raster, depth: np.ndarray, where: str) -> Body:
     return Body(raster, depth, where)
 
 
-def of_release(found: release.Body, where: str) -> Body:
-    return of_arrays(found.raster, found.depth, where)
+def of_release(released: release.Body, where: str) -> Body:
+    return of_arrays(released.raster, released.depth, where)
 
 
 def read_mobility_body(folder: Path) -> Body:

@@ -51,9 +51,9 @@ def draw_map(path: Path, mobility: Mobility, body: Body, road: Optional[BaseGeom
         maps.save(figure, path)
 
 
-def draw_profile(path: Path, found: Found, body: Body, road: Optional[AtRoad]) -> None:
+def draw_profile(path: Path, mobilities: Found, body: Body, road: Optional[AtRoad]) -> None:
     """Ground along the path above, probabilities below: of the events that count, of others the curve that would."""
-    counts = found.decides
+    counts = mobilities.decides
     way = counts.path
     ground = way.elevation(body)
     with pictures.settings(figures.STYLE):
@@ -65,7 +65,7 @@ def draw_profile(path: Path, found: Found, body: Body, road: Optional[AtRoad]) -
         above.set(ylabel="elevation (m)")
         for style, kind in zip(STYLES, (counts.chosen, *(one for one in counts.curves if one != counts.chosen))):
             below.plot(way.length, counts.curves[kind], style, color=figures.COLOURS[0], label=WORDS[kind])
-        for one in found.each:
+        for one in mobilities.each:
             if one is not counts and one.in_range:
                 below.plot(way.length, one.curves[one.chosen], color=figures.COLOURS[1], label=one.law.name)
         below.set(xlabel="length along the fall path (m)", ylabel="share that goes beyond", ylim=(0, 1.02),
@@ -76,6 +76,6 @@ def draw_profile(path: Path, found: Found, body: Body, road: Optional[AtRoad]) -
                              label="road" if road.met else f"nearest to the road, {road.beside:.0f} m beside")
             axes.legend(loc="upper right")
             axes.grid(color="#dddddd", lw=0.4)
-        if not (found.by_set and found.by_set.in_range):
+        if not (mobilities.by_set and mobilities.by_set.in_range):
             above.set_title(counts.law.name, loc="left")
         pictures.save(figure, path)

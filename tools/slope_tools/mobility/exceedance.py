@@ -134,19 +134,19 @@ def path_of(body: Body, laws: Sequence[Law]) -> FallPath:
 def on(body: Body, path: FallPath, law: Law, chosen: str) -> Mobility:
     volume, toe = body.volume / 1e6, fall_path.from_toe(body, path).length[0]
     low, high = law.falls
-    said = (path.fall >= low) & (path.fall <= high) & (path.fall > 0) & (path.length > 0) & (path.length >= toe)
+    covered = (path.fall >= low) & (path.fall <= high) & (path.fall > 0) & (path.length > 0) & (path.length >= toe)
     curves = {}
     for kind in law.kinds:
         share = np.ones(len(path.length))
-        share[said] = law.beyond(kind, path.length[said], volume, path.fall[said])
+        share[covered] = law.beyond(kind, path.length[covered], volume, path.fall[covered])
         curves[kind] = np.minimum.accumulate(share)
-    mobility = Mobility(path, volume, law, curves, chosen, said, [])
+    mobility = Mobility(path, volume, law, curves, chosen, covered, [])
     return mobility._replace(outside=outside(mobility))
 
 
 def outside(mobility: Mobility) -> List[str]:
     """Lines on volume and fall outside of the events' range: the fall where half of them end, or the path does."""
-    law, path, said = mobility.law, mobility.path, np.flatnonzero(mobility.said)
+    law, path, covered = mobility.law, mobility.path, np.flatnonzero(mobility.said)
     lines = []
     low, high = law.volumes
     if not low <= mobility.volume <= high:
@@ -155,9 +155,9 @@ def outside(mobility: Mobility) -> List[str]:
     low, high = law.falls
     median = mobility.length_at(HALF)
     fall = float(np.interp(path.length[-1] if median is None else median, path.length, path.fall))
-    if len(said) and mobility.curves[mobility.chosen][said[0]] <= HALF:     # before any fall of the set
-        fall = min(fall, float(path.fall[max(said[0] - 1, 0)]))
-    if not (len(said) and low <= fall <= high):
+    if len(covered) and mobility.curves[mobility.chosen][covered[0]] <= HALF:     # before any fall of the set
+        fall = min(fall, float(path.fall[max(covered[0] - 1, 0)]))
+    if not (len(covered) and low <= fall <= high):
         lines.append(f"the set of known events does not cover this height, {fall:.4g} m where half of them end (or "
                      f"the path does): they fell {low:g} to {high:g} m")
     return lines

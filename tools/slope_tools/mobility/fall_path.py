@@ -182,11 +182,11 @@ def bilinear(corners: np.ndarray, east: float, south: float) -> float:
 def descend(ground: Smooth, start, heading, longest: float) -> Tuple[List[Tuple[float, float]], bool]:
     """Points (x, y) of the steepest descent, and whether it ends where the terrain does; heading: unit vector."""
     place, left, edge = ground.place(start), longest / ground.cell, False
-    found = [place]
+    places = [place]
     while left > 0 and not edge:
         step = downwards(ground, place)
         if step is None:
-            others, edge = over_the_pass(ground, place, direction(ground, found, heading), left)
+            others, edge = over_the_pass(ground, place, direction(ground, places, heading), left)
         elif ground.inside(place + step):
             others = [place + step]
         else:
@@ -194,8 +194,8 @@ def descend(ground: Smooth, start, heading, longest: float) -> Tuple[List[Tuple[
         for one in others:
             left -= float(np.hypot(*(one - place)))
             place = one
-        found += others
-    return [ground.point(one) for one in found], edge
+        places += others
+    return [ground.point(one) for one in places], edge
 
 
 def direction(ground: Smooth, places: List[np.ndarray], heading) -> np.ndarray:
@@ -268,18 +268,18 @@ def over_the_pass(ground: Smooth, place, way, longest: float) -> Tuple[List[np.n
 
 def straightened(ground: Smooth, places: List[np.ndarray], level: float) -> List[np.ndarray]:
     """The same way, cutting corners where the ground is known and not above the level (m)."""
-    found, k = [places[0]], 0
+    kept_places, k = [places[0]], 0
     while k < len(places) - 1:
         other = len(places) - 1
         while other > k + 1 and not below(ground, places[k], places[other], level):
             other = k + (other - k) // 2
         k = other
-        found.append(places[k])
-    return found
+        kept_places.append(places[k])
+    return kept_places
 
 
-def below(ground: Smooth, one, other, level: float) -> bool:
+def below(ground: Smooth, start, other, level: float) -> bool:
     """Whether the ground is known and not above a level (m) along a straight line, at the nodes nearest to it."""
-    count = 2 + int(2 * np.hypot(*(other - one)))
-    columns, rows = np.round(one + np.linspace(0, 1, count)[:, None] * (other - one)).astype(int).T
+    count = 2 + int(2 * np.hypot(*(other - start)))
+    columns, rows = np.round(start + np.linspace(0, 1, count)[:, None] * (other - start)).astype(int).T
     return bool((ground.known[rows, columns] & (ground.z[rows, columns] <= level)).all())

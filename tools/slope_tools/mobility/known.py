@@ -29,13 +29,13 @@ class Choice(NamedTuple):
     def relation(self) -> Relation:
         return relation.of_events(self.known, self.file)
 
-    def name(self, one: Mobility) -> str:
+    def name(self, mobility: Mobility) -> str:
         """Of the events of one of both."""
-        return f"{self.row.type}:{self.row.path}" if isinstance(one.law, Row) else self.file.name
+        return f"{self.row.type}:{self.row.path}" if isinstance(mobility.law, Row) else self.file.name
 
-    def number(self, one: Mobility) -> int:
+    def number(self, mobility: Mobility) -> int:
         """Of these events."""
-        return self.row.events if isinstance(one.law, Row) else len(self.known)
+        return self.row.events if isinstance(mobility.law, Row) else len(self.known)
 
     def about(self) -> Dict[str, Any]:
         """What is kept of it, for of_about()."""
@@ -96,12 +96,12 @@ def compute_known_mobility(mass: Body, asked: Choice, path: Optional[FallPath] =
                  exceedance.compute_mobility(mass, asked.row, path=path))
 
 
-def of_about(about: Mapping[str, Any]) -> Choice:
+def of_about(kept_choice: Mapping[str, Any]) -> Choice:
     """The Choice of what was kept of one; SlopeError where its file is gone."""
-    return choice(about.get("set"), about.get("left_out") or (), about.get("confined", "unknown"))
+    return choice(kept_choice.get("set"), kept_choice.get("left_out") or (), kept_choice.get("confined", "unknown"))
 
 
-def of_mass(raster: Raster, before: np.ndarray, depth: np.ndarray, about: Mapping[str, Any],
+def of_mass(raster: Raster, before: np.ndarray, depth: np.ndarray, kept_choice: Mapping[str, Any],
             site: Optional[Path] = None) -> Known:
     """A mass among the known events of what was kept of a Choice.
 
@@ -110,6 +110,6 @@ def of_mass(raster: Raster, before: np.ndarray, depth: np.ndarray, about: Mappin
     """
     try:
         mass = body.read_mobility_body(site) if site else body.of_arrays(raster._replace(z=before), depth, "the run")
-        return Known(compute_known_mobility(mass, of_about(about)), "")
+        return Known(compute_known_mobility(mass, of_about(kept_choice)), "")
     except SlopeError as error:
         return Known(None, f"The runs cannot be compared with known events: {error}")

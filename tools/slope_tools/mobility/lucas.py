@@ -70,13 +70,14 @@ def opinion(mass: Body, path: FallPath) -> Opinion:
     return Opinion(angle, steep, flat, middle, near, far, float(beyond_toe.length[0]))
 
 
-def differ(said: Opinion, counts: Mobility) -> Optional[Band]:
+def differ(opinion_: Opinion, counts: Mobility) -> Optional[Band]:
     """The band of known events, where it has nothing in common with that of the opinion; None: they agree."""
     if not counts.in_range:
         return None
     near, far = (counts.length_at(share) for share in ENDS[::-1])
     known = Band(0.0 if counts.at_most(ENDS[1]) is not None else compute_share_beyond(near), compute_share_beyond(far))
-    return known if known.near > compute_share_beyond(said.far) or known.far < compute_share_beyond(said.near) else None
+    return known if known.near > compute_share_beyond(opinion_.far) or known.far < compute_share_beyond(
+        opinion_.near) else None
 
 
 def compute_share_beyond(length: Optional[float]) -> float:

@@ -36,29 +36,29 @@ class Source(NamedTuple):
     road: Optional[BaseGeometry]        # local m
 
 
-def compute_path_columns(found: Found, body: Body) -> Dict[str, np.ndarray]:
+def compute_path_columns(mobilities: Found, body: Body) -> Dict[str, np.ndarray]:
     """The path: length, height below the crown, elevation, place, probability of going beyond by each kind of events.
 
     NaN: the events do not cover the mass, or none of them had this fall.
     """
-    path = found.decides.path
+    path = mobilities.decides.path
     curves = {f"exceedance_{kind}": np.where(one.said & one.in_range, curve, np.nan)
-              for one in found.each for kind, curve in one.curves.items()}
+              for one in mobilities.each for kind, curve in one.curves.items()}
     return {"length_m": path.length, "height_m": path.fall, "elevation_m": path.elevation(body), "x": path.x,
             "y": path.y, **curves}
 
 
-def tabulate_path(found: Found, body: Body) -> str:
+def tabulate_path(mobilities: Found, body: Body) -> str:
     """The columns as CSV; an empty cell stands for NaN."""
-    values = compute_path_columns(found, body)
+    values = compute_path_columns(mobilities, body)
     return disk.csv_text(values, ([*(f"{value:.3f}" for value in row[:5]),
                                    *("" if np.isnan(value) else f"{value:.6g}" for value in row[5:])]
                                   for row in zip(*values.values())))
 
 
-def write_lines(path: Path, found: Found, body: Body) -> None:
+def write_lines(path: Path, mobilities: Found, body: Body) -> None:
     """The path for a GIS: a piece from each point to the next, with what the table has at its end."""
-    values = compute_path_columns(found, body)
+    values = compute_path_columns(mobilities, body)
     places = np.column_stack([values.pop("x"), values.pop("y")])
     features = [(LineString(places[k:k + 2]), {name: None if np.isnan(one[k + 1]) else float(one[k + 1])
                                                for name, one in values.items()}) for k in range(len(places) - 1)]
@@ -66,9 +66,9 @@ def write_lines(path: Path, found: Found, body: Body) -> None:
                                 body.raster)
 
 
-def second_opinion(mass: Body, found: Found) -> str:
+def second_opinion(mass: Body, mobilities: Found) -> str:
     """That of a law that knows nothing of the events."""
-    said = lucas.opinion(mass, found.decides.path)
+    said = lucas.opinion(mass, mobilities.decides.path)
     return (f"second opinion, {lucas.NAME}: the line from crown to tip falls by {said.angle:.1f} degrees "
             f"({said.steep:.1f} to {said.flat:.1f}, {100 * lucas.BAND:g} %), which is after "
             f"{ends(said.reach, said.toe)} ({ends(said.near, said.toe)} to {ends(said.far, said.toe)})")
@@ -92,71 +92,73 @@ def ends(length: Optional[float], toe: float = -1.0) -> str:
     return metres(length) + " or less" * (length <= toe)
 
 
-def disagreement(mass: Body, found: Found) -> List[Finding]:
+def disagreement(mass: Body, mobilities: Found) -> List[Finding]:
     """Where the second opinion and the events that count have nothing in common."""
-    said = lucas.opinion(mass, found.decides.path)
-    if (known := lucas.differ(said, found.decides)) is None:
+    opinion = lucas.opinion(mass, mobilities.decides.path)
+    if (known := lucas.differ(opinion, mobilities.decides)) is None:
         return []
     return [Finding("second opinion", {
-        "name": lucas.NAME, "near": ends(said.near, said.toe), "far": ends(said.far, said.toe),
-        "events": found.decides.law.name, "known_near": ends(known.near), "known_far": ends(known.far),
-        "farther": "the events" if known.near > lucas.compute_share_beyond(said.far) else "that law's masses"})]
+        "name": lucas.NAME, "near": ends(opinion.near, opinion.toe), "far": ends(opinion.far, opinion.toe),
+        "events": mobilities.decides.law.name, "known_near": ends(known.near), "known_far": ends(known.far),
+        "farther": "the events" if known.near > lucas.compute_share_beyond(opinion.far) else "that law's masses"})]
 
 
-def find_mobility_caveats(mass: Body, found: Found) -> List[Finding]:
+def find_mobility_caveats(mass: Body, mobilities: Found) -> List[Finding]:
     """What must be said: several bodies, out of range, or a path that ends too early."""
-    counts = found.decides
+    counts = mobilities.decides
     several = [*mass.beside()] if counts.path.end != LINE else []
-    several += [Finding("outside of set", {"text": text}) for text in (found.by_set.outside if found.by_set else [])]
+    several += [Finding("outside of set", {"text": text}) for text in (mobilities.by_set.outside if mobilities.by_set
+                                                                       else [])]
     if counts.length_at(0.5) is None and counts.path.end == TERRAIN:
         several.append(Finding("path ends", {"length": metres(counts.path.length[-1]),
                                              "share": percent(counts.beyond_path())}))
     return several
 
 
-def of_events(one: Mobility) -> Dict[str, Any]:
+def of_events(mobility: Mobility) -> Dict[str, Any]:
     """Lengths by the curves of a set or a row; None where it does not cover the mass."""
-    return {kind: {"lengths_m": {str(share): None if one.at_most(share, kind) else one.length_at(share, kind)
+    return {kind: {"lengths_m": {str(share): None if mobility.at_most(share, kind) else mobility.length_at(share, kind)
                                  for share in SHARES},
-                   "at_most_m": {str(share): one.at_most(share, kind) for share in SHARES},
-                   "beyond_path": one.beyond_path(kind)} if one.in_range else None for kind in one.curves}
+                   "at_most_m": {str(share): mobility.at_most(share, kind) for share in SHARES},
+                   "beyond_path": mobility.beyond_path(kind)} if mobility.in_range else None for kind
+            in mobility.curves}
 
 
-def at_road(found: Found, road: AtRoad) -> Dict[str, Any]:
+def at_road(mobilities: Found, road: AtRoad) -> Dict[str, Any]:
     """What is said of the road's near edge, and of its far one, by each kind of events; None: nothing.
 
     at_least: where those that count say nothing, as the road lies so near to the body.
     """
-    counts = found.decides
+    counts = mobilities.decides
     about: Dict[str, Any] = {"at_least": None if counts.says(road.length) else at_least(counts, road.length)}
     for name, length in (("exceedance", road.length), ("passed", road.passed)):
         about.update({f"{name}_{kind}": float(one.exceedance(length, kind)) if one.says(length) else None
-                      for one in found.each for kind in one.curves})
+                      for one in mobilities.each for kind in one.curves})
         about[name] = about[f"{name}_{counts.chosen}"]
     return about
 
 
-def at_least(one: Mobility, length: float) -> Optional[float]:
+def at_least(mobility: Mobility, length: float) -> Optional[float]:
     """The share that goes beyond the next point of the path of which the events say something, None without any."""
-    after = np.flatnonzero(one.said & (one.path.length >= length))
-    return float(one.curves[one.chosen][after[0]]) if one.in_range and len(after) else None
+    after = np.flatnonzero(mobility.said & (mobility.path.length >= length))
+    return float(mobility.curves[mobility.chosen][after[0]]) if mobility.in_range and len(after) else None
 
 
-def summarise_mobility(found: Found, source: Source, road: Optional[AtRoad]) -> Dict[str, Any]:
+def summarise_mobility(mobilities: Found, source: Source, road: Optional[AtRoad]) -> Dict[str, Any]:
     """What SUMMARY holds."""
-    counts, by_set, row = found.decides, found.by_set, source.asked.row
+    counts, by_set, row = mobilities.decides, mobilities.by_set, source.asked.row
     path = counts.path
     whole: Dict[str, Any] = {
         "slope_version": version(), "terrain": source.terrain, "volume_m3": source.body.volume,
         "crown": dict(zip("xyz", path.crown)), "in_range": bool(by_set and by_set.in_range),
-        "warnings": encode_findings(find_mobility_caveats(source.body, found)),
+        "warnings": encode_findings(find_mobility_caveats(source.body, mobilities)),
         "path": {"length_m": path.length[-1], "height_m": path.fall[-1], "ends": path.end},
         "exceedance_is": counts.chosen, "confined_path": source.asked.confined}
-    for one in found.each:
+    for one in mobilities.each:
         whole.update(of_events(one))
     whole["road"] = road and {
         "on_path": road.met, "beside_path_m": road.beside, "length_m": road.length, "passed_m": road.passed,
-        "height_m": road.fall, "x": road.x, "y": road.y, **at_road(found, road)}
+        "height_m": road.fall, "x": road.x, "y": road.y, **at_road(mobilities, road)}
     whole["landslides"] = {"row": f"{row.type}:{row.path}", "events": row.events, "a": row.a, "b": row.b,
                            "deviations": list(row.deviations), "note": NOT_OF_ROADS,
                            **(whole["landslides"] or {})}
@@ -171,40 +173,40 @@ def summarise_mobility(found: Found, source: Source, road: Optional[AtRoad]) -> 
                                         **lucas.opinion(source.body, path)._asdict()}, "files": list(FILES)}
 
 
-def describe_mobility(found: Found, source: Source, road: Optional[AtRoad]) -> List[str]:
+def describe_mobility(mobilities: Found, source: Source, road: Optional[AtRoad]) -> List[str]:
     """What the user reads."""
-    counts, path = found.decides, found.decides.path
+    counts, path = mobilities.decides, mobilities.decides.path
     x, y, z = path.crown
     lines = [f"{format_volume(1e6 * counts.volume)}, crown at {x:.1f} {y:.1f}, elevation {z:.1f} m",
              f"fall path of {metres(path.length[-1])}, down to {metres(path.fall[-1])} below the crown, "
              + path.end]
-    for one in found.each:
-        name = f"{len(source.asked.known)} events of {source.asked.file.name}" if one is found.by_set else \
+    for mobility in mobilities.each:
+        name = f"{len(source.asked.known)} events of {source.asked.file.name}" if mobility is mobilities.by_set else \
             f"{source.asked.row.name} (Corominas 1996; {NOT_OF_ROADS})"
-        if not one.in_range:
+        if not mobility.in_range:
             lines.append(f"{name}: nothing, they do not cover this mass")
             continue
-        lines.append(f"{name}: {'these count' if one is counts else 'beside them'}, {WORDS[one.chosen]}")
-        lines += [f"  {WORDS[kind]}: {lengths(one, kind)}" for kind in one.curves]
+        lines.append(f"{name}: {'these count' if mobility is counts else 'beside them'}, {WORDS[mobility.chosen]}")
+        lines += [f"  {WORDS[kind]}: {lengths(mobility, kind)}" for kind in mobility.curves]
     if road:
         where = "the road, first met" if road.met else \
             f"the path does not meet the road, and is nearest to it, {metres(road.beside)} beside,"
         lines.append(f"{where} after {metres(road.length)}, {metres(road.fall)} below the crown: "
                      f"{describe_road_reach(counts, road)}")
-    return [*lines, second_opinion(source.body, found)]
+    return [*lines, second_opinion(source.body, mobilities)]
 
 
-def lengths(one: Mobility, kind: str) -> str:
+def lengths(mobility: Mobility, kind: str) -> str:
     """How far shares of the events go, of a curve."""
     parts = []
     for share in SHARES:
-        length, most = one.length_at(share, kind), one.at_most(share, kind)
+        length, most = mobility.length_at(share, kind), mobility.at_most(share, kind)
         if most is not None:
             parts.append(f"{percent(share)} beyond {metres(most)} or less")
         elif length is not None:
             parts.append(f"{percent(share)} beyond {metres(length)}")
     return (f"{', '.join(parts) or 'nearly all beyond the path'}; beyond the "
-            f"{'terrain' if one.path.end == TERRAIN else 'path'}: {percent(one.beyond_path(kind))}")
+            f"{'terrain' if mobility.path.end == TERRAIN else 'path'}: {percent(mobility.beyond_path(kind))}")
 
 
 def describe_road_reach(counts: Mobility, road: AtRoad) -> str:
@@ -219,13 +221,13 @@ def describe_road_reach(counts: Mobility, road: AtRoad) -> str:
         road.passed > road.length and counts.says(road.passed))
 
 
-def write_mobility(folder: Path, found: Found, source: Source, road: Optional[AtRoad]) -> None:
+def write_mobility(folder: Path, mobilities: Found, source: Source, road: Optional[AtRoad]) -> None:
     """All files into a folder."""
     from . import charts        # matplotlib: only once all is there
     with disk.complete(folder, SUMMARY) as new:
-        (new / TABLE).write_text(tabulate_path(found, source.body), encoding="ascii")
-        write_lines(new / LINES, found, source.body)
-        charts.draw_map(new / MAP, found.decides, source.body, source.road)
-        charts.draw_profile(new / PROFILE, found, source.body, road)
-        disk.write_yaml(new / SUMMARY, summarise_mobility(found, source, road), "slope mobility: m, local x y, volumes "
-                        "in m3; " "exceedance: share of known events that go farther")
+        (new / TABLE).write_text(tabulate_path(mobilities, source.body), encoding="ascii")
+        write_lines(new / LINES, mobilities, source.body)
+        charts.draw_map(new / MAP, mobilities.decides, source.body, source.road)
+        charts.draw_profile(new / PROFILE, mobilities, source.body, road)
+        disk.write_yaml(new / SUMMARY, summarise_mobility(mobilities, source, road), "slope mobility: m, local x y, "
+                        "volumes " "in m3; " "exceedance: share of known events that go farther")

@@ -102,14 +102,14 @@ def measure_along_path(path: FallPath, places: np.ndarray) -> np.ndarray:
     """Length (m) of a path up to its point nearest to each place (n, 2)."""
     points = np.column_stack([path.x, path.y])
     nearest = cKDTree(points).query(places)[1]
-    found, closest = np.zeros(len(places)), np.full(len(places), np.inf)
+    lengths, closest = np.zeros(len(places)), np.full(len(places), np.inf)
     for first in (np.maximum(nearest - 1, 0), np.minimum(nearest, len(points) - 2)):
         way = points[first + 1] - points[first]
         part = np.clip(((places - points[first]) * way).sum(axis=1) / np.maximum((way ** 2).sum(axis=1), 1e-30), 0, 1)
         away = np.hypot(*(points[first] + part[:, None] * way - places).T)
         length = path.length[first] + part * (path.length[first + 1] - path.length[first])
-        found, closest = np.where(away < closest, length, found), np.minimum(away, closest)
-    return found
+        lengths, closest = np.where(away < closest, length, lengths), np.minimum(away, closest)
+    return lengths
 
 
 def measure_run_length(deposit: Deposit, terrain: Optional[Path]) -> Optional[RunLength]:

@@ -104,10 +104,10 @@ def find_weight_gaps(below: np.ndarray) -> List[int]:
     probability (1 + x / k)^-k; a gap is what the largest of all exceeds by chance but once in ONCE ensembles.
     """
     share = np.diff(below)
-    found = []
+    gaps = []
     for i in np.flatnonzero(share >= GAP):
         near = np.delete(share[max(0, i - NEAR):i + NEAR + 1], min(i, NEAR))
         k = len(near)
         if not k or share[i] > near.mean() * k * ((len(share) * ONCE) ** (1 / k) - 1):
-            found.append(int(i))
-    return found
+            gaps.append(int(i))
+    return gaps

@@ -49,12 +49,12 @@ def influence(bars: Sequence[Bar], title: str) -> str:
     """First-order and total indices of the variables, the largest on top."""
     with pictures.settings(STYLE):
         figure, axes = pictures.subplots(figsize=(HALF, 0.9 + 0.32 * len(bars)))
-        for y, bar in enumerate(sorted(bars, key=lambda one: one.total)):
+        for y, bar in enumerate(sorted(bars, key=lambda bar: bar.total)):
             axes.barh(y, bar.total, 0.62, color=COLOURS[0], alpha=0.3, label="with others (total)" if y == 0 else None)
             axes.barh(y, bar.first, 0.34, color=COLOURS[0], label="alone (first order)" if y == 0 else None)
             axes.errorbar([bar.total], [y], xerr=[bar.total_error], fmt="none", ecolor=GRAY, elinewidth=0.9,
                           capsize=2.5)
-        axes.set_yticks(range(len(bars)), [one.name for one in sorted(bars, key=lambda one: one.total)])
+        axes.set_yticks(range(len(bars)), [one.name for one in sorted(bars, key=lambda bar: bar.total)])
         axes.set(xlim=(0, max(1.0, 1.05 * max(one.total + one.total_error for one in bars))),
                  xlabel="share of the variance that the variables make")
         finish(axes, title, "x")

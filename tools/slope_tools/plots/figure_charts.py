@@ -69,15 +69,15 @@ def draw_section(s, before, base, runs, road, cut, title, bends=(), walls=(), cr
         size = np.ptp(s) * scale.inches, max((high - low) * scale.heights, 0.4)
         high = low + size[1] / scale.heights
         names = [shortened(name, 3.0, TICK) for name, *_ in runs]
-        axes, found = panel(sheet, left, size, "height (m)" + times(scale.factor), s, (low, high), road, bends)
-        found += draw_heights(axes, s, before, base, runs, names, low)
+        axes, entries = panel(sheet, left, size, "height (m)" + times(scale.factor), s, (low, high), road, bends)
+        entries += draw_heights(axes, s, before, base, runs, names, low)
         if cut is not None:
             axes.plot(s, np.where(cut <= high, cut, np.nan), zorder=7, **CUT)
-            found.append(Entry("cut surface", CUT))
-        found += draw_obstacles(axes, walls, crossings)
+            entries.append(Entry("cut surface", CUT))
+        entries += draw_obstacles(axes, walls, crossings)
         for share, at in marks:
             axes.axvline(at, zorder=2, **MARKS[share])
-        found += entries_of_marks({share for share, _ in marks})
+        entries += entries_of_marks({share for share, _ in marks})
         factor = None
         if 0 < typical * scale.heights < VISIBLE:
             top = 1.05 * max(run[2].max() for run in runs)
@@ -92,7 +92,7 @@ def draw_section(s, before, base, runs, road, cut, title, bends=(), walls=(), cr
         if factor is not None:
             sheet.bottom += TICKS
         sheet.write("distance from A (m)", left, sheet.bottom, LABEL)
-        place_entries(sheet, found, left, left, sheet.bottom + 0.06)
+        place_entries(sheet, entries, left, left, sheet.bottom + 0.06)
         return figures.data_uri(sheet.finish(), "svg"), scale.factor, factor
 
 
@@ -114,14 +114,15 @@ def panel(sheet, left, size, name, s, limits, road, bends, corners=True):
     axes.set_yticks(at := ticks(limits[0], limits[1], max(1, min(8, int(size[1] / 0.22)))),
                     [label(value) for value in at])
     axes.tick_params(labelsize=TICK)
-    found = []
+    entries = []
     for start, end in road:
         axes.axvspan(start, end, color=ROAD, alpha=0.13, lw=0)
-        found = [Entry("road", {"color": ROAD, "alpha": 0.25, **THICK})]
+        entries = [Entry("road", {"color": ROAD, "alpha": 0.25, **THICK})]
     for bend in bends:
         axes.axvline(bend, color=SECTION, lw=0.5, ls=(0, (1, 2)), zorder=1)
-        found = [*found[:1 if road else 0], Entry("the line turns", {"color": SECTION, "lw": 0.5, "ls": (0, (1, 2))})]
-    return axes, found
+        entries = [*entries[:1 if road else 0], Entry("the line turns",
+                                                      {"color": SECTION, "lw": 0.5, "ls": (0, (1, 2))})]
+    return axes, entries
 
 
 def draw_heights(axes, s, before, base, runs, names, low):
@@ -131,19 +132,19 @@ def draw_heights(axes, s, before, base, runs, names, low):
     axes.plot(s, base, color="#6b6459", lw=0.5, zorder=3)
     _, surface, thickness = runs[0]
     axes.fill_between(s, base, surface, where=thickness > 0, color="#d9a066", alpha=0.85, lw=0, zorder=2)
-    found = [Entry(f"deposit{f' ({names[0]})' if several else ''}", {"color": "#d9a066", **THICK})]
+    entries = [Entry(f"deposit{f' ({names[0]})' if several else ''}", {"color": "#d9a066", **THICK})]
     with np.errstate(invalid="ignore"):
         slip = np.where(before - base > 0.01, base, np.nan)
     for values, entry in ((before, Entry("ground before", {"color": "black", "lw": 1.1, "ls": (0, (5, 1.5))})),
                           (slip, Entry("slip surface", {"color": "#c1121f", "lw": 1.2}))):
         if np.isfinite(values).any():
             axes.plot(s, values, zorder=5 if values is before else 4, **entry.style)
-            found.append(entry)
+            entries.append(entry)
     for i, (name, (_, surface, thickness)) in enumerate(zip(names, runs)):
         style = {"color": COLOURS[i % len(COLOURS)] if several else "#8a4b08", "lw": 1.1}
         axes.plot(s, np.where(thickness > 0, surface, np.nan), zorder=6, **style)
-        found.append(Entry(f"after: {name}" if several else "ground after", style))
-    return found
+        entries.append(Entry(f"after: {name}" if several else "ground after", style))
+    return entries
 
 
 def draw_obstacles(axes, walls, crossings):
@@ -221,42 +222,42 @@ def chart(series, x_label, y_label, title, others=(), levels=(), mark: Optional[
                                 [mark[1]] if mark else [], *(np.asarray(one.y) + (one.scatter or 0)
                                                              for one in series)]).astype(float)
         axes, grid, left = value_panel(sheet, every, y_label, title, width, 2.2 if width > HALF else 1.6)
-        found = []
-        for one, style in zip(others, ("s--", "D:", "^-.", "v--") * len(others)):
-            axes.plot(one.x, one.y, style, color="#999999", mfc="white", ms=5, lw=1.0)
-            found.append(Entry(one.name, {"color": "#999999", "marker": style[0], "ls": style[1:], "mfc": "white",
-                                          "ms": 4, "lw": 1.0}))
+        entries = []
+        for further, style in zip(others, ("s--", "D:", "^-.", "v--") * len(others)):
+            axes.plot(further.x, further.y, style, color="#999999", mfc="white", ms=5, lw=1.0)
+            entries.append(Entry(further.name, {"color": "#999999", "marker": style[0], "ls": style[1:], "mfc": "white",
+                                                "ms": 4, "lw": 1.0}))
         for k, (text, y) in enumerate(levels):
             look = {"color": "#777777", "lw": 0.9, "ls": (0, (1, 1 + k))}
             axes.axhline(y, **look)
-            found.append(Entry(text, look))
-        for i, one in enumerate(series):
-            found += draw_series(axes, one, COLOURS[i % len(COLOURS)], len(series) > 1 or bool(others))
+            entries.append(Entry(text, look))
+        for i, further in enumerate(series):
+            entries += draw_series(axes, further, COLOURS[i % len(COLOURS)], len(series) > 1 or bool(others))
         if mark:
             ring = {"marker": "o", "ms": 10, "mfc": "none", "mec": "#c1121f", "mew": 1.2, "ls": ""}
             axes.plot(*mark[:2], **ring)
-            found.append(Entry(mark[2], {**ring, "ms": 6}))
+            entries.append(Entry(mark[2], {**ring, "ms": 6}))
         axes.margins(x=0.08)
         xlo, xhi = axes.get_xlim()
         wide = max(text_width(label(value), TICK) for value in ticks(xlo, xhi, 6)) + 0.2
         most = max(1, min(7, int(panel_width(width, left) / wide)))
         label_axes(sheet, axes, grid, left, x_label, ticks(xlo, xhi, most), (xlo, xhi))
-        if found:
-            place_entries(sheet, found, left, left, sheet.bottom + 0.05)
+        if entries:
+            place_entries(sheet, entries, left, left, sheet.bottom + 0.05)
         return figures.data_uri(sheet.finish(), "svg")
 
 
-def draw_series(axes, one, colour, named):
+def draw_series(axes, series, colour, named):
     """The runs as dots, their means with the scatter of a run, and a line only where the differences are a trend."""
-    x, y = means(one)
-    several = len(x) < len(one.x)
-    line = {"color": colour, "lw": 1.6 if one.joined else 0, "marker": "o"}
+    x, y = means(series)
+    several = len(x) < len(series.x)
+    line = {"color": colour, "lw": 1.6 if series.joined else 0, "marker": "o"}
     if several:
-        axes.plot(one.x, one.y, "o", color=colour, ms=2.6, alpha=0.6, mew=0)
+        axes.plot(series.x, series.y, "o", color=colour, ms=2.6, alpha=0.6, mew=0)
     axes.plot(x, y, ms=4 if several else 5, **line)
-    if one.scatter:
-        axes.errorbar(x, y, one.scatter, fmt="none", ecolor=colour, elinewidth=0.9, capsize=2.5)
-    return [Entry(one.name, {**line, "ms": 4})] if named and one.name else []
+    if series.scatter:
+        axes.errorbar(x, y, series.scatter, fmt="none", ecolor=colour, elinewidth=0.9, capsize=2.5)
+    return [Entry(series.name, {**line, "ms": 4})] if named and series.name else []
 
 
 class Convergence(NamedTuple):
@@ -266,18 +267,18 @@ class Convergence(NamedTuple):
     scatter: Sequence[Optional[float]]      # standard deviation of a run of each size
 
 
-def convergence(found, x_label, y_label, title, width=HALF):
+def convergence(sizes, x_label, y_label, title, width=HALF):
     """Means against the thickness in balls, or another size."""
     with pictures.settings(STYLE):
         sheet = Sheet(width)
-        deviations = np.array([one or 0.0 for one in found.scatter])
-        means_ = np.asarray(found.means, float)
+        deviations = np.array([one or 0.0 for one in sizes.scatter])
+        means_ = np.asarray(sizes.means, float)
         every = np.concatenate([[0.0], means_ + deviations, means_ - deviations])
         axes, grid, left = value_panel(sheet, every, y_label, title, width, 1.7)
-        end = 1.05 * max(found.sizes)
+        end = 1.05 * max(sizes.sizes)
         dots = {"color": COLOURS[1], "marker": "o", "ms": 4.5, "lw": 0.9}
-        axes.errorbar(found.sizes, means_, deviations, fmt="none", ecolor=COLOURS[1], elinewidth=0.9, capsize=2.5)
-        axes.plot(found.sizes, means_, **dots)
+        axes.errorbar(sizes.sizes, means_, deviations, fmt="none", ecolor=COLOURS[1], elinewidth=0.9, capsize=2.5)
+        axes.plot(sizes.sizes, means_, **dots)
         label_axes(sheet, axes, grid, left, x_label, ticks(0, end, 6), (0, end))
         place_entries(sheet, [Entry("means; bars: one standard deviation of a run", dots)], left, left,
                       sheet.bottom + 0.05)

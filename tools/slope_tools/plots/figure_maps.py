@@ -161,27 +161,27 @@ def draw_section_line(axes, layers, size):
 
 def list_legend_entries(layers):
     """What the lines over a map are."""
-    found = []
+    entries = []
     if layers.release is not None and layers.release.any():
-        found.append(Entry("released mass", RELEASE_LINE))
+        entries.append(Entry("released mass", RELEASE_LINE))
     if layers.road is not None:
-        found.append(Entry("road", {"color": ROAD, "lw": 1.1}))
+        entries.append(Entry("road", {"color": ROAD, "lw": 1.1}))
     if layers.walls:
-        found.append(Entry("structure", WALL))
+        entries.append(Entry("structure", WALL))
     if layers.lines:
-        found.append(Entry("control line", LINE))
+        entries.append(Entry("control line", LINE))
     if layers.mapped is not None:
-        found.append(Entry("mapped deposit", MAPPED))
+        entries.append(Entry("mapped deposit", MAPPED))
     if layers.zones:
-        found.append(Entry("zone of the ground", ZONE))
+        entries.append(Entry("zone of the ground", ZONE))
     if layers.exceeded:
-        found += layers.exceeded.entries()
+        entries += layers.exceeded.entries()
     if len(layers.reach.path):
-        found.append(Entry("fall path", PATH))
-    found += entries_of_marks({mark.share for mark in layers.reach.marks})
+        entries.append(Entry("fall path", PATH))
+    entries += entries_of_marks({mark.share for mark in layers.reach.marks})
     if layers.section is not None:
-        found.append(Entry("section A-A'", SECTION_LINE))
-    return [*found, Entry(f"contours every {layers.interval:g} m", {"color": "#333333", "lw": 0.5})]
+        entries.append(Entry("section A-A'", SECTION_LINE))
+    return [*entries, Entry(f"contours every {layers.interval:g} m", {"color": "#333333", "lw": 0.5})]
 
 
 def entries_of_marks(shares):

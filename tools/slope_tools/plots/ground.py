@@ -26,26 +26,26 @@ class Ground:
     """
 
     def __init__(self, data):
-        one = data.result
-        self.raster, self.base, self.cell = one.deposit.raster, one.deposit.base, one.deposit.cell
+        run = data.result
+        self.raster, self.base, self.cell = run.deposit.raster, run.deposit.base, run.deposit.cell
         rows, columns = self.base.shape
         self.x, self.y = self.raster.transform * np.meshgrid(np.arange(columns) + 0.5, np.arange(rows) + 0.5)
-        self.before, self.slip_depth = scar.before(self.raster, self.base, one.terrain_path)
-        self.arrival, self.max_thickness = one.raster("arrival"), one.raster("max_thickness")
-        self.max_speed = one.raster("max_speed")
+        self.before, self.slip_depth = scar.before(self.raster, self.base, run.terrain_path)
+        self.arrival, self.max_thickness = run.raster("arrival"), run.raster("max_thickness")
+        self.max_speed = run.raster("max_speed")
         # balls larger than the cells leave holes between them
-        side = (one.summary["volume"]["released"] / one.summary["balls"]["released"]) ** (1 / 3)
+        side = (run.summary["volume"]["released"] / run.summary["balls"]["released"]) ** (1 / 3)
         self.release = closed(self.arrival == 0, math.ceil(side / self.cell / 2))
         self.touched = self.max_thickness > 0
         for other in data.drawn:
             self.touched = self.touched | (other.thickness > 0)
-        self.obstacles = obstacles.find_obstacles(one)
+        self.obstacles = obstacles.find_obstacles(run)
         named = data.study.study.body if data.study else None
         self.mapped, self.site = data.mapped, named and data.folder / named
         self.volume = data.largest_release()
         self.events = {"confined": "unknown", **(data.study.study.known if data.study else {})}
         if not self.touched.any():
-            raise SlopeError(f"{one.prefix}.max_thickness.asc", "must have a cell that the mass ever touched")
+            raise SlopeError(f"{run.prefix}.max_thickness.asc", "must have a cell that the mass ever touched")
 
     @functools.cached_property
     def known(self) -> known.Known:
@@ -78,15 +78,15 @@ class Ground:
 
     def boxes(self):
         """Local xlo, ylo, xhi, yhi of what the mass touched, and of what else is shown and not far from it."""
-        found = [geometry.extent_of(self.raster.transform, self.touched if self.mapped is None else
+        boxes = [geometry.extent_of(self.raster.transform, self.touched if self.mapped is None else
                                     self.touched | (self.mapped.share > 0))]
-        far = max(found[0][2] - found[0][0], found[0][3] - found[0][1])
-        near = geometry.box_of(self.raster).intersection(box(*found[0]).buffer(far))
+        far = max(boxes[0][2] - boxes[0][0], boxes[0][3] - boxes[0][1])
+        near = geometry.box_of(self.raster).intersection(box(*boxes[0]).buffer(far))
         for one in (*self.obstacles.footprints.values(), *map(LineString, self.obstacles.lines.values()),
                     *(LineString(mark.ends) for mark in self.reach.marks)):
             part = one.intersection(near)
-            found += [] if part.is_empty else [part.bounds]
-        return found
+            boxes += [] if part.is_empty else [part.bounds]
+        return boxes
 
     def window(self, *boxes):
         """The part of the terrain that a map shows: the boxes and some room, of a shape that is good to print."""

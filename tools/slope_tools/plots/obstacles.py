@@ -52,7 +52,7 @@ def footprint(corners: np.ndarray) -> BaseGeometry:
 
 def section_of(corners: np.ndarray, points: np.ndarray) -> np.ndarray:
     """Where the vertical plane over a line (rows of x y) cuts triangles: (k, 2, 2), ends of pieces as (s, z)."""
-    found, start = [], 0.0
+    crossings, start = [], 0.0
     for a, b in zip(points[:-1], points[1:]):
         length = float(np.hypot(*(b - a)))
         along = (b - a) / length
@@ -66,6 +66,6 @@ def section_of(corners: np.ndarray, points: np.ndarray) -> np.ndarray:
                     ends.append((s[k, i] + share * (s[k, j] - s[k, i]),
                                  corners[k, i, 2] + share * (corners[k, j, 2] - corners[k, i, 2])))
             if len(ends) == 2 and 0 <= max(one[0] for one in ends) and min(one[0] for one in ends) <= length:
-                found.append([(start + at, z) for at, z in ends])
+                crossings.append([(start + at, z) for at, z in ends])
         start += length
-    return np.array(found).reshape(-1, 2, 2)
+    return np.array(crossings).reshape(-1, 2, 2)

@@ -161,7 +161,7 @@ class Section:
         part = slice(known[0], known[-1] + 1)       # ends without ground are left out
         s, xy, base = s[part], xy[part], base[part]
         runs = []
-        for one in sorted(self.data.drawn, key=lambda one: one is not self.data.result):
+        for one in sorted(self.data.drawn, key=lambda run: run is not self.data.result):
             thickness = np.nan_to_num(along(one.thickness))
             runs.append((self.data.label(one), along(one.deposit.base) + thickness, thickness))
         return s, xy, along(self.ground.before), base, runs

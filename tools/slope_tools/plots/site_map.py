@@ -57,14 +57,14 @@ def reach_of(layers: Shown) -> known_reach.KnownReach:
 def boxes(layers: Shown) -> List:
     """The boxes of all that must be seen; parts beyond the terrain are cut off."""
     raster = layers.raster
-    found = [extent_of(one.transform, mask) for one, mask in (
+    boxes = [extent_of(one.transform, mask) for one, mask in (
         (raster, layers.depth > 0), *([(layers.reached, layers.reached.z > REACHED)] if layers.reached else []))
         if mask.any()]
-    found += [one.bounds for one in (layers.release, layers.road, layers.observed) if one is not None]
-    found += [(*one.low[:2], *one.high[:2]) for one in layers.structures]
-    found += [(*one.points.min(axis=0), *one.points.max(axis=0)) for one in layers.lines]
+    boxes += [one.bounds for one in (layers.release, layers.road, layers.observed) if one is not None]
+    boxes += [(*one.low[:2], *one.high[:2]) for one in layers.structures]
+    boxes += [(*one.points.min(axis=0), *one.points.max(axis=0)) for one in layers.lines]
     whole = extent(raster)
-    return [(*np.clip(one[:2], whole[:2], whole[2:]), *np.clip(one[2:], whole[:2], whole[2:])) for one in found]
+    return [(*np.clip(one[:2], whole[:2], whole[2:]), *np.clip(one[2:], whole[:2], whole[2:])) for one in boxes]
 
 
 def draw_outlines(axes, layers: Shown) -> List[Entry]:

@@ -23,16 +23,16 @@ def files(path) -> List[Tuple[str, bytes]]:
         data = Path(archive).read_bytes()
     except OSError as error:
         raise SlopeError(path, f"cannot be read: {error.strerror}") from None
-    found = list(unpacked(archive, data))
-    names = [name[len(archive) + 1:] for name, _ in found]
+    members = list(unpacked(archive, data))
+    names = [name[len(archive) + 1:] for name, _ in members]
     if pattern:
         pattern = pattern.removesuffix(".gz")       # which names are without
-        found = [one for one, name in zip(found, names) if any(fnmatch.fnmatch(part, pattern) for part in
-                                                               (name, PurePosixPath(name).name))]
-    if not found:
+        members = [one for one, name in zip(members, names) if any(fnmatch.fnmatch(part, pattern) for part in
+                                                                   (name, PurePosixPath(name).name))]
+    if not members:
         raise SlopeError(path, "must be files of the archive" if pattern else "an archive must hold files",
                          ", ".join(names) or "none")
-    return found
+    return members
 
 
 def unpacked(name: str, data: bytes, depth: int = 0) -> Iterator[Tuple[str, bytes]]:
@@ -43,10 +43,10 @@ def unpacked(name: str, data: bytes, depth: int = 0) -> Iterator[Tuple[str, byte
     with check_archive(name):
         if data[:4] == b"PK\3\4":
             with zipfile.ZipFile(opened) as archive:
-                for one in archive.infolist():
-                    if not one.is_dir() and not is_of_macos(one.filename):
-                        with archive.open(one) as member:
-                            yield from unpacked(f"{name}/{one.filename}", read_archive_member(name, member), depth + 1)
+                for info in archive.infolist():
+                    if not info.is_dir() and not is_of_macos(info.filename):
+                        with archive.open(info) as member:
+                            yield from unpacked(f"{name}/{info.filename}", read_archive_member(name, member), depth + 1)
         elif data[:2] == b"\x1f\x8b":
             with gzip.open(opened) as member:
                 found = unpacked(name, read_archive_member(name, member), depth + 1)

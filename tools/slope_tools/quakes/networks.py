@@ -123,14 +123,14 @@ def block(path, lines: Sequence[str], begin: int, form: Form) -> List[Component]
     if len(rows) < 2:
         raise SlopeError(place, "must hold at least two values of each component", len(rows))
     of = " at ".join(filter(None, map(said, form.place)))
-    found = []
+    numbers = []
     for column, values in zip(columns, rows.T):
         if column is None:
             check_times(path, values, dt)
         else:
-            found.append(Component(str(path), column[0], dt, column[1] * factor * values, said(form.begin), True,
-                                   of=of))
-    return found
+            numbers.append(Component(str(path), column[0], dt, column[1] * factor * values, said(form.begin), True,
+                                     of=of))
+    return numbers
 
 
 def holds_numbers(line: str) -> bool:

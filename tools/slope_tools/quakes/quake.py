@@ -52,21 +52,21 @@ def processed(components, wanted: Processing):
     return motion, steps
 
 
-def write_quake(path, motion, about):
+def write_quake(path, motion, summary):
     """All files beside, then under their names: none is half-written."""
     from . import quake_charts      # matplotlib: only once the input is known to be good
 
     head = "# acceleration of the ground for fix ground/motion: t ax ay az (s, m/s2)\n"
-    head += "".join(f"# {'; '.join(about[key])}\n" for key in ("records", "processing"))
+    head += "".join(f"# {'; '.join(summary[key])}\n" for key in ("records", "processing"))
     rows = "".join(f"{t:.9g} {x:.12g} {y:.12g} {z:.12g}\n" for t, (x, y, z) in zip(motion.t, motion.a))
     spectrum = "period,x,y,z\n" + "".join(
         f"{period:g},{x:.6g},{y:.6g},{z:.6g}\n" for period, (x, y, z) in
         zip(motions.PERIODS, np.asarray(motions.spectrum(motion)) / GAL))
     texts = {path.with_suffix(".spectrum.csv"): spectrum,
-             path.with_suffix(".yaml"): yaml.safe_dump(about, sort_keys=False), path: head + rows}
+             path.with_suffix(".yaml"): yaml.safe_dump(summary, sort_keys=False), path: head + rows}
     with disk.write_beside(path.with_suffix(".png"), *texts) as (picture, *new):
         for part, content in zip(new, texts.values()):
             part.write_text(content, encoding="utf-8")
-        title = (f"{about['peak_gal']:.4g} gal" if about["peak_gal"] > 0 else
-                 f"vertical only, {about['axes']['z']['acceleration_gal']:.4g} gal")
+        title = (f"{summary['peak_gal']:.4g} gal" if summary["peak_gal"] > 0 else
+                 f"vertical only, {summary['axes']['z']['acceleration_gal']:.4g} gal")
         quake_charts.draw_motion(picture, motion, f"{path.name}: {title}")

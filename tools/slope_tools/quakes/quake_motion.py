@@ -152,7 +152,7 @@ def duration(motion, until):
 
 def spectrum(motion, damping=DAMPING, periods=PERIODS):
     """Largest absolute acceleration (m/s2) of oscillators of these periods on each axis: (periods, 3)."""
-    found = np.empty((len(periods), 3))
+    responses = np.empty((len(periods), 3))
     for k, period in enumerate(periods):
         w = 2 * np.pi / period
         parts = max(1, int(np.ceil(POINTS * motion.dt / period)))    # the largest may come between two points
@@ -161,20 +161,20 @@ def spectrum(motion, damping=DAMPING, periods=PERIODS):
         a = np.column_stack([np.interp(fine, np.arange(len(motion.a)), values) for values in motion.a.T])
         quiet = np.zeros((int(np.ceil(0.5 * period / dt)), 3))       # or after the end
         above, below, _ = signal.cont2discrete(([2 * damping * w, w * w], [1.0, 2 * damping * w, w * w]), dt, "foh")
-        found[k] = np.abs(signal.lfilter(np.ravel(above), below, np.vstack([a, quiet]), axis=0)).max(axis=0)
-    return found
+        responses[k] = np.abs(signal.lfilter(np.ravel(above), below, np.vstack([a, quiet]), axis=0)).max(axis=0)
+    return responses
 
 
 def measures(motion):
     """The numbers that are printed: per axis, by name."""
     v, d = integrals(motion)
     until = husid(motion)
-    about = {}
+    numbers = {}
     for k, axis in enumerate(AXES):
-        about[axis] = {"acceleration_gal": float(np.abs(motion.a[:, k]).max() / GAL),
-                       "velocity": float(np.abs(v[:, k]).max()), "displacement": float(np.abs(d[:, k]).max()),
-                       "end_velocity": float(v[-1, k]), "end_displacement": float(d[-1, k]),
-                       "arias": float(until[-1, k]), "duration_5_95": duration(motion, until[:, k])}
+        numbers[axis] = {"acceleration_gal": float(np.abs(motion.a[:, k]).max() / GAL),
+                         "velocity": float(np.abs(v[:, k]).max()), "displacement": float(np.abs(d[:, k]).max()),
+                         "end_velocity": float(v[-1, k]), "end_displacement": float(d[-1, k]),
+                         "arias": float(until[-1, k]), "duration_5_95": duration(motion, until[:, k])}
     return {"points": len(motion.a), "dt": float(motion.dt), "length": float(motion.t[-1]),
             "peak_gal": peak(motion) / GAL, "arias_horizontal": float(until[-1, 0] + until[-1, 1]),
-            "duration_5_95_horizontal": duration(motion, until[:, 0] + until[:, 1]), "axes": about}
+            "duration_5_95_horizontal": duration(motion, until[:, 0] + until[:, 1]), "axes": numbers}

@@ -32,30 +32,30 @@ def read_quake_record(path, unit: Optional[str] = None) -> List[Component]:
     if len(files) == 1:
         (name, data), = files
         return read_text(name, text_of(data), unit)
-    found: List[Component] = []
+    components: List[Component] = []
     for name, data in files:
         text = text_of(data)
         if text.strip() and (not Path(path).is_file() or is_record(name, text.splitlines())):
             try:
-                found += read_text(name, text, unit)
+                components += read_text(name, text, unit)
             except NoAcceleration:
                 pass
-    records = {(one.of, one.sensor): one for one in reversed(found)}
-    if len(records) != 1 or len(found) > 3:
+    records = {(one.of, one.sensor): one for one in reversed(components)}
+    if len(records) != 1 or len(components) > 3:
         raise SlopeError(path, "an archive must hold the components of one record, or these must be named, such as "
-                         f"{' '.join(list_record_files(found)) or 'ARCHIVE/FILE'}; {FORMATS} are read",
-                         describe_components(found))
-    return found
+                         f"{' '.join(list_record_files(components)) or 'ARCHIVE/FILE'}; {FORMATS} are read",
+                         describe_components(components))
+    return components
 
 
-def list_record_files(found: Sequence[Component]) -> List[str]:
+def list_record_files(components: Sequence[Component]) -> List[str]:
     """The files of the first record of an archive."""
-    return [one.source for one in found if (one.of, one.sensor) == (found[0].of, found[0].sensor)][:3]
+    return [one.source for one in components if (one.of, one.sensor) == (components[0].of, components[0].sensor)][:3]
 
 
-def describe_components(found: Sequence[Component]) -> str:
-    records = dict.fromkeys(", ".join(filter(None, (one.of, one.sensor))) for one in found)
-    return f"{len(found)} components" + (f" of {len(records)} records: {'; '.join(records)}" if found else "")
+def describe_components(components: Sequence[Component]) -> str:
+    records = dict.fromkeys(", ".join(filter(None, (one.of, one.sensor))) for one in components)
+    return f"{len(components)} components" + (f" of {len(records)} records: {'; '.join(records)}" if components else "")
 
 
 def text_of(data: bytes) -> str:
@@ -78,19 +78,19 @@ def read_text(path, text: str, unit: Optional[str]) -> List[Component]:
         raise SlopeError(path, "must hold a record, it is empty")
     form = networks.form_of(lines)
     if lines[0].startswith("Origin Time"):
-        found = [knet(path, lines)]
+        components = [knet(path, lines)]
     elif is_at2(path, lines):
-        found = [at2(path, lines)]
+        components = [at2(path, lines)]
     elif form:
-        found = networks.read_network_record(path, lines, form)
+        components = networks.read_network_record(path, lines, form)
     else:
-        found = read_quake_table(path, lines, unit)
-    for component in found:
+        components = read_quake_table(path, lines, unit)
+    for component in components:
         most = np.abs(component.values - component.values.mean()).max()
         if most > MOST:
             raise SlopeError(path, f"the largest acceleration must be at most {MOST:g} m/s2: the unit (--unit) or "
                              "scale factor is wrong", f"{most:.6g} m/s2 ({component.name})")
-    return found
+    return components
 
 
 # --- K-NET, KiK-net ---

@@ -104,13 +104,13 @@ def body_of(wanted: Wanted) -> Body:
     else:
         area, surface, choices = from_shape(wanted, raster, geometry)
     slip = release_solve.slip_surface(area, release_solve.depths(area, surface), wanted.where)
-    found = release_solve.measures(area, slip)
+    measures = release_solve.measures(area, slip)
     names = [one.name for one in several]
     depth, numbers = release_toe.depth_of(area, slip), release_parts.within(numbers, area)
     if scar:
         doubts += release_parts.empty(depth, numbers, names, wanted.where)
-    doubts += [*warnings(choices, found, area, slip), *in_parts(depth, area.cell, numbers, names)]
-    return Body(raster, geometry, area, slip, choices, found, doubts, made)
+    doubts += [*warnings(choices, measures, area, slip), *in_parts(depth, area.cell, numbers, names)]
+    return Body(raster, geometry, area, slip, choices, measures, doubts, made)
 
 
 def polygons_in(wanted: Wanted, raster, geometry) -> List[features.Polygon]:
@@ -209,14 +209,14 @@ def check_pits(raster, geometry, wanted: Wanted) -> None:
     rim = release_area.RIM
     part = tuple(slice(max(0, one.min() - rim), one.max() + rim + 1) for one in (rows, columns))
     ground = marks.in_metres(raster.z[part])
-    found = plausible.pits(raster.z[part], float(raster.transform.a), ground)
-    if found is None:
+    pits = plausible.pits(raster.z[part], float(raster.transform.a), ground)
+    if pits is None:
         return
-    row, column = np.argwhere(found.cells)[0] + [part[0].start, part[1].start]
+    row, column = np.argwhere(pits.cells)[0] + [part[0].start, part[1].start]
     x, y = raster.transform * (column + 0.5, row + 0.5)
-    raise SlopeError(wanted.polygon, f"the ground in it must have no pits: {int(found.cells.sum())} cells of "
-                     f"{found.shown} lie {found.least:.4g} m or more {found.side} all cells beside them; "
-                     f"{plausible.suggest_pit_remedy(found, ground)} (slope terrain, site, route)",
+    raise SlopeError(wanted.polygon, f"the ground in it must have no pits: {int(pits.cells.sum())} cells of "
+                     f"{pits.shown} lie {pits.least:.4g} m or more {pits.side} all cells beside them; "
+                     f"{plausible.suggest_pit_remedy(pits, ground)} (slope terrain, site, route)",
                      f"the first at east {x + raster.offset[0]:.1f} north {y + raster.offset[1]:.1f}")
 
 
@@ -300,7 +300,7 @@ def from_each(wanted: Wanted, raster, several: List[features.Polygon], numbers: 
     return area, area.z - depth, choices, made
 
 
-def warnings(choices, found, area, slip) -> List[Finding]:
+def warnings(choices, body, area, slip) -> List[Finding]:
     """What makes the body doubtful."""
     doubts = []
     if choices.get("sagitta_m", 1) < 0:
@@ -310,7 +310,7 @@ def warnings(choices, found, area, slip) -> List[Finding]:
                                              "ground": steep}))
     if choices["shape"] == "scar":
         hollow = release_solve.hollow(area, slip)
-        if hollow > HOLLOW * found.largest_depth:
+        if hollow > HOLLOW * body.largest_depth:
             doubts.append(Finding("hollow", {"depth": hollow, "remedy": "is it the mass on top of the terrain? Then "
                                              "--scar-is height" if choices["scar_is"] == "depth" else "a smaller body, "
                                              "or a survey without what came to rest there?"}))
@@ -318,12 +318,12 @@ def warnings(choices, found, area, slip) -> List[Finding]:
         doubts.append(Finding("beyond toe", level._asdict()))
     if above := choices.get(ABOVE):
         doubts.append(Finding("above ground", {"area": above["area"], "height": above["depth"]}))
-    if found.mean_slope > CLIFF:
-        doubts.append(Finding("cliff", {"degrees": found.mean_slope, "in_feet": plausible.in_feet(found.mean_slope)}))
-    if found.cells < COARSE:
-        doubts.append(Finding("few cells", {"cells": found.cells, "cell": area.cell}))
-    if found.wall > 0.5 * found.largest_depth and choices["shape"] != "slab":
-        doubts.append(Finding("rim", {"depth": found.wall, "remedy": {
+    if body.mean_slope > CLIFF:
+        doubts.append(Finding("cliff", {"degrees": body.mean_slope, "in_feet": plausible.in_feet(body.mean_slope)}))
+    if body.cells < COARSE:
+        doubts.append(Finding("few cells", {"cells": body.cells, "cell": area.cell}))
+    if body.wall > 0.5 * body.largest_depth and choices["shape"] != "slab":
+        doubts.append(Finding("rim", {"depth": body.wall, "remedy": {
             "sphere": "a wider polygon, or --shape ellipsoid?",
             "scar": "does the raster, or the polygon, end in the middle of the scar?"}.get(
                 choices["shape"], "is the polygon large enough?")}))
@@ -338,7 +338,7 @@ def in_parts(depth: np.ndarray, cell: float, numbers: np.ndarray, names: List[st
 
     numbers: of each node its polygon, from 1.
     """
-    said = []
+    words = []
     for number, name in enumerate(names, 1):
         body = np.where(numbers == number, depth, 0.0)
         parts, count = label(body > 0, np.ones((3, 3)))
@@ -347,11 +347,11 @@ def in_parts(depth: np.ndarray, cell: float, numbers: np.ndarray, names: List[st
         if len(large) < 2:
             continue
         shown, rest = large[:LISTED], volumes[len(large[:LISTED]):]
-        said.append(Finding("parts", {
+        words.append(Finding("parts", {
             "parts": len(large), "volumes": " and ".join(map(rounded, shown)),
             "rest": f", and {rounded(rest.sum())} m3 in {len(rest)} smaller ones" * bool(len(rest))},
             part=name if len(names) > 1 else ""))
-    return said
+    return words
 
 
 def no_way_out(choices, area) -> Optional[float]:
@@ -363,7 +363,7 @@ def no_way_out(choices, area) -> Optional[float]:
 
 def describe_body(body: Body) -> str:
     """What the user needs to know of the body before anything is written."""
-    choices, found, cell = body.choices, body.measures, body.area.cell
+    choices, measures, cell = body.choices, body.measures, body.area.cell
     shape = choices["shape"]
     if shape == "scar":
         what = f"scar of {choices['scar']} ({choices['scar_is']})"
@@ -389,7 +389,7 @@ def describe_body(body: Body) -> str:
                 f"{'below' if sagitta > 0 else 'above'} its chord of {choices['chord_m']:.4g} m{wide}"
                 f"{release_dip.describe_dip(choices) if 'dip_m' in choices else ''}")
     return (f"{what}\n"
-            f"volume {rounded(found.volume)} m3, largest depth {found.largest_depth:.4g} m, mean depth "
-            f"{found.mean_depth:.4g} m, area {rounded(found.area)} m2 ({found.cells} cells of {cell:g} m)\n"
-            f"mean slope {found.mean_slope:.1f} degrees, of the slip surface {found.slip_slope:.1f}, towards "
-            f"{found.bearing:.0f} degrees from north; ground at {found.lowest:.1f} to {found.highest:.1f} m")
+            f"volume {rounded(measures.volume)} m3, largest depth {measures.largest_depth:.4g} m, mean depth "
+            f"{measures.mean_depth:.4g} m, area {rounded(measures.area)} m2 ({measures.cells} cells of {cell:g} m)\n"
+            f"mean slope {measures.mean_slope:.1f} degrees, of the slip surface {measures.slip_slope:.1f}, towards "
+            f"{measures.bearing:.0f} degrees from north; ground at {measures.lowest:.1f} to {measures.highest:.1f} m")

@@ -52,11 +52,11 @@ def ground_without(raster: Raster, area: Area, slip: np.ndarray) -> np.ndarray:
     return whole
 
 
-def write_release_files(name: Path, terrain: str, raster: Raster, area: Area, slip: np.ndarray, about: dict, geometry,
+def write_release_files(name: Path, terrain: str, raster: Raster, area: Area, slip: np.ndarray, summary: dict, geometry,
                         title: str) -> None:
     """Write all files of a body beside their names and then rename them.
 
-    slip: the ground without the body (m) on the nodes of the area; about: what NAME.yaml says; geometry: the release
+    slip: the ground without the body (m) on the nodes of the area; summary: what NAME.yaml says; geometry: the release
     polygon or None.
     """
     from . import release_chart     # matplotlib: only once the body is there
@@ -70,7 +70,7 @@ def write_release_files(name: Path, terrain: str, raster: Raster, area: Area, sl
         rasters.write_asc_local(made[".slip.asc"], raster._replace(z=whole), sidecar, exact=True)
         rasters.write_asc_local(made[".depth.asc"], raster._replace(z=depth), sidecar, exact=True)
         release_chart.draw_release(made[".png"], raster, area, slip, geometry, title)
-        write_yaml(made[".yaml"], about, "slope release: lengths in m, local x y, volumes in m3, angles in degrees")
+        write_yaml(made[".yaml"], summary, "slope release: lengths in m, local x y, volumes in m3, angles in degrees")
         made[".deck.txt"].write_text(release_deck.make_deck_lines(deck_body(name, terrain, raster, area, slip)),
                                      encoding="utf-8")
 

@@ -66,35 +66,35 @@ def within(numbers: np.ndarray, area: Area) -> np.ndarray:
 
 def depths(area: Area, numbers: np.ndarray, several: List[Polygon], shape: str, size: Size, where: str):
     """Depth (m) on the nodes of an area, and the Made of each polygon; numbers: see numbered(), of the area's nodes."""
-    total, found, made = int((numbers > 0).sum()), np.zeros(area.z.shape), []
-    for number, one in enumerate(several, 1):
+    total, deep, made = int((numbers > 0).sum()), np.zeros(area.z.shape), []
+    for number, made_part in enumerate(several, 1):
         inside = numbers == number
         cells = int(inside.sum())
-        asked = None if size.volume is not None or size.curvature is not None else one.depth or size.depth
-        attribute = one.attribute if asked is not None and one.depth else ""
+        asked = None if size.volume is not None or size.curvature is not None else made_part.depth or size.depth
+        attribute = made_part.attribute if asked is not None and made_part.depth else ""
         if not cells:
-            made.append(Made(one.name, 0, 0, 0.0, 0.0, 0.0, asked, attribute, None))
+            made.append(Made(made_part.name, 0, 0, 0.0, 0.0, 0.0, asked, attribute, None))
             continue
         part, place = release_area.part_of(area, inside)
         alone = len(several) == 1
         if cells >= release_area.FEWEST:
-            release_area.require_slope(part, where if alone else f"{where}: {one.name}")
+            release_area.require_slope(part, where if alone else f"{where}: {made_part.name}")
         volume = size.volume and size.volume * cells / total
-        called = f"{where}: {one.name}: {attribute}" if attribute else \
+        called = f"{where}: {made_part.name}: {attribute}" if attribute else \
             size.called("volume" if volume else "depth" if asked else "curvature") + (
-                "" if alone else f" in {one.name}")
+                "" if alone else f" in {made_part.name}")
         curvature = None
         if shape == "slbl":
             curvature, depth = base_level(part, asked, volume, size.curvature, called)
         else:
             even = asked if asked is not None else (volume or 0.0) / (cells * area.cell ** 2)
             depth = np.where(part.inside, even, 0.0)
-        found[place] += depth
+        deep[place] += depth
         taken = depth >= release_solve.THINNEST
-        made.append(Made(one.name, cells, int(taken.sum()), release_solve.compute_volume(depth, area.cell),
+        made.append(Made(made_part.name, cells, int(taken.sum()), release_solve.compute_volume(depth, area.cell),
                          float(depth.max()),
                          float(depth[taken].mean()) if taken.any() else 0.0, asked, attribute, curvature))
-    return found, made
+    return deep, made
 
 
 def base_level(part: Area, depth: Optional[float], volume: Optional[float], curvature: Optional[float],
@@ -131,22 +131,23 @@ def empty(depth: np.ndarray, numbers: np.ndarray, names: List[str], where: str) 
 def warnings(made: List[Made], shape: str, where: str) -> List[Finding]:
     """The polygons in which nothing, or little, is released."""
     doubts, several = [], len(made) > 1
-    for one in made:
-        curvature = one.curvature or 0.0
-        if not one.taken:
-            doubts.append(Finding("no body", {"polygon": f"{where}: {one.name}", "why": (
-                "no slip surface of this curvature lies below its ground" if one.cells else
+    for made_part in made:
+        curvature = made_part.curvature or 0.0
+        if not made_part.taken:
+            doubts.append(Finding("no body", {"polygon": f"{where}: {made_part.name}", "why": (
+                "no slip surface of this curvature lies below its ground" if made_part.cells else
                 "no centre of a cell of the terrain is its own: it is small, beside the terrain or in a deeper one")}))
-        elif shape == "slbl" and (curvature < 0 or one.share < LITTLE):
+        elif shape == "slbl" and (curvature < 0 or made_part.share < LITTLE):
             doubts.append(Finding("little", {"form": f"bulges (curvature {curvature:.3g} /m) and " * (curvature < 0),
-                                             "percent": 100 * one.share, "depth": one.mean, "name": one.name},
-                                  part=one.name if several else ""))
+                                             "percent": 100 * made_part.share, "depth": made_part.mean,
+                                             "name": made_part.name},
+                                  part=made_part.name if several else ""))
     return doubts
 
 
 def describe_parts(made: List[Made], cell: float) -> str:
     """What is released in each of several polygons, a line each."""
-    shown = sorted(made, key=lambda one: one.taken)[:LISTED] if len(made) > LISTED else made
+    shown = sorted(made, key=lambda part: part.taken)[:LISTED] if len(made) > LISTED else made
     lines = [f"{one.name}: volume {rounded(one.volume)} m3, up to {one.largest:.4g} m deep"
              + f" (its {one.attribute})" * bool(one.attribute) + f", on {rounded(one.taken * cell ** 2)} of "
              f"{rounded(one.cells * cell ** 2)} m2" for one in shown]

@@ -62,11 +62,11 @@ def solved(area: Area, shape: Shape, wanted: float, measure: Callable[[np.ndarra
         return measure(find(number)) - wanted
 
     tried = np.array([shape.least, shape.most]) if shape.steady else np.linspace(shape.least, shape.most, LOOKS)
-    found = np.array([miss(number) for number in tried])
-    rises = np.flatnonzero((found[:-1] <= 0) & (found[1:] >= 0))
-    if not len(rises) and found.max() < 0:
-        what = shape.limit if np.argmax(found) == len(found) - 1 else f"the largest {shape.name}"
-        raise SlopeError(called, f"must be at most {at_most(found.max() + wanted)} {unit}, that of {what} within the "
+    misses = np.array([miss(number) for number in tried])
+    rises = np.flatnonzero((misses[:-1] <= 0) & (misses[1:] >= 0))
+    if not len(rises) and misses.max() < 0:
+        what = shape.limit if np.argmax(misses) == len(misses) - 1 else f"the largest {shape.name}"
+        raise SlopeError(called, f"must be at most {at_most(misses.max() + wanted)} {unit}, that of {what} within the "
                          f"release polygon: take a larger polygon or another shape", f"{wanted:.10g}")
     if not len(rises):
         why = (f"that of the smallest {shape.name} within the release polygon: take "
@@ -74,7 +74,7 @@ def solved(area: Area, shape: Shape, wanted: float, measure: Callable[[np.ndarra
         if "toe" in shape.about and "shoulder" in shape.about:
             why = ("as the ground in the release polygon bulges above the line from toe to shoulder, so that no "
                    f"smaller {shape.name} goes through both: take {SHALLOW}a smaller polygon")
-        raise SlopeError(called, f"must be at least {at_least(found.min() + wanted)} {unit}, {why}", f"{wanted:.10g}")
+        raise SlopeError(called, f"must be at least {at_least(misses.min() + wanted)} {unit}, {why}", f"{wanted:.10g}")
     low, high = tried[rises[-1]], tried[rises[-1] + 1]
     close = EXACT * max(abs(low), abs(high))
     number = float(brentq(miss, low, high, xtol=close, rtol=1e-14))
@@ -99,12 +99,12 @@ def part_way(below: np.ndarray, above: np.ndarray, wanted: float, measure: Calla
 
 def to_depth(area: Area, shape: Shape, depth: float, called="--depth") -> Tuple[float, np.ndarray]:
     """The free number of a shape whose largest depth (m, vertical) is given, and the depths."""
-    return solved(area, shape, depth, lambda found: float(found.max()), called, "m")
+    return solved(area, shape, depth, lambda depth: float(depth.max()), called, "m")
 
 
 def to_volume(area: Area, shape: Shape, wanted: float, called="--volume") -> Tuple[float, np.ndarray]:
     """The free number of a shape whose volume (m3) is given, and the depths."""
-    return solved(area, shape, wanted, lambda found: compute_volume(found, area.cell), called, "m3")
+    return solved(area, shape, wanted, lambda depth: compute_volume(depth, area.cell), called, "m3")
 
 
 def slip_surface(area: Area, depth: np.ndarray, where: str) -> np.ndarray:

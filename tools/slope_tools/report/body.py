@@ -29,18 +29,18 @@ class Body(NamedTuple):
 def of_data(data: Data, ground) -> Body:
     """The body of a data.Data on its ground.Ground: by the site's file where there is one, else by the rasters."""
     site = data.site
-    found = (site.get("found") or {}).get("body") or {}
+    entry = (site.get("found") or {}).get("body") or {}
     release = site.get("release") or {}
     mask = ground.slip_depth > LEAST
-    area = found.get("area") or (float(mask.sum()) * ground.cell ** 2 if mask.any() else None)
-    depth = found.get("largest_depth") or (float(ground.slip_depth.max()) if mask.any() else None)
+    area = entry.get("area") or (float(mask.sum()) * ground.cell ** 2 if mask.any() else None)
+    depth = entry.get("largest_depth") or (float(ground.slip_depth.max()) if mask.any() else None)
     shape = SHAPES.get(release.get("shape") or "",
                        "a slip surface from a raster" if release.get("scar") else "a given slip surface")
     crs = ground.raster.crs
     ball, factor = data.result.log.density, data.result.summary["bulk_factor"]
     given = (site.get("model") or {}).get("density")     # a run has that of its own balls, a lattice cut off at the rim
     density = given / packing.BULK if given else ball and ball / factor
-    return Body(data.largest_release(), area, depth, found.get("mean_slope"), shape, density,
+    return Body(data.largest_release(), area, depth, entry.get("mean_slope"), shape, density,
                 crs_name(crs) if crs is not None else None, is_assigned(site), release.get("polygon"))
 
 
@@ -52,13 +52,13 @@ def is_assigned(site: Dict[str, Any]) -> bool:
 
 def sentence(body: Body) -> str:
     """It, for a client."""
-    about = [f"{format_released_volume(body.volume)} of ground would come down"]
+    words = [f"{format_released_volume(body.volume)} of ground would come down"]
     if body.depth and body.area:
-        about.append(f", up to {digits.three(body.depth)} m deep and of {digits.three(body.area)} m² in plan")
-    about.append(f", above {body.shape}")
+        words.append(f", up to {digits.three(body.depth)} m deep and of {digits.three(body.area)} m² in plan")
+    words.append(f", above {body.shape}")
     if body.slope is not None:
-        about.append(f", on ground of {body.slope:.0f} degrees on average")
-    text = "".join(about) + "."
+        words.append(f", on ground of {body.slope:.0f} degrees on average")
+    text = "".join(words) + "."
     if body.density:
         text += f" Its bulk density is {format_whole(body.density)} kg/m³."
     if body.crs:

@@ -156,10 +156,10 @@ def chance_text(clear):
 def differences(data: Data, numbers: Numbers):
     """Sentences on what the variables do to the conservative volume, against chance."""
     best = data.study.conservative if data.study else None
-    found = []
+    bars = []
     for entry in best.differences if best else ():
         if entry.by_m3 == 0:
-            found.append(f"{entry.variable}: the means of all its values are the same, so that there is no trend.")
+            bars.append(f"{entry.variable}: the means of all its values are the same, so that there is no trend.")
             continue
         by = numbers(f"difference over {entry.variable}", "m3", entry.by_m3)
         text = (f"{entry.variable}: the means at {entry.smallest_at} and {entry.largest_at} (the largest) "
@@ -170,5 +170,5 @@ def differences(data: Data, numbers: Numbers):
             chance = numbers(f"chance over {entry.variable}", "m3", entry.chance_m3)
             text += f", {'more than' if entry.clear else 'within'} chance ({chance} m3)"
             text += "" if entry.clear else ": no trend"
-        found.append(text + ".")
-    return found
+        bars.append(text + ".")
+    return bars

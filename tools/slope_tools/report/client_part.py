@@ -17,21 +17,21 @@ from .numbers import MainCard, Numbers
 from .sections import Pairs
 
 
-def make_client_content(data: Data, ground, numbers: Numbers, answers: Sequence[Optional[MainCard]], found,
+def make_client_content(data: Data, ground, numbers: Numbers, answers: Sequence[Optional[MainCard]], findings,
                         listed: int) -> Dict[str, Any]:
     """What the template takes; answers: those of the study, the first that there is counts where there is no headline;
-    found: all findings; listed: how many warnings the appendix has.
+    findings: all findings; listed: how many warnings the appendix has.
     """
-    one = letter_of(data, ground)
+    letter_ = letter_of(data, ground)
     main = next((card for card in answers if card), None)
-    said = letter_words.say(one, numbers)._replace(down=body.sentence(body.of_data(data, ground)))
-    step, kind = choose_next_step(data), one.number.kind if one.number else Kind.NUMBER.value
-    if not one.number and main:     # of an ensemble that no known events weigh
-        said = said._replace(clear=of_card(main))
+    paragraphs = letter_words.say(letter_, numbers)._replace(down=body.sentence(body.of_data(data, ground)))
+    step, kind = choose_next_step(data), letter_.number.kind if letter_.number else Kind.NUMBER.value
+    if not letter_.number and main:     # of an ensemble that no known events weigh
+        paragraphs = paragraphs._replace(clear=of_card(main))
         if main.withheld:
             kind, step = Kind.WITHHELD.value, next_step.first_remedy(next_step.Made(data.of_study, data.folder))
-    return {"letter": said, "kind": kind, "step": step, "table": tabulate_ranges(data, ground, numbers, kind),
-            "caveats": warnings.first_page(unsaid(one, found))[:warnings.MOST], "rest": warnings.rest_of(listed)}
+    return {"letter": paragraphs, "kind": kind, "step": step, "table": tabulate_ranges(data, ground, numbers, kind),
+            "caveats": warnings.first_page(unsaid(letter_, findings))[:warnings.MOST], "rest": warnings.rest_of(listed)}
 
 
 def letter_of(data: Data, ground) -> Letter:
@@ -43,9 +43,9 @@ def letter_of(data: Data, ground) -> Letter:
                   [one.kind for one in judged.limits(None, False)], sizes.alone(row.released_m3 / row.ball_m3))
 
 
-def unsaid(one: Letter, found: Sequence[Finding]) -> List[Finding]:
+def unsaid(letter_: Letter, findings: Sequence[Finding]) -> List[Finding]:
     """The findings without what the letter says already."""
-    return [each for each in found if each.kind not in one.lacks]
+    return [each for each in findings if each.kind not in letter_.lacks]
 
 
 def choose_next_step(data: Data) -> Optional[next_step.Step]:
@@ -83,15 +83,15 @@ def on_road(data: Data, numbers: Numbers) -> List[Tuple[str, str]]:
     """What lies on the road, where there is one."""
     if data.road is None:
         return []
-    found = [("on the road itself", span(numbers, "remove_on_road_m3", [row.value("remove_on_road_m3")
-                                                                        for row in data.finished]))]
+    rows = [("on the road itself", span(numbers, "remove_on_road_m3", [row.value("remove_on_road_m3")
+                                                                       for row in data.finished]))]
     blocked = [row.at_road.blocked_m for row in data.finished if row.road]
     beyond = [past for row in data.finished if row.road and (past := row.road.beyond_road_m3) is not None]
     for what, key, values in (("length of it that is blocked", "blocked_m", blocked),
                               ("comes to lie beyond it", "beyond_road_m3", beyond)):
         if values and max(values) > 0:
-            found.append((what, span(numbers, key, values)))
-    return found
+            rows.append((what, span(numbers, key, values)))
+    return rows
 
 
 def moving(data: Data, numbers: Numbers) -> List[Tuple[str, str]]:

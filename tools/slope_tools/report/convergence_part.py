@@ -48,7 +48,7 @@ class Sizes:
 
     def pictures(self):
         """A chart for each quantity."""
-        found = []
+        pictures = []
         for entry in self.entries.values():
             what, unit, sizes = entry["name"], entry["unit"], entry["sizes"]
             thick = all(size["balls_thick"] is not None for size in sizes)
@@ -56,13 +56,13 @@ class Sizes:
             title = f"{what[0].upper()}{what[1:]} against the {'size of the balls' if thick else self.variable}"
             one = Convergence([size["balls_thick" if thick else "value"] for size in sizes],
                               [size["mean"] for size in sizes], [size["scatter"] for size in sizes])
-            found.append(Picture(figure_charts.convergence(one, label, f"{what} ({unit})", title), title,
-                                 f"{title}; {self.runs} runs of {self.deck}."))
-        return found
+            pictures.append(Picture(figure_charts.convergence(one, label, f"{what} ({unit})", title), title,
+                                    f"{title}; {self.runs} runs of {self.deck}."))
+        return pictures
 
     def rows(self, numbers: Numbers):
         """Of the table: quantity, the mean at each size, whether it is resolved."""
-        found: List[List[Any]] = []
+        rows: List[List[Any]] = []
         for entry in self.entries.values():
             texts = []
             for size in entry["sizes"]:
@@ -72,6 +72,6 @@ class Sizes:
                                      size["mean"]))
                 thick = size["balls_thick"]
                 texts.append(f"{size['value']:g}{f' ({thick:.1f} balls thick)' if thick is not None else ''}: {text}")
-            found.append([Cell(entry["name"], entry["unit"]), "; ".join(texts),
-                          "yes" if entry["resolved"] else marked("no", "status doubt")])
-        return found
+            rows.append([Cell(entry["name"], entry["unit"]), "; ".join(texts),
+                         "yes" if entry["resolved"] else marked("no", "status doubt")])
+        return rows

@@ -69,9 +69,9 @@ def find_deck(result):
     return decks[0] if len(decks) == 1 and decks[0].is_file() else None
 
 
-def same_grid(one, other):
-    return (one.thickness.shape == other.thickness.shape
-            and one.deposit.raster.transform.almost_equals(other.deposit.raster.transform))
+def same_grid(raster, other):
+    return (raster.thickness.shape == other.thickness.shape
+            and raster.deposit.raster.transform.almost_equals(other.deposit.raster.transform))
 
 
 class Data:
@@ -109,8 +109,8 @@ class Data:
         self.study = self.study or load_study(path)
         self.rows = self.study.runs
         self.finished = finished_of(self.rows)
-        about = self.study.study
-        self.settings, self.repeats = about.set, about.repeat
+        study = self.study.study
+        self.settings, self.repeats = study.set, study.repeat
         names = [row.run for row in self.finished]
         shown = shown or named_run.governing(self.study)
         if shown not in names:
@@ -119,7 +119,7 @@ class Data:
         drawn = [self.result if name == shown else self._load(self.finished[names.index(name)])
                  for name in self._beside(shown)]
         self.drawn = [one for one in drawn if same_grid(one, self.result)]
-        road = about.road
+        road = study.road
         if road:
             from ..survey import roads
             given = roads.read_local(self.folder / str(road["local"]), self.result.deposit.raster, roads.Asked.of(road),
@@ -158,17 +158,17 @@ class Data:
         return quantities.volume_folder(self.of_study.study.the_road.get("name") or "")
 
     def _removed(self):
-        found = []
+        volumes = []
         raster = self.result.deposit.raster
         for name in ("volume.tif", "volume_mesh.tif"):
             one = rasters.read_raster(self.result.folder / self._volume() / name, heights=False)
             east, north = raster.offset     # the files are in the CRS
-            found.append(one._replace(transform=Affine.translation(-east, -north) * one.transform,
-                                      z=np.nan_to_num(one.z)))
-        if found[0].z.shape != raster.z.shape:
+            volumes.append(one._replace(transform=Affine.translation(-east, -north) * one.transform,
+                                        z=np.nan_to_num(one.z)))
+        if volumes[0].z.shape != raster.z.shape:
             raise SlopeError(self.result.folder / self._volume() / "volume.tif",
                              f"must have the grid of {self.result.prefix}.thickness.asc")
-        return found[0].z, found[1]
+        return volumes[0].z, volumes[1]
 
     @property
     def of_study(self) -> study_types.Study:
@@ -248,9 +248,9 @@ class Data:
         """The number of a run of a study in the report, from 1."""
         return next(k for k, row in enumerate(self.rows, 1) if row.run == name)
 
-    def label(self, one):
+    def label(self, run):
         """A short name of a run: the values that differ in the study."""
-        return self.label_of(one.row) if self.study else one.name
+        return self.label_of(run.row) if self.study else run.name
 
     def label_of(self, row):
         repeat = [f"{name} {value}" for name, value in row.repeat.items()]

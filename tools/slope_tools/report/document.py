@@ -80,18 +80,18 @@ def write_report(asked: Asked, output: Path, made_of: Optional[str] = None) -> L
 
 def digest_of(asked: Asked, study: study_types.Study) -> str:
     """Of the page that is asked for on a study: what its runs say, their files, the site, and these tools."""
-    about = study_file.encode_study(study)
-    about["study"] = {key: value for key, value in about["study"].items() if key not in BESIDE}
+    study_entries = study_file.encode_study(study)
+    study_entries["study"] = {key: value for key, value in study_entries["study"].items() if key not in BESIDE}
     site = site_file(asked.folder)
     # however its folder is named on the command line
     film = asked.film.name if asked.film else None
-    found = {"asked": {**asked._asdict(), "study": None, "site": None, "folder": mark(asked.folder), "film": film},
-             "about": about,
+    parts = {"asked": {**asked._asdict(), "study": None, "site": None, "folder": mark(asked.folder), "film": film},
+             "about": study_entries,
              "site": asked.site if asked.site is not None else site and disk.sha256(site),
              "runs": {row.run: run_folders.state(run_folders.summary_of(asked.folder, row.summary).parent)
                       for row in finished_of(study.runs)},
              "film": str(shutil.which("ffmpeg")) if asked.film else ""}
-    return kept.digest(found)
+    return kept.digest(parts)
 
 
 def is_made_of(page: Path, made_of: str) -> bool:

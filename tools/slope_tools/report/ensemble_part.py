@@ -47,8 +47,8 @@ def sections(data: Data, numbers: Numbers, maps) -> List[Section]:
 class Ensemble:
     """Of a data.Data whose study is an ensemble, about; numbers writes and keeps them."""
 
-    def __init__(self, data: Data, numbers: Numbers, about: ensemble_types.Ensemble):
-        self.data, self.numbers, self.about = data, numbers, about
+    def __init__(self, data: Data, numbers: Numbers, ensemble_: ensemble_types.Ensemble):
+        self.data, self.numbers, self.about = data, numbers, ensemble_
         self.of = self.about.of
         self.entry = self.about.quantities.get(self.of) if self.of else None
 
@@ -93,18 +93,18 @@ class Ensemble:
 
     def indices(self) -> List[Picture]:
         """A chart for each quantity whose emulator says something, the one that counts first, three at most."""
-        found: List[Picture] = []
+        pictures: List[Picture] = []
         for name, entry in self.about.influence.items():
             variables = entry.variables
-            if len(found) == 3 or any(one.total is None for one in variables.values()):
+            if len(pictures) == 3 or any(one.total is None for one in variables.values()):
                 continue
             what = self.about.quantities[name].name
             bars = [ensemble_charts.Bar(key, one.first or 0.0, one.first_error or 0.0, one.total or 0.0,
                                         one.total_error or 0.0) for key, one in variables.items()]
             title = f"What matters: {what}"
-            found.append(Picture(ensemble_charts.influence(bars, title), title,
-                                 f"Sobol indices for {what}, with the error of the total ones; {entry.text}."))
-        return found
+            pictures.append(Picture(ensemble_charts.influence(bars, title), title,
+                                    f"Sobol indices for {what}, with the error of the total ones; {entry.text}."))
+        return pictures
 
     def scatter(self):
         """The quantity that counts against each variable, those first on which it depends most."""
@@ -112,7 +112,7 @@ class Ensemble:
             return []
         variables = self.about.influence[self.of].variables
         names = sorted(variables, key=lambda name: -abs(variables[name].total or variables[name].rank))
-        found = []
+        pictures = []
         for name in names[:MOST_SCATTER]:
             rows = self.data.finished
             if not all(is_number_text(row.set[name]) for row in rows):
@@ -121,22 +121,22 @@ class Ensemble:
             title = f"{what[0].upper()}{what[1:]} against {name}"
             uri = ensemble_charts.against([float(row.set[name]) for row in rows], [row.value(self.of) for row in rows],
                                           AXIS.get(name, name), f"{what} ({self.entry.unit})", title)
-            found.append(Picture(uri, title, f"{title}: a dot for each run; rank correlation "
-                                             f"{variables[name].rank:+.2f}."))
-        return found
+            pictures.append(Picture(uri, title, f"{title}: a dot for each run; rank correlation "
+                                                f"{variables[name].rank:+.2f}."))
+        return pictures
 
     def table(self):
         """Of the quantities: quantiles, and the variables' indices."""
         names, rows = list(self.about.design.variables), []
         for name, entry in self.about.quantities.items():
-            found = self.about.influence.get(name)
+            influence = self.about.influence.get(name)
             cells = [quantities.format_quantity(one.value) for one in entry.quantiles]
             of_variables = []
             for key in names:
-                one = found and found.variables[key]
+                one = influence and influence.variables[key]
                 of_variables.append("" if not one else f"rank {one.rank:+.2f}" if one.total is None else
                                     indices_text(one))
-            check = found and found.emulator
+            check = influence and influence.emulator
             explains = Cell(f"{100 * max(0, check.explained):.0f} %",
                             style="" if check.verdict == "good" else "doubt") if check else ""
             rows.append([Cell(entry.name, entry.unit), *cells, *of_variables, explains])
@@ -157,15 +157,15 @@ class KnownEvents:
         self.entry = self.about.quantities.get(self.of) if self.about and self.of else None
 
     def section(self, maps) -> Section:
-        about = self.about
-        lines = [*([known_events.summarise_weights(about)] if about else []),
+        weighted = self.about
+        lines = [*([known_events.summarise_weights(weighted)] if weighted else []),
                  *texts(self.known.doubts if self.known else ())]
         blocks: List[Any] = [Text(f"{text[0].upper()}{text[1:]}.") for text in lines]
-        if about:
+        if weighted:
             curve = self.curve()
             blocks += [*([Figures([curve], "two-thirds")] if curve else []), *self.tables()]
         return Section("known-events", "Weighted by known events", [
-            *blocks, Figures(draw_ensemble_maps(self.data, about.maps, maps) if about else [], "columns")])
+            *blocks, Figures(draw_ensemble_maps(self.data, weighted.maps, maps) if weighted else [], "columns")])
 
     def number(self, what: str, unit: str, value: Optional[float]) -> str:
         return "unknown" if value is None else self.numbers(f"known events: {what}", unit, value)
@@ -213,11 +213,11 @@ class KnownEvents:
                   ["parameter", "5 %", "50 %", "95 %", "rank", "indices"], rows)]
 
 
-def cell_of(one: entries.KnownQuantile) -> str:
+def cell_of(quantile: entries.KnownQuantile) -> str:
     """A quantile in a table."""
-    if one.value is None:
+    if quantile.value is None:
         return "?"
-    return " to ".join(map(quantities.format_quantity, one.gap or [one.value]))
+    return " to ".join(map(quantities.format_quantity, quantile.gap or [quantile.value]))
 
 
 # --- of both ---
@@ -225,15 +225,15 @@ def cell_of(one: entries.KnownQuantile) -> str:
 def card(entry: Any, whose: str, confidence: float, number: Callable[[str, str, Any], str], note: str) -> MainCard:
     """The card of the quantiles of a quantity; whose share stays within; number: writes and keeps one."""
     parts, unit = [], entry.unit
-    for one in entry.quantiles:
-        share = f"{100 * one.share:g} % of {whose} stay within"
+    for quantile in entry.quantiles:
+        share = f"{100 * quantile.share:g} % of {whose} stay within"
         bounds = [None if side is None else number(f"{share}, {name}", unit, side)
-                  for name, side in (("low", one.low), ("high", one.high))]
-        gap = getattr(one, "gap", None)
-        value = number(share, unit, one.value) if not gap else " to ".join(number(
+                  for name, side in (("low", quantile.low), ("high", quantile.high))]
+        gap = getattr(quantile, "gap", None)
+        value = number(share, unit, quantile.value) if not gap else " to ".join(number(
             f"{share}, {end} of the gap where no run ends", unit, side) for end, side in zip(("begin", "end"), gap))
         parts.append(CardPart(value, share, f"{IN_GAP} " * bool(gap) + band(bounds, unit, confidence),
-                              unit="" if one.value is None else unit))
+                              unit="" if quantile.value is None else unit))
     shown = next((part for part, one in zip(parts, entry.quantiles) if one.share == 0.9), parts[-1])
     return MainCard(f"{entry.name[0].upper()}{entry.name[1:]}: 90 % of {whose} stay within", shown.number,
                     shown.unit or "", parts, band=shown.note, note=note)
@@ -291,7 +291,7 @@ def exceeded(data: Data) -> Optional[figure_maps.Exceeded]:
     shown_maps = [one for one in maps if one["raster"] == "thickness" and one.get("threshold")]
     if not shown_maps or len(data.finished) < 1 / min(figure_maps.OUTLINES):
         return None
-    least = min(shown_maps, key=lambda one: one["threshold"])
+    least = min(shown_maps, key=lambda entry: entry["threshold"])
     whom = "known events" if known else "runs"
     return figure_maps.Exceeded(data.read_map(least["file"]), whom, least["threshold"],
                                 *((known.far, known.short) if known else ()))
@@ -318,6 +318,6 @@ def draw_ensemble_maps(data: Data, several: Sequence[study_types.MapEntry], maps
     return pictures
 
 
-def indices_text(one: entries.Influence) -> str:
+def indices_text(influence: entries.Influence) -> str:
     """First and total Sobol index of a variable that has them, with the error of the latter."""
-    return f"{one.first:.2f} / {one.total:.2f} \N{PLUS-MINUS SIGN} {one.total_error:.2f}"
+    return f"{influence.first:.2f} / {influence.total:.2f} \N{PLUS-MINUS SIGN} {influence.total_error:.2f}"

@@ -81,25 +81,25 @@ def uncertainty(data: Data, numbers: Numbers) -> CONTENT:
     """How far a run differs by chance, and the effect of the size of the balls."""
     study = data.study
     best = study.conservative if study else None
-    found = []
+    rows = []
     if best and best.chance_m3 is not None and not best.mean_m3 and not best.chance_m3:
-        found.append(f"In none of the {len(data.finished)} runs anything is to be removed.")
+        rows.append(f"In none of the {len(data.finished)} runs anything is to be removed.")
     elif best and best.chance_m3 is not None:
         low, high = (rounding.format_rounded(value, best.place_m3) for value in
                      (max(0.0, best.mean_m3 - best.chance_m3), best.mean_m3 + best.chance_m3))
-        found.append(f"Another run with the same values gives {low} to {high} m3 to remove, in 95 % of cases.")
+        rows.append(f"Another run with the same values gives {low} to {high} m3 to remove, in 95 % of cases.")
     key = travel_shares.DISTANCE
     scatter = study.scatter.get(key) if study else None
     if scatter:
         deviation = scatter["deviation"]
         text = rounding.format_rounded(deviation, 10 * rounding.place_of_digits(deviation))       # two digits
         numbers.rows.append(("scatter of a run: 99 % within", "m", "", text, deviation))
-        found.append(f"The distance that 99 % of the volume stays within differs by {text} m from run to run "
-                     "(standard deviation).")
-    if not found:
-        found = ["Unknown: no run was repeated, and equivalent runs may differ by several percent (study --repeat)."] \
+        rows.append(f"The distance that 99 % of the volume stays within differs by {text} m from run to run "
+                    "(standard deviation).")
+    if not rows:
+        rows = ["Unknown: no run was repeated, and equivalent runs may differ by several percent (study --repeat)."] \
             if not (study and study.ensemble) else []
-    chance = [("Chance", " ".join(found))] if found else []
+    chance = [("Chance", " ".join(rows))] if rows else []
     size, step, most = (study.size, study.step, study.largest_restitution) if study else (None, None, None)
     chance.append(("Size of the balls", f"{size.text[0].upper()}{size.text[1:]}." if size else
                    "What smaller balls change is not known (study --levels)."))

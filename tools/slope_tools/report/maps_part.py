@@ -61,40 +61,40 @@ class Maps:
         """The maps of the shown run, by name."""
         data, ground, layers, one = self.data, self.ground, self.layers, self.data.result
         whole = geometry.extent(layers.raster)
-        found: Dict[str, Any] = {"slip": None, "speed": None, "arrival": None}
-        found["deposit"] = self.thickness(
+        pictures: Dict[str, Any] = {"slip": None, "speed": None, "arrival": None}
+        pictures["deposit"] = self.thickness(
             one.thickness, "Thickness of the deposit at the end", "Map of the deposit's thickness at the end",
             f"Final thickness, {digits.three(one.deposit.cell)} m cells."
             + shown_run(data) + known_reach.describe_known_reach(ground.reach) + self.outlines(), figures.FULL,
             self.with_outlines())
-        found["terrain"] = Picture(
+        pictures["terrain"] = Picture(
             figure_maps.terrain_map(layers._replace(shown=whole), layers.shown, self.crs), "Map of the terrain before",
             "Terrain before the collapse, light from the north-west"
             + ("; the black frame is the part that the other maps show." if layers.shown != whole else "."))
         if ground.slip_depth.max() > 0:
-            found["slip"] = Picture(
+            pictures["slip"] = Picture(
                 figure_maps.value_map(layers._replace(ground=ground.base), ground.slip_depth, "Slip surface",
                                       "depth below the ground (m)", figures.classes_of(ground.slip_depth),
                                       palettes.DEPTH),
                 "Map of the slip surface", "Depth of the slip surface below the ground before the collapse; relief and "
                 "contours are those of the ground without the body.")
-        found["max_thickness"] = self.thickness(
+        pictures["max_thickness"] = self.thickness(
             ground.max_thickness, "Largest thickness in the run", "Map of the largest thickness",
             "Largest thickness that a cell ever had.")
         speed = ground.max_speed
         if (speed > 0).any():
-            found["speed"] = Picture(
+            pictures["speed"] = Picture(
                 figure_maps.value_map(layers, speed, "Largest speed", "speed (m/s)",
                                       figures.even_to_most(speed[speed > 0]), palettes.SPEED, mask=speed > 0),
                 "Map of the largest speed", "Speed of the fastest ball that passed, sampled in the run.")
         known = ground.arrival[np.isfinite(ground.arrival)]
         if known.size and known.max() > 0:
-            found["arrival"] = Picture(
+            pictures["arrival"] = Picture(
                 figure_maps.value_map(layers, ground.arrival, "First arrival", "time (s)",
                                       figures.even_to_most(known[known > 0]), palettes.ARRIVAL,
                                       mask=np.isfinite(ground.arrival) & ~ground.release),
                 "Map of the first arrival", "Time at which the first ball arrived.")
-        return found
+        return pictures
 
     def with_outlines(self):
         """The layers with what an ensemble exceeds, and a window that shows it."""
@@ -152,21 +152,21 @@ class Maps:
     def over_all(self):
         """Maps of a study over all of its runs."""
         data, layers = self.data, self.layers._replace(section=None)
-        found: Dict[str, Any] = {"runs": None, "envelope": None, "exceedance": []}
+        pictures: Dict[str, Any] = {"runs": None, "envelope": None, "exceedance": []}
         if not data.study or len(data.finished) < 2:
-            return found
+            return pictures
         if len(data.drawn) > 1:
             some = "" if len(data.drawn) == len(data.finished) else \
                 f" {len(data.drawn)} of the {len(data.finished)} runs are shown."
             bounds = figures.classes_of(np.array([one.thickness for one in data.drawn]),
                                         np.array([self.ground.source] * len(data.drawn)))
-            found["runs"] = Picture(
+            pictures["runs"] = Picture(
                 figure_maps.small_maps(layers, [(data.label(one), one.thickness) for one in data.drawn],
                                        "thickness (m)", bounds, palettes.THICKNESS),
                 "Final thickness of the runs", "Final thickness of the runs." + some)
         envelope = data.study.envelope
         if envelope:
-            found["envelope"] = self.thickness(
+            pictures["envelope"] = self.thickness(
                 data.over_all[envelope["max_thickness"]["file"]], "Envelope of all runs", "Envelope",
                 f"Largest thickness over all {len(data.finished)} runs and all times.", layers=layers)
         volume, balls = data.result.summary["volume"]["released"], data.result.summary["balls"]["released"]
@@ -177,11 +177,11 @@ class Maps:
             values = data.over_all[entry["file"]]
             single = f" One ball of the model, a cube of {side:.2g} m, is much thicker than that." \
                 if side > 10 * entry["threshold_m"] else ""
-            found["exceedance"].append(Picture(
+            pictures["exceedance"].append(Picture(
                 figure_maps.value_map(layers, values, f"Thicker than {entry['threshold_m']:g} m", "share of the runs",
                                       [0.0, 0.2, 0.4, 0.6, 0.8, 1.0], palettes.SHARE, mask=values > 0),
                 f"Share of the runs thicker than {entry['threshold_m']:g} m",
                 f"Share of the {len(data.finished)} runs with a final thickness > {entry['threshold_m']:g} m: in every "
                 f"run on {square(entry['area_in_every_run_m2'])} m2, in any run on "
                 f"{square(entry['area_in_any_run_m2'])} m2.{single}"))
-        return found
+        return pictures

@@ -52,40 +52,40 @@ def lengths_of(data: Data) -> List[float]:
     return [one.distance] if one else []
 
 
-def sentence(found: Lies, numbers: Numbers, label: str) -> str:
+def sentence(counted: Lies, numbers: Numbers, label: str) -> str:
     """How far the runs reach, and how many known events end there or before."""
-    assert found.mobility is not None
-    ends = list(dict.fromkeys((found.lengths[0], found.lengths[-1])))
+    assert counted.mobility is not None
+    ends = list(dict.fromkeys((counted.lengths[0], counted.lengths[-1])))
     reach = " to ".join(numbers.quantity(LENGTH, length, label) for length in ends)
-    law, shares = found.mobility.law, []
+    law, shares = counted.mobility.law, []
     others = law.both if isinstance(law, Row) else ("confined", "unconfined")
-    for kind in (found.mobility.chosen, *others):
-        lies = [found.mobility.where_lies(length, kind) for length in ends]
+    for kind in (counted.mobility.chosen, *others):
+        lies = [counted.mobility.where_lies(length, kind) for length in ends]
         for one in lies:
             numbers.rows.append((f"known events that reach at most as far, {exceedance.WORDS[kind]}", "%", label,
                                  percent(one.at_most).split()[-2], 100 * one.at_most))
         shares.append("at least " * lies[-1].beyond
                       + " to ".join(dict.fromkeys(percent(one.at_most) for one in lies)))
     who = "The deposit reaches" if len(ends) == 1 else "The deposits of the runs reach"
-    chosen = exceedance.WORDS[found.mobility.chosen]
+    chosen = exceedance.WORDS[counted.mobility.chosen]
     if isinstance(law, Row):
         return (f"{who} {reach} m: as far as {shares[0]} of landslides of this volume and height do ({law.name}; "
                 f"{chosen}; {shares[1]} by the smaller, {shares[2]} by the larger); the others go farther; "
-                f"{NOT_OF_ROADS}." + beyond_the_terrain(found, others, numbers, label))
+                f"{NOT_OF_ROADS}." + beyond_the_terrain(counted, others, numbers, label))
     return (f"{who} {reach} m: as far as {shares[0]} of rock avalanches of this volume and height do "
             f"({chosen}; {shares[1]} of those on a laterally confined path, "
             f"{shares[2]} of the others); the others go farther."
-            + beyond_the_terrain(found, others[::-1], numbers, label))
+            + beyond_the_terrain(counted, others[::-1], numbers, label))
 
 
-def beyond_the_terrain(found: Lies, kinds: Sequence[str], numbers: Numbers, label: str) -> str:
+def beyond_the_terrain(counted: Lies, kinds: Sequence[str], numbers: Numbers, label: str) -> str:
     """What the edge of the terrain hides, if half of the events of either of two kinds go beyond; else nothing."""
-    mobility = found.mobility
+    mobility = counted.mobility
     assert mobility is not None
     shares = [mobility.beyond_path(kind) for kind in kinds]
     if max(shares) <= 0.5:      # with hardly any left, the path ends within the terrain
         return ""
-    length = numbers("way within the terrain", "m", mobility.end(found.lengths[-1]), label)
+    length = numbers("way within the terrain", "m", mobility.end(counted.lengths[-1]), label)
     return (f" The terrain shows the first {length} m of the way, where {percent(shares[0])} ({percent(shares[1])}) of "
             "them go on: no run shows what lies there.")
 
@@ -106,31 +106,31 @@ def mapped_runs(data: Data) -> List[Tuple[Finished, Mapped]]:
 
 def mapped_sentence(data: Data, numbers: Numbers) -> str:
     """For the first page; "" without a mapped deposit."""
-    found = mapped_runs(data)
-    if not found:
+    runs = mapped_runs(data)
+    if not runs:
         return ""
-    about = data.of_study.observed
-    assert about
-    best, mine = next((row, one) for row, one in found if row.run == about.best)
+    observed = data.of_study.observed
+    assert observed
+    best, mine = next((row, one) for row, one in runs if row.run == observed.best)
     share = numbers.quantity(OVERLAP, mine.overlap, data.label_of(best))
-    which = f"The best of {len(found)} runs" if len(found) > 1 else "The run"
+    which = f"The best of {len(runs)} runs" if len(runs) > 1 else "The run"
     text = f"{which} shares {share} of the area that it or the mapped deposit covers (1: the same area)"
     if mine.beyond_mapped_m is not None:
         by = numbers.quantity(BEYOND, abs(mine.beyond_mapped_m), data.label_of(best))
         text += f", and ends {by} m {'beyond' if mine.beyond_mapped_m > 0 else 'short of'} its tip"
-    lacks = mass(about.volume_m3, about.released_m3)
+    lacks = mass(observed.volume_m3, observed.released_m3)
     return f"{text}." + (f" {lacks.text[0].upper()}{lacks.text[1:]}." if lacks else "")
 
 
 def mapped(data: Data, numbers: Numbers) -> Optional[Section]:
     """The section with a table of the mapped deposit, the shown run, the best one and all; None without any."""
-    found = mapped_runs(data)
-    if not found:
+    runs = mapped_runs(data)
+    if not runs:
         return None
-    about = data.of_study.observed
-    assert about
-    volume, length = about.volume_m3, about.length_m
-    by_name = {row.run: row for row, _ in found}
+    observed = data.of_study.observed
+    assert observed
+    volume, length = observed.volume_m3, observed.length_m
+    by_name = {row.run: row for row, _ in runs}
     heads: List[Any] = ["", Cell("overlap (Jaccard)", ""), Cell("length", "m"), Cell("difference", "m")]
     columns = [(OVERLAP, "1"), ("length_m", "m"), (BEYOND, "m")]
     if volume is not None:
@@ -152,18 +152,18 @@ def mapped(data: Data, numbers: Numbers) -> Optional[Section]:
                                   [value - volume for value in kept], label))
         return texts
 
-    shown = [("on the maps", data.result.name), ("best overlap", about.best)]
+    shown = [("on the maps", data.result.name), ("best overlap", observed.best)]
     for what, name in shown if shown[0][1] != shown[1][1] else [("on the maps, best overlap", shown[0][1])]:
         if name in by_name:
             label = data.label_of(by_name[name])
             rows.append(row(f"run {data.number(name)}, {what}", [by_name[name]], label))
-    if len(found) > 1:
-        rows.append(row(f"all {len(found)} runs", [one for one, _ in found], ""))
-    lacks = mass(volume, about.released_m3)
+    if len(runs) > 1:
+        rows.append(row(f"all {len(runs)} runs", [one for one, _ in runs], ""))
+    lacks = mass(volume, observed.released_m3)
     return Section("mapped", "Against the mapped deposit", [
         Text(f"{lacks.text[0].upper()}{lacks.text[1:]}.") if lacks else None,
         Table("Overlap: the area that both cover over that which either covers, thicker than "
-              f"{about.threshold_m:g} m. Lengths are those of the table of runs; of an outline that to its "
+              f"{observed.threshold_m:g} m. Lengths are those of the table of runs; of an outline that to its "
               "farthest point. Negative differences: the run ends short, or holds less.", heads, rows)])
 
 

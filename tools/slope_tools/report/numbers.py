@@ -35,13 +35,13 @@ class Numbers:
 
     def quantity(self, key, value, of="", unknown=UNKNOWN):
         """A quantity of a run, as pages have it."""
-        one = ALL[key]
+        quantity = ALL[key]
         if value is None:
             return unknown
-        if one.page in ("", KNOWN):
-            return self(one.name, one.unit, value, of)
-        text = written(one.page, value)
-        self.rows.append((one.name, one.unit, of, text, value))
+        if quantity.page in ("", KNOWN):
+            return self(quantity.name, quantity.unit, value, of)
+        text = written(quantity.page, value)
+        self.rows.append((quantity.name, quantity.unit, of, text, value))
         return text
 
     def mean(self, what, unit, value, scatter, of):

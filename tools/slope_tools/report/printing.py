@@ -40,13 +40,13 @@ def print_page(page: Path, pdf: Path) -> None:
                  page.absolute().as_uri()]
         if os.geteuid() == 0:       # it refuses to run as root with its sandbox
             words.insert(1, "--no-sandbox")
-        status, said = run_browser(words, Path(folder))
+        status, last_words = run_browser(words, Path(folder))
         content = printed.read_bytes() if printed.is_file() else b""
         if status is None:
             raise SlopeError("--pdf", f"{program} must print {page} within {PATIENCE:g} s: try again when less runs on "
                              "this machine, or print the page from any browser", "nothing by then")
         if status or not content.startswith(b"%PDF"):
-            raise SlopeError("--pdf", f"{program} must print {page}", said or f"status {status}")
+            raise SlopeError("--pdf", f"{program} must print {page}", last_words or f"status {status}")
     disk.write_file(pdf, content)
 
 

@@ -39,13 +39,13 @@ def read_reference(path, available):
 
     SlopeError names file, entry and rule; among others where the file has no quantities, or one that the study lacks.
     """
-    about = schemas.load_checked(path, WHAT, SCHEMA)
-    unknown = about["quantities"].keys() - set(available)
+    content = schemas.load_checked(path, WHAT, SCHEMA)
+    unknown = content["quantities"].keys() - set(available)
     if unknown:
         raise SlopeError(f"{path}: quantities", "must be columns that all runs have, " + ", ".join(available),
                          ", ".join(sorted(map(str, unknown))))
-    return Reference(" ".join(about["title"].split()), " ".join(about.get("remark", "").split()),
-                     {name: quantity(entry) for name, entry in about["quantities"].items()})
+    return Reference(" ".join(content["title"].split()), " ".join(content.get("remark", "").split()),
+                     {name: quantity(entry) for name, entry in content["quantities"].items()})
 
 
 def quantity(entry):
@@ -65,14 +65,14 @@ def make_reference_section(reference, data: Data, numbers: Numbers):
         *(tabulate_reference(key, one, data, numbers) for key, one in reference.quantities.items())])
 
 
-def tabulate_reference(key, one, data: Data, numbers: Numbers):
+def tabulate_reference(key, quantity_, data: Data, numbers: Numbers):
     """Of a Quantity: its series and levels."""
     what, unit = quantities.ALL[key].name, quantities.ALL[key].unit
-    xs = sorted({x for points in one.series.values() for x, _ in points})
+    xs = sorted({x for points in quantity_.series.values() for x, _ in points})
     rows = [[name, *(f"{dict(points)[x]:,.6g}" if x in dict(points) else "-" for x in xs)]
-            for name, points in one.series.items()]
-    rows += [[name, Cell(f"{value:,.6g}", span=len(xs) or 1)] for name, value in one.levels.items()]
+            for name, points in quantity_.series.items()]
+    rows += [[name, Cell(f"{value:,.6g}", span=len(xs) or 1)] for name, value in quantity_.levels.items()]
     low, high = (numbers(what, unit, pick(row.value(key) for row in data.compared)) for pick in (min, max))
-    return Table(f"{what} ({unit}){f' against {one.variable}' if one.variable else ''}; of "
+    return Table(f"{what} ({unit}){f' against {quantity_.variable}' if quantity_.variable else ''}; of "
                  f"{'these runs' if data.study else 'this run'}: {low if low == high else f'{low} to {high}'}",
-                 [one.variable, *(f"{x:g}" for x in xs)] if xs else [], rows, style="keep")
+                 [quantity_.variable, *(f"{x:g}" for x in xs)] if xs else [], rows, style="keep")

@@ -47,13 +47,13 @@ def versions(data, runs: List[Run]) -> List[str]:
     summary = data.result.summary
     packages = sorted({str(about["package"]) for _, _, about, _ in runs if about.get("package")})
     programs = sorted({str(about["lmp_sha256"]) for _, _, about, _ in runs if about.get("lmp_sha256")})
-    found = [f"SLOPE, as compiled into the program: {summary['slope_version']}",
+    lines = [f"SLOPE, as compiled into the program: {summary['slope_version']}",
              f"LAMMPS: {summary['lammps_version']}",
              f"package of the runs (git describe): {', '.join(packages) or '-'}",
              f"package of these tools: {provenance.package_version() or provenance.version()}",
              *(f"SHA-256 of the program: {digest}" for digest in programs),
              f"Python: {platform.python_version()}"]
-    return found + [f"{name}: {version(name)}" for name in LIBRARIES]
+    return lines + [f"{name}: {version(name)}" for name in LIBRARIES]
 
 
 def version(name: str) -> str:
@@ -65,17 +65,17 @@ def version(name: str) -> str:
 
 def commands(data, runs: List[Run]) -> List[str]:
     """Of the study, as far as its file says, and of each run, in its folder."""
-    found = []
+    words = []
     site = site_file(data.folder)
     if site:
         place = quote(os.path.relpath(site.parent))
-        found += [f"tools/slope site {place}", f"tools/slope study {place}"]
+        words += [f"tools/slope site {place}", f"tools/slope study {place}"]
     elif data.study and not data.study.ensemble:
-        found.append(of_study(data))
+        words.append(of_study(data))
     for label, folder, about, _ in runs:
         command = about.get("command") or "by hand: its command is in its log"
-        found.append(f"cd {quote(str(folder))} && {command}    # {label}")
-    return found
+        words.append(f"cd {quote(str(folder))} && {command}    # {label}")
+    return words
 
 
 def of_study(data: Data) -> str:
@@ -97,13 +97,13 @@ def of_study(data: Data) -> str:
 
 def checksums(data, runs: List[Run]) -> List[str]:
     """Of inputs as the runs had them, one line for each content, and of results as they are now."""
-    found: Dict[Tuple[str, str], Path] = {}
+    inputs: Dict[Tuple[str, str], Path] = {}
     for _, folder, _, marker in runs:
         for name, digest in (marker.get("inputs") or {}).items():
-            found.setdefault((Path(name).name, digest), folder / name)
+            inputs.setdefault((Path(name).name, digest), folder / name)
     files = [data.folder / name for name in RESULTS if (data.folder / name).is_file()]
     files += [run_folders.summary_of(data.folder, row.summary) for row in data.finished] or [data.result.path]
-    return [f"{digest}  {relative(path, data.folder)}" for (_, digest), path in found.items()] + [
+    return [f"{digest}  {relative(path, data.folder)}" for (_, digest), path in inputs.items()] + [
         f"{disk.sha256(path)}  {relative(path, data.folder)}" for path in files]
 
 

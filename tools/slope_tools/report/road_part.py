@@ -25,30 +25,30 @@ COLUMNS = (("length", "m", "length"), ("passable", "m", "passable_width"), ("to 
 def make_road_section(data: Data, numbers: Numbers, maps) -> Optional[Section]:
     """Of a data.Data; None where no run blocks the road, or of older studies."""
     study = data.study
-    about = study.stretches if study else None
-    if not (study and about and about.stretches):
+    stretches = study.stretches if study else None
+    if not (study and stretches and stretches.stretches):
         return None
-    asked, all_ = Asked.of(study.study.the_road), about.share_blocked
-    columns = [one for one in COLUMNS if one[2] in about.stretches[0]]
+    asked, all_ = Asked.of(study.study.the_road), stretches.share_blocked
+    columns = [one for one in COLUMNS if one[2] in stretches.stretches[0]]
 
-    def cells(one, name):
-        yield f"{100 * one.get('share', all_):.0f}"
+    def cells(stretch, name):
+        yield f"{100 * stretch.get('share', all_):.0f}"
         for head, unit, key in columns:
             low, middle, high = (numbers(f"{head}, {share} %", unit, value, name) for share, value in zip(
-                (5, 50, 95), one[key])) if key in one else ("", "", "")
+                (5, 50, 95), stretch[key])) if key in stretch else ("", "", "")
             yield f"{middle} ({low} to {high})" if low != high else middle
 
     lines = [[str(number), f"{one['from']:,.1f} to {one['to']:,.1f}", *cells(one, f"stretch {number}")]
-             for number, one in enumerate(about.stretches, 1)]
+             for number, one in enumerate(stretches.stretches, 1)]
     if len(lines) > 1:
-        lines.append(["all", "", *cells(about.totals, "all stretches")])
-    runs = "known events" if about.of_known_events else "runs"
-    along = [Figures([bodies_along(about.bodies)])] if about.bodies else []
+        lines.append(["all", "", *cells(stretches.totals, "all stretches")])
+    runs = "known events" if stretches.of_known_events else "runs"
+    along = [Figures([bodies_along(stretches.bodies)])] if stretches.bodies else []
     heads: List[Any] = ["stretch", Cell("chainage", "m"), Cell("blocked in", f"% of {runs}"),
                         *(Cell(head, unit) for head, unit, _ in columns)]
     return Section("road", "Blocked stretches of the road", [
-        Figures([draw_road_shares(data, asked, about, runs, maps)], "tall"), *along,
-        Table(caption(asked, about, runs) + describe_gaps(data, about), heads, lines, ())])
+        Figures([draw_road_shares(data, asked, stretches, runs, maps)], "tall"), *along,
+        Table(caption(asked, stretches, runs) + describe_gaps(data, stretches), heads, lines, ())])
 
 
 def bodies_along(entries: Sequence[Mapping[str, Any]]) -> Picture:
@@ -75,17 +75,17 @@ def make_roads_section(data: Data) -> Optional[Section]:
         ["road", "to remove", "runs that reach it", "its page"], rows, (0, 1, 2, 3))])
 
 
-def describe_gaps(data: Data, about: study_types.Stretches) -> str:
+def describe_gaps(data: Data, stretches: study_types.Stretches) -> str:
     """Where known events end and no run does."""
-    known = ensemble_types.weighted(data.of_study.ensemble) if about.of_known_events else None
+    known = ensemble_types.weighted(data.of_study.ensemble) if stretches.of_known_events else None
     text = f" {percent(known.short)} of known events end before all runs and count as the shortest: fewer may block " \
         "it." if known and known.short else ""
     return text + "".join(f" {one.text[0].upper()}{one.text[1:]}." for one in (known.doubts if known else ())
                           if one.kind == "gap")
 
 
-def caption(asked: Asked, about: study_types.Stretches, runs: str) -> str:
-    text = (f"A stretch is a range of chainages each of which is blocked in one of {about.runs} runs: the deposit "
+def caption(asked: Asked, stretches: study_types.Stretches, runs: str) -> str:
+    text = (f"A stretch is a range of chainages each of which is blocked in one of {stretches.runs} runs: the deposit "
             f"is thicker than {asked.blocked:g} m somewhere across the road. Of each number the median, and in "
             f"brackets what 5 and 95 % of the {runs} stay within.")
     if asked.lane:
@@ -98,12 +98,12 @@ def rate(asked: Asked) -> str:
     return f"one loader of {asked.clearing:g} m3/h"
 
 
-def draw_road_shares(data: Data, asked: Asked, about: study_types.Stretches, runs: str, maps):
+def draw_road_shares(data: Data, asked: Asked, stretches: study_types.Stretches, runs: str, maps):
     """The map of the road, coloured by the share of the runs that block it."""
     raster = data.result.deposit.raster
     axis, _, width = axis_of(data.road_lines, data.road.intersection(box_of(raster)), asked)
     parts = [(one.band(Span(low, high), Span(-width / 2, width / 2)), share)
-             for low, high, share in about.shares for one in axes_of(axis, asked)]
+             for low, high, share in stretches.shares for one in axes_of(axis, asked)]
     layers = maps.layers._replace(section=None, reach=known_reach.NOTHING)
     title = "Where the road is blocked"
     return Picture(figure_maps.road_map(layers, parts, ODDS, title, f"share of the {runs}", maps.crs), title,
@@ -122,14 +122,14 @@ def on_first_page(data: Data, numbers: Numbers, withheld: bool) -> List[str]:
         low, _, high = (numbers(what, unit, value) for value in totals[key])
         return high if low == high else f"{low} to {high}"
 
-    found = []
+    cells = []
     if "hours_lane" in totals:
-        found.append(f"A lane of {asked.lane:g} m is open after "
+        cells.append(f"A lane of {asked.lane:g} m is open after "
                      f"{span('until a lane is open', 'h', 'hours_lane')} hours")
     elif "remove_lane" in totals:
-        found.append(f"A lane of {asked.lane:g} m is open when "
+        cells.append(f"A lane of {asked.lane:g} m is open when "
                      f"{span('for a lane', 'm3', 'remove_lane')} m3 are removed")
     if "hours" in totals:
-        found.append(f"{'the whole road' if found else 'The road is clear'} after "
+        cells.append(f"{'the whole road' if cells else 'The road is clear'} after "
                      f"{span('until clear', 'h', 'hours')} hours")
-    return [f"{', '.join(found)}{f' of {rate(asked)}' if asked.hours else ''}."] if found else []
+    return [f"{', '.join(cells)}{f' of {rate(asked)}' if asked.hours else ''}."] if cells else []

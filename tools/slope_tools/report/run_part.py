@@ -64,8 +64,8 @@ def balance(data: Data, numbers: Numbers):
 
 def for_offices(data: Data, ground, numbers: Numbers):
     """The section of what offices ask of the shown run; None where its mass has no fall path."""
-    one = data.result
-    path = run_length.path_of(one.deposit, one.terrain_path)
+    run = data.result
+    path = run_length.path_of(run.deposit, run.terrain_path)
     try:
         mass = of_arrays(ground.raster._replace(z=ground.before), ground.slip_depth, "the run")
     except SlopeError:
@@ -73,7 +73,7 @@ def for_offices(data: Data, ground, numbers: Numbers):
     slope = path and offices.slope(mass, path)
     if not (path and slope):
         return None
-    blocks = [over_height(slope, offices.measure_office_distances(one.deposit, path), numbers)]
+    blocks = [over_height(slope, offices.measure_office_distances(run.deposit, path), numbers)]
     if data.road is not None:
         edge = offices.at_edge(data.road, ground.raster, ground.max_thickness, ground.max_speed)
         blocks.append(at_edge(edge, body.of_data(data, ground).density, numbers))
@@ -113,27 +113,27 @@ def at_edge(edge: offices.Edge, density: Optional[float], numbers: Numbers) -> T
 
 def travel_rows(data: Data, numbers: Numbers):
     """Shares of the volume, the length along the fall path and the farthest ball of the shown run: distance, angle."""
-    one = data.result
-    shares = travel_shares.read_share_columns(one.summary)
+    run = data.result
+    shares = travel_shares.read_share_columns(run.summary)
     rows = []
     for share in travel_shares.SHARES:
         keys = f"distance_{share}_m", f"reach_{share}_deg"
         rows.append((f"{share} % of the volume", *(numbers(f"{share} %: {what}", unit, shares[key])
                                                    for key, what, unit in zip(keys, ("distance", "reach angle"),
                                                                               ("m", "degrees")))))
-    found = data.length
-    if found is not None:
-        lobe = ("length along the fall path" if found.on_path else "straight length, as there is no fall path") + \
+    own_length = data.length
+    if own_length is not None:
+        lobe = ("length along the fall path" if own_length.on_path else "straight length, as there is no fall path") + \
             ", to the farthest lobe of at least"
-        rows.append((f"{lobe} {percent(LEAST)}", numbers("length along the fall path", "m", found.distance),
-                     numbers("length along the fall path: reach angle", "degrees", found.angle)))
+        rows.append((f"{lobe} {percent(LEAST)}", numbers("length along the fall path", "m", own_length.distance),
+                     numbers("length along the fall path: reach angle", "degrees", own_length.angle)))
         rows += [(f"{lobe} {percent(least)}", numbers(f"length by lobes of {percent(least)}", "m", length), "")
-                 for least, length in zip(OTHERS, found.others) if abs(length - found.distance) > 1e-6]
-        rows.append(("the same as the crow flies", numbers("straight length", "m", found.straight), ""))
+                 for least, length in zip(OTHERS, own_length.others) if abs(length - own_length.distance) > 1e-6]
+        rows.append(("the same as the crow flies", numbers("straight length", "m", own_length.straight), ""))
         check = shares[travel_shares.DISTANCE]
         rows.append((f"a check of it without a threshold: 99 % over {OF_99:g}",
                      numbers(f"99 % over {OF_99:g}", "m", check and check / OF_99), ""))
-    distance, angle = farthest_of(one.summary)
+    distance, angle = farthest_of(run.summary)
     rows.append(("the one farthest ball", numbers("farthest ball: distance", "m", distance),
                  numbers("farthest ball: reach angle", "degrees", angle)))
     return rows
@@ -150,13 +150,13 @@ def deck_of(data: Data):
 
 def what_was_run(data: Data):
     """The section of the deck, its variables, and what the log says of the model."""
-    one, (name, deck) = data.result, deck_of(data)
-    variables = one.row.variables or deck_variables(find_deck(one))
+    run, (name, deck) = data.result, deck_of(data)
+    variables = run.row.variables or deck_variables(find_deck(run))
     blocks: List[Any] = []
     for title, lines, style in (
-            ("Contact coefficients, as the pair style printed them at the start", one.log.table, "keep"),
-            ("Commands of the model, with all variables replaced", one.log.settings, ""),
-            ("Response of LAMMPS", one.log.notes, "wrap")):
+            ("Contact coefficients, as the pair style printed them at the start", run.log.table, "keep"),
+            ("Commands of the model, with all variables replaced", run.log.settings, ""),
+            ("Response of LAMMPS", run.log.notes, "wrap")):
         blocks += [Heading(title), Verbatim("\n".join(lines), style)] if lines else []
     if variables:
         blocks += [Heading(titled("Variables", data)), Pairs([
@@ -181,16 +181,16 @@ def deck_variables(deck):
 def origin(data: Data, made):
     """The section of programs, machines and checksums; made: when the report was."""
     one = data.result
-    summary, about, marker = one.summary, one.about, one.marker
+    summary, begun, marker = one.summary, one.about, one.marker
     packages = sorted({str(row.package) for row in data.finished}) if data.study else []
     several = len(packages) > 1
-    started, wall = utc(about.get("started")), marker.get("wall_seconds")
+    started, wall = utc(begun.get("started")), marker.get("wall_seconds")
     inputs = (marker.get("inputs") or {}) if find_deck(one) else {}
     rows = [("SLOPE, as compiled into the program", summary["slope_version"]),
             ("package (git describe)" + ", all runs" * several,
-             ", ".join(packages) if several else about.get("package")),
-            ("LAMMPS", summary["lammps_version"]), ("SHA-256 of the program", about.get("lmp_sha256")),
-            ("command", about.get("command")), ("MPI ranks, time step", f"{summary['ranks']:d}, {summary['dt']:.4g} s"),
+             ", ".join(packages) if several else begun.get("package")),
+            ("LAMMPS", summary["lammps_version"]), ("SHA-256 of the program", begun.get("lmp_sha256")),
+            ("command", begun.get("command")), ("MPI ranks, time step", f"{summary['ranks']:d}, {summary['dt']:.4g} s"),
             ("run", started and f"{started} to {utc(marker.get('finished'))}, wall time {wall} s"),
             ("machine of the run", of_machine(marker.get("machine"))),
             ("machine of this report", of_machine(provenance.machine())), ("report", made),
@@ -198,8 +198,8 @@ def origin(data: Data, made):
     return Section("provenance", "Provenance", [Pairs([row for row in rows if row[1]])])
 
 
-def of_machine(one):
-    return one and f"{one['name']}: {one['processor']}, {one['cores']} cores, {one['system']}"
+def of_machine(run):
+    return run and f"{run['name']}: {run['processor']}, {run['cores']} cores, {run['system']}"
 
 
 def utc(text):

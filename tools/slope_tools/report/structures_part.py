@@ -67,13 +67,13 @@ class Structures:
 
     def points(self) -> List[str]:
         """The reference points of the moments, as the commands of the shown run have them."""
-        found = []
+        points = []
         for words in map(str.split, self.data.result.log.settings):
             if words[:1] == ["fix"] and words[3:4] == ["wall/gran/mesh"] and "point" in words[:-3]:
                 at = words.index("point") + 1
-                found.append(f"{words[1]} "
-                             f"{' '.join(digits.format_coordinate(float(word)) for word in words[at:at + 3])}")
-        return found
+                points.append(f"{words[1]} "
+                              f"{' '.join(digits.format_coordinate(float(word)) for word in words[at:at + 3])}")
+        return points
 
     def mine(self, style):
         return structures.outputs(self.data.result.log.settings, style)
@@ -114,10 +114,10 @@ class Structures:
         text = self.numbers(what, unit, value, of=label) if unit else self.numbers.whole(what, unit, value, of=label)
         return digits.si(value, unit) if unit in PREFIXED else text
 
-    def forces(self, name, found):
+    def forces(self, name, structure):
         """The mean force on a structure against time, of each run."""
         curves = []
-        for run, prefix in found:
+        for run, prefix in structure:
             time, force = structures.series(run.folder, prefix).mean_force()
             curves.append((self.label(run), time, force))
         factor, prefix = digits.prefix(max((force.max(initial=0) for _, _, force in curves)))
@@ -127,9 +127,9 @@ class Structures:
                        f"{title}, its mean over the preceding {structures.WINDOW:g} s. Single impacts depend on "
                        "the size of the model's balls; the table has the largest.")
 
-    def pressures(self, item):
+    def pressures(self, structure):
         """The map of the largest pressure on a structure of the shown run; None where nothing touched it."""
-        name, prefix = item
+        name, prefix = structure
         folder = Path(self.data.result.folder)
         corners, pressure = structures.polydata(folder / f"{prefix}.vtp")
         if not pressure.any():
@@ -145,10 +145,10 @@ class Structures:
                        f"of the model's balls in one step over the triangle's area: {area} m2 where it is "
                        "largest. Smaller triangles and larger balls make it larger.")
 
-    def energies(self, name, found):
+    def energies(self, name, line):
         """Share of the crossings of a line with more than an energy, of each run, in the direction of the mass."""
         curves = []
-        for run, prefix in found:
+        for run, prefix in line:
             crossings = structures.crossings(Path(run.folder), prefix)
             main = structures.of_line(Path(run.folder), prefix)["direction"]
             energy = np.sort(crossings["energy"][structures.in_direction(crossings, main) & (crossings["energy"] > 0)])
@@ -171,7 +171,7 @@ def coarse_walls(data: Data, ground) -> List[Finding]:
 
     A ball: the side of the cube of ground that it stands for. Not of structures below the ground or beside it.
     """
-    found = []
+    findings = []
     summary = data.result.summary
     ball = (summary["volume"]["released"] / summary["balls"]["released"]) ** (1 / 3)
     for name, corners in ground.obstacles.walls.items():
@@ -179,8 +179,8 @@ def coarse_walls(data: Data, ground) -> List[Finding]:
         above = z - ground.along(ground.before, x, y)
         tall = float(above[np.isfinite(above)].max(initial=0.0))
         if 0 < tall < FEW * ball:
-            found.append(Finding("few balls high", {"name": name, "height": tall, "balls": tall / ball}))
-    return sorted(found, key=lambda one: one.numbers["balls"])
+            findings.append(Finding("few balls high", {"name": name, "height": tall, "balls": tall / ball}))
+    return sorted(findings, key=lambda finding: finding.numbers["balls"])
 
 
 def lengths(obstacles) -> Dict[str, float]:

@@ -15,7 +15,7 @@ def make_study_section(data: Data, numbers: Numbers, reference, maps):
     """Of a data.Data; None of a run alone."""
     if not data.study:
         return None
-    study, charts, one = Runs(data, numbers), Charts(data, reference), data.result
+    study, charts, run = Runs(data, numbers), Charts(data, reference), data.result
     table, means, different = study.table(), study.means(), differences(data, numbers)
     drawn, over_all, first = charts.all(), maps.over_all(), int(charts.has_removal())
     return Section("study", "Study", [
@@ -27,7 +27,7 @@ def make_study_section(data: Data, numbers: Numbers, reference, maps):
         study.most_elastic(),
         Figures(drawn[:first], "two-thirds") if first and drawn else None,
         Figures(drawn[first:], "columns"),
-        Figures([maps.removal(numbers.quantity(REMOVE, one.row.value(REMOVE), data.label(one)) if one.row.road
+        Figures([maps.removal(numbers.quantity(REMOVE, run.row.value(REMOVE), data.label(run)) if run.row.road
                               else "")], "tall"),
         Figures([over_all["runs"]]), Figures([over_all["envelope"], *over_all["exceedance"]], "columns")])
 
@@ -69,10 +69,10 @@ class Runs:
                 if any(row.value(one.key) is not None for row in data.finished)
                 and not (same and one.key == "released_m3")]
 
-    def head(self, one):
+    def head(self, quantity):
         """Head of a quantity in a table: name and unit."""
-        return Cell(quantities.name_quantity(one.key, self.data.finished) if one.key == LENGTH else one.heading,
-                    one.unit)
+        return Cell(quantities.name_quantity(quantity.key, self.data.finished) if quantity.key == LENGTH
+                    else quantity.heading, quantity.unit)
 
     def beyond(self):
         """The note on the volume beyond the road; "" without a road."""
@@ -134,21 +134,21 @@ class Runs:
 
     def most_elastic(self):
         """The table of reach and area with the largest restitution; None without such runs."""
-        about = self.data.of_study.largest_restitution
-        if not about or not about.quantities:
+        elastic_ = self.data.of_study.largest_restitution
+        if not elastic_ or not elastic_.quantities:
             return None
         rows = []
-        for key, one in about.quantities.items():
-            name, unit = elastic.name_elastic_quantity(key, about)
-            usual, study = one.usual, one.study
-            rows.append([Cell(name, unit), *(self.numbers(f"{end}: {name}, restitution {about.restitution:g}", unit,
+        for key, quantity in elastic_.quantities.items():
+            name, unit = elastic.name_elastic_quantity(key, elastic_)
+            usual, study = quantity.usual, quantity.study
+            rows.append([Cell(name, unit), *(self.numbers(f"{end}: {name}, restitution {elastic_.restitution:g}", unit,
                                                           value)
-                                             for end, value in (("mean", one.mean), ("low", one.low),
-                                                                ("high", one.high))),
+                                             for end, value in (("mean", quantity.mean), ("low", quantity.low),
+                                                                ("high", quantity.high))),
                          self.numbers(f"mean: {name}", unit, usual.mean if usual else None),
                          self.numbers(f"largest: {name}", unit, study.high if study else None)])
         return Table(f"Reach and area with the most elastic rock: soil, slip surface and ground with a restitution of "
-                     f"{about.restitution:g}, rolling resistance {about.rolling}; {len(about.runs)} runs, "
+                     f"{elastic_.restitution:g}, rolling resistance {elastic_.rolling}; {len(elastic_.runs)} runs, "
                      "which are none of those that the volume is of.",
                      ["", "mean", "least", "most", "mean of the same runs with the usual restitution",
                       "most of all other runs"], rows)

@@ -18,23 +18,23 @@ WEIGHT = {kind: place for place, kind in enumerate(WORDS)}
 def findings(data: Data, ground) -> List[Finding]:
     """All of a data.Data on its ground.Ground."""
     of_runs = judged.of_runs(data.judged)
-    found = [*of_runs, *below_ground(data), *judged.limits(data.study, bool(data.repeats)),
-             *structures_part.coarse_walls(data, ground)[:1]]
+    several_findings = [*of_runs, *below_ground(data), *judged.limits(data.study, bool(data.repeats)),
+                        *structures_part.coarse_walls(data, ground)[:1]]
     if data.study:
-        about, ensemble, volume = data.study, data.study.ensemble, data.study.conservative
+        study, ensemble, volume = data.study, data.study.ensemble, data.study.conservative
         known_events = ensemble.known_events if ensemble else None
         for part, doubts in (("The volume to remove", volume.doubts if volume else []),
                              ("The ensemble", ensemble.doubts if ensemble else []),
                              ("The known events", known_events.doubts if known_events else [])):
-            found += [one._replace(part=part) for one in doubts]
+            several_findings += [one._replace(part=part) for one in doubts]
         known = {(one.kind, one.text) for one in of_runs}
-        found += [one for one in about.warnings
-                  if one.part or one.kind not in judged.KINDS and (one.kind, one.text) not in known]
+        several_findings += [one for one in study.warnings
+                             if one.part or one.kind not in judged.KINDS and (one.kind, one.text) not in known]
     kinds = {one.kind for one in of_runs}
     covered = [line for line, those in (("removed", ("bulk factor", "body volume", "balls removed")),
                                         ("lost", ("lost", "lost much"))) if kinds.intersection(those)]
     beside = {BESIDE_MAPS, LARGE if weighed(data) else None}
-    return [one for one in (*found, *judged.of_logs(data.judged, covered)) if one.kind not in beside]
+    return [one for one in (*several_findings, *judged.of_logs(data.judged, covered)) if one.kind not in beside]
 
 
 def weighed(data: Data) -> bool:
@@ -42,18 +42,18 @@ def weighed(data: Data) -> bool:
     return data.study is not None and ensemble_types.weighted(data.study.ensemble) is not None
 
 
-def rank_warnings(found: Sequence[Finding], names) -> List[Tuple[str, str]]:
+def rank_warnings(findings_: Sequence[Finding], names) -> List[Tuple[str, str]]:
     """(level, text) of those that are warnings, the most serious first; names: of the runs, by their folders."""
-    return sorted(((one.level, one.shown(names)) for one in found if one.level != LIMIT),
-                  key=lambda one: one[0] != WARNING)
+    return sorted(((one.level, one.shown(names)) for one in findings_ if one.level != LIMIT),
+                  key=lambda entry: entry[0] != WARNING)
 
 
-def first_page(found: Sequence[Finding]) -> List[str]:
+def first_page(findings_: Sequence[Finding]) -> List[str]:
     """What a client must know beside the number: a line for each kind of doubt, counted, the weightiest first."""
-    mine = sorted((one for one in found if words_of(one.kind).client and not one.part),
-                  key=lambda one: WEIGHT[one.kind])
+    mine = sorted((one for one in findings_ if words_of(one.kind).client and not one.part),
+                  key=lambda finding: WEIGHT[finding.kind])
     return [one.client()
-            for one in gathered(mine, alike=lambda one: words_of(one.kind).client)]
+            for one in gathered(mine, alike=lambda finding: words_of(finding.kind).client)]
 
 
 def rest_of(warnings: int) -> str:

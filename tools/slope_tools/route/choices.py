@@ -122,14 +122,14 @@ def settle(folder: Path, given: Mapping[str, Any]) -> Choices:
         if name not in {**known, **given}:
             raise SlopeError(option(name), f"must be given, or the folder of a route with {NAME}")
     none: Dict[str, Any] = dict.fromkeys(STRENGTH)
-    found = Choices(**{**none, **known, **given})
-    check_route_choices(found)
-    now = {name: digest for name in READ if (digest := content(getattr(found, name)))}
+    choices = Choices(**{**none, **known, **given})
+    check_route_choices(choices)
+    now = {name: digest for name in READ if (digest := content(getattr(choices, name)))}
     for name, digest in now.items():
         if name not in changed and before.get(name, digest) != digest:
             if (folder / TABLE).is_file():
                 raise SlopeError(option(name), f"must not have changed since the bodies and runs of {folder} were made "
-                                 "of it: take another folder", " ".join(np.ravel(getattr(found, name))))
+                                 "of it: take another folder", " ".join(np.ravel(getattr(choices, name))))
             changed.append(name)
     if not path.is_file() and folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise SlopeError(folder, "must be a new folder, an empty one, or that of a route")
@@ -138,8 +138,8 @@ def settle(folder: Path, given: Mapping[str, Any]) -> Choices:
         for place in MADE:
             shutil.rmtree(folder / place, ignore_errors=True)
             (folder / place).unlink(missing_ok=True)
-    write_route_choices(folder, found, {**before, **now})
-    return found
+    write_route_choices(folder, choices, {**before, **now})
+    return choices
 
 
 def content(files: Any) -> str:
@@ -154,11 +154,11 @@ def sources_in(folder: Path) -> Dict[str, str]:
     return schemas.load_checked(folder / NAME, f"{WHAT} of this version", schema()).get(SOURCES) or {}
 
 
-def write_route_choices(folder: Path, found: Choices, sources: Optional[Mapping[str, str]] = None) -> None:
+def write_route_choices(folder: Path, choices: Choices, sources: Optional[Mapping[str, str]] = None) -> None:
     """Write route.yaml, unless it says so already; sources: None: those that it has."""
     path = folder / NAME
     sources = sources_in(folder) if sources is None else sources
-    about = {name: from_folder(value, folder) if name in FILES else value for name, value in found._asdict().items()}
+    about = {name: from_folder(value, folder) if name in FILES else value for name, value in choices._asdict().items()}
     text = disk.yaml_text("slope route: m, m3, Pa, degrees, kg/m3; paths as from here",
                           {"slope_route": VERSION, **about, SOURCES: dict(sources)})
     if not path.is_file() or path.read_text(encoding="utf-8") != text:
@@ -188,30 +188,30 @@ def to_here(value: Any, folder: Path) -> Any:
     return value and os.path.normpath(folder / value)
 
 
-def is_same_choice(name: str, one: Any, other: Any) -> bool:
+def is_same_choice(name: str, value: Any, other: Any) -> bool:
     if name in FILES:
-        several = [value if isinstance(value, list) else [value] for value in (one, other)]
+        several = [value if isinstance(value, list) else [value] for value in (value, other)]
         return [[value and os.path.realpath(value) for value in values] for values in several][0] == \
             [value and os.path.realpath(value) for value in several[1]]
-    return one == other
+    return value == other
 
 
-def check_route_choices(found: Choices) -> None:
+def check_route_choices(choices: Choices) -> None:
     """The numbers that nothing else checks."""
-    numbers: Dict[str, Optional[float]] = {name: getattr(found, name) for name in (
+    numbers: Dict[str, Optional[float]] = {name: getattr(choices, name) for name in (
         "road_width", "corridor", "density", "below", "sample", "balls", "minutes")}
     for name, value in numbers.items():
         if value is not None and not value > 0:
             raise SlopeError(option(name), "must be > 0", f"{value:g}")
-    missing = [name for name in STRENGTH if getattr(found, name) is None]
-    if missing and (not found.bodies or len(missing) < len(STRENGTH)):
+    missing = [name for name in STRENGTH if getattr(choices, name) is None]
+    if missing and (not choices.bodies or len(missing) < len(STRENGTH)):
         other = next((name for name in STRENGTH if name not in missing), None)
         raise SlopeError(option(missing[0]), f"must be given with {option(other)}" if other else
                          "must be given, unless --bodies are")
-    if found.shape and not found.bodies:
-        raise SlopeError(option("shape"), "must be given with --bodies", found.shape)
-    if not 0 <= found.reach < 1:
-        raise SlopeError("--reach", "must be 0 to below 1, a share of known events", f"{found.reach:g}")
-    if found.balls and found.minutes:
-        raise SlopeError("--minutes", "must be given without --balls", f"{found.minutes:g}")
-    roads.check_road(found.asked)
+    if choices.shape and not choices.bodies:
+        raise SlopeError(option("shape"), "must be given with --bodies", choices.shape)
+    if not 0 <= choices.reach < 1:
+        raise SlopeError("--reach", "must be 0 to below 1, a share of known events", f"{choices.reach:g}")
+    if choices.balls and choices.minutes:
+        raise SlopeError("--minutes", "must be given without --balls", f"{choices.minutes:g}")
+    roads.check_road(choices.asked)

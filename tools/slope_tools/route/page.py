@@ -28,11 +28,11 @@ def km(metres: float) -> str:
     return KM.format(metres / 1000)
 
 
-def sentences(found: Mapping[str, Any]) -> List[str]:
+def sentences(results: Mapping[str, Any]) -> List[str]:
     """The answer."""
-    route, stretches = found["route"], found["stretches"]
+    route, stretches = results["route"], results["stretches"]
     blocked = sum(one["to"] - one["from"] for one in stretches)
-    text = (f"{len(found['bodies'])} bodies can reach the road; their runs block {len(stretches)} stretches of it, "
+    text = (f"{len(results['bodies'])} bodies can reach the road; their runs block {len(stretches)} stretches of it, "
             f"{blocked:,.0f} m in all")
     if route["per_year"] is None:
         return [text, f"the largest chance that a body which fails blocks the road is {100 * route['share']:.0f} % "
@@ -43,16 +43,17 @@ def sentences(found: Mapping[str, Any]) -> List[str]:
             f"bounds of the runs (90 %), for any dependence: {one['low']:.2g} to {one['high']:.2g}"]
 
 
-def write_route_page(choices: Choices, corridor: Corridor, folder: Path, found: Mapping[str, Any], warn) -> None:
+def write_route_page(choices: Choices, corridor: Corridor, folder: Path, results: Mapping[str, Any], warn) -> None:
     """Write route.html."""
     yearly = choices.fragility is not None
     content = {
         "title": choices.name or folder.absolute().name, "client": choices.client, "author": choices.author,
         "made": provenance.now(), "mark": document.mark(folder), "how": how(choices),
-        "sentences": [f"{text[0].upper()}{text[1:]}." for text in sentences(found)],
-        "warnings": list(list_route_caveats(choices, found)), "maps": list(draw_route_maps(corridor, found, yearly)),
-        "sections": [*([make_along_section(found)] if len(found["bodies"]) > 1 else []),
-                     make_stretches_section(found, yearly), bodies(found, yearly), left_out(found)],
+        "sentences": [f"{text[0].upper()}{text[1:]}." for text in sentences(results)],
+        "warnings": list(list_route_caveats(choices, results)), "maps": list(draw_route_maps(corridor, results,
+                                                                                             yearly)),
+        "sections": [*([make_along_section(results)] if len(results["bodies"]) > 1 else []),
+                     make_stretches_section(results, yearly), bodies(results, yearly), left_out(results)],
         "footer": f"{document.MADE_BY.replace('report', 'route')}, SLOPE {provenance.version()}; all numbers: "
                   "results.yaml, stretches.csv, bodies.csv, pieces.csv; who hits what: governing.tif, route.gpkg"}
     for line in content["warnings"]:
@@ -70,8 +71,8 @@ def how(choices: Choices) -> str:
             "given that the body fails; its range is that of so few runs (Clopper and Pearson, 90 %).")
 
 
-def list_route_caveats(choices: Choices, found: Mapping[str, Any]) -> Iterator[str]:
-    failed = [one for one in found["bodies"] if one["failed"]]
+def list_route_caveats(choices: Choices, results: Mapping[str, Any]) -> Iterator[str]:
+    failed = [one for one in results["bodies"] if one["failed"]]
     if failed:
         yield f"runs of {len(failed)} bodies failed; their shares are of the others, body {failed[0]['body']} first"
     if choices.sample < 8:
@@ -81,7 +82,7 @@ def list_route_caveats(choices: Choices, found: Mapping[str, Any]) -> Iterator[s
                "there")
 
 
-def draw_route_maps(corridor: Corridor, found: Mapping[str, Any], yearly: bool) -> Iterator[Picture]:
+def draw_route_maps(corridor: Corridor, results: Mapping[str, Any], yearly: bool) -> Iterator[Picture]:
     """Maps of the corridor, of at most ALONG of its road each."""
     length = corridor.axis.length
     number = max(1, math.ceil(length / ALONG))
@@ -89,14 +90,14 @@ def draw_route_maps(corridor: Corridor, found: Mapping[str, Any], yearly: bool) 
         low, high = length * k / number, length * (k + 1) / number
         part = substring(corridor.axis, low, high)
         yield Picture(
-            map_of(corridor, found, yearly, part.bounds, Span(corridor.start + low, corridor.start + high)),
+            map_of(corridor, results, yearly, part.bounds, Span(corridor.start + low, corridor.start + high)),
             "map of the corridor", f"km {km(corridor.start + low)} to {km(corridor.start + high)}. The road in the "
             "colours of "
             + ("how often per year it is blocked" if yearly else "the largest share of a body's runs that block it")
             + "; white: no run does, which so few runs may miss. Bodies with their numbers; hollow: left out.")
 
 
-def map_of(corridor: Corridor, found: Mapping[str, Any], yearly: bool, bounds, along: Span) -> str:
+def map_of(corridor: Corridor, results: Mapping[str, Any], yearly: bool, bounds, along: Span) -> str:
     raster = corridor.raster
     room = corridor.reach
     shown = maps.window(raster, (bounds[0] - room, bounds[1] - room, bounds[2] + room, bounds[3] + room))
@@ -105,7 +106,7 @@ def map_of(corridor: Corridor, found: Mapping[str, Any], yearly: bool, bounds, a
         figure, axes = maps.relief(raster, raster.z, shown, "")
         maps.outline(axes, corridor.road, color="black", lw=0.4)
         axes.plot(*np.asarray(corridor.axis.coords)[:, :2].T, color="white", lw=2.2)
-        here = [one for one in found["pieces"] if one["to"] > along.low and one["from"] < along.high]
+        here = [one for one in results["pieces"] if one["to"] > along.low and one["from"] < along.high]
         lines = [np.asarray(axis.line(Span(max(one["from"], axis.s[0]), min(one["to"], axis.s[-1]))).coords)[:, :2]
                  for one in here]
         norm = LogNorm(LEAST, 1.0) if yearly else Normalize(0, 1)
@@ -114,7 +115,7 @@ def map_of(corridor: Corridor, found: Mapping[str, Any], yearly: bool, bounds, a
                                                       array=values))
         figure.colorbar(coloured, ax=axes, orientation="horizontal", aspect=50, shrink=0.6, pad=0.2,
                         label="blocked, times per year" if yearly else "share of the runs that block the road")
-        for several, fill in ((found["bodies"], figures.RELEASE), (found["left_out"], "none")):
+        for several, fill in ((results["bodies"], figures.RELEASE), (results["left_out"], "none")):
             for one in several:
                 if shown[0] < one["x"] < shown[2] and shown[1] < one["y"] < shown[3]:
                     axes.plot(one["x"], one["y"], "o", ms=5, mfc=fill, mec=figures.RELEASE)
@@ -134,23 +135,23 @@ def format_route_cell(value, form: str = "") -> str:
     return "-" if value is None else form.format(value) if form else digits.rounded(value, 3)
 
 
-def often(one: Mapping[str, Any], yearly: bool) -> List[str]:
-    year = one["per_year"]
+def often(row: Mapping[str, Any], yearly: bool) -> List[str]:
+    year = row["per_year"]
     return [f"{year['counts']:.2g}", f"{year['low']:.2g} to {year['high']:.2g}"] if yearly else []
 
 
-def share(one: Mapping[str, Any], name: str) -> List[str]:
-    return [f"{100 * one[name]:.0f} %", f"{100 * one['share_low']:.0f} to {100 * one['share_high']:.0f} %"]
+def share(row: Mapping[str, Any], name: str) -> List[str]:
+    return [f"{100 * row[name]:.0f} %", f"{100 * row['share_low']:.0f} to {100 * row['share_high']:.0f} %"]
 
 
-def make_along_section(found: Mapping[str, Any]) -> Section:
-    return Section("along", "Which body brings most", [Figures([road_part.bodies_along(found["along"])])])
+def make_along_section(results: Mapping[str, Any]) -> Section:
+    return Section("along", "Which body brings most", [Figures([road_part.bodies_along(results["along"])])])
 
 
-def make_stretches_section(found: Mapping[str, Any], yearly: bool) -> Section:
+def make_stretches_section(results: Mapping[str, Any], yearly: bool) -> Section:
     """Each stretch with the bodies that block it."""
     rows = []
-    for one in found["stretches"]:
+    for one in results["stretches"]:
         for by in one["bodies"]:
             numbers = [format_route_cell(by.get(name, [None] * 3)[k]) for name, k in (
                 ("length", 1), ("remove", 1), ("remove", 2), ("remove_lane", 1), ("passable_width", 1),
@@ -164,14 +165,14 @@ def make_stretches_section(found: Mapping[str, Any], yearly: bool) -> Section:
                               "stretch " "among them.")
 
 
-def bodies(found: Mapping[str, Any], yearly: bool) -> Section:
+def bodies(results: Mapping[str, Any], yearly: bool) -> Section:
     rows = [[one["body"], one["name"], km(one["chainage_m"]), format_route_cell(one["factor"], "{:.3f}"),
              format_route_cell(one["volume_m3"]),
              format_route_cell(one["depth_m"]), format_route_cell(one["known_share"], "{:.2g}"), one["runs"],
              *share(one, "share_blocked"),
              format_route_cell(one["on_road_median_m3"]), format_route_cell(one["on_road_most_m3"]),
              *([f"{one['per_year']['fails']:.2g}", f"{one['per_year']['blocks']:.2g}"] if yearly else [])]
-            for one in found["bodies"]]
+            for one in results["bodies"]]
     heads = ["body", "name", "km", "factor of safety", "volume m3", "depth m", "known events that reach the road",
              "runs", "block the road", "90 %", "on the road m3, median", "most",
              *(["fails, per year", "blocks, per year"] if yearly else [])]
@@ -179,10 +180,10 @@ def bodies(found: Mapping[str, Any], yearly: bool) -> Section:
                               "that goes as " "far as the road.")
 
 
-def left_out(found: Mapping[str, Any]) -> Section:
+def left_out(results: Mapping[str, Any]) -> Section:
     rows = [[one["body"], km(one["chainage_m"]), format_route_cell(one["factor"], "{:.3f}"),
              format_route_cell(one["volume_m3"]), one["why_not"]]
-            for one in found["left_out"]]
+            for one in results["left_out"]]
     return make_table_section("Left out", ["body", "km", "factor of safety", "volume m3", "why"], rows,
                               "Bodies that may fail and by known mobility do not come to the road; no number has them. "
                               "Those of "

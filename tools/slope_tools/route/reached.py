@@ -66,10 +66,12 @@ def combined(sources: Sequence[Source], shares_: Sequence[float], yearly: Option
         "low": yearly.of(numbers, low).least, "high": yearly.of(numbers, high).most})
 
 
-def of_set(one: Sequence[Tuple[int, float]], sources: Sequence[Source], yearly: Optional[Yearly]) -> Optional[Combined]:
+def of_set(members: Sequence[Tuple[int, float]], sources: Sequence[Source],
+           yearly: Optional[Yearly]) -> Optional[Combined]:
     """What the bodies and shares of a set of Reached do together; None of no body."""
     by_number = {source.body: source for source in sources}
-    return combined([by_number[number] for number, _ in one], [share for _, share in one], yearly) if one else None
+    return combined([by_number[number] for number, _ in members], [share for _, share in members],
+                    yearly) if members else None
 
 
 class Reached(NamedTuple):
@@ -98,19 +100,19 @@ def compute_reached_shares(source: Source, ground: Raster, kind: str, limit: flo
     """Rows and columns of the cells of a ground that runs reach, and the share of the runs that do."""
     total: Optional[np.ndarray] = None
     for prefix, weight in zip(source.prefixes, source.weights):
-        one = run_folders.load_raster(prefix, kind, heights=False)
+        raster = run_folders.load_raster(prefix, kind, heights=False)
         if total is None:
-            total, transform = np.zeros(one.z.shape), one.transform
-        if one.z.shape != total.shape or one.transform != transform:
+            total, transform = np.zeros(raster.z.shape), raster.transform
+        if raster.z.shape != total.shape or raster.transform != transform:
             raise SlopeError(f"{prefix}.{kind}.asc", f"must have the grid of {source.prefixes[0]}, as its cells are "
                              "counted with those")
-        total += weight * (np.nan_to_num(one.z) > limit)
-    found = np.zeros((0, 0)) if total is None else total
-    if not found.any():
-        return np.nonzero(found), np.zeros(0)
+        total += weight * (np.nan_to_num(raster.z) > limit)
+    shares = np.zeros((0, 0)) if total is None else total
+    if not shares.any():
+        return np.nonzero(shares), np.zeros(0)
     # the cells of the ground in the box of those, each of which has the value of the run's cell that its middle is in
     move = np.array(source.offset) - ground.offset
-    xlo, ylo, xhi, yhi = extent_of(transform, found) + np.tile(move, 2)
+    xlo, ylo, xhi, yhi = extent_of(transform, shares) + np.tile(move, 2)
     (left, top), (right, bottom) = ~ground.transform * (xlo, yhi), ~ground.transform * (xhi, ylo)
     rows, columns = ground.z.shape
     rows_, columns_ = np.mgrid[max(0, int(top)):min(rows, int(np.ceil(bottom))),
@@ -118,8 +120,8 @@ def compute_reached_shares(source: Source, ground: Raster, kind: str, limit: flo
     x, y = ground.transform * (columns_ + 0.5, rows_ + 0.5)
     at_column, at_row = ~transform * (x - move[0], y - move[1])
     at_row, at_column = np.floor(at_row).astype(int), np.floor(at_column).astype(int)
-    there = (at_row >= 0) & (at_row < found.shape[0]) & (at_column >= 0) & (at_column < found.shape[1])
+    there = (at_row >= 0) & (at_row < shares.shape[0]) & (at_column >= 0) & (at_column < shares.shape[1])
     share = np.zeros(rows_.shape)
-    share[there] = np.round(found[at_row[there], at_column[there]], DIGITS)
+    share[there] = np.round(shares[at_row[there], at_column[there]], DIGITS)
     hit = share > 0
     return (rows_[hit], columns_[hit]), share[hit]

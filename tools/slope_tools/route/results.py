@@ -49,16 +49,16 @@ class BodyRuns(NamedTuple):
         return float(np.mean(hit))
 
 
-def read_body(folder: Path, about: Mapping[str, Any]) -> BodyRuns:
-    place = runs.folder_of(folder, about["body"])
+def read_body(folder: Path, body: Mapping[str, Any]) -> BodyRuns:
+    place = runs.folder_of(folder, body["body"])
     output = place / runs.STUDY
     # runs that `slope study bodies/N` added under a condition do not count as those of the sample
     rows = [row for row in load_study(output / "study.yaml").runs if not row.batch]
     done = finished_of(rows)
     prefixes = [run_folders.prefix_of(run_folders.summary_of(output, row.summary)) for row in done]
-    source = Source(about["body"], prefixes, np.full(len(done), 1 / len(done)), len(rows) - len(done),
+    source = Source(body["body"], prefixes, np.full(len(done), 1 / len(done)), len(rows) - len(done),
                     rasters.read_place(place / "terrain.asc").offset)
-    return BodyRuns(about, [road_runs.Run(1.0, row.at_road.stretches, row.at_road.clearing) for row in done], source,
+    return BodyRuns(body, [road_runs.Run(1.0, row.at_road.stretches, row.at_road.clearing) for row in done], source,
                     done)
 
 
@@ -66,14 +66,14 @@ def yearly_of(choices: Choices, folder: Path, bodies: Sequence[Mapping[str, Any]
     """The fragilities of the bodies, None if none are given; SlopeError unless they are of these."""
     if choices.fragility is None:
         return None
-    found = fragility_files.read_fragility(Path(choices.fragility))
-    known = dict(zip(found.bodies, found.bases))
+    fragility = fragility_files.read_fragility(Path(choices.fragility))
+    known = dict(zip(fragility.bodies, fragility.bases))
     for one in bodies:
         digest = disk.sha256(folder / search.SLIPS / str(one["body"]) / f"{search.PREFIX}.{one['body']}.base.asc")
         if known.get(str(one["body"])) != digest:
             raise SlopeError("--fragility", f"must be of the bodies of {folder}, as slope fragility {folder} makes it: "
                              f"body {one['body']} is not in it", choices.fragility)
-    return Yearly(found)
+    return Yearly(fragility)
 
 
 def make_route_results(choices: Choices, corridor: Corridor, folder: Path, table: Mapping[str, Any]) -> Dict[str, Any]:
@@ -82,7 +82,7 @@ def make_route_results(choices: Choices, corridor: Corridor, folder: Path, table
     bodies = [read_body(folder, about) for about in table["bodies"]]
     spans = merged([Span(one["from"], one["to"]) for body in bodies for run in body.runs for one in run.stretches],
                    SAME)
-    about: Dict[str, Any] = {
+    results: Dict[str, Any] = {
         "collected": provenance.now(), "chainage_m": [corridor.start, corridor.start + corridor.axis.length],
         "blocked_above_m": choices.blocked, "fragility": choices.fragility and Path(choices.fragility).name,
         "route": route(bodies, yearly), "pieces": pieces(bodies, yearly),
@@ -92,33 +92,33 @@ def make_route_results(choices: Choices, corridor: Corridor, folder: Path, table
     hits = reached.combine_reached([one.source for one in bodies], corridor.raster, "max_thickness", choices.blocked)
     with disk.complete(folder, RESULTS) as new:
         disk.write_file(new / PIECES, disk.csv_text(("from_m", "to_m", "share", "body", *YEAR), (
-            (one["from"], one["to"], one["share"], one["body"], *year(one)) for one in about["pieces"])))
+            (one["from"], one["to"], one["share"], one["body"], *year(one)) for one in results["pieces"])))
         quantiles = [f"{name}_{100 * share:g}" for name in NUMBERS for share in road_runs.SHARES]
         disk.write_file(new / STRETCHES, disk.csv_text(
             ("stretch", "from_m", "to_m", *YEAR, "body", "factor", "share", *quantiles),
             ((one["stretch"], one["from"], one["to"], *year(one), by["body"], by["factor"], by["share"],
               *(value for name in NUMBERS for value in by.get(name, [None] * len(road_runs.SHARES))))
-             for one in about["stretches"] for by in one["bodies"])))
-        disk.write_file(new / ALONG, road_runs.table_of_bodies(about["along"]))
-        heads = [name for name in about["bodies"][0] if name != "per_year"]
+             for one in results["stretches"] for by in one["bodies"])))
+        disk.write_file(new / ALONG, road_runs.table_of_bodies(results["along"]))
+        heads = [name for name in results["bodies"][0] if name != "per_year"]
         disk.write_file(new / BODIES, disk.csv_text([*heads, "fails_per_year", "blocks_per_year"], (
             [*(one[name] for name in heads), *((one["per_year"] or {}).get(key) for key in ("fails", "blocks"))]
-            for one in about["bodies"])))
+            for one in results["bodies"])))
         of_sets = [governs(one, bodies, yearly) for one in hits.sets]
         rasters.write_geotiff(new / MAP, {name: np.array(values, float)[hits.codes] for name, values in zip(
             ("governing body", "share of its runs", "bodies that reach the cell", "times per year"), zip(*of_sets))},
             corridor.raster)
-        write_layers(new / LAYERS, corridor, folder, about, hits, of_sets)
-        disk.write_yaml(new / RESULTS, about, "slope route: m, m3 of ground (bulk), hours, per year")
-    return about
+        write_layers(new / LAYERS, corridor, folder, results, hits, of_sets)
+        disk.write_yaml(new / RESULTS, results, "slope route: m, m3 of ground (bulk), hours, per year")
+    return results
 
 
 YEAR = ("per_year", "independent", "dependent", "low", "high")
 
 
-def year(one: Mapping[str, Any]) -> List[Optional[float]]:
+def year(row: Mapping[str, Any]) -> List[Optional[float]]:
     """The columns YEAR."""
-    found = one["per_year"] or {}
+    found = row["per_year"] or {}
     return [found.get(name) for name in ("counts", *YEAR[1:])]
 
 
@@ -133,15 +133,15 @@ def pieces(bodies: Sequence[BodyRuns], yearly: Optional[Yearly]) -> List[Dict[st
     ranges = np.array([(one["from"], one["to"], k) for k, body in enumerate(bodies) for run in body.runs
                        for one in run.stretches]).reshape(-1, 3)
     ends = np.unique(ranges[:, :2])
-    found: List[Dict[str, Any]] = []
+    stretches: List[Dict[str, Any]] = []
     for low, high in zip(ends[:-1].tolist(), ends[1:].tolist()):
         middle = (low + high) / 2
         here = [bodies[k] for k in np.unique(ranges[(ranges[:, 0] < middle) & (ranges[:, 1] > middle), 2]).astype(int)]
         if high - low > SAME and here:
             one = reached.combined([body.source for body in here], [body.share(Span(low, high)) for body in here],
                                    yearly)
-            found.append({"from": low, "to": high, **one._asdict()})
-    return found
+            stretches.append({"from": low, "to": high, **one._asdict()})
+    return stretches
 
 
 def stretch(number: int, span: Span, bodies: Sequence[BodyRuns], yearly: Optional[Yearly]) -> Dict[str, Any]:
@@ -159,42 +159,42 @@ def stretch(number: int, span: Span, bodies: Sequence[BodyRuns], yearly: Optiona
             "bodies": each}
 
 
-def make_body_row(one: BodyRuns, yearly: Optional[Yearly]) -> Dict[str, Any]:
+def make_body_row(body_runs: BodyRuns, yearly: Optional[Yearly]) -> Dict[str, Any]:
     """A row of the table by body."""
-    share = one.share()
-    low, high = one.source.bounds(share)
-    on_road = np.array([row.at_road.remove_on_road_m3 for row in one.rows])
-    per_year = yearly and {"fails": yearly.of([one.number], [1.0]).counts,
-                           "blocks": yearly.of([one.number], [share]).counts}
+    share = body_runs.share()
+    low, high = body_runs.source.bounds(share)
+    on_road = np.array([row.at_road.remove_on_road_m3 for row in body_runs.rows])
+    per_year = yearly and {"fails": yearly.of([body_runs.number], [1.0]).counts,
+                           "blocks": yearly.of([body_runs.number], [share]).counts}
     keys = ("body", "name", "chainage_m", "x", "y", "factor", "volume_m3", "area_m2", "depth_m", "known_share",
             "known_law")
-    return {**{key: one.about[key] for key in keys}, "runs": len(one.runs), "failed": one.source.failed,
-            "share_blocked": share, "share_low": low, "share_high": high,
+    return {**{key: body_runs.about[key] for key in keys}, "runs": len(body_runs.runs),
+            "failed": body_runs.source.failed, "share_blocked": share, "share_low": low, "share_high": high,
             "on_road_median_m3": float(np.median(on_road)), "on_road_most_m3": float(on_road.max()),
             "per_year": per_year}
 
 
 # --- who hits what ---
 
-def governs(one, bodies: Sequence[BodyRuns], yearly: Optional[Yearly]):
+def governs(row, bodies: Sequence[BodyRuns], yearly: Optional[Yearly]):
     """Governing body, its share, how many bodies reach the cells of a set, how often per year; NaN where none does."""
-    found = reached.of_set(one, [body.source for body in bodies], yearly)
+    found = reached.of_set(row, [body.source for body in bodies], yearly)
     if found is None:
         return np.nan, np.nan, np.nan, np.nan
-    return found.body, found.share, len(one), (found.per_year or {}).get("counts", np.nan)
+    return found.body, found.share, len(row), (found.per_year or {}).get("counts", np.nan)
 
 
-def write_layers(path: Path, corridor: Corridor, folder: Path, about: Mapping[str, Any], hits, of_sets) -> None:
+def write_layers(path: Path, corridor: Corridor, folder: Path, results: Mapping[str, Any], hits, of_sets) -> None:
     """Road, bodies and hits as layers of a GeoPackage, in the CRS of the terrain."""
     axis = Axis(np.asarray(corridor.axis.coords), corridor.start)
 
-    def line(one) -> LineString:
-        return axis.line(Span(max(one["from"], axis.s[0]), min(one["to"], axis.s[-1])))
+    def line(row) -> LineString:
+        return axis.line(Span(max(row["from"], axis.s[0]), min(row["to"], axis.s[-1])))
     road = {"from_m": "float", "to_m": "float", "share": "float", "body": "int", "per_year": "float"}
 
-    def values(one):
-        return {"from_m": one["from"], "to_m": one["to"], "share": one["share"], "body": one["body"],
-                "per_year": year(one)[0]}
+    def values(row):
+        return {"from_m": row["from"], "to_m": row["to"], "share": row["share"], "body": row["body"],
+                "per_year": year(row)[0]}
     of_hits = {"body": "int", "share": "float", "bodies": "int", "per_year": "float", "shares": "str"}
 
     def hit():
@@ -205,19 +205,19 @@ def write_layers(path: Path, corridor: Corridor, folder: Path, about: Mapping[st
                                        f"{name}:{part:g}" for name, part in hits.sets[int(code)])}
 
     def bodies():
-        for one in (*about["bodies"], *about["left_out"]):
-            place = folder / search.SLIPS / str(one["body"])
-            base = rasters.read_asc_local(place / f"{search.PREFIX}.{one['body']}.base.asc")
+        for row in (*results["bodies"], *results["left_out"]):
+            place = folder / search.SLIPS / str(row["body"])
+            base = rasters.read_asc_local(place / f"{search.PREFIX}.{row['body']}.base.asc")
             mask = base.z < rasters.read_asc_local(place / "terrain.asc").z
             area = [shape(part) for part, _ in shapes(mask.astype(np.uint8), mask, transform=base.transform)]
             yield as_multi(unary_union(area)), {
-                "body": one["body"], "name": one["name"], "factor": one["factor"], "volume_m3": one["volume_m3"],
-                "why_not": one.get("why_not", ""), "share": one.get("share_blocked")}
+                "body": row["body"], "name": row["name"], "factor": row["factor"], "volume_m3": row["volume_m3"],
+                "why_not": row.get("why_not", ""), "share": row.get("share_blocked")}
     geopackage.write_geopackage(path, {
-        "road": Layer("LineString", road, ((line(one), values(one)) for one in about["pieces"])),
+        "road": Layer("LineString", road, ((line(one), values(one)) for one in results["pieces"])),
         "stretches": Layer("LineString", {"stretch": "int", **road}, (
-            (line(one), {"stretch": one["stretch"], **values(one)}) for one in about["stretches"])),
+            (line(one), {"stretch": one["stretch"], **values(one)}) for one in results["stretches"])),
         "bodies": Layer("MultiPolygon", {"body": "int", "name": "str", "factor": "float", "volume_m3": "float",
                                          "why_not": "str", "share": "float"}, bodies()),
-        road_runs.BODIES: road_runs.layer_of_bodies(about["along"], [axis]),
+        road_runs.BODIES: road_runs.layer_of_bodies(results["along"], [axis]),
         "hits": Layer("Polygon", of_hits, hit())}, corridor.raster)

@@ -45,49 +45,49 @@ def folder_of(folder: Path, number: int) -> Path:
     return folder / SITES / str(number)
 
 
-def make_body_site(choices: Choices, folder: Path, about: Mapping[str, Any], number: int, machine: site.Machine, tell,
+def make_body_site(choices: Choices, folder: Path, body: Mapping[str, Any], number: int, machine: site.Machine, tell,
                    warn, draw) -> Path:
     """The site of a body, unless it is there; number: of bodies, which share the minutes."""
-    place, slips = folder_of(folder, about["body"]), folder / SLIPS / str(about["body"])
+    place, slips = folder_of(folder, body["body"]), folder / SLIPS / str(body["body"])
     if not (place / site_choices.NAME).is_file() or site.site_folder.was_not_made(place):
         place.parent.mkdir(exist_ok=True)
-        site.make_site(choices_of(choices, slips, about, number), place, machine, tell, warn, draw)
+        site.make_site(choices_of(choices, slips, body, number), place, machine, tell, warn, draw)
     made = site_choices.load_site(place)
     site_study.check_site(made)
-    now = made.choices.changed(later(choices, about))
+    now = made.choices.changed(later(choices, body))
     if now != made.choices:
         disk.write_file(place / site_choices.NAME, site_choices.make_site_file(now, made.content.get("found") or {},
                                                                                place))
     return place
 
 
-def later(choices: Choices, about: Mapping[str, Any]) -> Dict[Key, Any]:
+def later(choices: Choices, body: Mapping[str, Any]) -> Dict[Key, Any]:
     """Those choices of a body's site that may change when it is made."""
-    asked = choices.asked._replace(start=about["road_from_m"] / 1000).about()
+    asked = choices.asked._replace(start=body["road_from_m"] / 1000).about()
     return {("road", "cut_angle"): choices.cut_angle, ("road", "mesh"): choices.mesh,
             **{("road", key): value for key, value in asked.items()},
-            ("project", "name"): f"{choices.name + ', ' if choices.name else ''}{about['name']}",
+            ("project", "name"): f"{choices.name + ', ' if choices.name else ''}{body['name']}",
             ("project", "client"): choices.client, ("project", "author"): choices.author}
 
 
-def choices_of(choices: Choices, slips: Path, about: Mapping[str, Any], number: int) -> OfMass:
+def choices_of(choices: Choices, slips: Path, body: Mapping[str, Any], number: int) -> OfMass:
     """The choices of a body's site."""
-    base = str(slips / f"{PREFIX}.{about['body']}.base.asc")
-    found = OfMass.of({
+    base = str(slips / f"{PREFIX}.{body['body']}.base.asc")
+    choices_of_site = OfMass.of({
         "terrain": {"files": [str(slips / TERRAIN)]},
         "release": {"scar": base, "scar_is": "surface",
                     "bodies": [base] if (slips / f"{PREFIX}{bodies.END}").is_file() else []},
         "road": {"file": str(slips / "road.csv")}, "balls": {"number": choices.balls},
         "model": {"density": choices.ball_density}, "known": {"confined": choices.confined}})
-    found = found.changed(later(choices, about))
+    choices_of_site = choices_of_site.changed(later(choices, body))
     zones = site_zones.Source(choices.ground, choices.ground_table, None, polygons.ADVICE) if choices.ground else None
     if zones and site_zones.touch(zones, rasters.read_asc_local(slips / TERRAIN)):
-        found = replace(found, ground=Ground(zones.path, zones.table))
+        choices_of_site = replace(choices_of_site, ground=Ground(zones.path, zones.table))
     if choices.minutes:     # a site's are those of its own study, which has more runs
-        minutes = choices.minutes / number * site_budget.plan_budget(found).runs / choices.sample
-        found = replace(found, balls=replace(found.balls, minutes=minutes))
-    site_choices.check_site_file({"slope_site": site_choices.VERSION, **found.entries()}, str(slips))
-    return found
+        minutes = choices.minutes / number * site_budget.plan_budget(choices_of_site).runs / choices.sample
+        choices_of_site = replace(choices_of_site, balls=replace(choices_of_site.balls, minutes=minutes))
+    site_choices.check_site_file({"slope_site": site_choices.VERSION, **choices_of_site.entries()}, str(slips))
+    return choices_of_site
 
 
 def make_route_study(choices: Choices, place: Path, engine: Setup) -> Asked:
@@ -111,38 +111,38 @@ def make_route_runs(several: Sequence[Asked], tell) -> List[str]:
     """Make all runs that are not finished, in one queue, and collect those of each body; returns why runs failed."""
     with contextlib.ExitStack() as stack:
         works: Dict[Path, jobs.Work] = {}
-        for one in several:
-            files = data_files(one.setup.deck, sample.all_values(sample.settings_of(one.todo), one.plan))
-            work = stack.enter_context(study.prepared(one.setup, files, len(one.todo)))
-            works[one.setup.runs] = work
-            work.store.admit(one.todo)
-            sample.write_sample(one.setup.output, one.plan)
+        for asked in several:
+            files = data_files(asked.setup.deck, sample.all_values(sample.settings_of(asked.todo), asked.plan))
+            work = stack.enter_context(study.prepared(asked.setup, files, len(asked.todo)))
+            works[asked.setup.runs] = work
+            work.store.admit(asked.todo)
+            sample.write_sample(asked.setup.output, asked.plan)
         todo = [run for one in several for run in one.todo]
         new = {run.folder for run in todo if not run.finished}
         first = next(iter(works.values()))
         first.parts = works
         first.do(todo)
-        for k, one in enumerate(several, 1):
-            if not is_collected(one, new):
-                results.collect_results(one.setup, one.questions, one.todo, works[one.setup.runs])
-                tell(f"body {one.setup.home.name}, {k} of {len(several)}: its runs are evaluated")
+        for k, asked in enumerate(several, 1):
+            if not is_collected(asked, new):
+                results.collect_results(asked.setup, asked.questions, asked.todo, works[asked.setup.runs])
+                tell(f"body {asked.setup.home.name}, {k} of {len(several)}: its runs are evaluated")
     return [f"body {one.setup.home.name}: {failure}" for one in several
             if (failure := study.failure(one.setup.output, one.todo))]
 
 
-def is_collected(one: Asked, new) -> bool:
+def is_collected(asked: Asked, new) -> bool:
     """Whether the results in a body's folder are of these runs, none of which was made since, and of this road."""
-    if any(run.folder in new or run.error for run in one.todo):
+    if any(run.folder in new or run.error for run in asked.todo):
         return False
     try:
-        about = load_study(one.setup.output / "study.yaml")
+        written = load_study(asked.setup.output / "study.yaml")
     except SlopeError:
         return False
-    road = about.study.road or {}
-    assert one.setup.road
-    if any(road.get(key) != value for key, value in one.setup.road.about().items()):
+    road = written.study.road or {}
+    assert asked.setup.road
+    if any(road.get(key) != value for key, value in asked.setup.road.about().items()):
         return False
-    return [row.run for row in finished_of(about.runs)] == [run.name for run in one.todo]
+    return [row.run for row in finished_of(written.runs)] == [run.name for run in asked.todo]
 
 
 def list_route_runs(several: Sequence[Asked]):

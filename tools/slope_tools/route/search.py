@@ -61,14 +61,14 @@ def search_route_bodies(choices: Choices, corridor: Corridor, folder: Path, lmp:
     path = folder / TABLE
     if path.is_file():
         return table_of(folder)
-    found = given(choices, corridor, warn) if choices.bodies else searched(choices, corridor, folder, lmp, ranks, tell)
-    if not found:
+    slips = given(choices, corridor, warn) if choices.bodies else searched(choices, corridor, folder, lmp, ranks, tell)
+    if not slips:
         raise SlopeError(choices.road, f"must have a slope within {choices.corridor:g} m with a factor of safety below "
                          f"{choices.below:g} (--below), for these strengths")
-    found.sort(key=lambda one: corridor.chainage(*middle(corridor, one)))
+    slips.sort(key=lambda slip: corridor.chainage(*middle(corridor, slip)))
     kept: List[Dict[str, Any]] = []
     left: List[Dict[str, Any]] = []
-    for number, one in enumerate(found, 1):
+    for number, one in enumerate(slips, 1):
         about = settled(choices, corridor, folder / SLIPS / str(number), one, number)
         (left if about["why_not"] else kept).append(about)
         if about["why_not"]:
@@ -85,37 +85,37 @@ def table_of(folder: Path) -> Dict[str, Any]:
                                                                        schemas.list_of(BODY)}))
 
 
-def middle(corridor: Corridor, one: Slip) -> Tuple[float, float]:
-    row, column = np.nonzero(one.mask)
-    x, y = corridor.clip(one.window).transform * (column.mean() + 0.5, row.mean() + 0.5)
+def middle(corridor: Corridor, slip: Slip) -> Tuple[float, float]:
+    row, column = np.nonzero(slip.mask)
+    x, y = corridor.clip(slip.window).transform * (column.mean() + 0.5, row.mean() + 0.5)
     return float(x), float(y)
 
 
-def shared(one: Slip, other: Slip) -> float:
+def shared(slip: Slip, other: Slip) -> float:
     """Of the smaller one's cells, those that both have."""
-    common = one.window.common(other.window)
+    common = slip.window.common(other.window)
     if common.empty:
         return 0.0
-    both = one.mask[common.inside(one.window)] & other.mask[common.inside(other.window)]
-    return float(both.sum()) / min(one.mask.sum(), other.mask.sum())
+    both = slip.mask[common.inside(slip.window)] & other.mask[common.inside(other.window)]
+    return float(both.sum()) / min(slip.mask.sum(), other.mask.sum())
 
 
 # --- searched ---
 
 def searched(choices: Choices, corridor: Corridor, folder: Path, lmp: Path, ranks: int, tell) -> List[Slip]:
     """The bodies of all windows with a factor of safety below the limit, the least first; none shares its ground."""
-    found: List[Slip] = []
+    slips: List[Slip] = []
     windows = list(searches(corridor))
     for k, (window, ground) in enumerate(windows, 1):
         place = folder / WINDOWS / str(k)
         if not (place / DONE).is_file():
             search(choices, corridor, window, ground, place, lmp, ranks)
             tell(f"window {k} of {len(windows)} is searched")
-        found += [one for one in of_window(place, window)
+        slips += [one for one in of_window(place, window)
                   if one.factor is not None and one.factor < choices.below]
-    found.sort(key=lambda one: one.factor or 0.0)
+    slips.sort(key=lambda slip: slip.factor or 0.0)
     several: List[Slip] = []
-    for one in found:
+    for one in slips:
         if all(shared(one, other) <= SHARED for other in several):
             several.append(one)
     return several
@@ -161,7 +161,7 @@ def of_window(place: Path, window: Window) -> List[Slip]:
 
 def given(choices: Choices, corridor: Corridor, warn) -> List[Slip]:
     """The bodies of polygons with an attribute depth, thickness or volume; SlopeError if two share their ground."""
-    found: List[Slip] = []
+    slips: List[Slip] = []
     for name, geometry, crs, size in features(choices.bodies, warn):
         where = f"{choices.bodies}: {name}"
         local = polygons.of_feature(where, geometry, corridor.raster, crs, ADVICE)
@@ -179,24 +179,24 @@ def given(choices: Choices, corridor: Corridor, warn) -> List[Slip]:
         except SlopeError as error:
             raise SlopeError(where, f"must have a factor of safety: {error}") from error
         new = Slip(window, np.where(ground.z - slip > 0, slip, np.nan), factor, name=name)
-        for other in found:
+        for other in slips:
             if shared(new, other) > SHARED:
                 raise SlopeError(choices.bodies, f"must hold bodies that share at most {SHARED:g} of their cells",
                                  f"{other.name} and {name} share {shared(new, other):.2g}")
-        found.append(new)
-    return found
+        slips.append(new)
+    return slips
 
 
 def features(path: Optional[str], warn):
     """Name, geometry, CRS and size of the polygons of a file; warn is called for those that have no geometry."""
-    found = vectors.read_vector_layer(path, "Polygon")
-    several = len(found.features) + found.empty
-    if found.empty:
-        first = min(set(range(1, several + 1)) - set(found.numbers))
-        warn(Finding("no geometry", {"feature": f"{path}: feature {first}", "without": found.empty,
+    layer = vectors.read_vector_layer(path, "Polygon")
+    several = len(layer.features) + layer.empty
+    if layer.empty:
+        first = min(set(range(1, several + 1)) - set(layer.numbers))
+        warn(Finding("no geometry", {"feature": f"{path}: feature {first}", "without": layer.empty,
                                      "features": several}))
-    crs = found.known_crs(path, ADVICE.wrong_crs)
-    for number, (_, geometry), about in zip(found.numbers, found.features, found.attributes):
+    crs = layer.known_crs(path, ADVICE.wrong_crs)
+    for number, (_, geometry), about in zip(layer.numbers, layer.features, layer.attributes):
         where = f"{path}: feature {number}"
         depth, _ = depth_of(str(path), number, about)
         volume = attribute(about, "volume")
@@ -222,28 +222,28 @@ def bishop_factor(choices: Choices, raster, path: Path, without: np.ndarray) -> 
 
 # --- its ground, and whether it reaches the road ---
 
-def settled(choices: Choices, corridor: Corridor, place: Path, one: Slip, number: int) -> Dict[str, Any]:
+def settled(choices: Choices, corridor: Corridor, place: Path, slip: Slip, number: int) -> Dict[str, Any]:
     """Write the folder of a body; what bodies.yaml says of it."""
-    window, line, start = cut_window(corridor, *extent_of(corridor.clip(one.window).transform, one.mask))
+    window, line, start = cut_window(corridor, *extent_of(corridor.clip(slip.window).transform, slip.mask))
     raster, base = corridor.clip(window), np.full(corridor.clip(window).z.shape, np.nan)
-    common = one.window.common(window)
-    base[common.inside(window)] = one.base[common.inside(one.window)]
+    common = slip.window.common(window)
+    base[common.inside(window)] = slip.base[common.inside(slip.window)]
     place.mkdir(parents=True, exist_ok=True)
     rasters.write_asc_local(place / TERRAIN, raster, {}, exact=True)
-    whole = base if one.row else np.where(np.isfinite(base), base, raster.z)    # of a given one, the ground without it
+    whole = base if slip.row else np.where(np.isfinite(base), base, raster.z)    # of a given one, the ground without it
     rasters.write_asc_local(place / f"{PREFIX}.{number}.base.asc", raster._replace(z=whole), {"body": number},
                             exact=True)
     write_line(place / "road.csv", line, raster)
-    if one.row:
+    if slip.row:
         table = place / f"{PREFIX}{bodies.END}"
-        disk.write_file(table, disk.csv_text(one.row, [{**one.row, "rank": str(number)}.values()]))
-        disk.write_file(bodies.name_body_file(table, number, bodies.COLUMNS), one.columns.read_bytes())
+        disk.write_file(table, disk.csv_text(slip.row, [{**slip.row, "rank": str(number)}.values()]))
+        disk.write_file(bodies.name_body_file(table, number, bodies.COLUMNS), slip.columns.read_bytes())
     depth = np.nan_to_num(raster.z - base)
-    x, y = middle(corridor, one)
-    return {"body": number, "name": one.name or f"body {number}", "chainage_m": round(corridor.chainage(x, y), 2),
-            "x": round(x, 2), "y": round(y, 2), "factor": one.factor,
+    x, y = middle(corridor, slip)
+    return {"body": number, "name": slip.name or f"body {number}", "chainage_m": round(corridor.chainage(x, y), 2),
+            "x": round(x, 2), "y": round(y, 2), "factor": slip.factor,
             "volume_m3": float(depth.sum()) * corridor.cell ** 2,
-            "area_m2": int(one.mask.sum()) * corridor.cell ** 2, "depth_m": float(depth.max()),
+            "area_m2": int(slip.mask.sum()) * corridor.cell ** 2, "depth_m": float(depth.max()),
             "road_from_m": round(start, 4),
             **reaches(choices, falling.of_arrays(raster, depth, f"body {number}"), corridor.road)}
 
@@ -251,18 +251,18 @@ def settled(choices: Choices, corridor: Corridor, place: Path, one: Slip, number
 def reaches(choices: Choices, mass: falling.Body, lane) -> Dict[str, Any]:
     """The share of known events that reach the road, and why a body is left out, "" if it is not."""
     try:
-        found = known.compute_known_mobility(mass, known.choice(confined=choices.confined)).decides
+        mobility = known.compute_known_mobility(mass, known.choice(confined=choices.confined)).decides
     except SlopeError as error:     # without a fall path nothing says that it does not reach the road
         return {"known_share": None, "known_law": str(error), "why_not": ""}
-    met = road.at_road(found.path, lane)
-    share = float(found.exceedance(met.length))
+    met = road.at_road(mobility.path, lane)
+    share = float(mobility.exceedance(met.length))
     why = ""
     if not met.met and met.beside > mass.volume ** (1 / 3):
         why = f"its fall path stays {met.beside:.0f} m away from the road"
     elif share < choices.reach:
         why = (f"{cents(share)} of known events of its volume and height go as far as the road, {met.length:.0f} "
                f"m, {met.fall:.0f} m down (--reach {choices.reach:g})")
-    return {"known_share": share, "known_law": found.law.name, "why_not": why}
+    return {"known_share": share, "known_law": mobility.law.name, "why_not": why}
 
 
 def read_route_body(folder: Path, number: int, density: Optional[float]) -> bodies.Body:

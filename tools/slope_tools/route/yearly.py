@@ -36,14 +36,14 @@ class Rate(NamedTuple):
 class Yearly:
     """The fragilities of bodies with a hazard curve."""
 
-    def __init__(self, found: Fragility):
-        if found.rate is None:
+    def __init__(self, fragility: Fragility):
+        if fragility.rate is None:
             raise SlopeError("--fragility", "must be of slope fragility with --hazard, for frequencies per year",
-                             found.folder)
-        self.names, self.rate = found.bodies, found.rate
+                             fragility.folder)
+        self.names, self.rate = fragility.bodies, fragility.rate
         first, last = float(self.rate.peaks[0]), float(self.rate.peaks[-1])
         peaks = np.geomspace(first, last, STEPS)
-        each = found.capacity.reshape(-1, len(self.names))
+        each = fragility.capacity.reshape(-1, len(self.names))
         self.fails = np.array([np.searchsorted(np.sort(one), peaks, "left") for one in each.T]).T / len(each)
         rates = self.rate.at(peaks)
         ends = np.concatenate([(rates[:-1] - rates[1:]) / 2, [0.0]])

@@ -53,13 +53,13 @@ def probabilities(text: str) -> List[float]:
     """Those of --zones, each less than the one before."""
     rule = "must be probabilities > 0 and < 1 that fall, such as 1/100,1/1000,1/5000 or 0.5,0.1"
     try:
-        found = [float(over) / float(under if mark else 1)
-                 for over, mark, under in (one.partition("/") for one in text.split(","))]
+        numbers = [float(over) / float(under if mark else 1)
+                   for over, mark, under in (one.partition("/") for one in text.split(","))]
     except (ValueError, ZeroDivisionError):
-        found = []
-    if not found or not all(0 < one < 1 for one in found) or any(b >= a for a, b in zip(found[:-1], found[1:])):
+        numbers = []
+    if not numbers or not all(0 < one < 1 for one in numbers) or any(b >= a for a, b in zip(numbers[:-1], numbers[1:])):
         raise SlopeError("--zones", rule, text)
-    return found
+    return numbers
 
 
 def limits(thicker: float, intensity: Optional[str]) -> List[Limit]:
@@ -70,14 +70,14 @@ def limits(thicker: float, intensity: Optional[str]) -> List[Limit]:
         return [Limit("thickness", thicker)]
     quantity, _, values = intensity.partition(":")
     try:
-        found = [float(one) for one in values.split(",")]
+        numbers = [float(one) for one in values.split(",")]
     except ValueError:
-        found = []
-    if quantity not in QUANTITIES or not found or not all(math.isfinite(one) and one >= 0 for one in found) or any(
-            b <= a for a, b in zip(found[:-1], found[1:])):
+        numbers = []
+    if quantity not in QUANTITIES or not numbers or not all(math.isfinite(one) and one >= 0 for one in numbers) or any(
+            b <= a for a, b in zip(numbers[:-1], numbers[1:])):
         raise SlopeError("--intensity", "must be thickness, speed or energy with limits >= 0 that rise, such as "
                          "thickness:0.5,2 (m, m/s, J)", intensity)
-    return [Limit(quantity, one) for one in found]
+    return [Limit(quantity, one) for one in numbers]
 
 
 def ground_of(name: str, warn) -> Ground:
@@ -95,16 +95,16 @@ def ground_of(name: str, warn) -> Ground:
         run = deposit.read_deposit(named_run.read_named_run(name).prefix, None, warn)
         return Ground(run.raster, [Source(1, [Path(run.prefix)], np.ones(1), 0, run.raster.offset)], None, {})
     study = study or folder
-    about = load_study(study / answered.STUDY)
-    weighted = ensemble_types.weighted(about.ensemble)
+    study_ = load_study(study / answered.STUDY)
+    weighted = ensemble_types.weighted(study_.ensemble)
     known = weighted.weights if weighted else None
-    rows = [row for row in finished_of(about.runs) if (row.run in known if known else not row.batch)]
+    rows = [row for row in finished_of(study_.runs) if (row.run in known if known else not row.batch)]
     if not rows:
         raise SlopeError(study, "must have finished runs that are counted alike, or have weights")
     prefixes = [run_folders.prefix_of(run_folders.summary_of(study, row.summary)) for row in rows]
     weights = np.array([known[row.run] if known else 1.0 for row in rows])
     run = deposit.read_deposit(str(prefixes[0]), None, warn)
-    failed = sum(isinstance(row, Failed) and bool(known or not row.batch) for row in about.runs)
+    failed = sum(isinstance(row, Failed) and bool(known or not row.batch) for row in study_.runs)
     effect = 1.0 if known else len(rows) / len({str(row.set) for row in rows})
     return Ground(run.raster, [Source(1, prefixes, weights / weights.sum(), failed, run.raster.offset, effect)], None,
                   {1: weighted.set} if weighted else {})
@@ -155,10 +155,10 @@ def unreached(ground: Ground) -> float:
     return probable(reached.combined(ground.sources, [0.0] * len(ground.sources), ground.yearly))[1]
 
 
-def probable(found: reached.Combined) -> Tuple[float, float]:
-    if found.per_year is None:
-        return found.low, found.high
-    return 1 - math.exp(-found.per_year["low"]), 1 - math.exp(-found.per_year["high"])
+def probable(combined: reached.Combined) -> Tuple[float, float]:
+    if combined.per_year is None:
+        return combined.low, combined.high
+    return 1 - math.exp(-combined.per_year["low"]), 1 - math.exp(-combined.per_year["high"])
 
 
 def smoothed(area: Polygon, cell: float) -> Polygon:

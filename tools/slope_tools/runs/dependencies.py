@@ -32,15 +32,15 @@ class State(NamedTuple):
 
 def program(lmp: Path) -> Dict[str, str]:
     """{name: digest} of the program, of the shared libraries that it loads, and of the plugins of the environment."""
-    found = {"LAMMPS program": disk.sha256(lmp)}
+    digests = {"LAMMPS program": disk.sha256(lmp)}
     plugins = [path for folder in os.environ.get(PLUGINS, "").split(":") if folder
                for path in sorted(Path(folder).glob("*plugin.so"))]
     for path in plugins:
-        found[path.name] = disk.sha256(path)
+        digests[path.name] = disk.sha256(path)
     for path in (lmp, *plugins):
         for library in linked(path):
-            found[library.name] = disk.sha256(library)
-    return found
+            digests[library.name] = disk.sha256(library)
+    return digests
 
 
 def linked(path: Path) -> Set[Path]:
@@ -83,19 +83,19 @@ class Dependencies:
 
     def changed(self, run) -> Optional[str]:
         """The first thing that a run depends on and that is not what it was when the run was made; None if all is."""
-        about, marker = run_folders.begun(run.folder), run_folders.ended(run.folder)
+        begun, marker = run_folders.begun(run.folder), run_folders.ended(run.folder)
         run.log.update()
         now, words = self.now(run), self._words(run)
-        before = {**(about.get("program") or {})}
+        before = {**(begun.get("program") or {})}
         if self.program is not None:
             for name in sorted({*now.program, *before}, key=lambda name: (name != "LAMMPS program", name)):
                 if now.program.get(name) != before.get(name):
                     return name
-        before = {**(about.get("environment") or {}), **(marker.get("environment") or {})}
+        before = {**(begun.get("environment") or {}), **(marker.get("environment") or {})}
         for name in sorted({*now.environment, *before}):
             if now.environment.get(name) != before.get(name):
                 return f"environment variable {name}"
-        before = {**(about.get("inputs") or {}), **(marker.get("inputs") or {})}
+        before = {**(begun.get("inputs") or {}), **(marker.get("inputs") or {})}
         before = {name: digest for name, digest in before.items() if os.path.isabs(name) or self._used(name, words)}
         for name in sorted({*now.files, *before}, key=lambda name: (name != self.deck.name, name)):
             if now.files.get(name) != before.get(name) and not self._means_the_same(run, name):
@@ -170,7 +170,7 @@ def outside(words: str, folder: Path) -> Dict[str, str]:
     """{absolute path: digest} of the files outside of the run folder that words name, and of their sidecars."""
     libraries = [one for one in os.environ.get(LIBRARIES, "").split(":") if one]
     top = os.path.abspath(folder)
-    found: Dict[str, str] = {}
+    digests: Dict[str, str] = {}
     for word in {*words.split("\n"), *decks.PATHS.findall(words)}:
         if "/" in word:
             places = [os.path.normpath(os.path.join(top, word))]
@@ -182,5 +182,5 @@ def outside(words: str, folder: Path) -> Dict[str, str]:
             if not place.startswith(f"{top}{os.sep}") and os.path.isfile(place):
                 for path in (place, *sidecars(place)):
                     if os.path.isfile(path):
-                        found[path] = disk.sha256(path)
-    return found
+                        digests[path] = disk.sha256(path)
+    return digests

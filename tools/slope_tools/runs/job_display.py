@@ -57,26 +57,26 @@ class Display:
         else:
             print(line, flush=True)
 
-    def label(self, one):
-        return f"[{self.numbers[one.name]}/{self.total}] {one.name}"
+    def label(self, run):
+        return f"[{self.numbers[run.name]}/{self.total}] {run.name}"
 
-    def started(self, one, said):
-        self.printed[one.name] = time.monotonic()
-        if not self.live or said != "started":
-            self.say(f"{self.label(one)}: {said}")
+    def started(self, run, state):
+        self.printed[run.name] = time.monotonic()
+        if not self.live or state != "started":
+            self.say(f"{self.label(run)}: {state}")
 
     def ended(self, active):
-        one, wall = active.run, time.monotonic() - active.began
+        run, wall = active.run, time.monotonic() - active.began
         self.ended_runs += 1
-        self.walls.setdefault(read_run_diameter(one), []).append(wall)
+        self.walls.setdefault(read_run_diameter(run), []).append(wall)
         self._say_share()
-        if one.error:
+        if run.error:
             self.failed += 1
-            self.say(f"{self.label(one)}: failed: {one.error}")
+            self.say(f"{self.label(run)}: failed: {run.error}")
         else:
-            at = f" at {one.log.time:.1f} s" if one.log.time is not None else ""
-            since = f" since step {one.restart[0]}" if one.restart else ""
-            self.say(f"{self.label(one)}: finished{at}, wall time {duration(wall)}{since}{self._to_go()}")
+            at = f" at {run.log.time:.1f} s" if run.log.time is not None else ""
+            since = f" since step {run.restart[0]}" if run.restart else ""
+            self.say(f"{self.label(run)}: finished{at}, wall time {duration(wall)}{since}{self._to_go()}")
 
     def _to_go(self):
         """How many runs are left and when they will have ended, for those who see no table."""
@@ -91,7 +91,7 @@ class Display:
 
     def _wall(self, d):
         """Of a run with balls of a diameter; half of it makes 8 times the balls, and twice the steps."""
-        like = min(self.walls, key=lambda one: abs(math.log(one / d)))
+        like = min(self.walls, key=lambda diameter: abs(math.log(diameter / d)))
         return sum(self.walls[like]) / len(self.walls[like]) * (like / d) ** 4
 
     def update(self, active, waiting):

@@ -230,30 +230,30 @@ class Work:
     def _start(self, run):
         """Start a run, from its last restart file if there is one; returns a line for the user."""
         try:
-            said = self.of(run)._prepare(run)
+            state = self.of(run)._prepare(run)
             with open(run.folder / SCREEN, "ab" if run.restart else "wb") as screen:
                 run.output_before = screen.tell()
                 process = processes.start(self.of(run)._line(run), run.folder, screen)
         except OSError as error:
             raise SlopeError(run.folder, f"cannot be run: {error.strerror} ({error.filename})") from error
         self.active.append(Active(run, process, time.monotonic()))
-        return said
+        return state
 
     def _prepare(self, run):
         """Make the folder of a run, or prepare it for a continuation; returns a line for the user."""
-        said = "started"
+        state = "started"
         if run.folder.exists():
             run.restart, why = self._last_restart(run)
-            said = f"starts again: {why}"
+            state = f"starts again: {why}"
         if run.restart:
             step, path = run.restart
-            said = f"continues at step {step}, from {path}"
+            state = f"continues at step {step}, from {path}"
             self._reopen_folder(run)
         else:
             self._make_folder(run)
         if run.unlaunched:
-            said += f"; its launch failed once: {run.unlaunched}"
-        return said
+            state += f"; its launch failed once: {run.unlaunched}"
+        return state
 
     def _line(self, run):
         """The whole command of a run."""

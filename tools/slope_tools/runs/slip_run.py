@@ -55,7 +55,7 @@ def run_slip_search(asked: slip_deck.Asked, polygon, raster: rasters.Raster, fol
 
 def followed(process, log: Path, tell: Callable[[str], Any]) -> int:
     """The status with which the program ends; what it says of its progress goes to tell."""
-    said = 0
+    length = 0
     while True:
         try:
             return process.wait(POLL)
@@ -63,9 +63,9 @@ def followed(process, log: Path, tell: Callable[[str], Any]) -> int:
             pass
         text = log.read_text(encoding="utf-8", errors="replace") if log.is_file() else ""
         lines = [line for line in text.split("\n")[:-1] if line.endswith(TO_GO)]
-        for line in lines[said:]:
+        for line in lines[length:]:
             tell(line)
-        said = len(lines)
+        length = len(lines)
 
 
 def settle(asked: slip_deck.Asked, raster: rasters.Raster, folder: Path, kept: int, final: Path) -> None:

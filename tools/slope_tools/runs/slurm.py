@@ -212,13 +212,13 @@ class Work(jobs.Work):
 
     def _prepare_task(self, run) -> Tuple[str, str]:
         """Prepare the folder of a run; a line for the user, and the command of its task."""
-        said = self.of(run)._prepare(run)
+        state = self.of(run)._prepare(run)
         (run.folder / STATUS).unlink(missing_ok=True)
         screen = run.folder / jobs.SCREEN
         screen.touch()
         run.output_before = screen.stat().st_size
         words = " ".join(map(quoted, self.of(run)._line(run)))
-        return said, f"cd {quoted(str(run.folder.absolute()))} || exit; {words} >> {jobs.SCREEN} 2>&1 < /dev/null\n"
+        return state, f"cd {quoted(str(run.folder.absolute()))} || exit; {words} >> {jobs.SCREEN} 2>&1 < /dev/null\n"
 
     def _submit(self, lines: List[str]) -> str:
         """Submit an array of commands; its number."""

@@ -57,7 +57,7 @@ def run_of(studied: method.Studied, names: Sequence[str]) -> Path:
 
 def choices_that_differ(mine: Site, other: Site) -> List[str]:
     """Those of a scenario, in words: keys of site.yaml and their values."""
-    found = []
+    differing = []
     for name, about in sections():
         if name in ("project", "balls"):
             continue
@@ -68,10 +68,10 @@ def choices_that_differ(mine: Site, other: Site) -> List[str]:
             if was == now:
                 continue
             if now not in (None, (), [], {}):
-                found.append(f"{key.replace('_', ' ')} {format_choice(now)}")
+                differing.append(f"{key.replace('_', ' ')} {format_choice(now)}")
             elif (name, key) in FILES:
-                found.append(f"without {name} {key}")
-    return found
+                differing.append(f"without {name} {key}")
+    return differing
 
 
 def resolve_choice(site: Site, section: str, key: str) -> Any:

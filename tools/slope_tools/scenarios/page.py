@@ -47,19 +47,19 @@ def write_scenarios_page(folder: Path, output: Path, overwrite: bool) -> str:
     """Write the page of a site's folder beside its report; a line for the user."""
     disk.check_standing(output, [output], [document.MADE_BY], overwrite, f"slope report {quote(str(folder))}")
     several = read_scenarios(folder)
-    said = method.difference({one.name: one.studied for one in several},
-                             {one.name: one.site.folder for one in several})
+    difference = method.difference({one.name: one.studied for one in several},
+                                   {one.name: one.site.folder for one in several})
     content = {
         "title": several[0].name, "client": several[0].site.choices.project.client,
         "author": several[0].site.choices.project.author, "made": provenance.now(),
         "mark": document.mark(folder),
         "sections": [Section("scenarios", "Side by side", [
-            *([Text(said, "caveat")] if said else []), tabulate_scenarios(several),
+            *([Text(difference, "caveat")] if difference else []), tabulate_scenarios(several),
             Figures([draw_scenarios(several)], "two-thirds")]),
                      Section("models", "In what the models differ", [Listing(list(models(several)))])],
         "footer": f"{document.MADE_BY}, SLOPE {provenance.version()}; each scenario has a report of its own."}
     disk.write_file(output, document.render(content, Path(__file__).with_name("scenarios.html.j2")))
-    return f"{output}: the site and its {len(several) - 1} scenarios" + (f". {said}" if said else "")
+    return f"{output}: the site and its {len(several) - 1} scenarios" + (f". {difference}" if difference else "")
 
 
 def refresh(site: Path) -> str:
@@ -93,11 +93,11 @@ def tabulate_scenarios(several: Sequence[One]) -> Table:
                  rows, (0, 1))
 
 
-def list_scenario_numbers(one: One, names: Sequence[str], roads: Sequence[str]) -> List[str]:
+def list_scenario_numbers(scenario: One, names: Sequence[str], roads: Sequence[str]) -> List[str]:
     """Of a row: what is released, how far it goes, what is to be removed from each road, how many runs finished.
 
     names: of the studies that count (method.common)."""
-    body, studied = one.site.found.body, one.studied
+    body, studied = scenario.site.found.body, scenario.studied
     released = digits.rounded(body.volume, 4) if body else "-"
     if studied is None:
         return [released, "-", "-", *["-"] * max(1, len(roads)), "not studied as it is"]
@@ -139,9 +139,9 @@ def draw_scenarios(several: Sequence[One]) -> Optional[Picture]:
                    "the site.")
 
 
-def origin(one: One) -> np.ndarray:
+def origin(scenario: One) -> np.ndarray:
     """Coordinates of the local 0 0 of a site."""
-    return np.array([one.site.found.origin.east, one.site.found.origin.north])
+    return np.array([scenario.site.found.origin.east, scenario.site.found.origin.north])
 
 
 def outline(raster: Raster, by: np.ndarray) -> Optional[Outline]:
@@ -162,13 +162,13 @@ def map_of(layers: figure_maps.Layers, shown: Sequence[Shown], title: str) -> st
         frame = figure_maps.frame_of(layers, True, crs_name(raster.crs) if raster.crs is not None else "")
         sheet, axes, size, *_ = sheets.single(figures.FULL, frame, title, figure_maps.TALL[figures.FULL])
         figure_maps.base_map(axes, layers)
-        for k, one in enumerate(shown):
+        for k, scenario in enumerate(shown):
             colour = COLOURS[k % len(COLOURS)]
-            for each, style, wide in ((one.deposit, "-", 1.4), (one.body, "--", 0.8)):
+            for each, style, wide in ((scenario.deposit, "-", 1.4), (scenario.body, "--", 0.8)):
                 if each:
                     axes.contour(each.x, each.y, each.thickness, [THICK], colors=colour, linewidths=wide,
                                  linestyles=style, zorder=6)
-            entries.append(sheets.Entry(one.name, {"color": colour, "lw": 1.4}))
+            entries.append(sheets.Entry(scenario.name, {"color": colour, "lw": 1.4}))
         sheets.draw_axes(axes, frame, size)
         scale = size[0] / frame.width
         sheets.scale_and_legend(sheet, sheets.margins(frame)[0], scale, min(frame.width, 2.5 / scale),

@@ -97,14 +97,14 @@ def bits(fails: np.ndarray) -> np.ndarray:
 
 def family(capacity: np.ndarray, peaks: np.ndarray, bodies: Sequence[Left], volumes: np.ndarray) -> Band:
     """P(V > v | peak) of capacities (samples, records, bodies) in gal: arrays (peaks, volumes)."""
-    found, sums = [], Sums(bodies, volumes)
+    curves, sums = [], Sums(bodies, volumes)
     none = float(hazard.share_bounds(0, len(capacity))[1])
     for peak in peaks:
         sets = bits(capacity < peak)
         band = over_sets(summed(sets, np.ones(sets.shape)), sums)
         high = band.high if sets.any() else np.maximum(band.high, none)
-        found.append(Band(band.value, band.low, np.minimum(high, 1.0)))
-    return Band(*(np.array(side) for side in zip(*found)))
+        curves.append(Band(band.value, band.low, np.minimum(high, 1.0)))
+    return Band(*(np.array(side) for side in zip(*curves)))
 
 
 def of_failures(capacity: np.ndarray, rate: Hazard, low: float, high: float) -> Tuple[np.ndarray, np.ndarray]:

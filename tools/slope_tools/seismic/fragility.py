@@ -89,19 +89,19 @@ def strengths_of(soil: Soil, number: int, seed: int) -> bishop.Strengths:
 
 def capacities(bodies: Sequence[Body], strengths: bishop.Strengths, failure: Union[Slide, PseudoStatic]) -> np.ndarray:
     """The capacities (samples, records, bodies) in gal; without records their number is 1."""
-    found = []
+    rows = []
     for body in bodies:
         k = bishop.yield_coefficient(body.columns, strengths)
         if isinstance(failure, PseudoStatic):
-            found.append(np.maximum(k, 0.0)[:, None] * GRAVITY / GAL / failure.factor)
+            rows.append(np.maximum(k, 0.0)[:, None] * GRAVITY / GAL / failure.factor)
             continue
         lift = 0.0
         if failure.vertical:
             # k_y is linear in kv; the body is as heavy as it is in the middle of its samples
             lift = float(np.median(k - bishop.yield_coefficient(body.columns, strengths, 1.0)))
-        found.append(np.column_stack([slide_capacity(k, record, body.direction, failure.limit, lift)
-                                      for record in failure.records]))
-    return np.stack(found, axis=2)
+        rows.append(np.column_stack([slide_capacity(k, record, body.direction, failure.limit, lift)
+                                     for record in failure.records]))
+    return np.stack(rows, axis=2)
 
 
 def slide_capacity(k: np.ndarray, record: np.ndarray, direction: float, limit: float, lift: float = 0.0) -> np.ndarray:

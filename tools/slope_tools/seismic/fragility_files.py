@@ -47,9 +47,9 @@ class Fragility(NamedTuple):
 
 def read_fragility(folder: Path) -> Fragility:
     """What `slope fragility` left in a folder; SlopeError if it is not whole."""
-    about = schemas.load_checked(folder / ABOUT, WHAT, SCHEMA)
-    path, curve = folder / CAPACITIES, about["hazard_curve"]
-    names = [one["body"] for one in about["bodies"]]
+    content = schemas.load_checked(folder / ABOUT, WHAT, SCHEMA)
+    path, curve = folder / CAPACITIES, content["hazard_curve"]
+    names = [one["body"] for one in content["bodies"]]
     try:
         with open(path, encoding="ascii") as lines:
             head = next(csv.reader([lines.readline()]))
@@ -59,49 +59,49 @@ def read_fragility(folder: Path) -> Fragility:
             raise ValueError("other bodies or samples than in " + ABOUT)
     except (OSError, LookupError, ValueError) as error:
         raise SlopeError(path, f"must be {WHAT}, with {ABOUT}: repeat that command ({error})") from error
-    return Fragility(folder, names, [one["base_sha256"] for one in about["bodies"]], capacity,
-                     np.array(about["peaks_gal"], float), Hazard(*np.array(curve, float).T) if curve else None,
-                     about["warnings"])
+    return Fragility(folder, names, [one["base_sha256"] for one in content["bodies"]], capacity,
+                     np.array(content["peaks_gal"], float), Hazard(*np.array(curve, float).T) if curve else None,
+                     content["warnings"])
 
 
-def about_curve(one: Curve) -> Dict[str, Any]:
+def about_curve(curve: Curve) -> Dict[str, Any]:
     """The numbers of a curve for the YAML."""
-    about: Dict[str, Any] = {"body": one.name, "fails_without_earthquake": one.at_rest, "lognormal": None}
-    if one.fit:
-        about["lognormal"] = {
-            "median_gal": one.fit.median, "beta": one.fit.beta, "beta_r": one.fit.beta_r, "beta_u": one.fit.beta_u,
-            "hclpf_gal": one.fit.hclpf, "median_standard_error": one.fit.median_error,
-            "beta_standard_error": one.fit.beta_error, "largest_difference": one.fit.off,
-            "probability_at_hclpf": one.fit.at_hclpf, "probability_at_hclpf_fitted": one.fit.at_hclpf_fitted}
-    if one.frequency:
-        total = one.frequency.total
-        about["annual_frequency"] = {
+    content: Dict[str, Any] = {"body": curve.name, "fails_without_earthquake": curve.at_rest, "lognormal": None}
+    if curve.fit:
+        content["lognormal"] = {
+            "median_gal": curve.fit.median, "beta": curve.fit.beta, "beta_r": curve.fit.beta_r,
+            "beta_u": curve.fit.beta_u, "hclpf_gal": curve.fit.hclpf, "median_standard_error": curve.fit.median_error,
+            "beta_standard_error": curve.fit.beta_error, "largest_difference": curve.fit.off,
+            "probability_at_hclpf": curve.fit.at_hclpf, "probability_at_hclpf_fitted": curve.fit.at_hclpf_fitted}
+    if curve.frequency:
+        total = curve.frequency.total
+        content["annual_frequency"] = {
             "value": float(total.value), "low": float(total.low), "high": float(total.high),
-            "more_at_most": one.frequency.beyond,
+            "more_at_most": curve.frequency.beyond,
             "contributions": [{"from_gal": a, "to_gal": None if math.isinf(b) else b, "frequency": part}
-                              for a, b, part in one.frequency.parts]}
-    return about
+                              for a, b, part in curve.frequency.parts]}
+    return content
 
 
 def write_fragility(folder: Path, peaks: np.ndarray, curves: Sequence[Curve], capacity: np.ndarray,
-                    about: Dict[str, Any]) -> None:
+                    content: Dict[str, Any]) -> None:
     """FILES, all of them or none; capacity (gal): samples, records, bodies."""
     with disk.complete(folder, ABOUT) as new:
         with open(new / "fragility.csv", "w", encoding="ascii", newline="") as out:
             rows = csv.writer(out, lineterminator="\n")
             rows.writerow(["body", "peak_gal", "probability", "low", "high", "lognormal"])
-            for one in curves:
-                fitted = fitted_at(one.fit, peaks)
+            for curve in curves:
+                fitted = fitted_at(curve.fit, peaks)
                 for k, peak in enumerate(peaks):
-                    band = (f"{value[k]:.6g}" for value in one.band)
-                    rows.writerow([one.name, f"{peak:g}", *band, "" if fitted is None else f"{fitted[k]:.6g}"])
+                    band = (f"{value[k]:.6g}" for value in curve.band)
+                    rows.writerow([curve.name, f"{peak:g}", *band, "" if fitted is None else f"{fitted[k]:.6g}"])
         draw_fragility(new / "fragility.png", peaks, curves)
         samples, records = capacity.shape[:2]
         sample, record = (one.ravel() + 1 for one in np.indices((samples, records)))
         np.savetxt(new / CAPACITIES, np.column_stack([sample, record, capacity.reshape(samples * records, -1)]),
-                   "%.7g", ",", header=",".join(["sample", "record", *(one["body"] for one in about["bodies"])]),
+                   "%.7g", ",", header=",".join(["sample", "record", *(one["body"] for one in content["bodies"])]),
                    comments="")
-        disk.write_yaml(new / ABOUT, {**about, "curves": [about_curve(one) for one in curves], "files": FILES},
+        disk.write_yaml(new / ABOUT, {**content, "curves": [about_curve(one) for one in curves], "files": FILES},
                         "slope fragility: peaks in gal, rates per year")
 
 
@@ -118,13 +118,14 @@ def draw_fragility(path: Path, peaks: np.ndarray, curves: Sequence[Curve]) -> No
         figure, axes = pictures.subplots(1, 2 if parts else 1, figsize=(figures.FULL, 2.9), squeeze=False,
                                          width_ratios=[3, 2] if parts else None)
         left = axes[0, 0]
-        for k, one in enumerate(curves):
-            colour = "black" if one.name == ANY else figures.COLOURS[k % len(figures.COLOURS)]
-            left.fill_between(peaks, one.band.low, one.band.high, color=colour, alpha=0.2, linewidth=0)
-            label = one.title + (f": median {one.fit.median:.0f} gal, HCLPF {one.fit.hclpf:.0f} gal" if one.fit else "")
-            left.plot(peaks, one.band.value, color=colour, linewidth=1.2, label=label)
-            if one.fit:
-                left.plot(peaks, fitted_at(one.fit, peaks), color=colour, linewidth=0.8, linestyle="--")
+        for k, curve in enumerate(curves):
+            colour = "black" if curve.name == ANY else figures.COLOURS[k % len(figures.COLOURS)]
+            left.fill_between(peaks, curve.band.low, curve.band.high, color=colour, alpha=0.2, linewidth=0)
+            label = curve.title + (f": median {curve.fit.median:.0f} gal, HCLPF {curve.fit.hclpf:.0f} gal" if curve.fit
+                                   else "")
+            left.plot(peaks, curve.band.value, color=colour, linewidth=1.2, label=label)
+            if curve.fit:
+                left.plot(peaks, fitted_at(curve.fit, peaks), color=colour, linewidth=0.8, linestyle="--")
         left.set(xlim=(peaks[0], peaks[-1]), ylim=(0, 1), xlabel="peak acceleration (gal)",
                  ylabel="probability of failure")
         left.set_title("with bands of the sampling (90 %); dashed: lognormal", loc="left")

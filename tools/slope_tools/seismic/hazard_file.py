@@ -39,7 +39,7 @@ def read_seismic_hazard(path: Path) -> Hazard:
     except (OSError, UnicodeDecodeError) as error:
         raise SlopeError(path, f"cannot be read ({error})") from None
     head: Optional[Head] = None
-    found: List[List[float]] = []
+    rows: List[List[float]] = []
     place = 0
     for line in lines:
         row = cells(line.lstrip().lstrip("#"))
@@ -53,10 +53,10 @@ def read_seismic_hazard(path: Path) -> Hazard:
             if head is None:
                 raise SlopeError(f"{path}: row 1", RULE, line.strip()[:60])
             continue
-        found.append(point_of(path, place, row, head or Head(), found))
-    if len(found) < 2:
+        rows.append(point_of(path, place, row, head or Head(), rows))
+    if len(rows) < 2:
         raise SlopeError(path, "must have two rows at least, a peak (gal) and how often it is exceeded per year")
-    peaks, rates = np.array(found).T
+    peaks, rates = np.array(rows).T
     if peaks[-1] < LEAST:
         raise SlopeError(path, f"must have peaks in gal, the largest of at least {LEAST:g}, or a head with their unit, "
                          "such as pga (g),annual rate", f"{peaks[-1]:g}")
@@ -104,9 +104,9 @@ def head_of(path: Path, row: Sequence[str]) -> Optional[Head]:
     return Head(peak[0], gal, of_rate)
 
 
-def rate_of(one: Column) -> Optional[Tuple[Callable[[float], float], set]]:
+def rate_of(column_: Column) -> Optional[Tuple[Callable[[float], float], set]]:
     """What makes a number per year of the values of a column, and the units that it may have; None of another."""
-    name = one.name.replace("_", " ")
+    name = column_.name.replace("_", " ")
     if RATE.fullmatch(name):
         return float, PER_YEAR
     if CHANCE.fullmatch(name):

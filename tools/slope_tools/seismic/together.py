@@ -20,10 +20,10 @@ class Steps(NamedTuple):
     shares: np.ndarray
 
 
-def compute_share_above(one: Steps, volumes: np.ndarray) -> np.ndarray:
+def compute_share_above(steps: Steps, volumes: np.ndarray) -> np.ndarray:
     """P(V > v) of one body."""
-    larger = len(one.volumes) - np.searchsorted(one.volumes[::-1], volumes, "right")
-    return np.concatenate([[0.0], one.shares])[larger]
+    larger = len(steps.volumes) - np.searchsorted(steps.volumes[::-1], volumes, "right")
+    return np.concatenate([[0.0], steps.shares])[larger]
 
 
 def rank_by_rank(bodies: Sequence[Steps], volumes: np.ndarray) -> np.ndarray:

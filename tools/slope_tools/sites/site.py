@@ -114,59 +114,60 @@ def build(given: OfMass, known: Derived, new: Path, folder: Path, machine: Machi
     """Everything, into the folder `new`, which will be `folder`."""
     warnings: List[Finding] = []
 
-    def keep(said) -> None:
-        warnings.append(finding(said))
-        warn(said)
+    def keep(entry) -> None:
+        warnings.append(finding(entry))
+        warn(entry)
     wanted = site_layers.with_missing(given, lambda: wanted_body(given, new))
-    raster, about = terrain(given, new, tell, keep)
-    surveyed = about["surveyed_cell"]
-    found = body_of(given, wanted, raster, keep)
-    if found.choices.get("scar_is") == "height":
-        steps = [*about["steps"], f"the height of the mass in {wanted.scar} added"]
-        rasters.write_asc_local(new / TERRAIN, found.raster, {"filled_cells": about["filled_cells"],
-                                                              "sources": about["sources"], "steps": steps}, exact=True)
-        raster = found.raster
-    tell(release.describe_body(found))
-    for line in found.warnings:
+    raster, terrain_entries = terrain(given, new, tell, keep)
+    surveyed = terrain_entries["surveyed_cell"]
+    released = body_of(given, wanted, raster, keep)
+    if released.choices.get("scar_is") == "height":
+        steps = [*terrain_entries["steps"], f"the height of the mass in {wanted.scar} added"]
+        rasters.write_asc_local(new / TERRAIN, released.raster, {"filled_cells": terrain_entries["filled_cells"],
+                                                                 "sources": terrain_entries["sources"], "steps": steps},
+                                exact=True)
+        raster = released.raster
+    tell(release.describe_body(released))
+    for line in released.warnings:
         keep(line)
     several = site_bodies.write_site_bodies(given, new, BODY, wanted, keep)
-    body = site_bodies.widen_body(write_body(new, wanted, found), BODY, several)
+    body = site_bodies.widen_body(write_body(new, wanted, released), BODY, several)
     body = body._replace(thick=max(body.thick, given.model.least_thick or 0.0))
     layers = read_layers(given, raster, new, tell, keep)
     title = given.project.name or folder.absolute().name
     parts = site_deck.Parts(title, ", ".join(Path(name).name for name in given.terrain.files), body,
                             layers.structures, layers.lines, layers.motion, room_of(raster), layers.zones)
-    choices = with_peak(given, parts, found)
-    first = tried(choices, known, parts, found, new, folder, machine, tell)
+    choices = with_peak(given, parts, released)
+    first = tried(choices, known, parts, released, new, folder, machine, tell)
     trial = first and first.trial
     if first:
         site_trial.write_trial(new, first, raster)
-    choices, size = settled(choices, parts, found, trial, machine, raster)
-    for one in check_site_road(choices, found, layers, size):
-        keep(one)
+    choices, size = settled(choices, parts, released, trial, machine, raster)
+    for doubt in check_site_road(choices, released, layers, size):
+        keep(doubt)
     derived = site_choices.derived(given, choices, known)
-    say_size(choices, size, found, machine, tell)
-    for one in (*site_warnings.of_resistance(choices), *site_warnings.of_zones(layers.zones),
-                *site_warnings.site_warnings(found.measures, size, trial),
-                *site_warnings.of_cells(found.area.z - found.slip, found.area.cell, surveyed),
-                *(one for name, road in layers.roads.items() for one in site_warnings.check_road_resolution(
-                    road, choices.road.width, size.diameter, max(found.area.cell, choices.model.cell or 0.0),
+    say_size(choices, size, released, machine, tell)
+    for doubt in (*site_warnings.of_resistance(choices), *site_warnings.of_zones(layers.zones),
+                  *site_warnings.site_warnings(released.measures, size, trial),
+                  *site_warnings.of_cells(released.area.z - released.slip, released.area.cell, surveyed),
+                  *(one for name, road in layers.roads.items() for one in site_warnings.check_road_resolution(
+                    road, choices.road.width, size.diameter, max(released.area.cell, choices.model.cell or 0.0),
                     name)),
-                *site_warnings.of_walls(layers.structures, size.diameter)):
-        keep(one)
+                  *site_warnings.of_walls(layers.structures, size.diameter)):
+        keep(doubt)
     site_warnings.write_site_warnings(new, warnings)
     deck = site_deck.make_site_deck(choices, parts, find_deck_numbers(choices, soil_of(choices.model, parts), trial,
                                                                       size))
     disk.write_file(new / site_deck.NAME, deck)
-    draw(new / MAP, collect_map_layers(choices, found, layers, first and first.reached),
-         f"{title}: {found.measures.volume:,.0f} m\u00b3")
-    about = {**about_made(choices, new, folder, raster, layers), "derived": derived,
-             "body": found.measures._asdict(), "bodies": site_bodies.summarise_site_bodies(several),
-             "balls": size.balls, "trial": trial and trial._asdict(), "trial_of": first and first.about,
-             "study": {"runs": size.runs, "seconds": size.seconds, "gigabytes": size.gigabytes,
-                       "at_a_time": machine.jobs}}
-    disk.write_file(new / site_choices.NAME, site_choices.make_site_file(choices, about, folder.absolute()))
-    return Made(folder, about["files"])
+    draw(new / MAP, collect_map_layers(choices, released, layers, first and first.reached),
+         f"{title}: {released.measures.volume:,.0f} m\u00b3")
+    terrain_entries = {**about_made(choices, new, folder, raster, layers), "derived": derived,
+                       "body": released.measures._asdict(), "bodies": site_bodies.summarise_site_bodies(several),
+                       "balls": size.balls, "trial": trial and trial._asdict(), "trial_of": first and first.about,
+                       "study": {"runs": size.runs, "seconds": size.seconds, "gigabytes": size.gigabytes,
+                                 "at_a_time": machine.jobs}}
+    disk.write_file(new / site_choices.NAME, site_choices.make_site_file(choices, terrain_entries, folder.absolute()))
+    return Made(folder, terrain_entries["files"])
 
 
 def about_made(choices: Choices, new: Path, folder: Path, raster: Raster, layers: Layers) -> Dict[str, Any]:
@@ -181,33 +182,33 @@ def about_made(choices: Choices, new: Path, folder: Path, raster: Raster, layers
             "roads": list(layers.roads) if len(layers.roads) > 1 else []}
 
 
-def check_site_road(choices: OfMass, found: release.Body, layers: Layers, size: Size) -> List[Finding]:
+def check_site_road(choices: OfMass, released: release.Body, layers: Layers, size: Size) -> List[Finding]:
     """That a road, or a part of it, lies on the body, or that the slip surface comes out under it."""
-    raster, said = found.raster, []
+    raster, findings = released.raster, []
     for name, road in layers.roads.items():
         file = name if len(layers.roads) > 1 else str(choices.road.file)
-        on = release_toe.on_body(found.depth > 0, raster, road,
+        on = release_toe.on_body(released.depth > 0, raster, road,
                                  release_toe.rim(size.diameter ** 3, raster.transform.a))
-        under = None if on and on.wholly else release_toe.under(found.area, found.slip, road)
-        said += [on.finding(file)] if on else []
-        said += [Finding("under road", {"file": file, **under._asdict()})] if under else []
-    return said
+        under = None if on and on.wholly else release_toe.under(released.area, released.slip, road)
+        findings += [on.finding(file)] if on else []
+        findings += [Finding("under road", {"file": file, **under._asdict()})] if under else []
+    return findings
 
 
 # --- ground ---
 
 def wanted_body(choices: OfMass, new: Path) -> release.Wanted:
     """What is asked of the body, checked before anything is read."""
-    one = choices.release
-    where = one.polygon or one.scar
+    asked = choices.release
+    where = asked.polygon or asked.scar
     if not where:
         raise SlopeError("--release", "must be given, a polygon, or --scar, a raster")
     site_choices.check_assigned(choices)
     crs, scar_crs, foundation_crs = (isinstance(path, str) and site_choices.assigned(choices, path) or None
-                                     for path in (one.polygon, one.scar, one.foundation))
+                                     for path in (asked.polygon, asked.scar, asked.foundation))
     return release.check_wanted_release(release.Wanted(
-        str(new / TERRAIN), one.polygon, one.shape, one.depth, one.volume, one.curvature, one.dip, one.direction,
-        one.scar, one.scar_is, one.least, crs, scar_crs, one.foundation, foundation_crs,
+        str(new / TERRAIN), asked.polygon, asked.shape, asked.depth, asked.volume, asked.curvature, asked.dip,
+        asked.direction, asked.scar, asked.scar_is, asked.least, crs, scar_crs, asked.foundation, foundation_crs,
         advice=advice(choices, where)))
 
 
@@ -226,7 +227,7 @@ def terrain(choices: Choices, new: Path, tell, warn) -> Tuple[Raster, Dict[str, 
 def body_of(choices: OfMass, wanted: release.Wanted, raster: Raster, warn) -> release.Body:
     """The body; SlopeError, in other words where release area and road seem to be swapped."""
     try:
-        found = release.body_of(wanted)
+        body = release.body_of(wanted)
     except SlopeError:
         if line := swapped(choices, raster):
             raise SlopeError("--release, --road", "must not be swapped, the mass falls from the release area onto the "
@@ -234,17 +235,17 @@ def body_of(choices: OfMass, wanted: release.Wanted, raster: Raster, warn) -> re
         raise
     if line := swapped(choices, raster, wholly=True):
         warn(Finding("swapped", {"grounds": line}))
-    return found
+    return body
 
 
-def write_body(new: Path, wanted: release.Wanted, found: release.Body):
+def write_body(new: Path, wanted: release.Wanted, body: release.Body):
     """The body's files, and what the deck needs to know of it."""
     name = new / BODY
-    release_files.write_body(name, wanted._replace(terrain=TERRAIN), found)
+    release_files.write_body(name, wanted._replace(terrain=TERRAIN), body)
     name.with_name(BODY_DECK).unlink()
-    if found.geometry is not None:
-        polygons.write_polygon(new / f"{BODY}.csv", found.geometry, found.raster)
-    return release_files.deck_body(name, wanted.terrain, found.raster, found.area, found.slip)
+    if body.geometry is not None:
+        polygons.write_polygon(new / f"{BODY}.csv", body.geometry, body.raster)
+    return release_files.deck_body(name, wanted.terrain, body.raster, body.area, body.slip)
 
 
 # --- balls ---
@@ -274,15 +275,15 @@ def find_deck_numbers(choices: OfMass, soil: site_budget.Soil, trial: Optional[T
                              seconds)
 
 
-def with_peak(choices: OfMass, parts: site_deck.Parts, found: release.Body) -> OfMass:
+def with_peak(choices: OfMass, parts: site_deck.Parts, body: release.Body) -> OfMass:
     """With a strength that holds the body until it is shaken."""
     if choices.motion.peak_friction is not None or not parts.motion:
         return choices
     return replace(choices, motion=replace(choices.motion, peak_friction=site_deck.peak_friction(
-        found.measures.slip_slope)))
+        body.measures.slip_slope)))
 
 
-def tried(choices: OfMass, known: Derived, parts: site_deck.Parts, found: release.Body, new: Path,
+def tried(choices: OfMass, known: Derived, parts: site_deck.Parts, body: release.Body, new: Path,
           folder: Path, machine: Machine, tell) -> Optional[Tried]:
     """Two trial runs with coarse balls; what the site's folder has of them, if that is still right; None where there is
     no LAMMPS. They know nothing of what is determined from them.
@@ -293,25 +294,25 @@ def tried(choices: OfMass, known: Derived, parts: site_deck.Parts, found: releas
     least, middle = min(choices.study.rolling), settings.middle(choices.study.rolling)
     fixed = all((choices.model.speed, choices.model.duration, choices.model.film, choices.model.cell,
                  choices.balls.diameter))
-    place = trial_folder(site_budget.trial_diameter(own.balls, parts.body.volume), own, parts, found, new)
-    about = site_trial.summarise_trial(place, site_deck.NAME, machine.lmp, [least, middle])
-    before = site_trial.kept(folder, about, fixed)
+    place = trial_folder(site_budget.trial_diameter(own.balls, parts.body.volume), own, parts, body, new)
+    summary = site_trial.summarise_trial(place, site_deck.NAME, machine.lmp, [least, middle])
+    before = site_trial.kept(folder, summary, fixed)
     if before and (fixed or not own.balls.minutes):
         shutil.rmtree(place)
         tell(f"the trial run is there: {trial_text(before.trial)}")
         return before
-    trial, reached = tried_with(place, least, own, found, machine.lmp, tell)
+    trial, reached = tried_with(place, least, own, body, machine.lmp, tell)
     other_d = site_budget.other_diameter(own.balls, trial)
     if other_d is None:
-        return Tried(trial, reached, about)
-    place = trial_folder(other_d, own, parts, found, new)
-    second, its_reach = tried_with(place, middle, own, found, machine.lmp, tell, f"another, rolling {middle:g}")
-    return Tried(site_budget.joined(trial, second), its_reach if other_d < trial.diameter else reached, about)
+        return Tried(trial, reached, summary)
+    place = trial_folder(other_d, own, parts, body, new)
+    second, its_reach = tried_with(place, middle, own, body, machine.lmp, tell, f"another, rolling {middle:g}")
+    return Tried(site_budget.joined(trial, second), its_reach if other_d < trial.diameter else reached, summary)
 
 
-def trial_folder(d: float, choices: OfMass, parts: site_deck.Parts, found: release.Body, new: Path) -> Path:
+def trial_folder(d: float, choices: OfMass, parts: site_deck.Parts, body: release.Body, new: Path) -> Path:
     """A folder with the deck of a trial run with balls of diameter d (m)."""
-    coarse = replace(choices, model=replace(choices.model, cell=max(found.area.cell, d / 2)))
+    coarse = replace(choices, model=replace(choices.model, cell=max(body.area.cell, d / 2)))
     folder = new / "trial"
     folder.mkdir()
     for path in list(new.iterdir()):
@@ -323,7 +324,7 @@ def trial_folder(d: float, choices: OfMass, parts: site_deck.Parts, found: relea
     return folder
 
 
-def tried_with(folder: Path, rolling: float, choices: OfMass, found: release.Body, lmp: Path, tell, what="trial run"):
+def tried_with(folder: Path, rolling: float, choices: OfMass, body: release.Body, lmp: Path, tell, what="trial run"):
     """The Trial of a run in a folder, which is removed, and its largest thickness."""
     deck = folder / site_deck.NAME
     d = float(decks.index_variables(deck)["d"])
@@ -331,7 +332,7 @@ def tried_with(folder: Path, rolling: float, choices: OfMass, found: release.Bod
         trial = site_budget.measure(folder, deck.name, lmp, {"rolling": rolling})._replace(diameter=d)
     except SlopeError as error:
         if choices.motion.file and choices.motion.peak_friction is not None:
-            site_warnings.require_standing(error, choices.motion.peak_friction, found.measures.mean_slope)
+            site_warnings.require_standing(error, choices.motion.peak_friction, body.measures.mean_slope)
         raise
     reached = rasters.read_raster(next(iter(folder.glob("*.max_thickness.asc"))), heights=False)
     shutil.rmtree(folder)
@@ -345,22 +346,22 @@ def trial_text(trial: Trial) -> str:
             f"{trial.rest:.0f} s, up to {trial.speed:.0f} m/s")
 
 
-def settled(choices: OfMass, parts: site_deck.Parts, found: release.Body, trial: Optional[Trial], machine: Machine,
+def settled(choices: OfMass, parts: site_deck.Parts, body: release.Body, trial: Optional[Trial], machine: Machine,
             raster: Raster) -> Tuple[OfMass, Size]:
     """With what they leave open, and with it the size of the balls."""
     model, balls = choices.model, choices.balls
     duration = model.duration or site_budget.duration(trial)
     model = replace(model, speed=model.speed or max(site_budget.stiff_to(trial), model.least_speed or 0.0),
                     duration=duration, film=model.film or site_deck.frame(trial.typical if trial else duration / 3))
-    size = site_budget.size(choices, parts.body.volume, found.measures.mean_depth, soil_of(model, parts), trial,
+    size = site_budget.size(choices, parts.body.volume, body.measures.mean_depth, soil_of(model, parts), trial,
                             machine.jobs, raster.z.size)
-    cell = model.cell or max(found.area.cell, site_budget.three_digits(size.diameter / 2))
+    cell = model.cell or max(body.area.cell, site_budget.three_digits(size.diameter / 2))
     return replace(choices, model=replace(model, cell=cell), balls=replace(balls, diameter=size.diameter)), size
 
 
-def say_size(choices: OfMass, size: Size, found: release.Body, machine: Machine, tell):
+def say_size(choices: OfMass, size: Size, body: release.Body, machine: Machine, tell):
     """Tell the user the size of the balls, and the time and memory of the study."""
-    thick = found.measures.mean_depth / size.diameter, found.measures.largest_depth / size.diameter
+    thick = body.measures.mean_depth / size.diameter, body.measures.largest_depth / size.diameter
     tell(f"balls of {size.diameter:g} m: {size.balls:,} of them, the body is {thick[0]:.1f} balls thick on average, "
          f"{thick[1]:.1f} at most")
     tell(f"the ground: scattered balls as large as those of the soil, spacing {choices.model.spacing:g}")
@@ -374,7 +375,7 @@ def say_size(choices: OfMass, size: Size, found: release.Body, machine: Machine,
 
 # --- map ---
 
-def collect_map_layers(choices: OfMass, found: release.Body, layers: Layers, reached: Optional[Raster]) -> Shown:
+def collect_map_layers(choices: OfMass, body: release.Body, layers: Layers, reached: Optional[Raster]) -> Shown:
     """What the map shows; reached: the largest thickness of the trial run."""
-    return Shown(found.raster, found.depth, found.geometry, layers.road, layers.observed, layers.structures,
+    return Shown(body.raster, body.depth, body.geometry, layers.road, layers.observed, layers.structures,
                  layers.lines, reached, layers.zones, {"set": choices.known.set, "confined": choices.known.confined})

@@ -34,7 +34,7 @@ def list_body_files(choices: Choices, name: str) -> Set[str]:
 
 def write_site_bodies(choices: OfMass, folder: Path, name: str, wanted: release.Wanted, warn) -> Dict[int, Known]:
     """The ground without each of the bodies, in a folder; {rank: what is known of it}."""
-    found = {}
+    bodies = {}
     for path in choices.release.bodies:
         rank = rank_of(Path(path))
         body = release.body_of(wanted._replace(scar=path, scar_crs=site_choices.assigned(choices, path)))
@@ -45,8 +45,8 @@ def write_site_bodies(choices: OfMass, folder: Path, name: str, wanted: release.
                                 body.raster._replace(z=release_files.ground_without(body.raster, body.area, body.slip)),
                                 {"terrain": Path(wanted.terrain).name, "body": rank}, exact=True)
         deck = release_files.deck_body(folder / name, wanted.terrain, body.raster, body.area, body.slip)
-        found[rank] = Known(deck, disk.sha256(Path(path)), body.measures.mean_depth)
-    return found
+        bodies[rank] = Known(deck, disk.sha256(Path(path)), body.measures.mean_depth)
+    return bodies
 
 
 def widen_body(body: release_deck.Body, name: str, several: Dict[int, Known]) -> release_deck.Body:

@@ -198,14 +198,14 @@ def measure(folder: Path, deck: str, lmp: Path, values: Mapping[str, float]) -> 
             raise SlopeError("trial run", "must have balls that are much smaller than the terrain: use more balls "
                              "(--balls), or a smaller --diameter, balls.diameter of site.yaml")
         raise SlopeError("trial run", f"must end without an error: {words or f'ended with status {status}'}")
-    about = run_folders.load_summary(summaries[0])
+    summary = run_folders.load_summary(summaries[0])
     text = log.read_text(encoding="utf-8", errors="replace")
     loops = LOOP.findall(text)
     work = sum(int(steps) * int(atoms) for _, steps, atoms in loops)
     computed = sum(float(took) * float(share) / 100 for (took, _, _), share in zip(loops, SHARE.findall(text)))
-    volume = about["volume"]
-    return Trial(about["balls"]["released"], 0.0, about["stop"]["time"],
-                 "halt" in str(about["stop"]["reason"]), about["largest"]["max_speed"], computed / max(work, 1),
+    volume = summary["volume"]
+    return Trial(summary["balls"]["released"], 0.0, summary["stop"]["time"],
+                 "halt" in str(summary["stop"]["reason"]), summary["largest"]["max_speed"], computed / max(work, 1),
                  seconds - computed, seconds, (volume["off_grid"] + volume["lost"]) / volume["released"])
 
 
@@ -357,8 +357,8 @@ def size(choices: OfMass, volume: float, depth: float, soil: Soil, trial: Option
     elif balls.number:
         d = three_digits(packing.compute_diameter(volume, balls.number))
     elif balls.memory:
-        d = up(fit_budget(balls.memory, lambda one: gigabytes(one, volume, cells, jobs, levels or SIZES), volume,
-                          "--memory", "GB"))
+        d = up(fit_budget(balls.memory, lambda diameter: gigabytes(diameter, volume, cells, jobs, levels or SIZES),
+                          volume, "--memory", "GB"))
     else:
         least, most = (packing.compute_diameter(volume, number) for number in (MANY, DEFAULT))
         d = three_digits(min(most, max(least, depth / THIN)))

@@ -65,17 +65,17 @@ def of_now(given: Any) -> Any:
     if not isinstance(given, dict):
         return given
     gone, was = {"model": RETIRED, "study": (*OFFSETS, *DROPPED)}, older(given)
-    found = {name: {key: value for key, value in entries.items() if key not in gone.get(name, ())}
-             if isinstance(entries, dict) else entries for name, entries in given.items()}
-    model = found["model"] if isinstance(found.get("model"), dict) else {}
+    kept_sections = {name: {key: value for key, value in entries.items() if key not in gone.get(name, ())}
+                     if isinstance(entries, dict) else entries for name, entries in given.items()}
+    model = kept_sections["model"] if isinstance(kept_sections.get("model"), dict) else {}
     if "model" in was and disk.is_finite_number(model.get("spacing")):
         model["spacing"] = min(model["spacing"], widest())
     if "study" in was:
         moved = sum(len(several) for several in was["study"].values() if isinstance(several, list))
-        found["study"][PACKING] = list(range(2, 2 + moved))
+        kept_sections["study"][PACKING] = list(range(2, 2 + moved))
         if disk.is_finite_number(model.get("density")):
             model["density"] = round(model["density"] * math.pi / 6 * packing.BULK, 1)
-    return found
+    return kept_sections
 
 
 def chance(variables: Mapping[str, str]) -> str:
@@ -279,15 +279,15 @@ def check_assigned(choices: Choices) -> None:
 def make_site_file(choices: Choices, found_: Mapping[str, Any], folder: Path) -> str:
     """site.yaml for a folder: the choices, each with its meaning, and what was found; checked before it is given."""
     seen, kind = with_files(choices, lambda name: in_folder(name, folder)), choices.KIND
-    about = schema(kind)
-    lines = [f"# {about['description']}.", "# `slope site FOLDER` rebuilds the folder from it, `slope study FOLDER` "
+    keys = schema(kind)
+    lines = [f"# {keys['description']}.", "# `slope site FOLDER` rebuilds the folder from it, `slope study FOLDER` "
              "runs it.", "", f"slope_site: {VERSION}    # version of this file", *([f"kind: {kind}"] if kind else [])]
     for name, section in sections(kind):
         lines += ["", f"{name}:    # {section['description']}"]
         for key, entry in section["properties"].items():
             comment = f"    # {entry['description']}" if "description" in entry else ""
             lines.append(f"  {key}: {flow(seen.value(name, key))}{comment}")
-    lines += ["", f"found:    # {about['properties']['found']['description']}"]
+    lines += ["", f"found:    # {keys['properties']['found']['description']}"]
     lines += [f"  {line}" for line in yaml.safe_dump(disk.make_plain(found_), sort_keys=False, allow_unicode=True,
                                                      width=1000).splitlines()]
     whole = "\n".join(lines) + "\n"

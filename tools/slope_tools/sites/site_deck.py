@@ -112,7 +112,7 @@ def zone_values(zones: Sequence[Zone], before: int, model: Model) -> List[Dict[s
     What a zone has changes by the factor by which the site's own value, the variable without the zone's name, is
     changed; not so the rolling resistance, which may be 0 there. What it does not have is the site's.
     """
-    found = []
+    values = []
     for number, zone in enumerate(zones, before + 1):
         own, now = [], []
         used = {"spacing": "", "friction": "${friction}", "rolling": "${rolling}", "field_e": "${field_e}"}
@@ -131,8 +131,8 @@ def zone_values(zones: Sequence[Zone], before: int, model: Model) -> List[Dict[s
                     {"name": f"high_{mine}", "formula": f"({own_}>{high})*{own_}+({own_}<={high})*{high}"},
                     {"name": f"now_{mine}", "formula": limited(f"v_x_{mine}", f"v_low_{mine}", f"v_high_{mine}")}]
             used[variable] = f"${{now_{mine}}}"
-        found.append({"word": zone.word, "file": zone.file, "type": number, "own": own, "now": now, "used": used})
-    return found
+        values.append({"word": zone.word, "file": zone.file, "type": number, "own": own, "now": now, "used": used})
+    return values
 
 
 def limited(name: str, low: str, high: str) -> str:

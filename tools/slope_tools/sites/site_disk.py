@@ -23,16 +23,16 @@ RUN = 200e3             # of logs, and the volume on the road, with its map
 PAGES = 12e6            # of maps, reports and film
 
 
-def study(folder: Path, choices: OfMass, found: Found, numbers: Sequence[int]) -> float:
+def study(folder: Path, choices: OfMass, site_found: Found, numbers: Sequence[int]) -> float:
     """Bytes of all runs of a study, without those that may be added, and of its pages; of a site that is made.
 
     numbers: of points with each of the finer balls.
     """
-    d, body, plan = choices.balls.diameter, found.body, site_budget.plan_budget(choices)
+    d, body, plan = choices.balls.diameter, site_found.body, site_budget.plan_budget(choices)
     assert d and body and choices.model.duration and choices.model.film and choices.model.cell
     of_site = packing.count_balls(body.volume, d)
     inputs = sum(path.stat().st_size for path in folder.iterdir() if path.is_file() and not OUTPUTS.search(path.name))
-    rest = found.trial and found.trial.rest or choices.model.duration / site_budget.PATIENCE
+    rest = site_found.trial and site_found.trial.rest or choices.model.duration / site_budget.PATIENCE
     frames = 1 + rest / choices.model.film
     cells = reached(folder) / choices.model.cell ** 2
 

@@ -69,23 +69,23 @@ class Found:
     @classmethod
     def of(cls, given: Mapping[str, Any]) -> "Found":
         """That of what a site.yaml holds."""
-        about = given.get("found") or {}
-        body, trial = (about.get(name) or {} for name in ("body", "trial"))
+        entries = given.get("found") or {}
+        body, trial = (entries.get(name) or {} for name in ("body", "trial"))
         return cls(**{
-            **taken(cls, about), "origin": Origin(**taken(Origin, about.get("origin") or {})),
-            "zones": tuple(map(zone, about.get("zones") or ())),
+            **taken(cls, entries), "origin": Origin(**taken(Origin, entries.get("origin") or {})),
+            "zones": tuple(map(zone, entries.get("zones") or ())),
             "body": Body(**taken(Body, body)) if "volume" in body else None,
             "bodies": {str(rank): SlipBody(**taken(SlipBody, one))
-                       for rank, one in (about.get("bodies") or {}).items()},
+                       for rank, one in (entries.get("bodies") or {}).items()},
             "trial": Trial(**trial) if set(trial) == set(Trial._fields) else None,
-            "down": frozen((about.get("blocks") or {}).get("down") or ())})
+            "down": frozen((entries.get("blocks") or {}).get("down") or ())})
 
 
-def taken(kind: Any, about: Mapping[str, Any]) -> Dict[str, Any]:
+def taken(kind: Any, entries: Mapping[str, Any]) -> Dict[str, Any]:
     """What a mapping has of the fields of a class; the others have their defaults."""
-    return {one.name: frozen(about[one.name]) for one in fields(kind) if about.get(one.name) is not None}
+    return {one.name: frozen(entries[one.name]) for one in fields(kind) if entries.get(one.name) is not None}
 
 
-def zone(about: Mapping[str, Any]) -> Zone:
-    own = {key: value for key, value in about.items() if key not in ("name", "variables", "area_m2", "share")}
-    return Zone(about["name"], about["variables"], own, about.get("share", 0.0))
+def zone(entries: Mapping[str, Any]) -> Zone:
+    own = {key: value for key, value in entries.items() if key not in ("name", "variables", "area_m2", "share")}
+    return Zone(entries["name"], entries["variables"], own, entries.get("share", 0.0))

@@ -136,7 +136,7 @@ def placed(name: str, points: np.ndarray, above: float) -> Structure:
 def walls(drawn: Iterable["Drawn"], raster: Raster, height: Optional[float], width: Optional[float], folder: Path,
           taken: Set[str], warn) -> List[Structure]:
     """Walls of a height and a width (m) along lines, which are written into a folder."""
-    found = []
+    walls_ = []
     for path, crs, advice in drawn:
         if height is None:
             raise SlopeError("--height", WITHOUT_HEIGHT)
@@ -144,15 +144,15 @@ def walls(drawn: Iterable["Drawn"], raster: Raster, height: Optional[float], wid
         wall = np.round(site_walls.triangles(path, line, raster, height, width or site_walls.WIDTH), 4)
         name = unused(stem(path), taken)
         disk.write_file(folder / f"{name}.stl", site_walls.stl(name, wall))
-        found.append(placed(name, wall, height))
-    return found
+        walls_.append(placed(name, wall, height))
+    return walls_
 
 
-def one_line(found, path: str):
+def one_line(geometry, path: str):
     """The one line that a file holds; SlopeError if it holds several."""
-    if len(found.geoms) != 1:
-        raise SlopeError(path, "must hold one line", f"{len(found.geoms)}, which are not joined end to end")
-    return found.geoms[0]
+    if len(geometry.geoms) != 1:
+        raise SlopeError(path, "must hold one line", f"{len(geometry.geoms)}, which are not joined end to end")
+    return geometry.geoms[0]
 
 
 # --- lines ---
@@ -166,7 +166,7 @@ class Drawn(NamedTuple):
 
 def control_lines(files: Iterable[Drawn], raster: Raster, folder: Path, taken: Set[str], warn) -> List[Line]:
     """Write control lines in local metres into a folder."""
-    found = []
+    written = []
     for path, crs, advice in files:
         line = one_line(lines.read_local(path, raster, False, advice=advice, crs=crs, warn=warn), path)
         points = np.round(np.asarray(line.coords)[:, :2], 4) + 0.0
@@ -179,8 +179,8 @@ def control_lines(files: Iterable[Drawn], raster: Raster, folder: Path, taken: S
         rows = "".join(f"{x:.10g},{y:.10g}\n" for x, y in points.tolist())
         head = "# control line, local x,y in m; forward is from its left to its right\n"
         (folder / f"{name}.csv").write_text(head + rows, encoding="ascii")
-        found.append(Line(name, f"{name}.csv", points))
-    return found
+        written.append(Line(name, f"{name}.csv", points))
+    return written
 
 
 # --- motion ---

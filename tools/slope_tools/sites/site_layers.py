@@ -173,15 +173,15 @@ def polygon_layer(choices: Choices, path: Optional[str], raster: Raster, target:
 
 def road_layers(choices: Choices, raster: Raster, folder: Path, tell, warn) -> Dict[str, BaseGeometry]:
     """The roads in local metres, written for the study; of several the first one also as that of the site."""
-    found = site_roads.read_site_roads(choices, raster, lambda path: assigned(choices, path),
-                                       lambda path: advice(choices, path), warn)
+    several = site_roads.read_site_roads(choices, raster, lambda path: assigned(choices, path),
+                                         lambda path: advice(choices, path), warn)
     written = {}
-    for name, (path, road) in found.items():
+    for name, (path, road) in several.items():
         if road.line is None:
             warn_outside(path, road.polygon, raster, warn)
-        target = folder / site_roads.file_name(name if len(found) > 1 else "")
+        target = folder / site_roads.file_name(name if len(several) > 1 else "")
         written[name] = geometry = roads.write_road(target, road, raster)
-        if len(written) == 1 and len(found) > 1:
+        if len(written) == 1 and len(several) > 1:
             roads.write_road(folder / site_roads.ROAD, road, raster)
         what = "polygon" if road.line is None else \
             f"line{'s' * (len(road.lines) > 1)} of {' and '.join(f'{line.length:,.0f}' for line in road.lines)} m, " \

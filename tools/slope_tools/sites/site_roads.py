@@ -75,13 +75,13 @@ def list_road_files(choices: Choices) -> List[str]:
 def read_site_roads(choices: Choices, raster: Raster, crs, advice, warn) -> Dict[str, Tuple[str, roads.Road]]:
     """{name: (file, road in local metres)}; crs, advice: functions of a file, see site_layers."""
     taken: Set[str] = set()
-    asked, found = choices.road.asked, {}
+    asked, roads_ = choices.road.asked, {}
     roads.check_road(asked)
     for path in list_road_files(choices):
         for name, road in roads.read_each(path, raster, asked, crs(path), advice(path), warn).items():
-            found[name_road(name, taken)] = path, road
-    if len(found) > 1 and choices.KIND:
-        raise SlopeError("--road", ONE, ", ".join(found))
-    for said in roads.meetings(found, raster):
+            roads_[name_road(name, taken)] = path, road
+    if len(roads_) > 1 and choices.KIND:
+        raise SlopeError("--road", ONE, ", ".join(roads_))
+    for said in roads.meetings(roads_, raster):
         warn(said)
-    return found
+    return roads_

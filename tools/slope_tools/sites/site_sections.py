@@ -206,14 +206,14 @@ class Choices:
     @classmethod
     def of(cls: Type[C], given: Mapping[str, Any]) -> C:
         """Those of what a file holds, or of nothing, with the defaults of all that is not given."""
-        hints, found = get_type_hints(cls), {}
+        hints, values = get_type_hints(cls), {}
         for name, about in sections(cls.KIND):
             own = {**{key: entry.get("default", ()) for key, entry in about["properties"].items()},
                    **(given.get(name) or {})}
             if isinstance(own.get("confined"), bool):       # yes and no without quotes
                 own["confined"] = "yes" if own["confined"] else "no"
-            found[name] = hints[name](**{attribute(key): frozen(own[key]) for key in about["properties"]})
-        return cls(**found, older=older(given))
+            values[name] = hints[name](**{attribute(key): frozen(own[key]) for key in about["properties"]})
+        return cls(**values, older=older(given))
 
     def entries(self) -> Dict[str, Any]:
         """The same as a file has them: of() reads it."""

@@ -39,17 +39,17 @@ def kept(folder: Path, wanted: Dict[str, Any], settled: bool) -> Optional[Tried]
     """
     if not (folder / site_choices.NAME).is_file():
         return None
-    found = site_choices.found(folder)
-    had = found.trial_of
+    site_found = site_choices.found(folder)
+    had = site_found.trial_of
     if had.get("sha256") != wanted["sha256"] or not (settled or had.get("rolling") == wanted["rolling"]) or \
-            found.trial is None:
+            site_found.trial is None:
         return None
     try:
         raster = rasters.read_raster(folder / REACHED, heights=False)
     except SlopeError:
         return None
-    to_local = Affine.translation(-found.origin.east, -found.origin.north)
-    return Tried(found.trial, raster._replace(transform=to_local * raster.transform, crs=None), had)
+    to_local = Affine.translation(-site_found.origin.east, -site_found.origin.north)
+    return Tried(site_found.trial, raster._replace(transform=to_local * raster.transform, crs=None), had)
 
 
 def write_trial(folder: Path, tried: Tried, terrain: Raster) -> None:

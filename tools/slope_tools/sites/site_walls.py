@@ -85,13 +85,13 @@ def ground(raster: Raster, left: np.ndarray, right: np.ndarray) -> Tuple[np.ndar
 def strip(*edges: np.ndarray) -> np.ndarray:
     """The closed mesh between four edges of as many points: foot and top, left and right; triangles turn outwards."""
     left, right, top_left, top_right = edges
-    found: List[np.ndarray] = []
+    rings: List[np.ndarray] = []
     for a, b in ((right, left), (left, top_left), (top_left, top_right), (top_right, right)):
-        found += [np.stack([a[:-1], a[1:], b[1:]], axis=1), np.stack([a[:-1], b[1:], b[:-1]], axis=1)]
+        rings += [np.stack([a[:-1], a[1:], b[1:]], axis=1), np.stack([a[:-1], b[1:], b[:-1]], axis=1)]
     for k, turn in ((0, 1), (-1, -1)):
         corners = [right[k], left[k], top_left[k], top_right[k]][::turn]
-        found.append(np.array([[corners[0], corners[1], corners[2]], [corners[0], corners[2], corners[3]]]))
-    return np.concatenate(found)[:, ::-1]
+        rings.append(np.array([[corners[0], corners[1], corners[2]], [corners[0], corners[2], corners[3]]]))
+    return np.concatenate(rings)[:, ::-1]
 
 
 def stl(name: str, corners: np.ndarray) -> str:

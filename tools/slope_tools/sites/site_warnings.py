@@ -43,10 +43,10 @@ STEEP = 65.0            # degrees; tried: some faces of balls stand at 60, none 
 FALLS = ("does not stand before it is shaken", "Lost atoms", "must be the body that the balls fill")
 
 
-def site_warnings(found: Measures, size: Size, trial: Optional[Trial]) -> List[Finding]:
+def site_warnings(measures: Measures, size: Size, trial: Optional[Trial]) -> List[Finding]:
     """Warnings on a body and its balls; trial: None where there is no LAMMPS program."""
-    return [*of_trial(trial), *of_volume(found.volume),
-            *of_thickness(found.mean_depth / size.finest, found.largest_depth / size.finest)]
+    return [*of_trial(trial), *of_volume(measures.volume),
+            *of_thickness(measures.mean_depth / size.finest, measures.largest_depth / size.finest)]
 
 
 def of_trial(trial: Optional[Trial]) -> List[Finding]:
@@ -161,16 +161,18 @@ def require_standing(error: SlopeError, peak_friction: float, slope: float) -> N
 def heaviest(several: Sequence[Finding]) -> List[Finding]:
     """The warnings that weigh most, one for all objects of which the same is said: with the numbers of the first."""
     groups: Dict[str, List[Finding]] = {}
-    for one in several:
-        if one.level == WARNING:
-            groups.setdefault(one.kind if words_of(one.kind).text.startswith(NAMES) else str(one), []).append(one)
-    found = []
+    for warning in several:
+        if warning.level == WARNING:
+            groups.setdefault(warning.kind if words_of(warning.kind).text.startswith(NAMES) else str(warning),
+                              []).append(warning)
+    merged = []
     for first, *others in groups.values():
         numbers = dict(first.numbers)
         if key := next((name for name in ("file", "name") if name in numbers), None) if others else None:
             numbers[key] = ", ".join(dict.fromkeys(str(one.numbers[key]) for one in (first, *others)))
-        found.append(first._replace(numbers=numbers))
-    return sorted(found, key=lambda one: HEAVIEST.index(one.kind) if one.kind in HEAVIEST else len(HEAVIEST))[:MOST]
+        merged.append(first._replace(numbers=numbers))
+    return sorted(merged, key=lambda warning: HEAVIEST.index(warning.kind) if warning.kind in HEAVIEST
+                  else len(HEAVIEST))[:MOST]
 
 
 def add(folder: Path, several: Sequence[Finding]) -> None:

@@ -110,21 +110,22 @@ def of_raster(source: Source, raster: Raster, warn) -> Iterator[Zone]:
     """The classes of a raster that have a line in the table, where they lie on the terrain."""
     assert source.table is not None
     rows = read_table(source.table)
-    found = beside.read_raster_beside(source.path, raster, False, source.crs, warn=warn)
-    known = np.isfinite(found.z)
-    wrong = found.z[known & (found.z != np.round(found.z))]
+    raster_of_zones = beside.read_raster_beside(source.path, raster, False, source.crs, warn=warn)
+    known = np.isfinite(raster_of_zones.z)
+    wrong = raster_of_zones.z[known & (raster_of_zones.z != np.round(raster_of_zones.z))]
     if wrong.size:
         raise SlopeError(source.path, "must hold classes, whole numbers", f"{wrong[0]:g}")
-    missing = sorted(set(np.unique(found.z[known])) - set(rows))
+    missing = sorted(set(np.unique(raster_of_zones.z[known])) - set(rows))
     if missing:
         raise SlopeError(source.table, f"must have a line for each class of {source.path}, values may be left out",
                          f"none for {missing[0]:g}")
     for number, given in rows.items():
-        cells = features.shapes(np.ones(found.z.shape, np.uint8), found.z == number, transform=found.transform)
+        cells = features.shapes(np.ones(raster_of_zones.z.shape, np.uint8), raster_of_zones.z == number,
+                                transform=raster_of_zones.transform)
         parts = [part for one, _ in cells for part in polygons_of(shape(one))]
         if parts and given.keys() & VALUES.keys():
-            moved = polygons.map_points(unary_union(parts), lambda points: points + found.offset)
-            yield from on_terrain(f"{source.path}: class {number:g}", moved, found.crs, given, source, raster)
+            moved = polygons.map_points(unary_union(parts), lambda points: points + raster_of_zones.offset)
+            yield from on_terrain(f"{source.path}: class {number:g}", moved, raster_of_zones.crs, given, source, raster)
 
 
 def read_table(path: str) -> Dict[float, Dict[str, Any]]:
@@ -139,19 +140,19 @@ def read_table(path: str) -> Dict[float, Dict[str, Any]]:
         raise SlopeError(path, f"must be a table in CSV, in UTF-8: {why}") from None
     if CLASS not in heads:
         raise SlopeError(path, f"must have the columns {CLASS} and {', '.join(VALUES)}", " ".join(heads) or "none")
-    found: Dict[float, Dict[str, Any]] = {}
+    classes: Dict[float, Dict[str, Any]] = {}
     for line, row in enumerate(rows, 2):
         number = convert_zone_number(f"{path}: line {line}: {CLASS}", row.pop(CLASS))
-        if number is None or number in found:
+        if number is None or number in classes:
             raise SlopeError(f"{path}: line {line}: {CLASS}", "must be a number that no other line has", number)
-        found[number] = {NAME: f"{number:g}", **meant(path, row)}
-    return found
+        classes[number] = {NAME: f"{number:g}", **meant(path, row)}
+    return classes
 
 
-def meant(path: str, about: Mapping[str, Any]) -> Dict[str, Any]:
+def meant(path: str, attributes: Mapping[str, Any]) -> Dict[str, Any]:
     """The attributes that count, by their names here; those that are null left out."""
     given = {}
-    for attribute, value in about.items():
+    for attribute, value in attributes.items():
         name = str(attribute).strip().lower()
         name = SHORT.get(name, name)
         if name in (*VALUES, NAME):
@@ -262,7 +263,7 @@ def find_site_value(name: str, model: Model) -> float:
 
 def now(zone: Known, model: Model, variables: Mapping[str, Any]) -> Dict[str, float]:
     """{variable of the ground: its value in a zone} in a run with these variables."""
-    found = {}
+    zones_now = {}
     for name, variable in VALUES.items():
         value = float(variables[variable])
         if name in zone.values:
@@ -270,8 +271,8 @@ def now(zone: Known, model: Model, variables: Mapping[str, Any]) -> Dict[str, fl
             of = find_site_value(name, model)
             low, high = LIMITS.get(name, (0.0, 0.0))
             value = min(max(own * (value / of), min(own, low)), max(own, high)) if of else own
-        found[variable] = value
-    return found
+        zones_now[variable] = value
+    return zones_now
 
 
 def of_choices(source: Source, raster: Raster, folder: Path, tell, warn) -> List[Zone]:

@@ -47,24 +47,24 @@ def read_body_rows(path: Path, names: Sequence[str] = NUMBERS, unknown: Sequence
         raise SlopeError(path, f"cannot be read ({error})") from None
     if not rows:
         raise SlopeError(path, "must hold a surface, it has none")
-    found = []
+    bodies = []
     for place, row in enumerate(rows, 2):
-        one = {}
+        numbers = {}
         for name in ("rank", *names, *unknown):
             try:
-                one[name] = float(row.get(name) or "")
+                numbers[name] = float(row.get(name) or "")
             except ValueError:
-                one[name] = math.nan
-            if name not in unknown and not math.isfinite(one[name]):
+                numbers[name] = math.nan
+            if name not in unknown and not math.isfinite(numbers[name]):
                 raise SlopeError(f"{path}: line {place}", f"must have a number in the column {name}", row.get(name))
         for name, default in columns.SPHERE._asdict().items():
             try:
-                one[name] = float(row.get(name, default))
+                numbers[name] = float(row.get(name, default))
             except ValueError:
                 raise SlopeError(f"{path}: line {place}", f"must have a number in the column {name}",
                                  row[name]) from None
-        found.append(one)
-    return found
+        bodies.append(numbers)
+    return bodies
 
 
 def shape_of(row: Dict[str, float]) -> columns.Shape:

@@ -159,14 +159,14 @@ def balanced(area: np.ndarray, u: np.ndarray, e: np.ndarray, dip: np.ndarray, ac
 
 def slopes(heights: np.ndarray, raster: Raster) -> Tuple[np.ndarray, np.ndarray]:
     """dz to the south and to the east, between the neighbours of each cell that have a value."""
-    found = []
+    gradients = []
     for axis in (0, 1):
         wide = np.pad(heights, [(1, 1) if one == axis else (0, 0) for one in (0, 1)], constant_values=np.nan)
         before, after = (np.take(wide, np.arange(heights.shape[axis]) + k, axis) for k in (0, 2))
         cells = np.isfinite(before).astype(int) + np.isfinite(after)
         rise = np.where(np.isfinite(after), after, heights) - np.where(np.isfinite(before), before, heights)
-        found.append(rise / np.maximum(cells, 1) / abs(raster.transform.a))
-    return found[0], found[1]
+        gradients.append(rise / np.maximum(cells, 1) / abs(raster.transform.a))
+    return gradients[0], gradients[1]
 
 
 def dips(gradient: Tuple[np.ndarray, np.ndarray], kept: np.ndarray,

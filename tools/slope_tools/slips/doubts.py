@@ -49,10 +49,10 @@ def near_limits(row: Dict[str, float], name: str, limits: Tuple[float, float]) -
 def find_body_doubts(raster: Raster, row: Dict[str, float], inside: np.ndarray, volume: Optional[Tuple[float, float]],
                      depth: Optional[Tuple[float, float]], allowed: Optional[np.ndarray]) -> List[Finding]:
     """Of one body: row of the table, mask of its cells; limits that were given, cells of the polygon within."""
-    found = []
+    doubts = []
 
     def doubt(kind, **numbers):
-        found.append(Finding(kind, {"body": int(row["rank"]), **numbers}))
+        doubts.append(Finding(kind, {"body": int(row["rank"]), **numbers}))
 
     if inside.sum() < FEWEST:
         doubt("columns", value=int(inside.sum()), limit=FEWEST)
@@ -60,8 +60,8 @@ def find_body_doubts(raster: Raster, row: Dict[str, float], inside: np.ndarray, 
         doubt("terrain", limit=EDGE)
     if allowed is not None and (ndimage.binary_dilation(inside) & ~allowed).any():
         doubt("within")
-    found += near_limits(row, "volume", volume or (SMALLEST * raster.transform.a ** 3, math.inf))
-    found += near_limits(row, "depth", depth or (0.0, math.inf))
+    doubts += near_limits(row, "volume", volume or (SMALLEST * raster.transform.a ** 3, math.inf))
+    doubts += near_limits(row, "depth", depth or (0.0, math.inf))
     long = length(raster, inside, row["direction"])
     if row["radius"] > FLAT * long:
         doubt("flat", value=row["radius"], limit=long)
@@ -69,7 +69,7 @@ def find_body_doubts(raster: Raster, row: Dict[str, float], inside: np.ndarray, 
         doubt("wide", value=row["across"])
     if row["factor"] < 1:
         doubt("fails", value=row["factor"])
-    return found
+    return doubts
 
 
 def find_all_doubts(raster: Raster, rows: Sequence[Dict[str, float]], masks: Sequence[np.ndarray],

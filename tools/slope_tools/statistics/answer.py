@@ -55,9 +55,9 @@ class Reason(NamedTuple):
         return {"code": self.code.value, "numbers": dict(self.numbers)}
 
     @classmethod
-    def read(cls, about: Mapping[str, Any]) -> "Reason":
+    def read(cls, entry: Mapping[str, Any]) -> "Reason":
         """Of about()."""
-        return cls(Code(about["code"]), about["numbers"])
+        return cls(Code(entry["code"]), entry["numbers"])
 
 
 class Road(NamedTuple):
@@ -219,35 +219,36 @@ class Part(NamedTuple):
     open: bool = False
 
 
-def of_paper(one: Paper, beside: bool) -> Optional[Part]:
+def of_paper(paper: Paper, beside: bool) -> Optional[Part]:
     """beside: an ensemble stands beside it, which makes up for HARMLESS rules; None: those alone withhold it."""
-    if one.volume is not None:
-        known = one.least is not None       # chance
-        band = [Share(Cause.RUNS.value, max(0.0, one.volume - one.least), 0.0)] if one.least is not None else []
-        return correct_part(Part(Kind.NUMBER, one.volume, None, [*band, Share(Cause.TRANSFER.value, *one.transfer)],
-                                 bound=known), one.size)
-    grave = [rule for rule in one.withheld if not (beside and rule.rule in HARMLESS)]
+    if paper.volume is not None:
+        known = paper.least is not None       # chance
+        band = [Share(Cause.RUNS.value, max(0.0, paper.volume - paper.least), 0.0)] if paper.least is not None else []
+        return correct_part(Part(Kind.NUMBER, paper.volume, None, [*band, Share(Cause.TRANSFER.value, *paper.transfer)],
+                                 bound=known), paper.size)
+    grave = [rule for rule in paper.withheld if not (beside and rule.rule in HARMLESS)]
     if not grave:
         return None
     return Part(Kind.WITHHELD, None, reasons=[rule.reason(Source.PAPER) for rule in grave])
 
 
-def of_ensemble(one: Ensemble, road: Optional[Road]) -> Part:
+def of_ensemble(ensemble: Ensemble, road: Optional[Road]) -> Part:
     # that no run goes as far as half of the known events is said beside the number of those that the runs cover
-    grave = [rule for rule in one.withheld if rule.rule is not Rule.MOBILITY]
+    grave = [rule for rule in ensemble.withheld if rule.rule is not Rule.MOBILITY]
     if grave:
         return Part(Kind.WITHHELD, None, reasons=[rule.reason(Source.ENSEMBLE) for rule in grave])
-    stopped = [one.stopped] if one.stopped else []
+    stopped = [ensemble.stopped] if ensemble.stopped else []
     if road and road.missed:
         low, high = min(road.reached), max(road.reached)
         if low > MANY:
             return Part(Kind.FLOOR, 0.0, 1 - high, reasons=[Reason(Code.NOT_REACHED, road.numbers()), *stopped])
         said = [Reason(Code.ONE_SCATTER, road.numbers())] if high > MANY else []
         return Part(Kind.NUMBER, 0.0, SHARE, reasons=said)
-    best = max((each for each in one.quantiles if each.value is not None), key=lambda each: each.share, default=None)
+    best = max((each for each in ensemble.quantiles if each.value is not None), key=lambda each: each.share,
+               default=None)
     if best is None or best.value is None:
-        return Part(Kind.FLOOR, 0.0, 0.0, reasons=[explain_known_beyond(one), *stopped])
-    high = max(best.value, one.most) if best.high is None else best.high        # what no run exceeded
+        return Part(Kind.FLOOR, 0.0, 0.0, reasons=[explain_known_beyond(ensemble), *stopped])
+    high = max(best.value, ensemble.most) if best.high is None else best.high        # what no run exceeded
     band = [Share(Cause.RUNS.value, best.value - (best.low or 0.0), high - best.value),
             Share(Cause.TRANSFER.value, *(best.transfer or (0.0, 0.0)))]
     part = Part(Kind.NUMBER, best.value, best.share, band, bound=best.low is not None, open=best.high is None)
@@ -255,14 +256,16 @@ def of_ensemble(one: Ensemble, road: Optional[Road]) -> Part:
         # a terrain that ends behind the road is no reason against its number
         ends = any(reason.code is Code.TERRAIN and not (road and road.far < reason.numbers["path_m"])
                    for reason in stopped)
-        part = part._replace(kind=Kind.FLOOR if ends else Kind.NUMBER, reasons=[explain_known_beyond(one), *stopped])
-    return correct_part(part, one.size)
+        part = part._replace(kind=Kind.FLOOR if ends else Kind.NUMBER,
+                             reasons=[explain_known_beyond(ensemble), *stopped])
+    return correct_part(part, ensemble.size)
 
 
-def explain_known_beyond(one: Ensemble) -> Reason:
+def explain_known_beyond(ensemble: Ensemble) -> Reason:
     """That known events go beyond all runs."""
-    end = {} if one.path_end is None else {"path_end_m": one.path_end}
-    return Reason(Code.BEYOND, {"far": one.far, "longest_m": one.longest, "most_m3": one.most, "runs": one.runs, **end})
+    end = {} if ensemble.path_end is None else {"path_end_m": ensemble.path_end}
+    return Reason(Code.BEYOND, {"far": ensemble.far, "longest_m": ensemble.longest, "most_m3": ensemble.most,
+                                "runs": ensemble.runs, **end})
 
 
 def correct_part(part: Part, size: Size) -> Part:
@@ -295,7 +298,7 @@ def combine_answers(paper: Optional[Paper], ensemble: Optional[Ensemble], road: 
     known = [(source, part) for source, part in parts if part.volume is not None]
     if not known:
         return Answer(Kind.WITHHELD, None, None, None, None, None, paper, ensemble, road, reasons)
-    source, best = max(known, key=lambda one: one[1].volume or 0.0)
+    source, best = max(known, key=lambda pair: pair[1].volume or 0.0)
     volume, some = best.volume or 0.0, []
     if road and not volume:
         if not road.missed:
@@ -307,7 +310,7 @@ def combine_answers(paper: Optional[Paper], ensemble: Optional[Ensemble], road: 
     low, high = low_high(volume, best.band)
     if open_ and volume:        # of lower bounds the largest counts
         lows = [(low_high(part.volume, part.band)[0], each, part) for each, part in known if part.bound and part.volume]
-        low, source, best = max([(low if best.bound else 0.0, source, best), *lows], key=lambda one: one[0])
+        low, source, best = max([(low if best.bound else 0.0, source, best), *lows], key=lambda pair: pair[0])
     kind = Kind.NUMBER if volume else Kind.NOTHING
     if open_:
         kind = Kind.FLOOR if not volume or best.bound and low else Kind.OPEN

@@ -200,17 +200,18 @@ def distance(cloud, emulators, goals, covariance, tolerance):
     return (solved ** 2).sum(axis=1), 2 * np.log(np.diagonal(factor, axis1=1, axis2=2)).sum(axis=1)
 
 
-def propose(found: Posterior, taken: np.ndarray, number: int) -> np.ndarray:
+def propose(posterior_: Posterior, taken: np.ndarray, number: int) -> np.ndarray:
     """The points where runs say most: likely ones at which the emulators are least sure, apart from each other."""
-    likely = np.exp(0.5 * (found.logs - found.logs.max()))
-    unsure = sum((one.spread(found.points)[1] / noise) ** 2 for one, noise in zip(found.emulators, found.noise))
+    likely = np.exp(0.5 * (posterior_.logs - posterior_.logs.max()))
+    unsure = sum((one.spread(posterior_.points)[1] / noise) ** 2 for one, noise
+                 in zip(posterior_.emulators, posterior_.noise))
     value = likely * np.sqrt(unsure + 1e-12)
-    low, high = found.box
-    scaled = (found.points - low) / (high - low)
+    low, high = posterior_.box
+    scaled = (posterior_.points - low) / (high - low)
     chosen: List[np.ndarray] = []
     for _ in range(number):
         i = int(value.argmax())
-        chosen.append(found.points[i])
+        chosen.append(posterior_.points[i])
         far = 1 - np.exp(-0.5 * (((scaled - scaled[i]) / APART) ** 2).sum(axis=1))
         value = value * far
     points = np.array(chosen)
@@ -220,49 +221,49 @@ def propose(found: Posterior, taken: np.ndarray, number: int) -> np.ndarray:
     return points
 
 
-def sets(found: Posterior, number: int) -> np.ndarray:
+def sets(posterior_: Posterior, number: int) -> np.ndarray:
     """Points (number, d) of the region that stand for it, in no order: each is as likely as the others."""
     rng = np.random.default_rng(SEED)
-    order = np.argsort(found.points[:, 0])
-    below = np.cumsum(found.weights[order])
+    order = np.argsort(posterior_.points[:, 0])
+    below = np.cumsum(posterior_.weights[order])
     at = np.searchsorted(below, (np.arange(number) + rng.random(number)) / number * below[-1])
-    return found.points[rng.permutation(order[np.minimum(at, len(order) - 1)])]
+    return posterior_.points[rng.permutation(order[np.minimum(at, len(order) - 1)])]
 
 
-def misfits(outputs: np.ndarray, found: Posterior, targets: Sequence[Target]) -> np.ndarray:
+def misfits(outputs: np.ndarray, posterior_: Posterior, targets: Sequence[Target]) -> np.ndarray:
     """The score of runs, root mean square of (output - observed)/sqrt(tolerance2 + chance2): about 1 is the best."""
-    scale = np.sqrt(np.array([one.deviation for one in targets]) ** 2 + found.noise ** 2)
-    return np.sqrt((((np.asarray(outputs) - found.goals) / scale) ** 2).mean(axis=1))
+    scale = np.sqrt(np.array([one.deviation for one in targets]) ** 2 + posterior_.noise ** 2)
+    return np.sqrt((((np.asarray(outputs) - posterior_.goals) / scale) ** 2).mean(axis=1))
 
 
 # --- words ---
 
-def judgement(found: Posterior, variables: Sequence) -> List[str]:
+def judgement(posterior_: Posterior, variables: Sequence) -> List[str]:
     """In sentences: how well each variable (distributions.Range) is known, and which compensate each other."""
     lines, loose = [], []
-    for i, one in enumerate(variables):
-        low, high = found.interval(i)
+    for i, variable in enumerate(variables):
+        low, high = posterior_.interval(i)
         width = high - low
-        best, least, most = (format_variable_value(one, u) for u in (float(found.best[i]), low, high))
-        text = f"{one.name}: {best}, {least} to {most} ({100 * SHARE:g} %)"
+        best, least, most = (format_variable_value(variable, u) for u in (float(posterior_.best[i]), low, high))
+        text = f"{variable.name}: {best}, {least} to {most} ({100 * SHARE:g} %)"
         if width > UNKNOWN:
-            loose.append(one.name)
+            loose.append(variable.name)
             text += f": not identifiable, the observation allows {100 * width:.0f} % of its range"
         elif width > ROUGH:
-            loose.append(one.name)
+            loose.append(variable.name)
             text += f": roughly known, {100 * width:.0f} % of its range"
         lines.append(text)
-    correlation = found.correlation()
-    for i, one in enumerate(variables):
+    correlation = posterior_.correlation()
+    for i, variable in enumerate(variables):
         for j in range(i + 1, len(variables)):
             other = variables[j].name
-            if abs(correlation[i, j]) >= TIED and {one.name, other} & set(loose):
+            if abs(correlation[i, j]) >= TIED and {variable.name, other} & set(loose):
                 more = "less" if correlation[i, j] < 0 else "more"
-                lines.append(f"{one.name} and {other} cannot be identified separately: more {one.name} with "
+                lines.append(f"{variable.name} and {other} cannot be identified separately: more {variable.name} with "
                              f"{more} {other} gives the same result")
-    if found.misfit > 1:
+    if posterior_.misfit > 1:
         lines.append("no values of these variables reproduce the observation: the closest are "
-                     f"{math.sqrt(found.misfit):.1f} times as far from it as chance and tolerance explain")
+                     f"{math.sqrt(posterior_.misfit):.1f} times as far from it as chance and tolerance explain")
     return lines
 
 

@@ -131,18 +131,18 @@ class Step(NamedTuple):
         """Whether a pair tells of it."""
         return bool(self.ratio or self.small)
 
-    def apply(self, one: Finest, at: Any) -> Finest:
+    def apply(self, finest: Finest, at: Any) -> Finest:
         """A value with the next finer balls."""
-        if one.value >= self.least and one.value > 0 and self.ratio:
-            place = with_own(at, one.value)
+        if finest.value >= self.least and finest.value > 0 and self.ratio:
+            place = with_own(at, finest.value)
             factor = math.exp(float(self.ratio.change(place)))
-            value = one.value * factor
-            return joined(value, (one.deviation * factor, one.freedom), (value * math.hypot(
-                self.ratio.deviation * float(self.ratio.relative(one.value)), float(self.ratio.beyond(place))),
+            value = finest.value * factor
+            return joined(value, (finest.deviation * factor, finest.freedom), (value * math.hypot(
+                self.ratio.deviation * float(self.ratio.relative(finest.value)), float(self.ratio.beyond(place))),
                 self.ratio.freedom))
         mine, freedom = self.of_small()
         change = self.small.constant if self.small else 0.0
-        return joined(max(0.0, one.value + change), (one.deviation, one.freedom), (mine, freedom))
+        return joined(max(0.0, finest.value + change), (finest.deviation, finest.freedom), (mine, freedom))
 
     def of_small(self) -> Tuple[float, float]:
         """Deviation and degrees of freedom below least; of few pairs at least that of a ratio at it."""
@@ -153,18 +153,18 @@ class Step(NamedTuple):
 
     def draws(self, rng: np.random.Generator, values: np.ndarray, at: np.ndarray) -> np.ndarray:
         """Values as they may be with the next finer balls: of one draw of the model, with what each run has alone."""
-        found, noise = values.astype(float), rng.standard_normal(len(values))
+        changed, noise = values.astype(float), rng.standard_normal(len(values))
         big = (values >= self.least) & (values > 0)
         if self.ratio and big.any():
             drawn, deviation = self.ratio.draw(rng)
             place = with_own(at[big], values[big])
             mine = np.hypot(deviation * self.ratio.relative(values[big]), self.ratio.beyond(place))
-            found[big] = values[big] * np.exp(self.ratio.change(place, drawn) + mine * noise[big])
+            changed[big] = values[big] * np.exp(self.ratio.change(place, drawn) + mine * noise[big])
         else:
             big = np.zeros(len(values), bool)
         change = self.small.constant if self.small else 0.0
-        found[~big] = np.maximum(0.0, values[~big] + change + self.of_small()[0] * noise[~big])
-        return found
+        changed[~big] = np.maximum(0.0, values[~big] + change + self.of_small()[0] * noise[~big])
+        return changed
 
 
 def joined(value: float, *parts: Tuple[float, float]) -> Finest:
@@ -185,21 +185,21 @@ def fit_step(coarse: Sequence[float], fine: Sequence[float], at: Any, finer: flo
 
     ball: volume of a coarse ball, 0 of lengths; before: the step from the size before, which tells of the scatter, too.
     """
-    one, other, places = np.asarray(coarse, float), np.asarray(fine, float), np.asarray(at, float)
-    places = places.reshape(len(one), -1 if len(one) else 0)
+    first, other, places = np.asarray(coarse, float), np.asarray(fine, float), np.asarray(at, float)
+    places = places.reshape(len(first), -1 if len(first) else 0)
     least = COUNTED * ball
-    gone = (one >= least) & (one > 0) & (other <= (ball / COUNTED if ball > 0 else 1e-3 * one))
+    gone = (first >= least) & (first > 0) & (other <= (ball / COUNTED if ball > 0 else 1e-3 * first))
     if gone.any():      # what becomes nothing has no factor, nor have values up to it
-        least = float(np.nextafter(one[gone].max(), np.inf))
-    big = (one >= least) & (one > 0)
-    logs = np.log(np.maximum(other[big], ball / COUNTED if ball > 0 else 1e-3 * one[big]) / one[big])
-    few = (other - one)[~big & ~gone] if (~big & ~gone).any() else (other - one)[gone]
+        least = float(np.nextafter(first[gone].max(), np.inf))
+    big = (first >= least) & (first > 0)
+    logs = np.log(np.maximum(other[big], ball / COUNTED if ball > 0 else 1e-3 * first[big]) / first[big])
+    few = (other - first)[~big & ~gone] if (~big & ~gone).any() else (other - first)[gone]
     small = model(few, np.empty((len(few), 0)), None)
     if small and gone.any():        # it says how far others may fall, not how far they do
-        squares = (other - one)[gone] ** 2
+        squares = (other - first)[gone] ** 2
         small = small._replace(deviation=math.sqrt((len(few) * small.deviation ** 2 + squares.sum()) /
                                                    (len(few) + len(squares))))
-    return Step(finer, least, model(logs, with_own(places[big], one[big]), before.ratio if before else None), small)
+    return Step(finer, least, model(logs, with_own(places[big], first[big]), before.ratio if before else None), small)
 
 
 def with_own(at: Any, values: Any) -> np.ndarray:
@@ -245,7 +245,7 @@ def of_power(changes: np.ndarray, at: np.ndarray, power: int) -> "Ridge":
         if not mask.any() or number < FEWEST + mask.sum():
             continue
         other = min((ridge(changes, np.where(mask, at, at.mean(axis=0)), penalty, weights, power)
-                     for penalty in RIDGES), key=lambda one: one.squares)
+                     for penalty in RIDGES), key=lambda candidate: candidate.squares)
         if other.squares < few * best.squares:
             best, few = other, 1.0
     return best

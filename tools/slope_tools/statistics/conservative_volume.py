@@ -131,31 +131,33 @@ def pooled(combinations: Sequence[Combination]) -> Optional[Scatter]:
     return Scatter(deviation, free * shared(combinations))
 
 
-def like(combinations: Sequence[Combination], one: Combination) -> List[Combination]:
+def like(combinations: Sequence[Combination], combination: Combination) -> List[Combination]:
     """Those whose scatter says something of that of one, itself among them, their deviations as they would be there.
 
     Variances grow with the mean: deviations count by the square root of the ratio of the means. Where a single run has
     no near ones with repeats, all count that are not 0, by the ratio itself.
     """
     def scaled(other: Combination, power: float) -> Combination:
-        if other.mean == one.mean:
+        if other.mean == combination.mean:
             return other
-        scale = (one.mean / other.mean) ** power
+        scale = (combination.mean / other.mean) ** power
         return Combination(other.name, {key: scale * value for key, value in other.volumes.items()})
 
-    near = [other for other in combinations if other is one or one.mean <= NEAR * other.mean <= NEAR ** 2 * one.mean]
-    if one.runs > 1 or any(other.runs > 1 for other in near):
+    near = [other for other in combinations if other is combination or combination.mean <= NEAR * other.mean <=
+            NEAR ** 2 * combination.mean]
+    if combination.runs > 1 or any(other.runs > 1 for other in near):
         return [scaled(other, 0.5) for other in near]
-    return [scaled(other, 1.0) for other in combinations if other is one or other.mean > 0 and one.mean > 0]
+    return [scaled(other, 1.0) for other in combinations if other is combination or other.mean > 0 and
+            combination.mean > 0]
 
 
-def scatter_of(combinations: Sequence[Combination], one: Combination) -> Optional[Scatter]:
+def scatter_of(combinations: Sequence[Combination], combination: Combination) -> Optional[Scatter]:
     """The scatter of a run of a combination, from all that are like it; None if none of them has two runs.
 
     The dispersion of quasi-likelihood with a variance in proportion to the mean, by Pearson's statistic (McCullagh and
     Nelder, Generalized Linear Models, 1989, section 9.2).
     """
-    return pooled(like(combinations, one))
+    return pooled(like(combinations, combination))
 
 
 def shared(combinations: Sequence[Combination]) -> float:
@@ -211,13 +213,13 @@ def predict(combinations: Sequence[Combination]) -> ConservativeVolume:
     largest mean. If several means are about the same, the largest is high by chance, so the volume is conservative
     (see the page on `slope study`).
     """
-    found: List[ConservativeVolume] = []
+    candidates: List[ConservativeVolume] = []
     for one in combinations:
         scatter = scatter_of(combinations, one)
         chance = scatter.chance(one.runs) if scatter else None
-        found.append(ConservativeVolume(one.mean + (chance or 0.0), one.mean, chance, one.name, one.runs,
-                                        sum(other.runs for other in combinations), scatter))
-    return max(found, key=lambda each: each.volume)
+        candidates.append(ConservativeVolume(one.mean + (chance or 0.0), one.mean, chance, one.name, one.runs,
+                                             sum(other.runs for other in combinations), scatter))
+    return max(candidates, key=lambda each: each.volume)
 
 
 def difference(line: Sequence[Combination], scatter: Optional[Scatter]) -> Difference:
@@ -250,5 +252,5 @@ def is_clear(line: Sequence[Combination], scatter: Scatter) -> bool:
 
 def ends(line: Sequence[Combination]) -> Tuple[Combination, Combination, float]:
     """The combinations of the largest and the smallest mean, and the unit of their range in standard deviations."""
-    top, low = max(line, key=lambda one: one.mean), min(line, key=lambda one: one.mean)
+    top, low = max(line, key=lambda combination: combination.mean), min(line, key=lambda combination: combination.mean)
     return top, low, math.sqrt((1 / top.runs + 1 / low.runs) / 2)

@@ -65,7 +65,7 @@ def compare(runs: Sequence[Tuple[float, Sequence[float]]], balls: Sequence[Optio
     Chance: t s sqrt(1/n + 1/m), the 95 % interval of the difference of two means, with the scatter s of both pooled;
     where one was run once, that of the other.
     """
-    order = sorted(zip(runs, balls), key=lambda one: -one[0][0])
+    order = sorted(zip(runs, balls), key=lambda pair: -pair[0][0])
     combinations = [Combination(f"{d:g}", {str(k): value for k, value in enumerate(values)})
                     for (d, values), _ in order]
     sizes = [Size(d, one.runs, one.mean, one.scatter, thick)
@@ -87,16 +87,16 @@ def chance(scatter: Optional[Scatter], *runs: int) -> Optional[float]:
 
 def describe_convergence(result: Convergence, name: str, what: str, unit: str, number) -> List[str]:
     """Plain sentences on a quantity; name: the variable's, number: writes a value of the quantity as text."""
-    found = []
-    for one in result.halvings:
-        text = (f"{what}: {number(one.coarse.mean)} {unit} at {name} {one.coarse.d:g}, {number(one.fine.mean)} at "
-                f"{one.fine.d:g}")
-        if one.chance is None:
-            found.append(f"{text}; chance is not known: repeats at one of them tell it")
+    sentences = []
+    for halving in result.halvings:
+        text = (f"{what}: {number(halving.coarse.mean)} {unit} at {name} {halving.coarse.d:g}, "
+                f"{number(halving.fine.mean)} at " f"{halving.fine.d:g}")
+        if halving.chance is None:
+            sentences.append(f"{text}; chance is not known: repeats at one of them tell it")
         else:
-            found.append(f"{text}, {'no more' if one.within_chance else 'more'} than chance explains "
-                         f"({number(one.chance)})")
+            sentences.append(f"{text}, {'no more' if halving.within_chance else 'more'} than chance explains "
+                             f"({number(halving.chance)})")
     if result.resolved:
-        return [*found, f"{what}: resolved: {AGREEING} halvings change no more than chance"]
-    return [*found, f"{what}: not resolved: this takes {AGREEING} halvings in a row that change no more than chance, "
-            f"from {BALLS:g} balls of thickness on"]
+        return [*sentences, f"{what}: resolved: {AGREEING} halvings change no more than chance"]
+    return [*sentences, f"{what}: not resolved: this takes {AGREEING} halvings in a row that change no more than "
+            "chance, " f"from {BALLS:g} balls of thickness on"]

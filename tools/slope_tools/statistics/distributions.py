@@ -136,16 +136,16 @@ def parse(options: Sequence[str], deck, option: str = "--vary", ranges_only: boo
             raise SlopeError(option, MUST, words)
     names = settings.check_names([words.partition("=")[0] for words in options], deck, option, options)
     checks = deck_ranges.Checks(deck)
-    found = []
+    distributions = []
     for name, words in zip(names, options):
-        one = distribution(name, words.partition("=")[2], option, words)
-        if ranges_only and isinstance(one, Listed):
+        parsed = distribution(name, words.partition("=")[2], option, words)
+        if ranges_only and isinstance(parsed, Listed):
             raise SlopeError(option, "must be a range here, NAME=LO:HI", words)
         checks.vary(option, name, words)
-        for value in one.limits:
+        for value in parsed.limits:
             checks.value(option, name, value, words)
-        found.append(one)
-    return found
+        distributions.append(parsed)
+    return distributions
 
 
 def distribution(name: str, text: str, option: str, words: str):

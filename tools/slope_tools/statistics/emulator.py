@@ -46,7 +46,7 @@ class Emulator:
             warnings.simplefilter("ignore", ConvergenceWarning)     # a length at its bound: the variable is idle
             for one in fitted:
                 one.fit(points, (values - self.mean) / self.scale)
-        self.process = max(fitted, key=lambda one: one.log_marginal_likelihood_value_)
+        self.process = max(fitted, key=lambda process: process.log_marginal_likelihood_value_)
 
     @property
     def kernel(self):

@@ -85,7 +85,7 @@ class AtRoad(NamedTuple):
 
     def and_of(self, other: "AtRoad") -> "AtRoad":
         """Of the runs of both."""
-        most = max(self, other, key=lambda one: one.balls)
+        most = max(self, other, key=lambda at_road: at_road.balls)
         least = min((one.least_m3 for one in (self, other) if one.least_m3), default=0.0)
         return AtRoad(self.runs + other.runs, self.reach + other.reach, self.passing + other.passing, most.volume,
                       most.balls, least, max(self.most_m3, other.most_m3))

@@ -104,13 +104,13 @@ def compute_quantiles(values: Values, point: Sequence[int], failed: int = 0,
     """Quantiles of finished runs; point: which point of the design each run is of; failed: runs that gave none."""
     given = np.asarray(values, float)
     ordered = np.sort(given)
-    found = []
+    quantiles = []
     for share in shares:
         value = ordered[places(share, len(ordered), failed).value]
         at = places(share, len(ordered), failed, effect_of(given > value, np.asarray(point)))
-        found.append(Quantile(share, float(value), *(None if i is None else float(ordered[i])
-                                                     for i in (at.low, at.high))))
-    return found
+        quantiles.append(Quantile(share, float(value), *(None if i is None else float(ordered[i])
+                                                         for i in (at.low, at.high))))
+    return quantiles
 
 
 def compute_hazard_curve(values: Values, point: Sequence[int], failed: int = 0) -> Curve:

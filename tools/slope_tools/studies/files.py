@@ -12,23 +12,23 @@ from ..tables import (answered, combinations, elastic, intensity, road_runs, str
 from .outcome import Outcome
 
 
-def write_study_files(outcome: Outcome, about: study_types.Study, output: Path,
+def write_study_files(outcome: Outcome, study: study_types.Study, output: Path,
                       place: Optional[Place]) -> study_types.Study:
     """All of them; what study.yaml says: about, with the maps of an ensemble. place: CRS and offset of maps, None
     without."""
     asked, read = outcome.questions, outcome.read
     if outcome.ensemble:
         assert asked.order
-        about = replace(about, ensemble=ensemble.write_ensemble(outcome.ensemble, asked.order.levels, output, place,
+        study = replace(study, ensemble=ensemble.write_ensemble(outcome.ensemble, asked.order.levels, output, place,
                                                                 read.problem))
-    if stretches := about.stretches:
+    if stretches := study.stretches:
         head, *lines = road_runs.rows(stretches)
         disk.write_file(output / road_runs.FILE, disk.csv_text(head, lines))
         write_or_remove(output / f"{road_runs.BODIES}.csv",
                         road_runs.table_of_bodies(stretches.bodies) if stretches.bodies else None)
     if outcome.chain:
         chain_files.write_chain(outcome.chain, output)
-    write_or_remove(output / intensity.FILE, intensity.tabulate_intensity(about.intensity) if about.intensity else None)
+    write_or_remove(output / intensity.FILE, intensity.tabulate_intensity(study.intensity) if study.intensity else None)
     write_or_remove(output / elastic.FILE, read.elastic and elastic.tabulate_elastic(read.elastic))
     structures.write_structures(output, read.finished)
     disk.write_file(output / "study.csv", study_table.tabulate_study(asked.settings, asked.repeated, read.rows,
@@ -36,8 +36,8 @@ def write_study_files(outcome: Outcome, about: study_types.Study, output: Path,
     disk.write_file(output / "combinations.csv", combinations.tabulate_combinations(outcome.groups, outcome.names,
                                                                                     asked.settings))
     if asked.alone:
-        write_abouts({output: about})
-    return about
+        write_abouts({output: study})
+    return study
 
 
 def write_or_remove(path: Path, text: Optional[str]) -> None:

@@ -28,14 +28,14 @@ class Letter(NamedTuple):
     events: Optional[int] = None
 
 
-def of_study(about: study_types.Study) -> Letter:
+def of_study(study: study_types.Study) -> Letter:
     """Of a study with a finished run."""
-    rows, number = finished_of(about.runs), about.headline
-    known = ensemble_types.weighted(about.ensemble)
+    rows, number = finished_of(study.runs), study.headline
+    known = ensemble_types.weighted(study.ensemble)
     gap = next((one.gap for one in known.to_remove or () if one.share == number.share), None) \
         if known and number and number.source == "ensemble" else None
-    return Letter(max((row.released_m3 for row in rows), default=0.0), number, gap, about.reach,
-                  read_road_numbers(about), [one.kind for one in judged.limits(about, bool(about.study.repeat))],
-                  about.size.text if about.size else sizes.alone(max(
+    return Letter(max((row.released_m3 for row in rows), default=0.0), number, gap, study.reach,
+                  read_road_numbers(study), [one.kind for one in judged.limits(study, bool(study.study.repeat))],
+                  study.size.text if study.size else sizes.alone(max(
                       (row.released_m3 / row.ball_m3 for row in rows), default=0.0)),
-                  about.study.road["cut_angle"] if about.study.road else None, known.events if known else None)
+                  study.study.road["cut_angle"] if study.study.road else None, known.events if known else None)

@@ -42,20 +42,20 @@ def format_console_number(_: str, __: str, value: float) -> str:
     return three(value)
 
 
-def say(one: Letter, write: Write = format_console_number) -> Said:
-    number = one.number
-    return Said(f"{three(one.released)} m3 of ground would come down.", clear(number, write) if number else "",
-                f"{taken(one)} {basis(number, one, write)}".strip() if number else "", far(one.reach, write),
-                roads(one, write), change(number) if number else "",
-                f"Not in it: {'; '.join([DRY, *(LACKS[kind] for kind in one.lacks if kind in LACKS)])}.",
-                capital(one.size) + " The band has it." * bool(
-                    sizes.UNKNOWN not in one.size and number and any(
+def say(letter: Letter, write: Write = format_console_number) -> Said:
+    number = letter.number
+    return Said(f"{three(letter.released)} m3 of ground would come down.", clear(number, write) if number else "",
+                f"{taken(letter)} {basis(number, letter, write)}".strip() if number else "", far(letter.reach, write),
+                roads(letter, write), change(number) if number else "",
+                f"Not in it: {'; '.join([DRY, *(LACKS[kind] for kind in letter.lacks if kind in LACKS)])}.",
+                capital(letter.size) + " The band has it." * bool(
+                    sizes.UNKNOWN not in letter.size and number and any(
                         share.cause == Cause.SIZE.value for share in number.band)))
 
 
-def list_letter_lines(one: Letter) -> List[str]:
+def list_letter_lines(letter: Letter) -> List[str]:
     """For the console."""
-    return ["for a letter:", *(f"  {text}" for text in say(one) if text)]
+    return ["for a letter:", *(f"  {text}" for text in say(letter) if text)]
 
 
 def capital(text: str) -> str:
@@ -63,9 +63,9 @@ def capital(text: str) -> str:
     return f"{text[0].upper()}{text[1:]}." if text else ""
 
 
-def alike(about: Study) -> str:
+def alike(study: Study) -> str:
     """The runs of a study, where each counts as much."""
-    return counted(about.study.finished, ALIKE[(Source.ENSEMBLE if about.ensemble else Source.PAPER).value])
+    return counted(study.study.finished, ALIKE[(Source.ENSEMBLE if study.ensemble else Source.PAPER).value])
 
 
 def runs_of(number: Headline, source: Source) -> str:
@@ -80,10 +80,13 @@ def counted(runs: int, which: str = "") -> str:
 
 # --- what must be cleared ---
 
-def taken(one: Letter) -> str:
+def taken(letter: Letter) -> str:
     """What to clear means."""
-    return "" if one.cut is None or not (one.number and one.number.volume_m3) else (
-        f"That is what lies on it, and what beside it would slide onto it, above {one.cut:g} degrees from its edges.")
+    return "" if letter.cut is None or not (letter.number and letter.number.volume_m3) else ("That is what lies on "
+                                                                                             "it, and what beside it "
+                                                                                             "would slide onto it, "
+                                                                                             f"above {letter.cut:g} "
+                                                                                             "degrees from its edges.")
 
 
 def clear(number: Headline, write: Write) -> str:
@@ -134,7 +137,7 @@ def of_nothing(number: Headline, write: Write) -> str:
             "to lie on it.")
 
 
-def basis(number: Headline, one: Letter, write: Write) -> str:
+def basis(number: Headline, letter: Letter, write: Write) -> str:
     """Of which runs it is, what the others give, and what makes its band."""
     if not number.volume_m3 or not number.source:
         return ""
@@ -142,7 +145,7 @@ def basis(number: Headline, one: Letter, write: Write) -> str:
     runs, floor = runs_of(number, source), Kind(number.kind) is Kind.FLOOR
     beside: Optional[PaperPart]
     if source is Source.ENSEMBLE:
-        many = "" if one.events is None else f"{one.events} recorded landslides, "
+        many = "" if letter.events is None else f"{letter.events} recorded landslides, "
         events = f"{percent(number.share or 0.0)} of {many}{EVENTS}" + "," * bool(many)
         text = f"{lower} {events} stay within, by {runs}" if floor else f"{events} leave no more, by {runs}"
         if number.ensemble and number.ensemble.far and all(
@@ -155,9 +158,9 @@ def basis(number: Headline, one: Letter, write: Write) -> str:
         other, beside = Source.ENSEMBLE, number.ensemble
     if beside and beside.volume_m3 is not None:
         text += f"; {runs_of(number, other)} give {write(f'{REMOVE}, other runs', 'm3', beside.volume_m3)} m3"
-    if one.gap:
+    if letter.gap:
         low, high = (write(f"{REMOVE}, {end} of the gap where no run ends", "m3", value)
-                     for end, value in zip(("begin", "end"), one.gap))
+                     for end, value in zip(("begin", "end"), letter.gap))
         text += f"; no run ends where these events do, between {low} and {high} m3, of which the larger counts"
     parts = describe_band_shares(number) if number.high_m3 is not None else ""
     return f"{text}." + (f" The band, as the root of the squares: {parts}." if parts else "")
@@ -176,7 +179,7 @@ def change(number: Headline) -> str:
     if Kind(number.kind) in (Kind.NUMBER, Kind.NOTHING):
         parts = [one for one in number.band if one.below_m3 or one.above_m3]
         if not reasons and parts and number.volume_m3:
-            most = max(parts, key=lambda one: max(one.below_m3, one.above_m3))
+            most = max(parts, key=lambda part: max(part.below_m3, part.above_m3))
             return f"What would narrow the band most: {NARROWS[most.cause]}." if most.cause in NARROWS else ""
         return f"What would change it: {' '.join(reasons)}" if reasons else ""
     why = "How much must be cleared from the road is not known." if Kind(number.kind) is Kind.WITHHELD else "Why:"
@@ -221,15 +224,15 @@ def length(reach: Reach, value: float, write: Write, name: str) -> str:
     return f"{text} m{' or less' * (value <= reach.least_m)}"
 
 
-def roads(one: Letter, write: Write) -> str:
+def roads(letter: Letter, write: Write) -> str:
     """What that means for the road, or for each."""
-    road = one.number.road if one.number else None
-    both = " of both kinds" * bool(one.number and one.number.paper and one.number.ensemble)
+    road = letter.number.road if letter.number else None
+    both = " of both kinds" * bool(letter.number and letter.number.paper and letter.number.ensemble)
     text = at_road(road, both, write) if road else ""
-    if not one.roads:
+    if not letter.roads:
         return text
-    others = "; ".join(map(describe_road_number, one.roads[1:]))
-    return f"{text} Of {len(one.roads)} roads this is the worst, {quoted(one.roads[0].road)}; {others}.".strip()
+    others = "; ".join(map(describe_road_number, letter.roads[1:]))
+    return f"{text} Of {len(letter.roads)} roads this is the worst, {quoted(letter.roads[0].road)}; {others}.".strip()
 
 
 def at_road(road: HeadlineRoad, both: str, write: Write) -> str:
@@ -238,19 +241,19 @@ def at_road(road: HeadlineRoad, both: str, write: Write) -> str:
             f"{answer_words.format_shares(road.reached)} of {EVENTS}, and {some}, reach it.")
 
 
-def describe_road_number(one: Number) -> str:
-    events = f" and up to {percent(one.reached)} of known events" if one.reached else ""
-    return f"{quoted(one.road)}: {one.text}, {one.reaching or 'none'} of {one.runs} runs{events} reach it"
+def describe_road_number(number: Number) -> str:
+    events = f" and up to {percent(number.reached)} of known events" if number.reached else ""
+    return f"{quoted(number.road)}: {number.text}, {number.reaching or 'none'} of {number.runs} runs{events} reach it"
 
 
 def quoted(name: str) -> str:
     return f'"{name}"'
 
 
-def titles(about: Study) -> str:
+def titles(study: Study) -> str:
     """The runs of a page, for its title."""
-    number = about.headline
+    number = study.headline
     if not number:
-        return alike(about)
+        return alike(study)
     return " and ".join(runs_of(number, source) for source in Source
                         if (number.paper if source is Source.PAPER else number.ensemble))

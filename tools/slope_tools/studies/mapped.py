@@ -46,11 +46,11 @@ def compare(path: Optional[Path], output: Path, rows: Sequence[Row],
     """
     if path is None:
         return list(rows), None
-    about: Dict[str, Any] = {}
-    found: List[Row] = []
+    files: Dict[str, Any] = {}
+    rows_compared: List[Row] = []
     for row, terrain in zip(rows, terrains):
         if isinstance(row, Failed):
-            found.append(row)
+            rows_compared.append(row)
             continue
         prefix = run_folders.prefix_of(run_folders.summary_of(output, row.summary))
         run_ = deposit.read_deposit(prefix, terrain, lambda text: None)
@@ -58,16 +58,16 @@ def compare(path: Optional[Path], output: Path, rows: Sequence[Row],
         length = length_of(run_, terrain, observed)
         area = score.overlap(run_.raster.z > score.THRESHOLD, observed, run_.cell)
         beyond = None if length is None or row.length_m is None else row.length_m - length
-        found.append(row if area["jaccard"] is None else replace(row, mapped=Mapped(area["jaccard"], beyond)))
+        rows_compared.append(row if area["jaccard"] is None else replace(row, mapped=Mapped(area["jaccard"], beyond)))
         volume = None if observed.thickness is None else \
             float(observed.thickness.sum()) * run_.cell ** 2 + observed.volume_outside
-        about = about or {"file": os.path.relpath(path.resolve(), output.resolve()), "threshold_m": score.THRESHOLD,
+        files = files or {"file": os.path.relpath(path.resolve(), output.resolve()), "threshold_m": score.THRESHOLD,
                           "length_m": length, "area_m2": area["observed"], "volume_m3": volume,
                           "released_m3": row.released_m3}
-    compared = of_rows(found)
-    if not compared or not about:
-        return found, None
-    return found, study_types.Observed(**about, best=max(compared, key=lambda one: one[1].overlap)[0].run)
+    compared = of_rows(rows_compared)
+    if not compared or not files:
+        return rows_compared, None
+    return rows_compared, study_types.Observed(**files, best=max(compared, key=lambda pair: pair[1].overlap)[0].run)
 
 
 def of_rows(rows: Iterable[Row]) -> List[Tuple[Finished, Mapped]]:
@@ -90,16 +90,16 @@ def length_of(run_: deposit.Deposit, terrain: Optional[Path], observed: score.Ob
     return float(run_length.lengths_of(points, path, run_)[0].max()) if len(points) else None
 
 
-def describe_mapped(about: study_types.Observed, rows: Sequence[Row]) -> List[str]:
+def describe_mapped(observed: study_types.Observed, rows: Sequence[Row]) -> List[str]:
     """The comparison on the console, a line each."""
     found = of_rows(rows)
-    best, mine = next((row, one) for row, one in found if row.run == about.best)
+    best, mine = next((row, one) for row, one in found if row.run == observed.best)
     low, high = min(one.overlap for _, one in found), mine.overlap
     text = f"mapped deposit: overlap (Jaccard) {low:.2f} to {high:.2f}" if len(found) > 1 else \
         f"mapped deposit: overlap (Jaccard) {high:.2f}"
     if mine.beyond_mapped_m is not None:
-        text += f", best of {best.run}, {mine.beyond_mapped_m:+,.0f} m in run-out ({about.length_m:,.0f} m mapped)"
-    lacks = mass(about.volume_m3, about.released_m3)
+        text += f", best of {best.run}, {mine.beyond_mapped_m:+,.0f} m in run-out ({observed.length_m:,.0f} m mapped)"
+    lacks = mass(observed.volume_m3, observed.released_m3)
     return [text, *([lacks.text] if lacks else [])]
 
 

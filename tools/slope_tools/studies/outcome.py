@@ -128,7 +128,7 @@ def evaluate_study(questions: Questions, read: Read, header: study_types.Header)
         if questions.chain and several and finished else None
     weighted = several.about if several else None
     source = Source.ENSEMBLE if order else Source.PAPER
-    about = study_types.Study(
+    study = study_types.Study(
         study=header, largest={key: find_largest_row(finished, key) for key in keys if finished},
         farthest=travel_shares.find_farthest_run(finished).run if finished else None, conservative=best, size=read.size,
         ensemble=weighted, step=step, largest_restitution=elastic.evaluate_elastic(read.elastic) if read.elastic
@@ -141,45 +141,45 @@ def evaluate_study(questions: Questions, read: Read, header: study_types.Header)
         reach=usable.reach(finished, source, read.among),
         stretches=evaluate_stretches(finished, known_weights(weighted)) if read.road and finished else None,
         chain=chain.about if chain else None, intensity=at_intensities, next_step=None)
-    said = answered.of_study(about, read.events and read.events.road(finished))
+    said = answered.of_study(study, read.events and read.events.road(finished))
     return Outcome(questions, read, groups, names, scatters, warnings, several, chain,
-                   replace(about, headline=said.about() if said else None))
+                   replace(study, headline=said.about() if said else None))
 
 
 def collect_study_warnings(questions: Questions, read: Read) -> List[Finding]:
     """Those of before the study, then those on its runs of other kinds."""
-    found = [finding(one) for one in questions.notes]
-    warned = {one.kind for one in found if not one.part}
-    found += [one for one in judged.of_runs(read.rows) if one.kind not in warned]
+    findings = [finding(one) for one in questions.notes]
+    warned = {one.kind for one in findings if not one.part}
+    findings += [one for one in judged.of_runs(read.rows) if one.kind not in warned]
     if read.problem:
-        found.append(finding(read.problem))
+        findings.append(finding(read.problem))
     if questions.order and read.finished:
         plan = questions.order.sample
         others = (other_thickness(plan.balls_thick, read.balls_thick),
                   other_settings(plan.beside, read.finished[0].variables))
-        found += [one for one in others if one]
-    return found
+        findings += [one for one in others if one]
+    return findings
 
 
-def other_thickness(found: Optional[float], here: Optional[float]) -> Optional[Finding]:
+def other_thickness(balls: Optional[float], here: Optional[float]) -> Optional[Finding]:
     """That calibrated values were found with so many balls over the thickness of the body, and are used with others."""
-    if found is None or here is None or max(found, here) <= LIKE * min(found, here):
+    if balls is None or here is None or max(balls, here) <= LIKE * min(balls, here):
         return None
-    return Finding("other thickness", {"found": found, "here": here})
+    return Finding("other thickness", {"found": balls, "here": here})
 
 
-def other_settings(found: Mapping[str, str], here: Mapping[str, str]) -> Optional[Finding]:
+def other_settings(settings: Mapping[str, str], here: Mapping[str, str]) -> Optional[Finding]:
     """That they were found with such values of other variables of the deck, and are used with others; size and time of
     the runs have words of their own."""
-    differ = [name for name in found.keys() & here.keys() - {*OF_ITS_OWN}
-              if normalise_value(found[name]) != normalise_value(here[name])]
-    said = (", ".join(f"{name} {one[name]}" for name in sorted(differ)) for one in (found, here))
+    differ = [name for name in settings.keys() & here.keys() - {*OF_ITS_OWN}
+              if normalise_value(settings[name]) != normalise_value(here[name])]
+    said = (", ".join(f"{name} {one[name]}" for name in sorted(differ)) for one in (settings, here))
     return Finding("other settings", dict(zip(("found", "here"), said))) if differ else None
 
 
-def known_weights(about: Optional[ensemble_types.Ensemble]) -> Optional[Mapping[str, float]]:
+def known_weights(ensemble_: Optional[ensemble_types.Ensemble]) -> Optional[Mapping[str, float]]:
     """{run: share of the known events}, where these weigh the runs of an ensemble."""
-    known = ensemble_types.weighted(about)
+    known = ensemble_types.weighted(ensemble_)
     return known.weights if known else None
 
 
@@ -219,13 +219,15 @@ def unseen(repeated: Mapping[str, Sequence[str]], defaults: Mapping[str, str]) -
 def evaluate_stretches(rows: Sequence[Finished], known: Optional[Mapping[str, float]]) -> study_types.Stretches:
     """Of the road that finished runs block; known: weights by known events, or None."""
     weights = known or {row.run: 1.0 for row in rows if not row.batch}
-    found = road_runs.evaluate_road_runs([road_runs.Run(weights[row.run], row.at_road.stretches, row.at_road.clearing)
-                                          for row in rows if row.run in weights])
+    stretches = road_runs.evaluate_road_runs([road_runs.Run(weights[row.run], row.at_road.stretches,
+                                                            row.at_road.clearing)
+                                              for row in rows if row.run in weights])
     bodies: Dict[str, List[Any]] = {}
     for row in rows:
         if row.run in weights and VARIABLE in row.variables:
             bodies.setdefault(row.variables[VARIABLE], []).append((weights[row.run], row.at_road.by_10_m))
-    return replace(found, of_known_events=bool(known), bodies=road_runs.by_body(bodies) if len(bodies) > 1 else None)
+    return replace(stretches, of_known_events=bool(known), bodies=road_runs.by_body(bodies) if len(bodies) > 1
+                   else None)
 
 
 def find_largest_row(rows: Sequence[Finished], key: str) -> study_types.Largest:

@@ -24,37 +24,37 @@ FARTHEST = 20.0         # times as far as the path may the end of known events b
 def describe_outlook(folder: Path) -> List[str]:
     """In words: what is known without a run, what the study takes, and what kind of number it can be."""
     site = site_choices.load_site(folder)
-    choices, found = site.choices, site.found
-    said: List[str] = []
+    choices, site_found = site.choices, site.found
+    lines: List[str] = []
     floors: List[str] = []
     try:
         mass = body.read_mobility_body(folder)
         asked = known.choice(choices.known.set, (), choices.known.confined)
         decides = known.compute_known_mobility(mass, asked)
     except SlopeError as error:
-        said.append(f"the mass cannot be compared with known events: {error}")
+        lines.append(f"the mass cannot be compared with known events: {error}")
     else:
         counts = decides.decides
         length, fall = (rounded(float(values[-1]), 4) for values in (counts.path.length, counts.path.fall))
-        said += [f"fall path of {length} m, down to {fall} m below the crown, {counts.path.end}",
-                 events_text(counts, asked)]
+        lines += [f"fall path of {length} m, down to {fall} m below the crown, {counts.path.end}",
+                  events_text(counts, asked)]
         met = {name: road.at_road(counts.path, roads.read_local(
             folder / site_roads.file_name(name), mass.raster, choices.road.asked, local=True).polygon)
             for name in site_roads.names(site) or [""] * bool(choices.road.file)}
-        said += [road_text(counts, one, name) for name, one in met.items()]
+        lines += [road_text(counts, one, name) for name, one in met.items()]
         if why := terrain_ends(counts, mass.raster):
             # behind all roads it is no reason against their numbers
             behind = met and all(one.passed < counts.path.length[-1] for one in met.values())
-            (said if behind else floors).append(why)
+            (lines if behind else floors).append(why)
     numbers = site_study.wanted(site, site_study.plan_site_study(site, Setup(Path(), Path())), site_study.Asked(),
                                 choices.study.points).points
-    said.append(f"the study takes about {site_disk.format_disk_size(site_disk.study(folder, choices, found, numbers))} "
-                "of disk")
+    lines.append("the study takes about "
+                 f"{site_disk.format_disk_size(site_disk.study(folder, choices, site_found, numbers))} " "of disk")
     if why := coarse(1 + len(numbers)):
-        said.append(f"the number will have neither a lower nor an upper bound, because {why}")
+        lines.append(f"the number will have neither a lower nor an upper bound, because {why}")
     elif floors:
-        said.append(f"the number will be at best a floor, at least so much, because {'; and because '.join(floors)}")
-    return said
+        lines.append(f"the number will be at best a floor, at least so much, because {'; and because '.join(floors)}")
+    return lines
 
 
 def events_text(counts: Mobility, asked: known.Choice) -> str:

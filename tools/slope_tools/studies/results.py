@@ -37,28 +37,28 @@ def collect_results(setup: Setup, questions: Questions, todo: Sequence[Repeat],
     place = terrain_place(first) if first else None
     maps = study_maps.write_study_maps([study_maps.Source(run.name, prefix_of(run), not run.batch) for run in done],
                                        questions.thresholds, setup.output, place)
-    found = read_results(setup, questions, todo, rows, maps.problem, work.defaults)._replace(draw=at.draw(raw))
+    inputs = read_results(setup, questions, todo, rows, maps.problem, work.defaults)._replace(draw=at.draw(raw))
     header = study_types.Header(
         deck=setup.deck.name, known=questions.among, set=list_settings(questions.settings),
         repeat=list_settings(questions.repeated),
-        runs=len(found.rows), finished=len(found.finished), method=questions.method, ranks=work.ranks, jobs=work.jobs,
-        package=work.package, governs=setup.output.name, balls_thick=found.balls_thick, collected=provenance.now(),
+        runs=len(inputs.rows), finished=len(inputs.finished), method=questions.method, ranks=work.ranks, jobs=work.jobs,
+        package=work.package, governs=setup.output.name, balls_thick=inputs.balls_thick, collected=provenance.now(),
         machine=provenance.machine(),
         body=os.path.relpath(setup.body.resolve(), setup.output.resolve()) if setup.body else None,
         road=write_study_road(setup.output, setup.road, first) if setup.road and first else None)
-    outcome = evaluate_study(questions, found, header)
+    outcome = evaluate_study(questions, inputs, header)
     made = next_step.Made(outcome.about, setup.output, given=setup.given)
     step = next_step.of_studies([made], outcome.about.headline)
     size_runs.write_levels(setup, at, questions.settings, questions.repeated, work.defaults)
-    about = files.write_study_files(outcome, replace(outcome.about, envelope=maps.envelope, exceedance=maps.exceedance,
+    study = files.write_study_files(outcome, replace(outcome.about, envelope=maps.envelope, exceedance=maps.exceedance,
                                                      next_step=step.about() if step else None), setup.output, place)
     bodies_along = setup.output / f"{road_runs.BODIES}.gpkg"
-    if about.stretches and about.stretches.bodies and setup.road and first:
-        write_bodies(bodies_along, setup.road, first, about.stretches.bodies)
+    if study.stretches and study.stretches.bodies and setup.road and first:
+        write_bodies(bodies_along, setup.road, first, study.stretches.bodies)
     else:
         bodies_along.unlink(missing_ok=True)        # of a study before this one
-    console.tell(outcome, about, setup.output, setup.tell, setup.warn)
-    return about
+    console.tell(outcome, study, setup.output, setup.tell, setup.warn)
+    return study
 
 
 def list_settings(several: Mapping[str, Sequence[str]]) -> study_types.Settings:

@@ -100,7 +100,7 @@ def choose_road_number(road: str, made: Made) -> Number:
 
 def in_order(numbers: Sequence[Number]) -> List[Number]:
     """The worst first."""
-    return sorted(numbers, key=lambda one: one.order, reverse=True)
+    return sorted(numbers, key=lambda number: number.order, reverse=True)
 
 
 def list_road_entries(numbers: Sequence[Number]) -> List[Dict[str, Any]]:
@@ -108,9 +108,9 @@ def list_road_entries(numbers: Sequence[Number]) -> List[Dict[str, Any]]:
     return [one._asdict() for one in numbers]
 
 
-def read_road_numbers(about: study_types.Study) -> List[Number]:
+def read_road_numbers(study: study_types.Study) -> List[Number]:
     """Those of a study; none of a site with one road."""
-    return [Number(**one) for one in about.roads]
+    return [Number(**one) for one in study.roads]
 
 
 def tabulate_road_numbers(numbers: Sequence[Number]) -> Table:

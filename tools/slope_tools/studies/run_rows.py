@@ -24,14 +24,14 @@ OF_SUMMARY = ("moves", "not counted")      # kinds of warnings
 
 def read_run_rows(setup: Setup, todo: Sequence[Repeat]) -> List[Row]:
     """A row for each run, finished or failed."""
-    found: List[Row] = []
+    rows: List[Row] = []
     for run in rasters.progress(todo, "collecting the runs"):
         if run.error:
-            found.append(Failed(run.name, run.combination, run.repeat, run.batch, run.error, run.log.warnings))
+            rows.append(Failed(run.name, run.combination, run.repeat, run.batch, run.error, run.log.warnings))
             continue
         row = finished(run, setup.output)
-        found.append(with_road(run, setup.road, row) if setup.road else row)
-    return found
+        rows.append(with_road(run, setup.road, row) if setup.road else row)
+    return rows
 
 
 def prefix_of(run: Repeat) -> Path:
@@ -66,7 +66,7 @@ def measure_run(folder: Path, summary_name: str, log: logs.Log) -> Dict[str, Any
     from ..deposits import deposit, gone
     from ..mobility import run_length
     prefix, marker = run_folders.prefix_of(folder / summary_name), run_folders.ended(folder)
-    about = run_folders.begun(folder) if (folder / run_folders.VARIABLES).is_file() else {}
+    begun = run_folders.begun(folder) if (folder / run_folders.VARIABLES).is_file() else {}
     summary = run_folders.load_summary(folder / summary_name)
     thickness = run_folders.load_raster(prefix, "thickness")
     volume = summary["volume"]
@@ -75,16 +75,16 @@ def measure_run(folder: Path, summary_name: str, log: logs.Log) -> Dict[str, Any
     base = run_folders.load_raster(prefix, "surface").z - thickness.z
     left = deposit.Deposit(str(prefix), thickness, base, summary, None)
     length = run_length.measure_run_length(left, terrain_of(folder, log))
-    return {"variables": about.get("variables") or {},
-            quantities.STOP: site_ground.of_variables(about.get("variables")), "ranks": about.get("ranks"),
-            "package": about.get("package"),
+    return {"variables": begun.get("variables") or {},
+            quantities.STOP: site_ground.of_variables(begun.get("variables")), "ranks": begun.get("ranks"),
+            "package": begun.get("package"),
             **quantities.of_length(length), "left": gone.list_gone_groups(left),
             "ball_m3": volume["released"] / summary["balls"]["released"],
             "mass_error": (on_grid - stays) / volume["released"],
             **quantities.of_summary(summary), **judged.list_ending_columns(summary, log),
             "change_rate": summary.get("change_rate"), "wall_s": marker.get("wall_seconds"), "summary": summary_name,
             "slope_version": summary["slope_version"], "lammps_version": summary["lammps_version"],
-            "lmp_sha256": about.get("lmp_sha256"), **structures.read_run_structures(folder, log.settings)}
+            "lmp_sha256": begun.get("lmp_sha256"), **structures.read_run_structures(folder, log.settings)}
 
 
 def with_road(run: Repeat, road: Road, row: Finished) -> Finished:
@@ -107,32 +107,32 @@ def measured_on(road: Road, run: Repeat, row: Finished) -> Dict[str, Any]:
     prefix = prefix_of(run)
     terrain, thickness = terrain_of(run.folder, run.log), run_folders.load_raster(prefix, "thickness")
     wanted = volume.Wanted(road.file, road.mesh, road.cut_angle, road.local, asked=road.asked)
-    found = volume.compute_removal(str(prefix), wanted, terrain)
-    volume.write_removal(found, run.folder / quantities.volume_folder(road.name), picture=False)
-    about = disk.make_plain(found.about)       # numpy has no place in study.yaml
+    removal = volume.compute_removal(str(prefix), wanted, terrain)
+    volume.write_removal(removal, run.folder / quantities.volume_folder(road.name), picture=False)
+    numbers = disk.make_plain(removal.about)       # numpy has no place in study.yaml
     released = run_folders.load_raster(prefix, "arrival").z == 0
-    polygon, total = road.read(placed(thickness, run)).polygon, about["clearing"]
+    polygon, total = road.read(placed(thickness, run)).polygon, numbers["clearing"]
     taken = release_toe.on_body(body_depth.body_of(released, thickness, row.ball_m3), thickness, polygon,
                                 release_toe.rim(row.ball_m3, thickness.transform.a))
     if taken:
-        found.warnings.append(taken.finding(road.file.name))
-    return {"road_on_body_m2": taken.area if taken else 0.0, "remove_m3": about["volume"]["remove"],
-            "remove_on_road_m3": about["volume"]["remove_on_road"],
-            "remove_beside_road_m3": about["volume"]["remove_beside_road"],
-            **quantities.of_division(about["divided"], about["left"]),
-            "blocked_m": total["blocked_length"], "axis_thickness_m": about["axis"]["largest_thickness"],
+        removal.warnings.append(taken.finding(road.file.name))
+    return {"road_on_body_m2": taken.area if taken else 0.0, "remove_m3": numbers["volume"]["remove"],
+            "remove_on_road_m3": numbers["volume"]["remove_on_road"],
+            "remove_beside_road_m3": numbers["volume"]["remove_beside_road"],
+            **quantities.of_division(numbers["divided"], numbers["left"]),
+            "blocked_m": total["blocked_length"], "axis_thickness_m": numbers["axis"]["largest_thickness"],
             "remove_lane_m3": total.get("remove_lane"), "lane_hours": total.get("hours_lane"),
-            "clear_hours": total.get("hours"), "stretches": about["stretches"], "clearing": total,
-            "axis_m": about["axis"]["length"], "by_10_m": about["by_10_m"],
+            "clear_hours": total.get("hours"), "stretches": numbers["stretches"], "clearing": total,
+            "axis_m": numbers["axis"]["length"], "by_10_m": numbers["by_10_m"],
             # what it says of the summary is in the table
-            "road_warnings": encode_findings(in_folder(one, run.folder) for one in found.warnings
+            "road_warnings": encode_findings(in_folder(one, run.folder) for one in removal.warnings
                                              if one.kind not in OF_SUMMARY)}
 
 
-def in_folder(one: Finding, folder: Path) -> Finding:
+def in_folder(finding: Finding, folder: Path) -> Finding:
     """The same, whose files are named as from a run's folder: one warning for all runs."""
-    return one._replace(numbers={name: value.replace(f"{folder}/", "") if isinstance(value, str) else value
-                                 for name, value in one.numbers.items()})
+    return finding._replace(numbers={name: value.replace(f"{folder}/", "") if isinstance(value, str) else value
+                                     for name, value in finding.numbers.items()})
 
 
 def placed(raster: rasters.Raster, run: Repeat) -> rasters.Raster:

@@ -78,37 +78,38 @@ def collect_trials(setup: Setup, base, of, todo, work):
     defaults = {**work.defaults, **base}
     tried: List[Tried] = []
     warnings = []
-    for one, row in zip(todo, read_run_rows(setup, todo)):
+    for trial, row in zip(todo, read_run_rows(setup, todo)):
         if isinstance(row, Finished):
-            tried.append(Tried(one.kind, one.variable, one.chosen[one.variable] if one.variable else None, row))
+            tried.append(Tried(trial.kind, trial.variable, trial.chosen[trial.variable] if trial.variable else None,
+                               row))
         else:
-            warnings.append(Finding("failed", {"error": row.error}, (one.name,)))
+            warnings.append(Finding("failed", {"error": row.error}, (trial.name,)))
     if not tried or tried[0].kind != "base":
         return      # nothing to hold the others against; which run failed is said at the end
     for name in of:
-        for one in tried:
-            if one.row.value(name) is None:
-                raise SlopeError("--of", f"must be known of every run; {name} is not of {one.row.run}")
+        for trial in tried:
+            if trial.row.value(name) is None:
+                raise SlopeError("--of", f"must be known of every run; {name} is not of {trial.row.run}")
     warnings += judged.not_at_rest([one.row for one in tried])
     scatter = {name: measure_spread(tried, name) for name in of}
-    about = {"study": {"deck": setup.deck.name, "base": defaults, "runs": len(todo), "finished": len(tried),
-                       "ranks": work.ranks, "package": work.package, "collected": provenance.now(),
-                       "machine": provenance.machine(),
-                       "road": setup.road.about() if setup.road else None},
-             "scatter": scatter, "trust": [trust(tried, name, scatter[name]) for name in of],
-             "warnings": encode_findings(warnings)}
-    for one in warnings:
-        setup.warn(one)
+    summary = {"study": {"deck": setup.deck.name, "base": defaults, "runs": len(todo), "finished": len(tried),
+                         "ranks": work.ranks, "package": work.package, "collected": provenance.now(),
+                         "machine": provenance.machine(),
+                         "road": setup.road.about() if setup.road else None},
+               "scatter": scatter, "trust": [trust(tried, name, scatter[name]) for name in of],
+               "warnings": encode_findings(warnings)}
+    for trial in warnings:
+        setup.warn(trial)
     disk.write_file(setup.output / "sensitivity.csv", tabulate_sensitivity(tried, of, scatter, defaults))
     disk.write_file(setup.output / "sensitivity.yaml", disk.yaml_text(
-        "slope sensitivity: volumes in m3 of ground (bulk), lengths in m, angles in degrees", about))
+        "slope sensitivity: volumes in m3 of ground (bulk), lengths in m, angles in degrees", summary))
     from ..drawing import figures
     figures.tornado(setup.output / "sensitivity.png", panels(tried, of, scatter), bars(tried, defaults),
                     f"{setup.deck.name}: one variable at a time, {len(tried)} runs")
     setup.tell(shown_of(tried, of, scatter, defaults, setup.deck.name))
     setup.tell(f"{setup.output / 'sensitivity.csv'}, {setup.output / 'sensitivity.yaml'}, "
                f"{setup.output / 'sensitivity.png'}: all numbers, and the chart")
-    setup.tell("\n".join(about["trust"]))
+    setup.tell("\n".join(summary["trust"]))
 
 
 # --- numbers ---
@@ -120,46 +121,46 @@ def measure_spread(tried: Sequence[Tried], name):
             "standard_deviation": statistics.stdev(values) if len(values) > 1 else None}
 
 
-def effect(one: Tried, name, about):
+def effect(trial: Tried, name, summary):
     """Difference of a run from the mean of the equivalent ones."""
-    return one.of(name) - about["mean"]
+    return trial.of(name) - summary["mean"]
 
 
-def scatter_of(about):
+def scatter_of(summary):
     """The scatter of the equivalent runs, with t for their number."""
-    return Scatter(about["standard_deviation"], about["runs"] - 1)
+    return Scatter(summary["standard_deviation"], summary["runs"] - 1)
 
 
-def is_clear(one: Tried, name, about):
+def is_clear(trial: Tried, name, summary):
     """Whether a run differs from the mean by more than such a run does by chance; None without repeats."""
-    if about["standard_deviation"] is None:
+    if summary["standard_deviation"] is None:
         return None
     # the mean has a scatter of its own
-    return abs(effect(one, name, about)) > scatter_of(about).chance(about["runs"])
+    return abs(effect(trial, name, summary)) > scatter_of(summary).chance(summary["runs"])
 
 
-def trust(tried: Sequence[Tried], name, about):
+def trust(tried: Sequence[Tried], name, summary):
     """In plain words: how much a number of one run is worth."""
     what, unit = ALL[name].name, ALL[name].unit
-    mean, deviation = about["mean"], about["standard_deviation"]
+    mean, deviation = summary["mean"], summary["standard_deviation"]
     if deviation is None:
         text = f"{what}: {format_quantity(mean)} {unit} in the base run; without --repeat its scatter is unknown"
     else:
-        one = scatter_of(about).quantile * deviation
-        text = (f"{what}: {about['runs']} equivalent runs give {format_quantity(about['smallest'])} to "
-                f"{format_quantity(about['largest'])} {unit}, mean {format_quantity(mean)}, standard deviation "
+        deviation_of_run = scatter_of(summary).quantile * deviation
+        text = (f"{what}: {summary['runs']} equivalent runs give {format_quantity(summary['smallest'])} to "
+                f"{format_quantity(summary['largest'])} {unit}, mean {format_quantity(mean)}, standard deviation "
                 f"{format_quantity(deviation)}"
-                f"{share(deviation, mean)}: one run is accurate to +- {format_quantity(one)} {unit}"
-                f"{share(one, mean)}, and two runs are different only if they differ by more "
-                f"than {format_quantity(math.sqrt(2) * one)} {unit}")
+                f"{share(deviation, mean)}: one run is accurate to +- {format_quantity(deviation_of_run)} {unit}"
+                f"{share(deviation_of_run, mean)}, and two runs are different only if they differ by more "
+                f"than {format_quantity(math.sqrt(2) * deviation_of_run)} {unit}")
     varied = [one for one in tried if one.kind == "vary"]
     if varied:
-        most = max(varied, key=lambda one: abs(effect(one, name, about)))
-        by = effect(most, name, about)
+        most = max(varied, key=lambda trial: abs(effect(trial, name, summary)))
+        by = effect(most, name, summary)
         text += (f". Of the choices, {most.variable} {most.value} changes it most, by {format_quantity(by, '+')} {unit}"
                  f"{share(by, mean, '+')}")
         if deviation is not None:
-            clear = sum(is_clear(one, name, about) for one in varied)
+            clear = sum(is_clear(one, name, summary) for one in varied)
             text += f"; {clear} of {len(varied)} changes are larger than chance"
     return text
 
@@ -174,11 +175,11 @@ def tabulate_sensitivity(tried: Sequence[Tried], of, scatter, defaults):
     """The CSV over all runs."""
     columns = study_table.list_study_columns([one.row for one in tried])
 
-    def line(one: Tried):
-        cells = {**encode_row(one.row), "moving": answer(one.row.moving), "at_rest": answer(one.row.at_rest)}
-        mine = [cell for name in of for cell in (effect(one, name, scatter[name]),
-                                                 answer(is_clear(one, name, scatter[name])))]
-        return [one.row.run, one.kind, one.variable, one.value, defaults.get(one.variable), *mine,
+    def line(trial: Tried):
+        cells = {**encode_row(trial.row), "moving": answer(trial.row.moving), "at_rest": answer(trial.row.at_rest)}
+        mine = [cell for name in of for cell in (effect(trial, name, scatter[name]),
+                                                 answer(is_clear(trial, name, scatter[name])))]
+        return [trial.row.run, trial.kind, trial.variable, trial.value, defaults.get(trial.variable), *mine,
                 *(cells.get(key) for key in columns)]
 
     return disk.csv_text(["run", "kind", "variable", "value", "base_value",
@@ -197,14 +198,14 @@ def bars(tried: Sequence[Tried], defaults):
 
 def panels(tried: Sequence[Tried], of, scatter):
     """For the chart: (title, unit, scatter, {variable: [(value of the variable, what came out), ...]})."""
-    found = []
+    panels_ = []
     for name in of:
         values: Dict[str, List[Any]] = {}
         for one in tried:
             if one.variable:
                 values.setdefault(one.variable, []).append((one.value, one.of(name)))
-        found.append((ALL[name].name, ALL[name].unit, scatter[name], values))
-    return found
+        panels_.append((ALL[name].name, ALL[name].unit, scatter[name], values))
+    return panels_
 
 
 def shown_of(tried: Sequence[Tried], of, scatter, defaults, deck) -> Table:
@@ -214,13 +215,13 @@ def shown_of(tried: Sequence[Tried], of, scatter, defaults, deck) -> Table:
     for name in of:
         shown.add_column(f"{ALL[name].name} {ALL[name].unit}", justify="right")
         shown.add_column("against the mean", justify="right")
-    for one in tried:
-        cells = [one.variable or "base", defaults.get(one.variable, ""), one.value or "",
-                 format_quantity(one.row.released_m3)]
+    for trial in tried:
+        cells = [trial.variable or "base", defaults.get(trial.variable, ""), trial.value or "",
+                 format_quantity(trial.row.released_m3)]
         for name in of:
-            by = effect(one, name, scatter[name])
-            star = "*" if one.kind == "vary" and is_clear(one, name, scatter[name]) else " "
-            cells += [format_quantity(one.of(name)),
+            by = effect(trial, name, scatter[name])
+            star = "*" if trial.kind == "vary" and is_clear(trial, name, scatter[name]) else " "
+            cells += [format_quantity(trial.of(name)),
                       f"{format_quantity(by, '+')}{share(by, scatter[name]['mean'], '+')}{star}"]
-        shown.add_row(*cells, style="dim" if one.kind == "repeat" else None)
+        shown.add_row(*cells, style="dim" if trial.kind == "repeat" else None)
     return shown

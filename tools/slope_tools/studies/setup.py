@@ -46,7 +46,7 @@ class Setup(NamedTuple):
     site: Optional[Path] = None         # folder of the site whose runs they are
     given: Any = None                   # the request of the command, which it can be given once more with
     tell: Callable[[Any], None] = lambda line: None     # what gets lines for the user, and tables (rich.table.Table)
-    warn: Callable[[Any], None] = lambda said: None     # what gets warnings, Finding or text
+    warn: Callable[[Any], None] = lambda finding: None     # what gets warnings, Finding or text
 
     @property
     def home(self) -> Path:

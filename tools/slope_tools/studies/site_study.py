@@ -119,13 +119,13 @@ def plan_site_study(site: Site, engine: Setup) -> Planned:
 
 def wanted(site: Site, planned: Planned, asked: Asked, points=0, alone=False) -> size_runs.Wanted:
     """The runs with finer balls; points: of the ensemble beside, or, alone, of one without a sweep."""
-    found, levels = site.found, asked.levels or planned.choices.study.levels
+    site_found, levels = site.found, asked.levels or planned.choices.study.levels
     plan_ = site_budget.plan_budget(planned.choices)._replace(points=points)
     if alone:
         plan_ = plan_._replace(paper=0, elastic=0, half_step=False)
     minutes, time = asked.minutes or planned.choices.balls.minutes, None
-    if found.body and found.trial:
-        time = site_budget.time_of(float(planned.variables[VARIABLE]), found.body.volume, found.trial,
+    if site_found.body and site_found.trial:
+        time = site_budget.time_of(float(planned.variables[VARIABLE]), site_found.body.volume, site_found.trial,
                                    soil_of(site, planned), plan_, jobs_of(planned.setup), minutes)
     numbers = site_budget.finer(plan_.paper + plan_.points, time, minutes, levels)
     return size_runs.halved(planned.variables[VARIABLE], numbers, time, more=levels is None)
@@ -185,10 +185,10 @@ def collect_site_results(site: Site, planned: Planned, method: str, finer: Calla
     failed: Optional[Exception] = None
     try:
         # the longest first: a long run that starts last leaves the other cores idle
-        about = study.perform(setup, {**planned.settings, **planned.repeated}, planned.runs, results_of,
-                              first=half, made=made)
+        study_ = study.perform(setup, {**planned.settings, **planned.repeated}, planned.runs, results_of,
+                               first=half, made=made)
     except study.RunsFailed as error:
-        about = error.found
+        study_ = error.found
         failed = study.failure(setup.output, todo)      # what is said of the others is with their results
         if failed and all(one.error for one in todo):
             raise failed from None
@@ -197,28 +197,28 @@ def collect_site_results(site: Site, planned: Planned, method: str, finer: Calla
     if planned.choices.observed.file and not site.road:
         shutil.rmtree(folder / SCORE, ignore_errors=True)       # of other runs
         try:
-            scored(folder, setup, about)
+            scored(folder, setup, study_)
         except Exception as error:      # whatever it is, the runs took hours: their report comes first
             failed = failed or error
-    return Done(setup.output, about, failed)
+    return Done(setup.output, study_, failed)
 
 
 def check_site(site: Folder[Choices]) -> None:
     """Raise SlopeError unless all files of a site exist and match its choices."""
-    folder, found = site.folder, site.found
-    for name in (site_deck.NAME, *found.files):
+    folder, site_found = site.folder, site.found
+    for name in (site_deck.NAME, *site_found.files):
         if not (folder / name).is_file():
             raise SlopeError(folder / name, f"must exist; `slope site {quote(str(folder))}` rebuilds it")
     if any(words[0] == "fix" and "wall/gran/balls" in words and "rim" in words
            for words in decks.commands(folder / site_deck.NAME)):
         raise SlopeError(folder / site_deck.NAME, f"must be made anew, `slope site {quote(str(folder))}`: ground and "
                          "slip surface are one surface now", "rim, of an older version")
-    if found.choices_sha256 not in ("", site.fingerprint()):
+    if site_found.choices_sha256 not in ("", site.fingerprint()):
         raise SlopeError(folder / site_choices.NAME, f"must not have been changed since {site_deck.NAME} was made from "
                          f"it: `slope site {quote(str(folder))}` rebuilds the deck (project, road, study and "
                          "known may change)")
     for name, digest in site.sources().items():      # a folder may have gone without its sources
-        if found.sources_sha256.get(name, digest) != digest:
+        if site_found.sources_sha256.get(name, digest) != digest:
             raise SlopeError(folder / name, f"must not have changed since {site_deck.NAME} was made from it: "
                              f"`slope site {quote(str(folder))}` rebuilds the deck")
     mapped.check_mapped_deposit(folder)
@@ -289,11 +289,11 @@ def elastic_of(setup: Setup, runs: List[repeats.Repeat], at: size_runs.AtFinest)
     return elastic.Made(float(runs[0].chosen[elastic.VARIABLES[0]]), runs[0].chosen["rolling"], rows)
 
 
-def scored(folder: Path, setup: Setup, about: study_types.Study) -> None:
-    """Compare the governing run with the mapped deposit; about: what study.yaml says."""
+def scored(folder: Path, setup: Setup, study_: study_types.Study) -> None:
+    """Compare the governing run with the mapped deposit; study_: what study.yaml says."""
     from ..deposits import score_run
-    name = named_run.governing(about)
-    summary = next(run_folders.summary_of(setup.output, row.summary) for row in finished_of(about.runs)
+    name = named_run.governing(study_)
+    summary = next(run_folders.summary_of(setup.output, row.summary) for row in finished_of(study_.runs)
                    if row.run == name)
     outline = folder / f"{OBSERVED}.csv"
     setup.tell(f"{name} against the mapped deposit:")

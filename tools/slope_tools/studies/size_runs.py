@@ -130,8 +130,8 @@ class AtFinest(NamedTuple):
         return functools.partial(correct_drawn_values, found, by_name)
 
 
-def correct_drawn_values(found: Sizes, raw: Mapping[str, Finished], rows: Sequence[Finished], key: str) -> np.ndarray:
-    return found.draws([raw[row.run] for row in rows], key, DRAWS)
+def correct_drawn_values(sizes_: Sizes, raw: Mapping[str, Finished], rows: Sequence[Finished], key: str) -> np.ndarray:
+    return sizes_.draws([raw[row.run] for row in rows], key, DRAWS)
 
 
 # --- how many ---
@@ -307,24 +307,24 @@ def at_finest(setup: Setup, made: Made) -> AtFinest:
     return AtFinest(made, sizes.combine_sizes(points), warnings)
 
 
-def write_levels(setup: Setup, found: AtFinest, settings, repeated, defaults) -> None:
+def write_levels(setup: Setup, finer: AtFinest, settings, repeated, defaults) -> None:
     """levels.csv: all runs of points with several sizes, as they were run; none of one size."""
     path = setup.output / FILE
-    if not found.sizes:
+    if not finer.sizes:
         path.unlink(missing_ok=True)
         return
-    runs = [run for one in found.made.points if one.folder in found.made.finer for run in found.made.runs(one) if run]
+    runs = [run for one in finer.made.points if one.folder in finer.made.finer for run in finer.made.runs(one) if run]
     rows = [row for row in read_run_rows(setup, runs) if isinstance(row, Finished)]
     disk.write_file(path, study_table.tabulate_study({**settings, VARIABLE: []}, repeated, rows, defaults))
 
 
-def summarise_finer_runs(setup: Setup, found: AtFinest) -> Optional[study_types.Size]:
+def summarise_finer_runs(setup: Setup, finer: AtFinest) -> Optional[study_types.Size]:
     """The entry of study.yaml."""
-    if not found.sizes:
+    if not finer.sizes:
         return None
-    finest = max((run for one in found.made.points for run in found.made.runs(one) if run),
+    finest = max((run for one in finer.made.points for run in finer.made.runs(one) if run),
                  key=lambda run: -float(run.chosen.get(VARIABLE, "inf")))
     [row] = finished_of(read_run_rows(setup._replace(road=None), [finest]))
     of_run = row.released_m3 / row.ball_m3 * float(row.variables[VARIABLE]) ** 3
-    return sizes.summarise_sizes(found.sizes, body_depth.mean(setup, row),
-                                 [of_run / d ** 3 for d in found.sizes.diameters])
+    return sizes.summarise_sizes(finer.sizes, body_depth.mean(setup, row),
+                                 [of_run / d ** 3 for d in finer.sizes.diameters])

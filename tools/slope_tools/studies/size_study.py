@@ -76,59 +76,59 @@ def collect_sizes(planned: Plan, of, work) -> None:
     finest = min(groups, key=lambda group: float(group.set[variable])).rows[0]
     depth = body_depth.mean(setup, finest) if variable == sizes.VARIABLE else None
     balls = [depth and depth / float(group.set[variable]) for group in groups]
-    found = {name: convergence.compare([(float(group.set[variable]), list(group.of(name).volumes.values()))
-                                        for group in groups], balls) for name in of}
+    convergences = {name: convergence.compare([(float(group.set[variable]), list(group.of(name).volumes.values()))
+                                               for group in groups], balls) for name in of}
     sentences = {name: convergence.describe_convergence(one, variable, *names[name], writer(one)) for name, one
-                 in found.items()}
+                 in convergences.items()}
     base = {**work.defaults, **{name: several[0] for name, several in settings.items() if name != variable}}
     base.pop(variable)
-    about = {"study": {"deck": setup.deck.name, "variable": variable, "values": settings[variable], "base": base,
-                       "repeat": repeated, "runs": len(rows), "finished": len(finished), "ranks": work.ranks,
-                       "package": work.package, "collected": provenance.now(), "machine": provenance.machine(),
-                       "road": setup.road.about() if setup.road else None},
-             "quantities": {name: entry(one, names[name], sentences[name]) for name, one in found.items()},
-             "warnings": encode_findings(warnings)}
+    summary = {"study": {"deck": setup.deck.name, "variable": variable, "values": settings[variable], "base": base,
+                         "repeat": repeated, "runs": len(rows), "finished": len(finished), "ranks": work.ranks,
+                         "package": work.package, "collected": provenance.now(), "machine": provenance.machine(),
+                         "road": setup.road.about() if setup.road else None},
+               "quantities": {name: entry(one, names[name], sentences[name]) for name, one in convergences.items()},
+               "warnings": encode_findings(warnings)}
     for one in warnings:
         setup.warn(one)
     setup.output.mkdir(exist_ok=True)
-    disk.write_file(setup.output / "converge.csv", tabulate_sizes(found, variable))
+    disk.write_file(setup.output / "converge.csv", tabulate_sizes(convergences, variable))
     disk.write_file(setup.output / "converge_runs.csv", study_table.tabulate_study(settings, repeated, rows,
                                                                                    work.defaults))
     disk.write_file(setup.output / "converge.yaml", disk.yaml_text(
-        f"slope sensitivity --converge: values of {variable}; volumes in m3 of ground (bulk), lengths in m", about))
+        f"slope sensitivity --converge: values of {variable}; volumes in m3 of ground (bulk), lengths in m", summary))
     from ..tables import convergence_chart
     convergence_chart.draw_convergence(
-        setup.output / "converge.png", variable, [(*names[name], found[name], [
+        setup.output / "converge.png", variable, [(*names[name], convergences[name], [
             (float(group.set[variable]), row.value(name)) for group in groups for row in group.rows]) for name in of],
         f"{setup.deck.name}: {len(finished)} runs, {len(groups)} values of {variable}")
-    setup.tell(shown_of(found, variable, names, setup.deck.name))
+    setup.tell(shown_of(convergences, variable, names, setup.deck.name))
     setup.tell(", ".join(str(setup.output / f"converge.{kind}") for kind in ("yaml", "csv", "png"))
                + f", {setup.output / 'converge_runs.csv'}: all numbers, the chart, and the runs")
     setup.tell("\n".join(text for several in sentences.values() for text in several))
 
 
-def writer(found: convergence.Convergence):
+def writer(convergence_: convergence.Convergence):
     """A function that writes a value rounded to what is known, by the largest scatter of a run."""
-    scatter = max((size.scatter or 0.0 for size in found.sizes), default=0.0)
-    step = rounding.choose_rounding(scatter) if scatter else rounding.place_of_digits(found.sizes[0].mean)
+    scatter = max((size.scatter or 0.0 for size in convergence_.sizes), default=0.0)
+    step = rounding.choose_rounding(scatter) if scatter else rounding.place_of_digits(convergence_.sizes[0].mean)
     return lambda value: rounding.format_rounded(value, step)
 
 
-def entry(found: convergence.Convergence, name, sentences):
+def entry(convergence_: convergence.Convergence, name, sentences):
     """What converge.yaml says of a quantity."""
     return {
-        "name": name[0], "unit": name[1], "resolved": found.resolved,
+        "name": name[0], "unit": name[1], "resolved": convergence_.resolved,
         "sizes": [{"value": size.d, "runs": size.runs, "mean": size.mean, "scatter": size.scatter,
-                   "balls_thick": size.balls} for size in found.sizes],
+                   "balls_thick": size.balls} for size in convergence_.sizes],
         "halvings": [{"from": one.coarse.d, "to": one.fine.d, "difference": one.difference, "chance": one.chance}
-                     for one in found.halvings],
+                     for one in convergence_.halvings],
         "words": sentences}
 
 
-def tabulate_sizes(found, variable):
+def tabulate_sizes(convergences, variable):
     """The CSV: a row per quantity and size, with the difference from the size that was halved."""
     rows = []
-    for name, one in found.items():
+    for name, one in convergences.items():
         halved = {each.fine.d: each for each in one.halvings}
         for size in one.sizes:
             each = halved.get(size.d)
@@ -138,13 +138,13 @@ def tabulate_sizes(found, variable):
                           "chance"], rows)
 
 
-def shown_of(found, variable, names, deck) -> Table:
+def shown_of(convergences, variable, names, deck) -> Table:
     shown = Table(title=f"{deck}: means at several values of {variable}; s: standard deviation of a run")
-    for head in (variable, "balls thick", "runs", *(" ".join(names[name]) for name in found)):
+    for head in (variable, "balls thick", "runs", *(" ".join(names[name]) for name in convergences)):
         shown.add_column(head, justify="right")
-    for k, size in enumerate(next(iter(found.values())).sizes):
+    for k, size in enumerate(next(iter(convergences.values())).sizes):
         cells = [f"{size.d:g}", "-" if size.balls is None else f"{size.balls:.1f}", str(size.runs)]
-        for one in found.values():
+        for one in convergences.values():
             mine, write = one.sizes[k], writer(one)
             cells.append(write(mine.mean) + (f" s {write(mine.scatter)}" if mine.scatter is not None else ""))
         shown.add_row(*cells)

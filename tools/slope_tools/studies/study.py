@@ -170,16 +170,16 @@ def condition_of(choice: Optional[known.Choice], named: Optional[str], site: Opt
 
 def check_thresholds(text, option="--exceed", what="thicknesses"):
     """The thicknesses of --exceed, m, or what an option like it holds."""
-    found = []
+    thresholds = []
     for part in text.split(","):
         try:
             value = parse_number(part)
         except argparse.ArgumentTypeError:
             value = -1.0
-        if value < 0 or value in found:
+        if value < 0 or value in thresholds:
             raise SlopeError(option, f"must be different {what} >= 0, with commas between", text)
-        found.append(value)
-    return found
+        thresholds.append(value)
+    return thresholds
 
 
 def check_deck_road(road: Road, deck: Path, settings) -> None:

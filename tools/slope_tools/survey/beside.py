@@ -37,19 +37,19 @@ def read_raster_beside(path: Union[str, Path], terrain: Raster, heights: bool = 
     value, or says that its heights are feet while those of the terrain speak for metres.
     """
     stored = rasters.opened(path, heights)
-    found = rasters.placed(path, rasters.in_metres(path, stored, heights, ask=False))
-    if not np.isfinite(found.z).any():
+    raster = rasters.placed(path, rasters.in_metres(path, stored, heights, ask=False))
+    if not np.isfinite(raster.z).any():
         raise SlopeError(path, "must hold a value, all cells are NODATA")
     bare = rasters.read_sidecar(path) is None
     if local.given and bare:
-        found = found._replace(crs=terrain.crs, offset=terrain.offset)
-    elif crs or found.crs:
-        found = found._replace(crs=crs or found.crs)
+        raster = raster._replace(crs=terrain.crs, offset=terrain.offset)
+    elif crs or raster.crs:
+        raster = raster._replace(crs=crs or raster.crs)
     else:
-        found = unexplained(path, found._replace(crs=terrain.crs), terrain, bare and local.guessed, warn, remedy)
+        raster = unexplained(path, raster._replace(crs=terrain.crs), terrain, bare and local.guessed, warn, remedy)
     if heights and stored.unit not in (None, "m"):
-        check_unit(path, found, terrain, stored.unit)
-    return found
+        check_unit(path, raster, terrain, stored.unit)
+    return raster
 
 
 def unexplained(path: Union[str, Path], of_survey: Raster, terrain: Raster, guess: bool,
@@ -73,25 +73,25 @@ def tell(warn: Optional[Callable[[Finding], Any]], kind: str, path: Union[str, P
         warn(Finding(kind, {"file": str(path), **more}))
 
 
-def in_local(found: Raster, terrain: Raster) -> Affine:
+def in_local(raster: Raster, terrain: Raster) -> Affine:
     """The transform of a raster in the CRS of the terrain to the terrain's local metres."""
-    return Affine.translation(*np.subtract(found.offset, terrain.offset)) * found.transform
+    return Affine.translation(*np.subtract(raster.offset, terrain.offset)) * raster.transform
 
 
-def box(found: Raster, terrain: Raster) -> Tuple[float, ...]:
+def box(raster: Raster, terrain: Raster) -> Tuple[float, ...]:
     """xlo, ylo, xhi, yhi of a raster in the CRS of the terrain, in the terrain's local metres."""
-    rows, columns = found.z.shape
-    x, y = in_local(found, terrain) * (np.array([0, columns, 0, columns]), np.array([0, 0, rows, rows]))
+    rows, columns = raster.z.shape
+    x, y = in_local(raster, terrain) * (np.array([0, columns, 0, columns]), np.array([0, 0, rows, rows]))
     return x.min(), y.min(), x.max(), y.max()
 
 
-def touches(found: Raster, terrain: Raster) -> bool:
+def touches(raster: Raster, terrain: Raster) -> bool:
     """Whether a raster in the CRS of the terrain has a part in common with it."""
-    one, other = box(found, terrain), extent(terrain)
+    one, other = box(raster, terrain), extent(terrain)
     return one[0] < other[2] and other[0] < one[2] and one[1] < other[3] and other[1] < one[3]
 
 
-def on_cells(path: Union[str, Path], found: Raster, terrain: Raster) -> np.ndarray:
+def on_cells(path: Union[str, Path], raster: Raster, terrain: Raster) -> np.ndarray:
     """The values of read_raster_beside() at the cells of the terrain: bilinear, exact at the raster's own centres.
 
     NaN where it has none; raises SlopeError if it has none on the whole terrain.
@@ -99,19 +99,19 @@ def on_cells(path: Union[str, Path], found: Raster, terrain: Raster) -> np.ndarr
     rows, columns = terrain.z.shape
     x, y = np.meshgrid(np.arange(columns) + 0.5, np.arange(rows) + 0.5)
     x, y = Affine.translation(*terrain.offset) * terrain.transform * (x, y)
-    if found.crs is not None and terrain.crs is None:
-        raise SlopeError(path, f"is in {crs_name(found.crs)}, and the terrain must have a CRS, too: slope terrain "
+    if raster.crs is not None and terrain.crs is None:
+        raise SlopeError(path, f"is in {crs_name(raster.crs)}, and the terrain must have a CRS, too: slope terrain "
                          "--crs", "none")
-    same = found.crs is None or same_crs(found.crs, terrain.crs)
+    same = raster.crs is None or same_crs(raster.crs, terrain.crs)
     if not same:
-        x, y = transform(terrain.crs, found.crs, x, y)
-    values = sample(found._replace(transform=Affine.translation(*found.offset) * found.transform), x, y)
+        x, y = transform(terrain.crs, raster.crs, x, y)
+    values = sample(raster._replace(transform=Affine.translation(*raster.offset) * raster.transform), x, y)
     if np.isfinite(values).any():
         return values
-    origins = "" if found.offset == terrain.offset else (
-        f" (origin {format_numbers(found.offset)}, the terrain's {format_numbers(terrain.offset)})")
+    origins = "" if raster.offset == terrain.offset else (
+        f" (origin {format_numbers(raster.offset)}, the terrain's {format_numbers(terrain.offset)})")
     raise SlopeError(path, f"must overlap the terrain, local x y {format_numbers(extent(terrain))}",
-                     (format_numbers(box(found, terrain)) if same else f"coordinates in {crs_name(found.crs)}") +
+                     (format_numbers(box(raster, terrain)) if same else f"coordinates in {crs_name(raster.crs)}") +
                      origins)
 
 
@@ -121,9 +121,9 @@ def heights_on(path: Union[str, Path], terrain: Raster, local: bool = False,
     return on_cells(path, read_raster_beside(path, terrain, local=Local(local, True), warn=warn), terrain)
 
 
-def check_unit(path: Union[str, Path], found: Raster, terrain: Raster, unit: str) -> None:
+def check_unit(path: Union[str, Path], raster: Raster, terrain: Raster, unit: str) -> None:
     """Raise SlopeError if heights that were taken for feet are nearer to the terrain's as metres: the tag is wrong."""
-    z = on_cells(path, found, terrain)
+    z = on_cells(path, raster, terrain)
     as_tagged, as_metres = (float(np.nanmedian(np.abs(one - terrain.z))) for one in (z, z / rasters.UNITS[unit]))
     if as_metres < as_tagged:
         raise SlopeError(path, f"heights in {unit} must be confirmed, as in metres they are nearer to the terrain's, "
@@ -131,12 +131,12 @@ def check_unit(path: Union[str, Path], found: Raster, terrain: Raster, unit: str
                          "in metres of it", f"{as_tagged:.3g} m off")
 
 
-def has_cells(found: Raster, terrain: Raster) -> bool:
+def has_cells(raster: Raster, terrain: Raster) -> bool:
     """Whether a raster has all cells of the terrain, and may be others."""
-    if not (found.crs is None or same_crs(found.crs, terrain.crs)):
+    if not (raster.crs is None or same_crs(raster.crs, terrain.crs)):
         return False
-    there = ~terrain.transform * in_local(found, terrain)
+    there = ~terrain.transform * in_local(raster, terrain)
     left, top = round(there.c), round(there.f)
-    rows, columns = np.subtract(found.z.shape, terrain.z.shape)
+    rows, columns = np.subtract(raster.z.shape, terrain.z.shape)
     return bool(np.allclose(there[:6], [1, 0, left, 0, 1, top], rtol=0, atol=ON_GRID)
                 and 0 <= -left <= columns and 0 <= -top <= rows)

@@ -130,15 +130,15 @@ def sister(crs) -> Optional[str]:
     return None
 
 
-def is_same_crs(found, wanted) -> bool:
+def is_same_crs(system, wanted) -> bool:
     """Whether two systems (of pyproj) have one datum and one projection, but for their axes."""
-    if found.geodetic_crs.datum.name != wanted.geodetic_crs.datum.name:
+    if system.geodetic_crs.datum.name != wanted.geodetic_crs.datum.name:
         return False
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")     # that words of PROJ say less than others, which are equal here
         one, other = ({key: abs(value) if key == "k" else value for key, value in crs.to_dict().items()
-                       if key != "axis"} for crs in (found, wanted))
-        turned = found.to_dict().get("k", 1) < 0
+                       if key != "axis"} for crs in (system, wanted))
+        turned = system.to_dict().get("k", 1) < 0
     return bool(one) and one == other and not turned
 
 

@@ -22,14 +22,14 @@ class Polygon(NamedTuple):
     attribute: str = ""             # its name
 
 
-def attribute(about: Mapping[str, Any], name: str) -> Any:
+def attribute(attributes: Mapping[str, Any], name: str) -> Any:
     """An attribute of a feature, whose name may be in other case; None where it is missing or empty."""
-    return next((value for key, value in about.items() if key.lower() == name and value not in (None, "")), None)
+    return next((value for key, value in attributes.items() if key.lower() == name and value not in (None, "")), None)
 
 
-def name_feature(about: Mapping[str, Any], number: int) -> str:
+def name_feature(attributes: Mapping[str, Any], number: int) -> str:
     """What messages call a feature: its attribute `name`, else its number in the file, from 1."""
-    name = attribute(about, "name")
+    name = attribute(attributes, "name")
     return f"feature {number}" if name is None else str(name)
 
 
@@ -45,10 +45,10 @@ def size_of(where: str, name: str, value: Any, unit: str) -> float:
     return size
 
 
-def depth_of(path: str, number: int, about: Mapping[str, Any]) -> Tuple[Optional[float], str]:
+def depth_of(path: str, number: int, attributes: Mapping[str, Any]) -> Tuple[Optional[float], str]:
     """Depth (m) of a feature by its attributes, and which of DEPTHS says so; None without one."""
     for name in DEPTHS:
-        if (value := attribute(about, name)) is not None:
+        if (value := attribute(attributes, name)) is not None:
             return size_of(f"{path}: feature {number}", name, value, "m"), name
     return None, ""
 

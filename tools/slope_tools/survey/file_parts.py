@@ -28,17 +28,17 @@ def digest_content(path: str) -> str:
 
 def of_file(path: str) -> List[str]:
     """The file, those beside it, and all of the sources of a virtual raster or layer; what is there of them."""
-    found: List[str] = []
+    files: List[str] = []
     todo = [path]
     while todo:
         one = todo.pop(0)
         stem = os.path.splitext(one)[0]
         ends = [same for end in BESIDE for same in (end, end.upper())]
         for part in (one, *(stem + end for end in ends), *(one + end for end in (*AFTER, JOURNAL))):
-            if os.path.isfile(part) and part not in found:
-                found.append(part)
+            if os.path.isfile(part) and part not in files:
+                files.append(part)
                 todo += sources(part)
-    return found
+    return files
 
 
 def sources(path: str) -> Iterator[str]:

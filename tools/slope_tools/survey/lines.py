@@ -101,7 +101,7 @@ def read_drawn(path, raster, local, what="line", advice=None, crs=None, warn=vec
     pieces, twice = remove_doubled_lines(parts)
     if twice:
         warn(Finding("drawn twice", {"file": path, "percent": 100 * twice}))
-    about = [each[number][1] for _, number in pieces]
+    attributes = [each[number][1] for _, number in pieces]
     lines = MultiLineString([line for line, _ in pieces])
     local = local or text_ is not None and polygons.is_local(path, text_, raster)
     plain = text_ is not None and crs is None
@@ -111,7 +111,7 @@ def read_drawn(path, raster, local, what="line", advice=None, crs=None, warn=vec
     check_order(path, lines, raster, local, None if plain else crs)
     points = [np.asarray(line.coords)[:, :2] for line in lines.geoms]
     if local:
-        return [Drawn(*one) for one in zip(map(LineString, points), about)]
+        return [Drawn(*one) for one in zip(map(LineString, points), attributes)]
     if not plain and (crs is None or raster.crs is None):
         where, remedy = "--terrain", f"--local if the {what} is in the run's local metres"
         if advice:
@@ -124,7 +124,7 @@ def read_drawn(path, raster, local, what="line", advice=None, crs=None, warn=vec
             raise SlopeError(path, f"must lie where {crs_name(raster.crs)}, the CRS of the terrain, covers it")
         if polygons.is_cut(lines, crs):
             points = [np.asarray(line.coords) for line in polygons.snapped(map(LineString, points))]
-    return [Drawn(*one) for one in zip((LineString(line - raster.offset) for line in points), about)]
+    return [Drawn(*one) for one in zip((LineString(line - raster.offset) for line in points), attributes)]
 
 
 def check_order(path, lines, raster, local, crs):

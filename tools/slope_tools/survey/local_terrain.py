@@ -148,10 +148,10 @@ def check_pits(raster: Raster, marks: Marks, where: str, allowed: bool, warn: Ca
     warn(said)
 
 
-def describe_terrain(name: object, about: Dict[str, Any]) -> str:
+def describe_terrain(name: object, sidecar: Dict[str, Any]) -> str:
     """What the user needs to know of a terrain."""
-    size, extent, height, origin = (about[key] for key in ("size", "extent", "height", "origin"))
-    return (f"{name}: {size['columns']} x {size['rows']} cells of {about['cell']:.6g} m, "
+    size, extent, height, origin = (sidecar[key] for key in ("size", "extent", "height", "origin"))
+    return (f"{name}: {size['columns']} x {size['rows']} cells of {sidecar['cell']:.6g} m, "
             f"x {extent['xlo']:.3f} to {extent['xhi']:.3f}, y {extent['ylo']:.3f} to {extent['yhi']:.3f}, "
-            f"z {height['min']:.3f} to {height['max']:.3f} m, {about['nodata_cells']} NODATA cells, "
+            f"z {height['min']:.3f} to {height['max']:.3f} m, {sidecar['nodata_cells']} NODATA cells, "
             f"local origin at east {origin['east']:.10g}, north {origin['north']:.10g}")

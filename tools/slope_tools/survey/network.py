@@ -93,17 +93,17 @@ def split(drawn: Sequence[Drawn]) -> List[Way]:
     _, label = connected_components(coo_matrix((np.ones(len(near)), near.T), (len(points),) * 2), directed=False)
     first = np.unique(label, return_index=True)[1]      # of the points of each node
     ways = []
-    for number, one in enumerate(drawn):
-        places = {0.0: int(label[2 * number]), one.line.length: int(label[2 * number + 1])}
-        low, high = np.reshape(one.line.bounds, (2, 2))
+    for number, piece in enumerate(drawn):
+        places = {0.0: int(label[2 * number]), piece.line.length: int(label[2 * number + 1])}
+        low, high = np.reshape(piece.line.bounds, (2, 2))
         for k in np.flatnonzero(((points >= low - SAME) & (points <= high + SAME)).all(axis=1)):
             end = Point(points[k])
-            along = one.line.project(end)
-            if one.line.distance(end) <= SAME and not any(abs(s - along) <= SAME for s in places):
+            along = piece.line.project(end)
+            if piece.line.distance(end) <= SAME and not any(abs(s - along) <= SAME for s in places):
                 places[along] = int(label[k])
         cuts = sorted(places)
         for low, high in zip(cuts[:-1], cuts[1:]):
-            line = np.array(substring(one.line, low, high).coords)[:, :2]
+            line = np.array(substring(piece.line, low, high).coords)[:, :2]
             line[[0, -1]] = points[[first[places[low]], first[places[high]]]]
             ways.append(Way(LineString(line), (places[low], places[high]), number))
     return ways
@@ -132,16 +132,16 @@ def at_nodes(ways: Sequence[Way]) -> Dict[int, List[End]]:
 
 # --- junctions ---
 
-def turn(one: np.ndarray, other: np.ndarray) -> float:
+def turn(direction: np.ndarray, other: np.ndarray) -> float:
     """Degrees by which a road turns that comes from one direction and leaves in another; both lead away."""
-    return math.degrees(math.acos(max(-1.0, min(1.0, -float(one @ other)))))
+    return math.degrees(math.acos(max(-1.0, min(1.0, -float(direction @ other)))))
 
 
-def kind(one: Way, other: Way, drawn: Sequence[Drawn]) -> int:
+def kind(way: Way, other: Way, drawn: Sequence[Drawn]) -> int:
     """Why two ways that meet may be one road."""
-    if one.drawn == other.drawn:
+    if way.drawn == other.drawn:
         return DRAWN
-    return NAMED if drawn[one.drawn].words() & drawn[other.drawn].words() else ANY
+    return NAMED if drawn[way.drawn].words() & drawn[other.drawn].words() else ANY
 
 
 def pair_up(ends: Sequence[End], ways: Sequence[Way], drawn: Sequence[Drawn], partner: Dict[End, End]) -> None:
@@ -169,7 +169,7 @@ def islands(ways: Sequence[Way], nodes: Mapping[int, Sequence[End]]) -> Iterable
     by_ends: Dict[Tuple[int, ...], List[int]] = {}
     for number, way in enumerate(ways):
         by_ends.setdefault(tuple(sorted(way.ends)), []).append(number)
-    for face in sorted(polygonize([way.line for way in ways]), key=lambda one: one.area):
+    for face in sorted(polygonize([way.line for way in ways]), key=lambda face: face.area):
         rim = face.exterior
         within = [number for number, way in enumerate(ways) if rim.distance(way.line.interpolate(0.5, True)) <= SAME
                   and rim.buffer(SAME).contains(way.line)]
@@ -226,10 +226,10 @@ def pass_island(island: Island, ways: List[Way], drawn: Sequence[Drawn], partner
             join(island, ways, drawn, partner, one, other)
 
 
-def join(island: Island, ways: List[Way], drawn: Sequence[Drawn], partner: Dict[End, End], one: Tuple[int, End],
+def join(island: Island, ways: List[Way], drawn: Sequence[Drawn], partner: Dict[End, End], left: Tuple[int, End],
          other: Tuple[int, End]) -> None:
     """Join two ends at nodes of an island by the better side; a side that is taken by another road, once more."""
-    (start, first), (stop, last) = one, other
+    (start, first), (stop, last) = left, other
     at, count = island.nodes.index(start), len(island.ways)
     to = island.nodes.index(stop)
     ahead = [island.ways[(at + k) % count] for k in range((to - at) % count)]
@@ -337,9 +337,9 @@ def side_by_side(roads: Sequence[One], width: float) -> List[List[int]]:
     return [group for group in groups if len(group) > 1]
 
 
-def is_beside(one: LineString, other: LineString, apart: float) -> bool:
+def is_beside(line: LineString, other: LineString, apart: float) -> bool:
     """Whether the shorter of two lines runs along the other for half of its length or more, no farther than that."""
-    short, long = sorted((one, other), key=lambda line: line.length)
+    short, long = sorted((line, other), key=lambda line: line.length)
     chord = math.dist(short.coords[0][:2], short.coords[-1][:2])
     if short.length < ARC and chord < BENT * short.length:
         return False        # the other side of a roundabout

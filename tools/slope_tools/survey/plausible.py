@@ -83,24 +83,24 @@ def pits_of(z: np.ndarray, at: np.ndarray, mark: float, stored: str, deep: float
     return Pits(mark, stored, is_pit[groups], int(sizes[is_pit].max()), float(depth[is_pit[1:]].min()))
 
 
-def suggest_pit_remedy(found: Pits, marks: Marks) -> str:
+def suggest_pit_remedy(pits_: Pits, marks: Marks) -> str:
     """What can be done about pits."""
-    at_edge = any(side.any() for side in (found.cells[[0, -1]], found.cells[:, [0, -1]]))
-    return f"{marks.options(found.stored)} makes them NODATA, " + (
-        "which stays where it goes on to the edge" if at_edge else f"with --fill {found.largest} they are filled")
+    at_edge = any(side.any() for side in (pits_.cells[[0, -1]], pits_.cells[:, [0, -1]]))
+    return f"{marks.options(pits_.stored)} makes them NODATA, " + (
+        "which stays where it goes on to the edge" if at_edge else f"with --fill {pits_.largest} they are filled")
 
 
 def pits_said(raster: Raster, marks: Marks) -> Optional[Finding]:
     """The warning of pits in a terrain, if it has any."""
-    found = pits(raster.z, abs(raster.transform.a), marks)
-    if found is None:
+    pits_ = pits(raster.z, abs(raster.transform.a), marks)
+    if pits_ is None:
         return None
-    row, column = np.argwhere(found.cells)[0]
+    row, column = np.argwhere(pits_.cells)[0]
     x, y = raster.transform * (column + 0.5, row + 0.5)
     x, y = x + raster.offset[0], y + raster.offset[1]
-    return Finding("pits", {"cells": int(found.cells.sum()), "mark": found.shown, "depth": found.least,
-                            "side": found.side, "east": float(x), "north": float(y),
-                            "remedy": suggest_pit_remedy(found, marks)})
+    return Finding("pits", {"cells": int(pits_.cells.sum()), "mark": pits_.shown, "depth": pits_.least,
+                            "side": pits_.side, "east": float(x), "north": float(y),
+                            "remedy": suggest_pit_remedy(pits_, marks)})
 
 
 def warn_of_picture(raster: Raster, warn: Callable[[Finding], Any]) -> None:

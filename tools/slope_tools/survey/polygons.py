@@ -205,8 +205,8 @@ def crossing(where, geometry):
 def _read_rings(path, text):
     """The polygons that the rings of a text in the deck's format make by the even-odd rule; the unit of its head."""
     rings: List[Tuple[int, Polygon]] = []       # the line it starts at, its polygon
-    found = text_points.read_text_points(text, fail_in(path))
-    for block in found.blocks:
+    points = text_points.read_text_points(text, fail_in(path))
+    for block in points.blocks:
         first, ring = block[0][0], [point for _, point in block]
         where = f"{path}: line {first}"
         if len(set(ring)) < 3:
@@ -214,7 +214,7 @@ def _read_rings(path, text):
         rings.append((first, _checked(where, Polygon(ring))))
     if not rings:
         raise SlopeError(path, "must hold a polygon, it is empty")
-    return _even_odd(path, rings), found.head.unit
+    return _even_odd(path, rings), points.head.unit
 
 
 def fail_in(path):

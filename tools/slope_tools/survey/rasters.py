@@ -65,21 +65,21 @@ def read_raster(path, heights=True, unit=None, marks=None, ask=True):
     return in_metres(path, opened(path, heights, unit), heights, unit, marks, ask=ask)
 
 
-def in_metres(path, found, heights=True, unit=None, marks=None, assigned=None, ask=True):
+def in_metres(path, file, heights=True, unit=None, marks=None, assigned=None, ask=True):
     """The Raster of a File, see read_raster() and opened()."""
-    own = unit or found.unit or "m"
-    scale = Scale(found.scale, found.shift, UNITS[own])
+    own = unit or file.unit or "m"
+    scale = Scale(file.scale, file.shift, UNITS[own])
     if marks:
-        marks.take(found.stored, found.none)
-    z = scale.in_unit(found.stored)
-    z[found.none] = np.nan
+        marks.take(file.stored, file.none)
+    z = scale.in_unit(file.stored)
+    z[file.none] = np.nan
     if heights:
-        check_heights(path, z, found, own, unit is None, marks)
+        check_heights(path, z, file, own, unit is None, marks)
         if marks:
-            marks.note(found.stored, found.none, scale)
-    raster = Raster(scale.metres(z), found.transform, found.crs)
+            marks.note(file.stored, file.none, scale)
+    raster = Raster(scale.metres(z), file.transform, file.crs)
     if heights and ask and unit is None and own != "m":
-        plausible.ask(path, raster._replace(z=z), assigned or found.crs, own)
+        plausible.ask(path, raster._replace(z=z), assigned or file.crs, own)
     return raster
 
 
@@ -131,11 +131,11 @@ def only(path):
     return found[0] if found else str(path)
 
 
-def check_heights(path, z, found, unit, may_be_feet, marks):
+def check_heights(path, z, file, unit, may_be_feet, marks):
     """Raise SlopeError if heights (in a unit of UNITS) cannot be those of a ground.
 
     None is higher than HIGHEST m, and none lower than -HIGHEST in its own unit: -9999 ft is a mark, 9999 ft a mountain.
-    found: their File; may_be_feet: the unit was not given; marks: None where there is no --nodata.
+    file: their File; may_be_feet: the unit was not given; marks: None where there is no --nodata.
     """
     top = HIGHEST / UNITS[unit]
     with np.errstate(invalid="ignore"):
@@ -143,9 +143,9 @@ def check_heights(path, z, found, unit, may_be_feet, marks):
     if not len(wrong):
         return
     row, column = wrong[0]
-    value, stored = z[row, column], found.stored[row, column]
+    value, stored = z[row, column], file.stored[row, column]
     shown = format_mark(stored)
-    row, column = row + found.first[0], column + found.first[1]
+    row, column = row + file.first[0], column + file.first[1]
     remedy = f"{marks.options(shown)} if it means none" if marks else f"gdal_translate -a_nodata {shown} declares it"
     name = "metres" if unit == "m" else unit
     feet = "; --z-unit ft (slope terrain, site, route) if these are feet" if (
@@ -246,15 +246,15 @@ def read_sidecar(path: Union[str, Path]) -> Optional[Place]:
     sidecar = Path(path).with_suffix(".yaml")
     if Path(path).suffix != ".asc" or not sidecar.exists():
         return None
-    about = schemas.load_checked(sidecar, WHAT_SIDECAR, SIDECAR)
+    content = schemas.load_checked(sidecar, WHAT_SIDECAR, SIDECAR)
     try:
         with rasterio.Env():  # GDAL's own messages are not for stderr
-            crs = about["crs"] and CRS.from_wkt(about["crs"]["wkt"])
+            crs = content["crs"] and CRS.from_wkt(content["crs"]["wkt"])
     except CRSError as error:
         raise SlopeError(sidecar, f"must be {WHAT_SIDECAR} ({error})") from error
-    east, north = (float(about["origin"][side]) for side in ORIGIN)
-    xlo, ylo, xhi, yhi = (float(about["extent"][side]) for side in EXTENT)
-    return Place(crs, (east, north), (about["size"]["rows"], about["size"]["columns"]), (xlo, ylo, xhi, yhi))
+    east, north = (float(content["origin"][side]) for side in ORIGIN)
+    xlo, ylo, xhi, yhi = (float(content["extent"][side]) for side in EXTENT)
+    return Place(crs, (east, north), (content["size"]["rows"], content["size"]["columns"]), (xlo, ylo, xhi, yhi))
 
 
 def read_place(path):
@@ -279,12 +279,12 @@ def read_place(path):
         raise unreadable(path, name, error) from error
 
 
-def write_asc_local(path, raster, about, exact=False):
+def write_asc_local(path, raster, content, exact=False):
     """Write raster (square cells, north up, at least one height) to path and the sidecar beside it; return the sidecar.
 
-    about: dict of more entries for the sidecar. exact: heights with all of their digits, not to the millimetre, so that
-    they are equal to those of another file. Both files are complete or not touched: they are written beside their names
-    and then renamed. Raises SlopeError where the folder or the disk refuses.
+    content: dict of more entries for the sidecar. exact: heights with all of their digits, not to the millimetre, so
+    that they are equal to those of another file. Both files are complete or not touched: they are written beside their
+    names and then renamed. Raises SlopeError where the folder or the disk refuses.
     """
     path = Path(path)
     rows, columns = raster.z.shape
@@ -299,7 +299,7 @@ def write_asc_local(path, raster, about, exact=False):
         "extent": {"xlo": xlo, "xhi": xhi, "ylo": ylo, "yhi": yhi},
         "height": {"min": float(np.nanmin(raster.z)), "max": float(np.nanmax(raster.z))},
         "nodata_cells": int(np.isnan(raster.z).sum()),
-        **about,
+        **content,
     }
     with disk.write_beside(path.with_suffix(".yaml"), path) as (new_yaml, new_asc):
         with open(new_asc, "w", encoding="ascii") as out:

@@ -47,9 +47,9 @@ class Asked(NamedTuple):
     loosening: Optional[float] = None   # volume of loosened ground over that of the ground
 
     @classmethod
-    def of(cls, about: Mapping[str, Any]) -> "Asked":
+    def of(cls, entries: Mapping[str, Any]) -> "Asked":
         """That of site.yaml or study.yaml; what is missing, as in older ones, has its default."""
-        return cls(**{field: about[key] for field, key in KEYS.items() if about.get(key) is not None})
+        return cls(**{field: entries[key] for field, key in KEYS.items() if entries.get(key) is not None})
 
     def about(self) -> Dict[str, Any]:
         """What of() reads."""
@@ -131,18 +131,18 @@ def read_each(path, raster, asked: Asked = NOTHING, crs=None, advice=None, warn=
     own = where.layer or Path(where.path).stem
     if asked.width is None or MARK in (polygons.read_text(path) or ""):
         return {own: read_local(path, raster, asked, False, crs, advice, warn)}
-    found = network.roads_of(drawn_in(path, raster, False, crs, advice, warn))
-    if len(found) == 1:
-        return {own: together(path, [found[0].line], raster, asked)}
+    roads = network.roads_of(drawn_in(path, raster, False, crs, advice, warn))
+    if len(roads) == 1:
+        return {own: together(path, [roads[0].line], raster, asked)}
     names: List[str] = []
     made: Dict[str, Road] = {}
-    for number, one in enumerate(found, 1):
+    for number, one in enumerate(roads, 1):
         names.append(free(", ".join(one.names) or f"{own}_{number}", made))
         made[names[-1]] = together(path, [one.line], raster, asked)
-    for group in network.side_by_side(found, asked.width):
-        name = ", ".join(dict.fromkeys(name for k in group for name in found[k].names[:1])) or own
+    for group in network.side_by_side(roads, asked.width):
+        name = ", ".join(dict.fromkeys(name for k in group for name in roads[k].names[:1])) or own
         made[free(f"{name} {'both' if len(group) == 2 else 'all'} carriageways", made)] = together(
-            path, [found[k].line for k in group], raster, asked)
+            path, [roads[k].line for k in group], raster, asked)
     return made
 
 

@@ -39,15 +39,15 @@ def declare(path, crs, tell, warn, assigned=None, unit=None, marks=None, part=No
         place.append(whole)
         return part(whole._replace(crs=assigned or whole.crs or crs))
     whole_file = not part or rasters.read_sidecar(path) is not None
-    found = rasters.opened(path, True, unit, None if whole_file else wanted, assigned)
-    local = rasters.placed(path, rasters.in_metres(path, found, True, unit, marks, assigned))
-    if found.is_picture:
+    file = rasters.opened(path, True, unit, None if whole_file else wanted, assigned)
+    local = rasters.placed(path, rasters.in_metres(path, file, True, unit, marks, assigned))
+    if file.is_picture:
         raise SlopeError(path, "must be heights, not a picture such as a hillshade; if they are heights, "
                          "gdal_translate -ot Float32 stores them as such", "values of 8 bits")
-    if unit and found.unit and found.unit != unit:
-        tell(f"{path} says heights in {found.unit}: taken as {unit}")
-    if (unit or found.unit or "m") != "m":
-        tell(f"{path}: heights in {unit or found.unit} brought to metres")
+    if unit and file.unit and file.unit != unit:
+        tell(f"{path} says heights in {file.unit}: taken as {unit}")
+    if (unit or file.unit or "m") != "m":
+        tell(f"{path}: heights in {unit or file.unit} brought to metres")
     raster = Raster(local.z, Affine.translation(*local.offset) * local.transform, local.crs)
     if assigned is not None:
         if raster.crs is not None and not same_crs(raster.crs, assigned):
@@ -151,7 +151,7 @@ def merge(tiles, tell, warn, cell=None, differ=DIFFER):
         return Tile(first.name, first.raster, whole)
     merged = make_grid_around(base, [tile.raster for tile in used])
     check_memory(len(merged.z), merged.z.shape[1], "merged raster")
-    z, found = np.full(merged.z.shape, np.nan), []
+    z, overlaps = np.full(merged.z.shape, np.nan), []
     beyond = []         # by up to half a cell, of tiles on another grid: they may leave a gap where they meet
     for tile in used:
         top, left, heights, more = on_cells(tile.raster, merged, base)
@@ -159,13 +159,13 @@ def merge(tiles, tell, warn, cell=None, differ=DIFFER):
         part = z[top:top + heights.shape[0], left:left + heights.shape[1]]
         difference = np.abs(part - heights)
         if np.isfinite(difference).any():
-            found.append(differing(tile.name, difference, merged.transform * Affine.translation(left, top), differ))
+            overlaps.append(differing(tile.name, difference, merged.transform * Affine.translation(left, top), differ))
         np.copyto(part, heights, where=np.isnan(part))
     for top, left, heights in beyond:
         part = z[top:top + heights.shape[0], left:left + heights.shape[1]]
         np.copyto(part, heights, where=np.isnan(part))
-    twice = sum(one["cells"] for one in found)
-    most = max(found, key=lambda one: one["largest"], default={"largest": 0.0})
+    twice = sum(one["cells"] for one in overlaps)
+    most = max(overlaps, key=lambda overlap: overlap["largest"], default={"largest": 0.0})
     tell(f"merged {len(tiles)} rasters; {twice} cells in more than one, the first file counts"
          + (f", heights differ by up to {most['largest']:.3f} m" if twice else ""))
     if most["largest"] > SAID:
@@ -178,15 +178,15 @@ def differing(name, difference, transform, differ):
     median = float(np.nanmedian(difference))
     row, column = np.unravel_index(np.nanargmax(difference), difference.shape)
     east, north = transform * (column + 0.5, row + 0.5)
-    found = {"file": name, "largest": float(difference[row, column]), "east": float(east), "north": float(north),
-             "cells": int(np.isfinite(difference).sum()), "median": median}
+    difference_ = {"file": name, "largest": float(difference[row, column]), "east": float(east), "north": float(north),
+                   "cells": int(np.isfinite(difference).sum()), "median": median}
     if median > differ:
         raise SlopeError(name, f"must have the heights of the files before it, to {differ:g} m at the median of the "
                          "cells of both: are all in one unit and one datum? --differ M accepts M m, as of surveys "
                          "before and after a landslide",
                          "{median:.1f} m in {cells} cells, up to {largest:.1f} m at east {east:.10g}, north "
-                         "{north:.10g}".format(**found))
-    return found
+                         "{north:.10g}".format(**difference_))
+    return difference_
 
 
 def on_grid(raster, base):

@@ -219,13 +219,13 @@ def check_shapefile(path: Path) -> None:
     with open(path, "rb") as data:
         if data.read(4) != MAGIC:
             return
-    beside = [one for suffix in (".shx", ".SHX", ".dbf", ".DBF") if (one := path.with_suffix(suffix)).is_file()]
+    beside = [part for suffix in (".shx", ".SHX", ".dbf", ".DBF") if (part := path.with_suffix(suffix)).is_file()]
     if not any(one.suffix.lower() == ".shx" for one in beside):
         raise SlopeError(path, f"must have its other files beside it, {path.with_suffix('.shx').name} is missing: copy "
                          "all of the shapefile (.shp, .shx, .dbf, .prj), or save it as GeoJSON")
-    for one in (path, *beside):
-        with open(one, "rb") as file:
-            zips.check_length(str(one), one.stat().st_size, file.read(32))
+    for part in (path, *beside):
+        with open(part, "rb") as file:
+            zips.check_length(str(part), part.stat().st_size, file.read(32))
 
 
 def statements(text: str) -> List[Tuple[int, str]]:

@@ -53,26 +53,27 @@ def form_of(path: str) -> Optional[Form]:
     if any("\0" in line for line in first) or first and first[0].lstrip("\ufeff ").startswith("<"):      # XML: a VRT
         return None
     head: Optional[text_points.Head] = None
-    said: Optional[Tuple[int, bool, str]] = None    # of a line of words: its number, whether it may be a head, its text
+    worded: Optional[Tuple[int, bool,
+                           str]] = None    # of a line of words: its number, whether it may be a head, its text
     for number, content in enumerate(map(str.strip, first)):
         words, delimiter, comma = split(content)
         numbers = [text_points.parse_coordinate(word.replace(",", ".")) is not None for word in words]
         if is_point(numbers, head):
-            if said is not None and not head:
-                if not said[1]:
+            if worded is not None and not head:
+                if not worded[1]:
                     return None
-                raise SlopeError(f"{path}: line {said[0]}", RULE, said[2])
+                raise SlopeError(f"{path}: line {worded[0]}", RULE, worded[2])
             if not head and not numbers[0]:     # names of the points
                 head = text_points.Head(1, 2, len(words), None, 3)
             return Form(head, number, delimiter, comma, len(words))
         if not content:
             continue
         is_comment = content.startswith("#")
-        if said is not None and not is_comment:
+        if worded is not None and not is_comment:
             return None         # two lines of words
         names = text_points.SEPARATORS.split(content.lstrip("# ")) if is_comment or delimiter is None else words
         head = len(names) >= 3 and head_of(path, number + 1, names, content) or head
-        said = said if is_comment else (number + 1, len(names) >= 3, content[:60])
+        worded = worded if is_comment else (number + 1, len(names) >= 3, content[:60])
     return None
 
 
@@ -108,13 +109,13 @@ def read_xyz_grid(path: str, form: Form) -> Grid:
     assert head.z is not None
     wanted = [head.x, head.y, head.z]
     points = read_xyz_columns(path, form, wanted if form.head or form.columns < 4 else [0, 1, 2, 3])
-    found = on_grid(points[:, :3])
-    if found is None and points.shape[1] == 4:      # a number first
-        found = on_grid(points[:, 1:])
-    if found is None:
+    cells = on_grid(points[:, :3])
+    if cells is None and points.shape[1] == 4:      # a number first
+        cells = on_grid(points[:, 1:])
+    if cells is None:
         raise SlopeError(path, f"must be heights in rows and columns, at equal distances; {OF_POINTS}",
                          f"{len(points):,} points on no grid")
-    column, row, transform, z = found
+    column, row, transform, z = cells
     rows, columns = int(row.max()) + 1, int(column.max()) + 1
     check_memory(rows, columns, path)
     grid = np.full((rows, columns), np.nan)
@@ -129,18 +130,18 @@ def read_xyz_grid(path: str, form: Form) -> Grid:
 
 def read_xyz_columns(path: str, form: Form, columns: List[int]) -> np.ndarray:
     """These columns of all points, an array (points, columns)."""
-    found = [np.empty((0, len(columns)))]
+    blocks = [np.empty((0, len(columns)))]
     with open_text(path) as lines:
         for _ in range(form.skip):
             next(lines)
         for number, chunk in enumerate(progress(chunks(lines), f"reading {path}")):
             text = [line.replace(",", ".") for line in chunk] if form.comma else chunk
             try:
-                found.append(np.loadtxt(text, delimiter=form.delimiter, usecols=columns, ndmin=2, comments="#"))
+                blocks.append(np.loadtxt(text, delimiter=form.delimiter, usecols=columns, ndmin=2, comments="#"))
             except (ValueError, IndexError):
                 raise wrong_line(path, text, form, columns, form.skip + 1 + number * LINES) from None
-            check_memory(1, sum(map(len, found)), path)
-    points = np.concatenate(found)
+            check_memory(1, sum(map(len, blocks)), path)
+    points = np.concatenate(blocks)
     if not np.isfinite(points[:, :2]).all():
         raise SlopeError(path, "must have finite coordinates")
     return points
@@ -185,12 +186,12 @@ def on_grid(points: np.ndarray) -> Optional[Tuple[np.ndarray, np.ndarray, Affine
 
 def steps(values: np.ndarray) -> Optional[Tuple[float, float, int]]:
     """First value, step and number of values at equal distances, some of which may be missing."""
-    found = np.unique(values)
-    if len(found) < 2 or not np.isfinite(found).all():
+    distinct = np.unique(values)
+    if len(distinct) < 2 or not np.isfinite(distinct).all():
         return None
-    gaps = np.diff(found)
-    span = found[-1] - found[0]
+    gaps = np.diff(distinct)
+    span = distinct[-1] - distinct[0]
     least = gaps[gaps > span * NOISE].min()
     short = gaps[np.abs(gaps - least) < 0.5 * least]
     number = round(span / short.mean())
-    return float(found[0]), float(span / number), number + 1
+    return float(distinct[0]), float(span / number), number + 1

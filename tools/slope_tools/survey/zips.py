@@ -70,23 +70,23 @@ def layer_in(path: str, layer: Optional[str] = None) -> Optional[str]:
         return None
     with check_archive(path), zipfile.ZipFile(path) as archive:
         names = archive.namelist()
-        found = [name for name in names if name.lower().endswith(LAYERS) and not is_of_macos(name)]
-        if len(found) > 1 and layer is not None:
-            found = [name for name in found if PurePosixPath(name).stem == layer] or found
-        if len(found) > 1:
+        layers = [name for name in names if name.lower().endswith(LAYERS) and not is_of_macos(name)]
+        if len(layers) > 1 and layer is not None:
+            layers = [name for name in layers if PurePosixPath(name).stem == layer] or layers
+        if len(layers) > 1:
             raise SlopeError(path, "must hold one layer, or one must be named (--layer, FILE|layername=NAME): "
-                             + some([PurePosixPath(name).stem for name in found]),
-                             f"{len(found)} files of layers")
-        require_open(archive, found)
-        if found and found[0].lower().endswith(".shp"):
-            index = found[0].lower()[:-4] + ".shx"
+                             + some([PurePosixPath(name).stem for name in layers]),
+                             f"{len(layers)} files of layers")
+        require_open(archive, layers)
+        if layers and layers[0].lower().endswith(".shp"):
+            index = layers[0].lower()[:-4] + ".shx"
             if index not in map(str.lower, names):
                 raise SlopeError(path, f"must have all files of the shapefile, {PurePosixPath(index).name} is missing")
             for name in names:
                 if name.lower()[:-4] == index[:-4] and name.lower().endswith((".shp", ".shx", ".dbf")):
                     with archive.open(name) as member:
                         check_length(f"{path}/{name}", archive.getinfo(name).file_size, member.read(32))
-        return found[0] if found else None
+        return layers[0] if layers else None
 
 
 def require_open(archive: zipfile.ZipFile, names: Sequence[str]) -> None:

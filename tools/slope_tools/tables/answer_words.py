@@ -22,10 +22,10 @@ def describe_volume(kind: str, value: Optional[float], unit: str = "") -> str:
 
 # --- why ---
 
-def told(about: study_types.Headline) -> List[Reason]:
+def told(headline: study_types.Headline) -> List[Reason]:
     """The reasons as they are printed, each once: of a rule that both studies break, of the one that decides."""
     found: Dict[Tuple[Code, Any], Reason] = {}
-    for one in map(Reason.read, about.reasons):
+    for one in map(Reason.read, headline.reasons):
         found.setdefault((one.code, one.numbers.get("rule")), one)
     return list(found.values())
 

@@ -25,42 +25,42 @@ SCHEMA = mapping({}, conservative=mapping({}, null=True), ensemble=mapping({}, n
                  headline=mapping({}, null=True, road=mapping({}, null=True)), study=OBJECT)
 
 
-def of_study(about: study_types.Study, road: Optional[Road]) -> Optional[Answer]:
+def of_study(study: study_types.Study, road: Optional[Road]) -> Optional[Answer]:
     """Of one study.yaml; None without a road, and of an ensemble that no known events weigh."""
-    return answer.combine_answers(paper_of(about), ensemble_of(about), road)
+    return answer.combine_answers(paper_of(study), ensemble_of(study), road)
 
 
-def paper_of(about: study_types.Study) -> Optional[Paper]:
+def paper_of(study: study_types.Study) -> Optional[Paper]:
     """Its conservative volume, if it has one, rounded up as it is shown."""
-    best = about.conservative
+    best = study.conservative
     if not best:
         return None
     least = None if best.chance_m3 is None else best.mean_m3 - best.chance_m3
-    return Paper(best.rounded["volume_m3"], rules(best.withheld), least, best.transfer_m3 or (0.0, 0.0), size_of(about),
-                 released_of(about), len(finished_of(about.runs)))
+    return Paper(best.rounded["volume_m3"], rules(best.withheld), least, best.transfer_m3 or (0.0, 0.0), size_of(study),
+                 released_of(study), len(finished_of(study.runs)))
 
 
-def ensemble_of(about: study_types.Study) -> Optional[Ensemble]:
+def ensemble_of(study: study_types.Study) -> Optional[Ensemble]:
     """Its weighted ensemble, if it has one with volumes."""
-    whole, one = about.ensemble, ensemble_types.weighted(about.ensemble)
-    if not whole or not one or not one.to_remove:
+    whole, weighted = study.ensemble, ensemble_types.weighted(study.ensemble)
+    if not whole or not weighted or not weighted.to_remove:
         return None
-    stopped = one.added.stopped
-    most = max((row.at_road.remove_m3 for row in finished_of(about.runs) if row.road), default=0.0)
-    return Ensemble(one.to_remove, one.far, one.longest_m, rules(whole.withheld),
-                    Reason.read(stopped) if stopped else None, most, size_of(about), one.path_end_m,
-                    released_of(about), one.runs)
+    stopped = weighted.added.stopped
+    most = max((row.at_road.remove_m3 for row in finished_of(study.runs) if row.road), default=0.0)
+    return Ensemble(weighted.to_remove, weighted.far, weighted.longest_m, rules(whole.withheld),
+                    Reason.read(stopped) if stopped else None, most, size_of(study), weighted.path_end_m,
+                    released_of(study), weighted.runs)
 
 
-def released_of(about: study_types.Study) -> float:
+def released_of(study: study_types.Study) -> float:
     """m3 of the largest body; infinite without a run."""
-    return max((row.released_m3 for row in finished_of(about.runs)), default=math.inf)
+    return max((row.released_m3 for row in finished_of(study.runs)), default=math.inf)
 
 
-def size_of(about: study_types.Study) -> Size:
+def size_of(study: study_types.Study) -> Size:
     """What the size of the balls leaves open of the volume to remove: a floor with fewer than two halvings, or where
     the last one grows by more than GROWS."""
-    size = about.size
+    size = study.size
     if size is None:
         return Size(floor=Reason(Code.SIZE, {"sizes": 1, "grown": None}))
     effect = size.effects.get(REMOVE)
@@ -77,9 +77,9 @@ def rules(reasons: Sequence[Finding]) -> List[Withheld]:
     return [Withheld(Rule(one.kind), one.numbers.get("number"), one.numbers.get("bound")) for one in reasons]
 
 
-def road_of(about: study_types.Study) -> Optional[Road]:
+def road_of(study: study_types.Study) -> Optional[Road]:
     """That of a headline."""
-    one = about.headline.road if about.headline else None
+    one = study.headline.road if study.headline else None
     if not one:
         return None
     (reached, more_reached), (passed, more_passed) = one.reached, one.passed
@@ -95,14 +95,14 @@ def governing(paper: Path, ensemble: Path) -> Path:
     there = [one for one in (ensemble, paper) if (one / STUDY).is_file()]
     if len(there) < 2:
         return there[0] if there else paper
-    said = {one: schemas.load_checked(one / STUDY, "what `slope study` wrote", SCHEMA) for one in there}
-    names = {(about.get("study") or {}).get("governs") for about in said.values()}
+    studies = {one: schemas.load_checked(one / STUDY, "what `slope study` wrote", SCHEMA) for one in there}
+    names = {(about.get("study") or {}).get("governs") for about in studies.values()}
     if len(names) == 1 and (named := [one for one in there if one.name in names]):
         return named[0]
-    number, other = (about.get("headline") for about in said.values())
+    number, other = (about.get("headline") for about in studies.values())
     if number and number == other:
         return paper if number["source"] == answer.Source.PAPER.value else ensemble
-    return max(there, key=lambda one: made(said[one]))
+    return max(there, key=lambda folder: made(studies[folder]))
 
 
 def study_in(folder: Path, weighted: bool = False) -> Optional[Path]:
@@ -131,9 +131,9 @@ def without_study(site: Path) -> SlopeError:
                       "report", f"no {site / INSIDE[0] / STUDY}")
 
 
-def made(about: Mapping[str, Any]) -> datetime.datetime:
+def made(study: Mapping[str, Any]) -> datetime.datetime:
     """When a study was, by its study.yaml; the beginning of time where that does not say it."""
-    text = str((about.get("study") or {}).get("collected"))
+    text = str((study.get("study") or {}).get("collected"))
     try:
         return datetime.datetime.fromisoformat(text).astimezone(datetime.timezone.utc)
     except ValueError:

@@ -39,16 +39,16 @@ def same_as(rows: Sequence[Finished]) -> List[int]:
 
 def grouped(rows: Sequence[Row]) -> List[Group]:
     """The finished runs by their combinations, in the order of the rows."""
-    found: Dict[tuple, Group] = {}
+    groups: Dict[tuple, Group] = {}
     for row in finished_of(rows):
-        group = found.setdefault(tuple(row.set.values()), Group(jobs.name_run(row.set), row.set))
+        group = groups.setdefault(tuple(row.set.values()), Group(jobs.name_run(row.set), row.set))
         group.rows.append(row)
-    for group in found.values():
+    for group in groups.values():
         mine = group.rows
         first = same_as(mine)
         group.rows = [row for k, row in enumerate(mine) if first[k] == k]
         group.same = [row for k, row in enumerate(mine) if first[k] != k]
-    return list(found.values())
+    return list(groups.values())
 
 
 def averaged(groups: Sequence[Group]) -> List[str]:
@@ -63,7 +63,7 @@ def scatters(groups: Sequence[Group]) -> Dict[str, Optional[Scatter]]:
 
 def list_combination_entries(groups: Sequence[Group], names: Sequence[str]) -> List[Dict[str, Any]]:
     """What study.yaml says of each combination: of each column mean, scatter (None of one run), smallest, largest."""
-    found = []
+    entries = []
     for group in groups:
         entry: Dict[str, Any] = {"combination": group.name, "set": dict(group.set),
                                  "runs": [row.run for row in group.rows], "repeats": len(group.rows),
@@ -72,8 +72,8 @@ def list_combination_entries(groups: Sequence[Group], names: Sequence[str]) -> L
             one = group.of(name)
             entry[name] = {"mean": one.mean, "scatter": one.scatter, "smallest": min(one.volumes.values()),
                            "largest": max(one.volumes.values())}
-        found.append(entry)
-    return found
+        entries.append(entry)
+    return entries
 
 
 def tabulate_combinations(groups: Sequence[Group], names: Sequence[str], settings: Mapping[str, Sequence[str]]) -> str:
@@ -151,12 +151,12 @@ def find_combination_caveats(settings: Settings, rows: Sequence[Row], groups: Se
                              best: conservative_volume.ConservativeVolume,
                              differences: Sequence[study_types.Difference]) -> List[Finding]:
     """Reasons why the volume may be larger than the conservative one."""
-    found = []
+    caveats = []
     finished = finished_of(rows)
     if len(rows) == 1:
-        found.append(Finding("single run"))
+        caveats.append(Finding("single run"))
     elif best.chance is None:
-        found.append(Finding("no chance"))
+        caveats.append(Finding("no chance"))
     chosen = next(group.set for group in groups if group.name == best.combination)
     for entry in differences:
         name = entry.variable
@@ -164,26 +164,26 @@ def find_combination_caveats(settings: Settings, rows: Sequence[Row], groups: Se
         value = normalise_value(chosen[name])
         if entry.clear is not False and value == normalise_value(entry.largest_at) and value != 0 \
                 and all(isinstance(one, float) for one in numbers) and value in (min(numbers), max(numbers)):
-            found.append(Finding("end of range", {"variable": name, "low": min(numbers), "high": max(numbers)}))
-    found += no_effect(groups)
+            caveats.append(Finding("end of range", {"variable": name, "low": min(numbers), "high": max(numbers)}))
+    caveats += no_effect(groups)
     released = max(row.released_m3 for row in finished)
     if best.volume > released:
-        found.append(Finding("more than released", {"released": rounding.nearest(released, best.place)}))
+        caveats.append(Finding("more than released", {"released": rounding.nearest(released, best.place)}))
     for group in groups:
         most = max(row.at_road.remove_m3 for row in group.rows)
         few = [row for row in group.rows if row.at_road.remove_m3 < FEW * most]
         if few:
-            found.append(outcome(group, few))
+            caveats.append(outcome(group, few))
     above = max(finished, key=lambda row: row.at_road.remove_m3)
     if above.at_road.remove_m3 > best.volume:
-        found.append(Finding("more in a run", {"run": above.run, "volume": rounding.nearest(above.at_road.remove_m3,
-                                                                                            best.place)}))
+        caveats.append(Finding("more in a run", {"run": above.run, "volume": rounding.nearest(above.at_road.remove_m3,
+                                                                                              best.place)}))
     parts = [group.of("remove_m3") for group in groups]
     odd = conservative_volume.odd_one(parts, best.combination)
     if odd:
         mine, others = (rounding.nearest(one, rounding.choose_rounding(odd[1] or odd[0])) for one in odd)
-        found.append(Finding("scatters more", {"mine": mine, "others": others}))
-    return found
+        caveats.append(Finding("scatters more", {"mine": mine, "others": others}))
+    return caveats
 
 
 def no_effect(groups: Sequence[Group]) -> List[Finding]:
@@ -197,13 +197,13 @@ def values_without_effect(groups: Sequence[Group]) -> List[Finding]:
     """The caveat that two values of a variable, all else being equal, have the same numbers, and do not test it: as
     the ground's spacing where the mass comes to rest on the slip surface's own balls.
     """
-    found: Dict[str, Dict[str, None]] = {}
+    values: Dict[str, Dict[str, None]] = {}
     for one, other in itertools.combinations([group for group in groups if group.rows], 2):
         names = [name for name in one.set if one.set[name] != other.set.get(name)]
         if len(names) == 1 and same_as([one.rows[0], other.rows[0]])[1] == 0:
-            found.setdefault(names[0], {}).update(dict.fromkeys((one.rows[0].run, other.rows[0].run)))
+            values.setdefault(names[0], {}).update(dict.fromkeys((one.rows[0].run, other.rows[0].run)))
     return [Finding("no effect", {"which": name, "on": f" in {len(runs)} runs", "then": "they do not test it"},
-                    tuple(runs)) for name, runs in found.items()]
+                    tuple(runs)) for name, runs in values.items()]
 
 
 def outcome(group: Group, few: Sequence[Finished]) -> Finding:

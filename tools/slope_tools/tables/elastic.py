@@ -98,40 +98,41 @@ def tabulate_elastic(runs: Runs) -> str:
 
 # --- words ---
 
-def describe_elastic(about: study_types.Elastic) -> str:
+def describe_elastic(elastic: study_types.Elastic) -> str:
     """A sentence without its full stop."""
-    runs = len(about.runs)
+    runs = len(elastic.runs)
     if not runs:
-        return f"not known: {', '.join(about.failed)} failed"
-    text = (f"restitution {about.restitution:g} of soil, slip surface and ground, rolling {about.rolling}, "
+        return f"not known: {', '.join(elastic.failed)} failed"
+    text = (f"restitution {elastic.restitution:g} of soil, slip surface and ground, rolling {elastic.rolling}, "
             f"{runs} run{'s' * (runs != 1)}: ")
-    distance, area = (about.quantities.get(key) for key in (DISTANCE, AREA))
+    distance, area = (elastic.quantities.get(key) for key in (DISTANCE, AREA))
     if distance is None:
         text += "how far the mass goes is not known, as more than 1 % of it left the terrain"
     else:
         text += f"99 % of the volume stays within {format_span(distance, 'm')}{instead(distance, 'm')}"
     if area:
         text += f"; the deposit covers {format_span(area, 'm2')}{instead(area, 'm2')}"
-    for which, what in ((about.failed, "failed"), (about.moving, "had not come to rest")):
+    for which, what in ((elastic.failed, "failed"), (elastic.moving, "had not come to rest")):
         if which:
             text += f"; {len(which)} {what}"
     return text
 
 
-def format_span(one: study_types.Span, unit: str) -> str:
-    ends = [rounded(end, 3) for end in (one.low, one.high)]
-    return f"{rounded(one.mean, 3)} {unit}" + (f" ({' to '.join(ends)})" if ends[0] != ends[1] else "")
+def format_span(span: study_types.Span, unit: str) -> str:
+    ends = [rounded(end, 3) for end in (span.low, span.high)]
+    return f"{rounded(span.mean, 3)} {unit}" + (f" ({' to '.join(ends)})" if ends[0] != ends[1] else "")
 
 
-def instead(one: study_types.ElasticQuantity, unit: str) -> str:
+def instead(quantity: study_types.ElasticQuantity, unit: str) -> str:
     """What the study's own runs have: the same ones otherwise, and the largest of all."""
-    if not one.usual or not one.study:
+    if not quantity.usual or not quantity.study:
         return ""
-    return f" instead of {format_span(one.usual, unit)}; all other runs, up to {rounded(one.study.high, 3)} {unit}"
+    return (f" instead of {format_span(quantity.usual, unit)}; all other runs, up to {rounded(quantity.study.high, 3)} "
+            f"{unit}")
 
 
-def name_elastic_quantity(key: str, about: study_types.Elastic) -> Tuple[str, str]:
+def name_elastic_quantity(key: str, elastic: study_types.Elastic) -> Tuple[str, str]:
     """What one of COMPARED is called, and its unit."""
     if key == AREA:
-        return f"area under more than {about.thicker_than_m:g} m", "m2"
+        return f"area under more than {elastic.thicker_than_m:g} m", "m2"
     return ALL[key].name, ALL[key].unit

@@ -120,6 +120,6 @@ class Ensemble:
     withheld: List[Finding]         # why: withheld_words
 
 
-def weighted(one: Optional[Ensemble]) -> Optional[Weighted]:
+def weighted(ensemble: Optional[Ensemble]) -> Optional[Weighted]:
     """What known events say of an ensemble, where they weigh its runs."""
-    return one.known_events if one and isinstance(one.known_events, Weighted) else None
+    return ensemble.known_events if ensemble and isinstance(ensemble.known_events, Weighted) else None

@@ -85,61 +85,63 @@ def entry(name: str, groups: Sequence[Group], volumes: Sequence[float]) -> Optio
         line = lines.setdefault(tuple(rest.values()), study_types.Line(rest, []))
         line.points.append(point(float(group.set[name]), group, volumes))
     for line in lines.values():
-        line.points.sort(key=lambda one: one.at)
+        line.points.sort(key=lambda entry_: entry_.at)
     return study_types.Intensity(name, QUANTITY, volumes, CONFIDENCE, list(lines.values()))
 
 
 def point(at: float, group: Group, volumes: Sequence[float]) -> study_types.Point:
     """Volumes of the runs of one intensity (m3), their mean and scatter, and how many exceed each of the volumes."""
-    one = group.of(QUANTITY)
-    found = list(one.volumes.values())
+    quantity = group.of(QUANTITY)
+    of_runs = list(quantity.volumes.values())
     exceed: List[study_types.Exceeded] = []
     for volume in volumes:
-        above = sum(value > volume for value in found)
-        share, low, high = probability(above, len(found))
+        above = sum(value > volume for value in of_runs)
+        share, low, high = probability(above, len(of_runs))
         exceed.append(study_types.Exceeded(volume, above, share, low, high))
     released = sum(row.released_m3 for row in group.rows) / len(group.rows)
     few = [row for row in group.rows if row.at_road.remove_on_road_m3 <= REACHES * released]
-    return study_types.Point(at, len(found), one.mean, one.scatter, min(found), max(found), released,
-                             one.mean / released, len(few), stood(few, group.rows), exceed)
+    return study_types.Point(at, len(of_runs), quantity.mean, quantity.scatter, min(of_runs), max(of_runs), released,
+                             quantity.mean / released, len(few), stood(few, group.rows), exceed)
 
 
-def find_intensity_caveats(about: study_types.Intensity) -> List[Finding]:
+def find_intensity_caveats(intensity: study_types.Intensity) -> List[Finding]:
     """The caveat on a common scatter of all runs: chance decides whether the slope fails, or the mass reaches the road.
     """
-    mixed = [one for line in about.lines for one in line.points if 0 < one.not_on_road < one.runs]
-    found = []
+    mixed = [one for line in intensity.lines for one in line.points if 0 < one.not_on_road < one.runs]
+    caveats = []
     for kind, points in (("fails at times", [one for one in mixed if one.stood]),
                          ("reaches at times", [one for one in mixed if not one.stood])):
         at = sorted({f"{one.at:g}" for one in points}, key=float)
         if at:
-            found.append(Finding(kind, {"variable": about.variable, "values": ", ".join(at)}))
-    return found
+            caveats.append(Finding(kind, {"variable": intensity.variable, "values": ", ".join(at)}))
+    return caveats
 
 
-def tabulate_intensity(about: study_types.Intensity) -> str:
+def tabulate_intensity(intensity: study_types.Intensity) -> str:
     """The CSV: a row for each point."""
     columns = ("runs", "mean_m3", "scatter_m3", "smallest_m3", "largest_m3", "share_of_released")
 
-    def numbers(one: study_types.Point) -> Tuple[Optional[float], ...]:
-        return (one.runs, one.mean_m3, one.scatter_m3, one.smallest_m3, one.largest_m3, one.share_of_released)
-    volumes = [f"{volume:g}" for volume in about.more_than_m3]
+    def numbers(entry_: study_types.Point) -> Tuple[Optional[float], ...]:
+        return (entry_.runs, entry_.mean_m3, entry_.scatter_m3, entry_.smallest_m3, entry_.largest_m3,
+                entry_.share_of_released)
+    volumes = [f"{volume:g}" for volume in intensity.more_than_m3]
     return disk.csv_text(
-        [*about.lines[0].set, about.variable, *columns,
+        [*intensity.lines[0].set, intensity.variable, *columns,
          *(f"{what}_{volume}_m3" for volume in volumes for what in ("p_more_than", "low", "high"))],
         ([*line.set.values(), f"{one.at:g}", *numbers(one),
           *(value for each in one.exceed for value in (each.probability, each.low, each.high))]
-         for line in about.lines for one in line.points))
+         for line in intensity.lines for one in line.points))
 
 
-def shown_of(about: study_types.Intensity) -> Table:
+def shown_of(intensity: study_types.Intensity) -> Table:
     """The table on the screen."""
-    shown = Table(title=f"volume on the road (m3 of ground) against {about.variable}, and P(V > v), in brackets the "
-                        f"{100 * about.confidence:.0f} % interval of so few runs")
-    for head in (*about.lines[0].set, about.variable, "runs", "mean", "smallest", "largest",
-                 *(f"P(V > {volume:,.6g})" for volume in about.more_than_m3)):
+    shown = Table(title=f"volume on the road (m3 of ground) against {intensity.variable}, and P(V > v), in brackets "
+                  "the "
+                        f"{100 * intensity.confidence:.0f} % interval of so few runs")
+    for head in (*intensity.lines[0].set, intensity.variable, "runs", "mean", "smallest", "largest",
+                 *(f"P(V > {volume:,.6g})" for volume in intensity.more_than_m3)):
         shown.add_column(head, justify="right")
-    for line in about.lines:
+    for line in intensity.lines:
         for one in line.points:
             shown.add_row(*line.set.values(), f"{one.at:g}", str(one.runs),
                           *(f"{value:,.0f}" for value in (one.mean_m3, one.smallest_m3, one.largest_m3)),

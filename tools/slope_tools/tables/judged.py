@@ -44,19 +44,19 @@ def name_row(row: Row) -> Sequence[str]:
 def failed(rows: Sequence[Row]) -> List[Finding]:
     """By their errors, whose numbers may differ."""
     return gathered((Finding("failed", {"error": row.error}, name_row(row)) for row in rows
-                     if isinstance(row, Failed)), len(rows), lambda one: kind(one.numbers["error"]))
+                     if isinstance(row, Failed)), len(rows), lambda finding: kind(finding.numbers["error"]))
 
 
 def not_at_rest(finished: Sequence[Finished]) -> List[Finding]:
-    found = []
+    findings = []
     for name, moving in (("in motion", True), ("moving", False)):
         mine = sorted((row for row in finished if not row.at_rest and row.moving == moving),
                       key=lambda row: -row.moves_share)
         cut = sum(row.stop_reason == rest.CUT for row in mine)
         among = f", {cut} of them stopped at their duration" if cut and len(mine) > 1 else ""
-        found += [Finding(name, {"end": row.end, "time": row.stop_time_s, "share": row.moves_share,
-                                 "among": among}, name_row(row)) for row in mine]
-    return gathered(found, len(finished))
+        findings += [Finding(name, {"end": row.end, "time": row.stop_time_s, "share": row.moves_share,
+                                    "among": among}, name_row(row)) for row in mine]
+    return gathered(findings, len(finished))
 
 
 def lost(finished: Sequence[Finished]) -> List[Finding]:
@@ -82,7 +82,7 @@ def released(finished: Sequence[Finished]) -> List[Finding]:
 
 def soft(finished: Sequence[Finished]) -> List[Finding]:
     """Contacts that are too soft for the weight on them; none is known of runs of older versions, and others."""
-    found = sorted(((row.stiffness_number or SOFT, row) for row in finished), key=lambda one: one[0])
+    found = sorted(((row.stiffness_number or SOFT, row) for row in finished), key=lambda pair: pair[0])
     return gathered((Finding("soft", {"number": float(number), "limit": SOFT}, name_row(row))
                      for number, row in found if number < SOFT), len(finished))
 
@@ -111,11 +111,11 @@ def judge_road(finished: Sequence[Finished]) -> List[Finding]:
     return [one._replace(runs=()) if len(one.runs) == len(finished) else one for one in found]
 
 
-def of_logs(rows: Sequence[Row], said: Iterable[str]) -> List[Finding]:
-    """What LAMMPS and its styles warned of; said: kinds of lines that other findings cover."""
+def of_logs(rows: Sequence[Row], covered: Iterable[str]) -> List[Finding]:
+    """What LAMMPS and its styles warned of; covered: kinds of lines that other findings cover."""
     return gathered((Finding("LAMMPS", {"line": line}, name_row(row)) for row in rows
-                     for line in row.log_warnings if kind(line) not in said), len(rows),
-                    lambda one: kind(one.numbers["line"]))
+                     for line in row.log_warnings if kind(line) not in covered), len(rows),
+                    lambda finding: kind(finding.numbers["line"]))
 
 
 KINDS = {"failed", "in motion", "moving", "lost much", "lost", "bulk factor", "body volume", "balls removed", "soft",

@@ -22,15 +22,15 @@ class Named(NamedTuple):
     study: Optional[Path] = None
 
 
-def governing(about: study_types.Study) -> str:
+def governing(study: study_types.Study) -> str:
     """The run that represents the headline of a study with a finished run (load_study); else the one that went
     farthest.
 
     Of an ensemble whose quantile is the headline the one at this quantile; else the one at the 90 % quantile of what
     counts, or the largest where known events go beyond all runs.
     """
-    rows, ensemble, best = finished_of(about.runs), about.ensemble, about.conservative
-    if ensemble and (number := of_headline(about, rows)):
+    rows, ensemble, best = finished_of(study.runs), study.ensemble, study.conservative
+    if ensemble and (number := of_headline(study, rows)):
         return number
     if ensemble and ensemble.of:
         # a quantile is the value of a run
@@ -47,12 +47,12 @@ def governing(about: study_types.Study) -> str:
     return best.run if best else travel_shares.find_farthest_run(rows).run
 
 
-def of_headline(about: study_types.Study, rows: Sequence[Finished]) -> Optional[str]:
+def of_headline(study: study_types.Study, rows: Sequence[Finished]) -> Optional[str]:
     """The run of an ensemble at whose volume the headline is; the longest where the headline is 0, as no run says more.
 
     None where the headline is of another study, of none, or withheld.
     """
-    number, known = about.headline, ensemble_types.weighted(about.ensemble)
+    number, known = study.headline, ensemble_types.weighted(study.ensemble)
     if not number or number.source != "ensemble" or number.volume_m3 is None:
         return None
     if number.volume_m3 == 0:

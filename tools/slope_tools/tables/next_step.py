@@ -88,25 +88,25 @@ class Made(NamedTuple):
         return [*(paper.withheld if paper else ()), *(ensemble_.withheld if ensemble_ else ())]
 
 
-def of_studies(studies: Sequence[Made], about: Optional[study_types.Headline]) -> Optional[Step]:
+def of_studies(studies: Sequence[Made], headline: Optional[study_types.Headline]) -> Optional[Step]:
     """What makes a number of a headline, by the first of its reasons that something can be done about; None where it
     is a number, or there is none.
 
     studies: one, or both of a site: each reason is of one of them.
     """
-    if not about or Kind(about.kind) not in (Kind.FLOOR, Kind.OPEN, Kind.WITHHELD):
+    if not headline or Kind(headline.kind) not in (Kind.FLOOR, Kind.OPEN, Kind.WITHHELD):
         return None
     if len(studies) == 2:
-        one, other = studies
-        studies = [one._replace(beside=other.study), other._replace(beside=one.study)]
+        first, other = studies
+        studies = [first._replace(beside=other.study), other._replace(beside=first.study)]
     by_source = {one.source: one for one in studies}
-    ensemble, governs = by_source.get(Source.ENSEMBLE), about.source
+    ensemble, governs = by_source.get(Source.ENSEMBLE), headline.source
 
     def of(reason: Reason) -> Made:
         source = {Code.RULE: reason.numbers.get("source"), Code.SIZE: governs}.get(reason.code)
         return by_source.get(Source(source or Source.ENSEMBLE)) or studies[0]
 
-    found = (make_next_step(of(one), one.code, one.numbers) for one in answer_words.told(about))
+    found = (make_next_step(of(one), one.code, one.numbers) for one in answer_words.told(headline))
     return next((step for step in found if step), None) or (more_runs(ensemble) if ensemble else None)
 
 

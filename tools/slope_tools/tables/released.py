@@ -64,20 +64,20 @@ class Release(NamedTuple):
 def over_runs(releases, factor=True):
     """The same for several runs: body, share left out, balls removed and bulk factor (or not), the range of each."""
     bodies = [f"body {one.body:,.0f} m3, {released_share(one.left_out)}" for one in releases if one.body is not None]
-    about = [span(bodies)] if bodies and len(bodies) == len(releases) else ["body unknown"]
+    words = [span(bodies)] if bodies and len(bodies) == len(releases) else ["body unknown"]
     removed = sorted(one.removed for one in releases if one.removed is not None)
     if removed and removed[-1] > 0:
-        about.append(f"{span([format_measured_share(removed[0]), format_measured_share(removed[-1])])} of the balls "
+        words.append(f"{span([format_measured_share(removed[0]), format_measured_share(removed[-1])])} of the balls "
                      "overlapped the slip surface " "or the ground and were removed")
     if releases and factor:
         factors = sorted(one.factor for one in releases)
-        farthest = max(releases, key=lambda one: abs(one.off))
+        farthest = max(releases, key=lambda entry: abs(entry.off))
         side = f"{format_measured_share(abs(farthest.off))} {'above' if farthest.off > 0 else 'below'} {farthest.usual}"
         most = "at most " if factors[0] < factors[-1] else ""
-        about.append(f"bulk factor {span([f'{factors[0]:.4g}', f'{factors[-1]:.4g}'])}, "
+        words.append(f"bulk factor {span([f'{factors[0]:.4g}', f'{factors[-1]:.4g}'])}, "
                      + (farthest.usual if abs(farthest.off) < 5e-4 else most + side)
                      + f" ({farthest.usual}: balls {'without order' if farthest.packed else 'in a cubic lattice'})")
-    return "; ".join(about)
+    return "; ".join(words)
 
 
 def released_share(left_out):

@@ -62,15 +62,15 @@ def compute_road_quantiles(numbers: Sequence[Mapping[str, float]], weights: np.n
 def compute_blocked_shares(blocked: Sequence[np.ndarray], weights: np.ndarray) -> List[List[float]]:
     """From, to (m) and the share of the runs that block the road there, where any does; of neighbours it differs."""
     ends = np.unique(np.concatenate([one.ravel() for one in blocked]))
-    found: List[List[float]] = []
+    pieces: List[List[float]] = []
     for low, high in zip(ends[:-1], ends[1:]):
         middle = (low + high) / 2
         share = float(weights @ [((one[:, 0] < middle) & (middle < one[:, 1])).any() for one in blocked])
-        if found and found[-1][1] == low and abs(found[-1][2] - share) < 1e-12:
-            found[-1][1] = float(high)
+        if pieces and pieces[-1][1] == low and abs(pieces[-1][2] - share) < 1e-12:
+            pieces[-1][1] = float(high)
         elif share > 0:
-            found.append([float(low), float(high), share])
-    return found
+            pieces.append([float(low), float(high), share])
+    return pieces
 
 
 def by_body(bodies: Mapping[Any, Sequence[Tuple[float, Sequence[Sequence[float]]]]]) -> List[Dict[str, Any]]:
@@ -97,19 +97,19 @@ def table_of_bodies(entries: Sequence[Mapping[str, Any]]) -> str:
 
 def layer_of_bodies(entries: Sequence[Mapping[str, Any]], axes: Sequence[Axis]) -> Layer:
     """For a GIS."""
-    def lines(one: Mapping[str, Any]) -> MultiLineString:
-        spans = [(axis, Span(max(one["from_m"], axis.s[0]), min(one["to_m"], axis.s[-1]))) for axis in axes]
+    def lines(row: Mapping[str, Any]) -> MultiLineString:
+        spans = [(axis, Span(max(row["from_m"], axis.s[0]), min(row["to_m"], axis.s[-1]))) for axis in axes]
         return MultiLineString([axis.line(span) for axis, span in spans if span.high - span.low > SAME])
     return Layer("MultiLineString", OF_BODIES, ((lines(one), one) for one in entries))
 
 
-def rows(about: study_types.Stretches) -> Iterator[List[Any]]:
+def rows(stretches: study_types.Stretches) -> Iterator[List[Any]]:
     """Names, then a line for each stretch of evaluate_road_runs(); of the last one, all of them, the range is empty."""
-    names = [name for name in ("length", "passable_width", *SUMS) if name in about.totals or
-             name == "passable_width" and about.stretches]
+    names = [name for name in ("length", "passable_width", *SUMS) if name in stretches.totals or
+             name == "passable_width" and stretches.stretches]
     yield ["stretch", "from", "to", "share", *(f"{name}_{100 * share:g}" for name in names for share in SHARES)]
-    for number, one in enumerate(about.stretches, 1):
+    for number, one in enumerate(stretches.stretches, 1):
         yield [number, one["from"], one["to"], one["share"], *(value for name in names for value in one[name])]
     nothing = [None] * len(SHARES)
-    yield ["all", None, None, about.share_blocked,
-           *(value for name in names for value in about.totals.get(name, nothing))]
+    yield ["all", None, None, stretches.share_blocked,
+           *(value for name in names for value in stretches.totals.get(name, nothing))]

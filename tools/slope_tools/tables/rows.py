@@ -148,13 +148,13 @@ def encode_row(row: Row) -> Dict[str, Any]:
     return {"run": about.pop("run"), "status": status, **about, **parts[0], **parts[1]}
 
 
-def read_row(about: Mapping[str, Any]) -> Row:
+def read_row(entry: Mapping[str, Any]) -> Row:
     """The same back, of a mapping with a status; NoRecord if it is none."""
-    if about["status"] not in (FAILED, FINISHED):
-        raise records.NoRecord(f"status: must be {FAILED} or {FINISHED}, got {about['status']!r:.60}")
-    if about["status"] == FAILED:
-        return records.read_record(Failed, about)
-    parts: Dict[str, Any] = {part: {one.name: about[one.name] for one in fields(kind) if one.name in about}
+    if entry["status"] not in (FAILED, FINISHED):
+        raise records.NoRecord(f"status: must be {FAILED} or {FINISHED}, got {entry['status']!r:.60}")
+    if entry["status"] == FAILED:
+        return records.read_record(Failed, entry)
+    parts: Dict[str, Any] = {part: {one.name: entry[one.name] for one in fields(kind) if one.name in entry}
                              for part, kind in PARTS.items()}
-    return replace(records.read_record(Finished, {**about, **dict.fromkeys(PARTS)}),
+    return replace(records.read_record(Finished, {**entry, **dict.fromkeys(PARTS)}),
                    **{part: records.read_record(PARTS[part], mine) for part, mine in parts.items() if mine})

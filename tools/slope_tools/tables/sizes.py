@@ -68,8 +68,8 @@ class Sizes:
         """The same at the finest size, with the bands of BANDS; one that failed as it is."""
         if not isinstance(row, Finished):
             return row
-        found = {key: one for key in self.steps if (one := self.value(row, key)) is not None}
-        new: Dict[str, Any] = {key: one.value for key, one in found.items()}
+        values = {key: value for key in self.steps if (value := self.value(row, key)) is not None}
+        new: Dict[str, Any] = {key: one.value for key, one in values.items()}
         new.update(dict.fromkeys(key for key in self.steps if key not in new and row.value(key) is not None))
         for key in PARTS:
             if new.get(key) is not None:
@@ -86,7 +86,7 @@ class Sizes:
         if row.length_by_lobe_m and row.length_m and new.get(quantities.LENGTH) is not None:
             new["length_by_lobe_m"] = [one * new[quantities.LENGTH] / row.length_m for one in row.length_by_lobe_m]
         return replace(row, **{key: value for key, value in new.items() if hasattr(row, key)}, road=road,
-                       bands={key: list(found[key].band) for key in BANDS if key in found})
+                       bands={key: list(values[key].band) for key in BANDS if key in values})
 
     def draws(self, rows: Sequence[Finished], key: str, number: int) -> np.ndarray:
         """Values (number, n) of runs as they may be at the finest size; rows: as they were run."""
@@ -133,22 +133,22 @@ def combine_sizes(points: Sequence[Point]) -> Optional[Sizes]:
     diameters = [next(float(row.variables[VARIABLE]) for one in points if (row := one[k])) for k in range(used)]
     places = places_of(first)
     steps: Dict[str, List[Step]] = {key: [] for key in list_step_columns(first)}
-    for key, found in steps.items():
+    for key, known_steps in steps.items():
         volume = quantities.ALL[key].unit in VOLUMES
         for k in range(used - 1):
             pairs = [both for one in points if (both := find_size_pair(one, k))
                      and all(row.value(key) is not None for row in both)]
             ball = max(both[0].ball_m3 for both in pairs) if volume and pairs else 0.0
-            found.append(ball_sizes.fit_step(
+            known_steps.append(ball_sizes.fit_step(
                 [float(both[0].value(key)) for both in pairs], [float(both[1].value(key)) for both in pairs],
                 [places.of(both[0]) for both in pairs], diameters[k] / diameters[k + 1], ball,
-                found[-1] if found else None))
+                known_steps[-1] if known_steps else None))
     return Sizes(diameters, [sum(one[k] is not None for one in points) for k in range(used)], places, steps)
 
 
-def find_size_pair(one: Point, k: int) -> Optional[Tuple[Finished, Finished]]:
+def find_size_pair(point: Point, k: int) -> Optional[Tuple[Finished, Finished]]:
     """The runs of a point with the k-th size and the next finer one; None where one of them is not there."""
-    both = one[k:k + 2]
+    both = point[k:k + 2]
     return (both[0], both[1]) if len(both) == 2 and both[0] and both[1] else None
 
 
@@ -173,12 +173,12 @@ def places_of(rows: Sequence[Finished]) -> Places:
 
 # --- for study.yaml, and in words ---
 
-def summarise_sizes(found: Sizes, depth: Optional[float], balls: Sequence[float]) -> study_types.Size:
+def summarise_sizes(sizes: Sizes, depth: Optional[float], balls: Sequence[float]) -> study_types.Size:
     """The entry of study.yaml; depth: mean thickness of the body (m), balls: in it, of each size."""
     levels = [study_types.SizeRuns(d, round(number), depth and depth / d, runs)
-              for d, number, runs in zip(found.diameters, balls, found.runs)]
-    effects = {key: effect(steps) for key, steps in found.steps.items()}
-    one = study_types.Size(levels, list(found.places.names), effects, "")
+              for d, number, runs in zip(sizes.diameters, balls, sizes.runs)]
+    effects = {key: effect(steps) for key, steps in sizes.steps.items()}
+    one = study_types.Size(levels, list(sizes.places.names), effects, "")
     return replace(one, text=describe_size(one))
 
 
@@ -192,17 +192,18 @@ def effect(steps: Sequence[Step]) -> study_types.SizeEffect:
         ball_sizes.estimate_remaining_step(steps))
 
 
-def describe_size(one: study_types.Size) -> str:
+def describe_size(size: study_types.Size) -> str:
     """How many balls were computed, and what finer ones would change, a sentence without its full stop."""
-    key = next((key for key in (quantities.REMOVE, quantities.LENGTH, quantities.DISTANCE) if key in one.effects), None)
-    said = f"computed with {one.sizes[0].balls:,} balls"
-    if len(one.sizes) > 1:
-        said += f", some runs with up to {one.sizes[-1].balls:,}, after which the others are corrected"
-    still = one.effects[key].left if key else None
+    key = next((key for key in (quantities.REMOVE, quantities.LENGTH, quantities.DISTANCE) if key in size.effects),
+               None)
+    words = f"computed with {size.sizes[0].balls:,} balls"
+    if len(size.sizes) > 1:
+        words += f", some runs with up to {size.sizes[-1].balls:,}, after which the others are corrected"
+    still = size.effects[key].left if key else None
     if not key or not still:
-        return said + UNKNOWN
+        return words + UNKNOWN
     what = "the volume" if key == quantities.REMOVE else f"the {quantities.ALL[key].name}"
-    return f"{said}; finer ones would change {what} by {percents(still.low, still.high)}"
+    return f"{words}; finer ones would change {what} by {percents(still.low, still.high)}"
 
 
 def alone(balls: float) -> str:

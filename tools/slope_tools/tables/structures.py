@@ -102,37 +102,37 @@ def crossings(folder: Path, prefix: str) -> Dict[str, np.ndarray]:
 
 def of_structure(folder: Path, prefix: str) -> Dict[str, Any]:
     """Numbers of a structure."""
-    one, pressure = series(folder, prefix), pressures(folder, prefix)
-    time, mean = one.mean_force()
-    found: Dict[str, Any] = {"largest_force_n": 0.0, "at_s": None, "mean_force_n": 0.0, "mean_at_s": None,
-                             "end_force_n": 0.0, "end_contacts": 0, "impulse_ns": 0.0, "moment_nm": 0.0,
-                             "largest_pressure_pa": 0.0, "pressure_at": None}
-    if len(time) and one.largest.max() > 0:
-        found.update(largest_force_n=float(one.largest.max()), at_s=float(time[one.largest.argmax()]),
-                     mean_force_n=float(mean.max()), mean_at_s=float(time[mean.argmax()]),
-                     end_force_n=float(np.linalg.norm(one.force[-1])), end_contacts=int(one.contacts[-1]),
-                     impulse_ns=float(np.linalg.norm(one.impulse[-1])),
-                     moment_nm=float(np.linalg.norm(one.moment, axis=1).max()))
+    forces, pressure = series(folder, prefix), pressures(folder, prefix)
+    time, mean = forces.mean_force()
+    numbers: Dict[str, Any] = {"largest_force_n": 0.0, "at_s": None, "mean_force_n": 0.0, "mean_at_s": None,
+                               "end_force_n": 0.0, "end_contacts": 0, "impulse_ns": 0.0, "moment_nm": 0.0,
+                               "largest_pressure_pa": 0.0, "pressure_at": None}
+    if len(time) and forces.largest.max() > 0:
+        numbers.update(largest_force_n=float(forces.largest.max()), at_s=float(time[forces.largest.argmax()]),
+                       mean_force_n=float(mean.max()), mean_at_s=float(time[mean.argmax()]),
+                       end_force_n=float(np.linalg.norm(forces.force[-1])), end_contacts=int(forces.contacts[-1]),
+                       impulse_ns=float(np.linalg.norm(forces.impulse[-1])),
+                       moment_nm=float(np.linalg.norm(forces.moment, axis=1).max()))
     largest = pressure["largest_pressure"]
     if len(largest) and largest.max() > 0:
         k = int(largest.argmax())
-        found.update(largest_pressure_pa=float(largest[k]), pressure_at=[float(pressure[axis][k]) for axis in "xyz"])
-    return found
+        numbers.update(largest_pressure_pa=float(largest[k]), pressure_at=[float(pressure[axis][k]) for axis in "xyz"])
+    return numbers
 
 
 def of_line(folder: Path, prefix: str) -> Dict[str, Any]:
     """Numbers of a control line; speeds, heights, energies of the crossings in the direction of the mass, all alike."""
     about = schemas.load_checked(folder / f"{prefix}.line.yaml", "what fix control/line wrote", LINE)
-    found = crossings(folder, prefix)
+    crossings_ = crossings(folder, prefix)
     forward, back = about["forward"]["volume"], about["back"]["volume"]
     main = "back" if back > forward else "forward"      # as the fix has it
     numbers: Dict[str, Any] = {"forward_m3": forward, "back_m3": back, "net_m3": about["net_volume"],
                                "direction": main, "crossings": about[main]["crossings"]}
-    mine = in_direction(found, main)
-    times = found["time"][mine]
+    mine = in_direction(crossings_, main)
+    times = crossings_["time"][mine]
     numbers["first_s"] = float(times.min()) if len(times) else None
     for name, unit in (("speed", "m_s"), ("height", "m"), ("energy", "j")):
-        values = found[name][mine]
+        values = crossings_[name][mine]
         values = values[np.isfinite(values)]
         for share in SHARES:
             numbers[f"{name}_{100 * share:.0f}_{unit}"] = within(values, np.ones(len(values)), share) if len(values) \
@@ -141,9 +141,9 @@ def of_line(folder: Path, prefix: str) -> Dict[str, Any]:
     return numbers
 
 
-def in_direction(found: Mapping[str, np.ndarray], main: str) -> np.ndarray:
+def in_direction(crossings_: Mapping[str, np.ndarray], main: str) -> np.ndarray:
     """Mask of the crossings forward, or back."""
-    return found["direction"] * (1 if main == "forward" else -1) > 0
+    return crossings_["direction"] * (1 if main == "forward" else -1) > 0
 
 
 def read_run_structures(folder, settings: Sequence[str]) -> Dict[str, Dict[str, Dict[str, Any]]]:
@@ -165,13 +165,14 @@ def scatter_at_rest(rows: Sequence[Finished]) -> Dict[str, Tuple[float, int]]:
     for row in rows:
         for name, numbers in row.structures.items():
             forces.setdefault(name, {}).setdefault(tuple(row.set.values()), []).append(numbers["end_force_n"])
-    found = {}
+    scatters = {}
     for name, groups in forces.items():
         several = [np.array(one) / np.mean(one) for one in groups.values() if len(one) > 1 and np.mean(one) > 0]
         if several:
             free = sum(len(one) - 1 for one in several)
-            found[name] = float(np.sqrt(sum(((one - 1) ** 2).sum() for one in several) / free)), sum(map(len, several))
-    return found
+            scatters[name] = float(np.sqrt(sum(((one - 1) ** 2).sum() for one in several) / free)), sum(map(len,
+                                                                                                            several))
+    return scatters
 
 
 def tabulate_structures(rows: Sequence[Finished], what: str) -> str:
@@ -219,10 +220,10 @@ def list_structure_tables(rows: Sequence[Finished]) -> Iterator[Table]:
     for what, heads in SHOWN.items():
         if not any(row.value(what) for row in rows):
             continue
-        one = Table(title=TITLES[what])
+        table = Table(title=TITLES[what])
         for head in ("run", what[:-1], *(head for head, _, _ in heads)):
-            one.add_column(head, justify="right")
+            table.add_column(head, justify="right")
         for row in rows:
             for name, numbers in row.value(what).items():
-                one.add_row(row.run, name, *(format_structure_cell(numbers.get(key), unit) for _, key, unit in heads))
-        yield one
+                table.add_row(row.run, name, *(format_structure_cell(numbers.get(key), unit) for _, key, unit in heads))
+        yield table

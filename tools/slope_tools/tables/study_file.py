@@ -28,14 +28,14 @@ def load_study(path: Path) -> study_types.Study:
     rows, finished = study.runs, finished_of(study.runs)
     if not finished:
         raise SlopeError(path, "must have a finished run", f"{len(rows)} that failed")
-    about, best, farthest = study.study, study.conservative, study.largest.get("front_m")
-    if any(row.set.keys() != about.set.keys() for row in rows) or not (
+    content, best, farthest = study.study, study.conservative, study.largest.get("front_m")
+    if any(row.set.keys() != content.set.keys() for row in rows) or not (
             farthest and all(name in [row.run for row in finished] for name in ((best or farthest).run, farthest.run))):
         raise SlopeError(path, f"must be {WHAT}: runs, set, conservative and largest must be of one study")
     of_runs = study.ensemble.withheld if study.ensemble else []
     if any(one.kind == OTHER for one in (*(best.withheld if best else ()), *of_runs)):
         raise SlopeError(path, f"must be {WHAT}: withheld must have reasons of this version")
-    if best and (not about.road or best.volume_m3 is None and not best.withheld
+    if best and (not content.road or best.volume_m3 is None and not best.withheld
                  or not all(row.road for row in finished)):
         raise SlopeError(path, f"must be {WHAT}: conservative must have a volume, or why it is withheld, and a road")
     return study
@@ -51,12 +51,12 @@ def encode_study(study: study_types.Study) -> Dict[str, Any]:
     return {**records.encode_record(study), "runs": [rows_.encode_row(row) for row in study.runs]}
 
 
-def row_of(path: Path, one: Mapping[str, Any]) -> rows_.Row:
+def row_of(path: Path, entry: Mapping[str, Any]) -> rows_.Row:
     """The row of an entry of study.yaml."""
     try:
-        return rows_.read_row(one)
+        return rows_.read_row(entry)
     except NoRecord as error:
-        raise SlopeError(f"{path}: run {one['run']}", f"must be {WHAT}: {error}") from None
+        raise SlopeError(f"{path}: run {entry['run']}", f"must be {WHAT}: {error}") from None
 
 
 class Study(NamedTuple):

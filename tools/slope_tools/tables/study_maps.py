@@ -49,8 +49,8 @@ def maps_in(output: Path) -> List[Path]:
     return [*output.glob("envelope_*"), *output.glob("exceedance_*")]
 
 
-def same_grid(one, other):
-    return one.z.shape == other.z.shape and one.transform.almost_equals(other.transform)
+def same_grid(raster, other):
+    return raster.z.shape == other.z.shape and raster.transform.almost_equals(other.transform)
 
 
 class Maps:

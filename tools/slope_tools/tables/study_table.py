@@ -14,7 +14,7 @@ COLUMNS, ROAD_COLUMNS, IF_KNOWN = ([one.key for one in several if On.HIDDEN not 
                                    for several in (OF_RUN, OF_ROAD, quantities.IF_KNOWN))
 ANSWER: Dict[Optional[bool], str] = {True: "yes", False: "no"}
 # heads of the columns that a narrow screen lacks first; then it lacks the last ones
-LESS = [one.on_screen for one in sorted(shown_on("screen"), key=lambda one: one.keeps)]
+LESS = [one.on_screen for one in sorted(shown_on("screen"), key=lambda quantity: quantity.keeps)]
 
 
 def list_study_columns(finished: Sequence[Finished]) -> List[str]:
@@ -90,8 +90,8 @@ def runs_shown(settings, rows: Sequence[Row], scatters, title) -> Table:
     repeated = any(row.repeat for row in rows)
     for head in (*names, *(["repeat"] * repeated)):
         shown.add_column(head, justify="right", no_wrap=True)
-    for one in columns:
-        shown.add_column(one.on_screen, justify="right")
+    for column in columns:
+        shown.add_column(column.on_screen, justify="right")
     for row in rows:
         cells = [row.set[name] for name in names] + [combinations.key_of(row.repeat)] * repeated
         if isinstance(row, Failed):

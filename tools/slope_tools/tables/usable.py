@@ -35,12 +35,12 @@ class Events(NamedTuple):
         return answer.Road(self.near, self.far, self.reached, self.passed, longest(rows), at_the_road(rows))
 
 
-def known_of(prefix: Path, terrain: Optional[Path], about: Mapping[str, Any],
+def known_of(prefix: Path, terrain: Optional[Path], choice: Mapping[str, Any],
              site: Optional[Path] = None) -> known.Known:
-    """The mass of a run among known events; prefix: of its deposit; terrain: the ground before it; about: of the
+    """The mass of a run among known events; prefix: of its deposit; terrain: the ground before it; choice: of the
     events, see known.of_about(); site: see known.of_mass()."""
     read = deposit.read_deposit(prefix, terrain, lambda text: None)
-    return known.of_mass(read.raster, *scar.before(read.raster, read.base, terrain), about, site)
+    return known.of_mass(read.raster, *scar.before(read.raster, read.base, terrain), choice, site)
 
 
 def reach(rows: Sequence[Finished], source: Optional[answer.Source], among: known.Known) -> Optional[how_far.Reach]:
@@ -51,12 +51,12 @@ def reach(rows: Sequence[Finished], source: Optional[answer.Source], among: know
                         mine[0].length_is or ON_PATH if mine else ON_PATH, among.why)
 
 
-def known_events(found: Optional[known.Found], road: Any) -> Optional[Events]:
+def known_events(mobilities: Optional[known.Found], road: Any) -> Optional[Events]:
     """What they did at a road, polygons in local metres; None where the mass has no fall path."""
-    if found is None:
+    if mobilities is None:
         return None
-    one, median = found.decides, found.strict and found.strict.length_at(0.5)
-    if found.strict and median is None:
+    one, median = mobilities.decides, mobilities.strict and mobilities.strict.length_at(0.5)
+    if mobilities.strict and median is None:
         median = float(one.path.length[-1])
     at = at_road(one.path, road)
     return Events(median, at.length, at.passed, one.shares(at.length), one.shares(at.passed))

@@ -111,9 +111,9 @@ def twice(case: Case) -> str:
         return "SECONDS"
 
 
-def with_remedies(found: Sequence[Finding], case: Case) -> List[Finding]:
+def with_remedies(reasons: Sequence[Finding], case: Case) -> List[Finding]:
     """Reasons with what mends each."""
-    return [one._replace(remedy=suggest_withheld_remedy(one, case)) for one in found]
+    return [one._replace(remedy=suggest_withheld_remedy(one, case)) for one in reasons]
 
 
 def describe_withheld(withheld: Sequence[Finding]) -> List[str]:

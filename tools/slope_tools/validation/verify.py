@@ -230,32 +230,32 @@ def second_table() -> Dict[str, Any]:
     return {"heads": ["", *(f"{x:.2f}" for x in heads)], "rows": rows, "remark": " ".join(about["remark"].split())}
 
 
-def write_verification(output, outcomes, about, peers=None, seen=()):
+def write_verification(output, outcomes, environment, peers=None, seen=()):
     """The report in its four forms, and the numbers of each case.
 
     seen: (Seen, number or word).
     """
     rows = [row(outcome) for outcome in outcomes]
     table = disk.csv_text(COLUMNS, ({**entry, "commands": "; ".join(entry["commands"])}.values() for entry in rows))
-    found = make_verification_content(outcomes, peers)
-    whole = yaml.safe_dump({**about, "results": rows}, sort_keys=False)
+    content = make_verification_content(outcomes, peers)
+    whole = yaml.safe_dump({**environment, "results": rows}, sort_keys=False)
     (output / NUMBERS).mkdir(exist_ok=True)
     for case, kept in kept_numbers(outcomes, seen).items():
         disk.write_file(output / NUMBERS / f"{case}.yaml", yaml.safe_dump(kept, sort_keys=False))
-    for name, data in ((".csv", table), (".yaml", whole), (".rst", render("verify.rst.j2", found)),
-                       (".html", render("verify.html.j2", {**found, "about": about}))):
+    for name, data in ((".csv", table), (".yaml", whole), (".rst", render("verify.rst.j2", content)),
+                       (".html", render("verify.html.j2", {**content, "about": environment}))):
         disk.write_file(output / f"{NAME}{name}", data)
 
 
 def kept_numbers(outcomes, seen) -> Dict[str, Dict[str, Any]]:
     """{case: what inputs/CASE/numbers.yaml holds}: what its claims, and other numbers of its README, gave."""
-    found: Dict[str, Dict[str, Any]] = {}
+    numbers: Dict[str, Dict[str, Any]] = {}
     for one in outcomes:
-        found.setdefault(one.claim.case, {"claims": {}, "seen": {}})["claims"][one.claim.name] = {
+        numbers.setdefault(one.claim.case, {"claims": {}, "seen": {}})["claims"][one.claim.name] = {
             "got": digits_of(one.got), "control": digits_of(one.control_got), "package": one.package, "date": one.date}
     for one, got in seen:
-        found.setdefault(one.case, {"claims": {}, "seen": {}})["seen"][one.name] = digits_of(got)
-    return found
+        numbers.setdefault(one.case, {"claims": {}, "seen": {}})["seen"][one.name] = digits_of(got)
+    return numbers
 
 
 def digits_of(got):
@@ -265,13 +265,13 @@ def digits_of(got):
 
 def kept_outcomes(inputs=INPUTS):
     """The Outcomes of all claims whose numbers are kept in inputs/."""
-    found = []
+    outcomes = []
     for claim in verification.all_claims():
         path = Path(inputs) / claim.case / f"{NUMBERS}.yaml"
         one = yaml.safe_load(path.read_text(encoding="utf-8"))["claims"].get(claim.name) if path.is_file() else None
         if one:
-            found.append(judged(claim, one["got"], one["control"], one["package"], one["date"]))
-    return found
+            outcomes.append(judged(claim, one["got"], one["control"], one["package"], one["date"]))
+    return outcomes
 
 
 def make_verification_content(outcomes, peers=None) -> Dict[str, Any]:

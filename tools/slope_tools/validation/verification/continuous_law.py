@@ -206,13 +206,13 @@ def one_impact(case, tolerance=1e-11):
                 return room(t, y, sliding, i)
             event.terminal, event.direction = True, -1      # type: ignore[attr-defined]  # of solve_ivp
             events.append(event)
-        found = solve_ivp(lambda t, y: rates(t, y, sliding), (t, last), y, method="DOP853", rtol=tolerance,
-                          atol=tolerance, events=events, max_step=last / 50)
-        t, y = found.t[-1], found.y[:, -1]
-        if found.status == 0 or t > (1 - 1e-9) * last:
+        solution = solve_ivp(lambda t, y: rates(t, y, sliding), (t, last), y, method="DOP853", rtol=tolerance,
+                             atol=tolerance, events=events, max_step=last / 50)
+        t, y = solution.t[-1], solution.y[:, -1]
+        if solution.status == 0 or t > (1 - 1e-9) * last:
             return m.outcome(y[0], y[4], y[5])
         for i in range(2):
-            if len(found.t_events[i]):
+            if len(solution.t_events[i]):
                 d = directions[i]
                 sliding[i] = 0 if sliding[i] else np.sign(-k * y[d.s] - c * y[d.v])
     raise RuntimeError(f"more than 100 changes of regime in {case}")

@@ -18,7 +18,7 @@ def turn_pyramid_deck(deck, seeds=(1, 2)):
 
 def travels(results):
     """Mean way down the face and to its left, m: azimuths by seeds by faces, twice."""
-    found = []
+    distances = []
     for k, result in enumerate(results):
         azimuth = AZIMUTHS[k * len(AZIMUTHS) // len(results)]
         start, end = (result.frames(f"pyramid.{when}.dump") for when in ("start", "end"))
@@ -26,8 +26,8 @@ def travels(results):
             own = start["type"] == face                 # sorted by id, and none is lost
             dx, dy = ((end[axis] - start[axis])[own].mean() for axis in "xy")
             turn = np.radians(azimuth + 90 * (face - 1))
-            found.append((dx * np.cos(turn) + dy * np.sin(turn), dy * np.cos(turn) - dx * np.sin(turn)))
-    return np.moveaxis(np.reshape(found, (len(AZIMUTHS), -1, len(FACES), 2)), -1, 0)
+            distances.append((dx * np.cos(turn) + dy * np.sin(turn), dy * np.cos(turn) - dx * np.sin(turn)))
+    return np.moveaxis(np.reshape(distances, (len(AZIMUTHS), -1, len(FACES), 2)), -1, 0)
 
 
 def measure_face_spread(*results):

@@ -27,14 +27,14 @@ NORMAL, TANGENT, AXIS = np.array([(2, 1, 2), (1, 2, -2), (-2, 2, 1)]) / 3
 
 def laws_of(log, kinds):
     """kt/kn, e, friction, rolling of each type, from the commands that LAMMPS has seen."""
-    found = {}
+    laws = {}
     for kind, *numbers in COEFFICIENTS.findall(log):
         try:
             kn, kt, e, friction, rolling = map(float, numbers)
         except ValueError:      # before variables were put in
             continue
-        found[kind] = kt / kn, e, friction, rolling
-    return np.array([found.get(str(kind), found["*"]) for kind in range(1, kinds + 1)]).T
+        laws[kind] = kt / kn, e, friction, rolling
+    return np.array([laws.get(str(kind), laws["*"]) for kind in range(1, kinds + 1)]).T
 
 
 def observed(result, name="sticking_impact.dump"):
