@@ -1,5 +1,4 @@
 """Each fact in one place: site.yaml is read once, a length has one ruler, equal runs are one, a gap is no road."""
-import re
 import shutil
 from pathlib import Path
 from types import SimpleNamespace
@@ -143,17 +142,6 @@ def test_a_folder_may_move_without_its_sources(mine, gis, dry, inside, tmp_path_
                                                ("1e-1 0 0.02 0.03 0.05", "0.03"), ("b a c", "a")])
 def test_the_middle_is_that_of_the_values(several, expected):
     assert settings.middle(several.split()) == expected
-
-
-def test_the_deck_of_a_ground_with_a_step_is_made_anew(mine, dry):  # noqa: F811
-    deck = mine / "in.site"
-    text = deck.read_text()
-    deck.write_text(f"# the rim of a tank\nprint 'a rim '  # rim \n{text}")
-    assert dry("mine")[0] == 0
-    deck.write_text(text.replace(" inside body", " rim within"))
-    status, _, err = dry("mine")
-    assert status == 2 and re.search("mine/in.site: must be made anew, `slope site mine`: .* got rim", err)
-    assert not (mine / "runs").exists() and not (mine / "study").exists()
 
 
 def test_too_few_points_are_named_where_they_stand(mine, dry):  # noqa: F811

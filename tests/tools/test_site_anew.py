@@ -320,83 +320,19 @@ def test_the_ground_is_scattered_balls_as_large_as_those_of_the_soil(inside, min
         assert words[words.index("pattern"):] == ["pattern", "scattered", "${which}"]
 
 
-def older(mine, **model):
-    """The same site as a version made it whose ground was a plan grid of one diameter."""
-    edit(mine, "model", **{"field_diameter": 2.0, "field_ratio": None, "spacing": 1, **model})
-    about = yaml.safe_load((mine / "site.yaml").read_text())
-    del about["study"]["spacing"]
-    deck = mine / site_deck.NAME
-    text = deck.read_text().replace("index ${d} ", "index 2    ").replace("pattern scattered ${which}", "")
-    deck.write_text(re.sub("variable  ground_seed .*\n", "", text))
-    (mine / "site.yaml").write_text(yaml.safe_dump(about))
-    about["found"].update(deck_sha256=disk.sha256(deck),
-                          choices_sha256=site_choices.load_site(mine).fingerprint())
-    (mine / "site.yaml").write_text(yaml.safe_dump(about))
-
-
-def test_the_study_of_an_older_site_is_as_it_was(mine):
-    older(mine)
-    choices = site_choices.load_site(mine).choices
-    assert choices.older["model"]["field_diameter"] == 2 and choices.model.spacing == 1
-    site_study.check_site(site_choices.load_site(mine))
-    assert site_study.grounds(choices, decks.index_variables(mine / site_deck.NAME)) == []
-    edit(mine, "model", field_diameter=3.0)
-    with pytest.raises(SlopeError, match="must not have been changed since"):
-        site_study.check_site(site_choices.load_site(mine))
-
-
-def test_an_older_site_is_rebuilt_with_the_ground_of_now(inside, mine):
-    older(mine)
+@pytest.mark.parametrize("section, key", [("model", "field_diameter"), ("study", "xoffset"), ("study", "fine")])
+def test_a_key_of_an_older_version_is_refused_with_what_to_do(inside, mine, section, key):
     before = contents(mine)
-    line = inside("mine", 2).err
-    assert line.startswith("slope site: mine/site.yaml: model.spacing: must be <= 0.95: ") and line.count("\n") == 1
-    assert "--spacing 0.9" in line and line.endswith(", got 1\n") and contents(mine) == before
-    assert "field_diameter and field_ratio of an older version" in inside("mine --spacing 0.9").out
-    choices = site_choices.load_site(mine).choices
-    assert choices.model.spacing == 0.9 and not choices.older
-    assert choices.study.spacing == (0.5, 0.7)
-    older(mine, spacing=0.33)
-    inside("mine")
-    assert decks.index_variables(mine / site_deck.NAME)["spacing"] == "0.33"
-
-
-def with_lattice(mine):
-    """The same site as a version made it whose balls began on a cubic lattice."""
-    edit(mine, "model", density=3411.4)
-    edit(mine, "study", xoffset=[0.5], yoffset=[0.25, 0.75], zoffset=[])
-    about = yaml.safe_load((mine / "site.yaml").read_text())
-    del about["study"]["packing"]
-    deck = mine / site_deck.NAME
-    deck.write_text(re.sub("variable  packing .*", "variable  xoffset index 0.0\nvariable  yoffset index 0.0",
-                           deck.read_text()))
-    (mine / "site.yaml").write_text(yaml.safe_dump(about))
-    about["found"].update(deck_sha256=disk.sha256(deck),
-                          choices_sha256=site_choices.load_site(mine).fingerprint())
-    (mine / "site.yaml").write_text(yaml.safe_dump(about))
-
-
-def test_the_study_of_a_site_with_a_lattice_is_as_it_was(inside, mine, monkeypatch):
-    with_lattice(mine)
-    variables = decks.index_variables(mine / site_deck.NAME)
-    assert site_choices.chance(variables) == "xoffset=0:0.99"
-    out = in_process(mine.parent, "study", "mine", "--paper", "--dry-run").stdout
-    assert "xoffset_0.5" in out and "yoffset_0.75" in out and "packing" not in out
-
-
-def test_a_site_with_a_lattice_is_rebuilt_with_a_packing(inside, mine):
-    before = site_choices.load_site(mine).choices
-    with_lattice(mine)
-    out = inside("mine").out
-    assert "xoffset, yoffset, zoffset of an older version" in out
-    choices = site_choices.load_site(mine).choices
-    assert choices.study.packing == (2, 3, 4) and not choices.older
-    assert choices.model.density == 2977 and choices.balls == before.balls
-    assert "fill body seed" in (mine / site_deck.NAME).read_text()
+    edit(mine, section, **{key: 2})
+    was = contents(mine)
+    err = inside("mine", 2).err
+    assert err.count("\n") == 1 and re.search(f"mine/site.yaml: {section}: .*no {key}.*the site anew", err)
+    assert contents(mine) == was != before
 
 
 @pytest.mark.parametrize("model, rule", [
-    ({"field_diameter": 2, "spacing": -1}, "model.spacing: must be > 0, got -1"),
-    ({"field_diameter": 2, "spacing": "x"}, "model.spacing: must be a finite number"),
+    ({"spacing": -1}, "model.spacing: must be > 0, got -1"),
+    ({"spacing": "x"}, "model.spacing: must be a finite number"),
     ({"spacing": 1}, "model.spacing: must be <= 0.95, got 1")])
 def test_a_wrong_spacing_in_the_file(mine, model, rule):
     edit(mine, "model", **model)

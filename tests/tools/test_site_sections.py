@@ -1,7 +1,6 @@
 """The choices of a site as types: what site.yaml may hold by its schema, and nothing else."""
 import ast
 import dataclasses
-from collections import abc
 from typing import ClassVar, Mapping, Tuple, Union, get_args, get_origin, get_type_hints
 
 import pytest
@@ -69,14 +68,6 @@ def test_choices_are_frozen_and_others_are_made_of_them():
     assert other.study.rolling is made.study.rolling and isinstance(other, OfMass)
     assert OfBlocks.of({}).entries()["kind"] == "blocks" and not OfBlocks.of({}).has("motion", "file")
     assert made.study.levels is None and OfMass.of({"study": {"levels": 2}}).study.levels == 2
-
-
-def test_what_older_sites_have_is_kept():
-    """It belongs to what their deck was made of, and stands in no section."""
-    made = OfMass.of({"model": {"field_ratio": 2, "spacing": 1}, "study": {"yoffset": [0.5]}})
-    assert made.older == {"model": {"field_diameter": None, "field_ratio": 2}, "study": {"yoffset": [0.5]}}
-    assert made.entries()["model"]["field_ratio"] == 2 and OfMass.of(made.entries()) == made
-    assert isinstance(made.older, abc.Mapping) and OfMass.of({}).older == {}
 
 
 def test_no_signature_takes_choices_for_a_mapping():

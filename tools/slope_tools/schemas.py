@@ -39,7 +39,8 @@ def list_of(items: Mapping[str, Any], least: int = 0, null: bool = False) -> Dic
     return {"type": ["array", "null"] if null else "array", "items": items, "minItems": least}
 
 
-FINDINGS = list_of({"anyOf": [OBJECT, TEXT], "description": "findings"}, null=True)     # TEXT: of older versions
+FINDINGS = list_of({**OBJECT, "description": "findings"}, null=True)
+NO_OTHERS = "must have no"      # as the rule on keys that are unknown begins
 
 
 def load_checked(path, what: str, schema: Mapping[str, Any]) -> Any:
@@ -106,7 +107,7 @@ def rule_of(error) -> str:
     rule, value, got = str(error.validator), error.validator_value, repr(error.instance)[:60]
     if rule == "additionalProperties":
         extra = sorted(map(str, error.instance.keys() - error.schema["properties"].keys()))
-        return f"must have no {', '.join(extra)}, which is unknown; keys are {', '.join(error.schema['properties'])}"
+        return f"{NO_OTHERS} {', '.join(extra)}, which is unknown; keys are {', '.join(error.schema['properties'])}"
     if rule == "required":
         return f"must have {' and '.join(key for key in value if key not in error.instance)}"
     if rule == "type":

@@ -7,7 +7,6 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
 
 from .. import findings
 from ..blocks import kinds
-from ..case import decks
 from ..ensembles import known_study
 from ..errors import SlopeError
 from ..findings import Finding, finding, printer
@@ -20,7 +19,7 @@ from ..releases.release import SHAPES
 from ..releases.release_dip import LEAST
 from ..releases.release_scar import KINDS
 from ..runs import jobs
-from ..sites import site, site_budget, site_choices, site_deck, site_older, site_scenarios, site_warnings
+from ..sites import site, site_budget, site_choices, site_deck, site_scenarios, site_warnings
 from ..sites.site_sections import Choices, Key, OfMass, sections
 from ..slips import bodies
 from ..studies import ahead, outlook, site_ground
@@ -336,12 +335,9 @@ def choose_site(args: Request) -> Chosen:
 def rebuilt(folder: Path, given: Dict[str, Any]) -> Chosen:
     """The folder of a site, its choices, and of them what counts of what was found before."""
     made = site_choices.load_kind(folder, site_choices.kind_in(folder))
-    choices, known = site_older.renewed(made.choices, folder, "spacing" in given, print), made.found.derived
-    if made.choices.older.get("study") or given.keys() - BESIDE:
+    choices, known = made.choices, made.found.derived
+    if given.keys() - BESIDE:
         return folder, site_choices.forgotten(choices, known), {}
-    if choices.model.film is None and (folder / site_deck.NAME).is_file():      # an older folder has none
-        film = decks.index_variables(folder / site_deck.NAME).get("film", "")
-        choices = choices.changed({("model", "film"): float(film) if film else None})
     return folder, choices, known
 
 
@@ -353,8 +349,7 @@ def of_scenario(args: Request, given: Dict[str, Any]) -> Chosen:
         if name in given:
             raise SlopeError(f"--{name}", "must not be given with --scenario, whose balls are those of its site",
                              f"{given[name]:g}")
-    choices = site_scenarios.choices(of, args.scenario)
-    return folder, site_older.renewed(choices, args.folder, "spacing" in given, print), {}
+    return folder, site_scenarios.choices(of, args.scenario), {}
 
 
 def of_slips(args: Ground) -> Dict[str, Any]:

@@ -349,9 +349,8 @@ def of_ensemble(args: Request, asked: Site, method="") -> Request:
         raise SlopeError("-o", "must not be given with a site of several roads, each of which has its folder",
                          args.output)
     site, choices = asked.folder, asked.choices
-    chance = site_choices.chance(decks.index_variables(site / site_deck.NAME))
-    vary = args.vary or ([] if args.fit else [*of_fragility(choices), chance] if args.fragility
-                         else [*known_study.VARY, chance])
+    vary = args.vary or ([] if args.fit else [*of_fragility(choices), site_choices.CHANCE] if args.fragility
+                         else [*known_study.VARY, site_choices.CHANCE])
     return replace(args, deck=site / site_deck.NAME, site=site, around=asked, method=method,
                    set=[*args.set, *not_varied(args, choices, vary)],
                    output=args.output or site_roads.results(asked) / site_study.ENSEMBLE,

@@ -15,7 +15,7 @@ NONE = "site.yaml asks for no runs that are weighted by known events (study.poin
 WEIGHTED = "weighted by known events of this volume and height, beside a sweep"
 OF_BOTH = (BESIDE, WEIGHTED)        # methods of the two studies that give one number together
 # --vary, unless it is given: from values back-calculated for rock avalanches (doc/src/events.rst) to the defaults
-# and site_choices.chance()
+# and site_choices.CHANCE
 VARY = ("friction=5:30", "rolling=0:0.15", "spacing=0.3:0.95", "field_e=0.05:0.5")
 # bounds of runs that are added towards longer ones; between them the density is that of VARY
 WIDE = {"friction": (2.0, 30.0), "spacing": (0.2, 0.95)}

@@ -4,7 +4,6 @@ Its sections as types: site_sections.py; what slope site found: site_found.py.
 """
 import hashlib
 import json
-import math
 import os
 import re
 from dataclasses import dataclass
@@ -15,13 +14,11 @@ import yaml
 
 from .. import disk, schemas, written_yaml
 from ..errors import SlopeError
-from ..releases import packing
 from ..survey import file_parts, vectors, zips
 from ..survey.crs import as_crs
 from . import site_found
 from .site_found import Found
-from .site_sections import (KINDS, OFFSETS, PACKING, RETIRED, C, Choices, Key, OfMass, kind_of, older, schema,
-                            sections, widest)
+from .site_sections import KINDS, PACKING, C, Choices, Key, OfMass, kind_of, schema, sections
 
 NAME = "site.yaml"
 VERSION = 1             # of site.yaml, also in its schema
@@ -47,40 +44,13 @@ LATER = (("ground", "file"), ("ground", "table"), ("model", "film"), ("structure
 # keys of section model, and of others, that make the model's balls, cells and stiffness; not what is asked for
 OF_MODEL = (*DERIVED, ("model", "least_speed"), ("model", "least_thick"))
 
-# keys of study that older versions had, and that have no meaning any more
-DROPPED = ("sizes", "fine")
+# --vary of what differs between runs by chance alone
+CHANCE = f"{PACKING}=1:1000000"
 
 # sections that `slope study` and the report read when they run, except for files, of which the folder has copies
 READ_LATER = ("project", "road", "study", "known")
 Derived = Mapping[str, Any]     # {"section.key": value} of DERIVED
 K = TypeVar("K", bound=Choices, covariant=True)
-
-
-def of_now(given: Any) -> Any:
-    """What a file of any version holds, without the keys of older ones (RETIRED, OFFSETS, DROPPED).
-
-    The spacing of the ground's balls is one that is possible now; the balls have as many repeats, and are as heavy
-    together, as those that began on a cubic lattice.
-    """
-    if not isinstance(given, dict):
-        return given
-    gone, was = {"model": RETIRED, "study": (*OFFSETS, *DROPPED)}, older(given)
-    kept_sections = {name: {key: value for key, value in entries.items() if key not in gone.get(name, ())}
-                     if isinstance(entries, dict) else entries for name, entries in given.items()}
-    model = kept_sections["model"] if isinstance(kept_sections.get("model"), dict) else {}
-    if "model" in was and disk.is_finite_number(model.get("spacing")):
-        model["spacing"] = min(model["spacing"], widest())
-    if "study" in was:
-        moved = sum(len(several) for several in was["study"].values() if isinstance(several, list))
-        kept_sections["study"][PACKING] = list(range(2, 2 + moved))
-        if disk.is_finite_number(model.get("density")):
-            model["density"] = round(model["density"] * math.pi / 6 * packing.BULK, 1)
-    return kept_sections
-
-
-def chance(variables: Mapping[str, str]) -> str:
-    """--vary of what differs between runs by chance alone, of a deck with these index variables."""
-    return f"{PACKING}=1:1000000" if PACKING in variables else f"{OFFSETS[0]}=0:0.99"
 
 
 def not_varied(choices: OfMass, varied: Collection[str]) -> Dict[str, str]:
@@ -105,7 +75,8 @@ def check_site_file(given: Any, where: str, options: Optional[Mapping[Tuple[str,
         key = ".".join(str(part) for part in place if isinstance(part, str))
         at = "".join(f": {schemas.nth(part)}" for part in place if isinstance(part, int))
         option = (options or {}).get((str(place[0]), str(place[1])) if len(place) > 1 else ("", ""))
-        raise SlopeError((option or (f"{where}: {key}" if key else where)) + at, rule)
+        remedy = "; one of an older version: make the site anew from its files" * rule.startswith(schemas.NO_OTHERS)
+        raise SlopeError((option or (f"{where}: {key}" if key else where)) + at, f"{rule}{remedy}")
     for key, text in (given.get("project") or {}).items():      # now, as the report comes last
         check_text((options or {}).get(("project", key), f"{where}: project.{key}"), text)
 
@@ -174,7 +145,7 @@ def load_kind(folder: Path, kind: Type[C]) -> Folder[C]:
     if kind_of(content) != kind.KIND:
         raise SlopeError(folder, f"must be a site of {kind.KIND or 'a mass'} here",
                          f"one of {kind_of(content) or 'a mass'}")
-    check_site_file(of_now(content), str(path))
+    check_site_file(content, str(path))
     schemas.check_schema(content, site_found.SCHEMA, path, WHAT)
     written, place = kind.of(content), real(folder)
     return Folder(folder, with_files(written, lambda name: os.path.normpath(place / name)), written,

@@ -7,7 +7,7 @@ names of those that it shares. Choices are frozen: changed() gives others.
 import functools
 import json
 import keyword
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, ClassVar, Dict, Iterator, List, Mapping, Optional, Tuple, Type, TypeVar, Union, get_type_hints
 
@@ -16,9 +16,6 @@ from ..survey.roads import Asked
 
 SCHEMA = Path(__file__).with_name("site_schema.json")
 PACKING = "packing"     # variable of the deck, and of the study: its repeats
-# keys of older sites, which their decks keep: of those whose ground was a plan grid of one diameter, and of those whose
-# balls began on a cubic lattice
-RETIRED, OFFSETS = ("field_diameter", "field_ratio"), ("xoffset", "yoffset", "zoffset")
 C = TypeVar("C", bound="Choices")
 Key = Tuple[str, str]       # section and key
 Texts = Tuple[str, ...]
@@ -200,8 +197,6 @@ class Choices:
     lines: Lines
     model: Model
     study: Study
-    # {section: {key: value}} of RETIRED and OFFSETS
-    older: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
 
     @classmethod
     def of(cls: Type[C], given: Mapping[str, Any]) -> C:
@@ -213,14 +208,14 @@ class Choices:
             if isinstance(own.get("confined"), bool):       # yes and no without quotes
                 own["confined"] = "yes" if own["confined"] else "no"
             values[name] = hints[name](**{attribute(key): frozen(own[key]) for key in about["properties"]})
-        return cls(**values, older=older(given))
+        return cls(**values)
 
     def entries(self) -> Dict[str, Any]:
         """The same as a file has them: of() reads it."""
         found: Dict[str, Any] = {"kind": self.KIND} if self.KIND else {}
         for name, about in sections(self.KIND):
             own = {key: self.value(name, key) for key in about["properties"]}
-            found[name] = disk.make_plain({**own, **self.older.get(name, {})})
+            found[name] = disk.make_plain(own)
         return found
 
     def has(self, section: str, key: str) -> bool:
@@ -308,13 +303,3 @@ def widest() -> float:
     """The largest spacing of the ground's balls, in diameters: through a wider one balls fall."""
     most: float = schema()["properties"]["model"]["properties"]["spacing"]["maximum"]
     return most
-
-
-# --- older sites ---
-
-def older(given: Mapping[str, Any]) -> Dict[str, Dict[str, Any]]:
-    """The keys of older sites in what a file holds: all of RETIRED where there is one of them."""
-    model, study = (one if isinstance(one := given.get(name), dict) else {} for name in ("model", "study"))
-    ground = {key: model.get(key) for key in RETIRED if any(one in model for one in RETIRED)}
-    lattice = {key: study[key] for key in OFFSETS if key in study}
-    return {name: one for name, one in (("model", ground), ("study", lattice)) if one}

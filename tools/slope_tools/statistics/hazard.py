@@ -42,9 +42,10 @@ class Curve:
         return Band(float(self.share[i]), float(self.low[i]), float(self.high[i]))
 
 
-def share_bounds(k, n: int, failed: int = 0, effect: float = 1.0,
+def share_bounds(k, n: int, failed: int = 0, effect: Union[float, np.ndarray] = 1.0,
                  confidence: float = CONFIDENCE) -> Tuple[np.ndarray, np.ndarray]:
-    """Bounds (Clopper and Pearson) of the share of which k of n finished runs are seen; k may be an array.
+    """Bounds (Clopper and Pearson) of the share of which k of n finished runs are seen; k may be an array, and effect
+    one for each.
 
     effect: how many of the runs are worth one independent run, >= 1.
     """
@@ -119,12 +120,8 @@ def compute_hazard_curve(values: Values, point: Sequence[int], failed: int = 0) 
     n = len(given)
     at = levels_of(given)
     above = n - np.searchsorted(np.sort(given), at, "right")
-    low, high = np.empty(len(at)), np.empty(len(at))
-    several = len(np.unique(of)) < n
-    for i, value in enumerate(at):
-        effect = effect_of(given > value, of) if several else 1.0
-        low[i], high[i] = share_bounds(above[i], n, failed, effect)
-    return Curve(at, above / n, low, high)
+    effects = [effect_of(given > value, of) for value in at] if len(np.unique(of)) < n else 1.0
+    return Curve(at, above / n, *share_bounds(above, n, failed, np.asarray(effects)))
 
 
 def levels_of(given: np.ndarray) -> np.ndarray:

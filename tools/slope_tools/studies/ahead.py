@@ -73,8 +73,7 @@ def look_ahead(site: Site, engine: Setup, points: int, asked: site_study.Asked =
 
 def plan_weighted_points(planned: site_study.Planned, points: int):
     """The runs of the ensemble that is weighted by known events, with those that were added; how many more may be."""
-    chance = site_choices.chance(planned.variables)
-    vary = [*known_study.VARY, chance]
+    vary = [*known_study.VARY, site_choices.CHANCE]
     fixed = site_choices.not_varied(planned.choices, {words.partition("=")[0] for words in vary})
     asked = f"{(planned.setup.site or Path()) / site_choices.NAME}: study.points"
     plan = sample.check_sample(points, designs.SOBOL, SEED, vary, planned.setup.deck, fixed, {}, asked)

@@ -18,7 +18,7 @@ from ..errors import SlopeError
 from ..findings import Finding, finding
 from ..runs import jobs, repeats
 from ..schemas import FINDINGS
-from ..sites import ground, site_budget, site_choices, site_deck, site_roads, site_warnings
+from ..sites import site_budget, site_choices, site_deck, site_roads, site_warnings
 from ..sites.site_choices import Folder, Site
 from ..sites.site_layers import OBSERVED
 from ..sites.site_sections import PACKING, Choices, OfMass
@@ -103,10 +103,9 @@ def plan_site_study(site: Site, engine: Setup) -> Planned:
         setup = setup._replace(road=Road(site_roads.file_of(site), road.cut_angle, road.mesh, asked=road.asked,
                                          name=site.road))
     settings, variables = {"rolling": format_deck_values(several.rolling)}, decks.index_variables(deck)
-    chances: Dict[str, Any] = {PACKING: several.packing, **choices.older.get("study", {})}
-    repeated = {name: format_deck_values(values) for name, values in chances.items() if name in variables and values}
+    repeated = {PACKING: format_deck_values(several.packing)} if several.packing else {}
     middle = middle_of(settings["rolling"])
-    others = grounds(choices, variables)
+    others = grounds(choices)
     if others:
         settings["spacing"] = [variables["spacing"]]
     todo = repeats.plan_repeats(setup.runs, settings, repeated, variables, others)
@@ -209,10 +208,6 @@ def check_site(site: Folder[Choices]) -> None:
     for name in (site_deck.NAME, *site_found.files):
         if not (folder / name).is_file():
             raise SlopeError(folder / name, f"must exist; `slope site {quote(str(folder))}` rebuilds it")
-    if any(words[0] == "fix" and "wall/gran/balls" in words and "rim" in words
-           for words in decks.commands(folder / site_deck.NAME)):
-        raise SlopeError(folder / site_deck.NAME, f"must be made anew, `slope site {quote(str(folder))}`: ground and "
-                         "slip surface are one surface now", "rim, of an older version")
     if site_found.choices_sha256 not in ("", site.fingerprint()):
         raise SlopeError(folder / site_choices.NAME, f"must not have been changed since {site_deck.NAME} was made from "
                          f"it: `slope site {quote(str(folder))}` rebuilds the deck (project, road, study and "
@@ -231,7 +226,7 @@ def digests(site: Site) -> Dict[str, str]:
 
 
 def read_site_warnings(folder: Path) -> List[Finding]:
-    """The warnings of `slope site`, which the results repeat; none for a site of an older version."""
+    """The warnings of `slope site`, which the results repeat."""
     path = folder / site_warnings.NAME
     said = schemas.load_checked(path, "what `slope site` wrote", FINDINGS) if path.is_file() else None
     return [finding(one) for one in said or ()]
@@ -244,17 +239,15 @@ def notes_of(site: Site, roads: Sequence[Mapping[str, Any]]) -> List[Finding]:
     return [one for one in read_site_warnings(site.folder) if one.numbers.get("file") not in others]
 
 
-def grounds(choices: OfMass, variables: Dict[str, str]) -> List[Dict[str, str]]:
-    """The runs on other grounds; none for a deck of an older version, whose ground is a plan grid."""
+def grounds(choices: OfMass) -> List[Dict[str, str]]:
+    """The runs on other grounds."""
     return [{"rolling": rolling, "spacing": spacing} for spacing, rolling
-            in map(format_deck_values, choices.other_grounds)] \
-        if ground.SEED in variables else []
+            in map(format_deck_values, choices.other_grounds)]
 
 
 def half_steps(setup: Setup, rolling: str, variables: Dict[str, str]) -> List[repeats.Repeat]:
-    """One run with half the time step, which keeps account of its energy, too, unless the deck is of a version that
-    cannot."""
-    settings = {"rolling": [rolling], "step": [half_of(variables)], **({LEDGER: ["1"]} if LEDGER in variables else {})}
+    """One run with half the time step, which keeps account of its energy, too."""
+    settings = {"rolling": [rolling], "step": [half_of(variables)], LEDGER: ["1"]}
     return repeats.plan_repeats(setup.runs, settings, {}, variables)
 
 

@@ -85,8 +85,7 @@ def describe_left_volume(of: Mapping[str, Any]) -> str:
 
 def ends(of: Mapping[str, Any]) -> str:
     """Where the ranges do."""
-    # text: of older versions
-    ranges = of["ends"] if isinstance(of["ends"], str) else ", ".join(map(" ".join, of["ends"].items()))
+    ranges = ", ".join(map(" ".join, of["ends"].items()))
     return f", which end at {ranges}," if ranges else ""
 
 

@@ -50,25 +50,27 @@ class Sizes:
     places: Places
     steps: Mapping[str, Sequence[Step]]
 
+    def size_of(self, row: Finished) -> int:
+        """Which of the sizes a run has."""
+        d = float(row.variables[VARIABLE])
+        return int(np.abs(np.log(np.asarray(self.diameters) / d)).argmin())
+
     def left(self, row: Finished, key: str) -> Sequence[Step]:
         """The steps from a run's size to the finest."""
-        d = float(row.variables[VARIABLE])
-        k = int(np.abs(np.log(np.asarray(self.diameters) / d)).argmin())
-        return self.steps.get(key, ())[k:]
+        return self.steps.get(key, ())[self.size_of(row):]
 
-    def value(self, row: Finished, key: str) -> Optional[Finest]:
-        """A quantity of a run at the finest size; None where it has none, and where no pair has one, as lengths where
-        finer balls leave the terrain."""
-        value, steps = row.value(key), self.left(row, key)
-        if value is None or not all(step.known for step in steps):
-            return None
-        return ball_sizes.transfer(steps, float(value), self.places.of(row))
+    def values(self, row: Finished) -> Dict[str, Finest]:
+        """The quantities of a run at the finest size; without those that it does not have, and those of which no pair
+        tells, as lengths where finer balls leave the terrain."""
+        k, place = self.size_of(row), self.places.of(row)
+        return {key: ball_sizes.transfer(steps[k:], float(value), place) for key, steps in self.steps.items()
+                if (value := row.value(key)) is not None and all(step.known for step in steps[k:])}
 
     def row(self, row: Row) -> Row:
         """The same at the finest size, with the bands of BANDS; one that failed as it is."""
         if not isinstance(row, Finished):
             return row
-        values = {key: value for key in self.steps if (value := self.value(row, key)) is not None}
+        values = self.values(row)
         new: Dict[str, Any] = {key: one.value for key, one in values.items()}
         new.update(dict.fromkeys(key for key in self.steps if key not in new and row.value(key) is not None))
         for key in PARTS:
