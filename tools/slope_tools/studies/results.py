@@ -47,8 +47,8 @@ def collect_results(setup: Setup, questions: Questions, todo: Sequence[Repeat],
         body=os.path.relpath(setup.body.resolve(), setup.output.resolve()) if setup.body else None,
         road=write_study_road(setup.output, setup.road, first) if setup.road and first else None)
     outcome = evaluate_study(questions, inputs, header)
-    made = next_step.Made(outcome.about, setup.output, given=setup.given)
-    step = next_step.of_studies([made], outcome.about.headline)
+    step = next_step.of_studies([next_step.Made(outcome.about, setup.output, given=setup.given)],
+                                outcome.about.headline) if questions.alone else None    # of both studies: theirs
     size_runs.write_levels(setup, at, questions.settings, questions.repeated, work.defaults)
     study = files.write_study_files(outcome, replace(outcome.about, envelope=maps.envelope, exceedance=maps.exceedance,
                                                      next_step=step.about() if step else None), setup.output, place)
