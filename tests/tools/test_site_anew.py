@@ -425,7 +425,7 @@ def test_a_failed_run_leaves_score_and_report_of_the_others(inside, mine, monkey
     monkeypatch.setattr(film, "encode", lambda *_: b"")
     write_layer(mine.parent / "mapped.geojson", MAPPED)
     inside("mine --observed mapped.geojson --balls 60")
-    edit(mine, "study", rolling=[0.05, 0.1], spacing=[], packing=[], sizes=[])
+    edit(mine, "study", rolling=[0.05, 0.1], spacing=[], packing=[])
     Path("some").write_text(f"""#!/bin/sh\ncase "$*" in *"rolling 0.1"*) exit 1;; esac\nexec {LMP} "$@"\n""")
     Path("none").write_text("#!/bin/sh\nexit 1\n")
     for name in ("some", "none"):
@@ -479,7 +479,7 @@ def test_one_command_at_a_time_works_in_a_site(inside, mine, gis):  # noqa: F811
 
 def test_warnings_of_a_site_are_those_of_its_study(tmp_path):
     assert site_study.read_site_warnings(tmp_path) == []
-    (tmp_path / "warnings.yaml").write_text("# slope site\n- too thin\n")
+    (tmp_path / "warnings.yaml").write_text("# slope site\n- {kind: other, text: too thin}\n")
     assert list(map(str, site_study.read_site_warnings(tmp_path))) == ["too thin"]
 
 
@@ -523,7 +523,7 @@ def test_the_report_is_written_though_the_score_fails(gis, monkeypatch):  # noqa
     assert made.returncode == 0, made.stderr
     path = gis / "mine" / "site.yaml"
     about = yaml.safe_load(path.read_text())
-    about["study"].update(rolling=[0.05], packing=[], sizes=[])
+    about["study"].update(rolling=[0.05], packing=[])
     path.write_text(yaml.safe_dump(about))
     (gis / "mine" / "score").mkdir()
     (gis / "mine" / "score" / "score.yaml").write_text("of other runs\n")
