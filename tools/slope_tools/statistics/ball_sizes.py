@@ -80,16 +80,16 @@ class Model(NamedTuple):
     def relative(self, values: Any) -> np.ndarray:
         """The deviation at values (> 0) over that at the typical one; below all pairs it is as many m3."""
         own = np.log(values)
-        return np.exp(self.power * (self.typical - within(own, *self.ends)) + np.maximum(0.0, self.ends[0] - own))
+        return np.exp(self.power * (self.typical - clip_values(own, *self.ends)) + np.maximum(0.0, self.ends[0] - own))
 
     def beyond(self, at: Any) -> np.ndarray:
         """The error that places (..., p) have as they lie beyond all pairs: what the slopes would change there."""
         places = np.asarray(at, float)
-        return np.abs((places - within(places, self.low, self.high)) @ self.slopes)
+        return np.abs((places - clip_values(places, self.low, self.high)) @ self.slopes)
 
     def change(self, at: Any, drawn: Optional[np.ndarray] = None) -> np.ndarray:
         """At places (..., p); drawn: other coefficients, of draw()."""
-        inside = within(np.asarray(at, float), self.low, self.high) - self.centre
+        inside = clip_values(np.asarray(at, float), self.low, self.high) - self.centre
         constant, slopes = (self.constant, self.slopes) if drawn is None else (drawn[0], drawn[1:])
         return np.asarray(constant + inside @ slopes)
 
@@ -202,7 +202,7 @@ def fit_step(coarse: Sequence[float], fine: Sequence[float], at: Any, finer: flo
     return Step(finer, least, model(logs, with_own(places[big], first[big]), before.ratio if before else None), small)
 
 
-def within(values: Any, low: Any, high: Any) -> np.ndarray:
+def clip_values(values: Any, low: Any, high: Any) -> np.ndarray:
     """np.clip(), which takes ten times as long for a few numbers."""
     return np.minimum(np.maximum(values, low), high)
 
