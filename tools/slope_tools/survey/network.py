@@ -111,14 +111,14 @@ def split(drawn: Sequence[Drawn]) -> List[Way]:
 
 def gaps(drawn: Sequence[Drawn], points: np.ndarray) -> np.ndarray:
     """Pairs of ends, drawn by eye, that go on in each other but for a gap; points: both ends of each line."""
-    tree, found = cKDTree(points), []
+    tree, pairs = cKDTree(points), []
     for k, j in sorted(tree.query_pairs(GAP)):
         one, other = (Way(drawn[end // 2].line, (0, 0), 0).leaves(end % 2) for end in (k, j))
         if k // 2 != j // 2 and turn(one, other) <= STRAIGHT and all(
                 line.line.distance(Point(points[end])) > SAME for end in (k, j) for number, line in enumerate(drawn)
                 if number != end // 2):
-            found.append((k, j))
-    return np.reshape(np.array(found, int), (-1, 2))
+            pairs.append((k, j))
+    return np.reshape(np.array(pairs, int), (-1, 2))
 
 
 def at_nodes(ways: Sequence[Way]) -> Dict[int, List[End]]:

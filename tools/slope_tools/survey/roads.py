@@ -152,22 +152,22 @@ def meetings(several: Mapping[str, Tuple[str, Road]], raster) -> List[Finding]:
     Ends that were drawn by eye, and pieces in files of their own, leave gaps.
     """
     pairs = [one.polygon.buffer(SLACK) for _, one in several.values() if len(one.lines) > 1]
-    found = []
-    for (name, (file, one)), (beside, (other_file, other)) in combinations(several.items(), 2):
-        if max(len(one.lines), len(other.lines)) > 1 or one.polygon.distance(other.polygon) > GAP or any(
-                both.contains(one.polygon) and both.contains(other.polygon) for both in pairs):
+    near = []
+    for (name, (file, first)), (beside, (other_file, other)) in combinations(several.items(), 2):
+        if max(len(first.lines), len(other.lines)) > 1 or first.polygon.distance(other.polygon) > GAP or any(
+                both.contains(first.polygon) and both.contains(other.polygon) for both in pairs):
             continue
-        ways = [road.line or road.polygon for road in (one, other)]
-        found.append((round(ways[0].distance(ways[1]), 3),
-                      f"{name} and {beside} {features.locate_feature(nearest_points(*ways)[0], raster)}", file,
-                      other_file))
-    if not found:
+        ways = [road.line or road.polygon for road in (first, other)]
+        near.append((round(ways[0].distance(ways[1]), 3),
+                     f"{name} and {beside} {features.locate_feature(nearest_points(*ways)[0], raster)}", file,
+                     other_file))
+    if not near:
         return []
-    found.sort(key=lambda one: one[0])
+    near.sort(key=lambda entry: entry[0])
     return [Finding("roads meet", {
-        "file": ", ".join(dict.fromkeys(file for one in found for file in one[2:])),
-        "places": "; ".join(one[1] for one in found[:SHOWN]) + f"; and {len(found) - SHOWN} more" * (
-            len(found) > SHOWN)})]
+        "file": ", ".join(dict.fromkeys(file for one in near for file in one[2:])),
+        "places": "; ".join(one[1] for one in near[:SHOWN]) + f"; and {len(near) - SHOWN} more" * (
+            len(near) > SHOWN)})]
 
 
 def free(name: str, taken: Mapping[str, Any]) -> str:

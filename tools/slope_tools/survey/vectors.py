@@ -239,14 +239,14 @@ def statements(text: str) -> List[Tuple[int, str]]:
         depth += {"(": 1, ")": -1}.get(mark.group(), 0)
         if depth == 0:
             ends.append(mark.end())
-    found, line, low = [], 1, 0
+    parts, line, low = [], 1, 0
     for high in (*ends, len(text)):
         part = text[low:high]
         begins = part.lstrip(BETWEEN)
         if begins:
-            found.append((line + part[:len(part) - len(begins)].count("\n"), begins.rstrip(BETWEEN)))
+            parts.append((line + part[:len(part) - len(begins)].count("\n"), begins.rstrip(BETWEEN)))
         line, low = line + part.count("\n"), high
-    return found
+    return parts
 
 
 def plain_text(path: object, text: str) -> Tuple[str, Optional[CRS]]:
