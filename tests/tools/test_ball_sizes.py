@@ -283,13 +283,13 @@ def test_points_of_finer_balls_are_spread_and_nested():
 def test_measured_pairs():
     """Of the points of two sites with 25,600 balls each from the others and its own run with 400."""
     inside, off, half = [], defaultdict(list), defaultdict(list)
-    for table, volume in ((MEASURED, 33885), (MEASURED_TOO, 1224)):
+    for table, released in ((MEASURED, 33885), (MEASURED_TOO, 1224)):
         rows = np.genfromtxt(table, delimiter=",", names=True, dtype=None, encoding="ascii", skip_header=1)
         at = {row["point"]: ((row["friction"] - 5) / 25, row["rolling"] / 0.15, (row["spacing"] - 0.3) / 0.65)
               for row in rows}
         for quantity in ("remove", "on_road", "beyond", "length"):
             values = {(row["point"], int(row["balls"])): float(row[quantity]) for row in rows}
-            ball = 0.0 if quantity == "length" else volume / 400
+            ball = 0.0 if quantity == "length" else released / 400
             for point in at:
                 others, steps = [one for one in at if one != point], []
                 for coarse, fine in ((400, 3200), (3200, 25600)):
