@@ -11,7 +11,8 @@
 #            paraview   with paraview and python3-paraview, which exclude python3-vtk9
 #            yade       with yade
 #            deb, tar   the packages that cpack made in "bare", installed on a machine that has no checkout
-# --tests    for tests/run.sh: a regular expression of ctest's names, "all" (20 minutes and more), or "none"; default unit
+# --tests    for tests/run.sh: a regular expression of ctest's names, "short" (the short run, half an hour and more), "all"
+#            (with --all, hours), or "none"; default unit
 # --ccache   keep what the compiler makes in DIR/cache: the second build of a release takes a minute
 # --keep     keep the machines in DIR/RELEASE-WAY
 # --mirror   URI of the mirror, for a distribution that this machine's apt does not have
@@ -216,6 +217,7 @@ report_row() {
   awk '$2 != 0 { bad = 1 } END { exit bad || NR == 0 }' "$results/steps" || status=1
   notes=${left_out:+without $left_out}
   ((status == 0)) || notes+="${notes:+; }$results: $(awk '$2 != 0 { print $1 ".log" }' "$results/steps" | xargs)"
+  notes="$(du -xsm "$current" | cut -f 1) MB of disk${notes:+; $notes}"
   row "$release" "$way" "$set_up" "$(word "$(status_of demo)")" "$(counts)" \
     "$(seconds_of set-up)" "$(seconds_of demo)" "$(seconds_of tests)" "$notes"
   if [[ -z $keep ]]; then
