@@ -5,7 +5,7 @@
 #
 #   tests/machines.sh [--release RELEASE]... [--way WAY]... [--tests REGEX] [--ccache] [--keep] [-o DIR] [TREE]
 #
-# --release  debian-12, debian-13, ubuntu-22.04, ubuntu-24.04, see tests/machines/releases.txt (default: Debian's)
+# --release  debian-12, debian-13, debian-sid, ubuntu-22.04, ubuntu-24.04, see machines/releases.txt (default: the first two)
 # --way      bare       nothing but the release's smallest system (default)
 #            user       the same, by a user who has sudo instead of root, as in WSL
 #            paraview   with paraview and python3-paraview, which exclude python3-vtk9
@@ -57,6 +57,7 @@ mirrors() {
   [[ -n $main ]] || return 1
   local what="deb [signed-by=/usr/share/keyrings/${keyring#*/}.gpg]"
   echo "$what $main $suite ${components//,/ }"
+  [[ $suite != sid ]] || return 0 # has no updates but itself
   echo "$what $main $suite-updates ${components//,/ }"
   [[ -z $security || -n $mirror ]] || echo "$what $security $suite-security ${components//,/ }"
 }
