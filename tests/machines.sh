@@ -56,8 +56,11 @@ mirrors() {
   security=$(uri '-security$')
   [[ -n $main ]] || return 1
   local what="deb [signed-by=/usr/share/keyrings/${keyring#*/}.gpg]"
+  if [[ $suite == sid ]]; then # has no updates but itself, and of a mirror's copy the day does not matter
+    echo "${what/]/ check-valid-until=no]} $main $suite ${components//,/ }"
+    return
+  fi
   echo "$what $main $suite ${components//,/ }"
-  [[ $suite != sid ]] || return 0 # has no updates but itself
   echo "$what $main $suite-updates ${components//,/ }"
   [[ -z $security || -n $mirror ]] || echo "$what $security $suite-security ${components//,/ }"
 }
