@@ -24,8 +24,8 @@ ENVIRONMENT = {
 }
 
 # of a run without mpirun: Open MPI 4 starts no daemon, which takes half a second, and has no folder, which runs that
-# start at once would share
-ALONE = {"OMPI_MCA_ess_singleton_isolated": "1", "OMPI_MCA_orte_create_session_dirs": "0"}
+# start at once would share; Open MPI 5 leaves no shared memory behind
+ALONE = {"OMPI_MCA_ess_singleton_isolated": "1", "OMPI_MCA_orte_create_session_dirs": "0", "OMPI_MCA_btl": "self"}
 
 
 @functools.lru_cache

@@ -32,10 +32,11 @@ def run(asked: slip_deck.Asked, polygon, raster: rasters.Raster, folder: Path, l
     if polygon is not None:
         polygons.write(folder / slip_deck.WITHIN, polygon, raster)
     disk.write(folder / slip_deck.NAME, slip_deck.text(asked, lambda path: str(path.resolve())))
-    words = [*launcher.words(None, ranks, jobs.slots()), str(lmp), "-in", slip_deck.NAME, "-log", logs.LOG]
+    by = launcher.words(None, ranks, jobs.slots())
+    words = [*by, str(lmp), "-in", slip_deck.NAME, "-log", logs.LOG]
     with open(folder / SCREEN, "wb") as screen, jobs.signals_interrupt():
         try:
-            process = processes.start(words, folder, screen)
+            process = processes.start(words, folder, screen, alone=not by)
         except OSError as error:
             raise SlopeError(lmp, f"cannot be run: {error.strerror}") from None
         try:
