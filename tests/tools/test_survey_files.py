@@ -71,7 +71,7 @@ def made(slope, here):
         status, out, err = slope(f"{arguments} --overwrite -o out.asc")
         assert status == 0, err
         z, transform, _, offset = rasters.read_asc_local("out.asc")
-        x, y = transform * np.meshgrid(np.arange(z.shape[1]) + 0.5, np.arange(len(z)) + 0.5)
+        x, y = transform @ np.meshgrid(np.arange(z.shape[1]) + 0.5, np.arange(len(z)) + 0.5)
         return z, x + offset[0], y + offset[1], out, err
     return run
 
@@ -357,7 +357,7 @@ def test_of_a_large_file_only_the_window_is_read(here):
     with rasterio.open("large.tif", "w", driver="GTiff", height=50_000, width=50_000, count=1, dtype="float32",
                        crs="EPSG:3035", transform=Affine(1, 0, EAST - 30_000, 0, -1, NORTH + 30_000), nodata=-9999,
                        BIGTIFF="YES", **BLOCKS) as out:
-        x, y = out.transform * np.meshgrid(np.arange(29_900, 30_100) + 0.5, np.arange(29_900, 30_100) + 0.5)
+        x, y = out.transform @ np.meshgrid(np.arange(29_900, 30_100) + 0.5, np.arange(29_900, 30_100) + 0.5)
         out.write(ground(x, y).astype("float32"), 1, window=Window(29_900, 29_900, 200, 200))
     code = ("import sys; sys.path[:0] = [sys.argv[1]]; from slope_tools import cli; sys.argv = ['slope', "
             "'terrain', 'large.tif', '--bounds', *sys.argv[2:], '-o', 'out.asc']; status = cli.main(); "
@@ -368,7 +368,7 @@ def test_of_a_large_file_only_the_window_is_read(here):
     assert done.returncode == 0, done.stderr
     assert "cropped to 60 x 40 of 50000 x 50000 cells" in done.stdout
     z, transform, _, offset = rasters.read_asc_local("out.asc")
-    x, y = transform * np.meshgrid(np.arange(z.shape[1]) + 0.5, np.arange(len(z)) + 0.5)
+    x, y = transform @ np.meshgrid(np.arange(z.shape[1]) + 0.5, np.arange(len(z)) + 0.5)
     assert in_place((z, x + offset[0], y + offset[1]))
 
 
@@ -391,7 +391,7 @@ def test_a_window_is_a_part_of_the_whole(made, here, monkeypatch, options, name)
         shutil.move("out.asc", name)
         os.remove("out.yaml")
     elif name == "dem.xyz":
-        x, y = transform * np.meshgrid(np.arange(60) + 0.5, np.arange(50) + 0.5)
+        x, y = transform @ np.meshgrid(np.arange(60) + 0.5, np.arange(50) + 0.5)
         known = np.isfinite(whole)
         write(name, np.column_stack([x[known], y[known], whole[known]]))
     options += f" --assign-crs {CRS_M}"

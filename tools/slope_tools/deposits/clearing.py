@@ -74,5 +74,5 @@ def volumes(run_, result, found: Sequence[Stretch]) -> np.ndarray:
     row, column = np.nonzero(result.removed > 0)
     if not (found and len(row)):
         return np.zeros(len(found))
-    mine = lanes.nearest(found, *(run_.raster.transform * (column + 0.5, row + 0.5)))
+    mine = lanes.nearest(found, *(run_.raster.transform @ (column + 0.5, row + 0.5)))
     return np.bincount(mine, result.removed[row, column], len(found)) * run_.cell ** 2

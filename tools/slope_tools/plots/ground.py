@@ -29,7 +29,7 @@ class Ground:
         one = data.result
         self.raster, self.base, self.cell = one.deposit.raster, one.deposit.base, one.deposit.cell
         rows, columns = self.base.shape
-        self.x, self.y = self.raster.transform * np.meshgrid(np.arange(columns) + 0.5, np.arange(rows) + 0.5)
+        self.x, self.y = self.raster.transform @ np.meshgrid(np.arange(columns) + 0.5, np.arange(rows) + 0.5)
         self.before, self.slip_depth = scar.before(self.raster, self.base, one.terrain_path)
         self.arrival, self.max_thickness = one.raster("arrival"), one.raster("max_thickness")
         self.max_speed = one.raster("max_speed")

@@ -213,7 +213,7 @@ def check_pits(raster, geometry, wanted: Wanted) -> None:
     if found is None:
         return
     row, column = np.argwhere(found.cells)[0] + [part[0].start, part[1].start]
-    x, y = raster.transform * (column + 0.5, row + 0.5)
+    x, y = raster.transform @ (column + 0.5, row + 0.5)
     raise SlopeError(wanted.polygon, f"the ground in it must have no pits: {int(found.cells.sum())} cells of "
                      f"{found.shown} lie {found.least:.4g} m or more {found.side} all cells beside them; "
                      f"{plausible.remedy(found, ground)} (slope terrain, site, route)",

@@ -162,7 +162,7 @@ class Data:
         for name in ("volume.tif", "volume_mesh.tif"):
             one = rasters.read(self.result.folder / self._volume() / name, heights=False)
             east, north = raster.offset     # the files are in the CRS
-            found.append(one._replace(transform=Affine.translation(-east, -north) * one.transform,
+            found.append(one._replace(transform=Affine.translation(-east, -north) @ one.transform,
                                       z=np.nan_to_num(one.z)))
         if found[0].z.shape != raster.z.shape:
             raise SlopeError(self.result.folder / self._volume() / "volume.tif",

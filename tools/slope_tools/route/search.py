@@ -86,7 +86,7 @@ def table_of(folder: Path) -> Dict[str, Any]:
 
 def middle(corridor: Corridor, one: Slip) -> Tuple[float, float]:
     row, column = np.nonzero(one.mask)
-    x, y = corridor.clip(one.window).transform * (column.mean() + 0.5, row.mean() + 0.5)
+    x, y = corridor.clip(one.window).transform @ (column.mean() + 0.5, row.mean() + 0.5)
     return float(x), float(y)
 
 

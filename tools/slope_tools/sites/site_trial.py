@@ -49,7 +49,7 @@ def kept(folder: Path, wanted: Dict[str, Any], settled: bool) -> Optional[Tried]
     except SlopeError:
         return None
     to_local = Affine.translation(-found.origin.east, -found.origin.north)
-    return Tried(found.trial, raster._replace(transform=to_local * raster.transform, crs=None), had)
+    return Tried(found.trial, raster._replace(transform=to_local @ raster.transform, crs=None), had)
 
 
 def keep(folder: Path, tried: Tried, terrain: Raster) -> None:

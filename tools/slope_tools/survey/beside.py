@@ -29,7 +29,7 @@ class Local(NamedTuple):
 
 def read(path: Union[str, Path], terrain: Raster, heights: bool = True, crs: Optional[CRS] = None,
          local: Local = Local(), warn: Optional[Callable[[Finding], Any]] = None, remedy: str = "") -> Raster:
-    """A raster file, in a CRS if the terrain has one: coordinates are transform * (column, row) + offset.
+    """A raster file, in a CRS if the terrain has one: coordinates are transform @ (column, row) + offset.
 
     heights: the values are, and become metres; crs: of the raster, whatever it says. warn: called with what is taken
     for granted, remedy: of that, where the raster has no CRS. Raises SlopeError where the file is no raster, has no
@@ -73,7 +73,7 @@ def tell(warn: Optional[Callable[[Finding], Any]], kind: str, path: Union[str, P
 
 def in_local(found: Raster, terrain: Raster) -> Affine:
     """The transform of a raster in the CRS of the terrain to the terrain's local metres."""
-    return Affine.translation(*np.subtract(found.offset, terrain.offset)) * found.transform
+    return Affine.translation(*np.subtract(found.offset, terrain.offset)) @ found.transform
 
 
 def box(found: Raster, terrain: Raster) -> Tuple[float, ...]:
@@ -96,14 +96,14 @@ def on_cells(path: Union[str, Path], found: Raster, terrain: Raster) -> np.ndarr
     """
     rows, columns = terrain.z.shape
     x, y = np.meshgrid(np.arange(columns) + 0.5, np.arange(rows) + 0.5)
-    x, y = Affine.translation(*terrain.offset) * terrain.transform * (x, y)
+    x, y = Affine.translation(*terrain.offset) @ terrain.transform @ (x, y)
     if found.crs is not None and terrain.crs is None:
         raise SlopeError(path, f"is in {crs_name(found.crs)}, and the terrain must have a CRS, too: slope terrain "
                          "--crs", "none")
     same = found.crs is None or same_crs(found.crs, terrain.crs)
     if not same:
         x, y = transform(terrain.crs, found.crs, x, y)
-    values = sample(found._replace(transform=Affine.translation(*found.offset) * found.transform), x, y)
+    values = sample(found._replace(transform=Affine.translation(*found.offset) @ found.transform), x, y)
     if np.isfinite(values).any():
         return values
     origins = "" if found.offset == terrain.offset else (
@@ -132,7 +132,7 @@ def has_cells(found: Raster, terrain: Raster) -> bool:
     """Whether a raster has all cells of the terrain, and may be others."""
     if not (found.crs is None or same_crs(found.crs, terrain.crs)):
         return False
-    there = ~terrain.transform * in_local(found, terrain)
+    there = ~terrain.transform @ in_local(found, terrain)
     left, top = round(there.c), round(there.f)
     rows, columns = np.subtract(found.z.shape, terrain.z.shape)
     return bool(np.allclose(there[:6], [1, 0, left, 0, 1, top], rtol=0, atol=ON_GRID)

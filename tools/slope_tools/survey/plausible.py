@@ -96,7 +96,7 @@ def pits_said(raster: Raster, marks: Marks) -> Optional[Finding]:
     if found is None:
         return None
     row, column = np.argwhere(found.cells)[0]
-    x, y = raster.transform * (column + 0.5, row + 0.5)
+    x, y = raster.transform @ (column + 0.5, row + 0.5)
     x, y = x + raster.offset[0], y + raster.offset[1]
     return Finding("pits", {"cells": int(found.cells.sum()), "mark": found.shown, "depth": found.least,
                             "side": found.side, "east": float(x), "north": float(y), "remedy": remedy(found, marks)})
