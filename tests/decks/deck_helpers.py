@@ -84,8 +84,8 @@ def write_asc(path, heights, xlo=0.0, ylo=0.0, cell=1.0, nodata=-9999):
     """Write an ESRI ASCII grid; heights[0] is the row in the south, NaN is NODATA."""
     heights = numpy.asarray(heights, float)
     rows, columns = heights.shape
-    lines = [f"ncols {columns}", f"nrows {rows}", f"xllcorner {xlo!r}", f"yllcorner {ylo!r}",
-             f"cellsize {cell!r}", f"NODATA_value {nodata}"]
+    lines = [f"ncols {columns}", f"nrows {rows}", f"xllcorner {float(xlo)!r}", f"yllcorner {float(ylo)!r}",
+             f"cellsize {float(cell)!r}", f"NODATA_value {nodata}"]
     for row in heights[::-1]:
         lines.append(" ".join(str(nodata) if numpy.isnan(z) else repr(float(z)) for z in row))
     Path(path).write_text("\n".join(lines) + "\n")

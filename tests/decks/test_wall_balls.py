@@ -64,7 +64,7 @@ thermo 1000
 def make_deck(tmp_path, wall=True, balls=BALLS, positions=None, diameter=D, origin=(0.0, 0.0, 0.0), newton="on",
               processors="* * *", atom_modify="", skin=0.02, neigh_modify="delay 0", style="", coeff=COEFF, dt=4e-4,
               gravity=SLOPE, every=100, trace="trace.txt", before="", box=BOX):
-    positions = floor(origin) if positions is None else positions
+    positions = [tuple(map(float, one)) for one in (floor(origin) if positions is None else positions)]
     box = " ".join(f"{low + o} {high + o}" for o, (low, high) in zip(origin, box))
     deck = SETUP.format(**locals())
     for k, ball in enumerate(balls, 1):
