@@ -415,6 +415,8 @@ def outputs(folder):
 def test_a_run_whose_rasters_do_not_fit(run_folder):
     whole = run_folder()
     largest = max((len(data), path) for path, data in whole.items() if path.startswith("tiny"))
+    deck = re.sub("^dump .*\n", "", Path("in.tiny").read_text(), flags=re.MULTILINE)
+    Path("in.tiny").write_text(deck)        # a dump is larger, and LAMMPS of 2025 says so
     done = lmp("-var", "steps", "200", "-var", "rolling", "0.2", limit=largest[0] - 100)
     assert re.match(r"ERROR( on proc 0)?: Fix deposit/grid: cannot write tiny\.\w+\.asc: File too large",
                     error_of(done))
