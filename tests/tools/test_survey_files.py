@@ -429,14 +429,16 @@ def test_heights_in_feet_over_a_plan_in_metres_are_asked_about(slope, made, here
 
 # --- axes and north ---
 
-@pytest.mark.parametrize("code, sister", [("ESRI:102482", "ESRI:102562"), (2048, "ESRI:102562"), (5513, "EPSG:5514"),
+LO19 = "ESRI:102562|EPSG:11297"       # in the database of PROJ since 2025
+
+@pytest.mark.parametrize("code, sister", [("ESRI:102482", LO19), (2048, LO19), (5513, "EPSG:5514"),
                                           (2065, "EPSG:5221"), (3052, "a UTM zone")])
 def test_axes_that_point_west_or_south_are_refused_with_the_sister(slope, here, code, sister):
     name = f"EPSG:{code}" if isinstance(code, int) else code
     tif("dem.tif", crs_="EPSG:32633")
     for arguments in (f"dem.tif --crs {name}", f"dem.tif --assign-crs {name}"):
         status, _, err = slope(f"{arguments} -o out.asc")
-        assert status == 2 and sister in err and "must point east and north" in err
+        assert status == 2 and re.search(sister, err) and "must point east and north" in err
         assert f"got {name if isinstance(code, int) else 'Hartebeesthoek94_Lo19'}, " in err
     tif("dem.tif", crs_=name)
     with pytest.raises(Exception, match="must point east and north"):
