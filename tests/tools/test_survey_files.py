@@ -431,6 +431,7 @@ def test_heights_in_feet_over_a_plan_in_metres_are_asked_about(slope, made, here
 
 LO19 = "ESRI:102562|EPSG:11297"       # in the database of PROJ since 2025
 
+
 @pytest.mark.parametrize("code, sister", [("ESRI:102482", LO19), (2048, LO19), (5513, "EPSG:5514"),
                                           (2065, "EPSG:5221"), (3052, "a UTM zone")])
 def test_axes_that_point_west_or_south_are_refused_with_the_sister(slope, here, code, sister):
