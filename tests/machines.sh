@@ -5,13 +5,14 @@
 #
 #   tests/machines.sh [--release RELEASE]... [--way WAY]... [--tests REGEX] [--ccache] [--keep] [-o DIR] [TREE]
 #
-# --release  debian-12, debian-13, ubuntu-22.04, ubuntu-24.04, see tests/machines/releases.txt (default: Debian's)
+# --release  debian-12, debian-13, debian-sid, ubuntu-22.04, ubuntu-24.04, see machines/releases.txt (default: the first two)
 # --way      bare       nothing but the release's smallest system (default)
 #            user       the same, by a user who has sudo instead of root, as in WSL
 #            paraview   with paraview and python3-paraview, which exclude python3-vtk9
 #            yade       with yade
 #            deb, tar   the packages that cpack made in "bare", installed on a machine that has no checkout
-# --tests    for tests/run.sh: a regular expression of ctest's names, "all" (20 minutes and more), or "none"; default unit
+# --tests    for tests/run.sh: a regular expression of ctest's names, "short" (the short run, half an hour and more), "all"
+#            (with --all, hours), or "none"; default unit
 # --ccache   keep what the compiler makes in DIR/cache: the second build of a release takes a minute
 # --keep     keep the machines in DIR/RELEASE-WAY
 # --mirror   URI of the mirror, for a distribution that this machine's apt does not have
@@ -55,6 +56,10 @@ mirrors() {
   security=$(uri '-security$')
   [[ -n $main ]] || return 1
   local what="deb [signed-by=/usr/share/keyrings/${keyring#*/}.gpg]"
+  if [[ $suite == sid ]]; then # has no updates but itself, and of a mirror's copy the day does not matter
+    echo "${what/]/ check-valid-until=no]} $main $suite ${components//,/ }"
+    return
+  fi
   echo "$what $main $suite ${components//,/ }"
   echo "$what $main $suite-updates ${components//,/ }"
   [[ -z $security || -n $mirror ]] || echo "$what $security $suite-security ${components//,/ }"
@@ -216,6 +221,7 @@ report_row() {
   awk '$2 != 0 { bad = 1 } END { exit bad || NR == 0 }' "$results/steps" || status=1
   notes=${left_out:+without $left_out}
   ((status == 0)) || notes+="${notes:+; }$results: $(awk '$2 != 0 { print $1 ".log" }' "$results/steps" | xargs)"
+  notes="$(du -xsm "$current" | cut -f 1) MB of disk${notes:+; $notes}"
   row "$release" "$way" "$set_up" "$(word "$(status_of demo)")" "$(counts)" \
     "$(seconds_of set-up)" "$(seconds_of demo)" "$(seconds_of tests)" "$notes"
   if [[ -z $keep ]]; then

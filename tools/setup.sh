@@ -79,8 +79,8 @@ if ((${#missing[@]})); then
     as_root=(sudo "DEBIAN_FRONTEND=$DEBIAN_FRONTEND")
   fi
   say "packages that are missing: ${#missing[@]}; apt-get installs them${as_root:+, and sudo may ask for your password}." \
-    "On a bare machine, with the LAMMPS source and the build: about 720 MB (Debian 12) or 790 MB (Debian 13)" \
-    "to download, 3.3 or 3.6 GB of disk"
+    "On a bare machine, with the LAMMPS source and the build: about 0.9 GB (Debian 12) or 1 GB (Debian 13)" \
+    "to download, 3.8 or 4.1 GB of disk"
   # the failure may concern other packages only: the installation below will show
   update "${as_root[@]}" apt-get -qq || say "apt-get update failed, trying to continue"
 

@@ -31,7 +31,7 @@ def main(wanted):
         print(f"{name}: {len(beads['x'][0])} beads, flanks {angles[0]:.1f} and {angles[1]:.1f}, "
               f"mean {np.mean(angles):.1f}, measured {measured:.1f} degrees")
         if d == 10:
-            colour = f"C{ {4: 0, 8: 1}.get(thickness, 2)}"
+            colour = {4: "C0", 8: "C1"}.get(thickness, "C2")
             left.plot(*case.surface(*(beads[axis][0] / 0.01 for axis in "xyz")).T, color=colour, lw=0.8)
             right.plot(thickness or FAR, np.mean(angles), "o", color=colour, ms=4)
     thickness = np.linspace(3, 10, 50)

@@ -39,7 +39,7 @@ def thickness(prefix, raster, bulk):
     columns, balls = dumps.frames(sorted(prefix.parent.glob(f"{prefix.name}.*.dump"))[-1])[-1]
     x, y, d = (balls[:, columns.index(name)] for name in ("x", "y", "diameter"))
     side, cell = d * (bulk * math.pi / 6) ** (1 / 3), raster.transform.a
-    low = [place - side / cell / 2 for place in ~raster.transform * (x, y)]
+    low = [place - side / cell / 2 for place in ~raster.transform @ (x, y)]
     first = [np.floor(one).astype(int) for one in low]
     found = np.zeros(raster.z.shape)
     for i, j in np.ndindex(2 * (math.ceil(side.max() / cell) + 1,)):

@@ -386,7 +386,7 @@ double Polygon::area() const
   for (size_t k = 1; k < xy.size(); k += 2) heights.push_back(xy[k]);
   std::sort(heights.begin(), heights.end());
   heights.erase(std::unique(heights.begin(), heights.end()), heights.end());
-  std::vector<Edge> from_south = edges, here;
+  std::vector<Edge> here, from_south = edges;
   std::sort(from_south.begin(), from_south.end(), [](const Edge &a, const Edge &b) {
     return a.y0 < b.y0;
   });

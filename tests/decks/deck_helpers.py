@@ -24,8 +24,8 @@ ENVIRONMENT = {
 }
 
 # of a run without mpirun: Open MPI 4 starts no daemon, which takes half a second, and has no folder, which runs that
-# start at once would share
-ALONE = {"OMPI_MCA_ess_singleton_isolated": "1", "OMPI_MCA_orte_create_session_dirs": "0"}
+# start at once would share; Open MPI 5 leaves no shared memory behind
+ALONE = {"OMPI_MCA_ess_singleton_isolated": "1", "OMPI_MCA_orte_create_session_dirs": "0", "OMPI_MCA_btl": "self"}
 
 
 @functools.lru_cache
@@ -84,8 +84,8 @@ def write_asc(path, heights, xlo=0.0, ylo=0.0, cell=1.0, nodata=-9999):
     """Write an ESRI ASCII grid; heights[0] is the row in the south, NaN is NODATA."""
     heights = numpy.asarray(heights, float)
     rows, columns = heights.shape
-    lines = [f"ncols {columns}", f"nrows {rows}", f"xllcorner {xlo!r}", f"yllcorner {ylo!r}",
-             f"cellsize {cell!r}", f"NODATA_value {nodata}"]
+    lines = [f"ncols {columns}", f"nrows {rows}", f"xllcorner {float(xlo)!r}", f"yllcorner {float(ylo)!r}",
+             f"cellsize {float(cell)!r}", f"NODATA_value {nodata}"]
     for row in heights[::-1]:
         lines.append(" ".join(str(nodata) if numpy.isnan(z) else repr(float(z)) for z in row))
     Path(path).write_text("\n".join(lines) + "\n")

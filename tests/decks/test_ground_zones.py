@@ -4,8 +4,8 @@ import numpy
 import pytest
 from deck_helpers import dump_difference, read_dump, run_deck, write_asc
 from scipy.spatial import cKDTree
-from shapely.geometry import Polygon
-from shapely.vectorized import contains
+from shapely.geometry import Point, Polygon
+from shapely.prepared import prep
 from test_ground_tiles import heights
 
 ZONES = {"fan": [(20, 10), (90, 15), (70, 70), (30, 60)], "scar": [(60, 40), (120, 30), (130, 90), (75, 100)],
@@ -69,6 +69,11 @@ def site(tmp_path_factory):
 def places(site, ground, name="balls"):
     run_deck(deck(f"{ground} write {name}.xyz") + "run 0\n", site)
     return numpy.loadtxt(site / f"{name}.xyz")
+
+
+def contains(polygon, x, y):
+    inside = prep(polygon)
+    return numpy.array([inside.contains(Point(place)) for place in zip(x, y)])
 
 
 def zone_of(x, y):

@@ -64,11 +64,11 @@ thermo 1000
 def make_deck(tmp_path, wall=True, balls=BALLS, positions=None, diameter=D, origin=(0.0, 0.0, 0.0), newton="on",
               processors="* * *", atom_modify="", skin=0.02, neigh_modify="delay 0", style="", coeff=COEFF, dt=4e-4,
               gravity=SLOPE, every=100, trace="trace.txt", before="", box=BOX):
-    positions = floor(origin) if positions is None else positions
+    positions = [tuple(map(float, one)) for one in (floor(origin) if positions is None else positions)]
     box = " ".join(f"{low + o} {high + o}" for o, (low, high) in zip(origin, box))
     deck = SETUP.format(**locals())
     for k, ball in enumerate(balls, 1):
-        x, y, z = (ball[axis] + o for axis, o in zip("xyz", origin))
+        x, y, z = (float(ball[axis] + o) for axis, o in zip("xyz", origin))
         deck += f"create_atoms 1 single {x!r} {y!r} {z!r}\nset atom {k} diameter {ball['d']} density {RHO}\n"
         deck += "velocity all set 0 0 0\n" * (k == 1)
         deck += f"group one id {k}\nvelocity one set {ball['v'][0]} {ball['v'][1]} {ball['v'][2]}\ngroup one delete\n"

@@ -30,6 +30,7 @@ readme_commands() {
   step report test -s build/demo/report.html
   case $tests in
     none) ;;
+    short) step tests "${runner[@]}" tests/run.sh ;;
     all) step tests "${runner[@]}" tests/run.sh --all ;;
     *) step tests "${runner[@]}" tests/run.sh -R "$tests" ;;
   esac

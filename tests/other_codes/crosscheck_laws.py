@@ -93,5 +93,5 @@ def by_centres(removal: volume.Removal, final, d: float) -> float:
         height = ground.height(x, y)
         return np.where(inside, height, np.maximum(height, edge.cut(x, y)))
 
-    x, y = ~run.raster.transform * final[:, :2].T
+    x, y = ~run.raster.transform @ final[:, :2].T
     return float((final[:, 2] > level(x, y)).sum()) * run.bulk * math.pi / 6 * d ** 3

@@ -47,20 +47,20 @@ class RunCache:
     def __init__(self, top, program):
         self.top, self.program, self.start = Path(top), str(program), processes.start
 
-    def cached(self, words, folder, screen):
+    def cached(self, words, folder, screen, **how):
         """As processes.start."""
         words, folder = [str(word) for word in words], Path(folder)
         study = self.program in words and (folder / run_folders.VARIABLES).is_file()      # a run of one
         inside = not any(word.startswith("/") for word in words if word != self.program)
         digest = digest_of(words, folder) if study and inside else None
         if digest is None:
-            return self.start(words, folder, screen)
+            return self.start(words, folder, screen, **how)
         place = self.top / digest
         if place.is_dir():
             shutil.copytree(place, folder, dirs_exist_ok=True)
             return subprocess.Popen(["true"], stdin=subprocess.DEVNULL)
         before = {path: path.stat().st_mtime_ns for path in folder.rglob("*") if path.is_file()}
-        process = self.start(words, folder, screen)
+        process = self.start(words, folder, screen, **how)
         process.__class__ = Kept
 
         def keep():

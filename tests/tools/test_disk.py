@@ -310,10 +310,11 @@ def many_sets(folder, name, number, failed):
 
 def test_processes_with_one_output_leave_one_of_their_sets(tmp_path):
     """They have temporary names of their own, and take turns in renaming."""
-    failed = multiprocessing.Queue()
+    context = multiprocessing.get_context("spawn")      # pytest has threads, with which a fork may hang
+    failed = context.Queue()
     folder = tmp_path / "out"
     folder.mkdir()
-    running = [multiprocessing.Process(target=many_sets, args=(folder, name, 40, failed)) for name in "123"]
+    running = [context.Process(target=many_sets, args=(folder, name, 40, failed)) for name in "123"]
     for one in running:
         one.start()
     for one in running:
@@ -359,10 +360,8 @@ def test_a_folder_that_cannot_be_reached_is_one_line(tmp_path, monkeypatch):
 
 def test_what_a_killed_process_left_goes_with_the_next_file(tmp_path):
     """Not what another process, another machine, or another file has there."""
-    child = os.fork()
-    if child == 0:
-        os._exit(0)
-    os.waitpid(child, 0)
+    with subprocess.Popen(["true"]) as ended:
+        child = ended.pid
     left = tmp_path / f".one.{platform.node()}.{child}.new"
     others = [tmp_path / f".one.{platform.node()}.{os.getppid()}.new", tmp_path / f".one.elsewhere.{child}.new",
               tmp_path / f".two.{platform.node()}.{child}.new"]
@@ -416,6 +415,8 @@ def outputs(folder):
 def test_a_run_whose_rasters_do_not_fit(run_folder):
     whole = run_folder()
     largest = max((len(data), path) for path, data in whole.items() if path.startswith("tiny"))
+    deck = re.sub("^dump .*\n", "", Path("in.tiny").read_text(), flags=re.MULTILINE)
+    Path("in.tiny").write_text(deck)        # a dump is larger, and LAMMPS of 2025 says so
     done = lmp("-var", "steps", "200", "-var", "rolling", "0.2", limit=largest[0] - 100)
     assert re.match(r"ERROR( on proc 0)?: Fix deposit/grid: cannot write tiny\.\w+\.asc: File too large",
                     error_of(done))

@@ -89,7 +89,7 @@ def read_vts(path):
     reader.Update()
     assert reader.GetErrorCode() == 0
     data = reader.GetOutput()
-    nx, ny, nz = data.GetDimensions()
+    nx, ny, nz = np.diff(np.reshape(data.GetExtent(), (3, 2)))[:, 0] + 1
     assert nz == 1
     points = vtk_to_numpy(data.GetPoints().GetData()).reshape(ny, nx, 3)
     values = {name: value.reshape(ny, nx) for name, value in arrays(data.GetPointData()).items()}

@@ -137,7 +137,7 @@ def written(slope):
         assert status == 0, err
         z, transform, _, offset = rasters.read_asc_local("out.asc")
         rows, columns = np.indices(z.shape) + 0.5
-        east, north = Affine.translation(*offset) * transform * (columns, rows)
+        east, north = Affine.translation(*offset) @ transform @ (columns, rows)
         return z, east, north, yaml.safe_load(Path("out.yaml").read_text()), out, err
     return run
 

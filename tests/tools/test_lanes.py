@@ -216,7 +216,7 @@ def test_ranges():
 
 def test_an_axis_with_bends_is_divided_without_gaps_and_overlaps():
     axis = Axis([(0, 0), (10, 0), (10, 0), (20, 5), (30, 0), (30, 20)], 100)
-    whole = LineString(axis.points).buffer(2, cap_style=2, resolution=45)
+    whole = LineString(axis.points).buffer(2, 45, cap_style=2)
     assert axis.s[-1] == pytest.approx(130 + 20 * math.sqrt(1.25))
     assert sum(piece.area.area for piece in axis.pieces(2)) == pytest.approx(whole.area, rel=1e-4)
     for across in ((-2, 2), (0.5, 2), (-2, -0.5), (-2, 0.5)):

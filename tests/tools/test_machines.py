@@ -34,7 +34,7 @@ def releases():
 def test_the_table():
     """Each release has all its columns; what is not tried says so."""
     table = releases()
-    assert list(table) == ["debian-12", "debian-13", "ubuntu-22.04", "ubuntu-24.04"]
+    assert list(table) == ["debian-12", "debian-13", "debian-sid", "ubuntu-22.04", "ubuntu-24.04"]
     for release, (distribution, suite, components, keyring, tried) in table.items():
         assert distribution.lower() == release.split("-")[0] and re.fullmatch("[a-z]+", suite)
         assert components.split(",")[0] == "main" and re.fullmatch(r"[\w-]+/[\w-]+", keyring)
@@ -46,17 +46,18 @@ def test_releases_have_a_mirror_if_apt_knows_one_of_their_distribution(call):
     assert done.returncode == 0, done.stderr
     rows = {line.split()[0]: line.split(None, 3)[1:] for line in done.stdout.splitlines()}
     assert rows == {"debian-12": ["bookworm", "yes", "has a mirror"], "debian-13": ["trixie", "yes", "has a mirror"],
+                    "debian-sid": ["sid", "yes", "has a mirror"],
                     "ubuntu-22.04": ["jammy", "untried", "no mirror"],
                     "ubuntu-24.04": ["noble", "untried", "no mirror"]}
     # security updates alone are no mirror; one that is named is
     done = call("--list", sources="Debian bookworm-security http://mirror.invalid/security/\n")
-    assert done.stdout.count("no mirror") == 4
-    assert call("--mirror", "http://mirror.invalid/ubuntu", "--list").stdout.count("has a mirror") == 4
+    assert done.stdout.count("no mirror") == 5
+    assert call("--mirror", "http://mirror.invalid/ubuntu", "--list").stdout.count("has a mirror") == 5
 
 
 @pytest.mark.parametrize("words, message", [
     (["--release", "debian-11"],
-     "--release must be one of debian-12 debian-13 ubuntu-22.04 ubuntu-24.04, got debian-11"),
+     "--release must be one of debian-12 debian-13 debian-sid ubuntu-22.04 ubuntu-24.04, got debian-11"),
     (["--way", "bear"], "--way must be one of bare user paraview yade deb tar, got bear"),
     (["--tests"], "--tests: value is missing"),
     (["--quick"], "unknown option --quick, see --help"),

@@ -48,7 +48,7 @@ def thickness(folder, path, of=2.0):
     """A raster of so much thickness in the same rectangle, on the grid of the runs."""
     raster = rasters.read_raster(next(iter(sorted(folder.glob("*/tiny.thickness.asc")))), heights=False)
     rows, columns = np.indices(raster.z.shape)
-    x, y = raster.transform * (columns + 0.5, rows + 0.5)
+    x, y = raster.transform @ (columns + 0.5, rows + 0.5)
     inside = (x > LOW[0]) & (x < HIGH[0]) & (y > LOW[1]) & (y < HIGH[1])
     rasters.write_geotiff(path, {"thickness": np.where(inside, of, 0.0)}, raster)
     return path, inside, raster.transform.a

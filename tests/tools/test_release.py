@@ -125,7 +125,7 @@ def sphere_distance(about, degrees, direction, radius):
     """Of the nodes of the written slip surface in the body, from the sphere through toe, shoulder and sagitta."""
     slip, ground = rasters.read_asc_local("r.slip.asc"), rasters.read_asc_local("t.asc")
     row, column = np.nonzero(slip.z < ground.z)
-    x, y = slip.transform * (column + 0.5, row + 0.5)
+    x, y = slip.transform @ (column + 0.5, row + 0.5)
     toe, shoulder = np.array(about["toe"]), np.array(about["shoulder"])
     tilt, bearing = math.radians(degrees), math.radians(direction)
     normal = np.array([math.sin(tilt) * math.sin(bearing), math.sin(tilt) * math.cos(bearing), math.cos(tilt)])
@@ -715,7 +715,7 @@ def test_a_scar_on_another_grid_and_in_another_crs(body):
     raster = rasters.read_asc_local("fine.asc")
     raster = raster._replace(z=dent(*np.meshgrid(0.75 * (np.arange(320) + 0.5), 0.75 * (265.5 - np.arange(266)))))
     with rasterio.open("far.tif", "w", driver="GTiff", height=266, width=320, count=1, dtype="float64", crs=CRS_M,
-                       transform=Affine.translation(EAST, NORTH) * raster.transform) as out:
+                       transform=Affine.translation(EAST, NORTH) @ raster.transform) as out:
         out.write(raster.z, 1)
     subprocess.run(["gdalwarp", "-q", "-t_srs", "EPSG:6668", "-r", "bilinear", "-tr", "8e-6", "8e-6", "-dstnodata",
                     "-9999", "far.tif", "degrees.tif"], check=True)

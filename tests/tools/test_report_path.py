@@ -22,7 +22,7 @@ def site(centre=CENTRE, width=16.0, size=(100, 100), head=30.0):
     """A channel around a line that a mass went down from its first `head` metres; as report_ground.Ground has it."""
     rows, columns = size
     transform = Affine(CELL, 0, 0, 0, -CELL, rows * CELL)
-    x, y = transform * np.meshgrid(np.arange(columns) + 0.5, np.arange(rows) + 0.5)
+    x, y = transform @ np.meshgrid(np.arange(columns) + 0.5, np.arange(rows) + 0.5)
     away = np.array([[centre.distance(Point(*at)) for at in zip(*row)] for row in zip(x, y)])
     along = np.array([[centre.project(Point(*at)) for at in zip(*row)] for row in zip(x, y)])
     touched = away < width / 2

@@ -29,7 +29,7 @@ def site(name):
     """Layers of a site, and a thickness on it."""
     rows, columns, cell, (xlo, ylo) = SITES[name]
     transform = Affine(cell, 0, xlo, 0, -cell, ylo + rows * cell)
-    x, y = transform * np.meshgrid(np.arange(columns) + 0.5, np.arange(rows) + 0.5)
+    x, y = transform @ np.meshgrid(np.arange(columns) + 0.5, np.arange(rows) + 0.5)
     ground = 0.6 * (x - xlo) + 0.1 * (y - ylo)
     crs = CRS_OF[name] and CRS.from_user_input(CRS_OF[name])
     raster = Raster(ground, transform, crs, (1234567.0, 7654321.0) if crs else (0.0, 0.0))

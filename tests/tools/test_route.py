@@ -60,8 +60,8 @@ def test_windows_overlap_by_half():
 
 
 def run_helpers_extent(raster):
-    xlo, yhi = raster.transform * (0, 0)
-    xhi, ylo = raster.transform * raster.z.shape[::-1]
+    xlo, yhi = raster.transform @ (0, 0)
+    xhi, ylo = raster.transform @ raster.z.shape[::-1]
     return xlo, ylo, xhi, yhi
 
 

@@ -75,7 +75,7 @@ def test_twelve_runs(name):
 
 def thickness_at(blocks, place):
     one = deposit(*blocks)
-    column, row = ~one.raster.transform * place
+    column, row = ~one.raster.transform @ place
     return one.raster.z[int(row), int(column)]
 
 
@@ -181,7 +181,7 @@ def by_hand(road, density):
     centre = np.array([np.average(one[body_], weights=depth[body_]) for one in (x, y)])
     begin = centre - ((centre - [x.flat[crown], y.flat[crown]]) @ down) * down
     along = np.arange(0, 1500, 0.1)
-    places = np.array(~at * (begin[:, None] + along * down[:, None])) - 0.5
+    places = np.array(~at @ (begin[:, None] + along * down[:, None])) - 0.5
     toe = along[map_coordinates(depth, places[::-1], order=1) > 0.01 * depth.max()].max()
     height = ground.flat[crown] - map_coordinates(ground, places[::-1, along == toe], order=1)[0]
     far = np.hypot(x - begin[0], y - begin[1])[thickness > 0]

@@ -271,10 +271,10 @@ def test_bad_input_is_one_line(slope, no_map, here, arguments, message):
     write_run(square(), 0.0, 2.5)
     place = Affine(2.5, 0, EAST, 0, -2.5, NORTH + 100)
     write_tif("mapped.tif", square(), place)
-    write_tif("away.tif", square(), Affine.translation(500, 0) * place)
+    write_tif("away.tif", square(), Affine.translation(500, 0) @ place)
     write_tif("zone8.tif", square(), place, "EPSG:6676")
     write_tif("negative.tif", square() - np.eye(40, 60), place)
-    write_tif("turned.tif", square(), place * Affine.rotation(10))
+    write_tif("turned.tif", square(), place @ Affine.rotation(10))
     before = sorted(here.rglob("*"))
     status, out, err = slope(arguments)
     assert (status, out) == (2, "") and err.count("\n") == 1 and err.startswith("slope score: ") and message in err

@@ -205,7 +205,7 @@ def test_lines_that_do_not_meet_are_each_a_road(tmp_path, gis, names, found):  #
     points = [(10, 5), (10, 70)], [(30, 5), (30, 40), (34, 70)]
     write_lines(tmp_path / "two.geojson", *zip(names, points))
     raster = rasters.read_raster(gis / "dem.tif")
-    raster = raster._replace(transform=type(raster.transform).translation(-EAST, -NORTH) * raster.transform,
+    raster = raster._replace(transform=type(raster.transform).translation(-EAST, -NORTH) @ raster.transform,
                              offset=(EAST, NORTH))
     each = roads.read_each(tmp_path / "two.geojson", raster, roads.Asked(width=6.0))
     assert list(each) == found
@@ -273,7 +273,7 @@ def test_where_the_ways_of_a_road_are_cut_does_not_matter(cut, turned):
 def test_carriageways_have_a_number_together(tmp_path, gis):  # noqa: F811
     """Of one name, or without any and next to each other; a service road beside is none, nor is a side road."""
     raster = rasters.read_raster(gis / "dem.tif")
-    raster = raster._replace(transform=type(raster.transform).translation(-EAST, -NORTH) * raster.transform,
+    raster = raster._replace(transform=type(raster.transform).translation(-EAST, -NORTH) @ raster.transform,
                              offset=(EAST, NORTH))
     north, south, lane = [(10, 5), (10, 70)], [(18, 70), (18, 5)], [(14, 20), (14, 60)]
     for names, number in ((("M1", "M1"), 3), ((None, None), 3), (("M1", None), 2), (("M1", "M2"), 2)):
@@ -298,7 +298,7 @@ def test_carriageways_have_a_number_together(tmp_path, gis):  # noqa: F811
 def test_roads_that_nearly_meet_are_told(tmp_path, gis):  # noqa: F811
     """Ends drawn by eye, pieces of one road in files of their own, and polygons."""
     raster = rasters.read_raster(gis / "dem.tif")
-    raster = raster._replace(transform=type(raster.transform).translation(-EAST, -NORTH) * raster.transform,
+    raster = raster._replace(transform=type(raster.transform).translation(-EAST, -NORTH) @ raster.transform,
                              offset=(EAST, NORTH))
     asked = roads.Asked(width=6.0)
     for gap in (0.0, 0.5, 1.9, 2.5, 6.0):

@@ -30,7 +30,7 @@ from slope_tools.finding_words import WORDS
 from slope_tools.findings import Finding
 from slope_tools.mobility import body, known
 from slope_tools.plots import site_map
-from slope_tools.sites import site, site_budget, site_choices, site_deck, site_folder, site_trial, site_warnings
+from slope_tools.sites import site_budget, site_choices, site_deck, site_folder, site_trial, site_warnings
 from slope_tools.studies import site_study
 from slope_tools.survey.resampling import sample
 
@@ -145,8 +145,18 @@ def test_killed_while_the_files_are_exchanged(tmp_path, monkeypatch, after):
     assert (folder / "notes.txt").read_text() == "old\n" and (folder / "study" / "study.yaml").exists()
 
 
+# `slope site` that dies when its files are there
+KILLED = """
+import os, signal, sys
+from slope_tools import cli
+from slope_tools.sites import site
+site.built = lambda *_: os.kill(os.getpid(), signal.SIGKILL)
+cli.main(["site", *sys.argv[1:]])
+"""
+
+
 @pytest.mark.parametrize("before", ["nothing", "an empty folder", "the site"])
-def test_killed_while_the_files_are_made(inside, gis, monkeypatch, before):  # noqa: F811
+def test_killed_while_the_files_are_made(inside, gis, before):  # noqa: F811
     """The next call removes what the killed one left, and leaves alone what belongs to a process that lives."""
     make = f"--terrain dem.tif --release release.geojson {shlex.join(BODY)} -o mine"
     if before == "an empty folder":
@@ -154,14 +164,10 @@ def test_killed_while_the_files_are_made(inside, gis, monkeypatch, before):  # n
     elif before == "the site":
         inside(make)
         make = "mine"
-    child = os.fork()
-    if child == 0:
-        monkeypatch.setattr(site, "built", lambda *_: os.kill(os.getpid(), signal.SIGKILL))
-        try:
-            inside(make)
-        finally:
-            os._exit(1)
-    assert os.waitpid(child, 0)[1] == signal.SIGKILL
+    killed = subprocess.Popen([sys.executable, "-c", KILLED, *shlex.split(make)], cwd=gis, stdin=subprocess.DEVNULL,
+                              env={**os.environ, "PYTHONPATH": str(TOOLS)})
+    assert killed.wait(60) == -signal.SIGKILL
+    child = killed.pid
     left, = gis.rglob(f".mine.*{child}.new")
     other = left.with_name(left.name.replace(str(child), str(os.getppid())))
     if before != "an empty folder":     # with it the folder is in use

@@ -2,7 +2,7 @@
 import numpy as np
 import pytest
 from affine import Affine
-
+from scipy.integrate import trapezoid
 
 from slope_tools.slips import bishop, chart, columns
 from slope_tools.slips.bishop import Strengths
@@ -79,7 +79,7 @@ def test_no_friction_on_a_plane_slope_is_the_closed_form():
     v = np.linspace(-1, 1, 200001)[1:-1] * np.sqrt(radius ** 2 - height ** 2)
     ring = np.sqrt(radius ** 2 - v ** 2)        # the cap's arc at v has the angle 2 acos(height / ring)
     surface = 2 * ring * np.arccos(height / ring) * radius / ring
-    moment = 5e4 * np.trapz(ring * surface, v)
+    moment = 5e4 * trapezoid(ring * surface, v)
     expected = moment / (2000.0 * columns.GRAVITY * zbar_v * np.sin(beta))
     assert bishop.factor_of_safety(body, Strengths(5e4, 0.0))[0] == pytest.approx(expected, rel=5e-3)
 

@@ -391,6 +391,15 @@ def test_words_of_a_launcher(start, ranks, expected):
     assert launcher.list_launcher_words(start, ranks, 2) == expected
 
 
+def test_messages_go_at_once_in_every_open_mpi(monkeypatch):
+    """The kind of memory that ranks share has another name since Open MPI 5; a user's own limit stands."""
+    for name in processes.EAGER:
+        monkeypatch.delenv(name, raising=False)
+    assert [processes.environment()[name] for name in processes.EAGER] == ["131072"] * 2
+    monkeypatch.setenv(processes.EAGER[1], "4096")
+    assert [processes.environment().get(name) for name in processes.EAGER] == [None, "4096"]
+
+
 def test_more_ranks_than_tasks_of_slurm(tmp_path, monkeypatch):
     """In `sbatch -n 1 -c 2`, of whose variables Open MPI makes one slot."""
     host = socket.gethostname()

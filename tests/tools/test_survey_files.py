@@ -71,7 +71,7 @@ def made(slope, here):
         status, out, err = slope(f"{arguments} --overwrite -o out.asc")
         assert status == 0, err
         z, transform, _, offset = rasters.read_asc_local("out.asc")
-        x, y = transform * np.meshgrid(np.arange(z.shape[1]) + 0.5, np.arange(len(z)) + 0.5)
+        x, y = transform @ np.meshgrid(np.arange(z.shape[1]) + 0.5, np.arange(len(z)) + 0.5)
         return z, x + offset[0], y + offset[1], out, err
     return run
 
@@ -358,7 +358,7 @@ def test_of_a_large_file_only_the_window_is_read(here):
     with rasterio.open("large.tif", "w", driver="GTiff", height=50_000, width=50_000, count=1, dtype="float32",
                        crs="EPSG:3035", transform=Affine(1, 0, EAST - 30_000, 0, -1, NORTH + 30_000), nodata=-9999,
                        BIGTIFF="YES", **BLOCKS) as out:
-        x, y = out.transform * np.meshgrid(np.arange(29_900, 30_100) + 0.5, np.arange(29_900, 30_100) + 0.5)
+        x, y = out.transform @ np.meshgrid(np.arange(29_900, 30_100) + 0.5, np.arange(29_900, 30_100) + 0.5)
         out.write(ground(x, y).astype("float32"), 1, window=Window(29_900, 29_900, 200, 200))
     code = ("import sys; sys.path[:0] = [sys.argv[1]]; from slope_tools import cli; sys.argv = ['slope', "
             "'terrain', 'large.tif', '--bounds', *sys.argv[2:], '-o', 'out.asc']; status = cli.main(); "
@@ -369,7 +369,7 @@ def test_of_a_large_file_only_the_window_is_read(here):
     assert done.returncode == 0, done.stderr
     assert "cropped to 60 x 40 of 50000 x 50000 cells" in done.stdout
     z, transform, _, offset = rasters.read_asc_local("out.asc")
-    x, y = transform * np.meshgrid(np.arange(z.shape[1]) + 0.5, np.arange(len(z)) + 0.5)
+    x, y = transform @ np.meshgrid(np.arange(z.shape[1]) + 0.5, np.arange(len(z)) + 0.5)
     assert in_place((z, x + offset[0], y + offset[1]))
 
 
@@ -392,7 +392,7 @@ def test_a_window_is_a_part_of_the_whole(made, here, monkeypatch, options, name)
         shutil.move("out.asc", name)
         os.remove("out.yaml")
     elif name == "dem.xyz":
-        x, y = transform * np.meshgrid(np.arange(60) + 0.5, np.arange(50) + 0.5)
+        x, y = transform @ np.meshgrid(np.arange(60) + 0.5, np.arange(50) + 0.5)
         known = np.isfinite(whole)
         write(name, np.column_stack([x[known], y[known], whole[known]]))
     options += f" --assign-crs {CRS_M}"
@@ -430,14 +430,17 @@ def test_heights_in_feet_over_a_plan_in_metres_are_asked_about(slope, made, here
 
 # --- axes and north ---
 
-@pytest.mark.parametrize("code, sister", [("ESRI:102482", "ESRI:102562"), (2048, "ESRI:102562"), (5513, "EPSG:5514"),
+LO19 = "ESRI:102562|EPSG:11297"       # in the database of PROJ since 2025
+
+
+@pytest.mark.parametrize("code, sister", [("ESRI:102482", LO19), (2048, LO19), (5513, "EPSG:5514"),
                                           (2065, "EPSG:5221"), (3052, "a UTM zone")])
 def test_axes_that_point_west_or_south_are_refused_with_the_sister(slope, here, code, sister):
     name = f"EPSG:{code}" if isinstance(code, int) else code
     tif("dem.tif", crs_="EPSG:32633")
     for arguments in (f"dem.tif --crs {name}", f"dem.tif --assign-crs {name}"):
         status, _, err = slope(f"{arguments} -o out.asc")
-        assert status == 2 and sister in err and "must point east and north" in err
+        assert status == 2 and re.search(sister, err) and "must point east and north" in err
         assert f"got {name if isinstance(code, int) else 'Hartebeesthoek94_Lo19'}, " in err
     tif("dem.tif", crs_=name)
     with pytest.raises(Exception, match="must point east and north"):

@@ -37,7 +37,7 @@ def plane(x, y):
 
 def centres(transform, shape):
     """East and north of the cell centres, each of that shape."""
-    return transform * np.meshgrid(np.arange(shape[1]) + 0.5, np.arange(shape[0]) + 0.5)
+    return transform @ np.meshgrid(np.arange(shape[1]) + 0.5, np.arange(shape[0]) + 0.5)
 
 
 def survey(columns=20, rows=16, cell=5.0, east=EAST, north=NORTH):
@@ -73,7 +73,7 @@ def written(slope):
         status, out, err = slope(f"{arguments} --overwrite -o out.asc")
         assert status == 0, err
         z, transform, _, offset = rasters.read_asc_local("out.asc")
-        east, north = centres(Affine.translation(*offset) * transform, z.shape)
+        east, north = centres(Affine.translation(*offset) @ transform, z.shape)
         return z, east, north, yaml.safe_load(Path("out.yaml").read_text()), out
     return run
 
@@ -237,7 +237,7 @@ def test_resampling_does_not_reach_into_nodata(written):
     got, east, north, _, _ = written("dem.tif --cell 1")
     assert_plane(got, east, north)
     hole = Affine.translation(8, 5), Affine.translation(11, 7)  # outer edges of the hole; heights end half a cell off
-    (west, top), (right, bottom) = (transform * step * (0, 0) for step in hole)
+    (west, top), (right, bottom) = (transform @ step * (0, 0) for step in hole)
     empty = (east > west - 2.5) & (east < right + 2.5) & (north < top + 2.5) & (north > bottom - 2.5)
     assert (np.isnan(got) == empty).all()
 
@@ -245,7 +245,7 @@ def test_resampling_does_not_reach_into_nodata(written):
 @pytest.mark.parametrize("name, transform", [
     ("non-square", Affine(5, 0, EAST, 0, -4, NORTH + 80)),
     ("south up", Affine(5, 0, EAST, 0, 5, NORTH)),
-    ("turned", Affine.translation(EAST, NORTH + 80) * Affine.rotation(-20) * Affine.scale(5, -5)),
+    ("turned", Affine.translation(EAST, NORTH + 80) @ Affine.rotation(-20) @ Affine.scale(5, -5)),
 ])
 def test_other_grids_are_resampled_to_a_north_up_square_one(written, name, transform):
     write_tif("dem.tif", plane(*centres(transform, (16, 20))), transform)
@@ -546,7 +546,7 @@ def test_tiles_merge_to_the_whole(written, slope, here):
     write_tif("whole.tif", z, transform)
     slope("whole.tif -o whole.asc")
     write_tif("a.tif", z[:, :12], transform)
-    write_tif("b.tif", z[:10, 12:], transform * Affine.translation(12, 0))
+    write_tif("b.tif", z[:10, 12:], transform @ Affine.translation(12, 0))
     (here / "c.asc").write_text(asc_text(z[10:, 12:], EAST + 60.002, NORTH, 5.0))  # a coordinate rounded: same grid
     _, _, _, about, out = written(f"c.asc b.tif a.tif --crs {CRS_M}")
     assert "merged 3 rasters; 0 cells in more than one" in out
@@ -559,13 +559,13 @@ def test_overlap_and_gap(written):
     left, right = z[:, :8].copy(), z[:, 6:].copy() + 2
     left[0, 7] = np.nan
     write_tif("a.tif", left, transform)
-    write_tif("b.tif", right, transform * Affine.translation(6, 0))
+    write_tif("b.tif", right, transform @ Affine.translation(6, 0))
     got, _, _, _, out = written("a.tif b.tif")
     assert "31 cells in more than one, the first file counts, heights differ by up to 2.000 m" in out
     expected = np.hstack([z[:, :8], z[:, 8:] + 2])
     expected[0, 7] += 2  # the first file has no height there
     assert np.allclose(got, expected, rtol=0, atol=MM)
-    write_tif("c.tif", z[:, 15:], transform * Affine.translation(15, 0))
+    write_tif("c.tif", z[:, 15:], transform @ Affine.translation(15, 0))
     assert np.isnan(written("a.tif c.tif")[0][:, 8:15]).all()
 
 
@@ -775,7 +775,7 @@ def test_the_program_itself(here):
 def test_every_example_of_the_page_and_the_help_runs(slope, here, command):
     z, transform = degrees_survey(200)
     write_tif("north.tif", z[:100], transform, crs="EPSG:6668")
-    write_tif("south.tif", z[100:], transform * Affine.translation(0, 100), crs="EPSG:6668")
+    write_tif("south.tif", z[100:], transform @ Affine.translation(0, 100), crs="EPSG:6668")
     z, transform = survey(200, 200)
     write_tif("survey.tif", z, transform)
     (here / "survey.asc").write_text(asc_text(z, EAST, NORTH, 5.0))

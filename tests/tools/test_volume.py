@@ -274,7 +274,7 @@ def test_mass_is_conserved_and_every_file_has_the_same_numbers(cleared, seed, me
         by_mesh, to_place = file.read(1), file.transform
     for row in table:
         assert by_mesh[int(row["row"]) - 1, int(row["column"]) - 1] == row["remove"]
-        assert to_place * (row["column"] - 1, row["row"]) == pytest.approx((row["xlo"], row["ylo"]), abs=1e-9)
+        assert to_place @ (row["column"] - 1, row["row"]) == pytest.approx((row["xlo"], row["ylo"]), abs=1e-9)
     assert math.fsum(by_mesh.ravel()) == pytest.approx(total["remove"], rel=1e-12)
     assert about["volume_at_other_bulk_factor"]["remove"] == pytest.approx(total["remove"] * 2.5 / BULK, rel=1e-9)
     assert table[-1]["remove_at_other_bulk_factor"] == pytest.approx(table[-1]["remove"] * 2.5 / BULK, rel=1e-6)
@@ -307,7 +307,7 @@ def test_against_a_sum_over_points():
     got = volume.evaluate_removal(run, road, 30, volume.make_mesh(10, run.raster), 8)
 
     def height(x, y):
-        return cut.Ground(base).height(*(~run.raster.transform * (x, y)))
+        return cut.Ground(base).height(*(~run.raster.transform @ (x, y)))
 
     step = 0.25
     x, y = (values.ravel() for values in centres(240, 240, step))
@@ -440,7 +440,7 @@ def test_every_output_is_in_the_crs_of_the_terrain(slope, no_map):
     for name, cell, size in (("volume", 2.5, (100, 80)), ("volume_mesh", 10, (25, 20))):
         with rasterio.open(f"metres/{name}.tif") as file:
             assert file.crs.to_epsg() == 6677 and file.nodata == -9999 and (file.width, file.height) == size
-            assert (file.transform * (0, file.height)) == (EAST, NORTH) and file.res == (cell, cell)
+            assert (file.transform @ (0, file.height)) == (EAST, NORTH) and file.res == (cell, cell)
         told = json.loads(subprocess.run(["gdalinfo", "-json", f"metres/{name}.tif"], capture_output=True, text=True,
                                          check=True).stdout)
         assert told["geoTransform"] == [EAST, cell, 0, NORTH + 200, 0, -cell]

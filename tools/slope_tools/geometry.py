@@ -13,14 +13,14 @@ ON_LINE = 1e-9         # cells; lines that are closer to each other are one
 def extent(raster):
     """Local xlo, ylo, xhi, yhi of a north-up raster."""
     rows, columns = raster.z.shape
-    (xlo, yhi), (xhi, ylo) = raster.transform * (0, 0), raster.transform * (columns, rows)
+    (xlo, yhi), (xhi, ylo) = raster.transform @ (0, 0), raster.transform @ (columns, rows)
     return xlo, ylo, xhi, yhi
 
 
 def extent_of(transform, mask):
     """The same of the cells of a mask, of which there must be one."""
     rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
-    (xlo, yhi), (xhi, ylo) = transform * (columns[0], rows[0]), transform * (columns[-1] + 1, rows[-1] + 1)
+    (xlo, yhi), (xhi, ylo) = transform @ (columns[0], rows[0]), transform @ (columns[-1] + 1, rows[-1] + 1)
     return xlo, ylo, xhi, yhi
 
 

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Dict, Iterable, Sequence
 
 SESSION = "OMPI_MCA_orte_tmpdir_base"       # where Open MPI 4 makes its session folders
+EAGER = ("OMPI_MCA_btl_vader_eager_limit", "OMPI_MCA_btl_sm_eager_limit")       # of Open MPI 4; from 5 on
 PATIENCE = 10.0         # s that a program gets to end after SIGTERM
 
 
@@ -19,16 +20,18 @@ def environment() -> Dict[str, str]:
     """Of a program that may be run by mpirun."""
     values = {**os.environ, "OMP_NUM_THREADS": "1"}
     # Open MPI on one machine: what a rank sends each step goes at once, without a handshake
-    values.setdefault("OMPI_MCA_btl_vader_eager_limit", "131072")
+    if not any(name in values for name in EAGER):
+        values.update(dict.fromkeys(EAGER, "131072"))
     if os.geteuid() == 0:
         values.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
     return values
 
 
-def start(words: Sequence[str], folder: Path, screen) -> subprocess.Popen:
+def start(words: Sequence[str], folder: Path, screen, alone: bool = False) -> subprocess.Popen:
     """Start a program in a folder; what it says goes to the open file `screen`. OSError if it is not there.
 
     It has a session of its own: Ctrl-C reaches the tools, which then end it. It does not outlive them.
+    alone: it is one rank, which nothing launches: Open MPI 5 leaves the folder and the memory of such a rank behind.
     """
     if shutil.which(words[0]) is None:
         raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), words[0])
@@ -38,6 +41,9 @@ def start(words: Sequence[str], folder: Path, screen) -> subprocess.Popen:
         session = values[SESSION] = tempfile.mkdtemp(prefix="slope")       # short: sockets go there
         # a run without mpirun starts half a second sooner without a daemon for processes that it never adds
         values.setdefault("OMPI_MCA_ess_singleton_isolated", "1")
+        if alone:
+            values["TMPDIR"] = session
+            values.setdefault("OMPI_MCA_btl_sm_backing_directory", session)
     guard = ["setpriv", "--pdeathsig", "TERM"] if shutil.which("setpriv") else []
     try:
         process = subprocess.Popen([*guard, *words], cwd=folder, env=values, stdin=subprocess.DEVNULL, stdout=screen,

@@ -37,7 +37,7 @@ def feet(raster: Raster, start: np.ndarray, end: np.ndarray, down: np.ndarray, r
     each = max(1, CHUNK // len(along))
     for some in (slice(first, first + each) for first in range(0, len(start), each)):
         x, y = (start[some, k, None] + unit[some, k, None] * along for k in (0, 1))
-        column, row = np.floor(~raster.transform * (x, y)).astype(int)
+        column, row = np.floor(~raster.transform @ (x, y)).astype(int)
         inside = (row >= 0) & (row < raster.z.shape[0]) & (column >= 0) & (column < raster.z.shape[1])
         on = inside & on_road[np.where(inside, row, 0), np.where(inside, column, 0)]
         there = on.any(axis=1)

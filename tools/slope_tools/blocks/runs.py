@@ -66,7 +66,7 @@ def terrain_of(site: Folder[OfBlocks]) -> Terrain:
     if site.choices.road.file:
         road = roads.read_local(site.folder / ROAD, raster, site.choices.road.asked, True)
         text = (site.folder / "blocks.1.data").read_text(encoding="ascii").split("sphere\n")[1]
-        columns, rows = ~raster.transform * np.loadtxt(text.splitlines(), ndmin=2)[:, 4:6].T
+        columns, rows = ~raster.transform @ np.loadtxt(text.splitlines(), ndmin=2)[:, 4:6].T
         starts = np.zeros(raster.z.shape, bool)
         starts[rows.astype(int), columns.astype(int)] = True
         largest_block = site.choices.blocks.size[-1]

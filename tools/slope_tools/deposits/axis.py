@@ -156,12 +156,12 @@ def longest_gap(spans: Sequence[Span], within: Span) -> float:
 def parts_of_mask(mask, transform, area: BaseGeometry) -> List[Polygon]:
     """The connected parts of the true cells of a mask (rows from the north) in an area, cut at its edge."""
     xlo, ylo, xhi, yhi = area.bounds
-    (left, top), (right, bottom) = ~transform * (xlo, yhi), ~transform * (xhi, ylo)
+    (left, top), (right, bottom) = ~transform @ (xlo, yhi), ~transform @ (xhi, ylo)
     top, left = (max(0, math.floor(one)) for one in (top, left))
     window = mask[top:max(0, math.ceil(bottom)), left:max(0, math.ceil(right))].astype(np.uint8)
     if not window.any():
         return []
-    found = shapes(window, window.astype(bool), connectivity=4, transform=transform * Affine.translation(left, top))
+    found = shapes(window, window.astype(bool), connectivity=4, transform=transform @ Affine.translation(left, top))
     # cells that end where the area does would, by rounding, be hairlines in it, which join what is apart
     return [part for one, _ in found for part in polygons_of(opened(shape(one).intersection(area), -SAME))]
 

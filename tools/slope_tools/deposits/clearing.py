@@ -76,5 +76,5 @@ def compute_stretch_volumes(run_, result, stretches: Sequence[Stretch]) -> np.nd
     row, column = np.nonzero(result.removed > 0)
     if not (stretches and len(row)):
         return np.zeros(len(stretches))
-    mine = lanes.nearest(stretches, *(run_.raster.transform * (column + 0.5, row + 0.5)))
+    mine = lanes.nearest(stretches, *(run_.raster.transform @ (column + 0.5, row + 0.5)))
     return np.bincount(mine, result.removed[row, column], len(stretches)) * run_.cell ** 2

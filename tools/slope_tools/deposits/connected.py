@@ -55,7 +55,7 @@ def connected(deposit, threshold=THRESHOLD):
     mask = labels == 1 + int(np.argmax(volume))
     highest = top(deposit)
     rows, columns = np.nonzero(mask)
-    x, y = np.moveaxis(np.array([deposit.raster.transform * (columns + i, rows + j) for i, j in CORNERS]), 1, 0)
+    x, y = np.moveaxis(np.array([deposit.raster.transform @ (columns + i, rows + j) for i, j in CORNERS]), 1, 0)
     distances = np.hypot(x - highest.x, y - highest.y)     # of each corner of each cell
     corner, far = np.unravel_index(distances.argmax(), distances.shape)
     distance = float(distances[corner, far])
@@ -83,6 +83,6 @@ def top(deposit):
             source, thickness = "highest cell that the mass was in", largest.z
     surface = np.where((thickness > 0) & np.isfinite(deposit.base), deposit.base + thickness, -np.inf)
     row, column = np.unravel_index(surface.argmax(), surface.shape)
-    x, y = deposit.raster.transform * (column + 0.5, row + 0.5)
+    x, y = deposit.raster.transform @ (column + 0.5, row + 0.5)
     z = float(surface[row, column])
     return Top(float(x), float(y), z if math.isfinite(z) else math.nan, source)

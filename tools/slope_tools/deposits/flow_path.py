@@ -126,7 +126,7 @@ class Bands:
 
     def distance(self, x, y):
         """Distance (m) from the release at a point; None where the mass never was."""
-        column, row = (int(value // self.step) for value in self.inverse * (x, y))
+        column, row = (int(value // self.step) for value in self.inverse @ (x, y))
         rows, columns = self.distances.shape
         inside = 0 <= row < rows and 0 <= column < columns
         return float(self.distances[row, column]) if inside and np.isfinite(self.distances[row, column]) else None

@@ -64,7 +64,7 @@ class Ground(NamedTuple):
     def middle(self) -> np.ndarray:
         """Of the mass that was released, local x y."""
         rows, columns = np.nonzero(self.released)
-        return np.array(self.raster.transform * (columns.mean() + 0.5, rows.mean() + 0.5))
+        return np.array(self.raster.transform @ (columns.mean() + 0.5, rows.mean() + 0.5))
 
     @property
     def gone(self) -> float:
@@ -163,7 +163,7 @@ def of_dumps(paths: List[Path], ground: Ground) -> Optional[Gone]:
 
 def over_ground(place: np.ndarray, ground: Ground) -> np.ndarray:
     """Whether places (n, 2) are above ground."""
-    column, row = np.floor(~ground.raster.transform * place.T).astype(int)
+    column, row = np.floor(~ground.raster.transform @ place.T).astype(int)
     rows, columns = ground.known.shape
     inside = (row >= 0) & (row < rows) & (column >= 0) & (column < columns)
     inside[inside] = ground.known[row[inside], column[inside]]
@@ -187,7 +187,7 @@ def sides(gone: Gone, ground: Ground) -> np.ndarray:
     known = np.pad(ground.known, 1)
     outside, _ = ndimage.label(~known, np.ones((3, 3)))
     holes = (outside != outside[0, 0]) & ~known
-    column, row = np.floor(~ground.raster.transform * gone.place.T).astype(int) + 1
+    column, row = np.floor(~ground.raster.transform @ gone.place.T).astype(int) + 1
     near = ndimage.binary_dilation(holes, np.ones((3, 3)))
     rows, columns = known.shape
     row, column = np.clip(row, 1, rows - 2), np.clip(column, 1, columns - 2)
@@ -208,7 +208,7 @@ def terrain_to_add(places: np.ndarray, ground: Ground) -> float:
     As far as its largest speed there carries it over level ground, at the reach angle of the run; rounded up.
     """
     fastest = ndimage.maximum_filter(np.nan_to_num(ground.max_speed), 2 * AROUND + 1)
-    column, row = np.floor(~ground.raster.transform * places.T).astype(int)
+    column, row = np.floor(~ground.raster.transform @ places.T).astype(int)
     rows, columns = fastest.shape
     speed = fastest[np.clip(row, 0, rows - 1), np.clip(column, 0, columns - 1)].max()
     fall = max(FLATTEST, np.tan(np.radians(ground.summary["travel"]["reach_angle"])))

@@ -110,7 +110,7 @@ def by_chainage(run_, road, axes):
     row, column = np.nonzero(volume > 0)
     if not len(row):
         return []
-    s, n = np.array([axis.locate(*(raster.transform * (column + 0.5, row + 0.5))) for axis in axes]).swapaxes(0, 1)
+    s, n = np.array([axis.locate(*(raster.transform @ (column + 0.5, row + 0.5))) for axis in axes]).swapaxes(0, 1)
     s = np.minimum(s, [[axis.s[-1] - SAME] for axis in axes])
     part = np.floor(s[np.abs(n).argmin(axis=0), np.arange(len(row))] / EACH).astype(int)
     found, inverse = np.unique(part, return_inverse=True)
@@ -137,7 +137,7 @@ def profile_road(axis, run_, removed, asked, road=None):
     column, row = np.where((thickness[0] >= thickness[1])[:, None], sides[0], sides[1]).T
     length = length * run_.cell
     to = 1000 * asked.start + np.cumsum(length)
-    x, y = run_.raster.transform * tuple(centre.T)
+    x, y = run_.raster.transform @ tuple(centre.T)
     thickness = run_.raster.z[row, column]
     on_road = True if road is None or not road.intersects(axis) else np.array([
         road.intersects(Point(place)) for place in zip(x, y)])

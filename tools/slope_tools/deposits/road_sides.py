@@ -91,7 +91,7 @@ def divide(road: BaseGeometry, line: Optional[LineString], raster: Raster, relea
     """
     whole = geometry.box_of(raster)
     rows, columns = np.nonzero(released)
-    middle = np.array(raster.transform * (columns.mean() + 0.5, rows.mean() + 0.5))
+    middle = np.array(raster.transform @ (columns.mean() + 0.5, rows.mean() + 0.5))
     far = 2 * (whole.length + np.hypot(*(np.array(whole.centroid.coords[0]) - middle)))
     pieces = geometry.polygons_of(unary_union(geometry.polygons_of(road)))
     ends = ends_of_line(line, pieces[0]) if line is not None and not line.is_ring and len(pieces) == 1 else [

@@ -19,7 +19,7 @@ def before(raster: rasters.Raster, base: np.ndarray, terrain: Optional[Path]) ->
     rows, columns = base.shape
     heights = np.full(base.shape, np.nan)
     if terrain:
-        x, y = raster.transform * np.meshgrid(np.arange(columns) + 0.5, np.arange(rows) + 0.5)
+        x, y = raster.transform @ np.meshgrid(np.arange(columns) + 0.5, np.arange(rows) + 0.5)
         heights = sample(rasters.read_asc_local(terrain), x, y)
     heights = np.where(np.isfinite(heights), heights, base)
     with np.errstate(invalid="ignore"):

@@ -69,7 +69,7 @@ def from_raster(path, mapped, raster, threshold):
         raise SlopeError(f"{path}: row {row + 1} column {column + 1}", f"must be a thickness >= 0 and <= {HIGHEST:g} m",
                          f"{thickness[row, column]:g}")
     there = beside.in_local(mapped, raster)
-    to_index = ~raster.transform * there
+    to_index = ~raster.transform @ there
     shape = raster.z.shape
     x = to_index.c + to_index.a * np.arange(thickness.shape[1] + 1)
     y = to_index.f + to_index.e * np.arange(thickness.shape[0] + 1)
@@ -108,7 +108,7 @@ def corners(transform, mask):
     padded = np.pad(mask, 1)
     inner = padded[:-2, 1:-1] & padded[2:, 1:-1] & padded[1:-1, :-2] & padded[1:-1, 2:]
     row, column = np.nonzero(mask & ~inner)
-    return np.concatenate([np.transpose(transform * (column + i, row + j)) for i in (0, 1) for j in (0, 1)])
+    return np.concatenate([np.transpose(transform @ (column + i, row + j)) for i in (0, 1) for j in (0, 1)])
 
 
 # --- scores ---
@@ -164,7 +164,7 @@ def compare_quantiles(run_, simulated, observed, place):
     """
     ours, theirs = (simulated, observed.share) if observed.thickness is None else (run_.raster.z, observed.thickness)
     rows, columns = np.indices(ours.shape)
-    x, y = run_.raster.transform * (columns + 0.5, rows + 0.5)
+    x, y = run_.raster.transform @ (columns + 0.5, rows + 0.5)
     distance = np.hypot(x - place[0], y - place[1])
     found = []
     for share in reach.SHARES:
@@ -199,7 +199,7 @@ def centroid(observed, raster):
         return observed.polygon.centroid.coords[0]
     rows, columns = observed.share.shape
     weight = observed.share.sum()
-    return raster.transform * ((observed.share.sum(axis=0) @ (np.arange(columns) + 0.5)) / weight,
+    return raster.transform @ ((observed.share.sum(axis=0) @ (np.arange(columns) + 0.5)) / weight,
                                (observed.share.sum(axis=1) @ (np.arange(rows) + 0.5)) / weight)
 
 

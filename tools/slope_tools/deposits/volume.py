@@ -88,7 +88,7 @@ def compute_removal(prefix, wanted: Wanted, terrain=None, tell: Callable[[str], 
                                              road if given.line is None else None, asked, mesh, wanted.cut_angle,
                                              wanted.samples)
     except cut.NoGround as error:
-        x, y = run.raster.transform * error.args[0]
+        x, y = run.raster.transform @ error.args[0]
         raise SlopeError(wanted.road, "ground at the edge of the road must have a height, it has none at",
                          f"{x:.3f} {y:.3f} (local metres)") from None
     summary = totals(wanted, run, mesh, result, profile, source)

@@ -26,7 +26,7 @@ def window(raster, *bounds):
 
 def part(raster, values, shown):
     """Values in the window `shown`, thinned out for a picture, and imshow's extent of them."""
-    (left, top), (right, bottom) = ~raster.transform * (shown[0], shown[3]), ~raster.transform * (shown[2], shown[1])
+    (left, top), (right, bottom) = ~raster.transform @ (shown[0], shown[3]), ~raster.transform @ (shown[2], shown[1])
     rows, columns = raster.z.shape
     top, left = max(0, math.floor(top)), max(0, math.floor(left))
     bottom, right = min(rows, math.ceil(bottom)), min(columns, math.ceil(right))

@@ -194,5 +194,5 @@ def compute_cell_distances(run_: deposit.Deposit) -> np.ndarray:
     """Plan distance of each cell's centre from the highest released ball, m."""
     x, y = connected.top(run_)[:2]
     rows, columns = np.indices(run_.raster.z.shape)
-    east, north = run_.raster.transform * (columns + 0.5, rows + 0.5)
+    east, north = run_.raster.transform @ (columns + 0.5, rows + 0.5)
     return np.hypot(east - x, north - y)

@@ -23,7 +23,7 @@ def draw_map(path: Path, mobility: Mobility, body: Body, road: Optional[BaseGeom
     """Relief, body, road, and the path in the colour of the exceedance that counts."""
     way, raster = mobility.path, body.raster
     row, column = np.nonzero(body.depth)
-    xs, ys = raster.transform * np.array([column + 0.5, row + 0.5])
+    xs, ys = raster.transform @ np.array([column + 0.5, row + 0.5])
     boxes = [(way.x.min(), way.y.min(), way.x.max(), way.y.max()), (xs.min(), ys.min(), xs.max(), ys.max())]
     shown = maps.window(raster, *boxes)
     with pictures.settings(figures.STYLE):

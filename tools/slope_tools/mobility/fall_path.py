@@ -130,18 +130,18 @@ class Smooth:
         self.z, self.known = z[thin].copy(), minimum_filter(known, every)[thin]
         # of each patch between four nodes
         self.patches = self.known[:-1, :-1] & self.known[:-1, 1:] & self.known[1:, :-1] & self.known[1:, 1:]
-        self.transform = (body.raster.transform * Affine.translation(first[1] + 0.5, first[0] + 0.5)
-                          * Affine.scale(every))
+        self.transform = (body.raster.transform @ Affine.translation(first[1] + 0.5, first[0] + 0.5)
+                          @ Affine.scale(every))
         self.cell = body.cell * every
         self.step = max(1.0, window / every / 2) / 2        # in cells
         self.memory = max(10.0, window / every)             # the path's direction is that of its last part so long
 
     def place(self, point) -> np.ndarray:
         """Of a point (x, y)."""
-        return np.array(~self.transform * tuple(point))
+        return np.array(~self.transform @ tuple(point))
 
     def point(self, place) -> Tuple[float, float]:
-        return self.transform * (float(place[0]), float(place[1]))
+        return self.transform @ (float(place[0]), float(place[1]))
 
     def patch(self, place) -> Tuple[int, int]:
         """Row and column of the first node of the patch that a place lies in."""

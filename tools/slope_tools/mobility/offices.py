@@ -46,7 +46,7 @@ def slope(mass: Body, path: FallPath) -> Optional[Slope]:
 def measure_office_distances(deposit: Deposit, path: FallPath) -> List[float]:
     """How far along the path, from the crown, SHARES of the volume on the grid stay, m: cells by their middles."""
     rows, columns = np.nonzero(deposit.raster.z > 0)
-    places = np.column_stack(deposit.raster.transform * np.array([columns + 0.5, rows + 0.5]))
+    places = np.column_stack(deposit.raster.transform @ np.array([columns + 0.5, rows + 0.5]))
     far, _ = run_length.lengths_of(places, path, deposit)
     return within(far, deposit.raster.z[rows, columns], SHARES).tolist()
 

@@ -63,7 +63,7 @@ def of_deposit(deposit: Deposit, path: Optional[FallPath], least: float = LEAST,
         return None
     highest = top(deposit)
     rows, columns = np.nonzero(mask)
-    places = np.column_stack(deposit.raster.transform * np.array([columns + 0.5, rows + 0.5]))
+    places = np.column_stack(deposit.raster.transform @ np.array([columns + 0.5, rows + 0.5]))
     distances, straight = lengths_of(places, path, deposit)
     far = int(np.argmax(distances))
     distance = round(float(distances[far]), DECIMALS)

@@ -235,7 +235,7 @@ def mesh_map(layers, removed, mesh, title, crs_name):
         if font < LEAST_FONT:
             mesh = mesh._replace(z=np.zeros_like(mesh.z))
         for row, column in np.argwhere(mesh.z >= 0.5):
-            x, y = mesh.transform * (column, row + 1)
+            x, y = mesh.transform @ (column, row + 1)
             axes.add_patch(Rectangle((x, y), side, side, fill=False, lw=0.35, edgecolor="#222222", zorder=6))
             axes.text(x + side / 2, y + side / 2, f"{mesh.z[row, column]:,.0f}", fontsize=font, ha="center",
                       va="center", zorder=7, clip_on=True)

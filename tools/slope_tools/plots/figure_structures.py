@@ -52,8 +52,9 @@ def pressure_map(corners, pressure, direction, title):
     places, order = seen_from(corners, direction)
     factor, prefix = digits.prefix(max(pressure))
     values = np.asarray(pressure, float)[order] / factor
-    edges = np.cross(places[:, 1] - places[:, 0], places[:, 2] - places[:, 0])
-    seen = np.abs(edges) > 1e-9 * np.abs(edges).max()     # others are seen from their edge
+    one, other = (places[:, 1:] - places[:, :1]).swapaxes(0, 1)
+    areas = np.abs(one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0])
+    seen = areas > 1e-9 * areas.max()     # others are seen from their edge
     places, values = places[seen], values[seen]
     places[..., 0] -= places[..., 0].min()
     top = values.max()

@@ -29,7 +29,7 @@ class Ground:
         run = data.result
         self.raster, self.base, self.cell = run.deposit.raster, run.deposit.base, run.deposit.cell
         rows, columns = self.base.shape
-        self.x, self.y = self.raster.transform * np.meshgrid(np.arange(columns) + 0.5, np.arange(rows) + 0.5)
+        self.x, self.y = self.raster.transform @ np.meshgrid(np.arange(columns) + 0.5, np.arange(rows) + 0.5)
         self.before, self.slip_depth = scar.before(self.raster, self.base, run.terrain_path)
         self.arrival, self.max_thickness = run.raster("arrival"), run.raster("max_thickness")
         self.max_speed = run.raster("max_speed")

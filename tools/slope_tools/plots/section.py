@@ -177,7 +177,7 @@ class Section:
         inside = geometry.to_index(geometry.as_multi(road.intersection(geometry.box_of(raster))), raster)
         try:
             height = cut.heights(inside, cut.Ground(self.ground.base), tangent * self.ground.cell,
-                                 *(~raster.transform * tuple(self.xy.T)))
+                                 *(~raster.transform @ tuple(self.xy.T)))
         except cut.NoGround:
             height = np.full(self.s.shape, np.nan)
         return spans, height

@@ -213,7 +213,7 @@ def check_pits(raster, geometry, wanted: Wanted) -> None:
     if pits is None:
         return
     row, column = np.argwhere(pits.cells)[0] + [part[0].start, part[1].start]
-    x, y = raster.transform * (column + 0.5, row + 0.5)
+    x, y = raster.transform @ (column + 0.5, row + 0.5)
     raise SlopeError(wanted.polygon, f"the ground in it must have no pits: {int(pits.cells.sum())} cells of "
                      f"{pits.shown} lie {pits.least:.4g} m or more {pits.side} all cells beside them; "
                      f"{plausible.suggest_pit_remedy(pits, ground)} (slope terrain, site, route)",

@@ -93,15 +93,15 @@ def area_of(raster: Raster, inside: np.ndarray, where: str, terrain: str, remedy
         else:
             bad = next((r, c) for r, c in zip(row, column)
                        if min(r, c) < RIM or r >= rows - RIM or c >= columns - RIM)
-        x, y = raster.transform * (bad[1] + 0.5, bad[0] + 0.5)
+        x, y = raster.transform @ (bad[1] + 0.5, bad[0] + 0.5)
         east, north = x + raster.offset[0], y + raster.offset[1]
         if missing.any():
             remedy += fill_remedy(raster.z, int(bad[0]), int(bad[1]))
         raise SlopeError(where, f"must stay at least {RIM} cells away from NODATA and from the edge of {terrain}"
                          f"{remedy}",
                          f"{'NODATA' if missing.any() else 'its edge'} at east {east:.1f} north {north:.1f}")
-    x, _ = raster.transform * (np.arange(part[1].start, part[1].stop) + 0.5, 0.0)
-    _, y = raster.transform * (0.0, np.arange(part[0].start, part[0].stop) + 0.5)
+    x, _ = raster.transform @ (np.arange(part[1].start, part[1].stop) + 0.5, 0.0)
+    _, y = raster.transform @ (0.0, np.arange(part[0].start, part[0].stop) + 0.5)
     downhill, slope = fall(x, y, z, mask)
     return Area(z, x, y, cell, mask, (part[0].start, part[1].start), downhill, slope)
 

@@ -90,5 +90,5 @@ def on_nodes(path: str, raster: Raster, heights: bool, crs: Optional[CRS] = None
     """
     scar = beside.read_raster_beside(path, raster, heights, crs)
     if not heights:
-        scar = scar._replace(z=np.pad(np.nan_to_num(scar.z), 1), transform=scar.transform * Affine.translation(-1, -1))
+        scar = scar._replace(z=np.pad(np.nan_to_num(scar.z), 1), transform=scar.transform @ Affine.translation(-1, -1))
     return beside.on_cells(path, scar, raster)

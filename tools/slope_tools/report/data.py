@@ -163,7 +163,7 @@ class Data:
         for name in ("volume.tif", "volume_mesh.tif"):
             one = rasters.read_raster(self.result.folder / self._volume() / name, heights=False)
             east, north = raster.offset     # the files are in the CRS
-            volumes.append(one._replace(transform=Affine.translation(-east, -north) * one.transform,
+            volumes.append(one._replace(transform=Affine.translation(-east, -north) @ one.transform,
                                         z=np.nan_to_num(one.z)))
         if volumes[0].z.shape != raster.z.shape:
             raise SlopeError(self.result.folder / self._volume() / "volume.tif",

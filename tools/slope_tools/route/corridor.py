@@ -59,7 +59,7 @@ class Corridor(NamedTuple):
 
     def window(self, xlo: float, ylo: float, xhi: float, yhi: float) -> Window:
         """The cells that a box touches, cut to the terrain."""
-        (left, top), (right, bottom) = ~self.raster.transform * (xlo, yhi), ~self.raster.transform * (xhi, ylo)
+        (left, top), (right, bottom) = ~self.raster.transform @ (xlo, yhi), ~self.raster.transform @ (xhi, ylo)
         rows, columns = self.raster.z.shape
         return Window(max(0, math.floor(top + 1e-6)), max(0, math.floor(left + 1e-6)),
                       min(rows, math.ceil(bottom - 1e-6)), min(columns, math.ceil(right - 1e-6)))
@@ -67,7 +67,7 @@ class Corridor(NamedTuple):
     def clip(self, window: Window) -> Raster:
         """A part of the terrain."""
         move = Affine.translation(window.left, window.top)
-        return self.raster._replace(z=self.raster.z[window.part], transform=self.raster.transform * move)
+        return self.raster._replace(z=self.raster.z[window.part], transform=self.raster.transform @ move)
 
     def chainage(self, x: float, y: float) -> float:
         return self.start + self.axis.project(Point(x, y))

@@ -113,12 +113,12 @@ def compute_reached_shares(source: Source, ground: Raster, kind: str, limit: flo
     # the cells of the ground in the box of those, each of which has the value of the run's cell that its middle is in
     move = np.array(source.offset) - ground.offset
     xlo, ylo, xhi, yhi = extent_of(transform, shares) + np.tile(move, 2)
-    (left, top), (right, bottom) = ~ground.transform * (xlo, yhi), ~ground.transform * (xhi, ylo)
+    (left, top), (right, bottom) = ~ground.transform @ (xlo, yhi), ~ground.transform @ (xhi, ylo)
     rows, columns = ground.z.shape
     rows_, columns_ = np.mgrid[max(0, int(top)):min(rows, int(np.ceil(bottom))),
                                max(0, int(left)):min(columns, int(np.ceil(right)))]
-    x, y = ground.transform * (columns_ + 0.5, rows_ + 0.5)
-    at_column, at_row = ~transform * (x - move[0], y - move[1])
+    x, y = ground.transform @ (columns_ + 0.5, rows_ + 0.5)
+    at_column, at_row = ~transform @ (x - move[0], y - move[1])
     at_row, at_column = np.floor(at_row).astype(int), np.floor(at_column).astype(int)
     there = (at_row >= 0) & (at_row < shares.shape[0]) & (at_column >= 0) & (at_column < shares.shape[1])
     share = np.zeros(rows_.shape)

@@ -87,7 +87,7 @@ def table_of(folder: Path) -> Dict[str, Any]:
 
 def middle(corridor: Corridor, slip: Slip) -> Tuple[float, float]:
     row, column = np.nonzero(slip.mask)
-    x, y = corridor.clip(slip.window).transform * (column.mean() + 0.5, row.mean() + 0.5)
+    x, y = corridor.clip(slip.window).transform @ (column.mean() + 0.5, row.mean() + 0.5)
     return float(x), float(y)
 
 

@@ -233,7 +233,8 @@ class Work:
             state = self.of(run)._prepare(run)
             with open(run.folder / SCREEN, "ab" if run.restart else "wb") as screen:
                 run.output_before = screen.tell()
-                process = processes.start(self.of(run)._line(run), run.folder, screen)
+                by, words = self.of(run)._line(run)
+                process = processes.start([*by, *words], run.folder, screen, alone=not by)
         except OSError as error:
             raise SlopeError(run.folder, f"cannot be run: {error.strerror} ({error.filename})") from error
         self.active.append(Active(run, process, time.monotonic()))
@@ -256,9 +257,9 @@ class Work:
         return state
 
     def _line(self, run):
-        """The whole command of a run."""
-        return [*launcher.list_launcher_words(self.start, self.ranks_of(run), slots()), str(self.lmp),
-                *self.command(run)]
+        """The whole command of a run: what launches its ranks, and what they are."""
+        return (launcher.list_launcher_words(self.start, self.ranks_of(run), slots()),
+                [str(self.lmp), *self.command(run)])
 
     def _last_restart(self, run):
         """Step and path of the restart file from which an unfinished run can continue, or None; and why it cannot."""

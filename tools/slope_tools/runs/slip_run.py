@@ -32,11 +32,11 @@ def run_slip_search(asked: slip_deck.Asked, polygon, raster: rasters.Raster, fol
     if polygon is not None:
         polygons.write_polygon(folder / slip_deck.WITHIN, polygon, raster)
     disk.write_file(folder / slip_deck.NAME, slip_deck.make_slip_deck(asked, lambda path: str(path.resolve())))
-    words = [*launcher.list_launcher_words(None, ranks, jobs.slots()), str(lmp), "-in", slip_deck.NAME, "-log",
-             logs.LOG]
+    by = launcher.list_launcher_words(None, ranks, jobs.slots())
+    words = [*by, str(lmp), "-in", slip_deck.NAME, "-log", logs.LOG]
     with open(folder / SCREEN, "wb") as screen, jobs.signals_interrupt():
         try:
-            process = processes.start(words, folder, screen)
+            process = processes.start(words, folder, screen, alone=not by)
         except OSError as error:
             raise SlopeError(lmp, f"cannot be run: {error.strerror}") from None
         try:

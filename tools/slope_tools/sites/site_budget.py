@@ -180,7 +180,7 @@ def measure(folder: Path, deck: str, lmp: Path, values: Mapping[str, float]) -> 
     with open(folder / "screen.txt", "wb") as screen:
         try:
             given = [word for name, value in values.items() for word in ("-var", name, f"{value:.10g}")]
-            process = processes.start([str(lmp), "-in", deck, "-log", log.name, *given], folder, screen)
+            process = processes.start([str(lmp), "-in", deck, "-log", log.name, *given], folder, screen, alone=True)
         except OSError as error:
             raise SlopeError(lmp, f"cannot be run: {error.strerror}") from None
         try:

@@ -141,7 +141,7 @@ def ground_of(choices: Choices, path: str, raster: Raster, asked: roads.Asked = 
     if inside.sum() < release_area.FEWEST:
         return None
     z = raster.z[inside]
-    columns, rows = raster.transform * np.meshgrid(np.arange(raster.z.shape[1]) + 0.5, np.arange(len(raster.z)) + 0.5)
+    columns, rows = raster.transform @ np.meshgrid(np.arange(raster.z.shape[1]) + 0.5, np.arange(len(raster.z)) + 0.5)
     _, slope = release_area.fall(columns[0], rows[:, 0], raster.z, inside)
     return Ground(float(z.mean()), float(z.min()), float(z.max()), slope)
 
@@ -222,7 +222,7 @@ def observed_layer(choices: OfMass, raster: Raster, folder: Path, tell, warn):
 def check_overlap(path: str, mapped: Raster, raster: Raster) -> None:
     """Raise SlopeError unless something of a mapped thickness, in coordinates of the CRS, lies on the terrain."""
     rows, columns = np.nonzero(np.nan_to_num(mapped.z) > 0)
-    x, y = mapped.transform * (columns + 0.5, rows + 0.5)
+    x, y = mapped.transform @ (columns + 0.5, rows + 0.5)
     xlo, ylo, xhi, yhi = extent(raster)
     x, y = x + mapped.offset[0] - raster.offset[0], y + mapped.offset[1] - raster.offset[1]
     if not np.any((x >= xlo) & (x <= xhi) & (y >= ylo) & (y <= yhi)):

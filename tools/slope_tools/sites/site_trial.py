@@ -49,7 +49,7 @@ def kept(folder: Path, wanted: Dict[str, Any], settled: bool) -> Optional[Tried]
     except SlopeError:
         return None
     to_local = Affine.translation(-site_found.origin.east, -site_found.origin.north)
-    return Tried(site_found.trial, raster._replace(transform=to_local * raster.transform, crs=None), had)
+    return Tried(site_found.trial, raster._replace(transform=to_local @ raster.transform, crs=None), had)
 
 
 def write_trial(folder: Path, tried: Tried, terrain: Raster) -> None:

@@ -51,7 +51,7 @@ def draw_slips(path: Path, raster: Raster, factor: np.ndarray, rows: Sequence[Di
 def middle_of(raster: Raster, mask: np.ndarray) -> np.ndarray:
     """x and y of the middle of the cells of a mask."""
     row, column = np.nonzero(mask)
-    return np.array(raster.transform * (column.mean() + 0.5, row.mean() + 0.5))
+    return np.array(raster.transform @ (column.mean() + 0.5, row.mean() + 0.5))
 
 
 def draw_map(axes, raster: Raster, factor: np.ndarray, shown) -> None:
@@ -72,7 +72,7 @@ def draw_map(axes, raster: Raster, factor: np.ndarray, shown) -> None:
 def draw_body(axes, raster: Raster, row: Dict[str, float], mask: np.ndarray, colour: str) -> None:
     """Outline of a body, its number, an arrow in the direction of sliding."""
     rows, columns = mask.shape
-    where = (*(raster.transform * (0, 0)), *(raster.transform * (columns, rows)))
+    where = (*(raster.transform @ (0, 0)), *(raster.transform @ (columns, rows)))
     axes.contour(mask, [0.5], extent=(where[0], where[2], where[3], where[1]), origin="upper", colors=colour,
                  linewidths=1.4)
     along = np.radians(row["direction"])

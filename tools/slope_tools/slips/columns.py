@@ -51,7 +51,7 @@ SPHERE = Shape()
 def centres(raster: Raster):
     """x and y of the middles of the cells, (rows, columns) each."""
     rows, columns = np.indices(raster.z.shape)
-    return raster.transform * (columns + 0.5, rows + 0.5)
+    return raster.transform @ (columns + 0.5, rows + 0.5)
 
 
 def height_at(x, y, centre: Sequence[float], radius: float, direction: float = 0.0, shape: Shape = SPHERE):

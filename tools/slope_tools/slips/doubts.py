@@ -20,7 +20,7 @@ SMALLEST = 100.0    # cells^3, least volume of find_slip without a limit
 def length(raster: Raster, inside: np.ndarray, direction: float) -> float:
     """Of a body (mask of cells) along its direction of sliding (degrees counterclockwise from +x), m."""
     row, column = np.nonzero(inside)
-    x, y = raster.transform * (column + 0.5, row + 0.5)
+    x, y = raster.transform @ (column + 0.5, row + 0.5)
     along = x * math.cos(math.radians(direction)) + y * math.sin(math.radians(direction))
     return float(np.ptp(along)) + raster.transform.a
 

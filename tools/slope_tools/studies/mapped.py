@@ -82,7 +82,7 @@ def length_of(run_: deposit.Deposit, terrain: Optional[Path], observed: score.Ob
         found = run_length.of_deposit(run_._replace(raster=run_.raster._replace(z=observed.thickness)), path)
         return found and found.distance
     rows, columns = np.nonzero(observed.share >= HALF)
-    points = np.column_stack(run_.raster.transform * np.array([columns + 0.5, rows + 0.5]))
+    points = np.column_stack(run_.raster.transform @ np.array([columns + 0.5, rows + 0.5]))
     xlo, ylo, xhi, yhi = extent(run_.raster)
     x, y = np.asarray(observed.points).reshape(-1, 2).T
     beside = (x < xlo) | (x > xhi) | (y < ylo) | (y > yhi) | (not len(points))

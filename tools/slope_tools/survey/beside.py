@@ -30,7 +30,7 @@ class Local(NamedTuple):
 def read_raster_beside(path: Union[str, Path], terrain: Raster, heights: bool = True, crs: Optional[CRS] = None,
                        local: Local = Local(), warn: Optional[Callable[[Finding], Any]] = None,
                        remedy: str = "") -> Raster:
-    """A raster file, in a CRS if the terrain has one: coordinates are transform * (column, row) + offset.
+    """A raster file, in a CRS if the terrain has one: coordinates are transform @ (column, row) + offset.
 
     heights: the values are, and become metres; crs: of the raster, whatever it says. warn: called with what is taken
     for granted, remedy: of that, where the raster has no CRS. Raises SlopeError where the file is no raster, has no
@@ -75,7 +75,7 @@ def tell(warn: Optional[Callable[[Finding], Any]], kind: str, path: Union[str, P
 
 def in_local(raster: Raster, terrain: Raster) -> Affine:
     """The transform of a raster in the CRS of the terrain to the terrain's local metres."""
-    return Affine.translation(*np.subtract(raster.offset, terrain.offset)) * raster.transform
+    return Affine.translation(*np.subtract(raster.offset, terrain.offset)) @ raster.transform
 
 
 def box(raster: Raster, terrain: Raster) -> Tuple[float, ...]:
@@ -98,14 +98,14 @@ def on_cells(path: Union[str, Path], raster: Raster, terrain: Raster) -> np.ndar
     """
     rows, columns = terrain.z.shape
     x, y = np.meshgrid(np.arange(columns) + 0.5, np.arange(rows) + 0.5)
-    x, y = Affine.translation(*terrain.offset) * terrain.transform * (x, y)
+    x, y = Affine.translation(*terrain.offset) @ terrain.transform @ (x, y)
     if raster.crs is not None and terrain.crs is None:
         raise SlopeError(path, f"is in {crs_name(raster.crs)}, and the terrain must have a CRS, too: slope terrain "
                          "--crs", "none")
     same = raster.crs is None or same_crs(raster.crs, terrain.crs)
     if not same:
         x, y = transform(terrain.crs, raster.crs, x, y)
-    values = sample(raster._replace(transform=Affine.translation(*raster.offset) * raster.transform), x, y)
+    values = sample(raster._replace(transform=Affine.translation(*raster.offset) @ raster.transform), x, y)
     if np.isfinite(values).any():
         return values
     origins = "" if raster.offset == terrain.offset else (
@@ -135,7 +135,7 @@ def has_cells(raster: Raster, terrain: Raster) -> bool:
     """Whether a raster has all cells of the terrain, and may be others."""
     if not (raster.crs is None or same_crs(raster.crs, terrain.crs)):
         return False
-    there = ~terrain.transform * in_local(raster, terrain)
+    there = ~terrain.transform @ in_local(raster, terrain)
     left, top = round(there.c), round(there.f)
     rows, columns = np.subtract(raster.z.shape, terrain.z.shape)
     return bool(np.allclose(there[:6], [1, 0, left, 0, 1, top], rtol=0, atol=ON_GRID)

@@ -161,7 +161,7 @@ def warn_of_north(raster, warn):
 def factors_of(raster):
     """Of the projection, at the middle of a raster."""
     from pyproj import Proj
-    x, y = raster.transform * (raster.z.shape[1] / 2, raster.z.shape[0] / 2)
+    x, y = raster.transform @ (raster.z.shape[1] / 2, raster.z.shape[0] / 2)
     projection = Proj(raster.crs.to_wkt())
     return projection.get_factors(*projection(x, y, inverse=True))
 

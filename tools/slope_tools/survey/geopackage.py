@@ -51,10 +51,12 @@ def write_geopackage(path: Path, layers: Dict[str, Layer], raster: Raster, style
 
 
 def cartesian(data: bytes) -> bytes:
-    """A GeoPackage whose layers have no CRS with coordinates in metres: GDAL takes them for degrees (srs_id 0)."""
+    """A GeoPackage whose layers have no CRS with coordinates in metres: to GDAL they are degrees (srs_id 0), or,
+
+    since 3.9, anything (99999)."""
     with contextlib.closing(sqlite3.connect(":memory:")) as base:
         base.deserialize(data)
         for table in ("gpkg_contents", "gpkg_geometry_columns"):
-            base.execute(f"UPDATE {table} SET srs_id = -1 WHERE srs_id = 0")
+            base.execute(f"UPDATE {table} SET srs_id = -1 WHERE srs_id IN (0, 99999)")
         base.commit()
         return base.serialize()

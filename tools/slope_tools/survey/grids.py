@@ -12,12 +12,15 @@ from rich.progress import track
 from .. import streams
 from ..errors import SlopeError
 
+if not hasattr(Affine, "__matmul__"):       # affine 2, of Debian 12 and 13; affine 3 finds fault with *
+    Affine.__matmul__ = Affine.__mul__
+
 UNITS = {"m": 1.0, "ft": 0.3048, "us-ft": 1200 / 3937}      # m, of heights
 BYTES_PER_CELL = 40        # peak memory of `slope terrain` per cell, measured 22 to 33 for 16 million cells
 
 
 class Raster(NamedTuple):
-    """Heights on a grid; CRS coordinates are transform * (column, row) + offset."""
+    """Heights on a grid; CRS coordinates are transform @ (column, row) + offset."""
     z: np.ndarray
     transform: Affine
     crs: Optional[CRS]

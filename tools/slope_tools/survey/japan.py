@@ -52,7 +52,7 @@ FARTHEST = 3.0     # degrees from the nearest place; beyond, a site is not in Ja
 def zone(raster, datum):
     """Zone (1 to 19) of the plane rectangular system of the middle of a raster in degrees, and its CRS."""
     rows, columns = raster.z.shape
-    lon, lat = raster.transform * (columns / 2, rows / 2)
+    lon, lat = raster.transform @ (columns / 2, rows / 2)
     distance, number = min((math.hypot(lat - y, (lon - x) * math.cos(math.radians(lat))), number)
                            for number, places in ZONES.items() for y, x in places)
     if distance > FARTHEST:

@@ -124,9 +124,9 @@ def make_local_terrain(inputs: Sequence[str], output: Path, wanted: Wanted, tell
     z = np.round(raster.z, 3) + 0.0  # as they are written; + 0.0 because of -0.0
     origin = wanted.origin
     if origin is None:
-        east, north = raster.transform * (0, len(z))
+        east, north = raster.transform @ (0, len(z))
         origin = math.floor(east + 1e-6), math.floor(north + 1e-6)  # 1e-6: rounding noise
-    local = Raster(z, Affine.translation(-origin[0], -origin[1]) * raster.transform, crs, origin)
+    local = Raster(z, Affine.translation(-origin[0], -origin[1]) @ raster.transform, crs, origin)
     about = rasters.write_asc_local(output, local, {"filled_cells": filled, "sources": list(inputs), "steps": steps})
     return {**about, "surveyed_cell": surveyed}
 

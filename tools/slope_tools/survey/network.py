@@ -164,6 +164,10 @@ class Island(NamedTuple):
     outside: Dict[int, List[End]]       # by node
 
 
+def half_way(line: LineString) -> Point:
+    return line.interpolate(0.5, normalized=True)
+
+
 def islands(ways: Sequence[Way], nodes: Mapping[int, Sequence[End]]) -> Iterable[Island]:
     """Loops that a road passes: between two junctions, or of the size and shape of a roundabout."""
     by_ends: Dict[Tuple[int, ...], List[int]] = {}
@@ -171,7 +175,7 @@ def islands(ways: Sequence[Way], nodes: Mapping[int, Sequence[End]]) -> Iterable
         by_ends.setdefault(tuple(sorted(way.ends)), []).append(number)
     for face in sorted(polygonize([way.line for way in ways]), key=lambda face: face.area):
         rim = face.exterior
-        within = [number for number, way in enumerate(ways) if rim.distance(way.line.interpolate(0.5, True)) <= SAME
+        within = [number for number, way in enumerate(ways) if rim.distance(half_way(way.line)) <= SAME
                   and rim.buffer(SAME).contains(way.line)]
         order = in_order(within, ways)
         if order is None:
@@ -213,7 +217,7 @@ def pass_island(island: Island, ways: List[Way], drawn: Sequence[Drawn], partner
         return
     if len(island.outside) == 2:
         return          # a block of streets
-    middle = np.mean([ways[number].line.interpolate(0.5, True).coords[0][:2] for number in island.ways], axis=0)
+    middle = np.mean([half_way(ways[number].line).coords[0][:2] for number in island.ways], axis=0)
     out = {}
     for node, end in came:
         way = ways[end[0]]

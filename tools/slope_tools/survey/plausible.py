@@ -96,7 +96,7 @@ def pits_said(raster: Raster, marks: Marks) -> Optional[Finding]:
     if pits_ is None:
         return None
     row, column = np.argwhere(pits_.cells)[0]
-    x, y = raster.transform * (column + 0.5, row + 0.5)
+    x, y = raster.transform @ (column + 0.5, row + 0.5)
     x, y = x + raster.offset[0], y + raster.offset[1]
     return Finding("pits", {"cells": int(pits_.cells.sum()), "mark": pits_.shown, "depth": pits_.least,
                             "side": pits_.side, "east": float(x), "north": float(y),

@@ -13,10 +13,11 @@ from typing import List, NamedTuple, Tuple
 import numpy as np
 import rasterio.warp
 from shapely import wkt
+from shapely.affinity import affine_transform
 from shapely.errors import ShapelyError
 from shapely.geometry import MultiPolygon, Polygon, box
 from shapely.geometry.base import BaseGeometry
-from shapely.ops import snap, transform, unary_union
+from shapely.ops import snap, unary_union
 from shapely.validation import explain_validity
 
 from .. import disk
@@ -124,7 +125,7 @@ def _placed(path, polygons, raster, local, plain, crs, advice, anywhere=False):
 def fits_exchanged(geometry, to_local, bounds):
     """Whether a geometry, which to_local brings to a terrain's local metres, lies on it with x and y exchanged."""
     with suppress(*NO_PLACE):
-        return to_local(transform(lambda x, y, *_: (y, x), geometry)).intersects(box(*bounds))
+        return to_local(affine_transform(geometry, [0, 1, 1, 0, 0, 0])).intersects(box(*bounds))
     return False
 
 

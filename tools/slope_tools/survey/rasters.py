@@ -206,7 +206,7 @@ def _read(path, name, source, unit, part):
     if declared is not None:
         none |= cells_of(stored, declared)    # GDAL's mask misses marks with few digits
     is_picture = source.dtypes[0] in ("uint8", "int8") and (source.scales[0], source.offsets[0]) == (1, 0)
-    return File(stored, none, source.transform * Affine.translation(left, top), source.crs, source.scales[0],
+    return File(stored, none, source.transform @ Affine.translation(left, top), source.crs, source.scales[0],
                 source.offsets[0], unit, (top, left), is_picture)
 
 
@@ -228,7 +228,7 @@ def placed(path, raster):
     place = read_sidecar(path)
     if place is None:
         return raster
-    if place.size != raster.z.shape or not np.allclose(raster.transform * (0, 0), place.extent[::3], rtol=0, atol=1e-3):
+    if place.size != raster.z.shape or not np.allclose(raster.transform @ (0, 0), place.extent[::3], rtol=0, atol=1e-3):
         raise SlopeError(Path(path).with_suffix(".yaml"), f"must be the sidecar of {path}: size and extent differ")
     return raster._replace(crs=place.crs, offset=place.offset)
 
@@ -267,7 +267,7 @@ def read_place(path):
     if form:
         grid = xyz.read_xyz_grid(name, form)
         rows, columns = grid.z.shape
-        (xlo, ylo), (xhi, yhi) = grid.transform * (0, rows), grid.transform * (columns, 0)
+        (xlo, ylo), (xhi, yhi) = grid.transform @ (0, rows), grid.transform @ (columns, 0)
         return Place(None, (0.0, 0.0), (rows, columns), (xlo, ylo, xhi, yhi))
     try:
         with warnings.catch_warnings(), rasterio.Env():
@@ -289,8 +289,8 @@ def write_asc_local(path, raster, content, exact=False):
     path = Path(path)
     rows, columns = raster.z.shape
     cell = float(raster.transform.a)
-    xlo, yhi = map(float, raster.transform * (0, 0))
-    xhi, ylo = map(float, raster.transform * (columns, rows))
+    xlo, yhi = map(float, raster.transform @ (0, 0))
+    xhi, ylo = map(float, raster.transform @ (columns, rows))
     sidecar = {
         "crs": raster.crs and {"epsg": epsg(raster.crs), "wkt": raster.crs.to_wkt()},
         "origin": {"east": float(raster.offset[0]), "north": float(raster.offset[1])},
@@ -328,7 +328,7 @@ def write_geotiff(path, bands, raster, tags=None):
         with disk.write_beside(path) as (new,), warnings.catch_warnings(), rasterio.Env():
             warnings.simplefilter("ignore", NotGeoreferencedWarning)
             with rasterio.open(new, "w", driver="GTiff", height=rows, width=columns, count=len(bands), dtype="float64",
-                               crs=raster.crs, transform=Affine.translation(*raster.offset) * raster.transform,
+                               crs=raster.crs, transform=Affine.translation(*raster.offset) @ raster.transform,
                                nodata=NODATA, compress="deflate") as out:
                 out.update_tags(**(tags or {}))
                 for band, (name, values) in enumerate(bands.items(), 1):

@@ -80,7 +80,7 @@ def needed(whole, crs, cell, bounds, more):
         west, south, east, north = rasterio.warp.transform_bounds(crs, whole.crs, west, south, east, north)
         if not np.isfinite([west, south, east, north]).all():
             raise not_covered(whole.crs, crs)
-    across, down = ~whole.transform * (np.array([west, east, west, east]), np.array([south, south, north, north]))
+    across, down = ~whole.transform @ (np.array([west, east, west, east]), np.array([south, south, north, north]))
     top, bottom, left, right = (int(np.clip(edge, 0, limit)) for edge, limit in (
         (math.floor(down.min()) - more, rows), (math.ceil(down.max()) + more, rows),
         (math.floor(across.min()) - more, columns), (math.ceil(across.max()) + more, columns)))
@@ -95,9 +95,9 @@ def check_size(rows, columns):
 def footprint(raster, crs):
     """(W, S, E, N) of a raster in crs, and the width and height of its middle cell there (m)."""
     rows, columns = raster.z.shape
-    x, y = raster.transform * (np.array([0, columns, 0, columns]), np.array([0, 0, rows, rows]))
+    x, y = raster.transform @ (np.array([0, columns, 0, columns]), np.array([0, 0, rows, rows]))
     extent = x.min(), y.min(), x.max(), y.max()
-    x, y = raster.transform * (columns / 2 + np.array([0, 1, 0]), rows / 2 + np.array([0, 0, 1]))
+    x, y = raster.transform @ (columns / 2 + np.array([0, 1, 0]), rows / 2 + np.array([0, 0, 1]))
     if not same_crs(raster.crs, crs):
         x, y = transform(raster.crs, crs, x, y)
         extent = rasterio.warp.transform_bounds(raster.crs, crs, *extent)
@@ -108,11 +108,11 @@ def footprint(raster, crs):
 
 def crop(raster, bounds):
     """The cells of a north-up raster that the bounds (which overlap it) touch."""
-    (left, bottom), (right, top) = (~raster.transform * corner for corner in (bounds[:2], bounds[2:]))
+    (left, bottom), (right, top) = (~raster.transform @ corner for corner in (bounds[:2], bounds[2:]))
     left, top = (max(0, math.floor(value + SAME_CELL)) for value in (left, top))
     right, bottom = (math.ceil(value - SAME_CELL) for value in (right, bottom))
     return raster._replace(z=raster.z[top:bottom, left:right],
-                           transform=raster.transform * Affine.translation(left, top))
+                           transform=raster.transform @ Affine.translation(left, top))
 
 
 def resample(raster, crs, cell, bounds, points):
@@ -129,7 +129,7 @@ def resample(raster, crs, cell, bounds, points):
     check_size(rows, columns)
     check_memory(rows, columns, "output")
     out_transform = Affine(cell, 0, west, 0, -cell, south + rows * cell)
-    fine = out_transform * Affine.scale(1 / points)
+    fine = out_transform @ Affine.scale(1 / points)
     moved = not same_crs(raster.crs, crs)
     z = np.empty((rows, columns))
     strip = max(1, STRIP // (columns * points * points))
@@ -146,7 +146,7 @@ def resample(raster, crs, cell, bounds, points):
 def sample(raster, x, y):
     """Heights at points x, y (arrays, the raster's CRS), bilinear between cell centres; NaN outside of these."""
     rows, columns = raster.z.shape
-    column, row = (snap(index - 0.5) for index in ~raster.transform * (x, y))
+    column, row = (snap(index - 0.5) for index in ~raster.transform @ (x, y))
     inside = (column >= 0) & (column <= columns - 1) & (row >= 0) & (row <= rows - 1)
     column, row = np.where(inside, column, 0), np.where(inside, row, 0)
     # On a centre both neighbours are the same cell: one without weight must not bring in its NaN.
@@ -164,7 +164,7 @@ def padded(raster):
     if min(raster.z.shape) < 2:
         return raster
     return raster._replace(z=np.pad(raster.z, 1, mode="reflect", reflect_type="odd"),
-                           transform=raster.transform * Affine.translation(-1, -1))
+                           transform=raster.transform @ Affine.translation(-1, -1))
 
 
 def snap(index):
@@ -181,4 +181,4 @@ def trim(raster):
         return raster
     rows, columns = np.flatnonzero(known.any(axis=1)), np.flatnonzero(known.any(axis=0))
     return raster._replace(z=raster.z[rows[0]:rows[-1] + 1, columns[0]:columns[-1] + 1],
-                           transform=raster.transform * Affine.translation(columns[0], rows[0]))
+                           transform=raster.transform @ Affine.translation(columns[0], rows[0]))

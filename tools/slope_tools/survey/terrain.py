@@ -48,7 +48,7 @@ def declare(path, crs, tell, warn, assigned=None, unit=None, marks=None, part=No
         tell(f"{path} says heights in {file.unit}: taken as {unit}")
     if (unit or file.unit or "m") != "m":
         tell(f"{path}: heights in {unit or file.unit} brought to metres")
-    raster = Raster(local.z, Affine.translation(*local.offset) * local.transform, local.crs)
+    raster = Raster(local.z, Affine.translation(*local.offset) @ local.transform, local.crs)
     if assigned is not None:
         if raster.crs is not None and not same_crs(raster.crs, assigned):
             tell(f"{path} says {crs_name(raster.crs)}: taken as {crs_name(assigned)}")
@@ -56,7 +56,7 @@ def declare(path, crs, tell, warn, assigned=None, unit=None, marks=None, part=No
     whole = raster._replace(z=np.broadcast_to(np.nan, raster.z.shape))
     whole = place[0]._replace(crs=raster.crs) if place else whole
     rows, columns = whole.z.shape
-    corners = [whole.transform * corner for corner in ((0, rows), (columns, 0))]
+    corners = [whole.transform @ corner for corner in ((0, rows), (columns, 0))]
     require_degrees(raster.crs, [*corners[0], *corners[1]], path)
     if raster.crs is None and crs is not None:
         tell(f"{path} has no CRS: taken as {crs_name(crs)}")
@@ -66,7 +66,7 @@ def declare(path, crs, tell, warn, assigned=None, unit=None, marks=None, part=No
     if part and not place:
         top, bottom, left, right = part(whole)
         raster = raster._replace(z=raster.z[top:bottom, left:right],
-                                 transform=raster.transform * Affine.translation(left, top))
+                                 transform=raster.transform @ Affine.translation(left, top))
     return Tile(str(path), raster, whole)
 
 
@@ -108,19 +108,19 @@ def seconds(tile):
 def enlarge(fine, coarse):
     """A raster on the grid of `fine` over both, in one CRS; where fine has no height, it is coarse's, bilinear."""
     rows, columns = fine.z.shape
-    (left, top), (right, bottom) = (~fine.transform * (coarse.transform * corner)
+    (left, top), (right, bottom) = (~fine.transform @ (coarse.transform @ corner)
                                     for corner in ((0, 0), coarse.z.shape[::-1]))
     left, top = (min(0, math.floor(value + ON_GRID)) for value in (left, top))
     right, bottom = max(columns, math.ceil(right - ON_GRID)), max(rows, math.ceil(bottom - ON_GRID))
     check_memory(bottom - top, right - left, "merged raster")
     z = np.full((bottom - top, right - left), np.nan)
     z[-top:rows - top, -left:columns - left] = fine.z
-    transform = fine.transform * Affine.translation(left, top)
+    transform = fine.transform @ Affine.translation(left, top)
     strip = max(1, STRIP // z.shape[1])
     for first in progress(range(0, len(z), strip), "merging"):
         part = z[first:first + strip]
         row, column = np.nonzero(np.isnan(part))
-        part[row, column] = sample(coarse, *(transform * (column + 0.5, row + first + 0.5)))
+        part[row, column] = sample(coarse, *(transform @ (column + 0.5, row + first + 0.5)))
     return Raster(z, transform, fine.crs)
 
 
@@ -159,7 +159,7 @@ def merge(tiles, tell, warn, cell=None, differ=DIFFER):
         part = z[top:top + heights.shape[0], left:left + heights.shape[1]]
         difference = np.abs(part - heights)
         if np.isfinite(difference).any():
-            overlaps.append(differing(tile.name, difference, merged.transform * Affine.translation(left, top), differ))
+            overlaps.append(differing(tile.name, difference, merged.transform @ Affine.translation(left, top), differ))
         np.copyto(part, heights, where=np.isnan(part))
     for top, left, heights in beyond:
         part = z[top:top + heights.shape[0], left:left + heights.shape[1]]
@@ -177,7 +177,7 @@ def differing(name, difference, transform, differ):
     """How far the heights (m) of a file differ from those before it, and where; SlopeError if that is too much."""
     median = float(np.nanmedian(difference))
     row, column = np.unravel_index(np.nanargmax(difference), difference.shape)
-    east, north = transform * (column + 0.5, row + 0.5)
+    east, north = transform @ (column + 0.5, row + 0.5)
     difference_ = {"file": name, "largest": float(difference[row, column]), "east": float(east), "north": float(north),
                    "cells": int(np.isfinite(difference).sum()), "median": median}
     if median > differ:
@@ -191,8 +191,8 @@ def differing(name, difference, transform, differ):
 
 def on_grid(raster, base):
     """Whether the cells of a raster are cells of another one's grid."""
-    (left, top), (right, bottom) = (~base.transform * corner for corner in
-                                    (raster.transform * (0, 0), raster.transform * raster.z.shape[::-1]))
+    (left, top), (right, bottom) = (~base.transform @ corner for corner in
+                                    (raster.transform @ (0, 0), raster.transform @ raster.z.shape[::-1]))
     expected = round(left), round(top), round(left) + raster.z.shape[1], round(top) + raster.z.shape[0]
     return bool(np.abs(np.subtract((left, top, right, bottom), expected)).max() <= ON_GRID)
 
@@ -200,7 +200,7 @@ def on_grid(raster, base):
 def box(raster, base):
     """Top, bottom, left, right of a raster in cells of a grid: those whose centres are in it."""
     rows, columns = raster.z.shape
-    across, down = np.transpose([~base.transform * (raster.transform * corner) for corner in
+    across, down = np.transpose([~base.transform @ (raster.transform @ corner) for corner in
                                  ((0, 0), (columns, 0), (0, rows), (columns, rows))])
     return tuple(int(math.ceil(edge - 0.5 - ON_GRID)) if low else int(math.floor(edge - 0.5 + ON_GRID)) + 1
                  for edge, low in ((down.min(), True), (down.max(), False), (across.min(), True),
@@ -212,7 +212,7 @@ def make_grid_around(base, parts):
     boxes = np.array([box(part, base) for part in parts])
     (top, left), (bottom, right) = boxes[:, ::2].min(axis=0), boxes[:, 1::2].max(axis=0)
     return Raster(np.broadcast_to(np.nan, (int(bottom - top), int(right - left))),
-                  base.transform * Affine.translation(int(left), int(top)), base.crs)
+                  base.transform @ Affine.translation(int(left), int(top)), base.crs)
 
 
 def on_cells(raster, merged, base):
@@ -230,7 +230,7 @@ def on_cells(raster, merged, base):
     for row in range(0, len(heights), strip):
         count = min(strip, len(heights) - row)
         x, y = np.meshgrid(np.arange(heights.shape[1]) + start + 0.5, np.arange(row, row + count) + first + 0.5)
-        heights[row:row + count] = sample(more, *(merged.transform * (x, y)))
+        heights[row:row + count] = sample(more, *(merged.transform @ (x, y)))
     inner = heights[top - first:bottom - first, left - start:right - start]
     return top, left, inner, [(first, start, heights)]
 

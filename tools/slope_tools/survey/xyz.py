@@ -122,7 +122,7 @@ def read_xyz_grid(path: str, form: Form) -> Grid:
     grid[row, column] = z
     twice = np.flatnonzero(np.abs(grid[row, column] - z) > 0)
     if twice.size:
-        x, y = transform * (column[twice[0]] + 0.5, row[twice[0]] + 0.5)
+        x, y = transform @ (column[twice[0]] + 0.5, row[twice[0]] + 0.5)
         raise SlopeError(path, f"must have one height at {x:.10g} {y:.10g}", f"{z[twice[0]]:g} and "
                          f"{grid[row, column][twice[0]]:g}")
     return Grid(grid, transform, head.z_unit, head.unit == "degrees")

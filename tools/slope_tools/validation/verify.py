@@ -81,7 +81,7 @@ class Runner:
         run.write(folder)
         words = [str(self.lmp), "-in", run.source.name, "-log", logs.LOG, *run.options]
         with open(folder / jobs.SCREEN, "wb") as screen:
-            return processes.start(words, folder, screen)
+            return processes.start(words, folder, screen, alone=True)
 
     def ended(self, run, status):
         folder = self.folder / run.name
