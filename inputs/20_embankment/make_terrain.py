@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Makes terrain.asc of this case, an embankment above a road, and terrain_long.asc, the same with more ground around it.
+"""Makes terrain.asc of this case, an embankment above a road, and terrain_long.asc, with more ground around the same.
 
 The elevation data of the site (Geospatial Information Authority of Japan, free after
 registration) are not shipped, and the paper's text has no dimensions of the face: these are ours.

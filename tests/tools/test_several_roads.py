@@ -298,7 +298,7 @@ def test_carriageways_have_a_number_together(tmp_path, gis):  # noqa: F811
 def test_roads_that_nearly_meet_are_told(tmp_path, gis):  # noqa: F811
     """Ends drawn by eye, pieces of one road in files of their own, and polygons."""
     raster = rasters.read(gis / "dem.tif")
-    raster = raster._replace(transform=type(raster.transform).translation(-EAST, -NORTH) * raster.transform,
+    raster = raster._replace(transform=type(raster.transform).translation(-EAST, -NORTH) @ raster.transform,
                              offset=(EAST, NORTH))
     asked = roads.Asked(width=6.0)
     for gap in (0.0, 0.5, 1.9, 2.5, 6.0):

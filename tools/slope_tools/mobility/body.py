@@ -56,7 +56,7 @@ class Body(NamedTuple):
     def crown(self) -> Tuple[float, float, float]:
         """x, y, z (m) of the highest ground in the body, of several in the largest."""
         row, column = np.unravel_index(np.argmax(np.where(self.main > 0, self.raster.z, -np.inf)), self.depth.shape)
-        x, y = self.raster.transform * (column + 0.5, row + 0.5)
+        x, y = self.raster.transform @ (column + 0.5, row + 0.5)
         return float(x), float(y), float(self.raster.z[row, column])
 
     def fall_line(self) -> Tuple[np.ndarray, np.ndarray]:
@@ -66,12 +66,12 @@ class Body(NamedTuple):
         """
         depth = self.main
         row, column = np.nonzero(depth)
-        x, y = self.raster.transform * np.array([column + 0.5, row + 0.5])
+        x, y = self.raster.transform @ np.array([column + 0.5, row + 0.5])
         weight = depth[row, column]
         top, left = row.min(), column.min()
         part = slice(top, row.max() + 1), slice(left, column.max() + 1)
-        columns, _ = self.raster.transform * (np.arange(left, column.max() + 1) + 0.5, 0.0)
-        _, rows = self.raster.transform * (0.0, np.arange(top, row.max() + 1) + 0.5)
+        columns, _ = self.raster.transform @ (np.arange(left, column.max() + 1) + 0.5, 0.0)
+        _, rows = self.raster.transform @ (0.0, np.arange(top, row.max() + 1) + 0.5)
         downhill, slope = release_area.fall(columns, rows, self.raster.z[part], depth[part] > 0)
         if slope < release_area.FLAT:
             raise SlopeError(self.where, f"the ground of the body must fall by at least {release_area.FLAT:g} degree, "
