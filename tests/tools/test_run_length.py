@@ -171,7 +171,7 @@ def by_hand(road, density):
             rasters[name], at = source.read(1).astype(float), source.transform
     ground, _, thickness, largest, speed = rasters.values()
     rows, columns = np.indices(ground.shape)
-    x, y = at * (columns + 0.5, rows + 0.5)
+    x, y = at @ (columns + 0.5, rows + 0.5)
     depth = np.maximum(ground - (rasters["run.surface"] - thickness), 0)
     body_ = depth > 0.01
     crown = np.argmax(np.where(body_, ground, 0))
@@ -193,7 +193,7 @@ def by_hand(road, density):
         for name, value in (("reach", reach), ("from the toe", reach - toe)):
             found[f"{share} % of the volume: {name}"] = value
             found[f"{share} % of the volume: {name} over height"] = value / height
-    edge = np.array([[road.exterior.intersects(box(*at * (column, row + 1), *at * (column + 1, row)))
+    edge = np.array([[road.exterior.intersects(box(*at @ (column, row + 1), *at @ (column + 1, row)))
                       for column in range(ground.shape[1])] for row in range(ground.shape[0])])
     deep, fast = largest[edge].max(), speed[edge].max()
     return {**found, "depth at the road's edge": deep, "speed at the road's edge": fast,

@@ -237,7 +237,7 @@ def test_resampling_does_not_reach_into_nodata(written):
     got, east, north, _, _ = written("dem.tif --cell 1")
     assert_plane(got, east, north)
     hole = Affine.translation(8, 5), Affine.translation(11, 7)  # outer edges of the hole; heights end half a cell off
-    (west, top), (right, bottom) = (transform @ step * (0, 0) for step in hole)
+    (west, top), (right, bottom) = (transform @ step @ (0, 0) for step in hole)
     empty = (east > west - 2.5) & (east < right + 2.5) & (north < top + 2.5) & (north > bottom - 2.5)
     assert (np.isnan(got) == empty).all()
 

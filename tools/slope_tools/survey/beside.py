@@ -81,7 +81,7 @@ def in_local(raster: Raster, terrain: Raster) -> Affine:
 def box(raster: Raster, terrain: Raster) -> Tuple[float, ...]:
     """xlo, ylo, xhi, yhi of a raster in the CRS of the terrain, in the terrain's local metres."""
     rows, columns = raster.z.shape
-    x, y = in_local(raster, terrain) * (np.array([0, columns, 0, columns]), np.array([0, 0, rows, rows]))
+    x, y = in_local(raster, terrain) @ (np.array([0, columns, 0, columns]), np.array([0, 0, rows, rows]))
     return x.min(), y.min(), x.max(), y.max()
 
 

@@ -135,7 +135,7 @@ def resample(raster, crs, cell, bounds, points):
     strip = max(1, STRIP // (columns * points * points))
     for first in progress(range(0, rows, strip), "resampling"):
         count = min(strip, rows - first)
-        x, y = fine * np.meshgrid(np.arange(columns * points) + 0.5,
+        x, y = fine @ np.meshgrid(np.arange(columns * points) + 0.5,
                                   np.arange(first * points, (first + count) * points) + 0.5)
         if moved:
             x, y = transform(crs, raster.crs, x, y)
