@@ -231,23 +231,6 @@ def test_the_deck_holds_no_value_of_a_list(mine, inside):  # noqa: F811
     assert (mine / site_deck.NAME).read_bytes() == first
 
 
-def test_a_folder_without_a_film_takes_that_of_its_deck(mine, inside):  # noqa: F811
-    """Of an older version."""
-    path = mine / site_deck.NAME
-    text = re.sub(r"(variable  film +index )\S+", r"\g<1>0.35", path.read_text())
-    path.write_text(text)
-    about = yaml.safe_load((mine / "site.yaml").read_text())
-    del about["model"]["film"], about["found"]["derived"]["model.film"]
-    about["found"]["deck_sha256"] = site_trial.disk.sha256(path)
-    about["found"]["choices_sha256"] = ""
-    (mine / "site.yaml").write_text(yaml.safe_dump(about))
-    about["found"]["choices_sha256"] = site_choices.load_site(mine).fingerprint()
-    (mine / "site.yaml").write_text(yaml.safe_dump(about))
-    site_study.check_site(site_choices.load_site(mine))
-    inside("mine")
-    assert decks.index_variables(path)["film"] == "0.35"
-
-
 def test_keys_without_an_option_are_named(capsys):
     with pytest.raises(SystemExit):
         cli.main(["site", "--help"])

@@ -236,7 +236,8 @@ def notes_of(site: Site, roads: Sequence[Mapping[str, Any]]) -> List[Finding]:
     """The same without those of other roads; roads: of Questions."""
     mine = roads[0]["road"] if roads else site.road
     others = set(site_roads.names(site)) - {mine}
-    return [one for one in read_site_warnings(site.folder) if one.numbers.get("file") not in others]
+    return [one for one in read_site_warnings(site.folder) if one.numbers.get("file") not in others
+            and mine in one.numbers.get("roads", mine).split(", ")]
 
 
 def grounds(choices: OfMass) -> List[Dict[str, str]]:

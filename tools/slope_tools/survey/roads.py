@@ -159,13 +159,14 @@ def meetings(several: Mapping[str, Tuple[str, Road]], raster) -> List[Finding]:
             continue
         ways = [road.line or road.polygon for road in (first, other)]
         near.append((round(ways[0].distance(ways[1]), 3),
-                     f"{name} and {beside} {features.locate_feature(nearest_points(*ways)[0], raster)}", file,
-                     other_file))
+                     f"{name} and {beside} {features.locate_feature(nearest_points(*ways)[0], raster)}",
+                     (file, other_file), (name, beside)))
     if not near:
         return []
     near.sort(key=lambda entry: entry[0])
     return [Finding("roads meet", {
-        "file": ", ".join(dict.fromkeys(file for one in near for file in one[2:])),
+        "file": ", ".join(dict.fromkeys(file for one in near for file in one[2])),
+        "roads": ", ".join(dict.fromkeys(name for one in near for name in one[3])),
         "places": "; ".join(one[1] for one in near[:SHOWN]) + f"; and {len(near) - SHOWN} more" * (
             len(near) > SHOWN)})]
 
