@@ -170,8 +170,6 @@ def test_why_no_more_are_added():
     found = stopped(added, lengths=response(u)[0])
     assert found.code is Code.RANGE and found.numbers["ends"]["a"].startswith("0.0")
     assert "range" in answer_words.describe_reason(found) and "a 0.0" in answer_words.describe_reason(found)
-    assert "a 0.07" in answer_words.describe_reason(
-        found._replace(numbers={"ends": "a 0.07"}))       # of an older version
     u[:2] = 0.5
     for _ in range(8):
         new, added = proposed(added, u, lengths, beyond)
