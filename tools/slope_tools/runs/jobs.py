@@ -233,8 +233,8 @@ class Work:
             state = self.of(run)._prepare(run)
             with open(run.folder / SCREEN, "ab" if run.restart else "wb") as screen:
                 run.output_before = screen.tell()
-                by, words = self.of(run)._line(run)
-                process = processes.start([*by, *words], run.folder, screen, alone=not by)
+                words = self.of(run)._line(run)
+                process = processes.start(words, run.folder, screen, alone=words[0] == str(self.of(run).lmp))
         except OSError as error:
             raise SlopeError(run.folder, f"cannot be run: {error.strerror} ({error.filename})") from error
         self.active.append(Active(run, process, time.monotonic()))
@@ -257,9 +257,9 @@ class Work:
         return state
 
     def _line(self, run):
-        """The whole command of a run: what launches its ranks, and what they are."""
-        return (launcher.list_launcher_words(self.start, self.ranks_of(run), slots()),
-                [str(self.lmp), *self.command(run)])
+        """The whole command of a run."""
+        by = launcher.list_launcher_words(self.start, self.ranks_of(run), slots())
+        return [*by, str(self.lmp), *self.command(run)]
 
     def _last_restart(self, run):
         """Step and path of the restart file from which an unfinished run can continue, or None; and why it cannot."""
