@@ -175,6 +175,7 @@ def test_the_method_is_in_the_results(mine, monkeypatch, capsys):  # noqa: F811
                         *_: seen.append(questions.method))
     monkeypatch.setattr(site_study.study, "perform", lambda *words, **_: words[3](words[2], None))
     monkeypatch.setattr(site_study.size_runs, "make_finer_runs", lambda *_: site_study.size_runs.Made((), {}))
+    monkeypatch.setattr(site_study.size_runs.Wanted, "with_finished", lambda wanted, _: wanted)
     monkeypatch.setattr(site_study, "judge_step_run", lambda *_: None)
     monkeypatch.setattr(site_study, "elastic_of", lambda *_: None)
     study(capsys, monkeypatch, "mine --paper")
