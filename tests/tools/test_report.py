@@ -357,7 +357,7 @@ def test_what_sizes_of_balls_say(slope, here):
 @pytest.mark.parametrize("by, chance, clear, told", [
     (30.0, 100.0, False, "within chance (100"), (300.0, 100.0, True, "more than chance (100"),
     (30.0, None, None, "chance unknown")])
-def test_differences_are_told_against_chance(slope, here, by, chance, clear, told):
+def test_differences_are_judged_against_chance(slope, here, by, chance, clear, told):
     about = yaml.safe_load(Path("repeated/study.yaml").read_text())
     [entry] = about["conservative"]["differences"]
     entry.update(by_m3=by, chance_m3=chance, clear=clear)
@@ -569,7 +569,7 @@ def test_one_line_for_each_kind_of_warning(slope, here):
     assert failed.startswith("failed: ERROR: ") and "(3 of 9 runs: rolling a; rolling b; rolling c; " in failed
 
 
-def test_lost_mass_is_told(slope, here):
+def test_lost_mass_is_named(slope, here):
     path = here / "one" / "tiny.summary.yaml"
     path.write_text(re.sub(r"^  lost: 0.0", "  lost: 12.5", path.read_text(), flags=re.MULTILINE))
     assert slope("one")[0] == 0

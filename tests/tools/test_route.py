@@ -1,15 +1,13 @@
 """slope route and zones: the corridor, frequencies, what runs made by hand say of a road, wrong input, kills."""
 import csv
+import dataclasses
 import json
-
 import math
 import os
 import resource
-
+import shutil
 import subprocess
 import time
-
-
 from pathlib import Path
 
 import fiona
@@ -28,6 +26,7 @@ from tiny_collapse import rows_of
 
 from slope_tools.errors import SlopeError
 from slope_tools import records
+from slope_tools.commands import route as route_command
 from slope_tools.route import choices, corridor, page as route_page, results, search, zones
 from slope_tools.route.yearly import Yearly
 from slope_tools.seismic import chain, fragility
@@ -673,6 +672,29 @@ def test_bodies_of_a_thickness(slope):
         assert (z - one.base)[one.mask] == pytest.approx(depth, abs=1e-3)
     bodies_file({"depth": 4.0}, {"thickness": 1.5})
     assert len(given_bodies(shape="slbl")[0]) == 2
+
+
+def test_heights_are_taken_as_slope_terrain_takes_them(slope):
+    """In feet, with another value of no height, and of two models whose heights differ."""
+    def terrain(*more, **given):
+        shutil.rmtree("R", ignore_errors=True)
+        assert given.keys() <= {field.name for field in dataclasses.fields(route_command.Request)}
+        asked = choices.settle(Path("R"), {
+            "terrain": ["dem.asc", *more], "road": "axis.csv", "road_width": 8.0, "corridor": 60.0, "density": 1900.0,
+            "bodies": "slides.geojson", "crs": "EPSG:6677", **given})
+        corridor.make_corridor(asked, Path("R"), lambda _: None, lambda _: None)
+        return rasters.read_asc_local("R/terrain.asc").z
+
+    usual = terrain()
+    assert terrain(z_unit="ft") == pytest.approx(0.3048 * usual, abs=1e-3)
+    top = usual == usual.max()
+    assert np.array_equal(np.isnan(terrain(nodata=[float(usual.max())])), top) and 0 < top.sum() < usual.size
+    lines = Path("dem.asc").read_text().splitlines()
+    higher = [" ".join(f"{float(word) + 9:g}" for word in line.split()) for line in lines[6:]]
+    Path("other.asc").write_text("\n".join([*lines[:6], *higher]) + "\n")
+    with pytest.raises(SlopeError, match="--differ"):
+        terrain("other.asc")
+    assert np.isfinite(terrain("other.asc", differ=20.0)).all()
 
 
 def test_given_bodies_need_no_strength(slope):

@@ -1,11 +1,12 @@
-"""Arguments of the commands that take a body: which one, below a polygon or from a scar."""
+"""Arguments of the commands that take a body: which one, below a polygon or from a scar, on which heights."""
 import argparse
 from dataclasses import dataclass
-from typing import Optional, Union
+from typing import List, Optional, Union
 
 from ..options import flag, parse_number, option
 from ..releases import release, release_dip, release_scar
 from ..survey import vectors
+from ..survey.rasters import UNITS
 
 
 def degrees_or_least(text: str) -> Union[float, str]:
@@ -19,6 +20,19 @@ def level_or_file(text: str) -> Union[float, str]:
         return parse_number(text)
     except argparse.ArgumentTypeError:
         return text
+
+
+@dataclass(frozen=True, kw_only=True)
+class Heights:
+    """How commands that make a terrain of their own take its heights; what is not given is None."""
+    GROUP = "heights of the elevation model"
+    z_unit: Optional[str] = option("of the heights of the elevation model, whatever it says", choices=UNITS)
+    nodata: Optional[List[float]] = option(
+        "a value of the elevation model, in its own unit, that stands for no height, beside the one that it declares; "
+        "may be given several times", metavar="V", action="append")
+    differ: Optional[float] = option(
+        "accept a median difference of two elevation models of up to M m where both have heights (default 5)",
+        metavar="M")
 
 
 @dataclass(frozen=True, kw_only=True)

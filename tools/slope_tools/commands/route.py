@@ -11,8 +11,8 @@ from ..options import count, parse_number, option, positional, parse_whole_numbe
 from ..programs import find_lmp
 from ..releases.release import SHAPES
 from ..runs import jobs
-from ..survey.rasters import UNITS
 from . import road_arguments
+from .release_arguments import Heights
 from .run_arguments import Engine, engine_of
 
 DESCRIPTION = "The slopes along a road: which bodies may fail, which stretches they block, how likely and how often."
@@ -41,19 +41,12 @@ FOLDER/bodies/N is a site of its own: `slope study FOLDER/bodies/N`, `slope repo
 
 
 @dataclass(frozen=True, kw_only=True)
-class Request(road_arguments.Clearing, Engine):
+class Request(Heights, road_arguments.Clearing, Engine):
     """What is not given is that of route.yaml, where there is one."""
     folder: Path = positional("the route's folder, new or one to go on with", metavar="FOLDER")
     terrain: Optional[List[str]] = option("elevation model, as slope terrain takes it", metavar="DEM", nargs="+")
     crs: Optional[str] = option("wanted CRS of the terrain", metavar="EPSG:n")
     assign_crs: Optional[str] = option("the elevation model is in this CRS, whatever it says", metavar="EPSG:n")
-    z_unit: Optional[str] = option("of the heights of the elevation model, whatever it says", choices=UNITS)
-    nodata: Optional[List[float]] = option(
-        "a value of the elevation model, in its own unit, that stands for no height, beside the one that it declares; "
-        "may be given several times", metavar="V", action="append")
-    differ: Optional[float] = option(
-        "accept a median difference of two elevation models of up to M m where both have heights (default 5)",
-        metavar="M")
     cell: Optional[float] = option("wanted cell size, m", metavar="S")
     fill: Optional[int] = option("fill NODATA holes of at most N cells", metavar="N")
     road: Optional[str] = option("the road's axis, a line: GeoJSON, shapefile, CSV or WKT", metavar="LINE")
@@ -122,7 +115,8 @@ def run_route(args: Request) -> None:
             try:
                 results.yearly_of(choices, folder, table["bodies"])      # now, not after the runs
             except SlopeError:
-                route_choices.write_route_choices(folder, choices._replace(fragility=None))
+                _, sources = route_choices.read_route(folder)
+                route_choices.write_route_choices(folder, choices._replace(fragility=None), sources)
                 raise
             machine = site.Machine(lmp, args.jobs or jobs.cores())
             several = []

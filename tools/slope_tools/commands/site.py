@@ -25,9 +25,8 @@ from ..slips import bodies
 from ..studies import ahead, outlook, site_ground
 from ..studies.setup import RUNS, Setup
 from ..survey import roads
-from ..survey.rasters import UNITS
 from . import known_arguments, road_arguments
-from .release_arguments import degrees_or_least, level_or_file
+from .release_arguments import Heights, degrees_or_least, level_or_file
 
 # option -> section and key of site.yaml
 OPTIONS = {"terrain": ("terrain", "files"), "crs": ("terrain", "crs"),
@@ -101,7 +100,7 @@ Keys of it that no option has:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Ground:
+class Ground(Heights):
     """The ground and the body."""
     GROUP = "ground and body"
     terrain: Optional[List[str]] = option(
@@ -111,13 +110,6 @@ class Ground:
     assign_crs: Optional[List[str]] = option(
         "the elevation model, or the FILE of another option, is in this CRS, whatever it says; may be given several "
         "times", metavar="[FILE=]EPSG:n", action="append")
-    z_unit: Optional[str] = option("of the heights of the elevation model, whatever it says", choices=UNITS)
-    nodata: Optional[List[float]] = option(
-        "a value of the elevation model, in its own unit, that stands for no height, beside the one that it declares; "
-        "may be given several times", metavar="V", action="append")
-    differ: Optional[float] = option(
-        "accept a median difference of two elevation models of up to M m where both have heights (default 5)",
-        metavar="M")
     bounds: Optional[List[float]] = option("take this part, m", nargs=4, metavar=("W", "S", "E", "N"))
     cell: Optional[float] = option("wanted cell size, m", metavar="S")
     fill: Optional[int] = option("fill NODATA holes of at most N cells", type=parse_whole_number, metavar="N")

@@ -2,7 +2,7 @@
 import os
 import shutil
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Union, get_args, get_origin, get_type_hints
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Tuple, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 
@@ -112,7 +112,8 @@ def option(name: str) -> str:
 def settle(folder: Path, given: Mapping[str, Any]) -> Choices:
     """The choices of a folder with those that are given now, checked and kept; SlopeError if they do not fit."""
     path = folder / NAME
-    known, before = (read_route_choices(folder)._asdict(), sources_in(folder)) if path.is_file() else ({}, {})
+    made, before = read_route(folder) if path.is_file() else (None, {})
+    known = made._asdict() if made else {}
     changed = [name for name, value in given.items() if known and not is_same_choice(name, known[name], value)]
     for name in changed:
         if name not in LATER and (folder / TABLE).is_file():
@@ -143,21 +144,15 @@ def settle(folder: Path, given: Mapping[str, Any]) -> Choices:
 
 
 def content(files: Any) -> str:
-    """Digest of what files of an option hold, as far as they are there; "" without any."""
+    """Digest of what files of an option hold; "" without any, and where one is gone, as a folder does without them."""
     paths = [zips.split(os.path.normpath(vectors.source(one).path))[0] for one in
              (files if isinstance(files, list) else [files]) if one]
-    return " ".join(file_parts.digest_content(one) for one in paths if os.path.isfile(one))
+    return " ".join(map(file_parts.digest_content, paths)) if all(map(os.path.isfile, paths)) else ""
 
 
-def sources_in(folder: Path) -> Dict[str, str]:
-    """What content() gave of each option when the folder was made; nothing of older ones."""
-    return schemas.load_checked(folder / NAME, f"{WHAT} of this version", schema()).get(SOURCES) or {}
-
-
-def write_route_choices(folder: Path, choices: Choices, sources: Optional[Mapping[str, str]] = None) -> None:
-    """Write route.yaml, unless it says so already; sources: None: those that it has."""
+def write_route_choices(folder: Path, choices: Choices, sources: Mapping[str, str]) -> None:
+    """Write route.yaml, unless it says so already; sources: digests of the files of options."""
     path = folder / NAME
-    sources = sources_in(folder) if sources is None else sources
     about = {name: from_folder(value, folder) if name in FILES else value for name, value in choices._asdict().items()}
     text = disk.yaml_text("slope route: m, m3, Pa, degrees, kg/m3; paths as from here",
                           {"slope_route": VERSION, **about, SOURCES: dict(sources)})
@@ -165,15 +160,20 @@ def write_route_choices(folder: Path, choices: Choices, sources: Optional[Mappin
         disk.write_file(path, text)
 
 
-def read_route_choices(folder: Path) -> Choices:
-    """The choices of a route's folder; paths as from the working folder."""
+def read_route(folder: Path) -> Tuple[Choices, Dict[str, str]]:
+    """The choices of a route's folder, paths as from the working folder; and what the files of options held."""
     path = folder / NAME
     if not path.is_file():
         raise SlopeError(folder, f"must be the folder of a route, with {NAME}")
     about = schemas.load_checked(path, f"{WHAT} of this version", schema())
-    for name in ("slope_route", SOURCES):
-        about.pop(name, None)
-    return Choices(**{name: to_here(value, folder) if name in FILES else value for name, value in about.items()})
+    del about["slope_route"]
+    sources = about.pop(SOURCES, {})
+    choices = Choices(**{name: to_here(value, folder) if name in FILES else value for name, value in about.items()})
+    return choices, sources
+
+
+def read_route_choices(folder: Path) -> Choices:
+    return read_route(folder)[0]
 
 
 def from_folder(value: Any, folder: Path) -> Any:

@@ -51,9 +51,10 @@ def write_geopackage(path: Path, layers: Dict[str, Layer], raster: Raster, style
 
 
 def cartesian(data: bytes) -> bytes:
-    """A GeoPackage whose layers have no CRS with coordinates in metres: to GDAL they are degrees (srs_id 0), or,
+    """A GeoPackage whose layers have no CRS with coordinates in metres.
 
-    since 3.9, anything (99999)."""
+    To GDAL they are degrees (srs_id 0) or, from 3.9 on, anything (99999).
+    """
     with contextlib.closing(sqlite3.connect(":memory:")) as base:
         base.deserialize(data)
         for table in ("gpkg_contents", "gpkg_geometry_columns"):

@@ -112,9 +112,12 @@ def split(drawn: Sequence[Drawn]) -> List[Way]:
 def gaps(drawn: Sequence[Drawn], points: np.ndarray) -> np.ndarray:
     """Pairs of ends, drawn by eye, that go on in each other but for a gap; points: both ends of each line."""
     tree, pairs = cKDTree(points), []
+    alone = tree.query_ball_point(points, SAME, return_length=True) == 1    # first, as nearly all ends meet others
     for k, j in sorted(tree.query_pairs(GAP)):
+        if not (alone[k] and alone[j] and k // 2 != j // 2):
+            continue
         one, other = (Way(drawn[end // 2].line, (0, 0), 0).leaves(end % 2) for end in (k, j))
-        if k // 2 != j // 2 and turn(one, other) <= STRAIGHT and all(
+        if turn(one, other) <= STRAIGHT and all(
                 line.line.distance(Point(points[end])) > SAME for end in (k, j) for number, line in enumerate(drawn)
                 if number != end // 2):
             pairs.append((k, j))

@@ -152,8 +152,11 @@ def meetings(several: Mapping[str, Tuple[str, Road]], raster) -> List[Finding]:
     Ends that were drawn by eye, and pieces in files of their own, leave gaps.
     """
     pairs = [one.polygon.buffer(SLACK) for _, one in several.values() if len(one.lines) > 1]
+    boxes = {name: box(*road.polygon.bounds).buffer(GAP) for name, (_, road) in several.items()}
     near = []
     for (name, (file, first)), (beside, (other_file, other)) in combinations(several.items(), 2):
+        if not boxes[name].intersects(other.polygon):
+            continue
         if max(len(first.lines), len(other.lines)) > 1 or first.polygon.distance(other.polygon) > GAP or any(
                 both.contains(first.polygon) and both.contains(other.polygon) for both in pairs):
             continue
