@@ -75,7 +75,8 @@ def check_site_file(given: Any, where: str, options: Optional[Mapping[Tuple[str,
         key = ".".join(str(part) for part in place if isinstance(part, str))
         at = "".join(f": {schemas.nth(part)}" for part in place if isinstance(part, int))
         option = (options or {}).get((str(place[0]), str(place[1])) if len(place) > 1 else ("", ""))
-        remedy = "; if an older version wrote it, make the site anew from its files" * rule.startswith(schemas.NO_OTHERS)
+        older = rule.startswith(schemas.NO_OTHERS)
+        remedy = "; if an older version wrote it, make the site anew from its files" * older
         raise SlopeError((option or (f"{where}: {key}" if key else where)) + at, f"{rule}{remedy}")
     for key, text in (given.get("project") or {}).items():      # now, as the report comes last
         check_text((options or {}).get(("project", key), f"{where}: project.{key}"), text)
