@@ -338,7 +338,8 @@ LONG = ["study", "case/in.tiny", "--set", "steps=2000", "--set", "rolling=0,0.1,
 
 def start_long(here):
     return subprocess.Popen([*PROGRAM, *LONG], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                            start_new_session=True)
+                            start_new_session=True,     # by a script in the background nobody can interrupt
+                            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
 
 
 def print_of(folder):
