@@ -3,8 +3,10 @@ import csv
 import fcntl
 import gc
 import os
+import re
 import shutil
 import sys
+import tempfile
 import time
 from pathlib import Path
 
@@ -55,6 +57,13 @@ def pytest_runtest_protocol(item):
         with open(os.environ["SLOPE_TIMES"], "a", encoding="utf-8", newline="") as file:        # one write a row
             csv.writer(file).writerow([relative(item.path), item.name[:LONGEST], f"{time.perf_counter() - wall:.3f}",
                                        f"{processor_seconds() - processor:.3f}"])
+
+
+@pytest.fixture
+def tmp_path(request, tmp_path_factory):
+    """As pytest's own, which for each of thousands of tests looks through the folders of all that went before."""
+    name = re.sub(r"\W", "_", request.node.name)[:30]
+    return Path(tempfile.mkdtemp(prefix=name, dir=tmp_path_factory.getbasetemp()))
 
 
 @pytest.fixture(scope="session")

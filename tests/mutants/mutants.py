@@ -148,7 +148,8 @@ class Copy:
         """As tests/CMakeLists.txt has it, with what tests share in a folder of the test alone."""
         mpi = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_pml": "ob1",
                "OMPI_MCA_btl": "^tcp,openib,ofi,uct,usnic", "OMPI_MCA_mpi_yield_when_idle": "1",
-               "OMPI_MCA_ess_singleton_isolated": "1", "HWLOC_COMPONENTS": "-linux:pci,-pci", "HWLOC_PLUGINS_PATH": "none"}
+               "OMPI_MCA_ess_singleton_isolated": "1", "HWLOC_COMPONENTS": "-linux:pci,-pci",
+               "HWLOC_PLUGINS_PATH": "none"}
         rest = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "PYTHONHOME", "JOBS")}
         return {**rest, **mpi, "SLOPE_TOOLS": str(self.top / "tools"), "SLOPE_BUILD": str(self.build),
                 "DUMP2VTK": str(self.build / "dump2vtk"), "LMP": str(self.build / "lmp"), "OMP_NUM_THREADS": "1",

@@ -1,4 +1,5 @@
 """Coordinate reference systems: names, are two the same, is a metre a metre, do the axes point east and north."""
+import functools
 import math
 import os
 import re
@@ -158,11 +159,17 @@ def warn_of_north(raster, warn):
                                     "side": "east" if angle > 0 else "west"}))
 
 
+@functools.lru_cache
+def projection_of(wkt):
+    """Of PROJ, which takes milliseconds to read what a CRS is."""
+    from pyproj import Proj
+    return Proj(wkt)
+
+
 def factors_of(raster):
     """Of the projection, at the middle of a raster."""
-    from pyproj import Proj
     x, y = raster.transform @ (raster.z.shape[1] / 2, raster.z.shape[0] / 2)
-    projection = Proj(raster.crs.to_wkt())
+    projection = projection_of(raster.crs.to_wkt())
     return projection.get_factors(*projection(x, y, inverse=True))
 
 
