@@ -5,6 +5,7 @@ Bounds are those of Clopper and Pearson for a share k of n; where a point has se
 independent runs that they are worth (Korn and Graubard, Survey Methodology, 24, 193, 1998). Failed runs could have
 given anything: in a lower bound they do not exceed a value, in an upper one they do. Every function is pure.
 """
+import functools
 import math
 from dataclasses import dataclass
 from typing import List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
@@ -67,6 +68,7 @@ class Places:
     high: Optional[int]
 
 
+@functools.lru_cache(maxsize=4096)
 def places(share: float, n: int, failed: int = 0, effect: float = 1.0) -> Places:
     """The Places of the quantile of a share of n sorted values."""
     above = np.arange(n - 1, -1, -1)        # how many lie above each of them
