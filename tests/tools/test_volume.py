@@ -374,9 +374,25 @@ def test_ground_that_is_not_known(cleared, slope):
     assert warned(about)["no ground"]["volume"] == pytest.approx(10 * 10 * 3)
     with rasterio.open("out/volume.tif") as file:
         assert file.nodata == -9999 and (file.read(1, masked=True).filled(0) >= 0).all()
-    write_geojson("road.geojson", box(120, 0, 155, 200))
+    # a road over half of it, and one that leaves the terrain: on the road all is counted, the cut rises from beside it
+    for road, hole in ((box(120, 0, 155, 200), 5.0), (box(120, 0, 170, 200), 0.0)):
+        write_run(thickness, np.zeros(base.shape), 2.5)
+        whole = cleared(road)["volume"]
+        write_run(thickness, base, 2.5)
+        about = cleared(road)
+        assert about["volume"]["remove_on_road"] == pytest.approx(whole["remove_on_road"])
+        lost = 10 * wedge(3.0, hole, np.tan(np.radians(30)))    # m3 of the cut that lie on the hole beside it
+        assert about["volume"]["remove"] == pytest.approx(whole["remove"] - lost)
+        assert ("edge without ground" in warned(about)) == (hole > 0)
+    assert warned(cleared(box(120, 0, 155, 200)))["edge without ground"]["percent"] == pytest.approx(2.1, abs=0.1)
+    base[:, 60:] = np.nan
+    write_run(thickness, base, 2.5)
+    beyond = cleared(box(120, 0, 200, 200))
+    assert beyond["volume"]["remove_on_road"] == pytest.approx(3 * 40 * 80)
+    assert beyond["volume"]["remove_beside_road"] == pytest.approx(40 * wedge(3.0, 30.0, np.tan(np.radians(30))))
+    write_geojson("road.geojson", box(180, 0, 200, 200))
     status, _, err = slope("run --road road.geojson --local --mesh 10")
-    assert status == 2 and "ground at the edge of the road must have a height, it has none at, got 155.000 " in err
+    assert status == 2 and "road.geojson: the road's edge must lie on ground that has a height" in err
 
 
 # --- the axis ---

@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from affine import Affine
 from rasterio.features import geometry_mask
-from scipy.ndimage import convolve, maximum_filter, minimum_filter
+from scipy.ndimage import distance_transform_edt, maximum_filter, minimum_filter
 from scipy.spatial import cKDTree
 from shapely.affinity import translate
 from shapely.geometry import Point, box
@@ -47,12 +47,13 @@ class Removed(NamedTuple):
 class Ground:
     """The ground, bilinear between the centres of the cells, and linear on to the edges of the grid.
 
-    A cell without a height is NaN in known; for its neighbours' sake it gets the mean of those that have one.
+    A cell without a height, known: False, gets that of the nearest that has one: for its neighbours' sake, and for that
+    of a road that leaves the terrain, whose cut rises from there.
     """
 
     def __init__(self, z):
         self.known = np.isfinite(z)
-        self.z = z if self.known.all() else rim_filled(z, self.known)
+        self.z = z if self.known.all() else nearest_filled(z, self.known)
 
     def height(self, x, y):
         """At index coordinates x, y (arrays)."""
@@ -69,15 +70,19 @@ class Ground:
     def bounds(self):
         """Lowest and highest ground of each cell; infinite where it is not known."""
         z = np.pad(self.z, 1, mode="reflect", reflect_type="odd")  # linear on to the edges
-        return (of(np.where(np.isnan(z), value, z), 3)[1:-1, 1:-1]
+        known = np.pad(self.known, 1, mode="edge")
+        return (of(np.where(known, z, value), 3)[1:-1, 1:-1]
                 for of, value in ((minimum_filter, -np.inf), (maximum_filter, np.inf)))
 
+    def share_unknown(self, road):
+        """Of the edge of a road in index coordinates: how much of it, from 0 to 1, lies on cells without a height."""
+        x, y = Edge(road, self, 0.0).place
+        j, i = (np.clip(at.astype(int), 0, n - 1) for at, n in zip((y, x), self.known.shape))
+        return 1 - self.known[j, i].mean()
 
-def rim_filled(z, known):
-    total, count = (convolve(values, np.ones((3, 3)), mode="constant")
-                    for values in (np.where(known, z, 0), known.astype(float)))
-    with np.errstate(invalid="ignore"):
-        return np.where(known, z, total / count)
+
+def nearest_filled(z, known):
+    return z[tuple(distance_transform_edt(~known, return_distances=False, return_indices=True))]
 
 
 class Edge:
@@ -93,10 +98,9 @@ class Edge:
         self.piece = np.repeat(np.arange(len(count)), count)
         share = (np.arange(len(self.piece)) - first[self.piece]) / (count - 1)[self.piece]
         points = self.start[self.piece] + share[:, None] * self.along[self.piece]
-        z = ground.height(*points.T)
-        if not np.isfinite(z).all():
-            raise NoGround(points[np.isnan(z)][0])
-        self.z, self.slack = z, np.abs(np.diff(z)).max()
+        self.place = points.T
+        self.z = ground.height(*self.place)
+        self.slack = np.abs(np.diff(self.z)).max()
         self.points = cKDTree(points)
 
     def bounds(self, shape):
@@ -119,10 +123,6 @@ class Edge:
         square = ((place[:, None] - foot) ** 2).sum(axis=2)
         nearest = np.arange(len(place)), square.argmin(axis=1)
         return self.ground.height(*foot[nearest].T) + self.tangent * np.sqrt(square[nearest])
-
-
-class NoGround(Exception):
-    """Raised with a point (index coordinates) of the road's edge where the ground is not known."""
 
 
 def positive_mean(u, v, w):

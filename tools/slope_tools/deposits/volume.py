@@ -74,23 +74,19 @@ def compute_removal(prefix, wanted: Wanted, terrain=None, tell: Callable[[str], 
     asked = wanted.asked
     given = roads.read_local(wanted.road, run.raster, asked, wanted.local, warn=warn)
     road = in_grid(given.polygon, run.raster, wanted.road, warn)
+    if not np.isfinite(run.base).all():
+        require_ground(road, run, wanted.road, warn)
     if wanted.axis:
         axis = in_grid_of(read_local(wanted.axis, run.raster, wanted.local, "axis"), run.raster, wanted.axis)
         source, width = str(wanted.axis), width_of(axis, road)
     else:
         axis, source, width = axis_of(given.lines, road, asked)
     roads.check_lane(asked.lane, width)
-    try:
-        result = evaluate_removal(run, road, wanted.cut_angle, mesh, wanted.samples)
-        profile = profile_road(axis, run, result.removed, asked, road if wanted.axis else None)
-        axes = axes_of(axis, asked)
-        cleared = clearing.evaluate_clearing(run, result, profile, axes, width,
-                                             road if given.line is None else None, asked, mesh, wanted.cut_angle,
-                                             wanted.samples)
-    except cut.NoGround as error:
-        x, y = run.raster.transform @ error.args[0]
-        raise SlopeError(wanted.road, "ground at the edge of the road must have a height, it has none at",
-                         f"{x:.3f} {y:.3f} (local metres)") from None
+    result = evaluate_removal(run, road, wanted.cut_angle, mesh, wanted.samples)
+    profile = profile_road(axis, run, result.removed, asked, road if wanted.axis else None)
+    axes = axes_of(axis, asked)
+    cleared = clearing.evaluate_clearing(run, result, profile, axes, width, road if given.line is None else None, asked,
+                                         mesh, wanted.cut_angle, wanted.samples)
     summary = totals(wanted, run, mesh, result, profile, source)
     summary.update(clearing=cleared.totals, stretches=cleared.entries, by_10_m=by_chainage(run, road, axes),
                    **passed.evaluate_passed(run, road, given.line))
@@ -162,6 +158,16 @@ def in_grid(polygon, raster, path, warn):
     if outside > 1e-9:
         warn(Finding("cut off", {"file": str(path), "percent": 100 * outside}))
     return inside
+
+
+def require_ground(road, run_, path, warn):
+    """Warn of a road, local metres, whose edge lies in part on cells without a height; SlopeError if all of it does."""
+    share = cut.Ground(run_.base).share_unknown(geometry.to_index(road, run_.raster))
+    if share == 1:
+        raise SlopeError(path, "the road's edge must lie on ground that has a height, at least in part",
+                         geometry.format_numbers(road.bounds))
+    if share > 0:
+        warn(Finding("edge without ground", {"file": str(path), "percent": 100 * share}))
 
 
 # --- volumes ---

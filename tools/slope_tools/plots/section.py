@@ -175,12 +175,8 @@ class Section:
         tangent = math.tan(math.radians(self.data.of_study.study.the_road["cut_angle"]))
         raster = self.ground.raster
         inside = geometry.to_index(geometry.as_multi(road.intersection(geometry.box_of(raster))), raster)
-        try:
-            height = cut.heights(inside, cut.Ground(self.ground.base), tangent * self.ground.cell,
-                                 *(~raster.transform @ tuple(self.xy.T)))
-        except cut.NoGround:
-            height = np.full(self.s.shape, np.nan)
-        return spans, height
+        return spans, cut.heights(inside, cut.Ground(self.ground.base), tangent * self.ground.cell,
+                                  *(~raster.transform @ tuple(self.xy.T)))
 
     def _where_it_cuts(self, height):
         """The cut surface on the ground that it takes away from the shown run; None where that is nowhere."""
