@@ -1,7 +1,8 @@
 """What the features of a file say beside their geometry: names, and the depths of release areas."""
 import math
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Tuple
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
+from shapely.geometry import GeometryCollection
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
@@ -12,6 +13,7 @@ from . import polygons, vectors
 DEPTHS = ("depth", "thickness")     # attributes, of which the first counts
 TOUCH = 1e-6        # m2, that a feature has in a polygon which is made of it
 NAMED = 3           # features that a polygon is named by
+LISTED = 12         # features that a message names
 
 
 class Polygon(NamedTuple):
@@ -51,6 +53,25 @@ def depth_of(path: str, number: int, attributes: Mapping[str, Any]) -> Tuple[Opt
         if (value := attribute(attributes, name)) is not None:
             return size_of(f"{path}: feature {number}", name, value, "m"), name
     return None, ""
+
+
+def list_depths(several: Sequence[Polygon]) -> str:
+    """Names and depths of some polygons, for a message."""
+    return ", ".join(f"{one.name} {one.depth:g} m" for one in several[:LISTED]) + ", ..." * (len(several) > LISTED)
+
+
+def own_depths(path: str) -> List[Polygon]:
+    """The features of a file that say how deep they are, without their geometry; those whose attribute is no depth do
+    not.
+    """
+    found = None if polygons.read_text(path) is not None else vectors.read_vector_layer(path, "Polygon")
+    own = []
+    for number, about in zip(found.numbers, found.attributes) if found else ():
+        try:
+            own.append(Polygon(name_feature(about, number), GeometryCollection(), *depth_of(path, number, about)))
+        except SlopeError:
+            continue
+    return [one for one in own if one.depth]
 
 
 def depths(path: str) -> Dict[str, Optional[float]]:
