@@ -417,15 +417,20 @@ def test_tiles_beside_the_window_are_not_read(made, here, monkeypatch):
 # --- feet ---
 
 @pytest.mark.parametrize("unit, crs_", [("ft", CRS_M), ("US survey foot", CRS_M), ("ft", None),
-                                        (None, f"{CRS_M}+6360")])
-def test_heights_in_feet_over_a_plan_in_metres_are_asked_about(slope, made, here, unit, crs_):
-    tif("dem.tif", z=3300 + 3.1 * np.arange(COLUMNS) + 1.7 * np.arange(ROWS)[:, None], unit=unit, crs_=crs_)
-    status, _, err = slope("dem.tif -o out.asc")
+                                        (None, f"{CRS_M}+6360"), ("ft", "EPSG:4326"), (None, "EPSG:4269+6360")])
+def test_heights_in_feet_over_a_plan_that_is_not_are_asked_about(slope, made, here, unit, crs_):
+    """A plan in degrees speaks for feet no more than one in metres."""
+    degrees = "EPSG:4" in (crs_ or "")
+    place = {"step": 2e-5, "east": 140.0, "north": 36.0} if degrees else {}
+    tif("dem.tif", z=3300 + 3.1 * np.arange(COLUMNS) + 1.7 * np.arange(ROWS)[:, None], unit=unit, crs_=crs_, **place)
+    status, _, err = slope(f"dem.tif -o out.asc --crs {CRS_M}")
     assert status == 2 and "--z-unit m if" in err and "--z-unit ft or us-ft" in err and err.count("got ") == 1
-    slopes = [float(word) for word in err.replace(",", "").split() if word.replace(".", "").isdigit()]
-    rise = np.tan(np.radians(slopes))
-    assert len(slopes) == 2 and rise[1] / rise[0] == pytest.approx(0.3048, abs=0.01)
-    assert made("dem.tif --z-unit m")[0].max() > 3000 > 1100 > made("dem.tif --z-unit us-ft")[0].max()
+    rise = np.tan(np.radians([float(word) for word in err.replace(",", "").split() if word.replace(".", "").isdigit()]))
+    cell = np.array([2e-5 * 111_195 * np.cos(np.radians(36)), 2e-5 * 111_195] if degrees else [1.0, 1.0])
+    assert rise == pytest.approx(np.hypot(*(np.array([3.1, 1.7]) / cell)) * np.array([1, 0.3048]), rel=0.02)
+    more = f"--crs {CRS_M} --cell 1" if degrees else ""
+    assert np.nanmax(made(f"dem.tif --z-unit m {more}")[0]) > 3000 > 1100 > np.nanmax(
+        made(f"dem.tif --z-unit us-ft {more}")[0])
 
 
 # --- axes and north ---

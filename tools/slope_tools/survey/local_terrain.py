@@ -22,9 +22,6 @@ from .resampling import needed, regrid
 from .terrain import DIFFER, Tile, declare, merge, read_fggml
 
 
-DEGREE = 111_195.0      # m along a meridian
-
-
 class Wanted(NamedTuple):
     """How the terrain shall be; None: as it is in the files."""
     crs: Optional[str] = None           # such as EPSG:6677
@@ -134,7 +131,7 @@ def make_local_terrain(inputs: Sequence[str], output: Path, wanted: Wanted, tell
 def surveyed_cell(raster: Raster) -> float:
     """The size (m) of the cells of a raster in its CRS, about."""
     crs = raster.crs
-    unit = 1.0 if crs is None else DEGREE if crs.is_geographic else crs.linear_units_factor[1]
+    unit = 1.0 if crs is None else plausible.DEGREE if crs.is_geographic else crs.linear_units_factor[1]
     return abs(raster.transform.e) * unit
 
 

@@ -59,7 +59,7 @@ def read_raster(path, heights=True, unit=None, marks=None, ask=True):
     The CRS is None where the file has none; it may be in degrees, the heights may not: they become metres, from what
     the file says, or from the unit (of UNITS) that is given. heights=False: other values than heights, such as the
     energies of fix deposit/grid; their size is not checked. marks: of the values, in the file's own unit, that stand
-    for none, too; what the file has of them is noted there. ask: end where heights in feet lie over a plan in metres.
+    for none, too; what the file has of them is noted there. ask: end where heights in feet lie over a plan that is not.
     Raises SlopeError on anything that is not such a raster.
     """
     return in_metres(path, opened(path, heights, unit), heights, unit, marks, ask=ask)
