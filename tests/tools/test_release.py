@@ -438,6 +438,8 @@ def test_features_with_depths_of_their_own(body, refused, shape):
     found, about = body(f"t.asc --polygon p.geojson --shape {shape}")       # of ground that both have: the deepest
     assert [one["largest_depth_m"] for one in about["polygons"]] == pytest.approx([3, 5])
     assert sum(one["polygon_m2"] for one in about["polygons"]) == pytest.approx(OPEN.area)
+    areas((OPEN, {}))
+    refused(f"t.asc --polygon p.geojson --shape {shape}", "got none of feature 1\n")
     areas((OPEN, {"depth": -1.0}))
     refused(f"t.asc --polygon p.geojson --shape {shape}", "p.geojson: feature 1: attribute depth must be", "> 0", "-1")
 

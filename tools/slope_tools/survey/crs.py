@@ -193,5 +193,6 @@ def require_degrees(crs, bounds, where, remedy="--assign-crs EPSG:n overrides a 
         return
     west, south, east, north = bounds
     if max(-west, east) > 360 or max(-south, north) > 90:
-        raise SlopeError(where, f"coordinates in {crs_name(crs)} must be longitude and latitude; {remedy}",
+        hint = " (with x and y exchanged they would be)" if max(-west, east) <= 90 and max(-south, north) <= 360 else ""
+        raise SlopeError(where, f"coordinates in {crs_name(crs)} must be longitude and latitude{hint}; {remedy}",
                          format_numbers(bounds))

@@ -79,8 +79,8 @@ def depths(path: str) -> Dict[str, Optional[float]]:
     if polygons.read_text(path) is not None:
         return {}
     found = vectors.read_vector_layer(path, "Polygon")
-    return {f"{name_feature(about, number)} (feature {number})": depth_of(vectors.source(path).path, number, about)[0]
-            for number, about in zip(found.numbers, found.attributes)}
+    return {name_feature(about, number) + f" (feature {number})" * (attribute(about, "name") is not None): depth_of(
+        vectors.source(path).path, number, about)[0] for number, about in zip(found.numbers, found.attributes)}
 
 
 def read_polygon_features(path: str, geometry: BaseGeometry, raster, local=False, crs=None, sized=True,
