@@ -464,6 +464,7 @@ def test_a_volume_is_shared_by_the_depths_of_the_features(body, refused, shape):
     for shape_of_one in ("sphere --depth 4", "ellipsoid --volume 9000", "plane --dip 20"):
         assert "unused depth" in warned(body(f"t.asc --polygon p.geojson --shape {shape_of_one}")[1]), shape_of_one
     assert "unused depth" not in warned(body("t.asc --polygon p.geojson --depth 2")[1])
+    refused("t.asc --polygon p.geojson", "--depth: must be given for --shape sphere", "--shape slab", "thickness")
     areas(both[0], (both[1][0], {"name": "thick"}))
     refused(f"t.asc --polygon p.geojson --shape {shape} --volume 12000", "p.geojson", "attribute thickness", "--volume",
             "got none of thick")

@@ -189,6 +189,8 @@ def check_shape(wanted: Wanted) -> None:
         must += ", or --curvature" * (wanted.shape == "slbl") + \
             f", or an attribute {' or '.join(features.DEPTHS)} of each feature, m"
         without = f"none of {next(name for name, depth in each.items() if depth is None)}" if each else None
+    elif not wanted.read and (own := features.own_depths(str(wanted.polygon))):
+        must += f"; or --shape slab, which takes the attribute {own[0].attribute} of its features"
     raise SlopeError("--depth", must, without)
 
 
