@@ -433,6 +433,18 @@ def test_heights_in_feet_over_a_plan_that_is_not_are_asked_about(slope, made, he
         made(f"dem.tif --z-unit us-ft {more}")[0])
 
 
+def test_a_virtual_raster_has_the_tags_of_its_files(slope, made, here):
+    """gdalbuildvrt does not repeat them: of two tiles one says feet."""
+    tif("a.tif")
+    tif("b.tif", east=EAST + COLUMNS, unit="US survey foot")
+    subprocess.run(["gdalbuildvrt", "-q", "both.vrt", "a.tif", "b.tif"], check=True)
+    subprocess.run(["gdalbuildvrt", "-q", "of.vrt", "both.vrt"], check=True)
+    for name in ("both.vrt", "of.vrt"):
+        status, _, err = slope(f"{name} -o out.asc")
+        assert status == 2 and "--z-unit m if" in err and err.endswith("got us-ft\n"), err
+    assert in_place(made("of.vrt --z-unit m"))
+
+
 # --- axes and north ---
 
 LO19 = "ESRI:102562|EPSG:11297"       # in the database of PROJ since 2025
