@@ -433,6 +433,18 @@ def test_heights_in_feet_over_a_plan_that_is_not_are_asked_about(slope, made, he
         made(f"dem.tif --z-unit us-ft {more}")[0])
 
 
+@pytest.mark.parametrize("code, east, north", [(32632, 5e5, 5.1e6), (2056, 2.6e6, 1.2e6), (32719, 4e5, 8.1e6)])
+def test_a_northing_first_without_a_head_is_seen_by_the_area_of_the_crs(made, slope, here, code, east, north):
+    values = points() + [east - EAST, north - NORTH, 0]
+    write("n.xyz", values, (1, 0, 2))
+    status, _, err = slope(f"n.xyz --crs EPSG:{code} -o out.asc")
+    assert status == 2 and f"area of EPSG:{code} (with x and y exchanged it would)" in err and "head" in err
+    for head, columns in (("", (0, 1, 2)), ("N E Z", (1, 0, 2))):
+        write("n.xyz", values, columns, head=head)
+        z, x, y, *_ = made(f"n.xyz --crs EPSG:{code}")
+        assert in_place((z, x - east + EAST, y - north + NORTH))
+
+
 def test_a_virtual_raster_has_the_tags_of_its_files(slope, made, here):
     """gdalbuildvrt does not repeat them: of two tiles one says feet."""
     tif("a.tif")

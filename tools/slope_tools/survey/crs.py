@@ -105,6 +105,28 @@ def require_axes(crs, where):
                          f"{crs_name(crs)}, {' and '.join(axes).lower()}")
 
 
+def require_order(raster, where):
+    """Raise SlopeError if a raster lies outside of the area of its CRS, and would not with x and y exchanged."""
+    from pyproj import CRS, Proj
+    if raster.crs is None or not raster.crs.is_projected:
+        return
+    area = CRS.from_user_input(epsg(raster.crs) or raster.crs.to_wkt()).area_of_use
+    if area is None:
+        return
+    west, south, upper, wide = area.west, area.south, area.north, (area.east - area.west) % 360 or 360
+    projection = Proj(raster.crs.to_wkt())
+
+    def is_within(x, y):
+        east, north = projection(x, y, inverse=True)
+        return south <= north <= upper and (east - west) % 360 <= wide
+
+    x, y = raster.transform @ (raster.z.shape[1] / 2, raster.z.shape[0] / 2)
+    if not is_within(x, y) and is_within(y, x):
+        raise SlopeError(where, f"must lie in the area of {crs_name(raster.crs)} (with x and y exchanged it would); "
+                         "points whose northing comes first need a head, such as north east height",
+                         format_numbers((round(x, 1), round(y, 1))))
+
+
 def sister_remedy(crs) -> str:
     """What can be done about a CRS (of rasterio) with such axes."""
     name = sister(crs)

@@ -14,7 +14,7 @@ from ..errors import SlopeError
 from ..findings import Finding
 from ..geometry import format_numbers
 from . import fggml, plausible, rasters, zips
-from .crs import as_crs, require_axes, require_metres, warn_of_north, warn_of_stretch
+from .crs import as_crs, require_axes, require_metres, require_order, warn_of_north, warn_of_stretch
 from .holes import fill, small_holes
 from .marks import Marks, format_mark
 from .rasters import Raster
@@ -97,6 +97,7 @@ def make_local_terrain(inputs: Sequence[str], output: Path, wanted: Wanted, tell
     raster = tile.raster
     require_metres(crs, inputs[0])
     require_axes(crs, inputs[0])
+    require_order(tile.whole, inputs[0])
     if not np.isfinite(raster.z).any():
         if wanted.bounds:
             regrid(raster, crs, cell, wanted.bounds, keep, warn, tile.whole)        # says what is wrong with them
