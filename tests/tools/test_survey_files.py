@@ -478,7 +478,8 @@ def test_axes_that_point_west_or_south_are_refused_with_the_sister(slope, here, 
 
 @pytest.mark.parametrize("code, east, north, angle", [
     (3413, -2656540.0, 711220.0, "105 degrees west"), (3031, 1e6, 1e6, "45 degrees west"),
-    (5514, -743100.0, -1045380.0, "8 degrees west"), (32654, 400000.0, 4000000.0, None)])
+    (5514, -743100.0, -1045380.0, "8 degrees west"), (5221, -743100.0, -1045380.0, "8 degrees west"),
+    (32654, 400000.0, 4000000.0, None)])
 def test_a_grid_whose_north_is_not_north_is_said(made, code, east, north, angle):
     tif("dem.tif", east=east, north=north, z=300 + points()[:, 2].reshape(ROWS, COLUMNS), crs_=f"EPSG:{code}")
     err = made("dem.tif")[4]

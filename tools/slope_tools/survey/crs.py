@@ -107,14 +107,13 @@ def require_axes(crs, where):
 
 def require_order(raster, where):
     """Raise SlopeError if a raster lies outside of the area of its CRS, and would not with x and y exchanged."""
-    from pyproj import CRS, Proj
     if raster.crs is None or not raster.crs.is_projected:
         return
-    area = CRS.from_user_input(epsg(raster.crs) or raster.crs.to_wkt()).area_of_use
+    area = area_of(epsg(raster.crs) or raster.crs.to_wkt())
     if area is None:
         return
     west, south, upper, wide = area.west, area.south, area.north, (area.east - area.west) % 360 or 360
-    projection = Proj(raster.crs.to_wkt())
+    projection = projection_of(raster.crs.to_wkt())
 
     def is_within(x, y):
         east, north = projection(x, y, inverse=True)
@@ -188,11 +187,20 @@ def projection_of(wkt):
     return Proj(wkt)
 
 
+@functools.lru_cache
+def area_of(crs) -> Any:
+    """Where a CRS (EPSG number, or WKT) is used, of pyproj; None where it is not known."""
+    from pyproj import CRS
+    return CRS.from_user_input(crs).area_of_use
+
+
 def factors_of(raster):
     """Of the projection, at the middle of a raster."""
     x, y = raster.transform @ (raster.z.shape[1] / 2, raster.z.shape[0] / 2)
     projection = projection_of(raster.crs.to_wkt())
-    return projection.get_factors(*projection(x, y, inverse=True))
+    east, north = projection(x, y, inverse=True)
+    first = projection.crs.prime_meridian       # PROJ counts to the place from Greenwich, whatever the first meridian is
+    return projection.get_factors(east - math.degrees(first.longitude * first.unit_conversion_factor), north)
 
 
 def transform(source, target, x, y):
