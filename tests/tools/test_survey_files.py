@@ -9,6 +9,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tarfile
 import zipfile
 from pathlib import Path
 
@@ -297,6 +298,12 @@ def test_several_rasters_in_a_zip_are_merged(made, slope, here):
         archive.writestr("a.las", "LASF")
     assert not rasters.is_raster("points.zip")
     assert "pdal" in slope("points.zip -o x.asc")[2]
+    with zipfile.ZipFile("zips.zip", "w") as archive:
+        archive.write("both.zip")
+    with tarfile.open("a.tar.gz", "w:gz") as archive:
+        archive.add("a.tif")
+    for name in ("zips.zip", "a.tar.gz"):
+        assert "unpack it" in slope(f"{name} -o x.asc")[2]
 
 
 # --- tiles ---

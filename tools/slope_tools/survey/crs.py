@@ -199,7 +199,7 @@ def factors_of(raster):
     x, y = raster.transform @ (raster.z.shape[1] / 2, raster.z.shape[0] / 2)
     projection = projection_of(raster.crs.to_wkt())
     east, north = projection(x, y, inverse=True)
-    first = projection.crs.prime_meridian       # PROJ counts to the place from Greenwich, whatever the first meridian is
+    first = projection.crs.prime_meridian   # PROJ counts to the place from Greenwich, whatever the first meridian is
     return projection.get_factors(east - math.degrees(first.longitude * first.unit_conversion_factor), north)
 
 

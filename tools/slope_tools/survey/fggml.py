@@ -128,7 +128,7 @@ def _read_zip(source, where, room=None):
     if outer and not tiles:
         inside = [member.filename for member in archive.infolist() if not zips.is_of_macos(member.filename)]
         other = next((way for name in inside if (way := zips.suggest_zip_remedy(name))), "")
-        raise SlopeError(where, f"must hold FG-GML elevation tiles (.xml), it has none{other}",
+        raise SlopeError(where, f"must hold a raster, or FG-GML elevation tiles (.xml), it has none{other}",
                          f"{len(archive.infolist())} files")
     return tiles
 
