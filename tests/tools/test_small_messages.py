@@ -44,6 +44,15 @@ def test_shares_and_numbers_of_nothing():
     assert Numbers()("frequency", "per year", 2.5e-7) == "0.000000250"
 
 
+def test_sizes_are_never_powers_of_ten():
+    """Of 105 m .2g makes 1e+02 m, of 1285 m .3g 1.29e+03 m; findings are written by digits of their own."""
+    tools = TOP / "tools" / "slope_tools"
+    found = [f"{path.relative_to(tools)}: {match}" for path in tools.rglob("*.py") if path.name != "finding_words.py"
+             for match in re.findall(r"{[^{}]*:,?\.[123]g} (?:m|m/s|m3|GB|MB|gal)\b", path.read_text(encoding="utf-8"))]
+    assert not found
+    assert digits.rounded(104.6, 2) == "105" and digits.metres(1285.3) == "1,285 m"
+
+
 def test_a_warning_is_said_once(capsys):
     warn, kept = findings.warner("site")
     several = [findings.Finding("no line", {"file": name, "kinds": "Point"}) for name in ("a.shp", "a.shp", "b.shp")]

@@ -362,7 +362,7 @@ def describe_body(body: Body) -> str:
         if choices["scar_is"] == "surface":
             what += "; vertical datums are not compared"
             if choices["beside_m"] is not None:
-                what += f", beside the body the two surveys differ by {abs(choices['beside_m']):.2g} m (median)"
+                what += f", beside the body the two surveys differ by {rounded(abs(choices['beside_m']), 2)} m (median)"
     elif shape == "plane":
         what = (f"plane that dips {choices['dip_degrees']:.4g} degrees towards {choices['direction_degrees']:.4g}, "
                 f"{choices['drop_m']:.4g} m below the plane that touches the highest ground")

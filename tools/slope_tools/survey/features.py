@@ -1,5 +1,6 @@
 """What the features of a file say beside their geometry: names, and the depths of release areas."""
 import math
+from contextlib import suppress
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from shapely.geometry import GeometryCollection
@@ -61,16 +62,15 @@ def list_depths(several: Sequence[Polygon]) -> str:
 
 
 def own_depths(path: str) -> List[Polygon]:
-    """The features of a file that say how deep they are, without their geometry; those whose attribute is no depth do
-    not.
+    """The features of a file that say how deep they are, without their geometry; an attribute that is no depth does not
+    count, nor does a file that others will find fault with.
     """
-    found = None if polygons.read_text(path) is not None else vectors.read_vector_layer(path, "Polygon")
     own = []
-    for number, about in zip(found.numbers, found.attributes) if found else ():
-        try:
-            own.append(Polygon(name_feature(about, number), GeometryCollection(), *depth_of(path, number, about)))
-        except SlopeError:
-            continue
+    with suppress(SlopeError):
+        found = None if polygons.read_text(path) is not None else vectors.read_vector_layer(path, "Polygon")
+        for number, about in zip(found.numbers, found.attributes) if found else ():
+            with suppress(SlopeError):
+                own.append(Polygon(name_feature(about, number), GeometryCollection(), *depth_of(path, number, about)))
     return [one for one in own if one.depth]
 
 
