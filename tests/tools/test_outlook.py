@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from shapely.geometry import LineString
 
-from run_helpers import write_tif
+from run_helpers import called, write_tif
 from test_site import BODY, CELL, COLUMNS, EAST, ROWS, gis, height, told, write_layer  # noqa: F401
 from test_site_anew import inside, mine, once  # noqa: F401
 
@@ -40,6 +40,15 @@ def test_where_the_terrain_ends_and_what_is_to_be_added(inside, gis):  # noqa: F
     out = inside(f"--terrain larger.tif {STANDARD} -o second").out
     assert "go beyond the terrain" not in out
     assert "at best a floor" not in out
+
+
+def test_lengths_have_the_digits_of_slope_mobility(mine, capsys):  # noqa: F811
+    """One fact, one number: the fall path, and where it meets the road."""
+    status, out, err = called(capsys, ["mobility", str(mine), "-o", str(mine / "known")])
+    assert status == 0, err
+    for pattern in (r"fall path of .*", r"the road, first met after [\d.]+ m"):
+        here, there = (re.search(pattern, text)[0] for text in ("\n".join(outlook.describe_outlook(mine)), out))
+        assert here == there
 
 
 def test_a_terrain_that_ends_on_a_road_makes_a_floor(mine, monkeypatch):  # noqa: F811

@@ -438,8 +438,59 @@ def test_features_with_depths_of_their_own(body, refused, shape):
     found, about = body(f"t.asc --polygon p.geojson --shape {shape}")       # of ground that both have: the deepest
     assert [one["largest_depth_m"] for one in about["polygons"]] == pytest.approx([3, 5])
     assert sum(one["polygon_m2"] for one in about["polygons"]) == pytest.approx(OPEN.area)
+    areas((OPEN, {}))
+    refused(f"t.asc --polygon p.geojson --shape {shape}", "got none of feature 1\n")
     areas((OPEN, {"depth": -1.0}))
     refused(f"t.asc --polygon p.geojson --shape {shape}", "p.geojson: feature 1: attribute depth must be", "> 0", "-1")
+
+
+@pytest.mark.parametrize("shape", ["slbl", "slab"])
+def test_a_volume_is_shared_by_the_depths_of_the_features(body, refused, shape):
+    """By area and depth: their mean depths stay in proportion. An attribute that does not count is named."""
+    terrain(ramp(30))
+    both = [(box(20, 40, 60, 80), {"name": "thin", "THICKNESS": 2.0}), (box(90, 40, 170, 120),
+                                                                        {"name": "thick", "THICKNESS": 3.0})]
+    areas(*both)
+    found, about = body(f"t.asc --polygon p.geojson --shape {shape} --volume 12000")
+    thin, thick = (one["volume_m3"] / one["polygon_m2"] for one in about["polygons"])
+    assert thick / thin == pytest.approx(3 / 2, rel=1e-4) and found["volume"] == pytest.approx(12000, rel=1e-4)
+    assert warned(about)["shared"]["factor"] == pytest.approx(12000 / (2 * 1600 + 3 * 6400), rel=1e-3)
+    assert "thin 2 m, thick 3 m" in warned(about)["shared"]["depths"]
+    _, about = body(f"t.asc --polygon p.geojson --shape {shape} --volume {2 * 1600 + 3 * 6400}")
+    assert "shared" not in warned(about)
+    _, about = body("t.asc --polygon p.geojson --shape slbl --curvature 0.01")
+    assert warned(about)["unused depth"]["attribute"] == "thickness"
+    areas(both[0])
+    for shape_of_one in ("sphere --depth 4", "ellipsoid --volume 9000", "plane --dip 20"):
+        assert "unused depth" in warned(body(f"t.asc --polygon p.geojson --shape {shape_of_one}")[1]), shape_of_one
+    assert "unused depth" not in warned(body("t.asc --polygon p.geojson --depth 2")[1])
+    refused("t.asc --polygon p.geojson", "--depth: must be given for --shape sphere", "--shape slab", "thickness")
+    areas(both[0], (both[1][0], {"name": "thick"}))
+    refused(f"t.asc --polygon p.geojson --shape {shape} --volume 12000", "p.geojson", "attribute thickness", "--volume",
+            "got none of thick")
+
+
+def test_a_body_in_a_pit_is_warned_of(body):
+    """500 m deep on an area 60 m wide: whatever asks for it, the most of it lies below the ground at its toe."""
+    x, y, _ = terrain(ramp(30))
+    where = box(80, 70, 140, 130)
+    polygon(where)
+    inside = (abs(x - 110) < 30) & (abs(y - 100) < 30)
+    write_tif("deep.tif", np.where(inside, 500.0, 0.0), 2)
+    fall = 60 * math.tan(math.radians(30))
+    for asked in ("--polygon p.csv --shape slab --depth 500", "--polygon p.csv --shape slab --volume 1.8e6",
+                  "--polygon p.csv --shape slbl --depth 70"):
+        found, about = body(f"t.asc {asked}")
+        pit = warned(about)["in a pit"]
+        assert pit["depth"] == pytest.approx(found["largest_depth"]) and pit["fall"] == pytest.approx(fall, rel=0.05)
+        assert 50 < pit["percent"] < 100
+    for asked in ("", "--polygon p.csv"):
+        assert warned(body(f"t.asc {asked} --scar deep.tif --scar-is depth")[1])["hollow"]["depth"] > 480
+    areas((where, {"name": "cm", "thickness": 150.0}), (box(30, 70, 70, 130), {"name": "m", "thickness": 1.5}))
+    _, about = body("t.asc --polygon p.geojson --shape slab")
+    assert [one["part"] for one in about["warnings"] if one["kind"] == "in a pit"] == ["cm"]
+    for asked in ("--shape slab --depth 20", "--shape sphere --depth 20", "--shape slbl --depth 20", "--dip 15"):
+        assert "in a pit" not in warned(body(f"t.asc --polygon p.csv {asked}")[1]), asked
 
 
 def test_a_slab_is_the_ground_lowered(body, refused):

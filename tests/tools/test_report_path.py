@@ -10,6 +10,7 @@ from shapely.geometry import LineString, Point
 
 from slope_tools.deposits import flow_path
 from slope_tools.plots import section as report_section
+from slope_tools.plots.ground import beside_largest
 from slope_tools.survey.rasters import Raster
 
 TOP = Path(__file__).resolve().parents[2]
@@ -34,7 +35,8 @@ def site(centre=CENTRE, width=16.0, size=(100, 100), head=30.0):
     ground = SimpleNamespace(
         raster=raster, cell=CELL, x=x, y=y, before=before, base=base, touched=touched, release=release,
         slip_depth=before - base, max_thickness=np.where(touched, 2.0, 0.0), source=release,
-        extent=(0.0, 0.0, columns * CELL, rows * CELL), arrival=np.where(touched, along, np.nan))
+        extent=(0.0, 0.0, columns * CELL, rows * CELL), arrival=np.where(touched, along, np.nan),
+        beside=beside_largest(before - base))
     ground.along = lambda values, px, py: sampled(raster._replace(z=values), px, py)
     result = SimpleNamespace(thickness=deposit, folder=Path("none"), row={}, summary={
         "stop": {"step": 1000}, "balls": {"released": 4}}, deposit=SimpleNamespace(base=base, cell=CELL, raster=raster))
@@ -215,6 +217,31 @@ def test_the_fall_line_is_there_on_demand():
     ground, result = site()
     found = section(ground, result, ["fall"])
     assert len(found.points) == 2 and "fall line" in found.how
+
+
+@pytest.mark.parametrize("dumped", [False, True])
+@pytest.mark.parametrize("centre", [LineString([(20, 160), (180, 160)]), CENTRE])
+def test_of_two_bodies_the_section_is_the_largests(tmp_path, dumped, centre):
+    """Between the two, through the centroid of both, is none. One of less volume lies on the other flank."""
+    ground, result = site(centre)
+    alone = section(*site(centre)).line
+    small = (ground.y < 40) & (ground.x > 150)
+    ground.release |= small & (ground.x > 180)
+    ground.slip_depth[small & (ground.x > 180)] = 1.5
+    ground.touched |= small
+    ground.max_thickness[small] = 9.0
+    ground.source, ground.beside = ground.release, beside_largest(ground.slip_depth)
+    if dumped:
+        result.folder = tmp_path
+        for k, at in enumerate(np.linspace(15, 150, 12)):
+            x, y = centre.interpolate(at).coords[0]
+            write_dump(tmp_path / f"run.{100 * k:06d}.dump", 100 * k, [(x, y), (x, y), (190, 20), (180, 20)])
+    for asked in (None, ["fall"]):
+        found = section(ground, result, asked)
+        assert "largest body" in found.how
+        depths = ground.along(ground.slip_depth, *found.xy.T)
+        assert np.nanmax(depths) == pytest.approx(4.0)
+    assert section(ground, result).line.hausdorff_distance(alone) < (20 if dumped else 6)
 
 
 @pytest.mark.parametrize("reverse", [False, True])

@@ -16,7 +16,7 @@ from slope_tools import digits
 from slope_tools.commands import study as study_command
 from slope_tools.deposits import volume_files
 from slope_tools.errors import SlopeError
-from slope_tools.sites import site_choices, site_roads
+from slope_tools.sites import site_choices, site_layers, site_roads
 from slope_tools.statistics.answer import Kind
 from slope_tools.studies import road_numbers
 from slope_tools.studies.road_numbers import Number
@@ -291,6 +291,9 @@ def test_carriageways_have_a_number_together(tmp_path, gis):  # noqa: F811
         f"M1_2 and m_4 at east {EAST + 18:.1f} north {NORTH + 40:.1f}") and "M1 and M1_2" not in said.numbers["places"]
     both = each["M1 both carriageways"]
     assert both.polygon.equals(each["M1"].polygon.union(each["M1_2"].polygon)) and len(both.lines) == 2
+    assert site_layers.describe_road_shape(both, 6.0) == "2 lines of 65 and 65 m, 6 m wide"
+    touching = both._replace(polygon=both.polygon.buffer(2))        # of one polygon, where they come together
+    assert site_layers.describe_road_shape(touching, 6.0).startswith("2 lines of 65 and 65 m")
     roads.write_road(tmp_path / "both.csv", both, raster)
     again = roads.read_local(tmp_path / "both.csv", raster, roads.Asked(width=6.0), local=True)
     assert again.polygon.symmetric_difference(both.polygon).area < 1e-6 and len(again.lines) == 2

@@ -44,6 +44,15 @@ def test_shares_and_numbers_of_nothing():
     assert Numbers()("frequency", "per year", 2.5e-7) == "0.000000250"
 
 
+def test_sizes_are_never_powers_of_ten():
+    """Of 105 m .2g makes 1e+02 m, of 1285 m .3g 1.29e+03 m; findings are written by digits of their own."""
+    tools = TOP / "tools" / "slope_tools"
+    found = [f"{path.relative_to(tools)}: {match}" for path in tools.rglob("*.py") if path.name != "finding_words.py"
+             for match in re.findall(r"{[^{}]*:,?\.[123]g} (?:m|m/s|m3|GB|MB|gal)\b", path.read_text(encoding="utf-8"))]
+    assert not found
+    assert digits.rounded(104.6, 2) == "105" and digits.metres(1285.3) == "1,285 m"
+
+
 def test_a_warning_is_said_once(capsys):
     warn, kept = findings.warner("site")
     several = [findings.Finding("no line", {"file": name, "kinds": "Point"}) for name in ("a.shp", "a.shp", "b.shp")]
@@ -110,7 +119,8 @@ def test_a_line_with_the_northing_first_gets_the_hint_of_a_polygon(here, crs):
     write_geojson("road.geojson", LineString([(y, x) for x, y in line.coords]), crs=crs)
     with pytest.raises(SlopeError) as caught:
         roads.read_local("road.geojson", place, roads.Asked(6.0))
-    assert ("with x and y exchanged" if crs else "must be longitude and latitude") in str(caught.value)
+    assert "with x and y exchanged" in str(caught.value)
+    assert crs or "must be longitude and latitude" in str(caught.value)
 
 
 def test_latitude_first_in_europe(here):

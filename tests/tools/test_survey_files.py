@@ -9,6 +9,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tarfile
 import zipfile
 from pathlib import Path
 
@@ -297,6 +298,12 @@ def test_several_rasters_in_a_zip_are_merged(made, slope, here):
         archive.writestr("a.las", "LASF")
     assert not rasters.is_raster("points.zip")
     assert "pdal" in slope("points.zip -o x.asc")[2]
+    with zipfile.ZipFile("zips.zip", "w") as archive:
+        archive.write("both.zip")
+    with tarfile.open("a.tar.gz", "w:gz") as archive:
+        archive.add("a.tif")
+    for name in ("zips.zip", "a.tar.gz"):
+        assert "unpack it" in slope(f"{name} -o x.asc")[2]
 
 
 # --- tiles ---
@@ -417,15 +424,44 @@ def test_tiles_beside_the_window_are_not_read(made, here, monkeypatch):
 # --- feet ---
 
 @pytest.mark.parametrize("unit, crs_", [("ft", CRS_M), ("US survey foot", CRS_M), ("ft", None),
-                                        (None, f"{CRS_M}+6360")])
-def test_heights_in_feet_over_a_plan_in_metres_are_asked_about(slope, made, here, unit, crs_):
-    tif("dem.tif", z=3300 + 3.1 * np.arange(COLUMNS) + 1.7 * np.arange(ROWS)[:, None], unit=unit, crs_=crs_)
-    status, _, err = slope("dem.tif -o out.asc")
+                                        (None, f"{CRS_M}+6360"), ("ft", "EPSG:4326"), (None, "EPSG:4269+6360")])
+def test_heights_in_feet_over_a_plan_that_is_not_are_asked_about(slope, made, here, unit, crs_):
+    """A plan in degrees speaks for feet no more than one in metres."""
+    degrees = "EPSG:4" in (crs_ or "")
+    place = {"step": 2e-5, "east": 140.0, "north": 36.0} if degrees else {}
+    tif("dem.tif", z=3300 + 3.1 * np.arange(COLUMNS) + 1.7 * np.arange(ROWS)[:, None], unit=unit, crs_=crs_, **place)
+    status, _, err = slope(f"dem.tif -o out.asc --crs {CRS_M}")
     assert status == 2 and "--z-unit m if" in err and "--z-unit ft or us-ft" in err and err.count("got ") == 1
-    slopes = [float(word) for word in err.replace(",", "").split() if word.replace(".", "").isdigit()]
-    rise = np.tan(np.radians(slopes))
-    assert len(slopes) == 2 and rise[1] / rise[0] == pytest.approx(0.3048, abs=0.01)
-    assert made("dem.tif --z-unit m")[0].max() > 3000 > 1100 > made("dem.tif --z-unit us-ft")[0].max()
+    rise = np.tan(np.radians([float(word) for word in err.replace(",", "").split() if word.replace(".", "").isdigit()]))
+    cell = np.array([2e-5 * 111_195 * np.cos(np.radians(36)), 2e-5 * 111_195] if degrees else [1.0, 1.0])
+    assert rise == pytest.approx(np.hypot(*(np.array([3.1, 1.7]) / cell)) * np.array([1, 0.3048]), rel=0.02)
+    more = f"--crs {CRS_M} --cell 1" if degrees else ""
+    assert np.nanmax(made(f"dem.tif --z-unit m {more}")[0]) > 3000 > 1100 > np.nanmax(
+        made(f"dem.tif --z-unit us-ft {more}")[0])
+
+
+@pytest.mark.parametrize("code, east, north", [(32632, 5e5, 5.1e6), (2056, 2.6e6, 1.2e6), (32719, 4e5, 8.1e6)])
+def test_a_northing_first_without_a_head_is_seen_by_the_area_of_the_crs(made, slope, here, code, east, north):
+    values = points() + [east - EAST, north - NORTH, 0]
+    write("n.xyz", values, (1, 0, 2))
+    status, _, err = slope(f"n.xyz --crs EPSG:{code} -o out.asc")
+    assert status == 2 and f"area of EPSG:{code} (with x and y exchanged it would)" in err and "head" in err
+    for head, columns in (("", (0, 1, 2)), ("N E Z", (1, 0, 2))):
+        write("n.xyz", values, columns, head=head)
+        z, x, y, *_ = made(f"n.xyz --crs EPSG:{code}")
+        assert in_place((z, x - east + EAST, y - north + NORTH))
+
+
+def test_a_virtual_raster_has_the_tags_of_its_files(slope, made, here):
+    """gdalbuildvrt does not repeat them: of two tiles one says feet."""
+    tif("a.tif")
+    tif("b.tif", east=EAST + COLUMNS, unit="US survey foot")
+    subprocess.run(["gdalbuildvrt", "-q", "both.vrt", "a.tif", "b.tif"], check=True)
+    subprocess.run(["gdalbuildvrt", "-q", "of.vrt", "both.vrt"], check=True)
+    for name in ("both.vrt", "of.vrt"):
+        status, _, err = slope(f"{name} -o out.asc")
+        assert status == 2 and "--z-unit m if" in err and err.endswith("got us-ft\n"), err
+    assert in_place(made("of.vrt --z-unit m"))
 
 
 # --- axes and north ---
@@ -449,7 +485,8 @@ def test_axes_that_point_west_or_south_are_refused_with_the_sister(slope, here, 
 
 @pytest.mark.parametrize("code, east, north, angle", [
     (3413, -2656540.0, 711220.0, "105 degrees west"), (3031, 1e6, 1e6, "45 degrees west"),
-    (5514, -743100.0, -1045380.0, "8 degrees west"), (32654, 400000.0, 4000000.0, None)])
+    (5514, -743100.0, -1045380.0, "8 degrees west"), (5221, -743100.0, -1045380.0, "8 degrees west"),
+    (32654, 400000.0, 4000000.0, None)])
 def test_a_grid_whose_north_is_not_north_is_said(made, code, east, north, angle):
     tif("dem.tif", east=east, north=north, z=300 + points()[:, 2].reshape(ROWS, COLUMNS), crs_=f"EPSG:{code}")
     err = made("dem.tif")[4]

@@ -118,6 +118,13 @@ WORDS: Dict[str, Union[str, Words]] = {
     "no body": "{polygon} gets no body, {why}: nothing is released there",
     "own depth": "{file}: the attribute {attribute} says how deep its features are ({depths}): --depth {depth:g} is "
                  "that of {which}",
+    "shared": "{file}: the attribute {attribute} says how deep its features are ({depths}): --volume {volume:.6g} is "
+              "shared in their proportion, with mean depths of {factor:.3g} times these",
+    "unused depth": "{file}: the attribute {attribute} says how deep its features are ({depths}), which does not count "
+                    "with {by}: --shape slab, or slbl, has it",
+    "in a pit": "{percent:.0f} % of the body lies below its own lowest ground, and cannot slide out: it is up to "
+                "{depth:.3g} m deep where the ground falls by {fall:.3g} m; are these metres? A smaller depth or "
+                "volume, or a larger area?",
     "cliff": "the ground of the body falls by {degrees:.0f} degrees on average: a cliff, or heights in feet "
              "({in_feet:.0f} degrees)? slope terrain and site have --z-unit",
     "few cells": "the body covers {cells} cells of {cell:g} m: use a finer terrain",

@@ -10,6 +10,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.lines import Line2D
 
+from ..digits import rounded
 from ..drawing import figures, pictures
 from ..drawing.figures import FULL, STYLE
 from ..plots import figure_maps
@@ -114,7 +115,7 @@ class Picture:
             bar = self.figure.colorbar(self.colours, cax=axes[2], orientation="horizontal", extend="min")
             bar.set_label(f"speed of the balls (m/s); grey-brown: slower than {MOVES:g} m/s", labelpad=1)
             name = f"{data.label(data.result)}: " if data.study else ""
-            self.figure.text(0.02, 0.985, f"{name}balls in plan and within {self.band:.2g} m of the section",
+            self.figure.text(0.02, 0.985, f"{name}balls in plan and within {rounded(self.band, 2)} m of the section",
                              va="top", fontweight="bold", fontsize=STYLE["axes.titlesize"])
             self.clock = self.figure.text(0.98, 0.985, "", va="top", ha="right", fontweight="bold", fontsize=11)
             self.clock.set_animated(True)

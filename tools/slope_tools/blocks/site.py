@@ -13,6 +13,7 @@ from shapely.geometry.polygon import orient
 from shapely.prepared import prep
 
 from .. import disk
+from ..digits import metres
 from ..errors import SlopeError
 from ..findings import Finding, finding
 from ..geometry import box_of, extent, polygons_of
@@ -139,7 +140,7 @@ def start_of(choices: OfBlocks, raster: Raster, new: Path, tell, warn) -> Start:
     none = np.isnan(lifted(raster, points, np.full(len(points), CLEAR * sizes[1])))
     if none.any():
         east, north = points[none][0] + raster.offset
-        raise SlopeError(path, f"must have terrain in it, and {sizes[1]:.3g} m beside it: a larger elevation model, "
+        raise SlopeError(path, f"must have terrain in it, and {metres(sizes[1])} beside it: a larger elevation model, "
                          "--fill, or a smaller area", f"none at east {east:.1f} north {north:.1f}")
     level = np.column_stack([points - points.mean(axis=0), np.ones(len(points))])
     gradient = np.linalg.lstsq(level, sample(raster, *points.T), rcond=None)[0][:2]
@@ -199,7 +200,7 @@ def edges(choices: OfBlocks, layers: site_layers.Layers, start: Start, new: Path
     road, lines = touched(layers.road, start.sizes[1], start.raster), []
     if road.intersects(start.polygon):
         raise SlopeError("--release", f"must be at least half a block, {start.sizes[1] / 2:g} m, away from the road",
-                         f"{start.polygon.distance(layers.road):.3g} m")
+                         metres(start.polygon.distance(layers.road)))
     if name := next((one.name for one in layers.lines if one.name.startswith(EDGE)), None):
         raise SlopeError("--line", f"must not be called {EDGE}, as lines around the road are: rename the file", name)
     parts = [orient(part, -1.0) for part in polygons_of(road)]

@@ -7,7 +7,7 @@ from typing import Any, List, Optional
 import numpy as np
 
 from .. import disk, findings
-from ..digits import cents
+from ..digits import cents, rounded
 from ..errors import SlopeError
 from ..options import Overwrite, flag, option, positional, several, parse_whole_number
 
@@ -224,8 +224,8 @@ def describe_fragility(curves, folder, files):
     for curve in curves:
         line = curve.title
         if curve.fit:
-            line += (f": median {curve.fit.median:.4g} gal (standard error {curve.fit.median_error:.2g}), beta_r "
-                     f"{curve.fit.beta_r:.2f}, beta_u {curve.fit.beta_u:.2f}, HCLPF {curve.fit.hclpf:.4g} gal")
+            line += (f": median {curve.fit.median:.4g} gal (standard error {rounded(curve.fit.median_error, 2)}), "
+                     f"beta_r {curve.fit.beta_r:.2f}, beta_u {curve.fit.beta_u:.2f}, HCLPF {curve.fit.hclpf:.4g} gal")
         if curve.frequency:
             total = curve.frequency.total
             line += (f"; fails {float(total.value):.3g} times per year (90 %: {float(total.low):.3g} to "

@@ -49,7 +49,9 @@ class Body:
     depth: Optional[float] = option(
         "largest depth below the ground, vertical, m; of slbl and slab in each polygon that has no attribute depth or "
         "thickness", metavar="D", one_of="size")
-    volume: Optional[float] = option("volume of the body, m3", metavar="V", one_of="size")
+    volume: Optional[float] = option(
+        "volume of the body, m3; of slbl and slab shared by area, and by an attribute depth or thickness",
+        metavar="V", one_of="size")
     curvature: Optional[float] = option(
         "of slbl: sum of the slip surface's second derivatives, 1/m; 8 D / L^2 for a depth D on a length L",
         metavar="K", one_of="size")

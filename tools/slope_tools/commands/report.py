@@ -44,7 +44,7 @@ class Request(Overwrite):
     output: Optional[Path] = option("the page (default DIR/report.html)", "-o", metavar="REPORT.html")
     section: Optional[List[str]] = option(
         "the section: its ends, local m; or a line of any shape: GeoJSON, shapefile, WKT, CSV; or "
-        f"the word {FALL}: through the centroid of the released mass, along the fall line "
+        f"the word {FALL}: through the centroid of the (largest) body, along the fall line "
         "(default: along the path of the mass, or the fall line where that is about the same)", nargs="+",
         metavar="X1 Y1 X2 Y2|LINE")
     local: bool = flag("the line of --section is in local metres, not in a CRS")

@@ -41,7 +41,7 @@ class Request(Overwrite):
         "reproject them", metavar="EPSG:n")
     z_unit: Optional[str] = option(
         "of the heights, whatever the tags of the inputs say: m, ft (0.3048 m) or us-ft (1200/3937 m); default: m; "
-        "must be given where a tag says feet over a plan in metres", choices=rasters.UNITS)
+        "must be given where a tag says feet over a plan in metres or degrees", choices=rasters.UNITS)
     nodata: List[float] = several(
         "a value of the inputs, in their own unit, that stands for no height, beside the one that they declare; may "
         "be given several times", metavar="V")

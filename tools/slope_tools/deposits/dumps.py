@@ -8,6 +8,7 @@ from typing import BinaryIO, List, NamedTuple, Tuple, cast
 
 import numpy as np
 
+from ..digits import rounded
 from ..errors import SlopeError
 
 CHUNK = 1 << 24         # bytes
@@ -92,9 +93,9 @@ def last_text(path):
                     lines += kept.count(b"\n", 0, begin)
                     del kept[:begin]
                 if MEMORY * len(kept) > have:
-                    raise SlopeError(path, f"must have a last snapshot that fits in the {have / 1e9:.3g} GB of memory "
-                                     "of this machine", f"more than {len(kept) / 1e9:.3g} GB of text, which need "
-                                     f"{MEMORY * len(kept) / 1e9:.3g} GB")
+                    room, text, need = (rounded(size / 1e9, 3) for size in (have, len(kept), MEMORY * len(kept)))
+                    raise SlopeError(path, f"must have a last snapshot that fits in the {room} GB of memory of this "
+                                     "machine", f"more than {text} GB of text, which need {need} GB")
     except (OSError, EOFError, zlib.error) as error:
         raise SlopeError(path, f"must be a LAMMPS dump ({getattr(error, 'strerror', None) or error})") from error
     text = kept.decode("ascii", "replace")

@@ -1,4 +1,4 @@
-"""The line that the mass took, in plan: the path of its centroid, continued to the front.
+"""The line that a mass took, in plan: the path of its centroid, continued to the front; of several, the largest's.
 
 Where the centroid was is known from the dumps of a run. Beyond the last one, and where there are no dumps, the line
 goes through the middles of bands across the flow: cells at the same distance from the release, measured within the
@@ -35,7 +35,7 @@ class FlowPath(NamedTuple):
 
 def path(result, ground):
     """The FlowPath of a run's mass; None where it has none: it did not move, or touched next to nothing."""
-    track = centroids(result)
+    track = centroids(result, ground)
     bands = Bands(ground, result.thickness)
     if track is None:
         start = bands.start
@@ -91,7 +91,8 @@ class Bands:
     def __init__(self, ground, deposit):
         self.step = step = max(1, int(np.ceil(np.sqrt(ground.touched.size / MOST_CELLS))))
         self.inverse = ~ground.raster.transform
-        touched, release = (thinned(mask, step) for mask in (ground.touched, ground.release))
+        others = ground.source & ground.beside
+        touched, release = (thinned(mask & ~others, step) for mask in (ground.touched, ground.release))
         weight, mass, deep = (np.nan_to_num(values[::step, ::step]) for values in (
             ground.max_thickness, deposit, ground.slip_depth))
         self.x, self.y = ground.x[::step, ::step], ground.y[::step, ::step]
@@ -180,14 +181,19 @@ def smooth(points):
 
 # --- dumps ---
 
-def centroids(result) -> Optional[np.ndarray]:
-    """Where the centroid was, in plan, in the order of time; None without several dumps of the mass."""
+def centroids(result, ground) -> Optional[np.ndarray]:
+    """Where the centroid was, in plan, in the order of time; None without several dumps of the mass.
+
+    Of several bodies that of the largest: of the balls that were there in the first dump.
+    """
     shots = snapshots(result.folder, result.summary["stop"]["step"])
     step = max(1, -(-len(shots) // MOST_DUMPS))
-    shots = shots[::-1][::step][::-1]       # the last one among them
+    several = bool((ground.source & ground.beside).any())
+    shots = shots[:several] + shots[several:][::-1][::step][::-1]       # the last one among them
     if len(shots) < 3 or sum(path.stat().st_size for path in shots) > MOST_BYTES:
         return None
     places: List[np.ndarray] = []
+    others = np.empty(0, int)
     for path in shots:
         try:
             shot = dumps.last(path, ("diameter", "radius"))
@@ -197,6 +203,12 @@ def centroids(result) -> Optional[np.ndarray]:
             return None         # more than the mass, fixed balls among them
         size = shot.of.get("diameter", shot.of.get("radius"))
         weight = size ** 3 if size is not None and (size > 0).all() else np.ones(len(shot.of["id"]))
+        if several:
+            if not places:
+                others = shot.of["id"][np.nan_to_num(ground.along(ground.beside * 1.0, *shot.place[:, :2].T)) > 0.5]
+            weight = weight * ~np.isin(shot.of["id"], others)
+        if not weight.any():
+            return None
         places.append(weight @ shot.place[:, :2] / weight.sum())
     return np.array(places)
 

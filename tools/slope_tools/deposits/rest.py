@@ -2,7 +2,7 @@
 from dataclasses import dataclass
 from typing import Any, Mapping, Optional
 
-from ..digits import format_measured_share
+from ..digits import format_measured_share, rounded
 
 FAST = 0.1              # m/s: what is slower creeps or jitters (motion: fast_... of fix deposit/grid)
 MOST_FAST = 0.01        # share of the released volume that may be faster in a deposit at rest, in older summaries
@@ -27,9 +27,9 @@ class Rest:
         """What moves: `2.3 % of the volume (940 m3) is faster than 0.1 m/s, up to 30 m/s`."""
         text = f"{format_measured_share(self.share)} of the volume"
         if self.volume is not None:
-            text += f" ({self.volume:,.3g} m3)" if self.volume < 1000 else f" ({self.volume:,.0f} m3)"
+            text += f" ({rounded(self.volume, 3)} m3)"
         text += f" is faster than {self.threshold:g} m/s"
-        return text if self.speed is None else f"{text}, up to {self.speed:.2g} m/s"
+        return text if self.speed is None else f"{text}, up to {rounded(self.speed, 2)} m/s"
 
     @property
     def text(self) -> str:

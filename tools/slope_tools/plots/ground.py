@@ -3,6 +3,7 @@ import functools
 import math
 
 import numpy as np
+from scipy.ndimage import distance_transform_edt, label
 from shapely.geometry import LineString, box
 
 from .. import geometry
@@ -72,6 +73,11 @@ class Ground:
     def extent(self):
         return geometry.extent(self.raster)
 
+    @functools.cached_property
+    def beside(self):
+        """Mask of the cells that are nearer to another body than to the largest, whose the section is."""
+        return beside_largest(self.slip_depth)
+
     def along(self, values, x, y):
         """Values of cells at points, NaN outside."""
         return sample(self.raster._replace(z=values), x, y)
@@ -99,6 +105,15 @@ class Ground:
         if more > 0:
             ylo, yhi = max(whole[1], ylo - more / 2), min(whole[3], yhi + more / 2)
         return xlo, ylo, xhi, yhi
+
+
+def beside_largest(depth):
+    """Mask of the cells that are nearer to another body, of a depth (m), than to the one of the largest volume."""
+    parts, count = label(depth > 0, np.ones((3, 3)))
+    if count < 2:
+        return np.zeros(parts.shape, bool)
+    nearest = distance_transform_edt(parts == 0, return_distances=False, return_indices=True)
+    return parts[tuple(nearest)] != np.argmax(np.bincount(parts.ravel(), depth.ravel()))
 
 
 def closed(mask, cells):

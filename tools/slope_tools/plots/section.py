@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Union
 
 import numpy as np
+from scipy.ndimage import label
 from shapely.geometry import LineString, Point, box
 
 from .. import geometry
@@ -39,7 +40,7 @@ class Section:
         if not asked:
             return self._default()
         if asked == [FALL]:
-            return self._fall_line(), "through the centroid of the released mass, along its mean fall line"
+            return self._fall_line(), self._straight()
         if len(asked) == 4:
             try:
                 points = np.reshape([parse_number(value) for value in asked], (2, 2))
@@ -71,7 +72,7 @@ class Section:
         """The path of the mass, or the fall line where that is about the same."""
         fall = self._fall_line()
         path = flow_path.path(self.data.result, self.ground)
-        straight = self._to_road(fall), "through the centroid of the released mass, along its mean fall line"
+        straight = self._to_road(fall), self._straight()
         if path is None:
             return straight
         length = LineString(path.points).length
@@ -82,8 +83,18 @@ class Section:
         points = self._to_road(self._continued(path.points, 0.06 * length + 2 * self.ground.cell))
         if self._westward(points[-1] - points[0]):
             points = points[::-1]
-        how = "along the path of the centroid, " if path.dumped else "along the middle of the flow, "
-        return points, how + "straight on through the scar and the rest of the deposit"
+        how = "along the path of the centroid" if path.dumped else "along the middle of the flow"
+        how += " of the largest body" * bool(self._others().any())
+        return points, f"{how}, straight on through the scar and the rest of the deposit"
+
+    def _others(self):
+        """Mask of the bodies beside the largest."""
+        return self.ground.source & self.ground.beside
+
+    def _straight(self):
+        """What the fall line is."""
+        body = "largest body" if self._others().any() else "released mass"
+        return f"through the centroid of the {body}, along its mean fall line"
 
     def _westward(self, way):
         return way[np.argmax(np.abs(way))] < 0
@@ -124,8 +135,11 @@ class Section:
 
     def _fall_line(self):
         """Both ends, west or south end first."""
-        ground, touched = self.ground, self.ground.touched
-        release = ground.release if ground.release.any() else touched
+        ground, touched = self.ground, self.ground.touched & ~self._others()
+        release = ground.release & ~self._others() if ground.release.any() else touched
+        parts, _ = label(touched, np.ones((3, 3)))
+        mine = touched & np.isin(parts, parts[release & touched])       # not what another body went over elsewhere
+        touched = mine if mine.any() else touched
         weight = np.where(release, np.where(ground.slip_depth > 0, ground.slip_depth, 1e-3), 0)
         centre = np.array([(ground.x * weight).sum(), (ground.y * weight).sum()]) / weight.sum()
         south, east = np.gradient(ground.before, ground.cell)

@@ -4,7 +4,6 @@ from pathlib import Path
 from typing import Any, Dict, List, NamedTuple, Optional, Tuple, Union
 
 import numpy as np
-from scipy.ndimage import label
 
 from ..digits import rounded
 from ..errors import SlopeError
@@ -18,8 +17,6 @@ OF_EACH = ("slbl", "slab")      # of SHAPES, which take several polygons: a body
 ABOVE = "above_ground"      # of a body's choices: where its slip surface is, in the polygon
 SCAR_REMEDY = ": --polygon takes a part of the scar, --least D leaves out the noise of two surveys"
 CLIFF = 60.0    # degrees, mean of a body's ground; it may be in feet
-TINY = 0.02     # of the volume in a polygon; a smaller part of a body is none
-LISTED = 3      # parts of a body whose volumes are printed
 HOLLOW = 0.05   # of a scar's largest depth; a shallower hollow in its slip surface may be the survey's
 SHIFT = 0.25    # m between two surveys, beside the body
 COARSE = 50     # cells; a body of fewer is drawn with a coarse brush
@@ -100,16 +97,20 @@ def body_of(wanted: Wanted) -> Body:
     elif wanted.shape in OF_EACH:
         area, surface, choices, made = from_each(wanted, raster, several, numbers)
         doubts += [*release_parts.own_depths(made, wanted.depth, wanted.where),
+                   *release_parts.shared(several, made, wanted.volume, area.cell, wanted.where),
                    *release_parts.warnings(made, choices["shape"], wanted.where)]
     else:
         area, surface, choices = from_shape(wanted, raster, geometry)
+    doubts += unused(wanted)
     slip = release_solve.slip_surface(area, release_solve.depths(area, surface), wanted.where)
     measures = release_solve.measures(area, slip)
     names = [one.name for one in several]
     depth, numbers = release_toe.depth_of(area, slip), release_parts.within(numbers, area)
     if scar:
         doubts += release_parts.empty(depth, numbers, names, wanted.where)
-    doubts += [*warnings(choices, measures, area, slip), *in_parts(depth, area.cell, numbers, names)]
+    else:
+        doubts += release_parts.in_pits(depth, area.z, numbers, names)
+    doubts += [*warnings(choices, measures, area, slip), *release_parts.in_parts(depth, area.cell, numbers, names)]
     return Body(raster, geometry, area, slip, choices, measures, doubts, made)
 
 
@@ -118,9 +119,19 @@ def polygons_in(wanted: Wanted, raster, geometry) -> List[features.Polygon]:
     if wanted.read:
         return features.distinct([features.Polygon("", one) for one in polygons.polygons_of(geometry)], raster)
     assert wanted.polygon
-    sized = wanted.shape in OF_EACH and wanted.volume is None and wanted.curvature is None
+    sized = wanted.shape in OF_EACH and wanted.curvature is None
     return features.read_polygon_features(wanted.polygon, geometry, raster, wanted.local,
                                           as_crs("--assign-crs", wanted.crs) if wanted.crs else None, sized)
+
+
+def unused(wanted: Wanted) -> List[Finding]:
+    """That features say how deep they are, where that does not count."""
+    if wanted.read or wanted.scar or not wanted.polygon or wanted.shape in OF_EACH and wanted.curvature is None:
+        return []
+    own = [one for one in features.own_depths(wanted.polygon) if one.depth != wanted.depth]
+    by = f"--shape {wanted.shape}" if wanted.curvature is None else f"--curvature {wanted.curvature:g}"
+    return [Finding("unused depth", {"file": wanted.where, "attribute": own[0].attribute, "by": by,
+                                     "depths": features.list_depths(own)})] if own else []
 
 
 def check_wanted_release(wanted: Wanted) -> Wanted:
@@ -178,6 +189,8 @@ def check_shape(wanted: Wanted) -> None:
         must += ", or --curvature" * (wanted.shape == "slbl") + \
             f", or an attribute {' or '.join(features.DEPTHS)} of each feature, m"
         without = f"none of {next(name for name, depth in each.items() if depth is None)}" if each else None
+    elif not wanted.read and (own := features.own_depths(str(wanted.polygon))):
+        must += f"; or --shape slab, which takes the attribute {own[0].attribute} of its features"
     raise SlopeError("--depth", must, without)
 
 
@@ -311,9 +324,9 @@ def warnings(choices, body, area, slip) -> List[Finding]:
     if choices["shape"] == "scar":
         hollow = release_solve.hollow(area, slip)
         if hollow > HOLLOW * body.largest_depth:
-            doubts.append(Finding("hollow", {"depth": hollow, "remedy": "is it the mass on top of the terrain? Then "
-                                             "--scar-is height" if choices["scar_is"] == "depth" else "a smaller body, "
-                                             "or a survey without what came to rest there?"}))
+            doubts.append(Finding("hollow", {"depth": hollow, "remedy": (
+                "are these metres? Is it the mass on top of the terrain? Then --scar-is height"
+                if choices["scar_is"] == "depth" else "a smaller body, or a survey without what came to rest there?")}))
     if level := release_toe.beyond_toe(area, slip):
         doubts.append(Finding("beyond toe", level._asdict()))
     if above := choices.get(ABOVE):
@@ -333,27 +346,6 @@ def warnings(choices, body, area, slip) -> List[Finding]:
     return doubts
 
 
-def in_parts(depth: np.ndarray, cell: float, numbers: np.ndarray, names: List[str]) -> List[Finding]:
-    """A warning of each polygon in which the body, of a depth (m) on nodes, is in parts; tiny ones do not count.
-
-    numbers: of each node its polygon, from 1.
-    """
-    words = []
-    for number, name in enumerate(names, 1):
-        body = np.where(numbers == number, depth, 0.0)
-        parts, count = label(body > 0, np.ones((3, 3)))
-        volumes = np.sort(np.bincount(parts.ravel(), body.ravel(), count + 1)[1:])[::-1] * cell ** 2
-        large = volumes[volumes > TINY * volumes.sum()]
-        if len(large) < 2:
-            continue
-        shown, rest = large[:LISTED], volumes[len(large[:LISTED]):]
-        words.append(Finding("parts", {
-            "parts": len(large), "volumes": " and ".join(map(rounded, shown)),
-            "rest": f", and {rounded(rest.sum())} m3 in {len(rest)} smaller ones" * bool(len(rest))},
-            part=name if len(names) > 1 else ""))
-    return words
-
-
 def no_way_out(choices, area) -> Optional[float]:
     """Degrees by which the ground falls in the direction of a plane, if that dips more; else None."""
     bearing = math.radians(choices["direction_degrees"])
@@ -370,7 +362,7 @@ def describe_body(body: Body) -> str:
         if choices["scar_is"] == "surface":
             what += "; vertical datums are not compared"
             if choices["beside_m"] is not None:
-                what += f", beside the body the two surveys differ by {abs(choices['beside_m']):.2g} m (median)"
+                what += f", beside the body the two surveys differ by {rounded(abs(choices['beside_m']), 2)} m (median)"
     elif shape == "plane":
         what = (f"plane that dips {choices['dip_degrees']:.4g} degrees towards {choices['direction_degrees']:.4g}, "
                 f"{choices['drop_m']:.4g} m below the plane that touches the highest ground")

@@ -75,4 +75,4 @@ def dips(area: Area, slip: np.ndarray, below: Foundation) -> Dict[str, Union[str
 def describe_dip(choices: Mapping[str, Any]) -> str:
     """The same in words."""
     return (f"\nof the spheres that dip least below {choices['foundation']}, the one with the most above it: dips "
-            f"{choices['dip_m']:.3g} m below it, with {rounded(choices['below_foundation_m3'])} m3")
+            f"{rounded(choices['dip_m'], 3)} m below it, with {rounded(choices['below_foundation_m3'])} m3")

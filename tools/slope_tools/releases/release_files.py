@@ -6,6 +6,7 @@ from typing import Iterable, List
 import numpy as np
 from scipy.ndimage import binary_dilation
 
+from ..digits import rounded
 from ..disk import complete, write_yaml
 from ..errors import SlopeError
 from ..findings import encode_findings
@@ -85,8 +86,8 @@ def write_body(name: Path, wanted: Wanted, body: Body, raised: bool = False) -> 
              "origin": {"east": float(body.raster.offset[0]), "north": float(body.raster.offset[1])},
              "warnings": encode_findings(body.warnings)}
     write_release_files(name, wanted.terrain, body.raster, body.area, body.slip, about, body.geometry,
-                        f"{name.name}: {body.measures.volume:,.0f} m\u00b3, up to {body.measures.largest_depth:.3g} m "
-                        "deep")
+                        f"{name.name}: {body.measures.volume:,.0f} m\u00b3, up to "
+                        f"{rounded(body.measures.largest_depth, 3)} m deep")
     if raised:
         write_ground(ground, given, body)
 

@@ -3,11 +3,12 @@ from typing import Any, Dict, List, NamedTuple, Optional, Tuple
 
 import numpy as np
 from rasterio.features import rasterize
+from scipy.ndimage import label
 
 from ..digits import rounded
 from ..errors import SlopeError
 from ..findings import Finding
-from ..survey.features import Polygon
+from ..survey.features import Polygon, list_depths
 from ..survey.rasters import Raster
 from . import release_area, release_solve
 from .release_area import Area
@@ -15,6 +16,10 @@ from .release_bodies import slbl_shape
 
 LITTLE = 0.75   # share of a polygon; a body that takes less of it is a doubtful one
 LISTED = 12     # polygons that are named one by one
+TINY = 0.02     # of the volume in a polygon; a smaller part of a body is none
+PRINTED = 3     # parts of a body whose volumes are printed
+SAME = 0.005    # of a volume; that of the features' own depths differs by less
+IN_PIT = 0.5    # of a body; where more lies below its own lowest ground, the most of it cannot slide out
 
 
 class Size(NamedTuple):
@@ -65,8 +70,16 @@ def within(numbers: np.ndarray, area: Area) -> np.ndarray:
 
 
 def depths(area: Area, numbers: np.ndarray, several: List[Polygon], shape: str, size: Size, where: str):
-    """Depth (m) on the nodes of an area, and the Made of each polygon; numbers: see numbered(), of the area's nodes."""
-    total, deep, made = int((numbers > 0).sum()), np.zeros(area.z.shape), []
+    """Depth (m) on the nodes of an area, and the Made of each polygon; numbers: see numbered(), of the area's nodes.
+
+    A volume is shared by area, and by the depths that the features say they have.
+    """
+    own, others = ([one for one in several if bool(one.depth) == has] for has in (True, False))
+    if size.volume is not None and own and others:
+        raise SlopeError(where, f"each feature, or none, must have an attribute {own[0].attribute}, by which --volume "
+                         "is shared", f"none of {others[0].name}")
+    deep, made = np.zeros(area.z.shape), []
+    total = sum((part.depth or 1.0) * int((numbers == number).sum()) for number, part in enumerate(several, 1))
     for number, made_part in enumerate(several, 1):
         inside = numbers == number
         cells = int(inside.sum())
@@ -79,7 +92,7 @@ def depths(area: Area, numbers: np.ndarray, several: List[Polygon], shape: str, 
         alone = len(several) == 1
         if cells >= release_area.FEWEST:
             release_area.require_slope(part, where if alone else f"{where}: {made_part.name}")
-        volume = size.volume and size.volume * cells / total
+        volume = size.volume and size.volume * cells * (made_part.depth or 1.0) / total
         called = f"{where}: {made_part.name}: {attribute}" if attribute else \
             size.called("volume" if volume else "depth" if asked else "curvature") + (
                 "" if alone else f" in {made_part.name}")
@@ -117,9 +130,19 @@ def own_depths(made: List[Made], depth: Optional[float], where: str) -> List[Fin
     own = [one for one in made if one.attribute and one.asked != depth]
     if depth is None or not own:
         return []
-    named = ", ".join(f"{one.name} {one.asked:g} m" for one in own[:LISTED]) + ", ..." * (len(own) > LISTED)
-    return [Finding("own depth", {"file": where, "attribute": own[0].attribute, "depths": named, "depth": depth,
+    return [Finding("own depth", {"file": where, "attribute": own[0].attribute, "depth": depth,
+                                  "depths": list_depths([Polygon(one.name, None, one.asked) for one in own]),
                                   "which": "the others" if len(own) < len(made) else "none of them"})]
+
+
+def shared(several: List[Polygon], made: List[Made], volume: Optional[float], cell: float,
+           where: str) -> List[Finding]:
+    """That a volume is shared in proportion to the depths that features say they have."""
+    if volume is None or not (own := [one for one in several if one.depth]):
+        return []
+    whole = sum((one.depth or 0.0) * part.cells * cell ** 2 for one, part in zip(several, made))
+    return [Finding("shared", {"file": where, "attribute": own[0].attribute, "depths": list_depths(own),
+                               "volume": volume, "factor": volume / whole})] * (abs(volume / whole - 1) > SAME)
 
 
 def empty(depth: np.ndarray, numbers: np.ndarray, names: List[str], where: str) -> List[Finding]:
@@ -143,6 +166,47 @@ def warnings(made: List[Made], shape: str, where: str) -> List[Finding]:
                                              "name": made_part.name},
                                   part=made_part.name if several else ""))
     return doubts
+
+
+def in_pits(depth: np.ndarray, z: np.ndarray, numbers: np.ndarray, names: List[str]) -> List[Finding]:
+    """Of each polygon, that the most of its body, of a depth (m) on nodes of a height z (m), lies in a pit.
+
+    What lies below the lowest ground of a body has no way out, but over its rim.
+    """
+    words = []
+    for number, name in enumerate(names, 1):
+        body = np.where(numbers == number, depth, 0.0)
+        parts, count = label(body > 0, np.ones((3, 3)))
+        part, deep = parts[body > 0], body[body > 0]
+        lowest = np.full(count + 1, np.inf)
+        np.minimum.at(lowest, part, z[body > 0])
+        below = np.clip(lowest[part] - z[body > 0] + deep, 0.0, None)
+        if len(deep) and below.sum() > IN_PIT * deep.sum():
+            words.append(Finding("in a pit", {
+                "percent": 100 * float(below.sum() / deep.sum()), "depth": float(deep.max()),
+                "fall": float(np.ptp(z[parts == part[deep.argmax()]]))}, part=name if len(names) > 1 else ""))
+    return words
+
+
+def in_parts(depth: np.ndarray, cell: float, numbers: np.ndarray, names: List[str]) -> List[Finding]:
+    """A warning of each polygon in which the body, of a depth (m) on nodes, is in parts; tiny ones do not count.
+
+    numbers: of each node its polygon, from 1.
+    """
+    words = []
+    for number, name in enumerate(names, 1):
+        body = np.where(numbers == number, depth, 0.0)
+        parts, count = label(body > 0, np.ones((3, 3)))
+        volumes = np.sort(np.bincount(parts.ravel(), body.ravel(), count + 1)[1:])[::-1] * cell ** 2
+        large = volumes[volumes > TINY * volumes.sum()]
+        if len(large) < 2:
+            continue
+        shown, rest = large[:PRINTED], volumes[len(large[:PRINTED]):]
+        words.append(Finding("parts", {
+            "parts": len(large), "volumes": " and ".join(map(rounded, shown)),
+            "rest": f", and {rounded(rest.sum())} m3 in {len(rest)} smaller ones" * bool(len(rest))},
+            part=name if len(names) > 1 else ""))
+    return words
 
 
 def describe_parts(made: List[Made], cell: float) -> str:

@@ -175,7 +175,7 @@ class Maps:
             if entry["file"] not in data.over_all:
                 continue
             values = data.over_all[entry["file"]]
-            single = f" One ball of the model, a cube of {side:.2g} m, is much thicker than that." \
+            single = f" One ball of the model, a cube of {digits.rounded(side, 2)} m, is much thicker than that." \
                 if side > 10 * entry["threshold_m"] else ""
             pictures["exceedance"].append(Picture(
                 figure_maps.value_map(layers, values, f"Thicker than {entry['threshold_m']:g} m", "share of the runs",

@@ -16,6 +16,7 @@ import numpy as np
 
 from .. import disk, geometry, provenance
 from ..case import decks, settings
+from ..digits import rounded
 from ..errors import SlopeError
 from ..findings import Finding, finding
 from ..releases import release, release_files, release_toe
@@ -370,7 +371,7 @@ def say_size(choices: OfMass, size: Size, body: release.Body, machine: Machine, 
         took = f", about {site_budget.duration_text(size.seconds)} if nothing else runs"
         if size.most > size.seconds:
             took += f", {site_budget.duration_text(size.most)} with all that may be added"
-    tell(f"the study: {size.text}; {machine.jobs} at a time{took}, {size.gigabytes:.2g} GB")
+    tell(f"the study: {size.text}; {machine.jobs} at a time{took}, {rounded(size.gigabytes, 2)} GB")
 
 
 # --- map ---

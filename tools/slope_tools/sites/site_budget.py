@@ -16,7 +16,7 @@ from typing import Callable, List, Mapping, NamedTuple, Optional, Sequence, Tupl
 from .. import processes
 from ..case import last_words, logs, run_folders
 from ..case.settings import normalise_value
-from ..digits import rounded
+from ..digits import at_least, rounded
 from ..errors import SlopeError
 from ..releases import packing
 from .site_sections import Balls, OfMass
@@ -325,8 +325,8 @@ def fit_budget(budget: float, cost: Callable[[float], float], volume: float, opt
     """The smallest diameter (m) whose cost(d), which falls with d, is within a budget; SlopeError if none is."""
     low, high = packing.compute_diameter(volume, MOST), packing.compute_diameter(volume, FEWEST)
     if cost(high) > budget:
-        raise SlopeError(option, f"must be at least {cost(high):.3g} {unit}, which a study with {FEWEST} balls takes",
-                         f"{budget:g}")
+        raise SlopeError(option, f"must be at least {at_least(cost(high), 3)} {unit}, which a study with {FEWEST} "
+                         "balls takes", f"{budget:g}")
     if cost(low) <= budget:
         return low
     for _ in range(60):

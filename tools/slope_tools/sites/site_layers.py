@@ -167,8 +167,13 @@ def polygon_layer(choices: Choices, path: Optional[str], raster: Raster, target:
     geometry = polygons.read_local(path, raster, crs=assigned(choices, path), advice=advice(choices, path), warn=warn)
     warn_outside(path, geometry, raster, warn)
     geometry = polygons.write_polygon(target, geometry, raster)
-    tell(f"{target.name}: {len(polygons.polygons_of(geometry))} polygon, {geometry.area:,.0f} m2")
+    tell(f"{target.name}: {count_polygons(geometry)}, {geometry.area:,.0f} m2")
     return geometry
+
+
+def count_polygons(geometry: BaseGeometry) -> str:
+    number = len(polygons.polygons_of(geometry))
+    return f"{number} polygon{'s' * (number > 1)}"
 
 
 def road_layers(choices: Choices, raster: Raster, folder: Path, tell, warn) -> Dict[str, BaseGeometry]:
@@ -183,11 +188,15 @@ def road_layers(choices: Choices, raster: Raster, folder: Path, tell, warn) -> D
         written[name] = geometry = roads.write_road(target, road, raster)
         if len(written) == 1 and len(several) > 1:
             roads.write_road(folder / site_roads.ROAD, road, raster)
-        what = "polygon" if road.line is None else \
-            f"line{'s' * (len(road.lines) > 1)} of {' and '.join(f'{line.length:,.0f}' for line in road.lines)} m, " \
-            f"{choices.road.width:g} m wide"
-        tell(f"{target.name}: {len(polygons.polygons_of(geometry))} {what}, {geometry.area:,.0f} m2")
+        tell(f"{target.name}: {describe_road_shape(road, choices.road.width)}, {geometry.area:,.0f} m2")
     return written
+
+
+def describe_road_shape(road: roads.Road, width: Optional[float]) -> str:
+    if road.line is None:
+        return count_polygons(road.polygon)
+    lengths = [f"{line.length:,.0f}" for line in road.lines]
+    return f"{len(lengths)} line{'s' * (len(lengths) > 1)} of {' and '.join(lengths)} m, {width:g} m wide"
 
 
 def warn_outside(path: str, geometry: BaseGeometry, raster: Raster, warn) -> None:

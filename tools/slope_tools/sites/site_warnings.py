@@ -26,8 +26,8 @@ MOST = 3                # warnings that are shown before the numbers
 # kinds by what they do to the number, the heaviest first: it may be another ground, another body, another run, or rough
 HEAVIEST = ("in feet", "no ground's slope", "cliff", "picture", "pits", "no such cell", "swapped", "tiles differ",
             "shift", "stretched", "CRS of terrain", "datums",
-            "no way out", "hollow", "above ground", "no body", "little", "road on body", "under road", "beyond toe",
-            "bulges", "rim", "parts", "own depth",
+            "in a pit", "no way out", "hollow", "above ground", "no body", "little", "road on body", "under road",
+            "beyond toe", "bulges", "rim", "parts", "own depth", "shared", "unused depth",
             "small angle", "large rolling", "narrow road", "low wall", "left terrain", "outside", "not at rest",
             "zone covered", "zones overlap", "several bodies", "second opinion",
             "blocks on level ground", "thin", "few across", "few cells")

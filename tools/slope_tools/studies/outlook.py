@@ -4,7 +4,7 @@ from typing import List, Optional
 
 import numpy as np
 
-from ..digits import rounded, three
+from ..digits import metres, three
 from ..ensembles.farther import REACHED
 from ..errors import SlopeError
 from ..geometry import extent
@@ -35,8 +35,8 @@ def describe_outlook(folder: Path) -> List[str]:
         lines.append(f"the mass cannot be compared with known events: {error}")
     else:
         counts = decides.decides
-        length, fall = (rounded(float(values[-1]), 4) for values in (counts.path.length, counts.path.fall))
-        lines += [f"fall path of {length} m, down to {fall} m below the crown, {counts.path.end}",
+        length, fall = (metres(values[-1]) for values in (counts.path.length, counts.path.fall))
+        lines += [f"fall path of {length}, down to {fall} below the crown, {counts.path.end}",
                   events_text(counts, asked)]
         met = {name: road.at_road(counts.path, roads.read_local(
             folder / site_roads.file_name(name), mass.raster, choices.road.asked, local=True).polygon)
@@ -65,8 +65,8 @@ def events_text(counts: Mobility, asked: known.Choice) -> str:
 
 def road_text(counts: Mobility, met: road.AtRoad, name: str) -> str:
     """Which share of known events reaches and passes the road; name: of one of several."""
-    where = "first met" if met.met else f"which the fall path passes {rounded(met.beside, 4)} m beside,"
-    return (f"the road{name and f' {name}'}, {where} after {rounded(met.length, 4)} m: "
+    where = "first met" if met.met else f"which the fall path passes {metres(met.beside)} beside,"
+    return (f"the road{name and f' {name}'}, {where} after {metres(met.length)}: "
             f"{results.describe_road_reach(counts, met)}")
 
 
@@ -78,7 +78,7 @@ def terrain_ends(counts: Mobility, raster: Raster) -> Optional[str]:
     more = missing(counts)
     how = "" if more is None else f": add about {three(more)} m of terrain in the {side_of(path, raster)}"
     return (f"{results.percent(beyond)} of known events go beyond the terrain, which the fall path leaves after "
-            f"{rounded(float(path.length[-1]), 4)} m{how}")
+            f"{metres(path.length[-1])}{how}")
 
 
 def missing(counts: Mobility) -> Optional[float]:

@@ -14,6 +14,7 @@ import numpy as np
 from .. import disk
 from ..case.settings import normalise_value, check_settings
 from ..deposits import travel_shares
+from ..digits import metres
 from ..errors import SlopeError
 from ..findings import Finding
 from ..runs import jobs, store
@@ -276,7 +277,7 @@ def settle(setup: Setup, work: jobs.Work, points: Sequence[Repeat], wanted: Opti
                 if not made.has(one, k)]
         work.store.admit(todo)
         finest = float(wanted.values[len(wanted.points)])
-        setup.tell(f"{len(now)} more with balls of {finest:.3g} m, as the values so far ask for")
+        setup.tell(f"{len(now)} more with balls of {metres(finest)}, as the values so far ask for")
         work.do(todo, share=True)
         at = at_finest(setup, made)
     return at
@@ -284,7 +285,7 @@ def settle(setup: Setup, work: jobs.Work, points: Sequence[Repeat], wanted: Opti
 
 def told(wanted: Wanted, number: int, seconds: Optional[float]) -> str:
     """Which runs with finer balls are made, so many of them now, in how many seconds, in words."""
-    parts = [f"{number} points with balls of {float(value):.3g} m" for value, number in
+    parts = [f"{number} points with balls of {metres(float(value))}" for value, number in
              zip(wanted.values[1:], wanted.points)]
     took = f", about {site_budget.duration_text(seconds)}" if seconds else ""
     return f"finer balls: {', '.join(parts)}; {number} of these runs to make{took}"

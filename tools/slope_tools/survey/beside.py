@@ -10,6 +10,7 @@ import numpy as np
 from affine import Affine
 from rasterio.crs import CRS
 
+from ..digits import metres
 from ..errors import SlopeError
 from ..findings import Finding
 from ..geometry import extent, format_numbers
@@ -127,8 +128,8 @@ def check_unit(path: Union[str, Path], raster: Raster, terrain: Raster, unit: st
     as_tagged, as_metres = (float(np.nanmedian(np.abs(one - terrain.z))) for one in (z, z / rasters.UNITS[unit]))
     if as_metres < as_tagged:
         raise SlopeError(path, f"heights in {unit} must be confirmed, as in metres they are nearer to the terrain's, "
-                         f"{as_metres:.3g} m off at the median: slope terrain --z-unit m, ft or us-ft makes a raster "
-                         "in metres of it", f"{as_tagged:.3g} m off")
+                         f"{metres(as_metres)} off at the median: slope terrain --z-unit m, ft or us-ft makes a raster "
+                         "in metres of it", f"{metres(as_tagged)} off")
 
 
 def has_cells(raster: Raster, terrain: Raster) -> bool:

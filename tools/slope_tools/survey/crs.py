@@ -105,6 +105,27 @@ def require_axes(crs, where):
                          f"{crs_name(crs)}, {' and '.join(axes).lower()}")
 
 
+def require_order(raster, where):
+    """Raise SlopeError if a raster lies outside of the area of its CRS, and would not with x and y exchanged."""
+    if raster.crs is None or not raster.crs.is_projected:
+        return
+    area = area_of(epsg(raster.crs) or raster.crs.to_wkt())
+    if area is None:
+        return
+    west, south, upper, wide = area.west, area.south, area.north, (area.east - area.west) % 360 or 360
+    projection = projection_of(raster.crs.to_wkt())
+
+    def is_within(x, y):
+        east, north = projection(x, y, inverse=True)
+        return south <= north <= upper and (east - west) % 360 <= wide
+
+    x, y = raster.transform @ (raster.z.shape[1] / 2, raster.z.shape[0] / 2)
+    if not is_within(x, y) and is_within(y, x):
+        raise SlopeError(where, f"must lie in the area of {crs_name(raster.crs)} (with x and y exchanged it would); "
+                         "points whose northing comes first need a head, such as north east height",
+                         format_numbers((round(x, 1), round(y, 1))))
+
+
 def sister_remedy(crs) -> str:
     """What can be done about a CRS (of rasterio) with such axes."""
     name = sister(crs)
@@ -166,11 +187,20 @@ def projection_of(wkt):
     return Proj(wkt)
 
 
+@functools.lru_cache
+def area_of(crs) -> Any:
+    """Where a CRS (EPSG number, or WKT) is used, of pyproj; None where it is not known."""
+    from pyproj import CRS
+    return CRS.from_user_input(crs).area_of_use
+
+
 def factors_of(raster):
     """Of the projection, at the middle of a raster."""
     x, y = raster.transform @ (raster.z.shape[1] / 2, raster.z.shape[0] / 2)
     projection = projection_of(raster.crs.to_wkt())
-    return projection.get_factors(*projection(x, y, inverse=True))
+    east, north = projection(x, y, inverse=True)
+    first = projection.crs.prime_meridian   # PROJ counts to the place from Greenwich, whatever the first meridian is
+    return projection.get_factors(east - math.degrees(first.longitude * first.unit_conversion_factor), north)
 
 
 def transform(source, target, x, y):
@@ -193,5 +223,6 @@ def require_degrees(crs, bounds, where, remedy="--assign-crs EPSG:n overrides a 
         return
     west, south, east, north = bounds
     if max(-west, east) > 360 or max(-south, north) > 90:
-        raise SlopeError(where, f"coordinates in {crs_name(crs)} must be longitude and latitude; {remedy}",
+        hint = " (with x and y exchanged they would be)" if max(-west, east) <= 90 and max(-south, north) <= 360 else ""
+        raise SlopeError(where, f"coordinates in {crs_name(crs)} must be longitude and latitude{hint}; {remedy}",
                          format_numbers(bounds))

@@ -1,7 +1,9 @@
 """What the features of a file say beside their geometry: names, and the depths of release areas."""
 import math
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Tuple
+from contextlib import suppress
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
+from shapely.geometry import GeometryCollection
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
@@ -12,6 +14,7 @@ from . import polygons, vectors
 DEPTHS = ("depth", "thickness")     # attributes, of which the first counts
 TOUCH = 1e-6        # m2, that a feature has in a polygon which is made of it
 NAMED = 3           # features that a polygon is named by
+LISTED = 12         # features that a message names
 
 
 class Polygon(NamedTuple):
@@ -53,13 +56,31 @@ def depth_of(path: str, number: int, attributes: Mapping[str, Any]) -> Tuple[Opt
     return None, ""
 
 
+def list_depths(several: Sequence[Polygon]) -> str:
+    """Names and depths of some polygons, for a message."""
+    return ", ".join(f"{one.name} {one.depth:g} m" for one in several[:LISTED]) + ", ..." * (len(several) > LISTED)
+
+
+def own_depths(path: str) -> List[Polygon]:
+    """The features of a file that say how deep they are, without their geometry; an attribute that is no depth does not
+    count, nor does a file that others will find fault with.
+    """
+    own = []
+    with suppress(SlopeError):
+        found = None if polygons.read_text(path) is not None else vectors.read_vector_layer(path, "Polygon")
+        for number, about in zip(found.numbers, found.attributes) if found else ():
+            with suppress(SlopeError):
+                own.append(Polygon(name_feature(about, number), GeometryCollection(), *depth_of(path, number, about)))
+    return [one for one in own if one.depth]
+
+
 def depths(path: str) -> Dict[str, Optional[float]]:
     """{name: depth (m) or None} of the features of a file; none of a text, which has no attributes."""
     if polygons.read_text(path) is not None:
         return {}
     found = vectors.read_vector_layer(path, "Polygon")
-    return {f"{name_feature(about, number)} (feature {number})": depth_of(vectors.source(path).path, number, about)[0]
-            for number, about in zip(found.numbers, found.attributes)}
+    return {name_feature(about, number) + f" (feature {number})" * (attribute(about, "name") is not None): depth_of(
+        vectors.source(path).path, number, about)[0] for number, about in zip(found.numbers, found.attributes)}
 
 
 def read_polygon_features(path: str, geometry: BaseGeometry, raster, local=False, crs=None, sized=True,

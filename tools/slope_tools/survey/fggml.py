@@ -19,6 +19,7 @@ import numpy as np
 from affine import Affine
 from rasterio.crs import CRS
 
+from ..digits import rounded
 from ..errors import SlopeError
 from ..findings import Finding
 from . import zips
@@ -102,7 +103,7 @@ def _read_zip(source, where, room=None):
     room[0] -= total
     if room[0] < 0 or total > DEFLATE * size:
         raise SlopeError(where, f"must have at most {LARGEST_ZIP / 1e6:g} MB unpacked, and {DEFLATE} times its size",
-                         f"{total / 1e6:.0f} MB in {size / 1e6:.3g} MB")
+                         f"{total / 1e6:.0f} MB in {rounded(size / 1e6, 3)} MB")
     tiles = []
     for member in progress(members, f"reading {where}"):
         kind = member.filename[-4:].lower()
@@ -128,7 +129,7 @@ def _read_zip(source, where, room=None):
     if outer and not tiles:
         inside = [member.filename for member in archive.infolist() if not zips.is_of_macos(member.filename)]
         other = next((way for name in inside if (way := zips.suggest_zip_remedy(name))), "")
-        raise SlopeError(where, f"must hold FG-GML elevation tiles (.xml), it has none{other}",
+        raise SlopeError(where, f"must hold a raster, or FG-GML elevation tiles (.xml), it has none{other}",
                          f"{len(archive.infolist())} files")
     return tiles
 

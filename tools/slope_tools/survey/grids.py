@@ -10,6 +10,7 @@ from rich.console import Console
 from rich.progress import track
 
 from .. import streams
+from ..digits import rounded
 from ..errors import SlopeError
 
 if not hasattr(Affine, "__matmul__"):       # affine 2, of Debian 12 and 13; affine 3 finds fault with *
@@ -39,5 +40,5 @@ def check_memory(rows, columns, where, remedy=""):
     need = rows * columns * BYTES_PER_CELL / 1e9
     have = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 1e9
     if need > have:
-        raise SlopeError(where, f"must fit in the {have:.3g} GB of memory of this machine{remedy}",
-                         f"{columns} x {rows} cells, which need {need:.3g} GB")
+        raise SlopeError(where, f"must fit in the {rounded(have, 3)} GB of memory of this machine{remedy}",
+                         f"{columns} x {rows} cells, which need {rounded(need, 3)} GB")

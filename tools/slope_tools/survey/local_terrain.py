@@ -14,15 +14,12 @@ from ..errors import SlopeError
 from ..findings import Finding
 from ..geometry import format_numbers
 from . import fggml, plausible, rasters, zips
-from .crs import as_crs, require_axes, require_metres, warn_of_north, warn_of_stretch
+from .crs import as_crs, require_axes, require_metres, require_order, warn_of_north, warn_of_stretch
 from .holes import fill, small_holes
 from .marks import Marks, format_mark
 from .rasters import Raster
 from .resampling import needed, regrid
 from .terrain import DIFFER, Tile, declare, merge, read_fggml
-
-
-DEGREE = 111_195.0      # m along a meridian
 
 
 class Wanted(NamedTuple):
@@ -100,6 +97,7 @@ def make_local_terrain(inputs: Sequence[str], output: Path, wanted: Wanted, tell
     raster = tile.raster
     require_metres(crs, inputs[0])
     require_axes(crs, inputs[0])
+    require_order(tile.whole, inputs[0])
     if not np.isfinite(raster.z).any():
         if wanted.bounds:
             regrid(raster, crs, cell, wanted.bounds, keep, warn, tile.whole)        # says what is wrong with them
@@ -134,7 +132,7 @@ def make_local_terrain(inputs: Sequence[str], output: Path, wanted: Wanted, tell
 def surveyed_cell(raster: Raster) -> float:
     """The size (m) of the cells of a raster in its CRS, about."""
     crs = raster.crs
-    unit = 1.0 if crs is None else DEGREE if crs.is_geographic else crs.linear_units_factor[1]
+    unit = 1.0 if crs is None else plausible.DEGREE if crs.is_geographic else crs.linear_units_factor[1]
     return abs(raster.transform.e) * unit
 
 

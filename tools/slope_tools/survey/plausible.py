@@ -3,6 +3,7 @@ import math
 from typing import Any, Callable, NamedTuple, Optional
 
 import numpy as np
+from affine import Affine
 
 from ..errors import SlopeError
 from ..findings import Finding
@@ -14,6 +15,7 @@ STEEP_SIDES = 2.0
 FEW = 100           # cells; fewer do not show what a ground spans
 STEEPEST = 50.0     # degrees, mean of a terrain; steeper ones may be in feet
 ROWS = 1000         # of a terrain that are looked at for its slope
+DEGREE = 111_195.0  # m along a meridian
 BRIGHT, MOST = 240.0, 255.0     # of a picture: its brightest cell is between these
 
 
@@ -129,19 +131,24 @@ def in_feet(slope: float) -> float:
 
 
 def ask(path, raster: Raster, crs, unit: str) -> None:
-    """Raise SlopeError where a plan in metres has heights (of a Raster) that the file says are feet: many such tags are
-    wrong.
+    """Raise SlopeError where a plan that is not in feet has heights (of a Raster) that the file says are: many such
+    tags are wrong, and a plan in degrees speaks for them no more than one in metres.
 
     crs: of the plan; None: metres.
     """
-    if not np.isfinite(raster.z).any() or crs is not None and (
-            crs.is_geographic or not math.isclose(crs.linear_units_factor[1], 1)):
+    degrees = crs is not None and crs.is_geographic
+    if not np.isfinite(raster.z).any() or not degrees and crs is not None and not math.isclose(
+            crs.linear_units_factor[1], 1):
         return
+    if degrees:
+        _, north = raster.transform @ (0, len(raster.z) / 2)
+        raster = raster._replace(transform=Affine.scale(DEGREE * math.cos(math.radians(north)), DEGREE)
+                                 @ raster.transform)
     feet = raster._replace(z=raster.z * UNITS[unit])
-    raise SlopeError(path, "heights in feet over a plan in metres must be confirmed, as many such tags are wrong: "
-                     f"--z-unit m if they are metres, and the ground falls by {mean_slope(raster):.3g} degrees on "
-                     f"average, --z-unit ft or us-ft if they are feet, {mean_slope(feet):.3g} degrees (slope terrain, "
-                     "site, route)", unit)
+    raise SlopeError(path, f"heights in feet over a plan in {'degrees' if degrees else 'metres'} must be confirmed, as "
+                     f"many such tags are wrong: --z-unit m if they are metres, and the ground falls by "
+                     f"{mean_slope(raster):.3g} degrees on average, --z-unit ft or us-ft if they are feet, "
+                     f"{mean_slope(feet):.3g} degrees (slope terrain, site, route)", unit)
 
 
 def warn_of_slope(raster: Raster, warn: Callable[[Finding], Any]) -> None:

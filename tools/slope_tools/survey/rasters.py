@@ -6,6 +6,7 @@ counted from the outer corner of the first cell, to (x, y).
 """
 import math
 import warnings
+from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple, Optional, Tuple, Union
 
@@ -21,7 +22,7 @@ from rasterio.windows import Window
 from .. import disk, schemas
 from ..errors import SlopeError
 from ..schemas import COUNT, TEXT, mapping, number_keys
-from . import plausible, text_grids, xyz, zips
+from . import file_parts, plausible, text_grids, xyz, zips
 from .crs import crs_name, epsg, require_axes
 from .grids import UNITS, Raster, check_memory, progress
 from .marks import Scale, cells_of, format_mark
@@ -59,7 +60,7 @@ def read_raster(path, heights=True, unit=None, marks=None, ask=True):
     The CRS is None where the file has none; it may be in degrees, the heights may not: they become metres, from what
     the file says, or from the unit (of UNITS) that is given. heights=False: other values than heights, such as the
     energies of fix deposit/grid; their size is not checked. marks: of the values, in the file's own unit, that stand
-    for none, too; what the file has of them is noted there. ask: end where heights in feet lie over a plan in metres.
+    for none, too; what the file has of them is noted there. ask: end where heights in feet lie over a plan that is not.
     Raises SlopeError on anything that is not such a raster.
     """
     return in_metres(path, opened(path, heights, unit), heights, unit, marks, ask=ask)
@@ -102,9 +103,19 @@ def opened(path, heights=True, unit=None, part=None, assigned=None):
         with warnings.catch_warnings(), rasterio.Env(GDAL_CACHEMAX=CACHE):
             warnings.simplefilter("ignore", NotGeoreferencedWarning)  # an error of our own, below
             with rasterio.open(zips.gdal_name(name)) as source:
-                return _read(path, name, source, unit_of(path, source.units[0], source.crs, heights, unit), part)
+                return _read(path, name, source, unit_of(path, unit_tag(name, source), source.crs, heights, unit), part)
     except (RasterioError, OSError) as error:  # RasterioIOError is an OSError only
         raise unreadable(path, name, error) from error
+
+
+def unit_tag(name, source):
+    """The unit that an open raster names; of a VRT, which does not repeat it, that of its files, feet before metres."""
+    tags = [source.units[0] or ""]
+    if source.driver == "VRT" and not tags[0]:
+        for part in file_parts.sources(name):
+            with suppress(RasterioError), rasterio.open(part) as one:
+                tags.append(unit_tag(part, one))
+    return max(tags, key=lambda tag: (TAGS.get(tag.strip().lower()) not in (None, "m"), bool(tag)))
 
 
 def unreadable(path, name, error):

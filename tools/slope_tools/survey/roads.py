@@ -15,6 +15,7 @@ from shapely.geometry.base import BaseGeometry
 from shapely.ops import nearest_points, unary_union
 
 from .. import disk
+from ..digits import rounded
 from ..errors import SlopeError
 from ..findings import Finding
 from ..geometry import extent, format_numbers
@@ -218,7 +219,8 @@ def check_line(path, line: LineString, within, start: float) -> None:
     """
     if line.length < SHORTEST:
         raise SlopeError(path, f"must be a line of {SHORTEST:g} m at least; are its coordinates in degrees? Then name "
-                         "their CRS, such as EPSG:4326", f"{line.length:.2g} m at {format_numbers(line.coords[0])}")
+                         "their CRS, such as EPSG:4326",
+                         f"{rounded(line.length, 2)} m at {format_numbers(line.coords[0])}")
 
     def chainage(length):
         return f"{1000 * start + length:.1f} m"

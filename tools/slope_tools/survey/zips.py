@@ -22,9 +22,11 @@ POINT = re.compile(rb"^[-+.\d]+([ \t;,]+[-+.\d]+){2,}", re.MULTILINE)
 CLOUDS = (".las", ".laz", ".e57", ".pcd", ".pts", ".ptx", ".xyz", ".txt", ".csv")
 MESHES = (".xml", ".ply", ".obj", ".stl", ".dxf", ".dwg", ".tin", ".gltf", ".glb", ".dae", ".3ds", ".off", ".2dm")
 SHAPES = (".shp", ".geojson", ".json", ".gpkg", ".kml", ".kmz", ".gml", ".tab")
+ARCHIVES = (".zip", ".gz", ".tgz", ".tar", ".7z", ".rar", ".bz2", ".xz", ".zst")
 OF_POINTS = "points: make a raster of them with pdal (writers.gdal), gdal_grid -a linear, or TIN interpolation of QGIS"
 OF_MESH = "a mesh or TIN: rasterize its heights with QGIS (Rasterize mesh dataset) or CloudCompare"
 OF_LAYER = "points or contours: gdal_grid -a linear, or TIN interpolation of QGIS, makes a raster of them"
+OF_ARCHIVE = "an archive: unpack it first"
 SHOWN = 6           # names of members in a message
 # what damaged archives, and those with a password, raise; ValueError: a member that begins before the file does
 FAULTS = (zipfile.BadZipFile, tarfile.TarError, lzma.LZMAError, zlib.error, OSError, EOFError, RuntimeError, ValueError)
@@ -100,7 +102,7 @@ def require_open(archive: zipfile.ZipFile, names: Sequence[str]) -> None:
 def suggest_zip_remedy(name: str) -> str:
     """What can be done about a file of this name that is no raster, after a semicolon; nothing of others."""
     ending = Path(name).suffix.lower()
-    for endings, way in ((CLOUDS, OF_POINTS), (MESHES, OF_MESH), (SHAPES, OF_LAYER)):
+    for endings, way in ((CLOUDS, OF_POINTS), (MESHES, OF_MESH), (SHAPES, OF_LAYER), (ARCHIVES, OF_ARCHIVE)):
         if ending in endings:
             return f"; {way}"
     return ""
