@@ -10,7 +10,7 @@ from typing import Any, Dict, List, Mapping, Optional
 from ..findings import Finding
 from ..mobility.how_far import Reach
 from ..statistics.ball_sizes import Left
-from ..statistics.entries import Headline
+from ..statistics.entries import Headline, Road
 from .ensemble_types import Ensemble, MapEntry
 from .rows import Row
 
@@ -324,3 +324,4 @@ class Study:
     chain: Optional[Chain]
     intensity: Optional[Intensity]
     next_step: Optional[NextStep]
+    at_road: Optional[Road] = None  # of the study alone, for its headline (headline.conclude), which has it then
