@@ -139,7 +139,7 @@ def test_what_stands_first(slope, here, case):
     study = replace(study_file.load_study(path), headline=number)
     step = next_step.of_studies([next_step.Made(study, path.parent)], number)
     path.write_text(yaml.safe_dump({**about, "headline": HEADLINES[case],
-                                    "next_step": step and records.encode_record(step.about())}))
+                                    "next_step": step and records.encode_record(step)}))
     assert slope("repeated")[0] == 0
     text = " ".join(client(here / "repeated" / "report.html").split())
     for words in SAID[case]:

@@ -25,7 +25,8 @@ def make_client_content(data: Data, ground, numbers: Numbers, answers: Sequence[
     letter_ = letter_of(data, ground)
     main = next((card for card in answers if card), None)
     paragraphs = letter.write_letter(letter_, numbers)._replace(down=body.sentence(body.of_data(data, ground)))
-    step, kind = choose_next_step(data), letter_.number.kind if letter_.number else Kind.NUMBER.value
+    step = data.study.next_step if data.study else None
+    kind = letter_.number.kind if letter_.number else Kind.NUMBER.value
     if not letter_.number and main:     # of an ensemble that no known events weigh
         paragraphs = paragraphs._replace(clear=of_card(main))
         if main.withheld:
@@ -46,12 +47,6 @@ def letter_of(data: Data, ground) -> Letter:
 def unsaid(letter_: Letter, findings: Sequence[Finding]) -> List[Finding]:
     """The findings without what the letter says already."""
     return [each for each in findings if each.kind not in letter_.lacks]
-
-
-def choose_next_step(data: Data) -> Optional[next_step.Step]:
-    """The next step of the headline."""
-    said = data.study.next_step if data.study else None
-    return next_step.Step(**vars(said)) if said else None
 
 
 def of_card(main: MainCard) -> str:

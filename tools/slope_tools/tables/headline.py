@@ -31,7 +31,7 @@ def conclude(studies: Mapping[Path, study_types.Study], given: Any = None) -> Di
     governs = next((each for each in made if number and each.source.value == number.source), made[-1])
     return {each.folder: replace(
         each.study, study=replace(each.study.study, governs=governs.folder.name), headline=number, at_road=None,
-        next_step=step.about() if step else None, reach=sweep.reach, largest_restitution=sweep.largest_restitution)
+        next_step=step, reach=sweep.reach, largest_restitution=sweep.largest_restitution)
         for each in sorted(made, key=lambda each: each is not governs)}
 
 
