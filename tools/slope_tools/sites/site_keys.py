@@ -1,5 +1,5 @@
-"""The keys of a section of site.yaml, each declared once: a field of a frozen dataclass with its default, its meaning
-and its range, of which the JSON schema is made. What the section is for is the docstring of the class."""
+"""The keys of a section of site.yaml, or of route.yaml, each declared once: a field of a frozen dataclass with default,
+meaning and range, of which the JSON schema is made. What the section is for is the docstring of the class."""
 import typing
 from dataclasses import MISSING, field, fields
 from types import NoneType
@@ -16,8 +16,10 @@ NEEDED = MISSING        # instead of a default: the key must be given
 
 def key(default: Any, says: str = "", **rule: Any) -> Any:
     """A key; says: what it means; rule: LIMITS of a value, or of those in a list, OF_LISTS, or `of`: the choices."""
-    given: Dict[str, Any] = {"default_factory": dict} if default == {} else {"default": default}
-    return field(**given, metadata={"says": says, "rule": rule})
+    given: Dict[str, Any] = {"default": default}
+    if isinstance(default, (dict, list)):
+        given = {"default_factory": default.copy}
+    return field(**given, metadata={"default": default, "says": says, "rule": rule})
 
 
 def section_schema(section: Any) -> Dict[str, Any]:
@@ -27,8 +29,8 @@ def section_schema(section: Any) -> Dict[str, Any]:
     properties: Dict[str, Any] = {}
     for part in sorted(fields(section), key=lambda part: own.index(part.name) if part.name in own else -1):
         entry = value_schema(hints[part.name], part.metadata["rule"])
-        if part.default is not MISSING or part.default_factory is not MISSING:
-            entry["default"] = {} if part.default is MISSING else disk.make_plain(part.default)
+        if part.metadata["default"] is not NEEDED:
+            entry["default"] = disk.make_plain(part.metadata["default"])
         if part.metadata["says"]:
             entry["description"] = part.metadata["says"]
         properties[part.name.rstrip("_")] = entry
@@ -46,7 +48,7 @@ def value_schema(hint: Any, rule: Mapping[str, Any]) -> Dict[str, Any]:
     types, schema = [], {name: rule[mine] for mine, name in OF_LISTS.items() if mine in rule}
     for one in several:
         inner = typing.get_args(one)
-        types.append(TYPES.get(one) or ("array" if typing.get_origin(one) is tuple else "object"))
+        types.append(TYPES.get(one) or ("array" if typing.get_origin(one) in (tuple, list) else "object"))
         if types[-1] == "array":
             schema["items"] = {"type": TYPES[inner[0]], **limits}
         elif types[-1] == "object":
