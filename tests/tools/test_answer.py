@@ -1,5 +1,6 @@
 """The number of a study: the larger of the paper's and an ensemble's, a floor, withheld, or nothing; by hand."""
 import os
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -13,17 +14,17 @@ from slope_tools.errors import SlopeError
 from slope_tools.sites import site_choices
 from slope_tools.sites.site_sections import OfMass
 from slope_tools.statistics import answer
-from slope_tools.statistics.answer import AtRoad, Cause, Code, Ensemble, Kind, Paper, Road, Size, Source, Withheld
-from slope_tools.statistics.entries import KnownQuantile
+from slope_tools.statistics.answer import Cause, Code, Ensemble, Kind, Paper, Size, Source, Withheld
+from slope_tools.statistics.entries import AtRoad, KnownQuantile, Road
 from slope_tools.statistics.withheld import Kind as Rule
-from slope_tools.studies import letter_words, site_study
-from slope_tools.studies.letter import Letter
-from slope_tools.tables import answer_words, answered, next_step
+from slope_tools.studies import site_study
+from slope_tools.studies.letter import Letter, write_letter
+from slope_tools.tables import answer_words, headline, next_step, study_file
 
 
 def sentences(headline, reach=None):
     """Of a letter with this number."""
-    return letter_words.say(Letter(5000.0, headline, None, reach, (), (), "computed"))
+    return write_letter(Letter(5000.0, headline, None, reach, (), (), "computed"))
 
 
 STOPPED = answer.Reason(Code.TERRAIN, {"share": 0.12, "path_m": 900.0})
@@ -40,7 +41,7 @@ def ensemble(far=0.01, rules=(), values=1000.0, **more):
 def road(low, high, longest=500.0):
     """Runs that bring 50 m3 to a road unless the longest one is short, without a lobe on it."""
     brought = AtRoad(8, 2, 1, 50.0, 5.0) if longest and longest >= 400 else AtRoad(8, 0, 0, 9.0, 0.9)
-    return Road(400.0, 410.0, (high, low), (0.9 * high, 0.9 * low), longest, brought)
+    return Road(400.0, 410.0, [low, high], [0.9 * low, 0.9 * high], longest, brought)
 
 
 def codes(found):
@@ -110,7 +111,7 @@ def test_what_finer_balls_may_undercut_is_no_lower_bound():
         for paper, other, of, volume in ((Paper(1200.0, least=1177.0, size=few), None, None, 1200.0),
                                          (Paper(700.0), ensemble(size=few), road(0.5, 0.6), 950.0),
                                          (Paper(0.0), ensemble(0.08, stopped=STOPPED, size=few),
-                                          road(0.5, 0.6)._replace(far=901.0), 920.0)):
+                                          replace(road(0.5, 0.6), far_m=901.0), 920.0)):
             found = answer.combine_answers(paper, other, of)
             assert (found.kind, found.volume, found.low, found.high) == (Kind.OPEN, volume, None, None)
             said = sentences(found.about())
@@ -138,8 +139,8 @@ def test_fewer_than_two_halvings_make_no_bound_and_one_that_grows_a_floor(size, 
     quantile = {"share": 0.95, "value": 1200.0, "low": 1000.0, "high": 1400.0}
     about = made_study.study(conservative=made_study.conservative(1200.0, chance_m3=50.0), size=size)
     other = made_study.study(ensemble=made_study.ensemble({"to_remove": [quantile]}), size=size)
-    for found in (answer.combine_answers(answered.paper_of(about), None, None),
-                  answer.combine_answers(None, answered.ensemble_of(other), None)):
+    for found in (answer.combine_answers(headline.paper_of(about), None, None),
+                  answer.combine_answers(None, headline.ensemble_of(other), None)):
         assert found.kind is kind and [one.code for one in found.reasons] == [Code.SIZE] * (kind is not Kind.NUMBER)
         assert all(words in text(one) for one in found.reasons for text
                    in (answer_words.describe_reason, answer_words.client))
@@ -153,7 +154,7 @@ def test_where_known_events_lie_beyond_the_runs_the_number_is_of_those_within():
     """A floor only where the terrain ends before the road does: the lower end."""
     found = answer.combine_answers(Paper(0.0), ensemble(0.08, stopped=STOPPED), road(0.5, 0.6))
     assert (found.kind, found.volume, codes(found)) == (Kind.NUMBER, 920.0, [Code.BEYOND, Code.TERRAIN])
-    found = answer.combine_answers(Paper(0.0), ensemble(0.08, stopped=STOPPED), road(0.5, 0.6)._replace(far=901.0))
+    found = answer.combine_answers(Paper(0.0), ensemble(0.08, stopped=STOPPED), replace(road(0.5, 0.6), far_m=901.0))
     assert (found.kind, found.volume, found.share, found.high) == (Kind.FLOOR, 828.0, 0.92, None)
     assert codes(found) == [Code.BEYOND, Code.TERRAIN]
     assert found.reasons[0].numbers == {"far": 0.08, "longest_m": 800.0, "most_m3": 0.0, "runs": 0}
@@ -279,7 +280,7 @@ def test_what_study_yaml_says():
 
 def test_the_volume_is_the_one_that_the_study_shows():
     best = made_study.conservative(21700.6, rounded={"volume_m3": 21710.0})
-    assert answered.paper_of(made_study.study(conservative=best))[:2] == (21710.0, [])
+    assert headline.paper_of(made_study.study(conservative=best))[:2] == (21710.0, [])
 
 
 # --- which study governs ---
@@ -299,12 +300,12 @@ def test_which_study_governs_is_what_the_files_say(tmp_path, last):
     for newer in (paper, other):
         for folder in (paper, other):
             written(folder, last, 10, 200 if folder == newer else 100)
-        assert answered.governing(paper, other).name == last
+        assert study_file.find_governing_study(paper, other).name == last
         for folder in (paper, other):       # the last one alone since, as study --paper
             written(folder, folder.name, 12 if folder.name == last else 10, 200 if folder == newer else 100)
-        assert answered.governing(paper, other).name == last
+        assert study_file.find_governing_study(paper, other).name == last
         (tmp_path / last / "study.yaml").unlink()
-        assert answered.governing(paper, other).name != last
+        assert study_file.find_governing_study(paper, other).name != last
 
 
 @pytest.mark.parametrize("fails, merged", [(True, 0), (False, 1)])
@@ -325,7 +326,7 @@ def test_an_older_result_is_not_merged_where_all_runs_failed(tmp_path, monkeypat
     monkeypatch.setattr(study, "run_deck", lambda *_: runs(fails))
     monkeypatch.setattr(study, "of_ensemble", lambda *_: None)
     monkeypatch.setattr(study, "write_site_report", lambda *_, **__: None)
-    monkeypatch.setattr(study.answered, "of_both", lambda *several: calls.append(several))
+    monkeypatch.setattr(headline, "make_headline", lambda *several: calls.append(several))
     asked, site = study.Request(deck=tmp_path, quiet=True), site_choices.unread(OfMass.of({}), tmp_path)
     files = [tmp_path / name / "study.yaml" for name in ("study", "ensemble")]
     before = [path.read_bytes() for path in files]

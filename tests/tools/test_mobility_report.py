@@ -19,7 +19,7 @@ from slope_tools.plots import known_reach
 from slope_tools.report import mobility_part
 from slope_tools.report.numbers import Numbers
 from slope_tools.statistics.answer import Source
-from slope_tools.studies import letter_words
+from slope_tools.studies import letter
 from slope_tools.tables import usable
 
 
@@ -171,11 +171,11 @@ def test_how_far_without_known_events(known):
     outside = known._replace(outside=["the set of known events does not cover this volume"])
     one = how_far.pool([60.0, 70.0, 80.0], outside, "ensemble")
     assert (one.near_m, one.middle_m, one.far_m, one.events) == (60.0, 70.0, 80.0, False)
-    said = letter_words.far(one, letter_words.format_console_number)
+    said = letter.describe_reach(one, letter.format_console_number)
     assert "70.0 m (60.0 to 80.0 m)" in said and "does not cover this volume" in said and "3 runs" in said
     one = how_far.pool([60.0, math.inf, math.inf], None, "paper", why="No path")
     assert (one.near_m, one.middle_m, one.far_m, one.end_m) == (60.0, None, None, None)      # not that of a run
-    assert letter_words.far(one, letter_words.format_console_number).startswith("It goes 60.0 m or more")
+    assert letter.describe_reach(one, letter.format_console_number).startswith("It goes 60.0 m or more")
     assert how_far.pool([], known) is None
 
 
@@ -197,7 +197,7 @@ def test_nearer_than_events_tell_the_distance_may_be_less(known):
     least = known.path.length[k]
     one = how_far.pool([2 * least], dropped)
     assert one.least_m == least >= one.near_m and one.middle_m > least
-    assert f"({three(least)} m or less to " in letter_words.far(one, letter_words.format_console_number)
+    assert f"({three(least)} m or less to " in letter.describe_reach(one, letter.format_console_number)
 
 
 # --- on maps and section ---

@@ -106,7 +106,6 @@ def test_the_site_is_one_commands_from_end_to_end(mine, monkeypatch):  # noqa: F
     monkeypatch.setattr(study_command.site_study, "collect_site_results", lambda *_,
                         **__: site_study.Done(mine, others(), None))
     monkeypatch.setattr(study_command, "run_deck", others)
-    monkeypatch.setattr(study_command.answered, "of_both", lambda *_: None)
     monkeypatch.setattr(study_command.files, "write_abouts", lambda *_: None)
     monkeypatch.setattr(study_command, "write_site_report", others)
     study_command.run_study(study_command.Request(deck=mine))

@@ -22,7 +22,7 @@ from slope_tools.plots.obstacles import Obstacles
 from slope_tools.report import body, client_part, ensemble_part, limits_part, numbers, structures_part, warnings
 from slope_tools.report.numbers import Numbers
 from slope_tools.statistics.withheld import Kind as Rule
-from slope_tools.studies import letter, letter_words
+from slope_tools.studies import letter
 from slope_tools.tables import answer_words, judged, next_step, study_file
 
 made, here, slope = test_report.made, test_report.here, test_report.slope       # its fixtures
@@ -139,7 +139,7 @@ def test_what_stands_first(slope, here, case):
     study = replace(study_file.load_study(path), headline=number)
     step = next_step.of_studies([next_step.Made(study, path.parent)], number)
     path.write_text(yaml.safe_dump({**about, "headline": HEADLINES[case],
-                                    "next_step": step and records.encode_record(step.about())}))
+                                    "next_step": step and records.encode_record(step)}))
     assert slope("repeated")[0] == 0
     text = " ".join(client(here / "repeated" / "report.html").split())
     for words in SAID[case]:
@@ -203,7 +203,7 @@ def test_what_lies_on_the_road_is_of_the_runs_of_the_page():
 def test_the_number_says_that_it_is_in_a_gap(gap, source, said):
     about = replace(weighted(gap=gap).study, runs=[row()], headline=made_study.headline(
         source=source, share=0.95, volume_m3=9e3, low_m3=1e3, high_m3=9e4))
-    text = letter_words.say(letter.of_study(about)).basis
+    text = letter.write_letter(letter.make_letter(about)).basis
     assert ("between 2,000 and 9,000 m3" in text) == said and ("no run ends" in text) == said
 
 
@@ -263,7 +263,7 @@ def test_each_reason_is_told_once():
     about = made_study.headline(**headline_of("withheld", reasons=[other, size, MOVING, size]))
     said = [answer_words.client(one) for one in answer_words.told(about)]
     assert len(said) == 2 and said[0].startswith("More than a tenth of the runs failed")
-    assert all(letter_words.change(about).lower().count(text.lower()) == 1 for text in said)
+    assert all(letter.describe_change(about).lower().count(text.lower()) == 1 for text in said)
 
 
 def test_the_first_page_in_order(slope, here):

@@ -77,6 +77,18 @@ def test_a_module(path):
         assert other_commands(text, path) == []
 
 
+@pytest.mark.parametrize("room_", ROOMS[1:])
+def test_a_room_tells_of_files_and_functions_that_are_there(room_):
+    """*name.py* of the room, or *room/name.py*; `name()` of any."""
+    path = PACKAGE / room_ / "README.md"
+    text = path.read_text(encoding="utf-8") if path.exists() else ""
+    named = [name for name in re.findall(r"\*([\w/]+\.py)\*", text) if not (TOP / name).is_file()]
+    assert [name for name in named if not any((place / name).is_file() for place in (path.parent, PACKAGE))] == []
+    there = {node.name for module in MODULES for node in ast.walk(ast.parse(module.read_text(encoding="utf-8")))
+             if isinstance(node, ast.FunctionDef)} if "()`" in text else set()
+    assert set(re.findall(r"`(?:\w+\.)*(\w+)\(\)`", text)) <= there
+
+
 def test_every_command_is_a_module_and_every_module_in_a_room():
     commands = {path.stem for path in (PACKAGE / "commands").glob("*.py")}
     assert set(cli.COMMANDS) <= commands

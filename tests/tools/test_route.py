@@ -199,7 +199,7 @@ def two(tmp_path):
 
 
 def made(folder, table, **more):
-    asked = choices.read_route_choices(folder)._replace(**more)
+    asked = dataclasses.replace(choices.read_route_choices(folder), **more)
     ground = corridor.read_corridor(asked, folder)
     return results.make_route_results(asked, ground, folder, table), ground
 
@@ -584,8 +584,8 @@ def bodies_file(*several, geometries=None):
 
 
 def given_bodies(**more):
-    asked = choices.Choices(["dem.asc"], "axis.csv", 8.0, 60.0, 9e3, 30.0, 1900.0, crs="EPSG:6677",
-                            bodies="slides.geojson")._replace(**more)
+    asked = dataclasses.replace(choices.Choices(["dem.asc"], "axis.csv", 8.0, 60.0, 9e3, 30.0, 1900.0, crs="EPSG:6677",
+                                                bodies="slides.geojson"), **more)
     said = []
     Path("R").mkdir(exist_ok=True)
     return search.given(asked, corridor.make_corridor(asked, Path("R"), lambda _: None, lambda _: None),
@@ -1052,6 +1052,6 @@ def test_a_given_body_has_a_factor_and_a_fragility(tmp_path):
     (((10, 20), (10, 280)), 0.01, "away from the road")])
 def test_whether_a_body_reaches_the_road(tmp_path, ends, reach, said):
     mass, given = hill(tmp_path / "slips" / "1")
-    found = search.reaches(given._replace(reach=reach), mass, LineString(ends).buffer(4, cap_style=2))
+    found = search.reaches(dataclasses.replace(given, reach=reach), mass, LineString(ends).buffer(4, cap_style=2))
     assert (said in found["why_not"]) and bool(said) == bool(found["why_not"])
     assert 0 < found["known_share"] <= 1

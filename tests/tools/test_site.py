@@ -32,8 +32,8 @@ from slope_tools.sites.site_sections import OfMass, sections
 from slope_tools.sites.site import find_deck_numbers as site_numbers
 from slope_tools.errors import SlopeError
 from slope_tools.plots import site_map
-from slope_tools.studies import letter, letter_words, size_runs, study
-from slope_tools.tables import answered, named_run
+from slope_tools.studies import letter, size_runs, study
+from slope_tools.tables import headline, named_run, study_file
 from slope_tools.tables.study_file import load_study
 
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
@@ -222,12 +222,12 @@ def test_both_studies_give_one_number(done, tmp_path, monkeypatch, capsys):
     volumes = [one for one in (found["paper"]["volume_m3"], quantile["value"]) if one is not None]
     assert found["kind"] == "open" and found["volume_m3"] == max(volumes) and found["low_m3"] is None
     assert paper["reach"] == both["reach"] and paper["reach"]["source"] == "paper" and paper["reach"]["runs"] == 13
-    assert answered.governing(mine / "study", mine / "ensemble").name == ("study" if found["source"] == "paper" else
-                                                                          "ensemble")
+    assert study_file.find_governing_study(mine / "study", mine / "ensemble").name == (
+        "study" if found["source"] == "paper" else "ensemble")
     step, = (line.removeprefix("next step: ") for line in out.splitlines() if line.startswith("next step: "))
     assert paper["next_step"] == both["next_step"] and step.startswith(both["next_step"]["text"]) and step.endswith(
         both["next_step"]["command"])
-    words = letter_words.list_letter_lines(letter.of_study(load_study(mine / "study" / "study.yaml")))
+    words = letter.list_letter_lines(letter.make_letter(load_study(mine / "study" / "study.yaml")))
     assert [line for line in out.splitlines() if line in words] == words
     governs, other = ("study", "ensemble") if found["source"] == "paper" else ("ensemble", "study")
     assert pages == [(other, {"study": "paper.html", "ensemble": "ensemble.html"}[other], False),
@@ -235,7 +235,7 @@ def test_both_studies_give_one_number(done, tmp_path, monkeypatch, capsys):
     # what a second study finds is that of both, or nothing: killed between them, the site says what it said
     before = [(mine / name / "study.yaml").read_bytes() for name in ("study", "ensemble")]
     (mine / "site.yaml").write_text((mine / "site.yaml").read_text().replace("[0, 0.05, 0.1]", "[0, 0.1]"))
-    for where, name in ((study_command, "run_deck"), (answered, "of_both")):
+    for where, name in ((study_command, "run_deck"), (headline, "make_headline")):
         with monkeypatch.context() as patch:
             patch.setattr(where, name, fails)
             assert cli.main(["study", "mine", "--levels", "1"]) == 2

@@ -267,7 +267,7 @@ def test_a_run_reaches_the_road_by_what_lies_there_however_small_the_lobe():
     road = events(400.0, 0.6).road(several)
     assert road.brought._asdict() == {"runs": 4, "reach": 2, "passing": 1, "volume": 40.0, "balls": 40.0,
                                       "least_m3": 0.0, "most_m3": 0.0}
-    assert not road.missed and road.longest == 200 < road.near
+    assert not road.missed and road.longest_m == 200 < road.near_m
     several = [changed(one, on_road_m3=0.4, beyond_road_m3=0.5, length_m=900.0) for one in several]
     assert events(400.0, 0.6).road(several).missed
 

@@ -11,7 +11,7 @@ from ..options import Overwrite, option, positional
 from ..studies import outdated
 from ..survey import rasters
 from ..survey.rasters import crs_name
-from ..tables import answered, named_run
+from ..tables import named_run, study_file
 
 DESCRIPTION = "Every raster of a run as a GeoTIFF in the coordinates of the survey."
 EPILOG = """\
@@ -72,7 +72,7 @@ def run_zones(args: Request, zones_: str) -> None:
     own = Path(args.prefix, "zones") if Path(args.prefix).is_dir() else Path(f"{args.prefix}.zones")
     folder = args.output or own
     disk.check_folder(folder)
-    if (study := answered.study_in(Path(args.prefix), weighted=True)):
+    if (study := study_file.study_in(Path(args.prefix), weighted=True)):
         outdated.check_study_current(Path(args.prefix), study)
     ground = zones.ground_of(args.prefix, findings.printer("export"))
     zones.check_zones(ground, wanted, args.prefix, zones_)

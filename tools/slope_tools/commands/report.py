@@ -18,7 +18,7 @@ from ..report.heading import Asked
 from ..report.heading import SITE
 from ..sites import site_scenarios
 from ..studies import outdated
-from ..tables import answered
+from ..tables import study_file
 
 OF_SITE = f" (default: what {SITE} says, in DIR or above it)"
 
@@ -75,13 +75,13 @@ def study_of(folder: Path) -> Path:
     """The study inside the folder of a site, or of one of its roads; any other folder itself, as a site that holds a
     run made by hand only.
     """
-    inside = answered.study_in(folder)
+    inside = study_file.study_in(folder)
     if inside:
         return inside
     if not (folder / SITE).is_file():
         return folder
     if not run_folders.summaries(folder):
-        raise answered.without_study(folder)
+        raise study_file.without_study(folder)
     return folder
 
 

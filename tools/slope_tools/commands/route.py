@@ -1,5 +1,5 @@
 """slope route: the bodies along a corridor, runs of all of them, and how likely which stretch is blocked."""
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from shlex import quote
 from typing import Any, List, Optional
@@ -104,7 +104,8 @@ def run_route(args: Request) -> None:
     from ..route import choices as route_choices, corridor, page, results, runs, search
     from ..sites import site
 
-    given = {name: value for name in route_choices.Choices._fields if (value := getattr(args, name)) is not None}
+    given = {field.name: value for field in fields(route_choices.Choices)
+             if (value := getattr(args, field.name)) is not None}
     folder, warn = args.folder, printer("route")
     try:
         choices = route_choices.settle(folder, given)
@@ -116,7 +117,7 @@ def run_route(args: Request) -> None:
                 results.yearly_of(choices, folder, table["bodies"])      # now, not after the runs
             except SlopeError:
                 _, sources = route_choices.read_route(folder)
-                route_choices.write_route_choices(folder, choices._replace(fragility=None), sources)
+                route_choices.write_route_choices(folder, replace(choices, fragility=None), sources)
                 raise
             machine = site.Machine(lmp, args.jobs or jobs.cores())
             several = []

@@ -20,7 +20,7 @@ from ..releases.release_dip import LEAST
 from ..releases.release_scar import KINDS
 from ..runs import jobs
 from ..sites import site, site_budget, site_choices, site_deck, site_scenarios, site_warnings
-from ..sites.site_sections import Choices, Key, OfMass, sections
+from ..sites.site_sections import VERSION, Choices, Key, OfMass, sections
 from ..slips import bodies
 from ..studies import ahead, outlook, site_ground
 from ..studies.setup import RUNS, Setup
@@ -317,7 +317,7 @@ def choose_site(args: Request) -> Chosen:
     if "density" in given and isinstance(choices, OfMass):
         given["density"] = density_of_ball(given["density"])
     choices = replaced(choices, given)
-    site_choices.check_site_file({"slope_site": site_choices.VERSION, **choices.entries()},
+    site_choices.check_site_file({"slope_site": VERSION, **choices.entries()},
                                  str(folder / site_choices.NAME),
                                  {OPTIONS[option]: OTHERWISE.get(option, f"--{option.replace('_', '-')}") for option
                                   in given})

@@ -1,12 +1,12 @@
 """slope study: one deck over the product of lists of its variables, several runs at a time; a table and maps over all.
 
 Order of the work: check the deck and the settings, plan the runs (repeats.py), make their folders and run what is not
-finished (jobs.py), collect (results.py), evaluate (outcome.py); of a site one number of both studies (answered.py).
+finished (jobs.py), collect (results.py), evaluate (outcome.py); of a site one number of both studies (headline.py).
 """
 import argparse
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, Optional, Sequence
+from typing import Any, List, Mapping, Optional, Sequence
 
 from ..case import decks
 from ..case.settings import check_settings, one_value_each
@@ -18,11 +18,10 @@ from ..sites import site_choices, site_deck, site_roads, site_scenarios
 from ..sites.site_bodies import VARIABLE
 from ..sites.site_choices import Site
 from ..sites.site_sections import OfMass
-from ..statistics.answer import Source
 from ..studies import (ahead, console, files, results, road_numbers, site_ground, site_study, size_runs, study)
 from ..studies.road_numbers import Made
 from ..studies.study import OfAKind, RunsFailed, check_more_than, check_thresholds, perform
-from ..tables import answered, intensity, next_step, study_types
+from ..tables import headline, intensity, study_types
 from . import known_arguments, road_arguments
 from .run_arguments import DECK, Intensity, Repeats, Runs, Sample, setup_of
 
@@ -183,23 +182,15 @@ def run_both(args: Request, asked: Site, points: int) -> Made:
                                             alone=False, made=True)
     failed = paper.failed or failed
     assert paper.about
-    made: Dict[str, study_types.Study] = {site_study.STUDY: paper.about, site_study.ENSEMBLE: weighted}
-    found = answered.of_both(paper.about, weighted)
-    governs = site_study.STUDY if found and found.source is Source.PAPER else site_study.ENSEMBLE
-    number = found.about() if found else weighted.headline
-    step = next_step.of_studies([next_step.Made(about, site / name, given=args.given) for name, about in made.items()],
-                                number)
-    made = {name: replace(about, study=replace(about.study, governs=governs), headline=number,
-                          next_step=step.about() if step else None, reach=paper.about.reach,
-                          largest_restitution=paper.about.largest_restitution) for name, about in made.items()}
-    files.write_abouts({site / name: about for name, about in made.items()})
-    for name, study_ in made.items():
-        if name != governs:
-            write_site_report(site / name, site / PAGES[name], study_, asked, film=False, quiet=args.quiet)
+    made = headline.conclude({site / site_study.STUDY: paper.about, site / site_study.ENSEMBLE: weighted}, args.given)
+    files.write_abouts(made)
+    (governs, first), *others = made.items()
+    for folder, study_ in others:
+        write_site_report(folder, site / PAGES[folder.name], study_, asked, film=False, quiet=args.quiet)
     if not args.quiet:
-        print("\n".join(console.tell_letter(made[governs])))
-    write_site_report(site / governs, site / road_numbers.PAGE, made[governs], asked, quiet=args.quiet)
-    return Made([made[governs], *(about for name, about in made.items() if name != governs)], failed)
+        print("\n".join(console.tell_letter(first)))
+    write_site_report(governs, site / road_numbers.PAGE, first, asked, quiet=args.quiet)
+    return Made(list(made.values()), failed)
 
 
 def sizes_of(args: Request) -> site_study.Asked:

@@ -13,7 +13,6 @@ import numpy as np
 
 from .. import disk
 from ..case import logs, run_folders
-from ..deposits import deposit, scar
 from ..digits import metres, percent, three_at_least
 from ..errors import SlopeError
 from ..findings import Finding, texts
@@ -22,7 +21,7 @@ from ..quantiles import within
 from ..statistics import answer, emulator, hazard
 from ..statistics.entries import Analysis, KnownQuantile
 from ..survey.rasters import Place
-from ..tables import answer_words, combinations, ensemble_types, quantities, sizes
+from ..tables import answer_words, combinations, ensemble_types, quantities, sizes, usable
 from ..tables.rows import Finished, Row, finished_of
 from . import conditioned, ensemble_maps, farther, known_influence
 from .sample import Sample
@@ -60,21 +59,16 @@ def check_condition(asked: known.Choice, name: Optional[str], site: Optional[Pat
 
 def mobility_of(condition: Condition, folder: Path, summary: Path) -> exceedance.Mobility:
     """The Mobility by which runs count; folder, summary: of a run, of whose body it is if there is no site."""
-    found = condition.found or found_of(condition, folder, summary)
-    return found.by_set if condition.named and found.by_set else found.decides
-
-
-def found_of(condition: Condition, folder: Path, summary: Path) -> known.Found:
-    """The mass of a run among known events."""
-    log = logs.Log(folder / logs.LOG).update()
-    terrain = log.terrain and folder / log.terrain
-    if not terrain or not terrain.is_file():
-        raise SlopeError(folder, "must have a deck with region terrain, for the ground before the collapse")
-    prefix = run_folders.prefix_of(summary)
-    found = deposit.read_deposit(prefix, terrain, lambda text: None)
-    before, depth = scar.before(found.raster, found.base, terrain)
-    return known.compute_known_mobility(body.of_arrays(found.raster._replace(z=before), depth, str(prefix)),
-                                        condition.asked)
+    among = condition.found
+    if among is None:
+        log = logs.Log(folder / logs.LOG).update()
+        terrain = log.terrain and folder / log.terrain
+        if not terrain or not terrain.is_file():
+            raise SlopeError(folder, "must have a deck with region terrain, for the ground before the collapse")
+        among, why = usable.known_of(run_folders.prefix_of(summary), terrain, condition.asked.about())
+        if among is None:
+            raise SlopeError(folder, f"must have a mass that can be compared with known events: {why}")
+    return among.by_set if condition.named and among.by_set else among.decides
 
 
 # --- evaluation ---

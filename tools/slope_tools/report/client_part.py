@@ -7,7 +7,7 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 from .. import digits
 from ..findings import Finding
 from ..statistics.answer import Kind
-from ..studies import letter, letter_words
+from ..studies import letter
 from ..studies.letter import Letter
 from ..tables import judged, next_step, sizes, usable
 from ..tables.quantities import ALL
@@ -24,8 +24,9 @@ def make_client_content(data: Data, ground, numbers: Numbers, answers: Sequence[
     """
     letter_ = letter_of(data, ground)
     main = next((card for card in answers if card), None)
-    paragraphs = letter_words.say(letter_, numbers)._replace(down=body.sentence(body.of_data(data, ground)))
-    step, kind = choose_next_step(data), letter_.number.kind if letter_.number else Kind.NUMBER.value
+    paragraphs = letter.write_letter(letter_, numbers)._replace(down=body.sentence(body.of_data(data, ground)))
+    step = data.study.next_step if data.study else None
+    kind = letter_.number.kind if letter_.number else Kind.NUMBER.value
     if not letter_.number and main:     # of an ensemble that no known events weigh
         paragraphs = paragraphs._replace(clear=of_card(main))
         if main.withheld:
@@ -37,7 +38,7 @@ def make_client_content(data: Data, ground, numbers: Numbers, answers: Sequence[
 def letter_of(data: Data, ground) -> Letter:
     """That of a study, or of a run alone."""
     if data.study:
-        return letter.of_study(data.study)
+        return letter.make_letter(data.study)
     row = data.result.row
     return Letter(row.released_m3, None, None, usable.reach([row], None, ground.known), [],
                   [one.kind for one in judged.limits(None, False)], sizes.alone(row.released_m3 / row.ball_m3))
@@ -46,12 +47,6 @@ def letter_of(data: Data, ground) -> Letter:
 def unsaid(letter_: Letter, findings: Sequence[Finding]) -> List[Finding]:
     """The findings without what the letter says already."""
     return [each for each in findings if each.kind not in letter_.lacks]
-
-
-def choose_next_step(data: Data) -> Optional[next_step.Step]:
-    """The next step of the headline."""
-    said = data.study.next_step if data.study else None
-    return next_step.Step(**vars(said)) if said else None
 
 
 def of_card(main: MainCard) -> str:
@@ -68,8 +63,8 @@ def tabulate_ranges(data: Data, ground, numbers: Numbers, kind: str) -> Pairs:
     cleared = road_part.on_first_page(data, numbers, kind == Kind.WITHHELD.value)
     rows = [*on_road(data, numbers), *(("clearing", text) for text in cleared), *moving(data, numbers),
             *structures(data, ground), *mapped(data, numbers)]
-    runs = f"From the least to the most of {letter_words.alike(data.study)}, each counted alike." if data.study else ""
-    return Pairs(rows, caption=runs)
+    runs = letter.describe_alike_runs(data.study) if data.study else ""
+    return Pairs(rows, caption=runs and f"From the least to the most of {runs}, each counted alike.")
 
 
 def span(numbers, key, values) -> str:

@@ -3,7 +3,7 @@ from .. import provenance
 from ..animation import film, frames, view
 from ..plots.ground import Ground
 from ..plots.section import Section
-from ..studies import letter_words
+from ..studies import letter
 from ..tables import quantities
 from ..tables.quantities import On
 from . import (body, chain_part, client_part, convergence_part, ensemble_part, heading, intensity_part, limits_part,
@@ -76,6 +76,6 @@ class Page:
         """Name, title, and purpose: the first line of the deck, whose others are for those who run it."""
         data, first = self.data, run_part.deck_of(self.data)[1].split("\n", 1)[0]
         name = self.heading["project"] or data.folder.absolute().name
-        runs = letter_words.titles(data.study) if data.study else "one run"
+        runs = letter.title_runs(data.study) if data.study else "one run"
         purpose = first.lstrip("# ").removesuffix("; made by slope site, yours to change") if first[:1] == "#" else ""
         return {"name": name, "title": f"Slope collapse: {name}", "what": f"Slope collapse, {runs}", "purpose": purpose}

@@ -1,14 +1,17 @@
 """What is asked of a route, kept in its folder: route.yaml."""
+import functools
 import os
 import shutil
+from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Tuple, Union, get_args, get_origin, get_type_hints
+from typing import Any, Dict, List, Mapping, Optional, Tuple
 
 import numpy as np
 
 from .. import disk, schemas
 from ..errors import SlopeError
 from ..releases.packing import BULK
+from ..sites.site_keys import NEEDED, key, section_schema
 from ..survey import file_parts, roads, vectors, zips
 
 NAME = "route.yaml"
@@ -26,53 +29,53 @@ OF = ("terrain", "crs", "assign_crs", "z_unit", "nodata", "differ", "cell", "fil
 # may change once bodies are there: only the evaluation of their runs has it
 LATER = ("sample", "fragility", "name", "client", "author", "blocked", "lane", "clearing", "loosening", "cut_angle",
          "mesh")
-NEEDED = ("terrain", "road", "road_width", "corridor", "density")
+GIVEN = ("terrain", "road", "road_width", "corridor", "density")        # with the command, or before
 STRENGTH = ("cohesion", "friction")     # not of bodies that are given: without them these have no factor of safety
-VARY = ("rolling=0:0.1", "packing=1:1000000")
 
 
-class Choices(NamedTuple):
+@dataclass(frozen=True)
+class Choices:
     """The options of the command, with their units; see its help."""
-    terrain: List[str]
-    road: str
-    road_width: float
-    corridor: float
-    cohesion: Optional[float]
-    friction: Optional[float]
-    density: float
-    water: Optional[float] = None
-    crs: Optional[str] = None
-    assign_crs: Optional[str] = None
-    z_unit: Optional[str] = None
-    nodata: Optional[List[float]] = None
-    differ: Optional[float] = None
-    cell: Optional[float] = None
-    fill: int = 0
-    road_from: float = 0.0
-    blocked: float = roads.NOTHING.blocked
-    lane: Optional[float] = None
-    clearing: Optional[float] = None
-    loosening: Optional[float] = None
-    cut_angle: float = 30.0
-    mesh: float = 10.0
-    volume: Optional[List[float]] = None
-    depth: Optional[List[float]] = None
-    keep: int = 3
-    below: float = 1.5
-    bodies: Optional[str] = None
-    shape: Optional[str] = None
-    ground: Optional[str] = None
-    ground_table: Optional[str] = None
-    reach: float = 0.01
-    confined: str = "unknown"
-    sample: int = 4
-    vary: List[str] = list(VARY)
-    balls: Optional[int] = None
-    minutes: Optional[float] = None
-    fragility: Optional[str] = None
-    name: Optional[str] = None
-    client: Optional[str] = None
-    author: Optional[str] = None
+    terrain: List[str] = key(NEEDED, fewest=1)
+    road: str = key(NEEDED)
+    road_width: float = key(NEEDED)
+    corridor: float = key(NEEDED)
+    cohesion: Optional[float] = key(NEEDED)
+    friction: Optional[float] = key(NEEDED)
+    density: float = key(NEEDED)
+    water: Optional[float] = key(None)
+    crs: Optional[str] = key(None)
+    assign_crs: Optional[str] = key(None)
+    z_unit: Optional[str] = key(None)
+    nodata: Optional[List[float]] = key(None)
+    differ: Optional[float] = key(None)
+    cell: Optional[float] = key(None)
+    fill: int = key(0)
+    road_from: float = key(0.0)
+    blocked: float = key(roads.NOTHING.blocked)
+    lane: Optional[float] = key(None)
+    clearing: Optional[float] = key(None)
+    loosening: Optional[float] = key(None)
+    cut_angle: float = key(30.0)
+    mesh: float = key(10.0)
+    volume: Optional[List[float]] = key(None, fewest=2, most_items=2)
+    depth: Optional[List[float]] = key(None, fewest=2, most_items=2)
+    keep: int = key(3, least=1)
+    below: float = key(1.5)
+    bodies: Optional[str] = key(None)
+    shape: Optional[str] = key(None)
+    ground: Optional[str] = key(None)
+    ground_table: Optional[str] = key(None)
+    reach: float = key(0.01)
+    confined: str = key("unknown", of=("yes", "no", "unknown"))
+    sample: int = key(4, least=1)
+    vary: List[str] = key(["rolling=0:0.1", "packing=1:1000000"])
+    balls: Optional[int] = key(None)
+    minutes: Optional[float] = key(None)
+    fragility: Optional[str] = key(None)
+    name: Optional[str] = key(None)
+    client: Optional[str] = key(None)
+    author: Optional[str] = key(None)
 
     @property
     def asked(self) -> roads.Asked:
@@ -84,25 +87,12 @@ class Choices(NamedTuple):
         return round(self.density * BULK, 1)
 
 
+@functools.lru_cache
 def schema() -> Dict[str, Any]:
     """Of route.yaml: the choices."""
-    fields = {name: of_hint(hint) for name, hint in get_type_hints(Choices).items()}
-    fields.update(terrain=schemas.list_of(schemas.TEXT, 1), keep=schemas.COUNT, sample=schemas.COUNT,
-                  confined={"enum": ["yes", "no", "unknown"]})
-    for name in ("volume", "depth"):
-        fields[name] = {**schemas.list_of(schemas.NUMBER, 2, null=True), "maxItems": 2}
-    needed = {"slope_route": {"enum": [VERSION]}, **{name: fields.pop(name) for name in NEEDED}}
-    return {**schemas.mapping(needed), "properties": {**needed, **fields, SOURCES: schemas.OBJECT},
-            "additionalProperties": False}
-
-
-def of_hint(hint: Any) -> Dict[str, Any]:
-    """The schema of a field."""
-    if get_origin(hint) is Union:
-        return {"anyOf": [of_hint(get_args(hint)[0]), {"type": "null"}], "description": "a value of its kind, or null"}
-    if get_origin(hint) is list:
-        return schemas.list_of(of_hint(get_args(hint)[0]))
-    return {str: schemas.TEXT, float: schemas.NUMBER, int: {"type": "integer"}}[hint]
+    about = section_schema(Choices)
+    return {**about, "required": ["slope_route", *about["required"]],
+            "properties": {"slope_route": {"enum": [VERSION]}, **about["properties"], SOURCES: schemas.OBJECT}}
 
 
 def option(name: str) -> str:
@@ -113,13 +103,13 @@ def settle(folder: Path, given: Mapping[str, Any]) -> Choices:
     """The choices of a folder with those that are given now, checked and kept; SlopeError if they do not fit."""
     path = folder / NAME
     made, before = read_route(folder) if path.is_file() else (None, {})
-    known = made._asdict() if made else {}
+    known = asdict(made) if made else {}
     changed = [name for name, value in given.items() if known and not is_same_choice(name, known[name], value)]
     for name in changed:
         if name not in LATER and (folder / TABLE).is_file():
             raise SlopeError(option(name), f"must be that of {path}, whose bodies and runs it has made: take another "
                              "folder", given[name])
-    for name in NEEDED:
+    for name in GIVEN:
         if name not in {**known, **given}:
             raise SlopeError(option(name), f"must be given, or the folder of a route with {NAME}")
     none: Dict[str, Any] = dict.fromkeys(STRENGTH)
@@ -153,7 +143,7 @@ def content(files: Any) -> str:
 def write_route_choices(folder: Path, choices: Choices, sources: Mapping[str, str]) -> None:
     """Write route.yaml, unless it says so already; sources: digests of the files of options."""
     path = folder / NAME
-    about = {name: from_folder(value, folder) if name in FILES else value for name, value in choices._asdict().items()}
+    about = {name: from_folder(value, folder) if name in FILES else value for name, value in asdict(choices).items()}
     text = disk.yaml_text("slope route: m, m3, Pa, degrees, kg/m3; paths as from here",
                           {"slope_route": VERSION, **about, SOURCES: dict(sources)})
     if not path.is_file() or path.read_text(encoding="utf-8") != text:

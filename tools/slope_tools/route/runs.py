@@ -17,7 +17,7 @@ from ..errors import SlopeError
 from ..runs import jobs
 from ..sites import site, site_budget, site_choices, site_deck, site_zones
 from ..sites.site_roads import ROAD
-from ..sites.site_sections import Ground, Key, OfMass
+from ..sites.site_sections import VERSION, Ground, Key, OfMass
 from ..slips import bodies
 from ..statistics import designs
 from ..studies import results, site_study, study
@@ -86,7 +86,7 @@ def choices_of(choices: Choices, slips: Path, body: Mapping[str, Any], number: i
     if choices.minutes:     # a site's are those of its own study, which has more runs
         minutes = choices.minutes / number * site_budget.plan_budget(choices_of_site).runs / choices.sample
         choices_of_site = replace(choices_of_site, balls=replace(choices_of_site.balls, minutes=minutes))
-    site_choices.check_site_file({"slope_site": site_choices.VERSION, **choices_of_site.entries()}, str(slips))
+    site_choices.check_site_file({"slope_site": VERSION, **choices_of_site.entries()}, str(slips))
     return choices_of_site
 
 

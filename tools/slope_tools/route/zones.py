@@ -18,9 +18,8 @@ from ..deposits import deposit
 from ..errors import SlopeError
 from ..survey.geopackage import Layer
 from ..survey.rasters import Raster, crs_name
-from ..tables import answered, ensemble_types, named_run
+from ..tables import ensemble_types, named_run, study_file
 from ..tables.rows import Failed, finished_of
-from ..tables.study_file import load_study
 from . import choices, corridor, reached, results, search
 from .reached import Source
 from .yearly import Yearly
@@ -90,12 +89,12 @@ def ground_of(name: str, warn) -> Ground:
                       [results.read_body(folder, about).source for about in table["bodies"]],
                       results.yearly_of(asked, folder, table["bodies"]),
                       {about["body"]: about["known_law"] for about in table["bodies"]})
-    study = answered.study_in(folder, weighted=True)
+    study = study_file.study_in(folder, weighted=True)
     if study is None and not (folder / "site.yaml").is_file():
         run = deposit.read_deposit(named_run.read_named_run(name).prefix, None, warn)
         return Ground(run.raster, [Source(1, [Path(run.prefix)], np.ones(1), 0, run.raster.offset)], None, {})
     study = study or folder
-    study_ = load_study(study / answered.STUDY)
+    study_ = study_file.load_study(study / study_file.STUDY)
     weighted = ensemble_types.weighted(study_.ensemble)
     known = weighted.weights if weighted else None
     rows = [row for row in finished_of(study_.runs) if (row.run in known if known else not row.batch)]

@@ -10,12 +10,11 @@ from ..sites import site_roads
 from ..sites.site_choices import Site
 from ..statistics.entries import Headline
 from ..studies import outdated
-from ..tables import answered, study_types, usable
+from ..tables import headline, study_file, study_types, usable
 from ..tables.rows import Finished, finished_of
-from ..tables.study_file import load_study
 
-# folders of answered.INSIDE, what they are of
-WORDS = dict(zip(answered.INSIDE, ("a sweep", "runs that are weighted by known events")))
+# folders of study_file.INSIDE, what they are of
+WORDS = dict(zip(study_file.INSIDE, ("a sweep", "runs that are weighted by known events")))
 Studies = Mapping[str, study_types.Study]       # by folder
 
 
@@ -28,12 +27,12 @@ class Studied(NamedTuple):
     @property
     def names(self) -> List[str]:
         """Folders of the studies that every road has."""
-        return [name for name in answered.INSIDE if all(name in one for one in self.roads.values())]
+        return [name for name in study_file.INSIDE if all(name in one for one in self.roads.values())]
 
 
 def read_method(site: Site) -> Optional[Studied]:
     """None without a study of the site as it is now."""
-    governs = answered.study_in(site.folder)
+    governs = study_file.study_in(site.folder)
     if governs is None or outdated.changed(site.folder, governs):
         return None
     roads = {name: studies_in(site_roads.results(replace(site, road=name))) for name in site_roads.names(site)}
@@ -44,19 +43,19 @@ def read_method(site: Site) -> Optional[Studied]:
 
 def studies_in(folder: Path) -> Dict[str, study_types.Study]:
     """Those whose number is one: both, where one command made them, else the one that governs."""
-    governs = answered.study_in(folder)
+    governs = study_file.study_in(folder)
     if governs is None:
         return {}
-    about = load_study(governs / answered.STUDY)
-    names = answered.INSIDE if about.study.method in known_study.OF_BOTH else (governs.name,)
-    return {name: about if name == governs.name else load_study(folder / name / answered.STUDY)
-            for name in names if (folder / name / answered.STUDY).is_file()}
+    about = study_file.load_study(governs / study_file.STUDY)
+    names = study_file.INSIDE if about.study.method in known_study.OF_BOTH else (governs.name,)
+    return {name: about if name == governs.name else study_file.load_study(folder / name / study_file.STUDY)
+            for name in names if (folder / name / study_file.STUDY).is_file()}
 
 
 def common(several: Sequence[Optional[Studied]]) -> List[str]:
     """Folders of the studies that all have that have any; none where each has another one."""
     there = [one.names for one in several if one]
-    return [name for name in answered.INSIDE if there and all(name in one for one in there)]
+    return [name for name in study_file.INSIDE if there and all(name in one for one in there)]
 
 
 def taken(studies: Studies, names: Sequence[str]) -> List[study_types.Study]:
@@ -75,7 +74,7 @@ def difference(named: Mapping[str, Optional[Studied]], folders: Mapping[str, Pat
             f"{name}: {WORDS[one[0]] if one else 'several'}" for name, one in there.items()) + "."
     lack = [name for name, one in there.items() if one == names]
     again = ", ".join(f"slope study {quote(str(folders[name]))}" for name in lack)
-    other = next(WORDS[one] for one in answered.INSIDE if one not in names)
+    other = next(WORDS[one] for one in study_file.INSIDE if one not in names)
     return (f"Compared is {WORDS[names[0]]}, which all have: {', '.join(lack)} without {other} ({again} makes both). "
             "With these the numbers of the others may be larger, as the first pages of their reports say.")
 
@@ -88,11 +87,9 @@ def headline_of(studies: Studies, names: Sequence[str]) -> Optional[Headline]:
     if len(mine) == len(studies):
         return mine[0].headline if mine else None
     [about] = mine
-    rows, road = finished_of(about.runs), answered.road_of(about)
-    if road:
-        road = road._replace(longest=usable.longest(rows), brought=usable.at_the_road(rows))
-    found = answered.of_study(about, road)
-    return found.about() if found else None
+    rows, road = finished_of(about.runs), about.headline.road if about.headline else None
+    return headline.make_headline([replace(about, at_road=road and replace(
+        road, longest_m=usable.longest(rows), brought=usable.at_the_road(rows)))])
 
 
 def list_finished_rows(studies: Studies, names: Sequence[str]) -> List[Finished]:

@@ -18,10 +18,9 @@ from ..survey import file_parts, vectors, zips
 from ..survey.crs import as_crs
 from . import site_found
 from .site_found import Found
-from .site_sections import KINDS, PACKING, C, Choices, Key, OfMass, kind_of, schema, sections
+from .site_sections import KINDS, PACKING, VERSION, C, Choices, Key, OfMass, kind_of, schema, sections
 
 NAME = "site.yaml"
-VERSION = 1             # of site.yaml, also in its schema
 LONGEST_TEXT = 200      # letters of a name in the heading of a report
 WHAT = "a site.yaml of `slope site`"
 # keys that hold one file, and lists of files

@@ -8,7 +8,7 @@ from enum import Enum
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from . import entries, rounding
-from .entries import AtRoad, KnownQuantile, Share
+from .entries import KnownQuantile, Road, Share
 from .withheld import Kind as Rule
 
 SHARE = 0.95            # of the known events, which stay within the volume
@@ -58,36 +58,6 @@ class Reason(NamedTuple):
     def read(cls, entry: Mapping[str, Any]) -> "Reason":
         """Of about()."""
         return cls(Code(entry["code"]), entry["numbers"])
-
-
-class Road(NamedTuple):
-    """A road on the fall path: its edges (m), the shares of the known events that reach the near and pass the far one.
-
-    Of a row of landslides by the smaller and the larger scatter, of a set of events twice the same. longest: m, of the
-    runs, without lobes below 1 % of the mass; None: none has a length. brought: what the runs bring to it, all of it.
-    """
-    near: float
-    far: float
-    reached: Tuple[float, float]
-    passed: Tuple[float, float]
-    longest: Optional[float]
-    brought: AtRoad
-
-    @property
-    def missed(self) -> bool:
-        """Whether no run reaches it."""
-        return self.brought.reach == 0
-
-    def some(self) -> Reason:
-        """That runs reach it, where nothing governs."""
-        return Reason(Code.SOME, {key: getattr(self.brought, key) for key in ("runs", "reach", "least_m3", "most_m3")})
-
-    def numbers(self) -> Dict[str, Any]:
-        return {"low": min(self.reached), "high": max(self.reached), "near_m": self.near, "longest_m": self.longest}
-
-    def about(self) -> entries.HeadlineRoad:
-        return entries.HeadlineRoad(self.near, self.far, sorted(self.reached), sorted(self.passed), self.longest,
-                                    self.brought)
 
 
 class Cause(Enum):
@@ -203,7 +173,7 @@ class Answer(NamedTuple):
             entries.PaperPart(paper.volume, [one.rule.value for one in paper.withheld], paper.runs) if paper else None,
             entries.EnsemblePart(at.value if (at := ensemble.at(SHARE)) else None, [
                 one.rule.value for one in ensemble.withheld], ensemble.runs, ensemble.far) if ensemble else None,
-            self.road.about() if self.road else None, [one.about() for one in self.reasons], list(self.band),
+            self.road, [one.about() for one in self.reasons], list(self.band),
             self.open)
 
 
@@ -241,8 +211,8 @@ def of_ensemble(ensemble: Ensemble, road: Optional[Road]) -> Part:
     if road and road.missed:
         low, high = min(road.reached), max(road.reached)
         if low > MANY:
-            return Part(Kind.FLOOR, 0.0, 1 - high, reasons=[Reason(Code.NOT_REACHED, road.numbers()), *stopped])
-        said = [Reason(Code.ONE_SCATTER, road.numbers())] if high > MANY else []
+            return Part(Kind.FLOOR, 0.0, 1 - high, reasons=[explain_missed(road), *stopped])
+        said = [explain_missed(road, Code.ONE_SCATTER)] if high > MANY else []
         return Part(Kind.NUMBER, 0.0, SHARE, reasons=said)
     best = max((each for each in ensemble.quantiles if each.value is not None), key=lambda each: each.share,
                default=None)
@@ -254,7 +224,7 @@ def of_ensemble(ensemble: Ensemble, road: Optional[Road]) -> Part:
     part = Part(Kind.NUMBER, best.value, best.share, band, bound=best.low is not None, open=best.high is None)
     if best.share != SHARE:
         # a terrain that ends behind the road is no reason against its number
-        ends = any(reason.code is Code.TERRAIN and not (road and road.far < reason.numbers["path_m"])
+        ends = any(reason.code is Code.TERRAIN and not (road and road.far_m < reason.numbers["path_m"])
                    for reason in stopped)
         part = part._replace(kind=Kind.FLOOR if ends else Kind.NUMBER,
                              reasons=[explain_known_beyond(ensemble), *stopped])
@@ -266,6 +236,17 @@ def explain_known_beyond(ensemble: Ensemble) -> Reason:
     end = {} if ensemble.path_end is None else {"path_end_m": ensemble.path_end}
     return Reason(Code.BEYOND, {"far": ensemble.far, "longest_m": ensemble.longest, "most_m3": ensemble.most,
                                 "runs": ensemble.runs, **end})
+
+
+def explain_missed(road: Road, code: Code = Code.NOT_REACHED) -> Reason:
+    """That no run reaches it, and how many known events do."""
+    low, high = min(road.reached), max(road.reached)
+    return Reason(code, {"low": low, "high": high, "near_m": road.near_m, "longest_m": road.longest_m})
+
+
+def explain_reached(road: Road) -> Reason:
+    """That runs reach it, where nothing governs."""
+    return Reason(Code.SOME, {key: getattr(road.brought, key) for key in ("runs", "reach", "least_m3", "most_m3")})
 
 
 def correct_part(part: Part, size: Size) -> Part:
@@ -302,9 +283,9 @@ def combine_answers(paper: Optional[Paper], ensemble: Optional[Ensemble], road: 
     volume, some = best.volume or 0.0, []
     if road and not volume:
         if not road.missed:
-            some = [road.some()]
+            some = [explain_reached(road)]
         elif min(road.reached) > MANY and not any(one.code is Code.NOT_REACHED for one in reasons):
-            some = [Reason(Code.NOT_REACHED, road.numbers())]
+            some = [explain_missed(road)]
     open_ = bool(some) or any(
         part.kind is Kind.FLOOR or part.kind is Kind.WITHHELD and not few(part) for _, part in parts)
     low, high = low_high(volume, best.band)

@@ -1,5 +1,5 @@
 """What study.yaml has of quantiles, of emulators and of the headline: see tables/study_types."""
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Dict, List, NamedTuple, Optional, Sequence
 
 
@@ -104,14 +104,29 @@ class EnsemblePart(PaperPart):
 
 
 @dataclass(frozen=True)
-class HeadlineRoad:
-    """The road on the fall path (answer.Road)."""
+class Road:
+    """A road on the fall path: its edges, and the shares of the known events that reach the near and pass the far one.
+
+    Two of each, the smaller one first: of a row of landslides by the smaller and the larger scatter, of a set of events
+    twice the same. longest_m: of the runs, without lobes below 1 % of the mass; None: none has a length. brought: what
+    the runs bring to it, all of it.
+    """
     near_m: float
     far_m: float
-    reached: List[float]
-    passed: List[float]
+    reached: Sequence[float]
+    passed: Sequence[float]
     longest_m: Optional[float]
     brought: AtRoad
+
+    @property
+    def missed(self) -> bool:
+        """Whether no run reaches it."""
+        return self.brought.reach == 0
+
+    def and_of(self, other: "Road") -> "Road":
+        """With the runs of both."""
+        lengths = [road.longest_m for road in (self, other) if road.longest_m is not None]
+        return replace(other, longest_m=max(lengths, default=None), brought=self.brought.and_of(other.brought))
 
 
 class Share(NamedTuple):
@@ -132,7 +147,7 @@ class Headline:
     source: Optional[str]
     paper: Optional[PaperPart]
     ensemble: Optional[EnsemblePart]
-    road: Optional[HeadlineRoad]
+    road: Optional[Road]
     reasons: List[Dict[str, Any]]   # answer.Reason.about()
     band: List[Share]
     open_above: bool = False        # nothing but the runs bounds it from above

@@ -4,8 +4,8 @@ from typing import Any, Callable, List
 
 from ..ensembles import ensemble, known_study
 from ..seismic import chain_files
-from ..tables import combinations, intensity, next_step, road_runs, structures, study_table, study_types
-from . import letter, letter_words, mapped
+from ..tables import combinations, intensity, road_runs, structures, study_table, study_types
+from . import letter, mapped
 from .outcome import Outcome
 
 SHOWN = 20              # runs of an ensemble whose table is printed
@@ -48,9 +48,7 @@ def tell(outcome: Outcome, study: study_types.Study, output: Path, say: Callable
 
 def tell_letter(study: study_types.Study) -> List[str]:
     """What the first page begins with; a line each."""
-    step = study.next_step
-    return [*letter_words.list_letter_lines(letter.of_study(study)),
-            *([str(next_step.Step(**vars(step)))] if step else [])]
+    return [*letter.list_letter_lines(letter.make_letter(study)), *([str(study.next_step)] if study.next_step else [])]
 
 
 def tell_numbers(study: study_types.Study, output: Path, say: Callable[[Any], Any]) -> None:

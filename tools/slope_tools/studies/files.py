@@ -7,7 +7,7 @@ from .. import disk
 from ..ensembles import ensemble
 from ..seismic import chain_files
 from ..survey.rasters import Place
-from ..tables import (answered, combinations, elastic, intensity, road_runs, structures, study_file, study_table,
+from ..tables import (combinations, elastic, intensity, road_runs, structures, study_file, study_table,
                       study_types)
 from .outcome import Outcome
 
@@ -50,6 +50,6 @@ def write_or_remove(path: Path, text: Optional[str]) -> None:
 
 def write_abouts(abouts: Mapping[Path, study_types.Study]) -> None:
     """study.yaml in one folder, or in those of both studies of a site, one right after the other."""
-    with disk.write_beside(*(output / answered.STUDY for output in abouts)) as new:
+    with disk.write_beside(*(output / study_file.STUDY for output in abouts)) as new:
         for path, about in zip(new, abouts.values()):
-            path.write_text(disk.yaml_text(answered.TITLE, study_file.encode_study(about)), encoding="utf-8")
+            path.write_text(disk.yaml_text(study_file.TITLE, study_file.encode_study(about)), encoding="utf-8")

@@ -1,12 +1,31 @@
-"""What an engineer writes into a letter, as typed parts: page 1 begins with it and the console ends with it. Words:
-letter_words."""
-from typing import NamedTuple, Optional, Sequence
+"""The letter with which page 1 begins and the console ends: what must be cleared, how far it goes, which share of known
+events; its parts, then a sentence for each.
 
-from ..mobility.how_far import Reach
-from ..statistics.entries import Headline
-from ..tables import ensemble_types, judged, sizes, study_types
+The number and its share are of tables/headline, the length is of tables/usable.reach(): README.md has the whole way.
+"""
+from typing import Callable, List, NamedTuple, Optional, Sequence
+
+from ..digits import percent, three
+from ..mobility.how_far import TAIL, Reach
+from ..statistics.answer import Cause, Code, Kind, Source
+from ..statistics.entries import Headline, PaperPart, Road
+from ..tables import answer_words, ensemble_types, judged, sizes, study_types
 from ..tables.rows import finished_of
 from .road_numbers import Number, read_road_numbers
+
+Write = Callable[[str, str, float], str]        # a number of what, in which unit, as text
+ALIKE = {Source.PAPER.value: "with chosen settings", Source.ENSEMBLE.value: "with drawn settings"}
+OF = {**ALIKE, Source.ENSEMBLE.value: "weighted by known events"}
+EVENTS = "known events of this volume and height"
+CAUSES = {Cause.RUNS.value: "chance and parameters", Cause.TRANSFER.value: "from the coarse to the detailed model",
+          Cause.SIZE.value: "a still more detailed model", Cause.OTHER.value: "the other runs"}
+NARROWS = {Cause.RUNS.value: "more runs, or a past event for calibration", Cause.TRANSFER.value:
+           "more runs of the detailed model", Cause.SIZE.value: "a more detailed model"}
+LACKS = {"no repeats": "what chance changes, as no run was repeated",
+         "slip assumed": "whether, and how likely, the slope fails, and with which slip surface"}
+DRY = "water in the mass or on its way, with which it would go farther"
+TOLD = Code.NOT_REACHED,       # reasons that are said with the road
+REMOVE = "volume to remove from the road"
 
 
 class Letter(NamedTuple):
@@ -28,7 +47,7 @@ class Letter(NamedTuple):
     events: Optional[int] = None
 
 
-def of_study(study: study_types.Study) -> Letter:
+def make_letter(study: study_types.Study) -> Letter:
     """Of a study with a finished run."""
     rows, number = finished_of(study.runs), study.headline
     known = ensemble_types.weighted(study.ensemble)
@@ -39,3 +58,238 @@ def of_study(study: study_types.Study) -> Letter:
                   study.size.text if study.size else sizes.alone(max(
                       (row.released_m3 / row.ball_m3 for row in rows), default=0.0)),
                   study.study.road["cut_angle"] if study.study.road else None, known.events if known else None)
+
+
+class Sentences(NamedTuple):
+    """Sentences; empty where there is nothing to say."""
+    down: str
+    clear: str
+    basis: str          # of which runs the number is, and what makes its band
+    far: str
+    roads: str
+    change: str
+    lacks: str
+    size: str
+
+
+def format_console_number(_: str, __: str, value: float) -> str:
+    """A number on the console."""
+    return three(value)
+
+
+def write_letter(letter: Letter, write: Write = format_console_number) -> Sentences:
+    number = letter.number
+    clear = describe_clearing(number, write) if number else ""
+    basis = f"{describe_cut(letter)} {describe_basis(number, letter, write)}".strip() if number else ""
+    far, roads = describe_reach(letter.reach, write), describe_roads(letter, write)
+    lacks = "; ".join([DRY, *(LACKS[kind] for kind in letter.lacks if kind in LACKS)])
+    in_band = sizes.UNKNOWN not in letter.size and number and any(
+        share.cause == Cause.SIZE.value for share in number.band)
+    return Sentences(f"{three(letter.released)} m3 of ground would come down.", clear, basis, far, roads,
+                     describe_change(number) if number else "", f"Not in it: {lacks}.",
+                     capital(letter.size) + " The band has it." * bool(in_band))
+
+
+def list_letter_lines(letter: Letter) -> List[str]:
+    """For the console."""
+    return ["for a letter:", *(f"  {text}" for text in write_letter(letter) if text)]
+
+
+def capital(text: str) -> str:
+    """A sentence of a text without its full stop."""
+    return f"{text[0].upper()}{text[1:]}." if text else ""
+
+
+def describe_alike_runs(study: study_types.Study) -> str:
+    """The runs of a study, where each counts as much."""
+    return counted(study.study.finished, ALIKE[(Source.ENSEMBLE if study.ensemble else Source.PAPER).value])
+
+
+def count_runs_of(number: Headline, source: Source) -> str:
+    """How many runs of a study there are, and what kind of them."""
+    part = number.paper if source is Source.PAPER else number.ensemble
+    return counted(part.runs if part else 0, OF[source.value])
+
+
+def counted(runs: int, which: str = "") -> str:
+    return f"{runs} run{'s' * (runs != 1)} {which}".strip()
+
+
+# --- what must be cleared ---
+
+def describe_cut(letter: Letter) -> str:
+    """What to clear means."""
+    if letter.cut is None or not (letter.number and letter.number.volume_m3):
+        return ""
+    return ("That is what lies on it, and what beside it would slide onto it, "
+            f"above {letter.cut:g} degrees from its edges.")
+
+
+def describe_clearing(number: Headline, write: Write) -> str:
+    """The sentence with the number, or what stands in its place."""
+    return {Kind.NUMBER: describe_number, Kind.FLOOR: describe_floor, Kind.OPEN: describe_open,
+            Kind.WITHHELD: describe_withheld_number, Kind.NOTHING: describe_nothing}[Kind(number.kind)](number, write)
+
+
+def describe_number(number: Headline, write: Write) -> str:
+    low, high = (write(f"{REMOVE}, {name} end", "m3", value or 0.0)
+                 for value, name in ((number.low_m3, "lower"), (number.high_m3, "upper")))
+    ends = f"between {low} and {high} m3"
+    if not has_chance(number):
+        ends += ", without what chance changes, as no run was repeated"
+    elif number.open_above:
+        ends = f"with 95 % confidence above {low} m3, and below {high} m3 as far as these runs go"
+    else:
+        ends = f"with 90 % confidence {ends}"
+    return (f"{write(REMOVE, 'm3', number.volume_m3 or 0.0)} m3 must be cleared from the road; within the model this "
+            f"figure lies {ends}.")
+
+
+def has_chance(number: Headline) -> bool:
+    """Whether what chance changes is in the band."""
+    return any(one.cause == Cause.RUNS.value for one in number.band)
+
+
+def describe_floor(number: Headline, write: Write) -> str:
+    if number.volume_m3:
+        return (f"At least {write(f'{REMOVE}, at least', 'm3', number.volume_m3)} m3 must be cleared from the road: no "
+                "number to design with.")
+    reached = number.road and number.road.brought.reach
+    where = "" if reached else ", where the mass reaches it as known events do and no run does"
+    return f"More than 0 m3 must be cleared from the road{where}; how much is not known."
+
+
+def describe_open(number: Headline, write: Write) -> str:
+    return (f"{write(f'{REMOVE}, of these runs', 'm3', number.volume_m3 or 0.0)} m3 must be cleared from the road by "
+            "these runs, which is neither an upper nor a lower bound: no number to design with.")
+
+
+def describe_withheld_number(_: Headline, __: Write) -> str:
+    return ""       # page 1 begins with what is known: see describe_change()
+
+
+def describe_nothing(number: Headline, write: Write) -> str:
+    return (f"{write(REMOVE, 'm3', 0.0)} m3 must be cleared from the road, by these runs: in none does anything come "
+            "to lie on it.")
+
+
+def describe_basis(number: Headline, letter: Letter, write: Write) -> str:
+    """Of which runs it is, what the others give, and what makes its band."""
+    if not number.volume_m3 or not number.source:
+        return ""
+    source, lower = Source(number.source), "It is the lower end, with 90 % confidence, of what"
+    runs, floor = count_runs_of(number, source), Kind(number.kind) is Kind.FLOOR
+    beside: Optional[PaperPart]
+    if source is Source.ENSEMBLE:
+        many = "" if letter.events is None else f"{letter.events} recorded landslides, "
+        events = f"{percent(number.share or 0.0)} of {many}{EVENTS}" + "," * bool(many)
+        text = f"{lower} {events} stay within, by {runs}" if floor else f"{events} leave no more, by {runs}"
+        if number.ensemble and number.ensemble.far and all(
+                reason.code is not Code.BEYOND for reason in answer_words.told(number)):
+            text += f"; {percent(number.ensemble.far)} go beyond all runs and may leave more than any of these"
+        other, beside = Source.PAPER, number.paper
+    else:
+        text = f"{lower} those of {runs} leave that leave most" if floor else \
+            f"By those of {runs} that leave most" + ", with what chance may add" * has_chance(number)
+        other, beside = Source.ENSEMBLE, number.ensemble
+    if beside and beside.volume_m3 is not None:
+        text += f"; {count_runs_of(number, other)} give {write(f'{REMOVE}, other runs', 'm3', beside.volume_m3)} m3"
+    if letter.gap:
+        low, high = (write(f"{REMOVE}, {end} of the gap where no run ends", "m3", value)
+                     for end, value in zip(("begin", "end"), letter.gap))
+        text += f"; no run ends where these events do, between {low} and {high} m3, of which the larger counts"
+    parts = describe_band_shares(number) if number.high_m3 is not None else ""
+    return f"{text}." + (f" The band, as the root of the squares: {parts}." if parts else "")
+
+
+def describe_band_shares(number: Headline) -> str:
+    """What makes the band."""
+    return ", ".join(CAUSES.get(one.cause, one.cause) + f" -{three(abs(one.below_m3))}" * bool(one.below_m3) +
+                     f" +{three(one.above_m3)}" * bool(one.above_m3) + " m3"
+                     for one in number.band if one.below_m3 or one.above_m3)
+
+
+def describe_change(number: Headline) -> str:
+    """Why there is no number, or what would change the one that there is."""
+    reasons = [capital(answer_words.client(one)) for one in answer_words.told(number) if one.code not in TOLD]
+    if Kind(number.kind) in (Kind.NUMBER, Kind.NOTHING):
+        parts = [one for one in number.band if one.below_m3 or one.above_m3]
+        if not reasons and parts and number.volume_m3:
+            most = max(parts, key=lambda part: max(part.below_m3, part.above_m3))
+            return f"What would narrow the band most: {NARROWS[most.cause]}." if most.cause in NARROWS else ""
+        return f"What would change it: {' '.join(reasons)}" if reasons else ""
+    why = "How much must be cleared from the road is not known." if Kind(number.kind) is Kind.WITHHELD else "Why:"
+    return f"{why} {' '.join(reasons)}" if reasons else ""
+
+
+# --- how far ---
+
+def describe_reach(reach: Optional[Reach], write: Write) -> str:
+    """One sentence on how far, and by what rule."""
+    if reach is None:
+        return "How far it goes is not known: no run leaves a deposit."
+    runs = counted(reach.runs, ALIKE.get(reach.source or "", ""))
+    rule = f"by {runs}"
+    if reach.events:
+        rule = f"{runs} and {EVENTS} count half each; {percent(TAIL)} end before these bounds, {percent(TAIL)} beyond"
+    text = f"{describe_distances(reach, write)} {reach.along} from the crown. {capital(rule)}"
+    if reach.farther:
+        text += f" The two differ by more than their bands: {reach.farther} go farther."
+    return text + ("" if reach.events or not reach.why else f" {capital(reach.why)}")
+
+
+def describe_distances(reach: Reach, write: Write) -> str:
+    near, middle, last = (
+        describe_beyond(reach, write) if value is None else write_length(reach, value, write, name)
+        for value, name in ((reach.near_m, "near end"), (reach.middle_m, "middle"), (reach.far_m, "far end")))
+    if near == last:
+        return f"It goes {middle}"
+    if reach.middle_m is None:
+        return f"It goes {near} or more, in half of all cases {middle},"
+    return f"It goes about {middle} ({near.removesuffix(' m') if last.endswith(' m') else near} to {last})"
+
+
+def describe_beyond(reach: Reach, write: Write) -> str:
+    end = f" {write('how far, end of the elevation model', 'm', reach.end_m)} m that" if reach.end_m else " way that"
+    return f"beyond the{end} the elevation model shows"
+
+
+def write_length(reach: Reach, value: float, write: Write, name: str) -> str:
+    """Nearer than the events tell anything it may be less."""
+    text = write(f"how far, {name}", "m", max(value, reach.least_m))
+    return f"{text} m{' or less' * (value <= reach.least_m)}"
+
+
+def describe_roads(letter: Letter, write: Write) -> str:
+    """What that means for the road, or for each."""
+    road = letter.number.road if letter.number else None
+    both = " of both kinds" * bool(letter.number and letter.number.paper and letter.number.ensemble)
+    text = describe_road_reach(road, both, write) if road else ""
+    if not letter.roads:
+        return text
+    others = "; ".join(map(describe_road_number, letter.roads[1:]))
+    return f"{text} Of {len(letter.roads)} roads this is the worst, {quoted(letter.roads[0].road)}; {others}.".strip()
+
+
+def describe_road_reach(road: Road, both: str, write: Write) -> str:
+    some = f"{road.brought.reach or 'none'} of {counted(road.brought.runs)}{both}"
+    return (f"The road begins after {write('road, near edge', 'm', road.near_m)} m: "
+            f"{answer_words.format_shares(road.reached)} of {EVENTS}, and {some}, reach it.")
+
+
+def describe_road_number(number: Number) -> str:
+    events = f" and up to {percent(number.reached)} of known events" if number.reached else ""
+    return f"{quoted(number.road)}: {number.text}, {number.reaching or 'none'} of {number.runs} runs{events} reach it"
+
+
+def quoted(name: str) -> str:
+    return f'"{name}"'
+
+
+def title_runs(study: study_types.Study) -> str:
+    """The runs of a page, for its title."""
+    number = study.headline
+    if not number:
+        return describe_alike_runs(study)
+    return " and ".join(count_runs_of(number, source) for source in Source
+                        if (number.paper if source is Source.PAPER else number.ensemble))

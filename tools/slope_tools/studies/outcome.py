@@ -20,8 +20,8 @@ from ..seismic import chain_files
 from ..sites.site_bodies import VARIABLE
 from ..statistics.answer import Source
 from ..statistics.conservative_volume import Scatter
-from ..tables import (answered, combinations, elastic, ensemble_types, intensity, judged, quantities, road_runs,
-                      step_check, study_types, usable, withheld_words)
+from ..tables import (combinations, elastic, ensemble_types, intensity, judged, quantities, road_runs, step_check,
+                      study_types, usable, withheld_words)
 from ..tables.rows import Finished, Row, finished_of
 from .size_runs import AtFinest
 
@@ -91,7 +91,7 @@ class Read(NamedTuple):
 
 @dataclass(frozen=True)
 class Outcome:
-    """about: what study.yaml says of it, but for the maps and the next step."""
+    """about: what study.yaml says of it, but for the maps and what tables/headline makes of it, or of both studies."""
     questions: Questions
     read: Read
     groups: Sequence[combinations.Group]
@@ -140,10 +140,9 @@ def evaluate_study(questions: Questions, read: Read, header: study_types.Header)
         roads=[dict(one) for one in questions.roads], warnings=warnings, runs=rows, headline=None,
         reach=usable.reach(finished, source, read.among),
         stretches=evaluate_stretches(finished, known_weights(weighted)) if read.road and finished else None,
-        chain=chain.about if chain else None, intensity=at_intensities, next_step=None)
-    said = answered.of_study(study, read.events and read.events.road(finished))
-    return Outcome(questions, read, groups, names, scatters, warnings, several, chain,
-                   replace(study, headline=said.about() if said else None))
+        chain=chain.about if chain else None, intensity=at_intensities, next_step=None,
+        at_road=read.events and read.events.road(finished))
+    return Outcome(questions, read, groups, names, scatters, warnings, several, chain, study)
 
 
 def collect_study_warnings(questions: Questions, read: Read) -> List[Finding]:

@@ -4,16 +4,13 @@ from pathlib import Path
 from shlex import quote
 from typing import Optional
 
-from .. import disk, schemas
+from .. import disk
 from ..case import run_folders
 from ..case.data_files import data_files
 from ..errors import SlopeError
 from ..runs import dependencies, jobs
-from ..schemas import OBJECT, list_of, mapping
 from ..sites import site_choices, site_deck, site_roads
-from ..tables import named_run
-
-SCHEMA = mapping({}, study=mapping({}, road=mapping({}, null=True)), roads=list_of(OBJECT))
+from ..tables import named_run, study_file
 
 
 def changed(site: Path, study: Path) -> Optional[str]:
@@ -32,15 +29,10 @@ def changed(site: Path, study: Path) -> Optional[str]:
 
 
 def road_changed(folder: Path, study: Path) -> Optional[str]:
-    """That the road of a study, or how it is cleared, is another one than the site's; else None, as where an older one
-    does not say it."""
-    site, about = site_choices.load_site(folder), schemas.load_checked(study / named_run.STUDY,
-                                                                       "what `slope study` wrote", SCHEMA)
-    if "study" not in about:
-        return None
-    road, had, above = site.choices.road, about["study"].get("road"), Path(os.path.abspath(study)).parent
-    known = [str(one["road"]) for one in about.get("roads") or ()] if above.parent.name != site_roads.FOLDER \
-        else [above.name]
+    """That the road of a study, or how it is cleared, is another one than the site's; else None."""
+    site, made = site_choices.load_site(folder), study_file.load_study(study / study_file.STUDY)
+    road, had, above = site.choices.road, made.study.road, Path(os.path.abspath(study)).parent
+    known = [str(number["road"]) for number in made.roads] if above.parent.name != site_roads.FOLDER else [above.name]
     several = site_roads.names(site)
     if not set(known) <= set(several) or above.parent.name != site_roads.FOLDER and set(known) != set(several):
         return "choice of roads"

@@ -15,7 +15,7 @@ from ..mobility.exceedance import Mobility
 from ..runs import jobs
 from ..runs.repeats import Repeat
 from ..survey import geopackage, roads
-from ..tables import elastic, next_step, road_runs, study_maps, study_types, usable, withheld_words
+from ..tables import elastic, headline, road_runs, study_maps, study_types, usable, withheld_words
 from ..tables.rows import Finished, Row, finished_of
 from . import body_depth, console, files, mapped, size_runs
 from .outcome import Questions, Read, evaluate_study
@@ -47,11 +47,11 @@ def collect_results(setup: Setup, questions: Questions, todo: Sequence[Repeat],
         body=os.path.relpath(setup.body.resolve(), setup.output.resolve()) if setup.body else None,
         road=write_study_road(setup.output, setup.road, first) if setup.road and first else None)
     outcome = evaluate_study(questions, inputs, header)
-    step = next_step.of_studies([next_step.Made(outcome.about, setup.output, given=setup.given)],
-                                outcome.about.headline) if questions.alone else None    # of both studies: theirs
+    about = replace(outcome.about, envelope=maps.envelope, exceedance=maps.exceedance)
+    if questions.alone:
+        about = headline.conclude({setup.output: about}, setup.given)[setup.output]
     size_runs.write_levels(setup, at, questions.settings, questions.repeated, work.defaults)
-    study = files.write_study_files(outcome, replace(outcome.about, envelope=maps.envelope, exceedance=maps.exceedance,
-                                                     next_step=step.about() if step else None), setup.output, place)
+    study = files.write_study_files(outcome, about, setup.output, place)
     bodies_along = setup.output / f"{road_runs.BODIES}.gpkg"
     if study.stretches and study.stretches.bodies and setup.road and first:
         write_bodies(bodies_along, setup.road, first, study.stretches.bodies)

@@ -1,4 +1,4 @@
-"""The reasons of the headline of study.yaml in words, and its number for tables; its sentence: studies/letter_words."""
+"""The reasons of the headline of study.yaml in words, and its number for tables; its sentence: studies/letter."""
 from typing import Any, Dict, Iterable, List, Mapping, Optional, Tuple
 
 from ..digits import metres, percent, three

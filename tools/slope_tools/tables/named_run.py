@@ -9,9 +9,8 @@ from ..errors import SlopeError
 from ..sites import site_choices
 from ..statistics.entries import KnownQuantile, Quantile
 from . import ensemble_types, sizes, study_types
-from .answered import STUDY, study_in, without_study
 from .rows import Finished, finished_of
-from .study_file import load_study
+from .study_file import STUDY, load_study, study_in, without_study
 
 
 class Named(NamedTuple):

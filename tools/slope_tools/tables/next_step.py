@@ -9,46 +9,16 @@ from ..findings import Finding
 from ..mobility import events
 from ..runs import again
 from ..sites import site_choices, site_roads
-from ..sites.site_budget import duration_text
 from ..statistics.answer import Code, Kind, Reason, Source
 from ..statistics.withheld import Kind as Rule
 from . import answer_words, study_types
 from .rows import finished_of
 from .sizes import VARIABLE
+from .study_types import NextStep
 from .withheld_words import times_the_balls
 
 MORE = 2            # times the runs, where more are needed
-PROGRAM = "tools/slope "
 LESS = {"friction": 0.0, "rolling": 0.0, "spacing": 0.2}      # what resists less with a smaller value, and its least
-
-
-class Step(NamedTuple):
-    """What to do next; command: words to do before, if there are some, and a command; seconds: of computing; None: not
-    known."""
-    text: str
-    command: str
-    seconds: Optional[float]
-
-    @property
-    def time(self) -> str:
-        return "" if self.seconds is None else f", about {duration_text(self.seconds)} of computing on this machine"
-
-    @property
-    def before(self) -> str:
-        """What is to be done before the command, in words."""
-        return self.command.partition(PROGRAM)[0].strip()
-
-    @property
-    def line(self) -> str:
-        """What is to be typed, "" where that is not known."""
-        return "".join(self.command.partition(PROGRAM)[1:])
-
-    def about(self) -> study_types.NextStep:
-        """For study.yaml."""
-        return study_types.NextStep(*self)
-
-    def __str__(self) -> str:
-        return f"next step: {self.text}{self.time}: {self.command}"
 
 
 class Made(NamedTuple):
@@ -88,7 +58,7 @@ class Made(NamedTuple):
         return [*(paper.withheld if paper else ()), *(ensemble_.withheld if ensemble_ else ())]
 
 
-def of_studies(studies: Sequence[Made], headline: Optional[study_types.Headline]) -> Optional[Step]:
+def of_studies(studies: Sequence[Made], headline: Optional[study_types.Headline]) -> Optional[NextStep]:
     """What makes a number of a headline, by the first of its reasons that something can be done about; None where it
     is a number, or there is none.
 
@@ -110,9 +80,9 @@ def of_studies(studies: Sequence[Made], headline: Optional[study_types.Headline]
     return next((step for step in found if step), None) or (more_runs(ensemble) if ensemble else None)
 
 
-def make_next_step(made: Made, code: Code, of: Mapping[str, Any]) -> Optional[Step]:
+def make_next_step(made: Made, code: Code, of: Mapping[str, Any]) -> Optional[NextStep]:
     if code is Code.TERRAIN:
-        return Step(*larger_terrain(made), made.whole)
+        return NextStep(*larger_terrain(made), made.whole)
     if code in (Code.RUNS, Code.FEW):
         return more_runs(made)
     if code is Code.RANGE:
@@ -125,13 +95,13 @@ def make_next_step(made: Made, code: Code, of: Mapping[str, Any]) -> Optional[St
     mine = next((one for one in made.withheld if one.kind == rule.value), None)
     if rule is Rule.LEFT:
         add = mine.numbers.get("add") if mine else ""
-        return Step(*larger_terrain(made, add or ""), made.whole)
+        return NextStep(*larger_terrain(made, add or ""), made.whole)
     words = {Rule.BALLS: "a finer model", Rule.RUNS: "more time for the mass to come to rest",
              Rule.MOBILITY: "runs with less resistance"}
-    return Step(words[rule], mine.remedy, times(made, rule, of)) if mine else None
+    return NextStep(words[rule], mine.remedy, times(made, rule, of)) if mine else None
 
 
-def first_remedy(made: Made) -> Optional[Step]:
+def first_remedy(made: Made) -> Optional[NextStep]:
     """Of a study whose number is withheld: what mends the first of its reasons."""
     found = [make_next_step(made, Code.RULE, {**one.numbers, "rule": one.kind}) for one in made.withheld]
     return found[0] if found else None
@@ -146,19 +116,19 @@ def times(made: Made, rule: Rule, of: Mapping[str, Any]) -> Optional[float]:
     return None if whole is None else factor * whole
 
 
-def more_runs(made: Made) -> Optional[Step]:
+def more_runs(made: Made) -> Optional[NextStep]:
     if not made.study.ensemble:
         return None
     whole, points = made.seconds, MORE * made.study.ensemble.design.points
     seconds = None if whole is None else (MORE - 1) * whole
     if made.site and made.given and of_both(made.given):
         place = quote(str(made.site))
-        return Step("more runs", f"study.points: {points} in {place}/{site_choices.NAME}, then: "
-                    f"{again.command(made.given)}", seconds)
-    return Step("more runs", ensemble(made, points), seconds)
+        return NextStep("more runs", f"study.points: {points} in {place}/{site_choices.NAME}, then: "
+                        f"{again.command(made.given)}", seconds)
+    return NextStep("more runs", ensemble(made, points), seconds)
 
 
-def wider_ranges(made: Made, ends: Collection[str]) -> Optional[Step]:
+def wider_ranges(made: Made, ends: Collection[str]) -> Optional[NextStep]:
     """Runs with less resistance; ends: the variables whose ranges end in the way; none: of all that resist."""
     if not made.study.ensemble or made.given and made.given.fit:
         return None
@@ -167,18 +137,18 @@ def wider_ranges(made: Made, ends: Collection[str]) -> Optional[Step]:
     wider = {**ranges, **{name: widened(ranges[name], LESS[name]) for name in asked}}
     if all(wider[name] == ranges[name].removeprefix("uniform:") for name in asked):
         return None
-    return Step("runs with less resistance than the least that was tried",
-                ensemble(made, made.study.ensemble.design.points, wider), made.seconds)
+    return NextStep("runs with less resistance than the least that was tried",
+                    ensemble(made, made.study.ensemble.design.points, wider), made.seconds)
 
 
-def more_sizes(made: Made, sizes: int) -> Step:
+def more_sizes(made: Made, sizes: int) -> NextStep:
     """The same study with one size of balls more, three at least; of a deck, halves of its diameter."""
     levels, rows = str(max(3, sizes + 1)), finished_of(made.study.runs)
     if made.site is None:
         d = rows[0].variables.get(VARIABLE, "") if rows else ""
         if not is_number_word(d):
-            return Step("a finer model", f"a deck whose variable {VARIABLE} is the diameter of the balls, "
-                        f"and the same command with --levels {VARIABLE}=5,2.5,1.25", None)
+            return NextStep("a finer model", f"a deck whose variable {VARIABLE} is the diameter of the balls, "
+                            f"and the same command with --levels {VARIABLE}=5,2.5,1.25", None)
         coarsest = made.study.size.sizes[0].d if made.study.size else float(d)
         levels = f"{VARIABLE}=" + ",".join(f"{coarsest / 2 ** k:.4g}" for k in range(int(levels)))
     if made.given:
@@ -186,7 +156,7 @@ def more_sizes(made: Made, sizes: int) -> Step:
     else:
         command = (f"tools/slope study {quote(str(made.site))}" if made.site else "the same command with") + \
             f" --levels {levels}"
-    return Step("a finer model", command, None)
+    return NextStep("a finer model", command, None)
 
 
 def larger_terrain(made: Made, add: str = "") -> Tuple[str, str]:

@@ -1,20 +1,76 @@
-"""study.yaml, read by those who work on with it."""
+"""study.yaml, and which of a site's is the one: read by those who work on with it."""
+import datetime
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, NamedTuple, Union
+from shlex import quote
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Union
 
 from .. import records, schemas
 from ..case import run_folders
 from ..errors import SlopeError
 from ..findings import OTHER
 from ..records import NoRecord
-from ..schemas import TEXT, list_of, mapping
+from ..schemas import OBJECT, TEXT, list_of, mapping
 from . import rows as rows_, study_types
-from .answered import STUDY as STUDY_FILE, study_in
 from .rows import finished_of
 
+STUDY = "study.yaml"
+INSIDE = "study", "ensemble"        # folders of a site: the sweep, and the ensemble of known events
+TITLE = "slope study: volumes in m3 of ground (bulk), lengths in m, times in s"
 WHAT = "what `slope study` wrote, of this version (the same command rewrites it, and keeps the runs)"
 SCHEMA = mapping({"runs": list_of(mapping({"run": TEXT, "status": TEXT}))})
+# of one that may be of an older version
+ANY = mapping({}, ensemble=mapping({}, null=True), study=OBJECT)
+
+
+def find_governing_study(paper: Path, ensemble: Path) -> Path:
+    """Of the folders of both studies of a site that whose number it is; the one that there is, if it is one.
+
+    What both files say of it where one command made them; else the study that was made last, as the files say.
+    """
+    there = [one for one in (ensemble, paper) if (one / STUDY).is_file()]
+    if len(there) < 2:
+        return there[0] if there else paper
+    studies = {one: schemas.load_checked(one / STUDY, "what `slope study` wrote", ANY) for one in there}
+    names = {(about.get("study") or {}).get("governs") for about in studies.values()}
+    if len(names) == 1 and (named := [one for one in there if one.name in names]):
+        return named[0]
+    return max(there, key=lambda folder: made(studies[folder]))
+
+
+def study_in(folder: Path, weighted: bool = False) -> Optional[Path]:
+    """The folder of the study that a folder names: its own, else the one of a site that governs; None: there is none.
+
+    weighted: of a site, rather the one whose runs known events weigh.
+    """
+    if (folder / STUDY).is_file():
+        return folder
+    paper, ensemble = (folder / name for name in INSIDE)
+    found = ensemble if weighted and weighs(ensemble) else find_governing_study(paper, ensemble)
+    return found if (found / STUDY).is_file() else None
+
+
+def weighs(study: Path) -> bool:
+    """Whether a folder has a study whose runs known events weigh."""
+    if not (study / STUDY).is_file():
+        return False
+    about = schemas.load_checked(study / STUDY, "what `slope study` wrote", ANY).get("ensemble") or {}
+    return bool((about.get("known_events") or {}).get("weights"))
+
+
+def without_study(site: Path) -> SlopeError:
+    """Of the folder of a site whose study is asked for and not made yet."""
+    return SlopeError(site, f"must hold the study of this site: `slope study {quote(str(site))}` makes it and the "
+                      "report", f"no {site / INSIDE[0] / STUDY}")
+
+
+def made(study: Mapping[str, Any]) -> datetime.datetime:
+    """When a study was, by its study.yaml; the beginning of time where that does not say it."""
+    text = str((study.get("study") or {}).get("collected"))
+    try:
+        return datetime.datetime.fromisoformat(text).astimezone(datetime.timezone.utc)
+    except ValueError:
+        return datetime.datetime.min.replace(tzinfo=datetime.timezone.utc)
 
 
 def load_study(path: Path) -> study_types.Study:
@@ -69,7 +125,7 @@ class Study(NamedTuple):
         """That of its folder, or the one that governs of the folder of a site; SlopeError if there is none."""
         place = Path(folder)
         found = study_in(place) or place
-        return cls(found, read_study(found / STUDY_FILE))
+        return cls(found, read_study(found / STUDY))
 
     @property
     def runs(self) -> List[Dict[str, Any]]:

@@ -9,11 +9,13 @@ from typing import Any, Dict, List, Mapping, Optional
 
 from ..findings import Finding
 from ..mobility.how_far import Reach
+from ..sites.site_budget import duration_text
 from ..statistics.ball_sizes import Left
-from ..statistics.entries import Headline
+from ..statistics.entries import Headline, Road
 from .ensemble_types import Ensemble, MapEntry
 from .rows import Row
 
+PROGRAM = "tools/slope "
 Settings = Mapping[str, List[str]]
 
 
@@ -280,10 +282,28 @@ class Chain:
 
 @dataclass(frozen=True)
 class NextStep:
-    """What to do next (next_step.Step)."""
+    """What to do next (next_step); command: words to do before, if there are some, and a command; seconds: of
+    computing, None: not known."""
     text: str
     command: str
     seconds: Optional[float]
+
+    @property
+    def time(self) -> str:
+        return "" if self.seconds is None else f", about {duration_text(self.seconds)} of computing on this machine"
+
+    @property
+    def before(self) -> str:
+        """What is to be done before the command, in words."""
+        return self.command.partition(PROGRAM)[0].strip()
+
+    @property
+    def line(self) -> str:
+        """What is to be typed, "" where that is not known."""
+        return "".join(self.command.partition(PROGRAM)[1:])
+
+    def __str__(self) -> str:
+        return f"next step: {self.text}{self.time}: {self.command}"
 
 
 @dataclass(frozen=True)
@@ -324,3 +344,4 @@ class Study:
     chain: Optional[Chain]
     intensity: Optional[Intensity]
     next_step: Optional[NextStep]
+    at_road: Optional[Road] = None  # of the study alone, for its headline (headline.conclude), which has it then

@@ -10,7 +10,7 @@ from ..findings import Finding
 from ..mobility import how_far, known
 from ..mobility.road import at_road
 from ..mobility.run_length import ON_PATH
-from ..statistics import answer, withheld
+from ..statistics import answer, entries, withheld
 from ..statistics.withheld import Facts
 from . import study_types, withheld_words
 from .rows import Finished, Row, finished_of
@@ -30,9 +30,10 @@ class Events(NamedTuple):
     reached: Tuple[float, float]
     passed: Tuple[float, float]
 
-    def road(self, rows: Sequence[Finished]) -> answer.Road:
+    def road(self, rows: Sequence[Finished]) -> entries.Road:
         """With the runs of a study."""
-        return answer.Road(self.near, self.far, self.reached, self.passed, longest(rows), at_the_road(rows))
+        return entries.Road(self.near, self.far, sorted(self.reached), sorted(self.passed), longest(rows),
+                            at_the_road(rows))
 
 
 def known_of(prefix: Path, terrain: Optional[Path], choice: Mapping[str, Any],
@@ -67,7 +68,7 @@ def longest(rows: Sequence[Finished]) -> Optional[float]:
     return max((row.length_m for row in rows if row.length_m is not None), default=None)
 
 
-def at_the_road(rows: Sequence[Finished]) -> answer.AtRoad:
+def at_the_road(rows: Sequence[Finished]) -> entries.AtRoad:
     """How many of the runs that finished bring a ball to the road, or past it: what lies there at the end, or left the
     terrain there. A lobe counts, however small.
     """
@@ -76,9 +77,9 @@ def at_the_road(rows: Sequence[Finished]) -> answer.AtRoad:
     brought = [(row.at_road.on_road_m3 or 0.0) + one for row, one in zip(rows, past)]
     balls, most = max((one / size, one) for one, size in zip(brought, ball))
     left = [row.at_road.remove_m3 for row in rows if row.at_road.remove_m3]
-    return answer.AtRoad(len(rows), sum(one >= size for one, size in zip(brought, ball)),
-                         sum(one >= size for one, size in zip(past, ball)), most, balls, min(left, default=0.0),
-                         max(left, default=0.0))
+    return entries.AtRoad(len(rows), sum(one >= size for one, size in zip(brought, ball)),
+                          sum(one >= size for one, size in zip(past, ball)), most, balls, min(left, default=0.0),
+                          max(left, default=0.0))
 
 
 def left_before(row: Finished) -> float:
