@@ -33,7 +33,7 @@ WORDS: Dict[str, Union[str, Words]] = {
     "lost much": Words(f"{LEFT}, and how far they went is unknown: enlarge the terrain and the box{{add}}",
                        client=LOST),
     "bulk factor": Words(f"{DOUBTFUL}the bulk factor {{factor:.3g}} is {{off}} {{side}} {{usual}}: {{why}}", NOTE,
-                         NOT_BODY),
+                         "{who} released a doubtful mass, {released:cubic}{of_body}: {why}."),
     "body volume": Words(f"{DOUBTFUL}it is {{off}} {{side}} than the body of {{body:,.0f}} m3", NOTE, NOT_BODY),
     "balls removed": Words(f"{DOUBTFUL}{{off}} of the balls were removed at the start, and the body that the others "
                            "represent is unknown (fix deposit/grid ... bulk region)", NOTE, NOT_BODY),
