@@ -772,7 +772,7 @@ def test_a_body_alone_is_that_of_a_site(slope, capsys, monkeypatch):
     words = ("site --terrain R/slips/2/terrain.asc --scar R/slips/2/body.2.base.asc --scar-is surface --road "
              f"R/slips/2/road.csv --road-width 8 --lane 4 --density 1900 --balls 40 --road-from {start} -o alone")
     assert called(capsys, words.split())[0] == 0
-    words = "study alone --sample 3 --seed 2 --vary rolling=0:0.1 --vary packing=1:1000000"
+    words = "study alone --levels 1 --sample 3 --seed 2 --vary rolling=0:0.1 --vary packing=1:1000000"
     status, _, err = called(capsys, words.split())
     assert status == 0, err
     assert without_times("alone/ensemble/study.csv") == without_times("R/bodies/2/ensemble/study.csv")
@@ -785,6 +785,11 @@ def test_a_body_alone_is_that_of_a_site(slope, capsys, monkeypatch):
     assert [one["volume_m3"] for one in fragile] == pytest.approx(volumes, rel=0.01)
     status, _, err = route_of(capsys, "--fragility", "fragility")
     assert status == 2 and "--hazard" in err
+    kept = Path("R/route.yaml").read_text()
+    assert "fragility: null" in kept
+    Path("R/route.yaml").write_text(kept.replace("fragility: null", "fragility: gone"))
+    assert [route_of(capsys)[0] for _ in range(2)] == [2, 2] and "fragility: gone" in Path("R/route.yaml").read_text()
+    Path("R/route.yaml").write_text(kept)
     # with more runs only these are made
     made_ = {path: path.stat().st_mtime for path in Path("R/bodies").glob("*/runs/*/*.summary.yaml")}
     slurm(slope / "slurm", monkeypatch)

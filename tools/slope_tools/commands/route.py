@@ -116,8 +116,9 @@ def run_route(args: Request) -> None:
             try:
                 results.yearly_of(choices, folder, table["bodies"])      # now, not after the runs
             except SlopeError:
-                _, sources = route_choices.read_route(folder)
-                route_choices.write_route_choices(folder, replace(choices, fragility=None), sources)
+                if "fragility" in given:        # one that was kept stays, or it would be gone without a word
+                    _, sources = route_choices.read_route(folder)
+                    route_choices.write_route_choices(folder, replace(choices, fragility=None), sources)
                 raise
             machine = site.Machine(lmp, args.jobs or jobs.cores())
             several = []
