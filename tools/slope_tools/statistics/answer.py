@@ -69,7 +69,10 @@ class Cause(Enum):
 
 
 def low_high(value: float, band: Sequence[Share]) -> Tuple[float, float]:
-    """The ends of a number whose causes are independent: each side by the root of the sum of the squares."""
+    """The ends of a number whose causes are independent: each side by the root of the sum of the squares.
+
+    Balls' sizes are given with 90 %, two-sided, chance, of a single run, with 95: the ends are said with 90.
+    """
     below, above = (math.sqrt(math.fsum(side ** 2 for side in sides))
                     for sides in ([one.below_m3 for one in band], [one.above_m3 for one in band]))
     return max(0.0, value - below), value + above

@@ -141,8 +141,8 @@ def describe_number(number: Headline, write: Write) -> str:
         ends = f"with 95 % confidence above {low} m3, and below {high} m3 as far as these runs go"
     else:
         ends = f"with 90 % confidence {ends}"
-    return (f"{write(REMOVE, 'm3', number.volume_m3 or 0.0)} m3 must be cleared from the road; within the model this "
-            f"figure lies {ends}.")
+    return (f"{write(REMOVE, 'm3', number.volume_m3 or 0.0)} m3 must be cleared from the road; "
+            f"within the model this figure lies {ends}.")
 
 
 def has_chance(number: Headline) -> bool:

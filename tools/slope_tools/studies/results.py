@@ -85,7 +85,7 @@ def read_results(setup: Setup, questions: Questions, todo: Sequence[Repeat], row
             among = known.Known(None, str(error))
         if setup.road:
             raster = placed(run_folders.load_raster(prefix, "thickness"), first)
-            events = usable.known_events(among.found, setup.road.read(raster).polygon)
+            events = usable.compute_events_at_road(among.found, setup.road.read(raster).polygon)
     if row and questions.order and questions.order.condition:
         summary = run_folders.summary_of(setup.output, row.summary)
         mobility = known_events.mobility_of(questions.order.condition, summary.parent, summary)

@@ -1,4 +1,5 @@
-"""Whether the number of a study may be used: the Facts that withheld looks at, from its rows."""
+"""Whether the number of a study may be used: the Facts that withheld looks at, from its rows; and how far known events
+of the mass, and its runs, go: reach(), and at a road compute_events_at_road()."""
 import math
 from dataclasses import replace
 from pathlib import Path
@@ -52,7 +53,7 @@ def reach(rows: Sequence[Finished], source: Optional[answer.Source], among: know
                         mine[0].length_is or ON_PATH if mine else ON_PATH, among.why)
 
 
-def known_events(mobilities: Optional[known.Found], road: Any) -> Optional[Events]:
+def compute_events_at_road(mobilities: Optional[known.Found], road: Any) -> Optional[Events]:
     """What they did at a road, polygons in local metres; None where the mass has no fall path."""
     if mobilities is None:
         return None
