@@ -524,7 +524,7 @@ folder, table = route_stand_in.make(Path({folder!r}), (80, 8000), 5.0, bodies)
 asked = choices.read_route_choices(folder)
 ground = corridor.read_corridor(asked, folder)
 found = results.make_route_results(asked, ground, folder, table)
-route_page.write(asked, ground, folder, found, print)
+route_page.write_route_page(asked, ground, folder, found, print)
 """
 
 

@@ -436,9 +436,10 @@ def test_a_failed_run_leaves_score_and_report_of_the_others(inside, mine, monkey
     Path("none").write_text("#!/bin/sh\nexit 1\n")
     for name in ("some", "none"):
         Path(name).chmod(0o755)
-    assert cli.main(["study", "mine", "--lmp", "./none"]) == 2
+    study = ["study", "mine", "--paper", "--levels", "1", "--lmp"]
+    assert cli.main([*study, "./none"]) == 2
     assert not (mine / "report.html").exists() and "2 of 2 runs failed" in capsys.readouterr().err
-    assert cli.main(["study", "mine", "--lmp", "./some"]) == 2
+    assert cli.main([*study, "./some"]) == 2
     out, err = capsys.readouterr()
     assert err.splitlines()[-1].startswith("slope study: mine/study: 1 of 2 runs failed: rolling_0.1: ")
     assert "report.html" in out and (mine / "report.html").is_file() and (mine / "score" / "score.yaml").is_file()
