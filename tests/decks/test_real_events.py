@@ -220,4 +220,7 @@ def test_the_s1000_slide_itself(tmp_path):
     folder = prepare(S1000, data_of("s1000"), tmp_path / "case")
     _, summary = run(S1000, folder, d=3)
     assert summary["volume"]["released"] == pytest.approx(22481, rel=2e-3)
-    assert within(summary) == pytest.approx(789, rel=0.25)              # mapped; the page on events: 14 % beyond it
+    # mapped: 789 m; 14 % beyond it, see the page on events, where some of the mass leaves the map across the river
+    of_95 = summary["travel"]["quantiles"][-2]
+    assert of_95["share"] == 0.95 and of_95["distance"] == pytest.approx(789, rel=0.25)
+    assert summary["volume"]["lost"] < 0.03 * summary["volume"]["released"]
