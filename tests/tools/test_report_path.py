@@ -36,7 +36,7 @@ def site(centre=CENTRE, width=16.0, size=(100, 100), head=30.0):
         raster=raster, cell=CELL, x=x, y=y, before=before, base=base, touched=touched, release=release,
         slip_depth=before - base, max_thickness=np.where(touched, 2.0, 0.0), source=release,
         extent=(0.0, 0.0, columns * CELL, rows * CELL), arrival=np.where(touched, along, np.nan),
-        beside=beside_largest(before - base))
+        beside=beside_largest(before - base, release))
     ground.along = lambda values, px, py: sampled(raster._replace(z=values), px, py)
     result = SimpleNamespace(thickness=deposit, folder=Path("none"), row={}, summary={
         "stop": {"step": 1000}, "balls": {"released": 4}}, deposit=SimpleNamespace(base=base, cell=CELL, raster=raster))
@@ -230,7 +230,8 @@ def test_of_two_bodies_the_section_is_the_largests(tmp_path, dumped, centre):
     ground.slip_depth[small & (ground.x > 180)] = 1.5
     ground.touched |= small
     ground.max_thickness[small] = 9.0
-    ground.source, ground.beside = ground.release, beside_largest(ground.slip_depth)
+    ground.slip_depth[(ground.y > 60) & (ground.x > 240)] = 50.0        # a hollow in which no ball starts
+    ground.source, ground.beside = ground.release, beside_largest(ground.slip_depth, ground.release)
     if dumped:
         result.folder = tmp_path
         for k, at in enumerate(np.linspace(15, 150, 12)):

@@ -19,6 +19,7 @@ import rasterio
 import rasterio.shutil
 import yaml
 from affine import Affine
+from pyproj import Proj
 from rasterio.crs import CRS
 from rasterio.windows import Window
 
@@ -462,6 +463,36 @@ def test_a_virtual_raster_has_the_tags_of_its_files(slope, made, here):
         status, _, err = slope(f"{name} -o out.asc")
         assert status == 2 and "--z-unit m if" in err and err.endswith("got us-ft\n"), err
     assert in_place(made("of.vrt --z-unit m"))
+    with zipfile.ZipFile("b.zip", "w") as packed:
+        packed.write("b.tif")
+    subprocess.run(["gdalbuildvrt", "-q", "packed.vrt", "/vsizip/b.zip/b.tif"], check=True)
+    assert slope("packed.vrt -o packed.asc")[2].endswith("got us-ft\n")
+
+
+def test_a_virtual_raster_of_two_units_or_other_values_has_no_unit_of_its_files(slope, here):
+    """Over a plan in feet, too, where heights in feet need no confirmation."""
+    tif("m.tif", crs_="EPSG:2227", unit="metre")
+    tif("ft.tif", crs_="EPSG:2227", east=EAST + COLUMNS, unit="US survey foot")
+    subprocess.run(["gdalbuildvrt", "-q", "mixed.vrt", "m.tif", "ft.tif"], check=True)
+    status, _, err = slope("mixed.vrt --crs EPSG:26910 --cell 1 -o out.asc")
+    assert status == 2 and "must have heights in one unit" in err and "metre in m.tif, US survey foot in ft.tif" in err
+    subprocess.run("gdal_translate -q -of VRT -scale 0 1000 0 304.8 ft.tif scaled.vrt".split(), check=True)
+    with rasterio.open("scaled.vrt") as source:
+        assert rasters.unit_tag("scaled.vrt", source) == ""
+    subprocess.run("gdal_translate -q -of VRT ft.tif same.vrt".split(), check=True)
+    with rasterio.open("same.vrt") as source:
+        assert rasters.unit_tag("same.vrt", source) == "US survey foot"
+
+
+@pytest.mark.parametrize("code, at", [(3116, (-75.68, 4.53)), (6676, (137.31, 36.0)), (32632, (13.58, 47.3))])
+def test_a_survey_may_go_on_beside_the_area_of_its_crs(made, here, code, at):
+    """As a raster, and as points without a head."""
+    east, north = np.round(Proj(code)(*at))
+    write("n.xyz", points() + [east - EAST, north - NORTH, 0], (0, 1, 2))
+    z, x, y, *_ = made(f"n.xyz --crs EPSG:{code}")
+    assert in_place((z, x - east + EAST, y - north + NORTH))
+    tif("n.tif", crs_=f"EPSG:{code}", east=east, north=north, z=points()[:, 2].reshape(ROWS, COLUMNS))
+    assert made("n.tif")[0].shape == z.shape
 
 
 # --- axes and north ---

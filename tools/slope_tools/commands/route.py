@@ -107,6 +107,7 @@ def run_route(args: Request) -> None:
     given = {field.name: value for field in fields(route_choices.Choices)
              if (value := getattr(args, field.name)) is not None}
     folder, warn = args.folder, printer("route")
+    kept = route_choices.read_route(folder)[0].fragility if (folder / route_choices.NAME).is_file() else None
     try:
         choices = route_choices.settle(folder, given)
         with disk.alone_in(folder, "route"), jobs.signals_interrupt():
@@ -116,9 +117,8 @@ def run_route(args: Request) -> None:
             try:
                 results.yearly_of(choices, folder, table["bodies"])      # now, not after the runs
             except SlopeError:
-                if "fragility" in given:        # one that was kept stays, or it would be gone without a word
-                    _, sources = route_choices.read_route(folder)
-                    route_choices.write_route_choices(folder, replace(choices, fragility=None), sources)
+                _, sources = route_choices.read_route(folder)       # what was there before stays
+                route_choices.write_route_choices(folder, replace(choices, fragility=kept), sources)
                 raise
             machine = site.Machine(lmp, args.jobs or jobs.cores())
             several = []

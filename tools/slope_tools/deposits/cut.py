@@ -32,6 +32,7 @@ BLOCK = 16          # cells along a side that are bounded together
 STEP = 0.25         # cells; points of the road's edge are no farther from each other
 NEAR = 4            # of these points: the nearest piece of the edge is one of theirs
 HALF_DIAGONAL = 0.5 ** 0.5  # of a cell
+BESIDE = 1.5        # cells, of one without a height from one that has it
 WHOLE = 1e-12       # relative; an area that differs less is the same
 
 
@@ -68,17 +69,16 @@ class Ground:
         return first, place - 0.5 - first
 
     def bounds(self):
-        """Lowest and highest ground of each cell; infinite where it is not known."""
+        """Lowest and highest ground of each cell."""
         z = np.pad(self.z, 1, mode="reflect", reflect_type="odd")  # linear on to the edges
-        known = np.pad(self.known, 1, mode="edge")
-        return (of(np.where(known, z, value), 3)[1:-1, 1:-1]
-                for of, value in ((minimum_filter, -np.inf), (maximum_filter, np.inf)))
+        return (of(z, 3)[1:-1, 1:-1] for of in (minimum_filter, maximum_filter))
 
     def share_unknown(self, road):
-        """Of the edge of a road in index coordinates: how much of it, from 0 to 1, lies on cells without a height."""
+        """Of the edge of a road in index coordinates: how much of it, from 0 to 1, lies on cells without a height, but
+        for those beside others: a grid may end half a cell beyond the terrain."""
         x, y = Edge(road, self, 0.0).place
         j, i = (np.clip(at.astype(int), 0, n - 1) for at, n in zip((y, x), self.known.shape))
-        return 1 - self.known[j, i].mean()
+        return (distance_transform_edt(~self.known) > BESIDE)[j, i].mean()
 
 
 def nearest_filled(z, known):

@@ -76,7 +76,7 @@ class Ground:
     @functools.cached_property
     def beside(self):
         """Mask of the cells that are nearer to another body than to the largest, whose the section is."""
-        return beside_largest(self.slip_depth)
+        return beside_largest(self.slip_depth, self.release)
 
     def along(self, values, x, y):
         """Values of cells at points, NaN outside."""
@@ -107,13 +107,18 @@ class Ground:
         return xlo, ylo, xhi, yhi
 
 
-def beside_largest(depth):
-    """Mask of the cells that are nearer to another body, of a depth (m), than to the one of the largest volume."""
+def beside_largest(depth, release):
+    """Mask of the cells that are nearer to another body, of a depth (m), than to the one of the largest volume.
+
+    release: mask of the cells where balls start; hollows without any are no body.
+    """
     parts, count = label(depth > 0, np.ones((3, 3)))
     if count < 2:
         return np.zeros(parts.shape, bool)
     nearest = distance_transform_edt(parts == 0, return_distances=False, return_indices=True)
-    return parts[tuple(nearest)] != np.argmax(np.bincount(parts.ravel(), depth.ravel()))
+    volume = np.bincount(parts.ravel(), depth.ravel())
+    started = np.isin(np.arange(count + 1), parts[release & (parts > 0)])
+    return parts[tuple(nearest)] != np.argmax(np.where(started, volume, 0.0) if started.any() else volume)
 
 
 def closed(mask, cells):

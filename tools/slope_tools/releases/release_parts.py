@@ -3,7 +3,7 @@ from typing import Any, Dict, List, NamedTuple, Optional, Tuple
 
 import numpy as np
 from rasterio.features import rasterize
-from scipy.ndimage import label
+from scipy.ndimage import label, minimum_filter
 
 from ..digits import rounded
 from ..errors import SlopeError
@@ -77,7 +77,7 @@ def depths(area: Area, numbers: np.ndarray, several: List[Polygon], shape: str, 
     own, others = ([one for one in several if bool(one.depth) == has] for has in (True, False))
     if size.volume is not None and own and others:
         raise SlopeError(where, f"each feature, or none, must have an attribute {own[0].attribute}, by which --volume "
-                         "is shared", f"none of {others[0].name}")
+                         "is shared: give it to all, or drop it", f"none of {others[0].name}")
     deep, made = np.zeros(area.z.shape), []
     total = sum((part.depth or 1.0) * int((numbers == number).sum()) for number, part in enumerate(several, 1))
     for number, made_part in enumerate(several, 1):
@@ -179,7 +179,8 @@ def in_pits(depth: np.ndarray, z: np.ndarray, numbers: np.ndarray, names: List[s
         parts, count = label(body > 0, np.ones((3, 3)))
         part, deep = parts[body > 0], body[body > 0]
         lowest = np.full(count + 1, np.inf)
-        np.minimum.at(lowest, part, z[body > 0])
+        beside = minimum_filter(np.where(np.isnan(z), np.inf, z), 3)       # an open face is a way out
+        np.minimum.at(lowest, part, beside[body > 0])
         below = np.clip(lowest[part] - z[body > 0] + deep, 0.0, None)
         if len(deep) and below.sum() > IN_PIT * deep.sum():
             words.append(Finding("in a pit", {

@@ -105,8 +105,11 @@ def require_axes(crs, where):
                          f"{crs_name(crs)}, {' and '.join(axes).lower()}")
 
 
+BESIDE = 3.0    # degrees: surveys go on with a CRS beyond the border of its area
+
+
 def require_order(raster, where):
-    """Raise SlopeError if a raster lies outside of the area of its CRS, and would not with x and y exchanged."""
+    """Raise SlopeError if a raster lies far outside of the area of its CRS, and would not with x and y exchanged."""
     if raster.crs is None or not raster.crs.is_projected:
         return
     area = area_of(epsg(raster.crs) or raster.crs.to_wkt())
@@ -115,12 +118,12 @@ def require_order(raster, where):
     west, south, upper, wide = area.west, area.south, area.north, (area.east - area.west) % 360 or 360
     projection = projection_of(raster.crs.to_wkt())
 
-    def is_within(x, y):
+    def is_within(x, y, more=0.0):
         east, north = projection(x, y, inverse=True)
-        return south <= north <= upper and (east - west) % 360 <= wide
+        return south - more <= north <= upper + more and (east - west + more) % 360 <= wide + 2 * more
 
     x, y = raster.transform @ (raster.z.shape[1] / 2, raster.z.shape[0] / 2)
-    if not is_within(x, y) and is_within(y, x):
+    if not is_within(x, y, BESIDE) and is_within(y, x):
         raise SlopeError(where, f"must lie in the area of {crs_name(raster.crs)} (with x and y exchanged it would); "
                          "points whose northing comes first need a head, such as north east height",
                          format_numbers((round(x, 1), round(y, 1))))

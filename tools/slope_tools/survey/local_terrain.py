@@ -13,7 +13,7 @@ from rasterio.crs import CRS
 from ..errors import SlopeError
 from ..findings import Finding
 from ..geometry import format_numbers
-from . import fggml, plausible, rasters, zips
+from . import fggml, plausible, rasters, xyz, zips
 from .crs import as_crs, require_axes, require_metres, require_order, warn_of_north, warn_of_stretch
 from .holes import fill, small_holes
 from .marks import Marks, format_mark
@@ -85,19 +85,22 @@ def make_local_terrain(inputs: Sequence[str], output: Path, wanted: Wanted, tell
             if value is not None:
                 raise SlopeError(option, "must not be given for FG-GML, which has its CRS and heights in metres", value)
         raster, crs, cell = read_fggml(inputs, crs, cell, keep, warn, marks, differ)
-        tile = Tile(inputs[0], raster, raster)
+        tile, headless = Tile(inputs[0], raster, raster), False
     else:
         def part(whole: Raster) -> Tuple[int, int, int, int]:
             return needed(whole, crs or whole.crs, wanted.cell, wanted.bounds, wanted.fill + 2)
         tiles = [declare(name, crs, keep, warn, own_crs(path, wanted, assigned), wanted.z_unit, marks,
                          part if wanted.bounds else None) for path, name in files]
         surveyed = max(surveyed_cell(tile.whole) for tile in tiles)
+        forms = [xyz.form_of(rasters.only(name)) for _, name in files]
+        headless = any(form and form.head is None for form in forms)
         tile = merge(tiles, keep, warn, wanted.cell, differ)
         crs = crs or tile.whole.crs
     raster = tile.raster
     require_metres(crs, inputs[0])
     require_axes(crs, inputs[0])
-    require_order(tile.whole, inputs[0])
+    if headless:
+        require_order(tile.whole, inputs[0])
     if not np.isfinite(raster.z).any():
         if wanted.bounds:
             regrid(raster, crs, cell, wanted.bounds, keep, warn, tile.whole)        # says what is wrong with them

@@ -5,10 +5,11 @@ Heights are metres above the vertical datum of the survey, NaN where there is no
 counted from the outer corner of the first cell, to (x, y).
 """
 import math
+import re
 import warnings
 from contextlib import suppress
 from pathlib import Path
-from typing import NamedTuple, Optional, Tuple, Union
+from typing import Dict, NamedTuple, Optional, Tuple, Union
 
 import numpy as np
 import rasterio
@@ -22,7 +23,7 @@ from rasterio.windows import Window
 from .. import disk, schemas
 from ..errors import SlopeError
 from ..schemas import COUNT, TEXT, mapping, number_keys
-from . import file_parts, plausible, text_grids, xyz, zips
+from . import plausible, text_grids, xyz, zips
 from .crs import crs_name, epsg, require_axes
 from .grids import UNITS, Raster, check_memory, progress
 from .marks import Scale, cells_of, format_mark
@@ -84,6 +85,9 @@ def in_metres(path, file, heights=True, unit=None, marks=None, assigned=None, as
     return raster
 
 
+CHANGED = re.compile("<ScaleRatio>(?!1<)|<ScaleOffset>(?!0<)|<PixelFunctionType>|<LUT>")     # by a VRT: its values
+
+
 def opened(path, heights=True, unit=None, part=None, assigned=None):
     """The File of a path, see read_raster().
 
@@ -103,19 +107,26 @@ def opened(path, heights=True, unit=None, part=None, assigned=None):
         with warnings.catch_warnings(), rasterio.Env(GDAL_CACHEMAX=CACHE):
             warnings.simplefilter("ignore", NotGeoreferencedWarning)  # an error of our own, below
             with rasterio.open(zips.gdal_name(name)) as source:
-                return _read(path, name, source, unit_of(path, unit_tag(name, source), source.crs, heights, unit), part)
+                tag = unit_tag(path, source) if heights and not unit else source.units[0]
+                return _read(path, name, source, unit_of(path, tag, source.crs, heights, unit), part)
     except (RasterioError, OSError) as error:  # RasterioIOError is an OSError only
         raise unreadable(path, name, error) from error
 
 
-def unit_tag(name, source):
-    """The unit that an open raster names; of a VRT, which does not repeat it, that of its files, feet before metres."""
-    tags = [source.units[0] or ""]
-    if source.driver == "VRT" and not tags[0]:
-        for part in file_parts.sources(name):
-            with suppress(RasterioError), rasterio.open(part) as one:
-                tags.append(unit_tag(part, one))
-    return max(tags, key=lambda tag: (TAGS.get(tag.strip().lower()) not in (None, "m"), bool(tag)))
+def unit_tag(path, source, seen=()):
+    """The unit that an open raster names; of a VRT, which does not repeat it, the one of its files, "" where it changes
+    their values. SlopeError where these have several."""
+    if source.driver != "VRT" or source.units[0] or CHANGED.search(source.tags(ns="xml:VRT").get("xml:VRT", "")):
+        return source.units[0] or ""
+    tags: Dict[str, Tuple[str, str]] = {}
+    for name in [name for name in source.files if name not in (*seen, source.name)]:
+        with suppress(RasterioError, OSError), rasterio.open(name) as part:
+            if tag := unit_tag(path, part, (*seen, source.name)):
+                tags.setdefault(TAGS.get(tag.strip().lower(), tag), (tag, name))
+    if len(tags) > 1:
+        raise SlopeError(path, "its files must have heights in one unit; --z-unit m, ft or us-ft declares one for all",
+                         ", ".join(f"{tag} in {Path(name).name}" for tag, name in tags.values()))
+    return next((tag for tag, _ in tags.values()), "")
 
 
 def unreadable(path, name, error):

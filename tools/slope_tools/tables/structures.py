@@ -199,7 +199,7 @@ TITLES = {"structures": f"forces on structures: the largest, and the largest mea
 
 
 def format_structure_cell(value, unit):
-    return "-" if value is None else f"{value / unit:,.3g}" if abs(value) < 1000 * unit else f"{value / unit:,.0f}"
+    return "-" if value is None else f"{value / unit:,.3g}" if abs(value) < 999.5 * unit else f"{value / unit:,.0f}"
 
 
 def write_structures(output: Path, rows: Sequence[Finished]) -> List[Path]:
