@@ -20,7 +20,7 @@ from shapely.geometry import Point, Polygon, box, mapping
 from run_helpers import CRS_M, EAST, NORTH, TOOLS, TOP, warned, write_asc, write_geojson, write_tif, examples
 
 from slope_tools.drawing import maps
-from slope_tools.releases import release_area, release_bodies, release_chart, release_slbl, release_solve
+from slope_tools.releases import release_area, release_bodies, release_chart, release_parts, release_slbl, release_solve
 from slope_tools.survey import polygons, rasters
 
 COMMAND = "release"
@@ -442,6 +442,16 @@ def test_features_with_depths_of_their_own(body, refused, shape):
     refused(f"t.asc --polygon p.geojson --shape {shape}", "got none of feature 1\n")
     areas((OPEN, {"depth": -1.0}))
     refused(f"t.asc --polygon p.geojson --shape {shape}", "p.geojson: feature 1: attribute depth must be", "> 0", "-1")
+
+
+@pytest.mark.parametrize("face, count", [(80.0, 0), (100.0, 1)])
+def test_a_bench_beside_an_open_face_is_no_pit(face, count):
+    """10 m of level ground at 100 m, which ends at a vertical face, or goes on."""
+    z = np.full((12, 12), 100.0)
+    z[:, 8:] = face
+    depth = np.zeros(z.shape)
+    depth[3:9, 2:8] = 10.0
+    assert len(release_parts.in_pits(depth, z, (depth > 0).astype(int), ["a"])) == count
 
 
 @pytest.mark.parametrize("shape", ["slbl", "slab"])

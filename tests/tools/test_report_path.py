@@ -230,7 +230,9 @@ def test_of_two_bodies_the_section_is_the_largests(tmp_path, dumped, centre):
     ground.slip_depth[small & (ground.x > 180)] = 1.5
     ground.touched |= small
     ground.max_thickness[small] = 9.0
-    ground.slip_depth[(ground.y > 60) & (ground.x > 240)] = 50.0        # a hollow in which no ball starts
+    hollow = (ground.y > ground.y.max() - 8) & (ground.x > ground.x.max() - 20)
+    assert hollow.any() and not (hollow & ground.release).any()
+    ground.slip_depth[hollow] = 500.0        # in which no ball starts
     ground.source, ground.beside = ground.release, beside_largest(ground.slip_depth, ground.release)
     if dumped:
         result.folder = tmp_path
