@@ -447,6 +447,10 @@ def test_a_northing_first_without_a_head_is_seen_by_the_area_of_the_crs(made, sl
     write("n.xyz", values, (1, 0, 2))
     status, _, err = slope(f"n.xyz --crs EPSG:{code} -o out.asc")
     assert status == 2 and f"area of EPSG:{code} (with x and y exchanged it would)" in err and "head" in err
+    lines = Path("n.xyz").read_text().splitlines()
+    Path("named.xyz").write_text("".join(f"P{k},{line}\n" for k, line in enumerate(lines)))
+    status, _, err = slope(f"named.xyz --crs EPSG:{code} -o out.asc")
+    assert status == 2 and f"area of EPSG:{code} (with x and y exchanged it would)" in err
     for head, columns in (("", (0, 1, 2)), ("N E Z", (1, 0, 2))):
         write("n.xyz", values, columns, head=head)
         z, x, y, *_ = made(f"n.xyz --crs EPSG:{code}")

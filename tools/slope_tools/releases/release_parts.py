@@ -8,14 +8,13 @@ from scipy.ndimage import label, minimum_filter
 from ..digits import rounded
 from ..errors import SlopeError
 from ..findings import Finding
-from ..survey.features import Polygon, list_depths
+from ..survey.features import LISTED, Polygon, list_depths
 from ..survey.rasters import Raster
 from . import release_area, release_solve
 from .release_area import Area
 from .release_bodies import slbl_shape
 
 LITTLE = 0.75   # share of a polygon; a body that takes less of it is a doubtful one
-LISTED = 12     # polygons that are named one by one
 TINY = 0.02     # of the volume in a polygon; a smaller part of a body is none
 PRINTED = 3     # parts of a body whose volumes are printed
 SAME = 0.005    # of a volume; that of the features' own depths differs by less

@@ -85,21 +85,20 @@ def make_local_terrain(inputs: Sequence[str], output: Path, wanted: Wanted, tell
             if value is not None:
                 raise SlopeError(option, "must not be given for FG-GML, which has its CRS and heights in metres", value)
         raster, crs, cell = read_fggml(inputs, crs, cell, keep, warn, marks, differ)
-        tile, headless = Tile(inputs[0], raster, raster), False
+        tile, listed = Tile(inputs[0], raster, raster), False
     else:
         def part(whole: Raster) -> Tuple[int, int, int, int]:
             return needed(whole, crs or whole.crs, wanted.cell, wanted.bounds, wanted.fill + 2)
         tiles = [declare(name, crs, keep, warn, own_crs(path, wanted, assigned), wanted.z_unit, marks,
                          part if wanted.bounds else None) for path, name in files]
         surveyed = max(surveyed_cell(tile.whole) for tile in tiles)
-        forms = [xyz.form_of(rasters.only(name)) for _, name in files]
-        headless = any(form and form.head is None for form in forms)
+        listed = any(xyz.form_of(rasters.only(name)) for _, name in files)
         tile = merge(tiles, keep, warn, wanted.cell, differ)
         crs = crs or tile.whole.crs
     raster = tile.raster
     require_metres(crs, inputs[0])
     require_axes(crs, inputs[0])
-    if headless:
+    if listed:      # rasters say which way their axes go
         require_order(tile.whole, inputs[0])
     if not np.isfinite(raster.z).any():
         if wanted.bounds:
