@@ -390,6 +390,14 @@ def test_ground_that_is_not_known(cleared, slope):
     beyond = cleared(box(120, 0, 200, 200))
     assert beyond["volume"]["remove_on_road"] == pytest.approx(3 * 40 * 80)
     assert beyond["volume"]["remove_beside_road"] == pytest.approx(40 * wedge(3.0, 30.0, np.tan(np.radians(30))))
+    # the nearest ground of an edge without any is the top of a wall: it is no higher than the edge beside it
+    x, y = centres(80, 100, 2.5)
+    wall, on_it = np.where(x > 160, 8.0, 0.0), np.where(x > 160, 3.0, 0.0)
+    write_run(on_it, wall, 2.5)
+    whole = cleared(box(130, 20, 150, 180))["volume"]["remove"]
+    write_run(on_it, np.where((x > 130) & (x < 160) & (y > 60), np.nan, wall), 2.5)
+    assert whole <= cleared(box(130, 20, 150, 180))["volume"]["remove"] < 1.05 * whole     # a third of it by the wall
+    write_run(thickness, base, 2.5)
     write_geojson("road.geojson", box(180, 0, 200, 200))
     status, _, err = slope("run --road road.geojson --local --mesh 10")
     assert status == 2 and "road.geojson: the road's edge must lie on ground that has a height" in err

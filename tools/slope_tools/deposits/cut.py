@@ -76,9 +76,12 @@ class Ground:
     def share_unknown(self, road):
         """Of the edge of a road in index coordinates: how much of it, from 0 to 1, lies on cells without a height, but
         for those beside others: a grid may end half a cell beyond the terrain."""
-        x, y = Edge(road, self, 0.0).place
+        return self.far_from_known(*Edge(road, self, 0.0).place).mean()
+
+    def far_from_known(self, x, y):
+        """Whether points lie on cells without a height, but for those beside others."""
         j, i = (np.clip(at.astype(int), 0, n - 1) for at, n in zip((y, x), self.known.shape))
-        return (distance_transform_edt(~self.known) > BESIDE)[j, i].mean()
+        return (distance_transform_edt(~self.known) > BESIDE)[j, i]
 
 
 def nearest_filled(z, known):
@@ -99,9 +102,22 @@ class Edge:
         share = (np.arange(len(self.piece)) - first[self.piece]) / (count - 1)[self.piece]
         points = self.start[self.piece] + share[:, None] * self.along[self.piece]
         self.place = points.T
-        self.z = ground.height(*self.place)
+        self.most = self.highest(~ground.far_from_known(*self.place)) if not ground.known.all() else None
+        self.z = self.lowered(ground.height(*self.place), np.arange(len(points)))
         self.slack = np.abs(np.diff(self.z)).max()
         self.points = cKDTree(points)
+
+    def highest(self, known):
+        """What the edge's points are no higher than: where the ground is not known, than the nearest one where it is,
+        as the nearest ground may be the top of a wall."""
+        most = np.full(len(known), np.inf)
+        if known.any() and not known.all():
+            nearest = cKDTree(self.place.T[known]).query(self.place.T[~known])[1]
+            most[~known] = self.ground.height(*self.place[:, known])[nearest]
+        return most
+
+    def lowered(self, z, points):
+        return z if self.most is None else np.minimum(z, self.most[points])
 
     def bounds(self, shape):
         """Lowest and highest ground of what of the edge may be the nearest to a point of each cell; block by block."""
@@ -116,13 +132,14 @@ class Edge:
     def cut(self, x, y):
         """Height of the cut at points x, y (1-d arrays)."""
         place = np.column_stack([x, y])
-        piece = self.piece[self.points.query(place, min(NEAR, len(self.piece)))[1]]     # of each point, several
+        near = self.points.query(place, min(NEAR, len(self.piece)))[1]
+        piece = self.piece[near]     # of each point, several
         start, along = self.start[piece], self.along[piece]
         share = np.clip(((place[:, None] - start) * along).sum(axis=2) / self.length2[piece], 0, 1)
         foot = start + share[:, :, None] * along
         square = ((place[:, None] - foot) ** 2).sum(axis=2)
         nearest = np.arange(len(place)), square.argmin(axis=1)
-        return self.ground.height(*foot[nearest].T) + self.tangent * np.sqrt(square[nearest])
+        return self.lowered(self.ground.height(*foot[nearest].T), near[:, 0]) + self.tangent * np.sqrt(square[nearest])
 
 
 def positive_mean(u, v, w):
