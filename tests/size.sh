@@ -1,6 +1,6 @@
 #!/bin/bash
-# A family of slides with balls of d, d/2 and d/4 (doc/src/sensitivity.rst): tests/size.sh OUT [FINER:SEEDS ...]
-# FINER:SEEDS, such as 1:3 2:2 4:1 (the default): which sizes, and how many runs of each case. Writes OUT/size.csv, a line
+# A family of slides with balls of 2 d, d, d/2 and d/4 (doc/src/sensitivity.rst): tests/size.sh OUT [FINER:SEEDS ...]
+# FINER:SEEDS, such as 0.5:3 1:3 2:3 4:1 (the default): which sizes, and how many runs of each case. Writes OUT/size.csv, a line
 # a run; CASES in the environment: which. More than an hour on a quiet core, most of it for d/4; started again, it goes on.
 set -euo pipefail
 [ $# -ge 1 ] || { sed -n '2,4s/^# //p' "$0"; exit 2; }
@@ -9,7 +9,7 @@ export LMP=${LMP:-$here/build/lmp} OMP_NUM_THREADS=1
 family=(/usr/bin/python3 "$here/tests/size_family.py")
 out=$1
 shift
-[ $# -gt 0 ] || set -- 1:3 2:2 4:1
+[ $# -gt 0 ] || set -- 0.5:3 1:3 2:3 4:1
 mkdir -p "$out"
 table=$out/size.csv
 [ -f "$table" ] || "${family[@]}" head > "$table"

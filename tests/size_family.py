@@ -4,7 +4,7 @@
 tests/size_family.py site CASE FOLDER: terrain, body and road of a case, and its site by `slope site`, in a new folder
 tests/size_family.py row CASE FOLDER PREFIX FINER SEED DIAMETER [SECONDS]: the line of a run there
 tests/size_family.py list: all cases; rolling CASE: its rolling resistance; head: of the lines
-tests/size_family.py judge SIZE.csv: the finest runs, and what coarser ones and the other slides say of them
+tests/size_family.py judge SIZE.csv: the finest runs, and what a study says of finer balls by the coarser ones
 """
 import csv
 import math
@@ -179,27 +179,33 @@ def row(name: str, folder: Path, prefix: Path, finer: str, seed: str, d: float, 
 # --- what slope study would say ---
 
 def judge(path: Path) -> None:
-    """Print the finest runs of each slide beside what its coarser ones and the other slides' pairs say of them."""
+    """Print the finest run of each slide beside what `slope study` says of finer balls by the three coarser sizes."""
     from slope_tools.statistics import ball_sizes
     with open(path, newline="", encoding="ascii") as lines:
         rows = list(csv.DictReader(lines))
-    sizes = sorted({one["finer"] for one in rows}, key=float)
-    print("quantity,case,coarse,said,low,high,truth,within")
+    *sizes, finest = sorted({row["finer"] for row in rows}, key=float)
+    print("quantity,case,balls_thick,mean,low,high,truth,within")
     for quantity in ("remove", "on_road", "beyond", "length"):
-        of = {(one["case"], one["finer"]): one for one in reversed(rows)}       # the first of several
-        names, inside = [name for name in CASES if all((name, size) in of for size in sizes)], []
-        for name in names:
-            others, steps = [one for one in names if one != name], []
+        inside = []
+        for name in CASES:
+            runs = {size: [row for row in rows if (row["case"], row["finer"]) == (name, size)]
+                    for size in (*sizes, finest)}
+            if not all(runs.values()):
+                continue
+            values = {size: [float(row[quantity]) for row in found] for size, found in runs.items()}
+            steps = []
             for coarse, fine in zip(sizes, sizes[1:]):
-                both = [[float(of[one, size][quantity]) for one in others] for size in (coarse, fine)]
-                ball = max(float(of[one, coarse]["released"]) / float(of[one, coarse]["balls"]) for one in others)
-                steps.append(ball_sizes.fit_step(*both, np.empty((len(others), 0)), float(fine) / float(coarse),
-                                                 0.0 if quantity == "length" else ball, steps[-1] if steps else None))
-            value, truth = (float(of[name, size][quantity]) for size in (sizes[0], sizes[-1]))
-            one = ball_sizes.transfer(steps, value, ())
-            low, high = one.band
+                pairs = list(zip(values[coarse], values[fine]))
+                first = runs[coarse][0]
+                ball = 0.0 if quantity == "length" else float(first["released"]) / float(first["balls"])
+                steps.append(ball_sizes.fit_step(*zip(*pairs), np.empty((len(pairs), 0)), float(fine) / float(coarse),
+                                                 ball, steps[-1] if steps else None))
+            left = ball_sizes.estimate_remaining_step(steps)
+            mean, truth = (float(np.mean(values[size])) for size in (sizes[-1], finest))
+            low, high = (mean * (1 + share) for share in ((left.low, left.high) if left else (-1.0, math.inf)))
             inside.append(low <= truth <= high)
-            print(f"{quantity},{name},{value:.5g},{one.value:.5g},{low:.5g},{high:.5g},{truth:.5g},{inside[-1]}")
+            print(f"{quantity},{name},{float(runs[sizes[-1]][0]['balls_thick']):.1f},"
+                  f"{mean:.5g},{low:.5g},{high:.5g},{truth:.5g},{inside[-1]}")
         print(f"{quantity}: {sum(inside)} of {len(inside)} within")
 
 

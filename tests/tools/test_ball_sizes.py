@@ -221,6 +221,9 @@ def test_what_finer_balls_would_change():
         assert ball_sizes.estimate_remaining_step(steps(first, 0.0708, 1e-4)).high > slow.high
     assert ball_sizes.estimate_remaining_step(steps(0.1, 0.1, 1e-4)[:1]) is None
     assert ball_sizes.estimate_remaining_step([fit_step([0, 0], [0, 0], none(2), ball=1)] * 2) is None
+    # finer runs brought more beyond the road than their steps tell
+    assert [bool(sizes.effect(key, steps(0.2, 0.1, 1e-4)).left) for key in (
+        "remove_m3", "length_m", "beyond_road_m3", "centroid_m")] == [True, True, False, False]
 
 
 def test_the_largest_values_decide_what_finer_balls_leave():

@@ -13,18 +13,19 @@ family = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(family)
 
 
-def test_each_slide_is_judged_by_the_others(tmp_path, capsys):
-    """By hand: the others say by which factor each grows."""
+def test_the_finest_run_is_judged_by_what_coarser_ones_leave(tmp_path, capsys):
+    """By hand: a factor that shrinks by half with each halving of the balls leaves 1.25 of the last one."""
     runs = tmp_path / "size.csv"
+    by_case = {"thin": (1.0, 1.2, 1.32, 1.386), "deep": (1.0, 1.2, 1.32, 1.6), "oval": (1.0, 1.2, 1.32)}
     runs.write_text(family.HEAD + "\n" + "".join(
-        f"{name},{finer},1,1,800,{2 * finer},{1000 * grown ** k},500,500,90,1,1,9000,9000,1\n"
-        for name, grown in (("thin", 1.1), ("wide", 1.1), ("oval", 1.1), ("deep", 2.0))
-        for k, finer in enumerate((1, 2, 4))))
+        f"{name},{finer},{seed},1,800,{2 * finer},{1000 * grown},500,500,90,1,1,9000,9000,1\n"
+        for name, factors in by_case.items() for finer, grown in zip((0.5, 1, 2, 4), factors) for seed in (1, 2, 3)))
     family.judge(runs)
     lines = [line.split(",") for line in capsys.readouterr().out.splitlines()]
     [deep] = [line for line in lines if line[:2] == ["remove", "deep"]]
-    assert deep[2:4] == ["1000", "1210"] and deep[6:] == ["4000", "False"]
-    assert ["remove: 3 of 4 within"] in lines and ["length: 4 of 4 within"] in lines
+    assert deep[2:4] == ["4.0", "1320"] and float(deep[4]) == pytest.approx(1320, rel=1e-3)
+    assert 1386 < float(deep[5]) < 1600 and deep[6:] == ["1600", "False"]
+    assert ["remove: 1 of 2 within"] in lines and ["length: 2 of 2 within"] in lines
 
 
 @pytest.mark.parametrize("name, road", [("thin", 10.0), pytest.param("compact", 4.0, marks=pytest.mark.long)])

@@ -177,8 +177,8 @@ class Layers(road_arguments.Clearing):
 
 @dataclass(frozen=True, kw_only=True)
 class Model:
-    """Friction, rolling resistance and restitution on the ground are the paper's by default, the others ours."""
-    GROUP = "soil and ground (of the paper by default: friction, rolling resistance, restitution on the ground)"
+    """Both frictions, rolling resistance and restitution on the ground are the paper's by default, the others ours."""
+    GROUP = "soil and ground (of the paper by default: both frictions, rolling resistance, restitution on the ground)"
     friction: Optional[float] = option("of soil and ground, degrees (default 30)", metavar="DEG")
     rolling: Optional[List[float]] = option(
         "rolling resistances of the study, of which the largest volume counts (default 0 0.05 0.1)", metavar="R",

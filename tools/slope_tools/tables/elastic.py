@@ -1,6 +1,7 @@
 """How far the mass goes with the most elastic rock: runs with soil, slip surface and ground at the largest restitution.
 
-They estimate the area, as Nakase et al. conclude, and reach, and are none of those that the volume is of.
+They estimate reach, and the area, after Nakase et al.; the ground's restitution is ours. They are none of those that
+the volume is of.
 """
 from dataclasses import replace
 from pathlib import Path

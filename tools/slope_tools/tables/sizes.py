@@ -28,6 +28,9 @@ BANDS = quantities.REMOVE, "remove_on_road_m3", "beyond_road_m3", quantities.LEN
 # of stretches and their sums: of which column they are a part
 OF_SUMS = dict(zip(SUMS, (quantities.REMOVE, "remove_lane_m3", "clear_hours", "lane_hours")))
 UNKNOWN = "; what finer ones would change is not known"
+# of which finer runs held what their last step leaves (tests/size_family.py); they raised what lies beyond the road, and
+# how far the centroid goes, by more
+HELD = {quantities.REMOVE, "remove_on_road_m3", quantities.LENGTH, quantities.DISTANCE}
 Point = Sequence[Optional[Finished]]    # its runs by size, the coarsest first; None: not run, or failed
 
 
@@ -179,19 +182,19 @@ def summarise_sizes(sizes: Sizes, depth: Optional[float], balls: Sequence[float]
     """The entry of study.yaml; depth: mean thickness of the body (m), balls: in it, of each size."""
     levels = [study_types.SizeRuns(d, round(number), depth and depth / d, runs)
               for d, number, runs in zip(sizes.diameters, balls, sizes.runs)]
-    effects = {key: effect(steps) for key, steps in sizes.steps.items()}
+    effects = {key: effect(key, steps) for key, steps in sizes.steps.items()}
     one = study_types.Size(levels, list(sizes.places.names), effects, "")
     return replace(one, text=describe_size(one))
 
 
-def effect(steps: Sequence[Step]) -> study_types.SizeEffect:
-    """What study.yaml says of the steps of a quantity."""
+def effect(key: str, steps: Sequence[Step]) -> study_types.SizeEffect:
+    """What study.yaml says of the steps of a quantity; what is left, of those HELD."""
     return study_types.SizeEffect(
         [study_types.SizeStep(step.finer, step.ratio.number if step.ratio else 0,
                               step.ratio and float(np.exp(step.ratio.constant)),
                               step.ratio and step.ratio.deviation, bool(step.ratio and step.ratio.slopes.any()))
          for step in steps],
-        ball_sizes.estimate_remaining_step(steps))
+        ball_sizes.estimate_remaining_step(steps) if key in HELD else None)
 
 
 def describe_size(size: study_types.Size) -> str:

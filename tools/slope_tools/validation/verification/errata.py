@@ -54,8 +54,8 @@ def errata():
         Erratum("The runs on restitution are in Figure 5, not in Fig. 8",
                 "\"With a restitution coefficient of 0.45, as in Fig. 8\"; \"the analysis shown in Fig. 8 was "
                 "conducted with dt = 1.2 x 10-4\".",
-                "Figure 8 shows sliding and rolling. The coefficient of Figure 5 is 0.445.", ()),
+                "Figure 8 shows sliding and rolling. The coefficient is Table 2's 0.445.", ()),
         Erratum("Two headings are alike",
-                "\"Verification of a numerical simulation of the restitution experiment\", over parts 1 and 2.",
+                "\"numerical simulation of the restitution experiment\", in the headings of parts 1 and 2.",
                 "Part 2 is on the time step.", ()),
     ]

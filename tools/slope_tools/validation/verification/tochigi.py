@@ -1,4 +1,4 @@
-"""Tochigi's experiment: 177 rocks down a slope come to rest within the axes of the paper's figure
+"""Tochigi's experiment: 177 rocks down a slope come to rest within the axes of the paper's Figure 3
 
 inputs/10_tochigi: the drawing is read from its lengths, and of the paper's curves only the axes are known: -5 to 3 m
 along the slope, -4 to 4 m across it. All rocks must lie within the axes, and the farthest not far from
@@ -11,7 +11,7 @@ from .claims import AtMost, Between, Claim, Control, Run, Seen
 CASE = "10_tochigi"
 ROCKS = Run("10_tochigi/in.tochigi")
 SEEDS = tuple(ROCKS(seed=seed) for seed in range(1, 11))
-FIGURE = "paper, axes of Figures 2 and 3"
+FIGURE = "paper, axes of Figure 3"
 HELD = "rolling resistance 0.1, which this case has not", (ROCKS(seed=1, rolling=0.1),)
 
 
