@@ -28,8 +28,8 @@ BANDS = quantities.REMOVE, "remove_on_road_m3", "beyond_road_m3", quantities.LEN
 # of stretches and their sums: of which column they are a part
 OF_SUMS = dict(zip(SUMS, (quantities.REMOVE, "remove_lane_m3", "clear_hours", "lane_hours")))
 UNKNOWN = "; what finer ones would change is not known"
-# of which finer runs held what their last step leaves (tests/size_family.py); they raised what lies beyond the road, and
-# how far the centroid goes, by more
+# of which finer runs held what their last step leaves (tests/size_family.py); they raised what lies beyond the road,
+# and how far the centroid goes, by more
 HELD = {quantities.REMOVE, "remove_on_road_m3", quantities.LENGTH, quantities.DISTANCE}
 Point = Sequence[Optional[Finished]]    # its runs by size, the coarsest first; None: not run, or failed
 
