@@ -24,7 +24,7 @@ from run_helpers import called, examples
 from tiny_collapse import LMP, TOP, height, read_asc, rows_of, write_case
 
 from slope_tools import records
-from slope_tools.findings import Finding
+from slope_tools.findings import encode_findings
 from slope_tools.drawing import figures
 from slope_tools.plots import (figure_charts, figure_maps, ground as report_ground,
                                section as report_section)
@@ -154,7 +154,13 @@ def change(folder, function):
         about["largest"]["front_m"] = records.encode_record(outcome.find_largest_row(finished, "front_m"))
         if all(row.value(key) is not None for row in finished):
             about["largest"][key] = records.encode_record(outcome.find_largest_row(finished, key))
-        (folder / "study.yaml").write_text(yaml.safe_dump(about))
+        write_study(folder, about)
+
+
+def write_study(folder, about, *more):
+    """study.yaml with rows that were changed, and their findings, as `slope study` would write them; more: findings."""
+    about["warnings"] = [*encode_findings(judged.of_runs([rows.read_row(one) for one in about["runs"]])), *more]
+    (folder / "study.yaml").write_text(yaml.safe_dump(about))
 
 
 def set_moving(folder, share, reason="halted", speed=2.5):
@@ -508,10 +514,10 @@ def without_log_warnings(folder):
         log.write_text(re.sub(r"^WARNING.*\n|^Delete_balls.*\n", "", log.read_text(), flags=re.MULTILINE))
     if (folder / "study.yaml").exists():
         about = yaml.safe_load((folder / "study.yaml").read_text())
-        about["warnings"], about["conservative"]["doubts"] = [], []
+        about["conservative"]["doubts"] = []
         for row in about["runs"]:
             row["log_warnings"], row["release"]["removed"] = [], None
-        (folder / "study.yaml").write_text(yaml.safe_dump(about))
+        write_study(folder, about)
 
 
 @pytest.mark.parametrize("share, reason, level", [
@@ -543,13 +549,12 @@ def test_one_line_for_each_kind_of_warning(slope, here):
         row["log_warnings"] = [f"Pair gran/restitution: {k + 3} contacts were seen deeper than 10 %", "Neighbor lists"]
     about["runs"][0]["log_warnings"] += ["Pair gran/restitution: 99 contacts were seen deeper than 10 %"]
     about["runs"][4]["log_warnings"] = ["Only here"]
-    about["warnings"] += [{"kind": "of another version", "text": "the road ends in the grid"}]
     for k, share in ((1, 1e-5), (2, 3e-5)):
         about["runs"][k]["mass_error"] = share
     for name in ("a", "b", "c"):
         about["runs"].append({"run": name, "status": "failed", "set": {"rolling": name, "steps": "1200"}, "repeat": {},
                               "batch": 0, "error": f"ERROR: 1{len(about['runs'])} <b>atoms lost", "log_warnings": []})
-    Path("repeated/study.yaml").write_text(yaml.safe_dump(about))
+    write_study(Path("repeated"), about, {"kind": "of another version", "text": "the road ends in the grid"})
     assert slope("repeated")[0] == 0
     page, reader = read("repeated/report.html")
     texts = [text for level, text in reader.warnings if level]
@@ -579,7 +584,7 @@ def test_lost_mass_is_named(slope, here):
     about = yaml.safe_load(Path("out/study.yaml").read_text())
     for row, lost in zip(about["runs"], (1.5, 2.5)):
         row["lost_m3"] = lost
-    Path("out/study.yaml").write_text(yaml.safe_dump(about))
+    write_study(Path("out"), about)
     assert slope("out")[0] == 0
     [(level, text)] = [one for one in read("out/report.html")[1].warnings if "left the grid or the box" in one[1]]
     assert level == "amber" and "unknown" not in text       # 0.7 %
@@ -604,14 +609,14 @@ def test_the_fix_s_lines_of_lost_balls_are_folded_into_that(slope, here):
         row["log_warnings"] = ["Fix deposit/grid deposit: ball 805 left the box at 1 2 3, step 4, lost so far: 1"]
     for lost, said in ((0.0, "ball 805"), (12.5, "left the grid or the box")):
         about["runs"][0]["lost_m3"] = lost
-        Path("out/study.yaml").write_text(yaml.safe_dump(about))
+        write_study(Path("out"), about)
         assert slope("out")[0] == 0
         [text] = [text for _, text in read("out/report.html")[1].warnings if "left the" in text]
         assert said in text
 
 
 def test_warnings_of_the_study_s_tools_are_shown_each(slope, here):
-    """Those of the study as a whole are in red, above all others; those of runs of its own are folded as they were."""
+    """Those of the study as a whole are in red."""
     texts = ["the body is thinner than 3 balls everywhere: the numbers will be rough",
              "the body is in 2 parts",
              "the slip surface is above the ground"]
@@ -619,8 +624,7 @@ def test_warnings_of_the_study_s_tools_are_shown_each(slope, here):
     without_log_warnings(here / "out")
     stands("out")
     about = yaml.safe_load(Path("out/study.yaml").read_text())
-    about["warnings"] = [*({"kind": "of another version", "text": text} for text in texts),
-                         Finding("moving", {"among": "", "end": "of the rows", "time": 9.0}).entry()]
+    about["warnings"] = [{"kind": "of another version", "text": text} for text in texts]
     Path("out/study.yaml").write_text(yaml.safe_dump(about))
     status, out, _ = slope("out")
     page, reader = read("out/report.html")
@@ -640,7 +644,7 @@ def test_a_mass_of_a_million_m3_is_said_to_run_farther(slope, here, folder):
         if folder == "out":
             about = yaml.safe_load(Path("out/study.yaml").read_text())
             about["runs"][0]["released_m3"] = volume
-            Path("out/study.yaml").write_text(yaml.safe_dump(about))
+            write_study(Path("out"), about)
         assert slope(folder)[0] == 0
         page, reader = read(f"{folder}/report.html")
         found = [text for level, text in reader.warnings if level == "amber" and "run-out is not conservative" in text]

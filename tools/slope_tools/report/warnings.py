@@ -17,20 +17,18 @@ WEIGHT = {kind: place for place, kind in enumerate(WORDS)}
 
 def findings(data: Data, ground) -> List[Finding]:
     """All of a data.Data on its ground.Ground."""
-    of_runs = judged.of_runs(data.judged)
-    several_findings = [*of_runs, *below_ground(data), *judged.limits(data.study, bool(data.repeats)),
+    study = data.study
+    of_runs = study.warnings if study else judged.of_runs(data.judged)
+    several_findings = [*of_runs, *below_ground(data), *judged.limits(study, bool(data.repeats)),
                         *structures_part.coarse_walls(data, ground)[:1]]
-    if data.study:
-        study, ensemble, volume = data.study, data.study.ensemble, data.study.conservative
+    if study:
+        ensemble, volume = study.ensemble, study.conservative
         known_events = ensemble.known_events if ensemble else None
         for part, doubts in (("The volume to remove", volume.doubts if volume else []),
                              ("The ensemble", ensemble.doubts if ensemble else []),
                              ("The known events", known_events.doubts if known_events else [])):
             several_findings += [one._replace(part=part) for one in doubts]
-        known = {(one.kind, one.text) for one in of_runs}
-        several_findings += [one for one in study.warnings
-                             if one.part or one.kind not in judged.KINDS and (one.kind, one.text) not in known]
-    kinds = {one.kind for one in of_runs}
+    kinds = {one.kind for one in of_runs if not one.part}
     covered = [line for line, those in (("removed", ("bulk factor", "body volume", "balls removed")),
                                         ("lost", ("lost", "lost much"))) if kinds.intersection(those)]
     beside = {BESIDE_MAPS, LARGE if weighed(data) else None}

@@ -118,10 +118,6 @@ def of_logs(rows: Sequence[Row], covered: Iterable[str]) -> List[Finding]:
                     lambda finding: kind(finding.numbers["line"]))
 
 
-KINDS = {"failed", "in motion", "moving", "lost much", "lost", "bulk factor", "body volume", "balls removed", "soft",
-         "large", "balance", "programs"}     # of the above: what a file says of them is judged from its rows
-
-
 def limits(study: Optional[study_types.Study], repeats: bool) -> List[Finding]:
     """What no run of a study, or a run alone, can tell; repeats: whether runs were repeated."""
     sampled = study.ensemble if study else None
