@@ -300,7 +300,7 @@ def stands(name):
         parts["volume_m3"] = parts["mean_m3"] + (parts["chance_m3"] or 0)
     path.write_text(yaml.safe_dump(about))
     said = answer.combine_answers(headline.paper_of(study_file.load_study(path)), None, None)
-    path.write_text(yaml.safe_dump({**about, "headline": records.encode_record(said.about())}))
+    path.write_text(yaml.safe_dump({**about, "headline": records.encode_record(said)}))
     return best
 
 

@@ -183,7 +183,7 @@ def test_a_run_on_a_road_is_drawn_with_its_own_volume(done):
     assert found["volume"] == found[f"volume_{worst}"] and len(set(found.values())) == 3
 
 
-NUMBER, FLOOR, WITHHELD, NOTHING = (kind.value for kind in (Kind.NUMBER, Kind.FLOOR, Kind.WITHHELD, Kind.NOTHING))
+NUMBER, FLOOR, WITHHELD, NOTHING = Kind.NUMBER, Kind.FLOOR, Kind.WITHHELD, Kind.NOTHING
 
 
 @pytest.mark.parametrize("several, order, words", [

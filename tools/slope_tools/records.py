@@ -2,6 +2,7 @@
 import dataclasses
 import functools
 import typing
+from enum import Enum
 from types import NoneType
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Type, TypeVar, Union
 
@@ -31,6 +32,8 @@ def encode_record(value: Any) -> Any:
         return value
     if isinstance(value, Finding):
         return value.entry()
+    if isinstance(value, Enum):
+        return value.value
     if dataclasses.is_dataclass(value):
         parts = ((getattr(value, one.name), one) for one in dataclasses.fields(value))
         return {one.name: encode_record(part) for part, one in parts if part is not None or one.default is not None}
@@ -70,6 +73,10 @@ def _read(kind: Any, value: Any) -> Any:
             raise NoRecord(f"must have {' and '.join(lacks)}")
         parts_ = {name: _inside(name, one, value[name]) for name, one in of.types.items() if name in value}
         return kind(**parts_)
+    if isinstance(kind, type) and issubclass(kind, Enum):
+        if value not in (several := [one.value for one in kind]):
+            raise NoRecord(f"must be one of {', '.join(several)}, got {repr(value)[:60]}")
+        return kind(value)
     if kind is not Any:
         check_record_value(value, kind)
     return value

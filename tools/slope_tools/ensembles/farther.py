@@ -110,7 +110,7 @@ class Added:
 
     def about(self) -> ensemble_types.Added:
         """What study.yaml says of it."""
-        return ensemble_types.Added(self.number, self.stopped.about() if self.stopped else None,
+        return ensemble_types.Added(self.number, self.stopped,
                                     [{"points": len(one.points), "ranges": self.text(one)} for one in self.batches])
 
 

@@ -272,8 +272,7 @@ def find_known_caveats(weighted: ensemble_types.Weighted, runs: Runs) -> List[Fi
     """The caveats, in the order of their weight."""
     caveats, stopped, reached = [], weighted.added.stopped, weighted.reached or 0.0
     if weighted.far >= 1 - farther.REACHED:
-        remedy = answer_words.describe_reason(
-            answer.Reason.read(stopped)) if stopped else "vary towards more mobile masses"
+        remedy = answer_words.describe_reason(stopped) if stopped else "vary towards more mobile masses"
         caveats.append(Finding("events beyond", {
             "length": metres(weighted.longest_m), "share": answer_words.describe_share_beyond(weighted.far,
                                                                                               weighted.path_end_m),

@@ -26,12 +26,13 @@ def make_client_content(data: Data, ground, numbers: Numbers, answers: Sequence[
     main = next((card for card in answers if card), None)
     paragraphs = letter.write_letter(letter_, numbers)._replace(down=body.sentence(body.of_data(data, ground)))
     step = data.study.next_step if data.study else None
-    kind = letter_.number.kind if letter_.number else Kind.NUMBER.value
+    kind = letter_.number.kind if letter_.number else Kind.NUMBER
     if not letter_.number and main:     # of an ensemble that no known events weigh
         paragraphs = paragraphs._replace(clear=of_card(main))
         if main.withheld:
-            kind, step = Kind.WITHHELD.value, next_step.first_remedy(next_step.Made(data.of_study, data.folder))
-    return {"letter": paragraphs, "kind": kind, "step": step, "table": tabulate_ranges(data, ground, numbers, kind),
+            kind, step = Kind.WITHHELD, next_step.first_remedy(next_step.Made(data.of_study, data.folder))
+    return {"letter": paragraphs, "kind": kind.value, "step": step,
+            "table": tabulate_ranges(data, ground, numbers, kind),
             "caveats": warnings.first_page(unsaid(letter_, findings))[:warnings.MOST], "rest": warnings.rest_of(listed)}
 
 
@@ -58,9 +59,9 @@ def of_card(main: MainCard) -> str:
 
 # --- what else is found ---
 
-def tabulate_ranges(data: Data, ground, numbers: Numbers, kind: str) -> Pairs:
+def tabulate_ranges(data: Data, ground, numbers: Numbers, kind: Kind) -> Pairs:
     """Of the runs of this page, the least and the most of all, each counted alike."""
-    cleared = road_part.on_first_page(data, numbers, kind == Kind.WITHHELD.value)
+    cleared = road_part.on_first_page(data, numbers, kind is Kind.WITHHELD)
     rows = [*on_road(data, numbers), *(("clearing", text) for text in cleared), *moving(data, numbers),
             *structures(data, ground), *mapped(data, numbers)]
     runs = letter.describe_alike_runs(data.study) if data.study else ""

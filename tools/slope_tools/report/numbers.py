@@ -261,7 +261,7 @@ def is_own(data: Data) -> bool:
     if not data.study or not data.study.headline:
         return False
     own = Source.ENSEMBLE if data.study.ensemble else Source.PAPER
-    return data.study.headline.source == own.value
+    return data.study.headline.source is own
 
 
 def shown_run(data: Data) -> str:

@@ -5,10 +5,10 @@ them stay within. A record of kinds, codes and numbers; words are made of it els
 """
 import math
 from enum import Enum
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import Any, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
-from . import entries, rounding
-from .entries import KnownQuantile, Road, Share
+from . import rounding
+from .entries import EnsemblePart, KnownQuantile, PaperPart, Road, Share
 from .withheld import Kind as Rule
 
 SHARE = 0.95            # of the known events, which stay within the volume
@@ -50,14 +50,6 @@ class Reason(NamedTuple):
     """A code and its numbers."""
     code: Code
     numbers: Mapping[str, Any]
-
-    def about(self) -> Dict[str, Any]:
-        return {"code": self.code.value, "numbers": dict(self.numbers)}
-
-    @classmethod
-    def read(cls, entry: Mapping[str, Any]) -> "Reason":
-        """Of about()."""
-        return cls(Code(entry["code"]), entry["numbers"])
 
 
 class Cause(Enum):
@@ -153,31 +145,20 @@ def choose_known_shares(far: float) -> List[float]:
     return [SHARE] if within >= SHARE else [SHARE, within]
 
 
-class Answer(NamedTuple):
-    """See the page on `slope study`: headline of study.yaml."""
+class Headline(NamedTuple):
+    """See the page on `slope study`."""
     kind: Kind
-    volume: Optional[float]
+    volume_m3: Optional[float]
     share: Optional[float]
-    low: Optional[float]
-    high: Optional[float]
+    low_m3: Optional[float]
+    high_m3: Optional[float]
     source: Optional[Source]
-    paper: Optional[Paper]
-    ensemble: Optional[Ensemble]
+    paper: Optional[PaperPart]
+    ensemble: Optional[EnsemblePart]
     road: Optional[Road]
     reasons: List[Reason]
-    band: Sequence[Share] = ()
-    open: bool = False
-
-    def about(self) -> entries.Headline:
-        """What study.yaml says of it."""
-        paper, ensemble = self.paper, self.ensemble
-        return entries.Headline(
-            self.kind.value, self.volume, self.share, self.low, self.high, self.source.value if self.source else None,
-            entries.PaperPart(paper.volume, [one.rule.value for one in paper.withheld], paper.runs) if paper else None,
-            entries.EnsemblePart(at.value if (at := ensemble.at(SHARE)) else None, [
-                one.rule.value for one in ensemble.withheld], ensemble.runs, ensemble.far) if ensemble else None,
-            self.road, [one.about() for one in self.reasons], list(self.band),
-            self.open)
+    band: List[Share]
+    open_above: bool = False        # nothing but the runs bounds it from above
 
 
 class Part(NamedTuple):
@@ -264,7 +245,7 @@ def correct_part(part: Part, size: Size) -> Part:
     return part._replace(kind=Kind.FLOOR, reasons=reasons)
 
 
-def combine_answers(paper: Optional[Paper], ensemble: Optional[Ensemble], road: Optional[Road]) -> Optional[Answer]:
+def combine_answers(paper: Optional[Paper], ensemble: Optional[Ensemble], road: Optional[Road]) -> Optional[Headline]:
     """The larger of both, with the higher of their upper ends; None without either.
 
     Where one of them is withheld for a reason that the other does not make up for, the other is a floor; so is 0 where
@@ -278,10 +259,13 @@ def combine_answers(paper: Optional[Paper], ensemble: Optional[Ensemble], road: 
         parts.append((Source.ENSEMBLE, of_ensemble(ensemble, road)))
     if not parts:
         return None
+    beside = (PaperPart(paper.volume, [one.rule for one in paper.withheld], paper.runs) if paper else None,
+              EnsemblePart(at.value if (at := ensemble.at(SHARE)) else None, [one.rule for one in ensemble.withheld],
+                           ensemble.runs, ensemble.far) if ensemble else None, road)
     reasons = [reason for _, part in parts[::-1] for reason in part.reasons]
     known = [(source, part) for source, part in parts if part.volume is not None]
     if not known:
-        return Answer(Kind.WITHHELD, None, None, None, None, None, paper, ensemble, road, reasons)
+        return Headline(Kind.WITHHELD, None, None, None, None, None, *beside, reasons, [])
     source, best = max(known, key=lambda pair: pair[1].volume or 0.0)
     volume, some = best.volume or 0.0, []
     if road and not volume:
@@ -305,11 +289,11 @@ def combine_answers(paper: Optional[Paper], ensemble: Optional[Ensemble], road: 
     released = min(one.released for one in (paper, ensemble) if one)
     volume, low, high = (min(one, released) for one in (volume, low, high))
     if kind is Kind.OPEN:
-        return Answer(kind, volume, best.share, None, None, source, paper, ensemble, road, reasons, band)
+        return Headline(kind, volume, best.share, None, None, source, *beside, reasons, [*band])
     if kind is Kind.FLOOR:
         low = volume = rounding.down(low, rounding.place_of_digits(low))
-    return Answer(kind, volume, best.share, low, None if open_ else high, source, paper, ensemble, road,
-                  [*some, *reasons], band, best.open)
+    return Headline(kind, volume, best.share, low, None if open_ else high, source, *beside, [*some, *reasons], [*band],
+                    best.open)
 
 
 def few(part: Part) -> bool:

@@ -1,6 +1,8 @@
 """What study.yaml has of quantiles, of emulators and of the headline: see tables/study_types."""
 from dataclasses import dataclass, replace
-from typing import Any, Dict, List, NamedTuple, Optional, Sequence
+from typing import Dict, List, NamedTuple, Optional, Sequence
+
+from .withheld import Kind
 
 
 class Quantile(NamedTuple):
@@ -94,7 +96,7 @@ class AtRoad(NamedTuple):
 @dataclass(frozen=True)
 class PaperPart:
     volume_m3: Optional[float]
-    withheld: List[str]
+    withheld: List[Kind]
     runs: int
 
 
@@ -134,20 +136,3 @@ class Share(NamedTuple):
     cause: str
     below_m3: float
     above_m3: float
-
-
-@dataclass(frozen=True)
-class Headline:
-    """The number that counts (answer.Answer): see the page on `slope study`."""
-    kind: str
-    volume_m3: Optional[float]
-    share: Optional[float]
-    low_m3: Optional[float]
-    high_m3: Optional[float]
-    source: Optional[str]
-    paper: Optional[PaperPart]
-    ensemble: Optional[EnsemblePart]
-    road: Optional[Road]
-    reasons: List[Dict[str, Any]]   # answer.Reason.about()
-    band: List[Share]
-    open_above: bool = False        # nothing but the runs bounds it from above

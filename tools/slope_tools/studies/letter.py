@@ -7,8 +7,8 @@ from typing import Callable, List, NamedTuple, Optional, Sequence
 
 from ..digits import percent, three
 from ..mobility.how_far import TAIL, Reach
-from ..statistics.answer import Cause, Code, Kind, Source
-from ..statistics.entries import Headline, PaperPart, Road
+from ..statistics.answer import Cause, Code, Headline, Kind, Source
+from ..statistics.entries import PaperPart, Road
 from ..tables import answer_words, ensemble_types, judged, sizes, study_types
 from ..tables.rows import finished_of
 from .road_numbers import Number, read_road_numbers
@@ -52,7 +52,7 @@ def make_letter(study: study_types.Study) -> Letter:
     rows, number = finished_of(study.runs), study.headline
     known = ensemble_types.weighted(study.ensemble)
     gap = next((one.gap for one in known.to_remove or () if one.share == number.share), None) \
-        if known and number and number.source == "ensemble" else None
+        if known and number and number.source is Source.ENSEMBLE else None
     return Letter(max((row.released_m3 for row in rows), default=0.0), number, gap, study.reach,
                   read_road_numbers(study), [one.kind for one in judged.limits(study, bool(study.study.repeat))],
                   study.size.text if study.size else sizes.alone(max(
@@ -128,7 +128,7 @@ def describe_cut(letter: Letter) -> str:
 def describe_clearing(number: Headline, write: Write) -> str:
     """The sentence with the number, or what stands in its place."""
     return {Kind.NUMBER: describe_number, Kind.FLOOR: describe_floor, Kind.OPEN: describe_open,
-            Kind.WITHHELD: describe_withheld_number, Kind.NOTHING: describe_nothing}[Kind(number.kind)](number, write)
+            Kind.WITHHELD: describe_withheld_number, Kind.NOTHING: describe_nothing}[number.kind](number, write)
 
 
 def describe_number(number: Headline, write: Write) -> str:
@@ -177,8 +177,8 @@ def describe_basis(number: Headline, letter: Letter, write: Write) -> str:
     """Of which runs it is, what the others give, and what makes its band."""
     if not number.volume_m3 or not number.source:
         return ""
-    source, lower = Source(number.source), "It is the lower end, with 90 % confidence, of what"
-    runs, floor = count_runs_of(number, source), Kind(number.kind) is Kind.FLOOR
+    source, lower = number.source, "It is the lower end, with 90 % confidence, of what"
+    runs, floor = count_runs_of(number, source), number.kind is Kind.FLOOR
     beside: Optional[PaperPart]
     if source is Source.ENSEMBLE:
         many = "" if letter.events is None else f"{letter.events} recorded landslides, "
@@ -212,13 +212,13 @@ def describe_band_shares(number: Headline) -> str:
 def describe_change(number: Headline) -> str:
     """Why there is no number, or what would change the one that there is."""
     reasons = [capital(answer_words.client(one)) for one in answer_words.told(number) if one.code not in TOLD]
-    if Kind(number.kind) in (Kind.NUMBER, Kind.NOTHING):
+    if number.kind in (Kind.NUMBER, Kind.NOTHING):
         parts = [one for one in number.band if one.below_m3 or one.above_m3]
         if not reasons and parts and number.volume_m3:
             most = max(parts, key=lambda part: max(part.below_m3, part.above_m3))
             return f"What would narrow the band most: {NARROWS[most.cause]}." if most.cause in NARROWS else ""
         return f"What would change it: {' '.join(reasons)}" if reasons else ""
-    why = "How much must be cleared from the road is not known." if Kind(number.kind) is Kind.WITHHELD else "Why:"
+    why = "How much must be cleared from the road is not known." if number.kind is Kind.WITHHELD else "Why:"
     return f"{why} {' '.join(reasons)}" if reasons else ""
 
 

@@ -9,7 +9,7 @@ from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Seq
 
 from rich.table import Table
 
-from .. import digits, disk
+from .. import digits, disk, records
 from ..errors import SlopeError
 from ..sites import site_roads
 from ..sites.site_choices import Site
@@ -38,8 +38,8 @@ class Number(NamedTuple):
     known events that does, the larger probability, 0 where nobody knows; page: in its folder.
     """
     road: str
-    kind: Any
-    volume_m3: Any
+    kind: Optional[Kind]
+    volume_m3: Optional[float]
     most_m3: float
     reaching: int
     runs: int
@@ -48,18 +48,18 @@ class Number(NamedTuple):
 
     @property
     def counts_m3(self) -> float:
-        return self.most_m3 if self.volume_m3 is None or self.kind == Kind.WITHHELD.value else self.volume_m3
+        return self.most_m3 if self.volume_m3 is None or self.kind is Kind.WITHHELD else self.volume_m3
 
     @property
     def order(self) -> Tuple[float, int, float]:
         """The worst has the largest."""
-        may_be_more = {Kind.NOTHING.value: 0, Kind.NUMBER.value: 1}.get(self.kind, 2)
+        may_be_more = 0 if self.kind is Kind.NOTHING else 1 if self.kind is Kind.NUMBER else 2
         return self.counts_m3, may_be_more, self.reached
 
     @property
     def text(self) -> str:
         """The number with its unit, as the first page of the road has it."""
-        if self.volume_m3 is None and self.kind != Kind.WITHHELD.value:
+        if self.volume_m3 is None and self.kind is not Kind.WITHHELD:
             return f"no number, up to {digits.three(self.most_m3)} m3 in a run"
         return answer_words.describe_volume(self.kind, self.volume_m3, "m3")
 
@@ -105,12 +105,12 @@ def in_order(numbers: Sequence[Number]) -> List[Number]:
 
 def list_road_entries(numbers: Sequence[Number]) -> List[Dict[str, Any]]:
     """For study.yaml."""
-    return [one._asdict() for one in numbers]
+    return records.encode_record(numbers)
 
 
 def read_road_numbers(study: study_types.Study) -> List[Number]:
     """Those of a study; none of a site with one road."""
-    return [Number(**one) for one in study.roads]
+    return [records.read_record(Number, one) for one in study.roads]
 
 
 def tabulate_road_numbers(numbers: Sequence[Number]) -> Table:

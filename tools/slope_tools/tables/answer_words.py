@@ -3,29 +3,29 @@ from typing import Any, Dict, Iterable, List, Mapping, Optional, Tuple
 
 from ..digits import metres, percent, three
 from ..findings import Finding
-from ..statistics.answer import Code, Kind, Reason, Source
-from . import quantities, study_types
+from ..statistics.answer import Code, Headline, Kind, Reason, Source
+from . import quantities
 
 STUDY = {Source.PAPER.value: "the sweep", Source.ENSEMBLE.value: "the runs weighted by known events"}
 CLIENT = {Source.PAPER.value: "runs with chosen settings", Source.ENSEMBLE.value: "runs weighted by known events"}
 
 
-def describe_volume(kind: str, value: Optional[float], unit: str = "") -> str:
+def describe_volume(kind: Optional[Kind], value: Optional[float], unit: str = "") -> str:
     """A number and what it is, for tables."""
     text = f"{three(value or 0.0)} {unit}".strip()
-    if kind == Kind.WITHHELD.value:
+    if kind is Kind.WITHHELD:
         return "not usable"
-    if kind == Kind.FLOOR.value:
+    if kind is Kind.FLOOR:
         return f"at least {text}" if value else f"more than {text}"
-    return f"{text} (no bound)" if kind == Kind.OPEN.value else text
+    return f"{text} (no bound)" if kind is Kind.OPEN else text
 
 
 # --- why ---
 
-def told(headline: study_types.Headline) -> List[Reason]:
+def told(headline: Headline) -> List[Reason]:
     """The reasons as they are printed, each once: of a rule that both studies break, of the one that decides."""
     found: Dict[Tuple[Code, Any], Reason] = {}
-    for one in map(Reason.read, headline.reasons):
+    for one in headline.reasons:
         found.setdefault((one.code, one.numbers.get("rule")), one)
     return list(found.values())
 

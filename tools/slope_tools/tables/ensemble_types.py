@@ -3,6 +3,7 @@ from dataclasses import dataclass
 from typing import Any, Dict, List, Optional, Union
 
 from ..findings import Finding
+from ..statistics.answer import Reason
 from ..statistics.entries import Analysis, KnownQuantile, Quantile
 
 MapEntry = Dict[str, Any]           # of a map over all runs: file, what it shows, and of which threshold or quantile
@@ -44,9 +45,9 @@ class Gap:
 
 @dataclass(frozen=True)
 class Added:
-    """The runs towards longer ones (farther.Added); stopped: answer.Reason.about()."""
+    """The runs towards longer ones (farther.Added)."""
     points: int
-    stopped: Optional[Dict[str, Any]]
+    stopped: Optional[Reason]
     batches: List[Dict[str, Any]]
 
 

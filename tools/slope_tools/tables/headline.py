@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any, Dict, List, Mapping, Optional, Sequence
 
 from ..findings import Finding
-from ..statistics.answer import Code, Ensemble, Paper, Reason, Size, Withheld, combine_answers
-from ..statistics.entries import Headline, Road
+from ..statistics.answer import Code, Ensemble, Headline, Paper, Reason, Size, Withheld, combine_answers
+from ..statistics.entries import Road
 from ..statistics.withheld import Kind as Rule
 from . import ensemble_types, next_step, study_types
 from .quantities import REMOVE
@@ -28,7 +28,7 @@ def conclude(studies: Mapping[Path, study_types.Study], given: Any = None) -> Di
     number = make_headline(list(studies.values()))
     made = [next_step.Made(study, folder, given=given) for folder, study in studies.items()]
     step, sweep = next_step.of_studies(made, number), made[0].study
-    governs = next((each for each in made if number and each.source.value == number.source), made[-1])
+    governs = next((each for each in made if number and each.source is number.source), made[-1])
     return {each.folder: replace(
         each.study, study=replace(each.study.study, governs=governs.folder.name), headline=number, at_road=None,
         next_step=step, reach=sweep.reach, largest_restitution=sweep.largest_restitution)
@@ -40,8 +40,7 @@ def make_headline(studies: Sequence[study_types.Study]) -> Optional[Headline]:
     paper = next(filter(None, map(paper_of, studies)), None)
     ensemble = next(filter(None, map(ensemble_of, studies)), None)
     roads = [study.at_road for study in studies if study.at_road and (study.conservative or ensemble_of(study))]
-    number = combine_answers(paper, ensemble, functools.reduce(Road.and_of, roads) if roads else None)
-    return number.about() if number else None
+    return combine_answers(paper, ensemble, functools.reduce(Road.and_of, roads) if roads else None)
 
 
 def paper_of(study: study_types.Study) -> Optional[Paper]:
@@ -59,10 +58,9 @@ def ensemble_of(study: study_types.Study) -> Optional[Ensemble]:
     whole, weighted = study.ensemble, ensemble_types.weighted(study.ensemble)
     if not whole or not weighted or not weighted.to_remove:
         return None
-    stopped = weighted.added.stopped
     most = max((row.at_road.remove_m3 for row in finished_of(study.runs) if row.road), default=0.0)
     return Ensemble(weighted.to_remove, weighted.far, weighted.longest_m, rules(whole.withheld),
-                    Reason.read(stopped) if stopped else None, most, size_of(study), weighted.path_end_m,
+                    weighted.added.stopped, most, size_of(study), weighted.path_end_m,
                     released_of(study), weighted.runs)
 
 

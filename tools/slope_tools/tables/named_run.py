@@ -7,6 +7,7 @@ from ..case.run_folders import OF_RUN, RASTERS, prefix_of, summaries, summary_of
 from ..deposits import travel_shares
 from ..errors import SlopeError
 from ..sites import site_choices
+from ..statistics.answer import Source
 from ..statistics.entries import KnownQuantile, Quantile
 from . import ensemble_types, sizes, study_types
 from .rows import Finished, finished_of
@@ -52,7 +53,7 @@ def of_headline(study: study_types.Study, rows: Sequence[Finished]) -> Optional[
     None where the headline is of another study, of none, or withheld.
     """
     number, known = study.headline, ensemble_types.weighted(study.ensemble)
-    if not number or number.source != "ensemble" or number.volume_m3 is None:
+    if not number or number.source is not Source.ENSEMBLE or number.volume_m3 is None:
         return None
     if number.volume_m3 == 0:
         long = [row for row in rows if row.length_m is not None]

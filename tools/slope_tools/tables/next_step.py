@@ -9,7 +9,7 @@ from ..findings import Finding
 from ..mobility import events
 from ..runs import again
 from ..sites import site_choices, site_roads
-from ..statistics.answer import Code, Kind, Reason, Source
+from ..statistics.answer import Code, Headline, Kind, Reason, Source
 from ..statistics.withheld import Kind as Rule
 from . import answer_words, study_types
 from .rows import finished_of
@@ -58,13 +58,13 @@ class Made(NamedTuple):
         return [*(paper.withheld if paper else ()), *(ensemble_.withheld if ensemble_ else ())]
 
 
-def of_studies(studies: Sequence[Made], headline: Optional[study_types.Headline]) -> Optional[NextStep]:
+def of_studies(studies: Sequence[Made], headline: Optional[Headline]) -> Optional[NextStep]:
     """What makes a number of a headline, by the first of its reasons that something can be done about; None where it
     is a number, or there is none.
 
     studies: one, or both of a site: each reason is of one of them.
     """
-    if not headline or Kind(headline.kind) not in (Kind.FLOOR, Kind.OPEN, Kind.WITHHELD):
+    if not headline or headline.kind not in (Kind.FLOOR, Kind.OPEN, Kind.WITHHELD):
         return None
     if len(studies) == 2:
         first, other = studies
