@@ -21,6 +21,7 @@ from slope_tools.findings import LIMIT, NOTE, WARNING, Finding, finding, gathere
 from slope_tools.plots.obstacles import Obstacles
 from slope_tools.report import body, client_part, ensemble_part, limits_part, numbers, structures_part, warnings
 from slope_tools.report.numbers import Numbers
+from slope_tools.statistics.answer import Kind
 from slope_tools.statistics.withheld import Kind as Rule
 from slope_tools.studies import letter
 from slope_tools.tables import answer_words, judged, next_step, study_file
@@ -251,9 +252,9 @@ def test_the_next_step_is_of_the_study_whose_reason_comes_first(tmp_path):
     step = next_step.of_studies(both, about)
     assert (step.command, step.seconds) == (mends, 2 * (120 + 60)) and step.line.startswith("tools/slope site")
     assert step.before.endswith("/site.yaml, then:")
-    step = next_step.of_studies(both, replace(about, reasons=[size, rule]))
+    step = next_step.of_studies(both, about._replace(reasons=[size, rule]))
     assert step.command == f"tools/slope study {tmp_path} --levels 4" and step.before == ""
-    assert next_step.of_studies(both, replace(about, kind="number")) is None
+    assert next_step.of_studies(both, about._replace(kind=Kind.NUMBER)) is None
 
 
 def test_each_reason_is_told_once():
