@@ -114,11 +114,6 @@ def format_volume(value: float) -> str:
     return f"{rounded(value / MILLION)} million m3" if value >= MILLION else f"{rounded(value)} m3"
 
 
-def format_coordinate(value: float) -> str:
-    """A coordinate in m, to a decimetre."""
-    return f"{value:.1f}"
-
-
 def cubic(value: float) -> str:
     """A volume with its unit, for those who read: 6,130 m³, 4.52 million m³."""
     if abs(value) >= MILLION:

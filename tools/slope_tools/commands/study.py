@@ -109,7 +109,8 @@ def run_study(args: Request) -> None:
     for name in ("paper", "minutes"):
         if all(getattr(args, name) is not none for none in (None, False)):
             raise SlopeError(f"--{name}", "must be given with the folder of a site", args.deck)
-    run_deck(replace(args, around=site_choices.find_site_of_deck(args.deck)))
+    place = args.deck.parent
+    run_deck(replace(args, around=site_choices.load_site(place) if (place / site_choices.NAME).is_file() else None))
 
 
 def run_folder(args: Request) -> None:

@@ -54,7 +54,8 @@ class Ground:
 
     def __init__(self, z):
         self.known = np.isfinite(z)
-        self.z = z if self.known.all() else nearest_filled(z, self.known)
+        self.z = z if self.known.all() else z[tuple(distance_transform_edt(~self.known, return_distances=False,
+                                                                           return_indices=True))]
 
     def height(self, x, y):
         """At index coordinates x, y (arrays)."""
@@ -82,10 +83,6 @@ class Ground:
         """Whether points lie on cells without a height, but for those beside others."""
         j, i = (np.clip(at.astype(int), 0, n - 1) for at, n in zip((y, x), self.known.shape))
         return (distance_transform_edt(~self.known) > BESIDE)[j, i]
-
-
-def nearest_filled(z, known):
-    return z[tuple(distance_transform_edt(~known, return_distances=False, return_indices=True))]
 
 
 class Edge:

@@ -83,13 +83,9 @@ def read_balls_gone(prefix: Path, ground: Ground) -> Optional[Gone]:
         return of_file(path)
     volume = ground.summary["volume"]
     if volume["off_grid"] + volume["lost"] == 0 and not ground.raster.z[~ground.known].any():
-        return none_left()
+        return Gone(np.empty(0), np.empty((0, 2)), np.empty((0, 2)), np.empty(0), NOTHING)
     paths = snapshots(path.parent, ground.summary.get("stop", {}).get("step", -1))
     return of_dumps(paths, ground) if len(paths) > 1 else None
-
-
-def none_left() -> Gone:
-    return Gone(np.empty(0), np.empty((0, 2)), np.empty((0, 2)), np.empty(0), NOTHING)
 
 
 def of_file(path: Path) -> Gone:

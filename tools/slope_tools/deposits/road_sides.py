@@ -94,8 +94,10 @@ def divide(road: BaseGeometry, line: Optional[LineString], raster: Raster, relea
     middle = np.array(raster.transform @ (columns.mean() + 0.5, rows.mean() + 0.5))
     far = 2 * (whole.length + np.hypot(*(np.array(whole.centroid.coords[0]) - middle)))
     pieces = geometry.polygons_of(unary_union(geometry.polygons_of(road)))
-    ends = ends_of_line(line, pieces[0]) if line is not None and not line.is_ring and len(pieces) == 1 else [
-        end for number, piece in enumerate(pieces) for end in ends_of(number, piece, middle)]
+    if line is not None and not line.is_ring and len(pieces) == 1:
+        ends = ends_along(0, np.asarray(line.coords)[:, :2], width_of(pieces[0]))
+    else:
+        ends = [end for number, piece in enumerate(pieces) for end in ends_of(number, piece, middle)]
     barriers = barriers_of(pieces, ends, far)
     beyond = [passed(whole, one, raster, released) for one in barriers]
     open_ = whole.difference(road)
@@ -105,11 +107,6 @@ def divide(road: BaseGeometry, line: Optional[LineString], raster: Raster, relea
 
 
 # --- ends ---
-
-def ends_of_line(line: LineString, road: Polygon) -> List[End]:
-    """Of a road that is a line, and no closed one."""
-    return ends_along(0, np.asarray(line.coords)[:, :2], width_of(road))
-
 
 def ends_of(number: int, piece: Polygon, middle: np.ndarray) -> List[End]:
     """Of a polygon; middle: of the mass."""

@@ -192,7 +192,8 @@ def evaluate_known_events(condition: Condition, sample: Sample, added: farther.A
                               runs, draw)
         if REMOVE in curves else None,
         variables={name: variable(runs, k, emulated.main) for k, name in enumerate(sample.names)},
-        influence=emulated.influence, weights=whole_weights(runs), maps=[],
+        influence=emulated.influence, maps=[], weights={row.run: float(one) for row, one in zip(
+            runs.rows, conditioned.weigh_runs(runs.mass))},     # with those beyond the longest
         path_end_m=end if (end := float(mobility.path.length[-1])) < longest else None)
     return Evaluated(replace(weighted, doubts=find_known_caveats(weighted, runs)), runs, curves)
 
@@ -290,11 +291,6 @@ def find_known_caveats(weighted: ensemble_types.Weighted, runs: Runs) -> List[Fi
     if left:
         caveats.append(Finding("lengths lost", {"lost": left, "runs": len(runs.rows), "percent": 100 * LEFT}))
     return caveats
-
-
-def whole_weights(runs: Runs) -> Dict[str, float]:
-    """The share of known events that each run stands for, those beyond the longest among them."""
-    return {row.run: float(one) for row, one in zip(runs.rows, conditioned.weigh_runs(runs.mass))}
 
 
 # --- tables ---

@@ -67,7 +67,7 @@ def of_lengths(lengths, exceedance, ratio=None) -> Weights:
     order = np.argsort(lengths, kind="stable")
     below = 1 - beyond[order]
     cells = np.diff(np.concatenate([below[:1], (below[1:] + below[:-1]) / 2, below[-1:]]))
-    window = window_of(len(lengths))
+    window = 2 * max(0, int(math.sqrt(len(lengths)) / 2 - 0.5)) + 1     # 7 of 60 runs, 9 of 100, 63 of 4000
     reached = float(below[-1] - below[0])
     rest = float(1 - below[-1])
     weights = np.zeros(len(lengths))
@@ -82,11 +82,6 @@ def of_lengths(lengths, exceedance, ratio=None) -> Weights:
     return Weights(weights, reached, float(below[0]), rest, float(reached ** 2 / (smooth ** 2).sum()), float(distance),
                    [Gap(*map(float, (*lengths[order][i:i + 2], below[i + 1] - below[i]))) for i in before], window,
                    order, given, below, before)
-
-
-def window_of(number: int) -> int:
-    """The odd number of cells that a weight is the mean of: 7 of 60 runs, 9 of 100, 63 of 4000."""
-    return 2 * max(0, int(math.sqrt(number) / 2 - 0.5)) + 1
 
 
 def averaged(cells: np.ndarray, window: int) -> np.ndarray:

@@ -88,7 +88,7 @@ def read_network_record(path, lines: Sequence[str], form: Form) -> List[Componen
 
 def block(path, lines: Sequence[str], begin: int, form: Form) -> List[Component]:
     """Those of one block, from a line on."""
-    first = next((k for k in range(begin, len(lines)) if holds_numbers(lines[k])), len(lines))
+    first = next((k for k in range(begin, len(lines)) if numbers_of(lines[k].replace(",", " "))), len(lines))
     head = "\n".join(line.rstrip() for line in lines[begin:first]).rstrip()
     place = path if begin == 0 else f"{path}, line {begin + 1}"
 
@@ -131,11 +131,6 @@ def block(path, lines: Sequence[str], begin: int, form: Form) -> List[Component]
             numbers.append(Component(str(path), column[0], dt, column[1] * factor * values, said(form.begin), True,
                                      of=of))
     return numbers
-
-
-def holds_numbers(line: str) -> bool:
-    """Whether a line holds numbers, and nothing else."""
-    return bool(numbers_of(line.replace(",", " ")))
 
 
 def parse_component_columns(place, text: str):

@@ -25,7 +25,7 @@ def processed(components, wanted: Processing):
     motion = motions.combine(components, wanted.azimuth)
     steps = [f"x axis towards {wanted.azimuth:g} degrees"]
     if wanted.baseline != "none":
-        motion = motions.without_mean(motion)
+        motion = motions.Motion(motion.dt, motion.a - motion.a.mean(axis=0))
         steps.append("mean taken off")
     if wanted.window:
         motion = motions.window(motion, *wanted.window)

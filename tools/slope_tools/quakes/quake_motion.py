@@ -82,11 +82,6 @@ def window(motion, begin, end):
     return Motion(motion.dt, motion.a[first:last + 1])
 
 
-def without_mean(motion):
-    """The zero line of the instrument taken off."""
-    return Motion(motion.dt, motion.a - motion.a.mean(axis=0))
-
-
 def band_pass(motion, low, high):
     """Without what is slower than low and faster than high (Hz); no delay; ends are tapered."""
     top = 0.5 / motion.dt

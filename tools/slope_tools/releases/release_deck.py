@@ -21,11 +21,6 @@ class Body(NamedTuple):
     thick: float            # largest, vertical
 
 
-def choose_diameter(volume: float) -> float:
-    """A ball's diameter (m), to two digits, so that some 20,000 stand for a volume (m3)."""
-    return float(f"{packing.compute_diameter(volume, BALLS):.2g}")
-
-
 def make_deck_lines(body: Body) -> str:
     """The lines, in the order in which a deck needs them; all of it but the contact model and the loading."""
     box = " ".join(f"{value:.10g}" for value in body.box)
@@ -35,7 +30,7 @@ def make_deck_lines(body: Body) -> str:
 
 # --- geometry ---
 
-variable    d index {choose_diameter(body.volume):g}       # diameter of the balls, m
+variable    d index {float(f'{packing.compute_diameter(body.volume, BALLS):.2g}'):g}       # diameter of the balls, m
 variable    bottom equal {bottom}+10*v_d    # of the ground below its lowest height, and room above the highest
 region      ground terrain {quoted(body.terrain)} depth ${{bottom}} headroom ${{bottom}}
 region      base terrain {quoted(body.slip)} depth ${{bottom}} headroom ${{bottom}}    # without the body

@@ -52,7 +52,8 @@ def is_assigned(site: Dict[str, Any]) -> bool:
 
 def sentence(body: Body) -> str:
     """It, for a client."""
-    words = [f"{format_released_volume(body.volume)} of ground would come down"]
+    volume = f"{format_whole(body.volume)} m³" if body.volume < digits.MILLION else digits.cubic(body.volume)
+    words = [f"{volume} of ground would come down"]
     if body.depth and body.area:
         words.append(f", up to {digits.three(body.depth)} m deep and of {digits.three(body.area)} m² in plan")
     words.append(f", above {body.shape}")
@@ -64,11 +65,6 @@ def sentence(body: Body) -> str:
     if body.crs:
         return text + f" Coordinates: {body.crs}{' (assigned)' if body.assigned else ''}."
     return text + " Coordinates: local metres."
-
-
-def format_released_volume(value: float) -> str:
-    """A released volume, which is known to the cubic metre; in millions from one on."""
-    return f"{format_whole(value)} m³" if value < digits.MILLION else digits.cubic(value)
 
 
 def format_whole(value: float) -> str:

@@ -5,7 +5,6 @@ No names of options, variables or files: these are in the appendix, and on the c
 from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 from .. import digits
-from ..findings import Finding
 from ..statistics.answer import Kind
 from ..studies import letter
 from ..studies.letter import Letter
@@ -33,7 +32,8 @@ def make_client_content(data: Data, ground, numbers: Numbers, answers: Sequence[
             kind, step = Kind.WITHHELD, next_step.first_remedy(next_step.Made(data.of_study, data.folder))
     return {"letter": paragraphs, "kind": kind.value, "step": step,
             "table": tabulate_ranges(data, ground, numbers, kind),
-            "caveats": warnings.first_page(unsaid(letter_, findings))[:warnings.MOST], "rest": warnings.rest_of(listed)}
+            "rest": warnings.rest_of(listed), "caveats": warnings.first_page([
+                each for each in findings if each.kind not in letter_.lacks])[:warnings.MOST]}
 
 
 def letter_of(data: Data, ground) -> Letter:
@@ -43,11 +43,6 @@ def letter_of(data: Data, ground) -> Letter:
     row = data.result.row
     return Letter(row.released_m3, None, None, usable.reach([row], None, ground.known), [],
                   [one.kind for one in judged.limits(None, False)], sizes.alone(row.released_m3 / row.ball_m3))
-
-
-def unsaid(letter_: Letter, findings: Sequence[Finding]) -> List[Finding]:
-    """The findings without what the letter says already."""
-    return [each for each in findings if each.kind not in letter_.lacks]
 
 
 def of_card(main: MainCard) -> str:

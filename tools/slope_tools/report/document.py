@@ -66,7 +66,8 @@ def write_report(asked: Asked, output: Path, made_of: Optional[str] = None) -> L
               output.with_suffix(".numbers.csv"): page.numbers.table()}
     films = {asked.film: page.film.content} if asked.film and page.film.content else {}
     beside = {**tables, **films}
-    html = render({**content, "made_of": made_of_text(made_of if films or not page.film.failed else None, beside)})
+    digest = made_of if films or not page.film.failed else None
+    html = render({**content, "made_of": f"{digest} {'/'.join(path.name for path in beside)}" if digest else ""})
     for path, text in {**beside, output: html}.items():     # the page, which says what it is made of, last
         disk.write_file(path, text)
     view = ", a 3-D view" if 'id="scene"' in html else ""
@@ -103,11 +104,6 @@ def is_made_of(page: Path, made_of: str) -> bool:
         return False
     return found is not None and found[1].decode() == made_of and all(
         (page.parent / name).is_file() for name in found[2].decode().split("/") if name)
-
-
-def made_of_text(made_of: Optional[str], beside) -> str:
-    """What the page has: the digest, and the names of the files beside it."""
-    return " ".join([made_of, "/".join(path.name for path in beside)]) if made_of else ""
 
 
 # --- the page ---

@@ -72,7 +72,7 @@ class Structures:
             if words[:1] == ["fix"] and words[3:4] == ["wall/gran/mesh"] and "point" in words[:-3]:
                 at = words.index("point") + 1
                 points.append(f"{words[1]} "
-                              f"{' '.join(digits.format_coordinate(float(word)) for word in words[at:at + 3])}")
+                              f"{' '.join(f'{float(word):.1f}' for word in words[at:at + 3])}")
         return points
 
     def mine(self, style):

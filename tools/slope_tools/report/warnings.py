@@ -31,13 +31,8 @@ def findings(data: Data, ground) -> List[Finding]:
     kinds = {one.kind for one in of_runs if not one.part}
     covered = [line for line, those in (("removed", ("bulk factor", "body volume", "balls removed")),
                                         ("lost", ("lost", "lost much"))) if kinds.intersection(those)]
-    beside = {BESIDE_MAPS, LARGE if weighed(data) else None}
+    beside = {BESIDE_MAPS, LARGE if study and ensemble_types.weighted(study.ensemble) else None}
     return [one for one in (*several_findings, *judged.of_logs(data.judged, covered)) if one.kind not in beside]
-
-
-def weighed(data: Data) -> bool:
-    """Whether known events weigh the runs, which makes up for what is known of large masses."""
-    return data.study is not None and ensemble_types.weighted(data.study.ensemble) is not None
 
 
 def rank_warnings(findings_: Sequence[Finding], names) -> List[Tuple[str, str]]:

@@ -2,8 +2,8 @@
 
 Of a cell the bounds of the probability (the runs', 90 %) decide: both at least P, and the cell is in the zone; one on
 either side, and the runs cannot tell. Cells that no run reaches are in neither, which does not say that the probability
-is less there: unreached() is what so few runs leave possible. Polygons follow the cells; each corner is cut at half a
-cell, which moves the edge by less than that.
+is less there: summarise_zones() has what so few runs leave possible. Polygons follow the cells; each corner is cut at
+half a cell, which moves the edge by less than that.
 """
 import math
 from pathlib import Path
@@ -149,11 +149,6 @@ def make_zones(ground: Ground, limit: Limit, wanted: Sequence[float]) -> Zones:
                          for one in wanted], bodies[hits.codes])
 
 
-def unreached(ground: Ground) -> float:
-    """The upper bound of the probability where no run of any body comes."""
-    return probable(reached.combined(ground.sources, [0.0] * len(ground.sources), ground.yearly))[1]
-
-
 def probable(combined: reached.Combined) -> Tuple[float, float]:
     if combined.per_year is None:
         return combined.low, combined.high
@@ -214,7 +209,8 @@ def summarise_zones(ground: Ground, several: Sequence[Zones], wanted: Sequence[f
     """What zones.yaml says."""
     area = float(ground.raster.transform.a) ** 2
     return {"per_year": ground.yearly is not None, "crs": ground.raster.crs and crs_name(ground.raster.crs),
-            "runs": sum(len(one.prefixes) for one in ground.sources), "unreached_at_most": unreached(ground), "zones": [
+            "runs": sum(len(one.prefixes) for one in ground.sources), "unreached_at_most": probable(
+        reached.combined(ground.sources, [0.0] * len(ground.sources), ground.yearly))[1], "zones": [
                 {"quantity": zones.limit.quantity, "exceeds": zones.limit.value, "probability": probability,
                  "at_least_m2": float((classes == 1).sum()) * area,
                  "cannot_tell_m2": float((classes == 2).sum()) * area}

@@ -98,8 +98,3 @@ def unmoved(names: Iterable[str], defaults: Mapping[str, str]) -> List[str]:
     """The variables of a deck that place its balls, if none of them is among names, so that all runs begin alike."""
     offsets = [name for name in defaults if OFFSET.fullmatch(name)]
     return [] if set(offsets) & set(names) else offsets
-
-
-def only_seeds(repeated: Settings, defaults: Mapping[str, str]) -> List[str]:
-    """The same if something else is repeated: their chance is not seen."""
-    return unmoved(repeated, defaults) if repeated else []

@@ -160,7 +160,9 @@ def build(given: OfMass, known: Derived, new: Path, folder: Path, machine: Machi
     deck = site_deck.make_site_deck(choices, parts, find_deck_numbers(choices, soil_of(choices.model, parts), trial,
                                                                       size))
     disk.write_file(new / site_deck.NAME, deck)
-    draw(new / MAP, collect_map_layers(choices, released, layers, first and first.reached),
+    draw(new / MAP, Shown(released.raster, released.depth, released.geometry, layers.road, layers.observed,
+                          layers.structures, layers.lines, first and first.reached, layers.zones,
+                          {"set": choices.known.set, "confined": choices.known.confined}),
          f"{title}: {released.measures.volume:,.0f} m\u00b3")
     terrain_entries = {**about_made(choices, new, folder, raster, layers), "derived": derived,
                        "body": released.measures._asdict(), "bodies": site_bodies.summarise_site_bodies(several),
@@ -372,11 +374,3 @@ def say_size(choices: OfMass, size: Size, body: release.Body, machine: Machine, 
         if size.most > size.seconds:
             took += f", {site_budget.duration_text(size.most)} with all that may be added"
     tell(f"the study: {size.text}; {machine.jobs} at a time{took}, {rounded(size.gigabytes, 2)} GB")
-
-
-# --- map ---
-
-def collect_map_layers(choices: OfMass, body: release.Body, layers: Layers, reached: Optional[Raster]) -> Shown:
-    """What the map shows; reached: the largest thickness of the trial run."""
-    return Shown(body.raster, body.depth, body.geometry, layers.road, layers.observed, layers.structures,
-                 layers.lines, reached, layers.zones, {"set": choices.known.set, "confined": choices.known.confined})

@@ -152,11 +152,6 @@ def load_kind(folder: Path, kind: Type[C]) -> Folder[C]:
                   Found.of(content), content)
 
 
-def find_site_of_deck(deck: Path) -> Optional[Site]:
-    """The Site in whose folder a deck lies; None of any other deck."""
-    return load_site(deck.parent) if (deck.parent / NAME).is_file() else None
-
-
 def kind_in(folder: Path) -> Type[Choices]:
     """The kind of the site in a folder by a look at its text, which picks who reads and checks it; else a mass."""
     path = Path(folder) / NAME

@@ -228,11 +228,6 @@ def explain_missed(road: Road, code: Code = Code.NOT_REACHED) -> Reason:
     return Reason(code, {"low": low, "high": high, "near_m": road.near_m, "longest_m": road.longest_m})
 
 
-def explain_reached(road: Road) -> Reason:
-    """That runs reach it, where nothing governs."""
-    return Reason(Code.SOME, {key: getattr(road.brought, key) for key in ("runs", "reach", "least_m3", "most_m3")})
-
-
 def correct_part(part: Part, size: Size) -> Part:
     """A number with what finer balls would change; a floor where that is not known; nothing stays nothing."""
     if not part.volume:
@@ -270,7 +265,8 @@ def combine_answers(paper: Optional[Paper], ensemble: Optional[Ensemble], road: 
     volume, some = best.volume or 0.0, []
     if road and not volume:
         if not road.missed:
-            some = [explain_reached(road)]
+            some = [Reason(Code.SOME, {key: getattr(road.brought, key)
+                                       for key in ("runs", "reach", "least_m3", "most_m3")})]
         elif min(road.reached) > MANY and not any(one.code is Code.NOT_REACHED for one in reasons):
             some = [explain_missed(road)]
     open_ = bool(some) or any(

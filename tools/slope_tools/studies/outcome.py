@@ -47,7 +47,7 @@ class Questions(NamedTuple):
     method: str = ""                                # of a site's study, in words
     chain: Optional[chain_files.Chain] = None       # of an ensemble: how likely its bodies fail in an earthquake
     known: Mapping[str, Any] = {}                   # of site.yaml: with which known events the runs are compared
-    # of a site with several, whose worst is asked: road_numbers.list_road_entries
+    # of a site with several, whose worst is asked: road_numbers.Number
     roads: Sequence[Mapping[str, Any]] = ()
     alone: bool = True                              # else study.yaml waits for the other study of the site
 
@@ -210,7 +210,7 @@ def transfer(best: study_types.Conservative, groups: Sequence[combinations.Group
 
 def unseen(repeated: Mapping[str, Sequence[str]], defaults: Mapping[str, str]) -> List[Finding]:
     """The caveat that the scatter is incomplete: only seeds were repeated, though the deck can place its balls anew."""
-    offsets = repeats.only_seeds(repeated, defaults)
+    offsets = repeats.unmoved(repeated, defaults) if repeated else []
     return [Finding("not repeated", {"repeated": ", ".join(repeated), "offsets": ", ".join(offsets)})] \
         if offsets else []
 

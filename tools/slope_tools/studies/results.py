@@ -16,7 +16,7 @@ from ..runs import jobs
 from ..runs.repeats import Repeat
 from ..survey import geopackage, roads
 from ..tables import elastic, headline, road_runs, study_maps, study_types, usable, withheld_words
-from ..tables.rows import Finished, Row, finished_of
+from ..tables.rows import Row, finished_of
 from . import body_depth, console, files, mapped, size_runs
 from .outcome import Questions, Read, evaluate_study
 from .run_rows import placed, prefix_of, read_run_rows, terrain_of, terrain_place
@@ -94,7 +94,8 @@ def read_results(setup: Setup, questions: Questions, todo: Sequence[Repeat], row
                                      setup.output) if row and questions.most_elastic else None
     size = size_runs.summarise_finer_runs(setup, questions.sizes) if row and questions.sizes else None
     return Read(rows, setup.road is not None, among, events, mobility, emulated, observed, size, None, most, problem,
-                case_of(setup, questions, row) if row else None,
+                withheld_words.Case(setup.deck, questions.site, row.variables, round(row.released_m3 / row.ball_m3),
+                                    given=setup.given) if row else None,
                 body_depth.in_balls(setup, finished), defaults)
 
 
@@ -106,11 +107,6 @@ def emulated_of(setup: Setup, order: ensemble.Order, rows: Sequence[Row],
     return records.read_record(ensemble.Emulated, kept.value(
         setup.output / ".emulated.json", made_of, lambda: records.encode_record(
             ensemble.emulate(order, rows, mobility))))
-
-
-def case_of(setup: Setup, questions: Questions, row: Finished) -> withheld_words.Case:
-    return withheld_words.Case(setup.deck, questions.site, row.variables, round(row.released_m3 / row.ball_m3),
-                               given=setup.given)
 
 
 def write_bodies(path: Path, road: Road, run: Repeat, entries: Sequence[Mapping[str, Any]]) -> None:

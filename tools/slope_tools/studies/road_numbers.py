@@ -5,7 +5,7 @@ largest of its runs. Of equal ones that is worse whose number may be larger, the
 """
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import Any, Callable, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from rich.table import Table
 
@@ -80,7 +80,7 @@ def evaluate_all_roads(site: Site, several: bool, tell: Callable[[Any], Any],
         return next(one for one in made.values() if not one.abouts)
     found = in_order([choose_road_number(name, one) for name, one in made.items()])
     write_road_numbers(site.folder, {name: one.abouts for name, one in made.items()})
-    worst = make(site_roads.worst(site, found[0].road), list_road_entries(found), False)
+    worst = make(site_roads.worst(site, found[0].road), records.encode_record(found), False)
     tell(tabulate_road_numbers(found))
     tell(f"{site.folder / site_roads.TABLE}: each run, for each road; {site.folder / worst.page} is of the worst, "
          f"{found[0].road}")
@@ -101,11 +101,6 @@ def choose_road_number(road: str, made: Made) -> Number:
 def in_order(numbers: Sequence[Number]) -> List[Number]:
     """The worst first."""
     return sorted(numbers, key=lambda number: number.order, reverse=True)
-
-
-def list_road_entries(numbers: Sequence[Number]) -> List[Dict[str, Any]]:
-    """For study.yaml."""
-    return records.encode_record(numbers)
 
 
 def read_road_numbers(study: study_types.Study) -> List[Number]:

@@ -336,7 +336,7 @@ class Study:
     envelope: Optional[Dict[str, MapEntry]]
     exceedance: Optional[List[MapEntry]]
     observed: Optional[Observed]
-    roads: List[Dict[str, Any]]     # road_numbers.list_road_entries()
+    roads: List[Dict[str, Any]]     # road_numbers.Number
     warnings: List[Finding]
     runs: List[Row]
     headline: Optional[Headline]

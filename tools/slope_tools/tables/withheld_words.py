@@ -46,14 +46,9 @@ def times_the_balls(on_road: float) -> float:
     return max(LEAST, MARGIN * BALLS / max(on_road, 1.0))
 
 
-def two_digits(number: float) -> int:
-    """Of a number of balls."""
-    return round(float(f"{number:.2g}"))
-
-
 def finer(case: Case, factor: float) -> str:
     """The same with so many times the balls."""
-    number = two_digits(factor * case.balls)
+    number = round(float(f"{factor * case.balls:.2g}"))
     if case.site:
         return anew(case, f" --balls {number}")
     try:
