@@ -182,7 +182,7 @@ def evaluate_known_events(condition: Condition, sample: Sample, added: farther.A
         **vars(replace(known, reached=weights_.reached)), short=weights_.short, far=weights_.far, runs=len(runs.rows),
         failed=runs.failed, effective=weights_.effective, distance=weights_.distance,
         far_by_lobe=far_by_lobe(runs, mobility),
-        gaps=[ensemble_types.Gap(gap.low, gap.high, gap.share) for gap in weights_.gaps],
+        gaps=weights_.gaps,
         shortest_m=float(runs.lengths.min()), longest_m=longest, half_beyond_m=mobility.length_at(0.5),
         path_m=mobility.end(longest), beyond_path=mobility.beyond_path(), added=added.about(),
         quantities={name: ensemble_types.OfKnown(*names[name], list_known_quantiles(curve, runs, name, hazard.SHARES))

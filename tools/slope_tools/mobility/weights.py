@@ -27,8 +27,8 @@ ONCE = 20           # a gap is one that chance makes in at most one of so many e
 
 class Gap(NamedTuple):
     """Two lengths (m) between which no run ends, and the share of known events that do."""
-    low: float
-    high: float
+    low_m: float
+    high_m: float
     share: float
 
 

@@ -1,5 +1,5 @@
 """The body that a report is about, in a sentence: volume, depth, area, shape, density, coordinates."""
-from typing import Any, Dict, NamedTuple, Optional
+from typing import NamedTuple, Optional
 
 from .. import digits
 from ..releases import packing
@@ -40,14 +40,10 @@ def of_data(data: Data, ground) -> Body:
     ball, factor = data.result.log.density, data.result.summary["bulk_factor"]
     given = (site.get("model") or {}).get("density")     # a run has that of its own balls, a lattice cut off at the rim
     density = given / packing.BULK if given else ball and ball / factor
-    return Body(data.largest_release(), area, depth, entry.get("mean_slope"), shape, density,
-                crs_name(crs) if crs is not None else None, is_assigned(site), release.get("polygon"))
-
-
-def is_assigned(site: Dict[str, Any]) -> bool:
-    """Whether somebody said in which CRS the terrain is, against its file or in place of it."""
     terrain = site.get("terrain") or {}
-    return bool(terrain.get("assign_crs") or terrain.get("crs"))
+    return Body(data.largest_release(), area, depth, entry.get("mean_slope"), shape, density,
+                crs_name(crs) if crs is not None else None, bool(terrain.get("assign_crs") or terrain.get("crs")),
+                release.get("polygon"))
 
 
 def sentence(body: Body) -> str:

@@ -10,7 +10,6 @@ import numpy as np
 
 from .. import disk, schemas
 from ..errors import SlopeError
-from ..releases.packing import BULK
 from ..sites.site_keys import NEEDED, key, section_schema
 from ..survey import file_parts, roads, vectors, zips
 
@@ -80,11 +79,6 @@ class Choices:
     @property
     def asked(self) -> roads.Asked:
         return roads.Asked(self.road_width, self.road_from, self.blocked, self.lane, self.clearing, self.loosening)
-
-    @property
-    def ball_density(self) -> float:
-        """kg/m3"""
-        return round(self.density * BULK, 1)
 
 
 @functools.lru_cache

@@ -14,6 +14,7 @@ from ..case.data_files import data_files
 from ..case.slip_deck import PREFIX
 from ..ensembles import ensemble, ensemble_maps, sample
 from ..errors import SlopeError
+from ..releases.packing import BULK
 from ..runs import jobs
 from ..sites import site, site_budget, site_choices, site_deck, site_zones
 from ..sites.site_roads import ROAD
@@ -78,7 +79,7 @@ def choices_of(choices: Choices, slips: Path, body: Mapping[str, Any], number: i
         "release": {"scar": base, "scar_is": "surface",
                     "bodies": [base] if (slips / f"{PREFIX}{bodies.END}").is_file() else []},
         "road": {"file": str(slips / "road.csv")}, "balls": {"number": choices.balls},
-        "model": {"density": choices.ball_density}, "known": {"confined": choices.confined}})
+        "model": {"density": round(choices.density * BULK, 1)}, "known": {"confined": choices.confined}})
     choices_of_site = choices_of_site.changed(later(choices, body))
     zones = site_zones.Source(choices.ground, choices.ground_table, None, polygons.ADVICE) if choices.ground else None
     if zones and site_zones.touch(zones, rasters.read_asc_local(slips / TERRAIN)):

@@ -8,13 +8,13 @@ frequency its integral over the hazard curve; the set is constant between two ca
 sum. Bounds: those of the runs (hazard.compute_hazard_curve), all bodies at their upper or lower one together, for any
 dependence (together.py), and the scatter between the sequences of samples. Every function is pure.
 """
-from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple
+from typing import Dict, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
 from ..statistics import hazard
 from . import fragility, together
-from .fragility import Band, Hazard
+from .fragility import Band, Frequency, Hazard
 from .together import Steps
 
 
@@ -23,13 +23,6 @@ class Left(NamedTuple):
     value: Steps
     low: Steps
     high: Steps
-
-
-class Frequency(NamedTuple):
-    """How often per year volumes are exceeded."""
-    total: Band                                         # arrays, one number for each volume
-    parts: List[Tuple[float, float, np.ndarray]]        # from and to which peak (gal), and how much comes from there
-    beyond: np.ndarray      # that the total can be larger by: peaks above the curve's last count as the last
 
 
 def steps(values: np.ndarray, exceeded: np.ndarray, most: float) -> Steps:

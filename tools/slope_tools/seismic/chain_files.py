@@ -19,6 +19,7 @@ from ..statistics import hazard
 from ..tables import intensity, study_types
 from ..tables.rows import Row, finished_of
 from . import chain
+from .fragility import Frequency
 from .fragility_files import Fragility
 
 CURVES, PER_YEAR = "chain.csv", "chain_per_year.csv"
@@ -120,13 +121,6 @@ def evaluate_chain(asked: Chain, rows: Sequence[Row], withheld: Sequence[Finding
     return Evaluated(replace(about, doubts=[*find_chain_caveats(about, fragility.warnings), *coarse]), tables)
 
 
-def write_chain(evaluated: Evaluated, output: Path) -> None:
-    """The tables."""
-    (output / PER_YEAR).unlink(missing_ok=True)      # of a study before this one in the folder
-    for name, text in evaluated.tables.items():
-        disk.write_file(output / name, text)
-
-
 def summarise_chain_body(asked: Chain, name: str, rows: Sequence[Row]) -> study_types.ChainBody:
     """What study.yaml says of a body."""
     mine = [row for row in rows if row.set[VARIABLE] == name]
@@ -134,7 +128,7 @@ def summarise_chain_body(asked: Chain, name: str, rows: Sequence[Row]) -> study_
                                  len(finished_of(mine)))
 
 
-def of_year(yearly: chain.Frequency, volume: float, k: int) -> study_types.PerYear:
+def of_year(yearly: Frequency, volume: float, k: int) -> study_types.PerYear:
     """What study.yaml says of how often a volume is exceeded, the k-th."""
     total = yearly.total
     return study_types.PerYear(

@@ -214,10 +214,10 @@ class Hazard(NamedTuple):
 
 
 class Frequency(NamedTuple):
-    """How often a body fails, per year."""
+    """How often a body fails, or volumes are exceeded, per year."""
     total: Band
-    parts: List[Tuple[float, float, float]]     # from and to which peak (gal), and how much of it comes from there
-    beyond: float       # that the total can be larger by: peaks above the curve's last count as the last
+    parts: List[Tuple[float, float, Any]]       # from and to which peak (gal), and how much of it comes from there
+    beyond: Any         # that the total can be larger by: peaks above the curve's last count as the last
 
 
 def frequency(capacity: np.ndarray, hazard: Hazard, peaks: np.ndarray) -> Frequency:

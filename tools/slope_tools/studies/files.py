@@ -27,7 +27,9 @@ def write_study_files(outcome: Outcome, study: study_types.Study, output: Path,
         write_or_remove(output / f"{road_runs.BODIES}.csv",
                         road_runs.table_of_bodies(stretches.bodies) if stretches.bodies else None)
     if outcome.chain:
-        chain_files.write_chain(outcome.chain, output)
+        (output / chain_files.PER_YEAR).unlink(missing_ok=True)      # of a study before this one in the folder
+        for name, text in outcome.chain.tables.items():
+            disk.write_file(output / name, text)
     write_or_remove(output / intensity.FILE, intensity.tabulate_intensity(study.intensity) if study.intensity else None)
     write_or_remove(output / elastic.FILE, read.elastic and elastic.tabulate_elastic(read.elastic))
     structures.write_structures(output, read.finished)

@@ -139,7 +139,8 @@ def evaluate_study(questions: Questions, read: Read, header: study_types.Header)
         observed=read.observed,
         roads=[dict(one) for one in questions.roads], warnings=warnings, runs=rows, headline=None,
         reach=usable.reach(finished, source, read.among),
-        stretches=evaluate_stretches(finished, known_weights(weighted)) if read.road and finished else None,
+        stretches=evaluate_stretches(finished, events.weights if (events := ensemble_types.weighted(weighted)) else None)
+        if read.road and finished else None,
         chain=chain.about if chain else None, intensity=at_intensities, next_step=None,
         at_road=read.events and read.events.road(finished))
     return Outcome(questions, read, groups, names, scatters, warnings, several, chain, study)
@@ -174,12 +175,6 @@ def other_settings(settings: Mapping[str, str], here: Mapping[str, str]) -> Opti
               if normalise_value(settings[name]) != normalise_value(here[name])]
     said = (", ".join(f"{name} {one[name]}" for name in sorted(differ)) for one in (settings, here))
     return Finding("other settings", dict(zip(("found", "here"), said))) if differ else None
-
-
-def known_weights(ensemble_: Optional[ensemble_types.Ensemble]) -> Optional[Mapping[str, float]]:
-    """{run: share of the known events}, where these weigh the runs of an ensemble."""
-    known = ensemble_types.weighted(ensemble_)
-    return known.weights if known else None
 
 
 def reasons(read: Read) -> List[Finding]:

@@ -111,7 +111,8 @@ def plan_site_study(site: Site, engine: Setup) -> Planned:
     todo = repeats.plan_repeats(setup.runs, settings, repeated, variables, others)
     if others:
         settings["spacing"] = list(dict.fromkeys([*settings["spacing"], *(one["spacing"] for one in others)]))
-    half = half_steps(setup, middle, variables) if setup.road else []
+    half = repeats.plan_repeats(setup.runs, {"rolling": [middle], "step": [half_of(variables)], LEDGER: ["1"]}, {},
+                                variables) if setup.road else []
     elastics = elastic_runs(setup, several.largest_restitution, settings["rolling"], repeated, variables)
     return Planned(choices, setup, variables, settings, repeated, middle, todo, half, elastics)
 
@@ -244,12 +245,6 @@ def grounds(choices: OfMass) -> List[Dict[str, str]]:
     """The runs on other grounds."""
     return [{"rolling": rolling, "spacing": spacing} for spacing, rolling
             in map(format_deck_values, choices.other_grounds)]
-
-
-def half_steps(setup: Setup, rolling: str, variables: Dict[str, str]) -> List[repeats.Repeat]:
-    """One run with half the time step, which keeps account of its energy, too."""
-    settings = {"rolling": [rolling], "step": [half_of(variables)], LEDGER: ["1"]}
-    return repeats.plan_repeats(setup.runs, settings, {}, variables)
 
 
 def judge_step_run(setup: Setup, run_: repeats.Repeat, rolling: str, variables: Dict[str, str],

@@ -3,6 +3,7 @@ from dataclasses import dataclass
 from typing import Any, Dict, List, Optional, Union
 
 from ..findings import Finding
+from ..mobility.weights import Gap
 from ..statistics.answer import Reason
 from ..statistics.entries import Analysis, KnownQuantile, Quantile
 
@@ -34,13 +35,6 @@ class KnownVariable:
     """A variable in the weighted runs: values that 5, 50 and 95 % of the weight stay within; rank correlations."""
     quantiles: List[str]
     rank: Dict[str, Optional[float]]
-
-
-@dataclass(frozen=True)
-class Gap:
-    low_m: float
-    high_m: float
-    share: float
 
 
 @dataclass(frozen=True)
