@@ -139,7 +139,8 @@ def evaluate_study(questions: Questions, read: Read, header: study_types.Header)
         observed=read.observed,
         roads=[dict(one) for one in questions.roads], warnings=warnings, runs=rows, headline=None,
         reach=usable.reach(finished, source, read.among),
-        stretches=evaluate_stretches(finished, events.weights if (events := ensemble_types.weighted(weighted)) else None)
+        stretches=evaluate_stretches(
+            finished, events.weights if (events := ensemble_types.weighted(weighted)) else None)
         if read.road and finished else None,
         chain=chain.about if chain else None, intensity=at_intensities, next_step=None,
         at_road=read.events and read.events.road(finished))
