@@ -22,6 +22,7 @@ from ..statistics import answer, emulator, hazard
 from ..statistics.entries import Analysis, KnownQuantile
 from ..survey.rasters import Place
 from ..tables import answer_words, combinations, ensemble_types, quantities, sizes, usable
+from ..tables.quantities import REMOVE
 from ..tables.rows import Finished, Row, finished_of
 from . import conditioned, ensemble_maps, farther, known_influence
 from .sample import Sample
@@ -30,7 +31,6 @@ FOLDER, HAZARD, WEIGHTS = "known_events", "hazard_known_events.csv", "weights.cs
 LEAST_EFFECTIVE = 20    # runs; fewer say little
 LEFT = 0.01             # share of the released volume beyond the grid, from which on a run's length is not its own
 MIDDLE = 0.05, 0.5, 0.95        # quantiles of the parameters of the weighted runs
-REMOVE = "remove_m3"    # the volume of the headline
 TAILS = (1 - hazard.CONFIDENCE) / 2, (1 + hazard.CONFIDENCE) / 2
 Draw = Callable[[Sequence[Finished], str], np.ndarray]      # values (n, runs) of a column, as they may be
 NOT_FARTHER = "released_m3", "stop_time_s"      # columns that a mass that goes farther need not exceed; nor any angle

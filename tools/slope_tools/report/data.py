@@ -209,14 +209,6 @@ class Data:
         """Labels of the runs by their folders."""
         return {row.run: self.label_of(row) for row in self.rows}
 
-    def ends(self):
-        """The rows of finished runs: how they ended."""
-        return finished_of(self.judged)
-
-    def releases(self):
-        """(row, Release) of each finished run."""
-        return [(row, row.release) for row in self.ends()]
-
     @functools.cached_property
     def length(self):
         """The run_length.RunLength of the shown run; None where its deposit is nowhere thick enough."""

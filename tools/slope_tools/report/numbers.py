@@ -161,15 +161,14 @@ def cards(data: Data, numbers: Numbers):
 
 
 def released_card(data: Data, numbers: Numbers):
-    releases = data.releases()
     values = sorted({round(row.released_m3, 3) for row in data.finished}
                     or {data.result.summary["volume"]["released"]})
     texts = list(dict.fromkeys(numbers.whole("released", "m3", value) for value in (values[0], values[-1])))
-    for row, release in releases:
-        if release.body is not None:
-            numbers.whole("body", "m3", release.body, data.label_of(row) if data.study else "")
+    for row in data.compared:
+        if row.release.body is not None:
+            numbers.whole("body", "m3", row.release.body, data.label_of(row) if data.study else "")
     return {"what": "Released", "number": " - ".join(texts), "unit": "m3",
-            "note": over_runs([release for _, release in releases], False)}
+            "note": over_runs([row.release for row in data.compared], False)}
 
 
 OLD = "of an older version"
@@ -230,7 +229,7 @@ def thickness_card(data: Data, numbers: Numbers):
 
 
 def rest_card(data: Data):
-    ends = data.ends()
+    ends = data.compared
     resting = [end for end in ends if end.at_rest]
     worst = next((end for level in (True, False) for end in ends if not end.at_rest and end.moving == level), None)
     status = "rest" if worst is None else "moving" if worst.moving else "doubt"

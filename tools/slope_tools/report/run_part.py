@@ -30,7 +30,7 @@ def balance(data: Data, numbers: Numbers):
     """The section on the volume balance, the travel and the end of the shown run."""
     one, summary = data.result, data.result.summary
     volume, balls, stop = summary["volume"], summary["balls"], summary["stop"]
-    release = next((release for row, release in data.releases() if row.run in ("", one.name)), None)
+    release = next((row.release for row in data.compared if row.run in ("", one.name)), None)
     error = (one.deposit.volume - volume["released"] + volume["off_grid"] + volume["lost"]) / volume["released"]
     volumes = [("released (A)", f"{volume['released']:,.1f} m3"),
                ("on the grid of the maps (B)", f"{volume['on_grid']:,.1f} m3"),

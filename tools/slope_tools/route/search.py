@@ -25,13 +25,12 @@ from ..runs import slip_run
 from ..slips import bishop, bodies, failed
 from ..survey import polygons, rasters, vectors
 from ..survey.features import attribute, depth_of, size_of
-from .choices import TABLE, Choices
+from .choices import TABLE, WHAT, Choices
 from .corridor import TERRAIN, Corridor, Window, cut_window, searches, write_line
 
 WINDOWS, SLIPS = "windows", "slips"
 DONE = "window.yaml"        # of a window that was searched
 SHARED = 0.1                # of the smaller body's cells; bodies that share more are one
-WHAT = "what `slope route` wrote"
 ADVICE = polygons.Advice(polygon_crs="save it from a GIS with one; a .prj file beside a shapefile",
                          terrain_crs="--assign-crs EPSG:n", wrong_crs="save it from a GIS with the right CRS")
 BODY = schemas.mapping({

@@ -7,8 +7,7 @@ from ..findings import Finding
 from ..statistics import conservative_volume
 from . import study_types
 from .combinations import Group
-
-QUANTITY = "remove_m3"
+from .quantities import REMOVE
 
 
 class Step(NamedTuple):
@@ -44,7 +43,7 @@ def compare(step: Step, groups: Sequence[Group]) -> Tuple[study_types.HalfStep, 
                  and group.set.get("spacing", step.spacing) == step.spacing), None)
     if step.volume is None or same is None:
         return entry(f"half the time step: not tried: {step.why or 'no run with the same values finished'}"), []
-    parts = [group.of(QUANTITY) for group in groups]
+    parts = [group.of(REMOVE) for group in groups]
     volumes = parts[groups.index(same)]
     difference = step.volume - volumes.mean
     text = f"half the time step, rolling {step.rolling}: "
