@@ -113,9 +113,10 @@ def run_stability(args: Request) -> None:
                              f"below {HUGE:g} somewhere", f"{rows[0]['factor']:.4g}")
         masks = [bodies.mask_of(folder / f"{PREFIX}.{k + 1}.base.asc") for k in range(len(rows))]
         rock = next((one.z for one in given if one.name == slip_deck.BEDROCK), None)
+        allowed = polygon and doubts.cells_in(raster, polygon)
         for finding in [*placed, *find_stability_warnings(asked.strength.cohesion, args.density, rows, masks, given),
-                        *output.warnings, *doubts.find_all_doubts(raster, rows, masks, asked.volume, asked.depth,
-                                                                  polygon and doubts.cells_in(raster, polygon))]:
+                        *output.warnings, *(one for row, mask in zip(rows, masks) for one in doubts.find_body_doubts(
+                            raster, row, mask, asked.volume, asked.depth, allowed))]:
             warn(finding)
         table = [numbers_of(raster, row, mask) for row, mask in zip(rows, masks)]
         write_stability(folder, args, raster, rows, masks, rock, {"method": asked.method, "shape": asked.shape,

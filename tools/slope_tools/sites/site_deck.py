@@ -83,9 +83,9 @@ def fill_deck_values(choices: OfMass, parts: Parts, numbers: Numbers) -> Dict[st
         len(parts.zones), "zones": zone_values(parts.zones, types_before(parts), model),
         "bins": bins(parts.room, body.volume),
         "slip_file": body.slip, "body": choices.release.bodies and rank_of(Path(choices.release.scar or "")),
-        "structures": [{"name": one.name, "file": one.file, "point": join_deck_numbers(one.point),
-                        "move": f" move {join_deck_numbers(one.move)}" if any(one.move) else ""} for one
-                       in parts.structures],
+        "structures": [{"name": one.name, "file": one.file, "point": " ".join(map(format_deck_number, one.point)),
+                        "move": " ".join(["", "move", *map(format_deck_number, one.move)]) if any(one.move) else ""}
+                       for one in parts.structures],
         "lines": parts.lines, "motion": parts.motion.file if parts.motion else "", }
     parameters.update({name: format_deck_number(value) for name, value in (
         ("d", numbers.diameter), ("spacing", model.spacing), ("widest", widest()),
@@ -149,10 +149,6 @@ def bins(room: float, volume: float) -> str:
 def format_deck_number(value: float) -> str:
     """A number as a word of a deck."""
     return f"{value:.10g}"
-
-
-def join_deck_numbers(numbers: Sequence[float]) -> str:
-    return " ".join(format_deck_number(value) for value in numbers)
 
 
 def frame(rest: float) -> float:

@@ -1,6 +1,6 @@
 """What speaks against the bodies of a search."""
 import math
-from typing import Dict, Iterator, List, Optional, Sequence, Tuple
+from typing import Dict, Iterator, List, Optional, Tuple
 
 import numpy as np
 from rasterio.features import geometry_mask
@@ -70,11 +70,3 @@ def find_body_doubts(raster: Raster, row: Dict[str, float], inside: np.ndarray, 
     if row["factor"] < 1:
         doubt("fails", value=row["factor"])
     return doubts
-
-
-def find_all_doubts(raster: Raster, rows: Sequence[Dict[str, float]], masks: Sequence[np.ndarray],
-                    volume: Optional[Tuple[float, float]], depth: Optional[Tuple[float, float]],
-                    allowed: Optional[np.ndarray]) -> List[Finding]:
-    """find_body_doubts() of all bodies."""
-    return [one for row, inside in zip(rows, masks) for one in find_body_doubts(raster, row, inside, volume, depth,
-                                                                                allowed)]

@@ -24,7 +24,7 @@ def tell(outcome: Outcome, study: study_types.Study, output: Path, say: Callable
     files = [str(output / name) for what, name in structures.FILES.items() if any(row.value(what) for row in finished)]
     if files:
         say(f"{', '.join(files)}: of each run")
-    for one in outcome.warnings:
+    for one in study.warnings:
         warn(one)
     if not asked.order or len(rows) <= SHOWN:
         say(study_table.runs_shown(asked.settings, rows, outcome.scatters,

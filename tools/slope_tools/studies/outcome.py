@@ -97,7 +97,6 @@ class Outcome:
     groups: Sequence[combinations.Group]
     names: Sequence[str]                            # columns that a combination has a mean of
     scatters: Mapping[str, Optional[Scatter]]
-    warnings: Sequence[Finding]
     ensemble: Optional[ensemble.Evaluated]
     chain: Optional[chain_files.Evaluated]
     about: study_types.Study
@@ -110,7 +109,6 @@ def evaluate_study(questions: Questions, read: Read, header: study_types.Header)
     names, scatters = combinations.averaged(groups), combinations.scatters(groups)
     keys = ["front_m", "thickness_m", "max_thickness_m", "max_speed_m_s"]
     keys += [key for key in (travel_shares.DISTANCE, "length_m") if key in names]
-    warnings = collect_study_warnings(questions, read)
     several = best = step = at_intensities = None
     if order:
         assert read.emulated is not None
@@ -137,14 +135,15 @@ def evaluate_study(questions: Questions, read: Read, header: study_types.Header)
                  for name, one in scatters.items()},
         combinations=combinations.list_combination_entries(groups, names), envelope=None, exceedance=None,
         observed=read.observed,
-        roads=[dict(one) for one in questions.roads], warnings=warnings, runs=rows, headline=None,
+        roads=[dict(one) for one in questions.roads], warnings=collect_study_warnings(questions, read), runs=rows,
+        headline=None,
         reach=usable.reach(finished, source, read.among),
         stretches=evaluate_stretches(
             finished, events.weights if (events := ensemble_types.weighted(weighted)) else None)
         if read.road and finished else None,
         chain=chain.about if chain else None, intensity=at_intensities, next_step=None,
         at_road=read.events and read.events.road(finished))
-    return Outcome(questions, read, groups, names, scatters, warnings, several, chain, study)
+    return Outcome(questions, read, groups, names, scatters, several, chain, study)
 
 
 def collect_study_warnings(questions: Questions, read: Read) -> List[Finding]:

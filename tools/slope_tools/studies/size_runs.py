@@ -3,11 +3,10 @@
 All points run with the coarsest balls.  Of these some run with finer ones, too: such on which numbers rest, and such
 that parameters and lengths are spread; those with the finest rest soon, and have all sizes.
 """
-import functools
 import math
 from dataclasses import replace
 from pathlib import Path
-from typing import Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence
+from typing import Callable, Dict, List, NamedTuple, Optional, Sequence
 
 import numpy as np
 
@@ -128,11 +127,8 @@ class AtFinest(NamedTuple):
         by_name, found = {row.run: row for row in finished_of(raw)}, self.sizes
         if found is None:
             return None
-        return functools.partial(correct_drawn_values, found, by_name)
-
-
-def correct_drawn_values(sizes_: Sizes, raw: Mapping[str, Finished], rows: Sequence[Finished], key: str) -> np.ndarray:
-    return sizes_.draws([raw[row.run] for row in rows], key, DRAWS)
+        draws = found.draws
+        return lambda rows, key: draws([by_name[row.run] for row in rows], key, DRAWS)
 
 
 # --- how many ---
