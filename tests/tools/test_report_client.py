@@ -252,7 +252,7 @@ def test_the_next_step_is_of_the_study_whose_reason_comes_first(tmp_path):
     step = next_step.of_studies(both, about)
     assert (step.command, step.seconds) == (mends, 2 * (120 + 60)) and step.line.startswith("tools/slope site")
     assert step.before.endswith("/site.yaml, then:")
-    step = next_step.of_studies(both, about._replace(reasons=[size, rule]))
+    step = next_step.of_studies(both, about._replace(reasons=about.reasons[::-1]))
     assert step.command == f"tools/slope study {tmp_path} --levels 4" and step.before == ""
     assert next_step.of_studies(both, about._replace(kind=Kind.NUMBER)) is None
 
