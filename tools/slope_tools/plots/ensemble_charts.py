@@ -1,5 +1,5 @@
 """The charts of an ensemble, as data URIs: the hazard curve, and which variables a quantity depends on."""
-from typing import NamedTuple, Optional, Sequence, Tuple
+from typing import NamedTuple, Sequence
 
 import numpy as np
 from matplotlib.ticker import MaxNLocator, PercentFormatter, StrMethodFormatter
@@ -62,14 +62,11 @@ def influence(bars: Sequence[Bar], title: str) -> str:
         return figures.data_uri(figure, "svg")
 
 
-def against(x: Sequence[float], y: Sequence[float], x_label: str, y_label: str, title: str,
-            line: Optional[Tuple[Sequence[float], Sequence[float]]] = None) -> str:
-    """A dot for each run; line: what an emulator makes of it."""
+def against(x: Sequence[float], y: Sequence[float], x_label: str, y_label: str, title: str) -> str:
+    """A dot for each run."""
     with pictures.settings(STYLE):
         figure, axes = pictures.subplots(figsize=(HALF, 2.1))
         axes.plot(x, y, "o", ms=2.8, color=COLOURS[0], alpha=0.75, mew=0)
-        if line:
-            axes.plot(*line, color=COLOURS[1], lw=1.2)
         axes.set(xlabel=x_label, ylabel=y_label)
         finish(axes, title)
         return figures.data_uri(figure, "svg")

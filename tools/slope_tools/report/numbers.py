@@ -255,22 +255,14 @@ WORDS = {"rolling": "the rolling resistance", "friction": "the friction", "d": "
          "xoffset": CHANCE, "yoffset": CHANCE, "zoffset": CHANCE}
 
 
-def is_own(data: Data) -> bool:
-    """Whether the headline is of this study, and not of the other one of a site."""
-    if not data.study or not data.study.headline:
-        return False
-    own = Source.ENSEMBLE if data.study.ensemble else Source.PAPER
-    return data.study.headline.source is own
-
-
 def shown_run(data: Data) -> str:
     """Which run the map shows, for its caption."""
     if not data.study:
         return ""
     one, row = data.result, data.result.row
     number, of = data.number(one.name), values_of(data, row.set)
-    said = data.study.headline
-    rests = said and said.volume_m3 and is_own(data) and one.name == named_run.governing(data.study)
+    said, own = data.study.headline, Source.ENSEMBLE if data.study.ensemble else Source.PAPER
+    rests = said and said.volume_m3 and said.source is own and one.name == named_run.governing(data.study)
     text = f"A run that leaves about as much, {number} of the appendix" if rests else f"Run {number} of the appendix"
     return f" {text}{of and f': {of}'}."
 

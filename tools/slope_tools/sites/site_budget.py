@@ -321,11 +321,11 @@ def gigabytes(d: float, volume: float, cells: int, jobs: int, sizes: int) -> flo
     return jobs * (PER_RUN + PER_CELL * cells + PER_BALL * packing.count_balls(volume, d / 2 ** (sizes - 1)))
 
 
-def fit_budget(budget: float, cost: Callable[[float], float], volume: float, option: str, unit: str) -> float:
+def fit_budget(budget: float, cost: Callable[[float], float], volume: float) -> float:
     """The smallest diameter (m) whose cost(d), which falls with d, is within a budget; SlopeError if none is."""
     low, high = packing.compute_diameter(volume, MOST), packing.compute_diameter(volume, FEWEST)
     if cost(high) > budget:
-        raise SlopeError(option, f"must be at least {at_least(cost(high), 3)} {unit}, which a study with {FEWEST} "
+        raise SlopeError("--memory", f"must be at least {at_least(cost(high), 3)} GB, which a study with {FEWEST} "
                          "balls takes", f"{budget:g}")
     if cost(low) <= budget:
         return low
@@ -358,7 +358,7 @@ def size(choices: OfMass, volume: float, depth: float, soil: Soil, trial: Option
         d = three_digits(packing.compute_diameter(volume, balls.number))
     elif balls.memory:
         d = up(fit_budget(balls.memory, lambda diameter: gigabytes(diameter, volume, cells, jobs, levels or SIZES),
-                          volume, "--memory", "GB"))
+                          volume))
     else:
         least, most = (packing.compute_diameter(volume, number) for number in (MANY, DEFAULT))
         d = three_digits(min(most, max(least, depth / THIN)))

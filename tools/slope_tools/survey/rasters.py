@@ -232,15 +232,15 @@ def _read(path, name, source, unit, part):
                 source.offsets[0], unit, (top, left), is_picture)
 
 
-def read_asc_local(path, heights=True, unit=None, marks=None, ask=True):
+def read_asc_local(path, heights=True):
     """Read an .asc that write_asc_local wrote, and its sidecar, into a Raster: (z, transform, crs, offset).
 
     The transform gives local x, y; adding the offset (east, north) gives coordinates in crs. A raster without a
     sidecar is read as by read_raster(); the others as there. Raises SlopeError if either file is broken or they
     do not belong together.
     """
-    raster = placed(path, read_raster(path, heights, unit, marks, ask))
-    if heights and ask:
+    raster = placed(path, read_raster(path, heights))
+    if heights:
         require_axes(raster.crs, path)
     return raster
 
