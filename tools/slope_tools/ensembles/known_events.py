@@ -181,8 +181,7 @@ def evaluate_known_events(condition: Condition, sample: Sample, added: farther.A
     weighted = ensemble_types.Weighted(
         **vars(replace(known, reached=weights_.reached)), short=weights_.short, far=weights_.far, runs=len(runs.rows),
         failed=runs.failed, effective=weights_.effective, distance=weights_.distance,
-        far_by_lobe=far_by_lobe(runs, mobility),
-        gaps=weights_.gaps,
+        far_by_lobe=far_by_lobe(runs, mobility), gaps=weights_.gaps,
         shortest_m=float(runs.lengths.min()), longest_m=longest, half_beyond_m=mobility.length_at(0.5),
         path_m=mobility.end(longest), beyond_path=mobility.beyond_path(), added=added.about(),
         quantities={name: ensemble_types.OfKnown(*names[name], list_known_quantiles(curve, runs, name, hazard.SHARES))

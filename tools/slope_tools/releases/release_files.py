@@ -88,14 +88,9 @@ def write_body(name: Path, wanted: Wanted, body: Body, raised: bool = False) -> 
     write_release_files(name, wanted.terrain, body.raster, body.area, body.slip, about, body.geometry,
                         f"{name.name}: {body.measures.volume:,.0f} m\u00b3, up to "
                         f"{rounded(body.measures.largest_depth, 3)} m deep")
-    if raised:
-        write_ground(ground, given, body)
-
-
-def write_ground(path: Path, wanted: Wanted, body: Body) -> None:
-    """The ground before the collapse, where the mass lies on top of the terrain that was given."""
-    rasters.write_asc_local(path, body.raster, {"sources": [wanted.terrain, wanted.scar],
-                                                "steps": ["terrain and the height of the mass on it"]}, exact=True)
+    if raised:      # the mass lies on top of the terrain that was given
+        rasters.write_asc_local(ground, body.raster, {"sources": [given.terrain, given.scar], "steps": [
+            "terrain and the height of the mass on it"]}, exact=True)
 
 
 def deck_body(name: Path, terrain: str, raster: Raster, area: Area, slip: np.ndarray) -> release_deck.Body:
