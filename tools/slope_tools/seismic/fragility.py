@@ -16,7 +16,7 @@ from ..slips.bodies import Body
 from ..slips.columns import GRAVITY
 from ..statistics import designs
 from ..statistics.distributions import Listed, Range
-from ..statistics.hazard import CONFIDENCE, share_bounds
+from ..statistics.hazard import CONFIDENCE, Band, share_bounds
 
 REPLICATES = 16         # sequences
 # of yield to largest acceleration: dense where the displacement changes its order of magnitude
@@ -44,13 +44,6 @@ class Slide(NamedTuple):
 class PseudoStatic(NamedTuple):
     """Failure: F < 1 with the inertia of factor times the peak."""
     factor: float
-
-
-class Band(NamedTuple):
-    """Values and their bounds, arrays of one shape."""
-    value: np.ndarray
-    low: np.ndarray
-    high: np.ndarray
 
 
 class Fit(NamedTuple):

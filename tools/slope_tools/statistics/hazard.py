@@ -8,7 +8,7 @@ given anything: in a lower bound they do not exceed a value, in an upper one the
 import functools
 import math
 from dataclasses import dataclass
-from typing import List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
+from typing import Any, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 from scipy import stats
@@ -22,10 +22,10 @@ SHARES = 0.5, 0.9, 0.95, 0.99   # of the quantiles
 
 
 class Band(NamedTuple):
-    """An estimate and its bounds; None: so many runs do not bound it."""
-    value: float
-    low: Optional[float]
-    high: Optional[float]
+    """An estimate and its bounds, numbers or arrays of one shape; None: so many runs do not bound it."""
+    value: Any
+    low: Any
+    high: Any
 
 
 @dataclass(frozen=True)
