@@ -23,7 +23,7 @@ from slope_tools.report import body, client_part, ensemble_part, limits_part, nu
 from slope_tools.report.numbers import Numbers
 from slope_tools.statistics.answer import Kind
 from slope_tools.statistics.withheld import Kind as Rule
-from slope_tools.studies import letter
+from slope_tools.studies import letter, outcome, size_runs
 from slope_tools.tables import answer_words, judged, next_step, study_file
 
 made, here, slope = test_report.made, test_report.here, test_report.slope       # its fixtures
@@ -436,6 +436,20 @@ def test_runs_of_several_sizes_are_one_line():
     assert [one.text for one in found if one.level == WARNING][1:] == ["the slope is steep", "the toe is wet"]
     assert sizes.numbers["volume"] == 337 and sizes.numbers["of"] == 4 and len(sizes.runs) == 2
     assert found[0] == sizes and warnings.first_page([sizes]) == []
+
+
+def test_runs_that_failed_are_told_beside_finer_ones_that_did(monkeypatch):
+    """With both sizes; the first page counts the study's own."""
+    failed = {name: row(run=name, status="failed", error="ERROR: 3 atoms lost") for name in ("cut", "fine")}
+    monkeypatch.setattr(size_runs, "read_run_rows", lambda *_: [failed["fine"]])
+    monkeypatch.setattr(size_runs.sizes, "combine_sizes", lambda _: None)
+    at = size_runs.at_finest(None, SimpleNamespace(finer={2.0: [SimpleNamespace(error="lost")]}, points=[]))
+    rows = [*rows_of((0.0, 50000.0)), failed["cut"]]
+    told = outcome.collect_study_warnings(SimpleNamespace(notes=at.warnings, order=None), SimpleNamespace(
+        rows=rows, problem=None))
+    assert [(one.runs, bool(one.part)) for one in told if one.kind == "failed"] == [
+        (("fine",), True), (("cut",), False)]
+    assert warnings.first_page(told) == ["1 of 2 runs failed and are not in the numbers."]
 
 
 def test_a_finding_survives_its_file():

@@ -11,7 +11,7 @@ from .data import Data
 
 MOST = 3                # on the first page
 BESIDE_MAPS = "no CRS"  # the page says so there
-LARGE = "large"
+LARGE = "large"         # known events that weigh the runs make up for it
 WEIGHT = {kind: place for place, kind in enumerate(WORDS)}
 
 

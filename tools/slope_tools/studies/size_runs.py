@@ -298,7 +298,8 @@ def at_finest(setup: Setup, made: Made) -> AtFinest:
     if not made.finer:
         return AtFinest(made, None)
     failed = [run for several in made.finer.values() for run in several if run and run.error]
-    warnings = judged.failed([row for row in read_run_rows(setup, failed) if not isinstance(row, Finished)])
+    rows = [row for row in read_run_rows(setup, failed) if not isinstance(row, Finished)]
+    warnings = [one._replace(part="finer balls") for one in judged.failed(rows)]
     several = [[run and read_run_rows(setup, [run])[0] for run in made.runs(one)] for one in made.points]
     points = [[row if isinstance(row, Finished) else None for row in one] for one in several]
     return AtFinest(made, sizes.combine_sizes(points), warnings)
