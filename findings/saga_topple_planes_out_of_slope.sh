@@ -1,8 +1,8 @@
 #!/bin/bash
 # SAGA's WEDGEFAIL marks cells where a plane of a given dip and dip direction makes sliding or toppling possible. Slabs
-# topple where their planes dip INTO the slope, by at least 90 degrees less the face's angle plus that of friction. The mode
-# "Topple" has this limit, but marks planes that dip OUT of the slope, and none that dip into it: for toppling, the dip
-# direction must be turned by 180 degrees first, which its description does not say. "Slide" takes it as it is.
+# topple where their planes dip INTO the slope, by at least 90 degrees less the face's angle plus that of friction. The
+# mode "Topple" has this limit, but marks planes that dip OUT of the slope, and none that dip into it: for toppling, the
+# dip direction must be turned by 180 degrees first, which its description does not say. "Slide" takes it as it is.
 set -euo pipefail
 tmp=$(mktemp -d)
 trap 'rm -rf "$tmp"' EXIT
@@ -38,7 +38,8 @@ for mode in 0:slides 1:topples; do
   for side in "90:out of" 270:into; do
     dips=
     for dip in 20 40 70; do
-      saga ta_slope_stability 4 -DEM face.sgrd -fC "${side%:*}" -fD $dip -fEmin 30 -fEmax 30 -METHOD ${mode%:*} -F fail.sgrd
+      saga ta_slope_stability 4 -DEM face.sgrd -fC "${side%:*}" -fD $dip -fEmin 30 -fEmax 30 \
+        -METHOD ${mode%:*} -F fail.sgrd
       saga io_grid 0 -GRID fail.sgrd -FILE fail.asc -PREC 0
       [[ $(sed -n 9p fail.asc | cut -d ' ' -f 3) != 1 ]] || dips+=" $dip"
     done
