@@ -1,8 +1,7 @@
 #!/bin/bash
 # LIGGGHTS takes a terrain of STL triangles in national coordinates as it is and computes in double precision. What it
 # dumps has six digits: in UTM the northings of balls, and of the terrain itself (mesh/stl), are rounded to 10 m. The
-# triangle here, 8 m wide, comes back as a line under a facet normal that is still right: a run looks beside its ground,
-# or has none.
+# triangle here, 8 m wide, comes back as a line under a facet normal that is still right.
 set -euo pipefail
 tmp=$(mktemp -d)
 trap 'rm -rf "$tmp"' EXIT
