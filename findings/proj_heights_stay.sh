@@ -37,8 +37,8 @@ with warnings.catch_warnings(record=True) as caught:
     print("", len(caught), "warnings")
 PYTHON
 export PYTHONHOME=$usr PROJ_LIB=$usr/share/proj
-seen=$("$libc/ld-linux-x86-64.so.2" --library-path "$lib:$libc:$lib/blas:$lib/lapack" "$usr/bin/python3.11" look.py 2>look.log) ||
-  { cat look.log >&2; exit 1; }
+seen=$("$libc/ld-linux-x86-64.so.2" --library-path "$lib:$libc:$lib/blas:$lib/lapack" "$usr/bin/python3.11" look.py \
+  2>look.log) || { cat look.log >&2; exit 1; }
 expected='PROJ 9.1.1: EGM96 142.3 m (accuracy -1); EGM2008 100.0 m (accuracy -1); '
 expected+='JGD2011 100.0 m (accuracy -1); 0 warnings'
 
