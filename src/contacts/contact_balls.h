@@ -32,7 +32,7 @@ struct MovingBalls {
   const Vector *x, *v, *omega;
   const double *radius, *mass;
   Vector *f, *torque;
-  const Vector *ahead;       // velocities that normal dashpots act on: see contact_step.h
+  const Vector *ahead;       // velocities that normal dashpots act on: Continuation::look_ahead()
   unsigned char *count;      // contacts of each ball now; up to 255
   FixedContacts *fixed;      // of each ball of this rank
   BallsOnFixed *on_fixed;    // nullptr: not asked for

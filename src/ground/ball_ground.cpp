@@ -131,16 +131,16 @@ void BallGround::check_floor() const
       a.sink));
 }
 
+bool BallGround::height(double x, double y, double &z) const
+{
+  return sunk ? sunk->height(x, y, z) : boundary->height(x, y, z);
+}
+
 /* ----------------------------------------------------------------------
    Columns of the region outside of which they are, and of the sunk surface below it where the balls would be
    above it.
    A sunk surface reaches farther than its body.
 ------------------------------------------------------------------------- */
-
-bool BallGround::height(double x, double y, double &z) const
-{
-  return sunk ? sunk->height(x, y, z) : boundary->height(x, y, z);
-}
 
 bool BallGround::keep(double x, double y) const
 {

@@ -229,15 +229,15 @@ def transferred(several: Sequence[KnownQuantile], runs: Runs, draw: Optional[Dra
     lengths, volumes = (draw(runs.rows, key) for key in ("length_m", REMOVE))
     masses = [conditioned.masses(weights.of_lengths(one, np.asarray(runs.exceedance(one), float), runs.weights.ratio))
               for one in lengths]
-    caveats = []
-    for caveat in several:
-        low, high = np.quantile([np.fmin(within(volume, mass.share, caveat.share, mass.far), volume.max())
+    quantiles = []
+    for quantile in several:
+        low, high = np.quantile([np.fmin(within(volume, mass.share, quantile.share, mass.far), volume.max())
                                  for volume, mass in zip(volumes, masses)], TAILS).tolist()
-        if caveat.value is not None:       # errors of runs raise a high quantile: it is no lower than it is with them
-            value = max(caveat.value, low)
-            caveat = caveat._replace(value=value, transfer=[value - min(value, low), max(value, high) - value])
-        caveats.append(caveat)
-    return caveats
+        if quantile.value is not None:     # errors of runs raise a high quantile: it is no lower than it is with them
+            value = max(quantile.value, low)
+            quantile = quantile._replace(value=value, transfer=[value - min(value, low), max(value, high) - value])
+        quantiles.append(quantile)
+    return quantiles
 
 
 def far_by_lobe(runs: Runs, mobility: exceedance.Mobility) -> List[float]:

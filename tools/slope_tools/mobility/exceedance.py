@@ -14,7 +14,7 @@ from .. import digits
 from . import fall_path
 from .body import Body
 from .fall_path import FallPath
-from .landslides import Row
+from .landslides import LandslideKind
 from .relation import Relation
 
 FAR = 0.999             # the path is followed to where so many events ended
@@ -24,7 +24,7 @@ WORDS = {"confined": "laterally confined", "unconfined": "not laterally confined
          "landslides_narrow": "the smaller scatter", "landslides_wide": "the larger scatter",
          "landslides": "whichever scatter says more"}
 CONFINED = {"yes": "confined", "no": "unconfined", "unknown": "mixture"}        # what is asked for, and its curve
-Law = Union[Relation, Row]
+Law = Union[Relation, LandslideKind]
 
 
 class Lies(NamedTuple):
@@ -96,7 +96,7 @@ class Mobility(NamedTuple):
         if not self.says(length):
             after = np.flatnonzero(self.said & (self.path.length >= length))
             length = float(self.path.length[after[0]]) if len(after) else length
-        kinds = self.law.both if isinstance(self.law, Row) else (self.chosen, self.chosen)
+        kinds = self.law.both if isinstance(self.law, LandslideKind) else (self.chosen, self.chosen)
         low, high = sorted(float(self.exceedance(length, kind)) for kind in kinds)
         return low, high
 

@@ -11,7 +11,7 @@ from . import body, events, exceedance, landslides, relation
 from .body import Body
 from .exceedance import CONFINED, Mobility
 from .fall_path import FallPath
-from .landslides import Row
+from .landslides import LandslideKind
 from .relation import Relation
 
 
@@ -21,7 +21,7 @@ class Choice(NamedTuple):
     file: Path
     known: Sequence[events.Event]
     left_out: Sequence[str]
-    row: Row
+    row: LandslideKind
     confined: str
     given: Optional[str] = None
 
@@ -31,11 +31,11 @@ class Choice(NamedTuple):
 
     def name(self, mobility: Mobility) -> str:
         """Of the events of one of both."""
-        return f"{self.row.type}:{self.row.path}" if isinstance(mobility.law, Row) else self.file.name
+        return f"{self.row.type}:{self.row.path}" if isinstance(mobility.law, LandslideKind) else self.file.name
 
     def number(self, mobility: Mobility) -> int:
         """Of these events."""
-        return self.row.events if isinstance(mobility.law, Row) else len(self.known)
+        return self.row.events if isinstance(mobility.law, LandslideKind) else len(self.known)
 
     def about(self) -> Dict[str, Any]:
         """What is kept of it, for of_about()."""

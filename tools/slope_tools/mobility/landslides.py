@@ -27,7 +27,7 @@ DEFAULT = "translational_slides"
 NOT_OF_ROADS = "they are of natural slopes, not of cuts and embankments of roads"
 
 
-class Row(NamedTuple):
+class LandslideKind(NamedTuple):
     """A row of the table: for which landslides it is, how many there are, its line and what is known of its scatter."""
     type: str
     path: str
@@ -86,14 +86,15 @@ class Row(NamedTuple):
 TYPES = "rockfalls", DEFAULT, "debris_flows", "earthflows_and_mudslides"
 
 
-def read_landslides() -> List[Row]:
+def read_landslides() -> List[LandslideKind]:
     """All rows."""
     with open(OWN, encoding="ascii", newline="") as lines:
-        return [Row(one["type"], one["path"], int(one["events"]), *(float(one[name]) for name in Row._fields[3:]))
+        return [LandslideKind(one["type"], one["path"], int(one["events"]),
+                              *(float(one[name]) for name in LandslideKind._fields[3:]))
                 for one in csv.DictReader(lines)]
 
 
-def choose_landslide_row(text: str = DEFAULT) -> Row:
+def choose_landslide_row(text: str = DEFAULT) -> LandslideKind:
     """The row of TYPE[:PATH], each of which may be shortened; without PATH that of all paths; SlopeError if none is."""
     words = [re.sub(r"[\s_]+", "_", part.strip().lower()).replace("ised", "ized") for part in text.split(":")]
     kind, path = [*words, "all"][:2]

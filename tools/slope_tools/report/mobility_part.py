@@ -6,7 +6,7 @@ from typing import Any, List, NamedTuple, Optional, Sequence, Tuple
 
 from ..digits import percent
 from ..mobility import exceedance
-from ..mobility.landslides import NOT_OF_ROADS, Row
+from ..mobility.landslides import NOT_OF_ROADS, LandslideKind
 from ..studies.mapped import mass, of_rows
 from ..tables.quantities import BEYOND_MAPPED as BEYOND, LENGTH, OVERLAP
 from ..tables.rows import Finished, Mapped
@@ -58,7 +58,7 @@ def sentence(counted: Lies, numbers: Numbers, label: str) -> str:
     ends = list(dict.fromkeys((counted.lengths[0], counted.lengths[-1])))
     reach = " to ".join(numbers.quantity(LENGTH, length, label) for length in ends)
     law, shares = counted.mobility.law, []
-    others = law.both if isinstance(law, Row) else ("confined", "unconfined")
+    others = law.both if isinstance(law, LandslideKind) else ("confined", "unconfined")
     for kind in (counted.mobility.chosen, *others):
         lies = [counted.mobility.where_lies(length, kind) for length in ends]
         for one in lies:
@@ -68,7 +68,7 @@ def sentence(counted: Lies, numbers: Numbers, label: str) -> str:
                       + " to ".join(dict.fromkeys(percent(one.at_most) for one in lies)))
     who = "The deposit reaches" if len(ends) == 1 else "The deposits of the runs reach"
     chosen = exceedance.WORDS[counted.mobility.chosen]
-    if isinstance(law, Row):
+    if isinstance(law, LandslideKind):
         return (f"{who} {reach} m: as far as {shares[0]} of landslides of this volume and height do ({law.name}; "
                 f"{chosen}; {shares[1]} by the smaller, {shares[2]} by the larger); the others go farther; "
                 f"{NOT_OF_ROADS}." + beyond_the_terrain(counted, others, numbers, label))

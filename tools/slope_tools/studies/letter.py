@@ -1,7 +1,8 @@
 """The letter with which page 1 begins and the console ends: what must be cleared, how far it goes, which share of known
 events; its parts, then a sentence for each.
 
-The number and its share are of tables/headline, the length is of tables/usable.reach(): README.md has the whole way.
+The number is of tables/headline, its share of statistics/answer, the length of tables/usable.reach(): README.md has the
+whole way.
 """
 from typing import Callable, List, NamedTuple, Optional, Sequence
 
