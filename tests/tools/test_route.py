@@ -25,7 +25,7 @@ from run_helpers import TOOLS, called, write_asc
 from tiny_collapse import rows_of
 
 from slope_tools.errors import SlopeError
-from slope_tools import records
+from slope_tools import disk, records
 from slope_tools.commands import route as route_command
 from slope_tools.route import choices, corridor, page as route_page, results, search, zones
 from slope_tools.route.yearly import Yearly
@@ -727,6 +727,23 @@ def test_the_page_of_bodies_without_a_factor(two):
     assert [row["factor"] for row in csv.DictReader((two[0] / results.BODIES).read_text().splitlines())] == ["", ""]
 
 
+@pytest.mark.parametrize("factor", [math.inf, math.nan])
+def test_a_body_that_nothing_drives_has_no_factor_and_every_table_says_why(two, factor):
+    table = yaml.safe_load((two[0] / choices.TABLE).read_text())
+    table["bodies"][1].update(search.make_factor_entry(factor))
+    why = table["bodies"][1]["no_factor"]
+    disk.write_yaml(two[0] / choices.TABLE, table, "a route")
+    found, ground = made(two[0], search.table_of(two[0]))
+    route_page.write_route_page(choices.read_route_choices(two[0]), ground, two[0], found, lambda _: None)
+    assert f">{why}<" in (two[0] / route_page.PAGE).read_text()
+    for name in (results.BODIES, results.STRETCHES):
+        rows = list(csv.DictReader((two[0] / name).read_text().splitlines()))
+        assert {(row["body"], row["factor"], row["no_factor"]) for row in rows} == {("1", "1.2", ""), ("2", "", why)}
+    with fiona.open(two[0] / results.LAYERS, layer="bodies") as layer:
+        assert [(one["properties"]["factor"], one["properties"]["no_factor"]) for one in layer] == [
+            (1.2, ""), (None, why)]
+
+
 @pytest.mark.parametrize("name, value", [("lane", 4.0), ("clearing", 60.0), ("blocked", 0.5), ("mesh", 5.0),
                                          ("cut_angle", 35.0), ("name", "A route")])
 def test_what_runs_do_not_depend_on_may_be_given_later(two, name, value):
@@ -1050,6 +1067,7 @@ def test_a_given_body_has_a_factor_and_a_fragility(tmp_path):
     strengths = search.bishop.Strengths(9e3, math.tan(math.radians(30)), 0.0)
     assert factor == pytest.approx(float(search.bishop.factor_of_safety(found.columns, strengths)[0]))
     assert 1 < factor < 3
+    assert search.make_factor_entry(factor) == {"factor": factor, "no_factor": ""}
 
 
 @pytest.mark.parametrize("ends, reach, said", [

@@ -65,6 +65,24 @@ def test_factor_is_1_at_the_yield_coefficient_of_every_strength(water, vertical)
     assert np.ptp(k) > 0.3
 
 
+def test_what_nothing_drives_has_an_infinite_factor_and_what_is_not_found_none(monkeypatch):
+    """Normal forces that outweigh the load at every F; a cohesion that makes them do so at small F alone, of which
+    there is a larger one; and too few steps."""
+    z, centre, radius, *_ = CASES[0]
+    body, soil = columns.of_sphere(z, centre, radius, 180.0, 2000.0), Strengths(np.array([3e3, 6e3]), 0.4)
+    load = float(bishop.driving(body))
+    push = load / body.weight.sum()         # m, a lever that makes normal forces about as large as the load
+    assert (bishop.factor_of_safety(body._replace(normal=np.full(len(body.u), -2 * push)), soil) == np.inf).all()
+    assert (bishop.factor_of_safety(body, soil, -1.0) == np.inf).all()
+    late, stiff = body._replace(normal=2 * push * body.sine), Strengths(np.array([3e3, 3e5]), 0.4)
+    found = bishop.factor_of_safety(late, stiff)
+    first = load + bishop.resistance(body, stiff, np.ones(2)) - bishop.resistance(late, stiff, np.ones(2))
+    assert first[0] > 0 > first[1] and found[0] < 1 < found[1] < 1000
+    assert bishop.resistance(late, stiff, found) == pytest.approx(load, rel=1e-6)
+    monkeypatch.setattr(bishop, "MOST_STEPS", 2)
+    assert np.isnan(bishop.factor_of_safety(body, soil)).all()
+
+
 def plane(beta, cell=0.1):
     return ground(lambda x: np.tan(beta) * x, 400, 400, cell)
 

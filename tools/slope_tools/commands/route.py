@@ -127,8 +127,9 @@ def run_route(args: Request) -> None:
                 place = runs.make_body_site(choices, folder, body, len(table["bodies"]), machine, quiet, quiet,
                                             site_map.draw_site_map)
                 if new:
-                    factor = "" if body["factor"] is None else f", factor of safety {body['factor']:.3f}"
-                    tell(f"body {body['body']} at {body['chainage_m']:.0f} m: {body['volume_m3']:,.0f} m3{factor}")
+                    factor = page.format_factor(body)
+                    tell(f"body {body['body']} at {body['chainage_m']:.0f} m: {body['volume_m3']:,.0f} m3"
+                         + f", factor of safety {factor}" * (factor != "-"))
                 several.append(runs.make_route_study(choices, place, engine_of(args)))
             if args.dry_run:
                 tell("\n".join(runs.list_route_runs(several)))

@@ -135,6 +135,10 @@ def format_route_cell(value, form: str = "") -> str:
     return "-" if value is None else form.format(value) if form else digits.rounded(value, 3)
 
 
+def format_factor(row: Mapping[str, Any], form: str = "{:.3f}") -> str:
+    return row.get("no_factor") or format_route_cell(row["factor"], form)
+
+
 def often(row: Mapping[str, Any], yearly: bool) -> List[str]:
     year = row["per_year"]
     return [f"{year['counts']:.2g}", f"{year['low']:.2g} to {year['high']:.2g}"] if yearly else []
@@ -157,7 +161,7 @@ def make_stretches_section(results: Mapping[str, Any], yearly: bool) -> Section:
                 ("length", 1), ("remove", 1), ("remove", 2), ("remove_lane", 1), ("passable_width", 1),
                 ("hours_lane", 1), ("hours", 1))]
             rows.append([one["stretch"], f"{km(one['from'])} to {km(one['to'])}", *often(one, yearly), by["body"],
-                         format_route_cell(by["factor"], "{:.2f}"), *share(by, "share"), *numbers])
+                         format_factor(by, "{:.2f}"), *share(by, "share"), *numbers])
     heads = ["stretch", "km", *(["blocked, per year", "90 %"] if yearly else []), "body", "factor of safety",
              "share of its runs", "90 %", "blocked m", "to remove m3", "95 % of the runs", "for a lane m3",
              "passable m", "hours, lane", "hours"]
@@ -166,7 +170,7 @@ def make_stretches_section(results: Mapping[str, Any], yearly: bool) -> Section:
 
 
 def bodies(results: Mapping[str, Any], yearly: bool) -> Section:
-    rows = [[one["body"], one["name"], km(one["chainage_m"]), format_route_cell(one["factor"], "{:.3f}"),
+    rows = [[one["body"], one["name"], km(one["chainage_m"]), format_factor(one),
              format_route_cell(one["volume_m3"]),
              format_route_cell(one["depth_m"]), format_route_cell(one["known_share"], "{:.2g}"), one["runs"],
              *share(one, "share_blocked"),
@@ -181,7 +185,7 @@ def bodies(results: Mapping[str, Any], yearly: bool) -> Section:
 
 
 def left_out(results: Mapping[str, Any]) -> Section:
-    rows = [[one["body"], km(one["chainage_m"]), format_route_cell(one["factor"], "{:.3f}"),
+    rows = [[one["body"], km(one["chainage_m"]), format_factor(one),
              format_route_cell(one["volume_m3"]), one["why_not"]]
             for one in results["left_out"]]
     return make_table_section("Left out", ["body", "km", "factor of safety", "volume m3", "why"], rows,

@@ -95,9 +95,9 @@ def make_route_results(choices: Choices, corridor: Corridor, folder: Path, table
             (one["from"], one["to"], one["share"], one["body"], *year(one)) for one in results["pieces"])))
         quantiles = [f"{name}_{100 * share:g}" for name in NUMBERS for share in road_runs.SHARES]
         disk.write_file(new / STRETCHES, disk.csv_text(
-            ("stretch", "from_m", "to_m", *YEAR, "body", "factor", "share", *quantiles),
+            ("stretch", "from_m", "to_m", *YEAR, "body", "factor", "share", *quantiles, "no_factor"),
             ((one["stretch"], one["from"], one["to"], *year(one), by["body"], by["factor"], by["share"],
-              *(value for name in NUMBERS for value in by.get(name, [None] * len(road_runs.SHARES))))
+              *(value for name in NUMBERS for value in by.get(name, [None] * len(road_runs.SHARES))), by["no_factor"])
              for one in results["stretches"] for by in one["bodies"])))
         disk.write_file(new / ALONG, road_runs.table_of_bodies(results["along"]))
         heads = [name for name in results["bodies"][0] if name != "per_year"]
@@ -152,7 +152,8 @@ def stretch(number: int, span: Span, bodies: Sequence[BodyRuns], yearly: Optiona
         weights = np.full(len(body.runs), 1 / len(body.runs))
         numbers = road_runs.stretch(span, body.runs, weights)
         low, high = body.source.bounds(numbers["share"])
-        each.append({"body": body.number, "factor": body.about["factor"], "share_low": low, "share_high": high,
+        each.append({"body": body.number, "factor": body.about["factor"], "no_factor": body.about.get("no_factor", ""),
+                     "share_low": low, "share_high": high,
                      **{name: numbers[name] for name in ("share", *NUMBERS) if name in numbers}})
     return {"stretch": number, "from": span.low, "to": span.high,
             **reached.combined([one.source for one in here], [one["share"] for one in each], yearly)._asdict(),
@@ -171,7 +172,7 @@ def make_body_row(body_runs: BodyRuns, yearly: Optional[Yearly]) -> Dict[str, An
     return {**{key: body_runs.about[key] for key in keys}, "runs": len(body_runs.runs),
             "failed": body_runs.source.failed, "share_blocked": share, "share_low": low, "share_high": high,
             "on_road_median_m3": float(np.median(on_road)), "on_road_most_m3": float(on_road.max()),
-            "per_year": per_year}
+            "no_factor": body_runs.about.get("no_factor", ""), "per_year": per_year}
 
 
 # --- who hits what ---
@@ -212,12 +213,13 @@ def write_layers(path: Path, corridor: Corridor, folder: Path, results: Mapping[
             area = [shape(part) for part, _ in shapes(mask.astype(np.uint8), mask, transform=base.transform)]
             yield as_multi(unary_union(area)), {
                 "body": row["body"], "name": row["name"], "factor": row["factor"], "volume_m3": row["volume_m3"],
-                "why_not": row.get("why_not", ""), "share": row.get("share_blocked")}
+                "why_not": row.get("why_not", ""), "share": row.get("share_blocked"),
+                "no_factor": row.get("no_factor", "")}
     geopackage.write_geopackage(path, {
         "road": Layer("LineString", road, ((line(one), values(one)) for one in results["pieces"])),
         "stretches": Layer("LineString", {"stretch": "int", **road}, (
             (line(one), {"stretch": one["stretch"], **values(one)}) for one in results["stretches"])),
         "bodies": Layer("MultiPolygon", {"body": "int", "name": "str", "factor": "float", "volume_m3": "float",
-                                         "why_not": "str", "share": "float"}, bodies()),
+                                         "why_not": "str", "share": "float", "no_factor": "str"}, bodies()),
         road_runs.BODIES: road_runs.layer_of_bodies(results["along"], [axis]),
         "hits": Layer("Polygon", of_hits, hit())}, corridor.raster)

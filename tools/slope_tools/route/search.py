@@ -5,6 +5,7 @@ it; body.slips.csv and body.N.columns.csv, its row and its columns of find_slip;
 --slips` and `slope fragility` take it.
 """
 import csv
+import math
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Tuple
@@ -36,7 +37,8 @@ ADVICE = polygons.Advice(polygon_crs="save it from a GIS with one; a .prj file b
 BODY = schemas.mapping({
     "body": schemas.COUNT, "name": schemas.TEXT, "factor": schemas.MAYBE, "known_share": schemas.MAYBE,
     "why_not": schemas.TEXT,
-    **schemas.number_keys("chainage_m", "x", "y", "volume_m3", "area_m2", "depth_m", "road_from_m")})
+    **schemas.number_keys("chainage_m", "x", "y", "volume_m3", "area_m2", "depth_m", "road_from_m")},
+    no_factor=schemas.TEXT)
 NO_BODY = "limits must leave a sphere"      # find_slip, where no body is within its limits
 
 
@@ -44,7 +46,7 @@ class Slip(NamedTuple):
     """A body: its ground's cells, the heights below it there (NaN beside it), and its row of find_slip, if any."""
     window: Window
     base: np.ndarray
-    factor: Optional[float]     # None of a body that was given without strengths
+    factor: Optional[float]     # None of a body that was given without strengths; infinite, NaN: factor_of_safety()
     row: Optional[Mapping[str, str]] = None
     columns: Path = Path()  # the file of find_slip that goes with the row
     name: str = ""          # of a body that was given
@@ -240,11 +242,19 @@ def settled(choices: Choices, corridor: Corridor, place: Path, slip: Slip, numbe
     depth = np.nan_to_num(raster.z - base)
     x, y = middle(corridor, slip)
     return {"body": number, "name": slip.name or f"body {number}", "chainage_m": round(corridor.chainage(x, y), 2),
-            "x": round(x, 2), "y": round(y, 2), "factor": slip.factor,
+            "x": round(x, 2), "y": round(y, 2), **make_factor_entry(slip.factor),
             "volume_m3": float(depth.sum()) * corridor.cell ** 2,
             "area_m2": int(slip.mask.sum()) * corridor.cell ** 2, "depth_m": float(depth.max()),
             "road_from_m": round(start, 4),
             **reaches(choices, falling.of_arrays(raster, depth, f"body {number}"), corridor.road)}
+
+
+def make_factor_entry(factor: Optional[float]) -> Dict[str, Any]:
+    """The factor as tables have it, and why there is none; "" if there is one, or no strengths were given."""
+    if factor is None or math.isfinite(factor):
+        return {"factor": factor, "no_factor": ""}
+    return {"factor": None, "no_factor": "unknown: no balance of moments was found" if math.isnan(factor) else
+            "none: nothing drives it"}
 
 
 def reaches(choices: Choices, mass: falling.Body, lane) -> Dict[str, Any]:

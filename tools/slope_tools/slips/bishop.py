@@ -18,6 +18,7 @@ Values = Union[float, np.ndarray]
 LEAST_M = 0.2           # of m_alpha (Whitman and Bailey 1967)
 TOLERANCE = 1e-10
 MOST_STEPS = 200
+MOST = 1e9              # F, beyond which nothing drives a body
 CHUNK = 4_000_000       # columns times strengths that are held in memory
 
 
@@ -68,18 +69,18 @@ def yield_coefficient(body: Columns, strengths: Strengths, vertical: float = 0.0
 
 
 def factor_of_safety(body: Columns, strengths: Strengths, horizontal: float = 0.0, vertical: float = 0.0) -> np.ndarray:
-    """F of each strength; infinite where nothing drives the body."""
-    count = len(strengths.arrays()[0])
+    """F of each strength; infinite where nothing drives the body, NaN where the steps found none."""
     load = float(driving(body, horizontal, vertical))
-    if not load > 0:
-        return np.full(count, np.inf)
-    factor, along = np.ones(count), body._replace(normal=None)
+    factor, along = np.ones(len(strengths.arrays()[0])), body._replace(normal=None)
     for _ in range(MOST_STEPS):
         shear = resistance(along, strengths, factor, vertical)
-        of_normal = 0.0 if body.normal is None else shear - resistance(body, strengths, factor, vertical)
-        new = np.maximum(factor * shear / (load + of_normal), 1e-9)
+        drives = load + (0.0 if body.normal is None else shear - resistance(body, strengths, factor, vertical))
+        with np.errstate(divide="ignore"):
+            # normal forces that outweigh the load at one F may not do so at a larger one
+            new = np.where(drives > 0, np.maximum(factor * shear / drives, 1 / MOST), 10 * factor)
+        new = np.minimum(new, MOST)
         done = np.abs(new - factor) <= TOLERANCE * new
         factor = new
         if done.all():
             break
-    return factor
+    return np.where(done, np.where(factor < MOST, factor, np.inf), np.nan)
