@@ -236,12 +236,12 @@ def test_travel_is_along_and_across_the_fall_line(made):
     assert run.travel["distance"] == pytest.approx(np.hypot(*way.T))
 
 
-def test_the_smaller_resistance_governs(made):
+def test_more_reach_the_road_with_the_smaller_resistance(made):
     of = made.known.outcome
-    assert [one.rolling for one in of.results] == ["0.1", "0.4"] and of.best.rolling == "0.1"
+    assert [one.rolling for one in of.results] == ["0.1", "0.4"] and of.worst["reach"].rolling == "0.1"
     assert of.results[0].reach.seen > of.results[1].reach.seen
     assert of.another == withheld.exceeded_at_most(3)
-    assert of.hardest(runs.AT_ROAD, "energy").rolling == "0.1"
+    assert of.worst["road_energy_95"].rolling == of.worst["crossed_fence"].rolling == "0.1"
 
 
 def test_a_ditch_at_the_foot_keeps_what_ends_on_the_slope_or_near_it(made):
@@ -265,16 +265,19 @@ def test_a_ditch_at_the_foot_keeps_what_ends_on_the_slope_or_near_it(made):
 
 def test_files(made):
     about = yaml.safe_load((made.folder / "study" / files.RESULTS).read_text())
-    assert about["best"] == "0.1" and about["results"][0]["reach"]["blocks"] == 30
+    assert about["worst"]["reach"]["rolling"] == "0.1" and about["results"][0]["reach"]["blocks"] == 30
     rows = rows_of(made.folder / "study" / files.BLOCKS)
     assert len(rows) == 60
     reached = sum(int(row["reached_road"]) for row in rows if row["rolling"] == "0.1")
     assert reached == about["results"][0]["reach"]["seen"]
     with fiona.open(made.folder / "study" / files.GIS, layer="paths") as paths:
-        assert len(paths) == 30 and paths.crs["init"] == "epsg:6677"
+        assert len(paths) == 60 and paths.crs["init"] == "epsg:6677"
         first = next(iter(paths))
         start = made.known.runs[0].start[0]
         assert first["geometry"]["coordinates"][0] == pytest.approx(start + (EAST, NORTH, 0), abs=1e-3)
+    with fiona.open(made.folder / "study" / files.GIS, layer="ends") as ends:
+        assert [(one["properties"]["rolling"], one["properties"]["reached"]) for one in ends] == [
+            (float(row["rolling"]), int(row["reached_road"])) for row in rows]
     for name in files.LARGEST:
         with rasterio.open(made.folder / "study" / f"{name}.tif") as found:
             most = max(np.nanmax(runs.rasters.read_raster(one.folder / f"site.{name}.asc", heights=False).z)
@@ -285,7 +288,7 @@ def test_files(made):
 def test_the_page_begins_with_the_share_that_reaches_the_road(made):
     text = (made.folder / page.NAME).read_text(encoding="utf-8")
     first = text[text.index("<strong>"):text.index("</strong>")]
-    assert made.known.outcome.best.reach.text in first and "reach the road" in first
+    assert made.known.outcome.worst["reach"].value.text in first and "reach the road" in first
     assert text.index("<strong>") < text.index("at its near edge".capitalize()) < text.index("<table")
     assert 'id="scene"' in text and "Blocks in three dimensions" in text
 
@@ -304,7 +307,7 @@ def test_files_for_paraview_are_of_the_run_with_the_farthest_block(made, told, m
     monkeypatch.setenv("DUMP2VTK", str(tmp_path / "stand-in"))
     status, out, err = told("vtk", "tmp")
     assert status == 0 and "tmp/vtk/site.pvd" in out, err
-    name = page.choose_shown_run(made.known).name
+    name = runs.find_farthest_run(made.known.runs).name
     words = (tmp_path / "words").read_text().split()
     assert words[0].endswith(f"{made.folder.name}/runs/{name}/site.00000000.dump")
     assert words[words.index("--deposit") + 1].endswith(f"/{name}/site")
@@ -337,46 +340,95 @@ def a_run(ground, reached, left=None, rolling="0.1", ahead=True):
                     np.full(n, 4.0), 0.1)
 
 
+def test_every_number_is_the_worst_over_all_rolling_resistances_and_says_which_one_has_it():
+    """One block more reaches the road with 0.2; more pass it and one goes farther with 0.1; the hardest is of 0.3,
+    whose median is not the largest."""
+    def some(rolling, reached, passed, farther, energies):
+        one = a_run(0, [1] * reached + [0] * (10 - reached), rolling=rolling)
+        at = {**one.at[runs.AT_ROAD], "energy": np.where(one.reached, np.resize(energies, 10), np.nan)}
+        return replace(one, name=rolling, passed=np.arange(10) < passed, at={runs.AT_ROAD: at},
+                       travel={**one.travel, "distance": one.travel["distance"] + farther})
+    every = [replace(one, ground=ground) for ground in range(3) for one in (
+        some("0.1", 4, 4, np.eye(10)[9] * 50, [5e3]), some("0.2", 5, 2, 0, [7e3]),
+        some("0.3", 3, 1, 3, [9e3] + [1e3] * 9))]
+    of = outcome.evaluate_blocks(every)
+    whose = {name: one.rolling for name, one in of.worst.items()}
+    assert {name: whose[name] for name in ("reach", "past", "distance_50", "distance_largest", "road_energy_50",
+                                           "road_energy_largest")} == {
+        "reach": "0.2", "past": "0.1", "distance_50": "0.3", "distance_largest": "0.1", "road_energy_50": "0.2",
+        "road_energy_largest": "0.3"}
+    assert (of.worst["past"].value.share, of.worst["distance_largest"].value) == (0.4, 59)
+    assert of.about()["worst"]["past"]["value"]["share"] == 0.4
+    assert runs.find_farthest_run(every).rolling == "0.1"
+    first, at_edge, far, _ = page.sentences(SimpleNamespace(outcome=of))
+    for text, numbers in ((first, [("50 %", "0.2"), ("40 %", "0.1")]), (at_edge, [("9.00 kJ", "0.3")]),
+                          (far, [("7.00 m", "0.3"), ("59.0 m", "0.1")])):
+        for number, rolling in numbers:
+            assert re.search(rf"{number}[^(]*(\(\d[^)]*\)[^(]*)?\(rolling resistance {rolling}\)", text), text
+
+
+def test_a_bound_of_blocks_that_left_is_said_though_fewer_were_seen_to_reach():
+    """With 0.1 fewer reach the road, but half of the blocks left the terrain before it."""
+    of = outcome.evaluate_blocks([one for ground in range(10) for one in (
+        a_run(ground, [1, 1, 1, 0, 0, 0, 0, 0], rolling="0.2"),
+        a_run(ground, [1, 1, 0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 1, 1, 1, 1], rolling="0.1"))])
+    assert of.worst["reach"].rolling == "0.2" and of.at_least
+    bound = [text for text in page.sentences(SimpleNamespace(outcome=of)) if "0.1" in text]
+    high = next(one.reach.high for one in of.results if one.rolling == "0.1")
+    assert len([text for text in bound if digits.percent(high) in text]) == 1 and high > of.worst["reach"].value.high
+
+
+def test_the_path_of_the_farthest_block_is_among_those_that_are_shown(made, monkeypatch):
+    """Its third block, of the last run, with the larger rolling resistance: of fewer paths than runs, and of more."""
+    *others, last = made.known.runs
+    last = replace(last, travel={"distance": 1e3 * (np.arange(10) == 2)})
+    for shown, number in ((4, 4), (12, 12)):
+        monkeypatch.setattr(files, "SHOWN", shown)
+        found = [(run.rolling, run.ground, block) for run, block, _ in files.paths([*others, last])]
+        assert len(found) == number and ("0.4", 3, 3) in found and {rolling for rolling, *_ in found} == {"0.1", "0.4"}
+
+
 def test_none_that_reaches_is_never_certain():
     of = outcome.evaluate_blocks([a_run(ground, [0] * 100) for ground in range(10)])
-    reach = of.best.reach
+    reach = of.results[0].reach
     assert reach.seen == 0 and reach.high == pytest.approx(withheld.exceeded_at_most(10))
     assert reach.text == f"at most {digits.percent(reach.high)}" == "at most 26 %"
     text = next(page.sentences(SimpleNamespace(outcome=of)))
-    assert text.startswith("none of 1,000 blocks") and "chance leaves at most 26 % possible" in text
+    assert text.startswith("none of the blocks") and "1,000 blocks" in text
+    assert "chance leaves at most 26 % possible" in text
 
 
 @pytest.mark.parametrize("number", [1, 2, 5])
 def test_a_few_that_reach_bound_no_less_than_none(number):
     """A few blocks of one of ten grounds: another ground may bring as many as after none."""
     few = [a_run(ground, [1] * number * (ground == 1) + [0] * (100 - number * (ground == 1))) for ground in range(10)]
-    reach = outcome.evaluate_blocks(few).best.reach
+    reach = outcome.evaluate_blocks(few).results[0].reach
     assert reach.seen == number and reach.high >= withheld.exceeded_at_most(10) > 0.2
 
 
 def test_all_that_reach_are_never_certain():
     of = outcome.evaluate_blocks([a_run(ground, [1] * 100) for ground in range(10)])
-    assert of.best.reach.text == "at least 74 %"
+    assert of.results[0].reach.text == "at least 74 %"
 
 
 def test_blocks_of_a_ground_count_together():
     """Half of the grounds let all pass: that is not 500 of 1,000 independent blocks."""
-    together = outcome.evaluate_blocks([a_run(ground, [ground % 2] * 100) for ground in range(10)]).best.reach
-    apart = outcome.evaluate_blocks([a_run(ground, [0, 1] * 50) for ground in range(10)]).best.reach
+    together = outcome.evaluate_blocks([a_run(ground, [ground % 2] * 100) for ground in range(10)]).results[0].reach
+    apart = outcome.evaluate_blocks([a_run(ground, [0, 1] * 50) for ground in range(10)]).results[0].reach
     assert together.share == apart.share == 0.5
     assert together.high - together.low > 0.4 and apart.high - apart.low < 0.06
 
 
 def test_blocks_that_left_make_it_at_least():
     of = outcome.evaluate_blocks([a_run(ground, [1, 0, 0, 0], [0, 1, 0, 0]) for ground in range(10)])
-    reach = of.best.reach
+    reach = of.results[0].reach
     assert reach.share == 0.25 and reach.open == 10 and reach.high > 0.5 > reach.low
-    assert reach.text.startswith("at least 25 %") and of.best.at_least == "at least "
+    assert reach.text.startswith("at least 25 %") and of.at_least == "at least "
     assert [one.kind for one in of.doubts()] == ["blocks left"]
     away = outcome.evaluate_blocks([a_run(ground, [1, 0, 0, 0], [0, 1, 0, 0], ahead=False) for ground in range(10)])
-    assert away.best.reach.open == away.best.past.open == 0 and away.best.reach.high < 0.5 and away.best.away == 10
-    assert away.best.at_least == "at least " and away.doubts()[0].numbers["away"] == 10       # how far they go
-    none = outcome.evaluate_blocks([a_run(ground, [0, 0, 0, 0], [1, 0, 0, 0]) for ground in range(10)]).best.reach
+    assert away.results[0].reach.open == away.results[0].past.open == 0 and away.results[0].reach.high < 0.5 and away.results[0].away == 10
+    assert away.at_least == "at least " and away.doubts()[0].numbers["away"] == 10       # how far they go
+    none = outcome.evaluate_blocks([a_run(ground, [0, 0, 0, 0], [1, 0, 0, 0]) for ground in range(10)]).results[0].reach
     assert none.text.startswith("up to ") and none.high > 0.25
 
 
@@ -384,7 +436,7 @@ def test_what_left_is_not_retained_unless_no_road_was_ahead():
     """Four blocks that end 0 to 3 m beyond the foot, the second of which left the terrain."""
     for ahead, shares in ((True, [1 / 4, 1 / 4, 2 / 4, 3 / 4]), (False, [2 / 4, 2 / 4, 3 / 4, 1])):
         of = outcome.evaluate_blocks([a_run(0, [0] * 4, [0, 1, 0, 0], ahead=ahead)])
-        one = of.best
+        one = of.results[0]
         by_width = dict(zip(of.widths, one.retained))
         assert [by_width[width].share for width in range(4)] == shares
         assert one.width(0.5, of.widths) == (2 if ahead else 0) and one.width(1, of.widths) == (None if ahead else 3)

@@ -12,7 +12,7 @@ from ..deposits.flow_path import snapshots
 from ..findings import encode_findings
 from ..survey import geopackage, rasters
 from ..survey.rasters import Raster
-from .runs import PREFIX, QUANTITIES, Run
+from .runs import PREFIX, QUANTITIES, Run, find_farthest_run
 from .site import SHOWN
 
 LARGEST = {"max_speed": "m/s", "max_energy": "J"}       # rasters, over all runs
@@ -57,20 +57,26 @@ def combine_largest(runs: List[Run], name: str, place: Raster) -> Raster:
 
 
 def paths(runs: List[Run]) -> Iterator[Tuple[Run, int, np.ndarray]]:
-    """(run, block, x y z at each snapshot) of up to SHOWN blocks, as many of each run."""
-    each = max(1, SHOWN // len(runs))
-    for run in runs[:SHOWN]:
-        series: Dict[int, List[np.ndarray]] = {k: [place] for k, place in enumerate(run.start[:each], 1)}
+    """(run, block, x y z at each snapshot) of up to SHOWN blocks, as many of each run; the farthest block is among
+    them if snapshots have it."""
+    each, farthest = max(1, SHOWN // len(runs)), find_farthest_run(runs)
+    most = int(farthest.travel["distance"].argmax()) + 1
+    some = {farthest.name, *(one.name for one in runs[::-(-len(runs) // (SHOWN - 1))])}
+    for run in (one for one in runs if one.name in some):
+        blocks = np.arange(1, min(each, len(run.start)) + 1)
+        if run is farthest and each < most <= SHOWN:
+            blocks[-1] = most
+        series: Dict[int, List[np.ndarray]] = {block: [run.start[block - 1]] for block in blocks.tolist()}
         for path in snapshots(run.folder, 10 ** 12):
             for columns, rows in dumps.frames(path):
-                for row in rows[rows[:, 0] <= each]:
+                for row in rows[np.isin(rows[:, 0], blocks)]:
                     series[int(row[0])].append(row[columns.index("x"):columns.index("z") + 1])
         yield from ((run, block, np.array(places)) for block, places in series.items())
 
 
 def write_gis(folder: Path, known) -> None:
-    """The largest speed and energy over all runs; paths of those runs that govern, and where all their blocks end."""
-    raster, best = known.terrain.raster, [one for one in known.runs if one.rolling == known.outcome.best.rolling]
+    """Of all runs: the largest speed and energy, paths of some blocks, and where all end."""
+    raster = known.terrain.raster
     for name, unit in LARGEST.items():
         over_all = combine_largest(known.runs, name, raster)
         rasters.write_geotiff(folder / f"{name}.tif", {f"largest over all runs ({unit})": over_all.z}, over_all)
@@ -79,9 +85,9 @@ def write_gis(folder: Path, known) -> None:
     geopackage.write_geopackage(folder / GIS, {
         "paths": geopackage.Layer("3D LineString", about, (
             (LineString(places), {"rolling": float(one.rolling), "ground": one.ground, "block": block})
-            for one, block, places in paths(best) if len(places) > 1)),
+            for one, block, places in paths(known.runs) if len(places) > 1)),
         "ends": geopackage.Layer("Point", ends, (
             (Point(place), {"rolling": float(one.rolling), "ground": one.ground, "block": k + 1,
                             "diameter_m": one.diameter[k], "distance_m": one.travel["distance"][k],
                             **{name: int(getattr(one, name)[k]) for name in ("left", "reached", "passed")}})
-            for one in best for k, place in enumerate(one.end)))}, raster)
+            for one in known.runs for k, place in enumerate(one.end)))}, raster)

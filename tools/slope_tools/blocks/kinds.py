@@ -33,8 +33,9 @@ def run_by_kind(command: str, module: Any, request: Any, tell: Any) -> None:
         from . import study
         return study.run_block_study(site_folder, module.setup_of(request))
     if command == "vtk":
-        from . import page, runs, study as of_blocks
-        shown = page.choose_shown_run(of_blocks.read_block_runs(site_folder, of_blocks.plan_block_runs(site_folder)))
+        from . import runs, study as of_blocks
+        shown = runs.find_farthest_run(of_blocks.read_block_runs(
+            site_folder, of_blocks.plan_block_runs(site_folder)).runs)
         tell(f"{shown.name}, the run with the farthest block: {shown.folder}")
         return module.convert(str(shown.folder / runs.PREFIX), request.output, site_folder.folder, request.single)
     return (export if command == "export" else report)(site_folder, request.output, request.overwrite, tell)

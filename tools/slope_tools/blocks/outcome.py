@@ -6,7 +6,7 @@ is not known: in a lower bound it does not do it, in an upper one it does.
 """
 import math
 from dataclasses import dataclass, replace
-from typing import Any, Dict, List, Optional, Sequence
+from typing import Any, Callable, Dict, List, Optional, Sequence
 
 import numpy as np
 
@@ -81,21 +81,26 @@ class Result:
 
 
 @dataclass(frozen=True)
+class Worst:
+    """A number of the result that has the largest: no result has all of them."""
+    value: Any              # a Share, or m, m/s, J
+    rolling: str
+
+
+@dataclass(frozen=True)
 class Outcome:
-    """All results; best governs: most of its blocks reach the road, or it goes farthest."""
+    """All results, and the worst of each number: find_worst()."""
     results: List[Result]
-    best: Result
+    worst: Dict[str, Worst]
     another: float          # probability, at most, that one more ground brings something larger than all of these
     overlap: float          # the deepest contact, in radii
     widths: Sequence[float]     # m, of ditches at the slope's foot
     to_road: Optional[float]    # m, from there to the road, the median of the blocks whose way leads to it
 
-    def hardest(self, place: str, quantity: str) -> Result:
-        """The result with the largest 95 % of a quantity at a place, to which blocks come."""
-        def most(result: Result) -> float:
-            found = result.at[place][quantity]
-            return found.most if found else -np.inf
-        return max(self.results, key=most)
+    @property
+    def at_least(self) -> str:
+        """What stands before the largest of all distances."""
+        return max(one.at_least for one in self.results)
 
     def doubts(self) -> List[Finding]:
         """What is to be known of the runs."""
@@ -110,7 +115,7 @@ class Outcome:
 
     def about(self) -> Dict[str, Any]:
         """For a file, without what has a table of its own."""
-        about = {**records.encode_record(self), "best": self.best.rolling}
+        about = records.encode_record(self)
         for one in (about, *about["results"]):
             one.pop("widths", None), one.pop("retained", None)
         return about
@@ -122,11 +127,30 @@ def evaluate_blocks(runs: Sequence[Run]) -> Outcome:
     ditch = np.concatenate([one.ditch for one in runs])
     results = [result_of([one for one in runs if one.rolling == rolling], widths)
                for rolling in dict.fromkeys(one.rolling for one in runs)]
-    best = max(results, key=lambda result: (result.reach.share if result.reach else 0.0, result.left - result.away,
-                                            result.travel["distance"].most))
-    return Outcome(results, best, withheld.exceeded_at_most(min(one.grounds for one in results)),
+    return Outcome(results, find_worst(results), withheld.exceeded_at_most(min(one.grounds for one in results)),
                    max(one.overlap for one in runs), widths,
                    None if np.isnan(ditch).all() else float(np.nanmedian(ditch)))
+
+
+def find_worst(results: Sequence[Result]) -> Dict[str, Worst]:
+    """Over all results, of what they have: reach, past and crossed_LINE, a Share each; NUMBER_50, NUMBER_95 and
+    NUMBER_largest of the travelled distance, and of what blocks have at lines and at the road."""
+    found: Dict[str, Worst] = {}
+
+    def keep(name: str, value: Any, of: Result, size: Callable[[Any], Any] = lambda value: value) -> None:
+        if value is not None and (name not in found or size(value) > size(found[name].value)):
+            found[name] = Worst(value, of.rolling)
+    for one in results:
+        for name, share in (("reach", one.reach), ("past", one.past),
+                            *((f"crossed_{line}", share) for line, share in one.crossed.items())):
+            keep(name, share, one, lambda share: (share.share, share.high))
+        for name, quantity in (("distance", one.travel["distance"]), *(
+                (f"{place}_{name}", quantity) for place, of in one.at.items() for name, quantity in of.items())):
+            if quantity:
+                for quantile in quantity.quantiles:
+                    keep(f"{name}_{100 * quantile.share:g}", quantile.value, one)
+                keep(f"{name}_largest", quantity.largest, one)
+    return found
 
 
 def widths_to(most: float) -> List[float]:

@@ -1,6 +1,6 @@
 """The page on a study of blocks, and the sentences with which it and the console begin."""
 from pathlib import Path
-from typing import Dict, Iterator, List, Optional
+from typing import Dict, Iterator, List, Optional, Tuple
 
 import numpy as np
 
@@ -24,7 +24,7 @@ from ..survey import polygons
 from ..survey.rasters import crs_name
 from . import files
 from .outcome import DITCH, Quantity, Result
-from .runs import AT_ROAD, QUANTITIES, Run
+from .runs import AT_ROAD, QUANTITIES, find_farthest_run
 from .site import sizes_of
 
 NAME = "report.html"
@@ -43,27 +43,44 @@ def format_block_number(value: Optional[float], unit: str) -> str:
     return digits.si(value, unit) if unit == "J" else f"{digits.three(value) if value else '0'} {unit}"
 
 
+def say_worst(known, *parts: Tuple[str, str, str]) -> str:
+    """The worst of several numbers, each as (its name, its unit, a text around {}), after the last of those that
+    come from one rolling resistance which one it is."""
+    found = [known.outcome.worst[name] for name, _, _ in parts]
+    said = ""
+    for (_, unit, text), one, after in zip(parts, found, [*found[1:], None]):
+        number = format_block_number(one.value, unit) if unit else one.value.text
+        said += text.format(number) + f" (rolling resistance {one.rolling})" * (
+            after is None or after.rolling != one.rolling)
+    return said
+
+
 def sentences(known) -> Iterator[str]:
-    """The answer: which share reaches the road, with which energy; how far blocks go."""
-    of, best = known.outcome, known.outcome.best
-    whose = f"of {best.blocks:,} blocks, with a rolling resistance of {best.rolling} on {best.grounds} grounds"
-    if best.reach and best.reach.seen:
-        yield f"Of the blocks {best.reach.text} reach the road and {best.past.text} pass it ({whose})"
-        hardest = {name: of.hardest(AT_ROAD, name) for name in QUANTITIES}
-        energy, speed, height = (one.at[AT_ROAD][name] for name, one in hardest.items())
-        yield (f"at its near edge 95 % of those that reach it have at most {format_block_number(energy.most, 'J')}, "
-               "the hardest "
-               f"{format_block_number(energy.largest, 'J')} (rolling resistance {hardest['energy'].rolling}); up to "
-               f"{format_block_number(speed.largest, 'm/s')}, the lower edge up to "
-               f"{format_block_number(height.largest, 'm')} above the terrain")
-    elif best.reach:
-        yield (f"none {whose}, {'was seen to reach' if best.reach.open else 'reaches'} the road; as blocks share their "
-               f"grounds, chance leaves {best.reach.text} possible, more grounds (blocks.grounds of site.yaml) less")
-    distance = best.travel["distance"]
-    half, most, largest = (format_block_number(value, "m") for value in (
-        distance.quantiles[0].value, distance.most, distance.largest))
-    yield (f"in plan half of {'all' if best.reach else 'the'} blocks travel {best.at_least}{half}, 5 % more than "
-           f"{best.at_least}{most}, the farthest {best.at_least}{largest} (rolling resistance {best.rolling})")
+    """The answer: which share reaches the road, with which energy; how far blocks go: of each number the worst."""
+    of, reach = known.outcome, known.outcome.worst.get("reach")
+    several = f"the worst of {len(of.results)} rolling resistances, each with " * (len(of.results) > 1)
+    whose = several + " on ".join(
+        " to ".join(dict.fromkeys((f"{min(numbers):,}", f"{max(numbers):,}"))) + f" {what}" for what, numbers in (
+            (what, [getattr(one, what) for one in of.results]) for what in ("blocks", "grounds")))
+    if reach and reach.value.seen:
+        yield say_worst(known, ("reach", "", "Of the blocks {} reach the road"),
+                        ("past", "", " and {} pass it")) + f": {whose}"
+        widest = max(of.results, key=lambda one: one.reach.high)
+        if widest.reach.open and widest.reach.high > reach.value.high:
+            yield (f"up to {digits.percent(widest.reach.high)} may reach it (rolling resistance {widest.rolling}), as "
+                   "some left the terrain before, or still moved")
+        yield say_worst(
+            known, (f"{AT_ROAD}_energy_95", "J", "at its near edge 95 % of those that reach it have at most {}"),
+            (f"{AT_ROAD}_energy_largest", "J", ", the hardest {}"),
+            (f"{AT_ROAD}_speed_largest", "m/s", "; up to {}"),
+            (f"{AT_ROAD}_height_largest", "m", ", the lower edge up to {} above the terrain"))
+    elif reach:
+        yield (f"none of the blocks {'was seen to reach' if reach.value.open else 'reaches'} the road; as blocks share "
+               f"their grounds, chance leaves {reach.value.text} possible (rolling resistance {reach.rolling}; {whose})"
+               ", more grounds (blocks.grounds of site.yaml) less")
+    yield say_worst(known, ("distance_50", "m", f"in plan half of {'all' if reach else 'the'} blocks travel "
+                            + of.at_least + "{}"), ("distance_95", "m", f", 5 % more than {of.at_least}" "{}"),
+                    ("distance_largest", "m", f", the farthest {of.at_least}" "{}"))
     yield (f"one more ground brings something larger than the largest of all these with a probability of at most "
            f"{digits.percent(of.another)}")
 
@@ -80,37 +97,34 @@ def cells(quantity: Optional[Quantity], unit: str, prefix: str = "") -> List[str
 
 def tables(known) -> Iterator[Section]:
     results: List[Result] = known.outcome.results
-    marks = ["best" if one is known.outcome.best else "" for one in results]
     heads = ["rolling resistance", "50 %", "95 %", "largest", "blocks"]
     lines = list(results[0].crossed)
     yield Section("reach", "What reaches the road", [Table(
-        "By block; bounds of 90 % from the differences between the grounds, as blocks of one run share theirs; marked: "
-        "the rolling resistance that governs.",
+        "By block; bounds of 90 % from the differences between the grounds, as blocks of one run share theirs.",
         ["rolling resistance", "blocks", "grounds", *["reach the road", "pass it"] * bool(results[0].reach),
          *(f"cross {line}" for line in lines), "left the terrain", "still moved"],
         [[one.rolling, f"{one.blocks:,}", one.grounds, *(share.text for share in (one.reach, one.past) if share),
-          *(one.crossed[line].text for line in lines), f"{one.left:,}", f"{one.moving:,}"] for one in results], (),
-        marks)])
+          *(one.crossed[line].text for line in lines), f"{one.left:,}", f"{one.moving:,}"] for one in results])])
     if zones := known.site.found.zones:
         model, variables = known.site.choices.model, decks.index_variables(known.site.folder / site_deck.NAME)
-        variables["rolling"] = known.outcome.best.rolling
+        rows = []
+        for zone in site_zones.with_rest(zones):
+            each = [site_zones.now(zone, model, {**variables, "rolling": one.rolling}) for one in results]
+            rows.append([zone.name, f"{100 * zone.share:.3g}", *(", ".join(dict.fromkeys(
+                f"{now[name]:.3g}" for now in each)) for name in each[0])])
         yield Section("ground", "The ground", [Table(
-            "What the ground is, where: zones as on the maps, and the ground outside of them; the rolling resistance "
-            "is that of the runs that govern, or the zone's own.", limits_part.ZONE_HEADS, [
-                [zone.name, f"{100 * zone.share:.3g}",
-                 *(f"{value:.3g}" for value in site_zones.now(zone, model, variables).values())]
-                for zone in site_zones.with_rest(zones)])])
+            "What the ground is, where: zones as on the maps, and the ground outside of them; rolling resistances are "
+            "those of the runs, or the zone's own.", limits_part.ZONE_HEADS, rows)])
     yield Section("travel", "How far they go", [Figures([farther(known), retained(known)], "columns"), *(Table(
         TITLES[name], heads, [[one.rolling, *cells(one.travel[name], "m", one.at_least * (name != "across"))]
-                              for one in results], (), marks) for name in results[0].travel if name != DITCH),
-                                                    widths(known, marks)])
+                              for one in results]) for name in results[0].travel if name != DITCH), widths(known)])
     for place in results[0].at:
         yield Section(f"at_{place}", "At the road's near edge" if place == AT_ROAD else f"At the line {place}", [
             Text("Of the blocks that come there, each with its largest value. Heights count from the tops of the "
                  "ground's balls, which stand for the terrain: a block at rest is up to 0.4 of the smallest one lower.",
                  "soft"),
-            *(Table(TITLES[name], heads, [[one.rolling, *cells(one.at[place][name], unit)] for one in results], (),
-                    marks) for name, unit in QUANTITIES.items())])
+            *(Table(TITLES[name], heads, [[one.rolling, *cells(one.at[place][name], unit)] for one in results])
+              for name, unit in QUANTITIES.items())])
 
 
 def farther(known) -> Picture:
@@ -142,7 +156,7 @@ def draw_curve(series, x_label: str, y_label: str, title: str, caption: str) -> 
                                         for rolling, x, y in series], x_label, y_label, title), title, caption)
 
 
-def widths(known, marks: List[str]) -> Table:
+def widths(known) -> Table:
     """How wide a ditch must be."""
     of = known.outcome
 
@@ -151,7 +165,7 @@ def widths(known, marks: List[str]) -> Table:
         return f"> {of.widths[-1]:g} m" if found is None else f"{found:g} m"
     return Table("Width of a ditch at the foot of the slope that retains so many blocks, to a step of the curve.",
                  ["rolling resistance", *(f"{100 * share:g} %" for share in KEPT)],
-                 [[one.rolling, *(width(one, share) for share in KEPT)] for one in of.results], (), marks)
+                 [[one.rolling, *(width(one, share) for share in KEPT)] for one in of.results])
 
 
 def maps(known, data: Data, ground: Ground) -> Dict[str, Picture]:
@@ -177,15 +191,9 @@ def maps(known, data: Data, ground: Ground) -> Dict[str, Picture]:
     return drawings
 
 
-def choose_shown_run(known) -> Run:
-    """The run with the farthest block of those that govern."""
-    return max((one for one in known.runs if one.rolling == known.outcome.best.rolling),
-               key=lambda run: run.travel["distance"].max())
-
-
 def write_block_page(known, output: Path) -> str:
     """The page; a line for the user."""
-    site, run = known.site, choose_shown_run(known)
+    site, run = known.site, find_farthest_run(known.runs)
     data = Data(run.folder)
     data.road = known.terrain.road and known.terrain.road.polygon
     ground = Ground(data)

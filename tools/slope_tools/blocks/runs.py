@@ -1,7 +1,7 @@
 """What became of each block of a run: where it began and ended, what it had at each line and at the road."""
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Dict, NamedTuple, Optional
+from typing import Dict, NamedTuple, Optional, Sequence
 
 import numpy as np
 from shapely.geometry import LineString, Point
@@ -111,6 +111,11 @@ def read_block_run(name: str, folder: Path, chosen: Dict[str, str], terrain: Ter
               "across": way @ np.array([-terrain.down[1], terrain.down[0]]), "beyond_foot": feet.beyond}
     return Run(name, folder, chosen["rolling"], int(chosen["ground"]), diameter, first[:, 2:5], end, left, moving,
                reached, passed, behind, ahead, at, travel, feet.road, float(summary["guards"]["largest_overlap"]))
+
+
+def find_farthest_run(runs: Sequence[Run]) -> Run:
+    """The run that has the block that travels farthest."""
+    return max(runs, key=lambda run: run.travel["distance"].max())
 
 
 def find_largest_crossings(crossings: Columns, diameter: np.ndarray) -> Columns:

@@ -211,7 +211,7 @@ class MassModel(Model):
 class Study:
     """the runs of slope study"""
     rolling: Numbers = key(
-        (0.1, 0.15, 0.2), "rolling resistances, each a choice: the one with which most blocks reach the road counts",
+        (0.1, 0.15, 0.2), "rolling resistances, each a choice: of each number the worst counts",
         fewest=1, different=True, least=0)
 
 
