@@ -18,7 +18,7 @@ from test_site import write_layer
 from tiny_collapse import LMP, rows_of
 
 from slope_tools import digits
-from slope_tools.blocks import ditch, files, kinds, outcome, page, runs, site as of_blocks
+from slope_tools.blocks import ditch, edges, files, kinds, outcome, page, runs, study
 from slope_tools.case import decks
 from slope_tools.deposits import passed, road_sides
 from slope_tools.deposits.gone import Gone
@@ -26,6 +26,7 @@ from slope_tools.plots import site_map
 from slope_tools.sites import site_choices, site_deck
 from slope_tools.sites.site_sections import OfBlocks, OfMass
 from slope_tools.statistics import withheld
+from slope_tools.studies.setup import Setup
 from slope_tools.survey.rasters import Raster, read_asc_local
 
 CELL, COLUMNS, ROWS = 1.0, 90, 50
@@ -74,7 +75,6 @@ def made(gis):
     assert cli.main(["site", "tmp"]) == 0
     assert cli.main(["study", "tmp", "--jobs", "2"]) == 0
     patch.undo()
-    from slope_tools.blocks import study
     found = site_choices.load_kind(gis / "tmp", OfBlocks)
     return SimpleNamespace(folder=gis / "tmp", site=found, known=study.read_block_runs(found,
                                                                                        study.plan_block_runs(found)))
@@ -176,7 +176,7 @@ def test_blocks_are_counted_not_crossings(made):
         [(_, end)] = runs.dumps.frames(run.folder / "end.dump")
         there = end[:, 0].astype(int) - 1
         assert np.array_equal(np.flatnonzero(~run.left), there) and run.end[there] == pytest.approx(end[:, 1:3])
-        touched = of_blocks.touched(Polygon(ROAD), 1.2, made.known.terrain.raster)
+        touched = edges.touched(Polygon(ROAD), 1.2, made.known.terrain.raster)
         west, _, east, _ = touched.bounds
         inward = [row for row in rows_of(run.folder / "site.road_edge_1.line.csv") if row["direction"] == "1"]
         assert {int(row["ball"]) - 1 for row in inward} == set(np.flatnonzero(run.reached))
@@ -326,6 +326,43 @@ def test_runs_of_other_choices_are_no_answer(made, told, words):
     assert status == 2 and "site.yaml: must not have been changed since" in err, err
 
 
+def test_edges_and_runs_follow_the_road_of_the_folder(made, told, gis):
+    """A site whose road.csv was moved by 2 m, then has a second polygon, which the deck does not count at."""
+    folder = gis / "edited"
+    shutil.copytree(made.folder, folder)
+    road, edge, said = folder / "road.csv", folder / "road_edge_1.csv", []
+    before, text = edge.read_text(), road.read_text()
+    road.write_text(re.sub(r"^28\b", "26", re.sub(r"^33\b", "31", text, flags=re.MULTILINE), flags=re.MULTILINE))
+    for command in ("report", "export"):
+        status, _, err = told(command, "edited", "-o", f"moved.{'html' * (command == 'report')}")
+        assert status == 2 and err.count("\n") == 1 and "edited/road.csv: must be the road" in err, err
+    site_folder = site_choices.load_kind(folder, OfBlocks)
+    planned, setup = study.plan_block_runs(site_folder), Setup(folder / site_deck.NAME, folder, tell=said.append)
+    assert study.follow_road(site_folder, planned, setup._replace(dry_run=True)).anew and edge.read_text() == before
+    assert study.follow_road(site_folder, planned, setup).anew and len(said) == 2 and " 6 " in said[1]
+    low, high = np.loadtxt(edge, delimiter=",")[:, 0].min(), np.loadtxt(edge, delimiter=",")[:, 0].max()
+    assert (low, high) == pytest.approx((26 - 0.6, 31 + 0.6))
+    status, out, err = told("study", "edited", "--dry-run")
+    assert status == 0 and out.count(", made again\n") == 6, err
+    assert not study.follow_road(made.site, study.plan_block_runs(made.site), setup).anew
+    road.write_text(f"{text}\n10.0,10.0\n12.0,10.0\n12.0,12.0\n")
+    status, _, err = told("study", "edited")
+    assert status == 2 and err.count("\n") == 1 and "edited/road.csv: must have 1 edges" in err and "got 2" in err, err
+
+
+def test_another_file_of_the_road_needs_another_deck(made, told):
+    """Sections that blocks do not have are not named."""
+    path = made.folder / "site.yaml"
+    text = path.read_text(encoding="utf-8")
+    path.write_text(text.replace("file: ../road.geojson", "file: ../cliff.geojson"), encoding="utf-8")
+    try:
+        status, _, err = told("study", "tmp")
+    finally:
+        path.write_text(text, encoding="utf-8")
+    assert status == 2 and err.count("\n") == 1 and "site.yaml: must not have been changed since" in err
+    assert "known" not in err and "but for the files" in err
+
+
 # --- shares and their bounds ---
 
 def a_run(ground, reached, left=None, rolling="0.1", ahead=True):
@@ -426,7 +463,8 @@ def test_blocks_that_left_make_it_at_least():
     assert reach.text.startswith("at least 25 %") and of.at_least == "at least "
     assert [one.kind for one in of.doubts()] == ["blocks left"]
     away = outcome.evaluate_blocks([a_run(ground, [1, 0, 0, 0], [0, 1, 0, 0], ahead=False) for ground in range(10)])
-    assert away.results[0].reach.open == away.results[0].past.open == 0 and away.results[0].reach.high < 0.5 and away.results[0].away == 10
+    one = away.results[0]
+    assert one.reach.open == one.past.open == 0 and one.reach.high < 0.5 and one.away == 10
     assert away.at_least == "at least " and away.doubts()[0].numbers["away"] == 10       # how far they go
     none = outcome.evaluate_blocks([a_run(ground, [0, 0, 0, 0], [1, 0, 0, 0]) for ground in range(10)]).results[0].reach
     assert none.text.startswith("up to ") and none.high > 0.25

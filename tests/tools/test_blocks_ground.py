@@ -17,7 +17,7 @@ from test_site import write_layer
 from test_site_zones import write_zones
 from tiny_collapse import LMP
 
-from slope_tools.blocks import page, runs, site as of_blocks, study
+from slope_tools.blocks import edges, page, runs, site as of_blocks, study
 from slope_tools.case import decks
 from slope_tools.plots import figure_maps, site_map
 from slope_tools.sites import site_choices, site_deck, site_zones
@@ -69,8 +69,8 @@ def test_forward_is_onto_the_road_at_all_its_edges(tmp_path, name, size):
     """From whichever side a block comes: fix control/line has forward from the left of a line to its right."""
     layers = SimpleNamespace(road=ROADS[name], lines=[])
     start = SimpleNamespace(**{**vars(START), "sizes": (size, size)})
-    lines = of_blocks.edges(OfBlocks.of({}), layers, start, tmp_path)
-    touched = of_blocks.touched(ROADS[name], size, TERRAIN)
+    lines = of_blocks.add_edges(OfBlocks.of({}), layers, start, tmp_path)
+    touched = edges.touched(ROADS[name], size, TERRAIN)
     assert sum(LineString(line.points).length for line in lines) == pytest.approx(touched.boundary.length, abs=1e-3)
     for line in lines:
         assert np.array_equal(line.points, np.loadtxt(tmp_path / line.file, delimiter=","))
@@ -165,7 +165,7 @@ def test_the_page_says_what_the_ground_is_where(zoned, monkeypatch):
 def test_both_polygons_of_a_road_count(zoned):
     """By block; the road is passed where the first of its polygons is."""
     run = zoned.known.runs[1]
-    several = [table_of(path, runs.CROSSING) for path in run.folder.glob(f"{runs.PREFIX}.{of_blocks.EDGE}_*.line.csv")]
+    several = [table_of(path, runs.CROSSING) for path in run.folder.glob(f"{runs.PREFIX}.{edges.EDGE}_*.line.csv")]
     assert len(several) == 2
     assert set(np.concatenate([one["ball"] for one in several]) - 1) == set(np.flatnonzero(run.reached))
     assert (run.reached >= (run.end[:, 0] < 33)).all() and (run.passed >= (run.end[:, 0] < 29)).all()

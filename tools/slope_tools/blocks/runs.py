@@ -9,14 +9,14 @@ from shapely.geometry import LineString, Point
 from ..case import run_folders
 from ..deposits import dumps, road_sides
 from ..sites.site_choices import Folder
-from ..sites.site_folder import TERRAIN
+from ..sites.site_folder import BODY, TERRAIN
 from ..sites.site_roads import ROAD
 from ..sites.site_sections import OfBlocks
-from ..survey import rasters, roads
+from ..survey import polygons, rasters, roads
 from ..survey.rasters import Raster
 from ..tables.structures import table_of
 from . import ditch
-from .site import EDGE, touched
+from .edges import EDGE, Edges, find_edges, touched
 
 PREFIX = "site"         # of a run's files: out of the deck
 AT_ROAD = "road"        # the name of its near edge among the lines
@@ -32,6 +32,7 @@ class Terrain(NamedTuple):
     down: np.ndarray                    # x y, unit vector of the fall line
     road: Optional[roads.Road]
     sides: Optional[road_sides.Sides]   # of what touches it
+    edges: Edges                        # of what touches it, at which runs count
     lines: Dict[str, LineString]        # the control lines by name
 
 
@@ -59,7 +60,7 @@ class Run:
 
 def terrain_of(site: Folder[OfBlocks]) -> Terrain:
     """What all runs of a site share."""
-    raster, road, sides = rasters.read_asc_local(site.folder / TERRAIN), None, None
+    raster, road, sides, edges = rasters.read_asc_local(site.folder / TERRAIN), None, None, {}
     names = [Path(name) for name in site.found.files if name.endswith(".csv")]
     lines = {one.stem: LineString(np.loadtxt(site.folder / one, delimiter=",")) for one in names
              if (site.folder / one).read_text(encoding="utf-8").startswith("# control line")}
@@ -71,8 +72,10 @@ def terrain_of(site: Folder[OfBlocks]) -> Terrain:
         starts[rows.astype(int), columns.astype(int)] = True
         largest_block = site.choices.blocks.size[-1]
         sides = road_sides.divide(touched(road.polygon, largest_block, raster), road.line, raster, starts)
+        release = polygons.read_local(site.folder / f"{BODY}.csv", raster, True)
+        edges = find_edges(road.polygon, release, largest_block, raster, site.folder / ROAD, "release area")
     down = np.array(site.found.down[:2])
-    return Terrain(raster, down / np.hypot(*down), road, sides, lines)
+    return Terrain(raster, down / np.hypot(*down), road, sides, edges, lines)
 
 
 def read_block_run(name: str, folder: Path, chosen: Dict[str, str], terrain: Terrain) -> Run:

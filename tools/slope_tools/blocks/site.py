@@ -9,7 +9,6 @@ from typing import Any, Dict, List, NamedTuple, Optional, Tuple
 import numpy as np
 from shapely.geometry import Point
 from shapely.geometry.base import BaseGeometry
-from shapely.geometry.polygon import orient
 from shapely.prepared import prep
 
 from .. import disk
@@ -27,10 +26,10 @@ from ..sites.site_sections import OfBlocks, widest
 from ..survey import polygons
 from ..survey.rasters import Raster
 from ..survey.resampling import sample
+from . import edges
 
 TEMPLATE = Path(__file__).with_name("in.blocks.j2")
 FIELD = 3               # type of the ground's balls; those of zones follow
-EDGE = "road_edge"      # lines around the road
 MOST = 100_000          # blocks
 SHOWN = 200             # blocks whose paths are kept, of each run and of all together
 TRIAL = 100             # blocks of the trial run
@@ -83,7 +82,7 @@ def build(given: OfBlocks, known: Derived, new: Path, folder: Path, machine: sit
     layers = site_layers.read_layers(given, raster, new, tell, keep)
     start = start._replace(types=FIELD + len(layers.zones))
     title = given.project.name or folder.absolute().name
-    findings = deck_values(given, title, start, [*layers.lines, *edges(given, layers, start, new)], layers.zones)
+    findings = deck_values(given, title, start, [*layers.lines, *add_edges(given, layers, start, new)], layers.zones)
     trial = tried(given, start, findings, new, machine, tell)
     choices = settled(given, start, trial)
     for ground in range(1, grounds + 1):
@@ -185,32 +184,19 @@ def find_block_caveats(start: Start) -> List[Finding]:
 
 # --- the road ---
 
-def touched(road: BaseGeometry, largest: float, raster: Raster) -> BaseGeometry:
-    """Where the middle of a block is that touches a road."""
-    return road.buffer(largest / 2).intersection(box_of(raster))
-
-
-def edges(choices: OfBlocks, layers: site_layers.Layers, start: Start, new: Path) -> List[Line]:
-    """Closed control lines around the road, and around what it encloses: forward is onto it."""
+def add_edges(choices: OfBlocks, layers: site_layers.Layers, start: Start, new: Path) -> List[Line]:
+    """The control lines around the road."""
     if layers.road is None:
         return []
     if line := site_layers.swapped(choices, start.raster):
         raise SlopeError("--release, --road", "must not be swapped, blocks fall from the release area onto the road",
                          line)
-    road, lines = touched(layers.road, start.sizes[1], start.raster), []
-    if road.intersects(start.polygon):
-        raise SlopeError("--release", f"must be at least half a block, {start.sizes[1] / 2:g} m, away from the road",
-                         metres(start.polygon.distance(layers.road)))
-    if name := next((one.name for one in layers.lines if one.name.startswith(EDGE)), None):
-        raise SlopeError("--line", f"must not be called {EDGE}, as lines around the road are: rename the file", name)
-    parts = [orient(part, -1.0) for part in polygons_of(road)]
-    for k, ring in enumerate((ring for part in parts for ring in (part.exterior, *part.interiors)), 1):
-        points = np.round(np.asarray(ring.coords)[:, :2], 4) + 0.0
-        points = points[np.append(True, (points[1:] != points[:-1]).any(axis=1))]
-        lines.append(Line(f"{EDGE}_{k}", f"{EDGE}_{k}.csv", points))
-        disk.write_file(new / lines[-1].file, "# around the road, local x,y in m; forward is onto it\n"
-                        + "".join(f"{x!r},{y!r}\n" for x, y in points.tolist()))
-    return lines
+    found = edges.find_edges(layers.road, start.polygon, start.sizes[1], start.raster)
+    if name := next((one.name for one in layers.lines if one.name.startswith(edges.EDGE)), None):
+        raise SlopeError("--line", f"must not be called {edges.EDGE}, as lines around the road are: rename the file",
+                         name)
+    edges.write_edges(new, found)
+    return [Line(name, f"{name}.csv", points) for name, points in found.items()]
 
 
 # --- deck, and a trial of it ---

@@ -7,10 +7,11 @@ from ..findings import Finding
 from ..runs import repeats
 from ..sites import site_deck
 from ..sites.site_choices import Folder
+from ..sites.site_roads import ROAD
 from ..sites.site_sections import OfBlocks
 from ..studies import site_study, study
 from ..studies.setup import RUNS, Setup
-from . import files, outcome, page, runs
+from . import edges, files, outcome, page, runs
 
 
 class Known(NamedTuple):
@@ -37,6 +38,7 @@ def run_block_study(site: Folder[OfBlocks], engine: Setup) -> None:
     """Make or continue all runs and show the outcome; raises SlopeError on bad input, and last if a run failed."""
     setup = engine._replace(deck=site.folder / site_deck.NAME, output=site.folder / site_study.STUDY, site=site.folder,
                             road=None)
+    planned = plan_block_runs(site)
 
     def collect(todo, _) -> None:
         if all(one.error for one in todo):
@@ -49,12 +51,28 @@ def run_block_study(site: Folder[OfBlocks], engine: Setup) -> None:
             setup.warn(one)
         setup.tell(page.write_block_page(known, site.folder / page.NAME))
     with study.alone(site.folder, setup.dry_run):
-        study.perform(setup, settings_of(site), plan_block_runs(site), collect)
+        study.perform(follow_road(site, planned, setup), settings_of(site), planned, collect)
+
+
+def follow_road(site: Folder[OfBlocks], planned: Sequence[repeats.Repeat], setup: Setup) -> Setup:
+    """With the edges of road.csv as it is now, at which all runs are made again if they counted at others."""
+    found = runs.terrain_of(site).edges
+    if not edges.has_edges(site.folder, found):
+        edges.check_number(site.folder, found, site.folder / ROAD, site.choices.road.file)
+        if not setup.dry_run:
+            edges.write_edges(site.folder, found)
+    others = sum(not edges.has_edges(one.folder, found) for one in planned if one.finished)
+    if others:
+        setup.tell(f"{ROAD} is not that of {others} finished runs: they are made again")
+    return setup._replace(anew=setup.anew or others > 0)
 
 
 def read_block_runs(site: Folder[OfBlocks], todo: Sequence[Any]) -> Known:
     """What those of these runs say that finished; SlopeError if none did."""
     terrain = runs.terrain_of(site)
+    if not all(edges.has_edges(one.folder, terrain.edges) for one in todo if one.finished):
+        raise SlopeError(site.folder / ROAD, "must be the road at which the runs counted: `slope study "
+                         f"{site.folder}` makes them again")
     found = [runs.read_block_run(one.name, one.folder, one.chosen, terrain) for one in todo if one.finished]
     if not found:
         raise SlopeError(site.folder, f"must hold a finished run: `slope study {site.folder}` makes them")

@@ -211,8 +211,9 @@ def check_site(site: Folder[Choices]) -> None:
             raise SlopeError(folder / name, f"must exist; `slope site {quote(str(folder))}` rebuilds it")
     if site_found.choices_sha256 not in ("", site.fingerprint()):
         raise SlopeError(folder / site_choices.NAME, f"must not have been changed since {site_deck.NAME} was made from "
-                         f"it: `slope site {quote(str(folder))}` rebuilds the deck (project, road, study and "
-                         "known may change)")
+                         f"it: `slope site {quote(str(folder))}` rebuilds the deck ("
+                         + ", ".join(name for name in site_choices.READ_LATER if hasattr(site.choices, name))
+                         + " may change, but for the files that they name)")
     for name, digest in site.sources().items():      # a folder may have gone without its sources
         if site_found.sources_sha256.get(name, digest) != digest:
             raise SlopeError(folder / name, f"must not have changed since {site_deck.NAME} was made from it: "
