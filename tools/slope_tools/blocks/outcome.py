@@ -135,22 +135,22 @@ def evaluate_blocks(runs: Sequence[Run]) -> Outcome:
 def find_worst(results: Sequence[Result]) -> Dict[str, Worst]:
     """Over all results, of what they have: reach, past and crossed_LINE, a Share each; NUMBER_50, NUMBER_95 and
     NUMBER_largest of the travelled distance, and of what blocks have at lines and at the road."""
-    found: Dict[str, Worst] = {}
+    worst: Dict[str, Worst] = {}
 
     def keep(name: str, value: Any, of: Result, size: Callable[[Any], Any] = lambda value: value) -> None:
-        if value is not None and (name not in found or size(value) > size(found[name].value)):
-            found[name] = Worst(value, of.rolling)
-    for one in results:
-        for name, share in (("reach", one.reach), ("past", one.past),
-                            *((f"crossed_{line}", share) for line, share in one.crossed.items())):
-            keep(name, share, one, lambda share: (share.share, share.high))
-        for name, quantity in (("distance", one.travel["distance"]), *(
-                (f"{place}_{name}", quantity) for place, of in one.at.items() for name, quantity in of.items())):
+        if value is not None and (name not in worst or size(value) > size(worst[name].value)):
+            worst[name] = Worst(value, of.rolling)
+    for result in results:
+        for name, share in (("reach", result.reach), ("past", result.past),
+                            *((f"crossed_{line}", share) for line, share in result.crossed.items())):
+            keep(name, share, result, lambda share: (share.share, share.high))
+        for name, quantity in (("distance", result.travel["distance"]), *(
+                (f"{place}_{name}", quantity) for place, of in result.at.items() for name, quantity in of.items())):
             if quantity:
                 for quantile in quantity.quantiles:
-                    keep(f"{name}_{100 * quantile.share:g}", quantile.value, one)
-                keep(f"{name}_largest", quantity.largest, one)
-    return found
+                    keep(f"{name}_{100 * quantile.share:g}", quantile.value, result)
+                keep(f"{name}_largest", quantity.largest, result)
+    return worst
 
 
 def widths_to(most: float) -> List[float]:

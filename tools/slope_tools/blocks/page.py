@@ -46,12 +46,12 @@ def format_block_number(value: Optional[float], unit: str) -> str:
 def say_worst(known, *parts: Tuple[str, str, str]) -> str:
     """The worst of several numbers, each as (its name, its unit, a text around {}), after the last of those that
     come from one rolling resistance which one it is."""
-    found = [known.outcome.worst[name] for name, _, _ in parts]
+    several = [known.outcome.worst[name] for name, _, _ in parts]
     said = ""
-    for (_, unit, text), one, after in zip(parts, found, [*found[1:], None]):
-        number = format_block_number(one.value, unit) if unit else one.value.text
-        said += text.format(number) + f" (rolling resistance {one.rolling})" * (
-            after is None or after.rolling != one.rolling)
+    for (_, unit, text), worst, after in zip(parts, several, [*several[1:], None]):
+        number = format_block_number(worst.value, unit) if unit else worst.value.text
+        said += text.format(number) + f" (rolling resistance {worst.rolling})" * (
+            after is None or after.rolling != worst.rolling)
     return said
 
 
