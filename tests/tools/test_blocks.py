@@ -482,6 +482,16 @@ def test_what_left_is_not_retained_unless_no_road_was_ahead():
     assert outcome.widths_to(0.0) == [0.0] and outcome.widths_to(41) == [2.0 * k for k in range(22)]
 
 
+def test_the_ditch_is_as_wide_as_the_worst_of_all_rolling_resistances():
+    """Blocks end 0 to 3 m beyond the foot with 0.2, 2 to 5 m with 0.1; of a third some left before a road."""
+    several = [a_run(0, [0] * 4, rolling="0.2"), a_run(2, [0] * 4, rolling="0.1")]
+    rows = page.widths(SimpleNamespace(outcome=outcome.evaluate_blocks(several))).rows
+    assert [row[1] for row in rows] == ["1 m", "3 m", "3 m"] and [row[-1] for row in rows] == ["3 m", "5 m", "5 m"]
+    several.append(a_run(0, [0] * 4, [1] * 4, rolling="0.3"))
+    rows = page.widths(SimpleNamespace(outcome=outcome.evaluate_blocks(several))).rows
+    assert rows[-1][1:] == rows[-2][1:] == ["> 5 m"] * 5
+
+
 def test_the_foot_is_above_the_road_and_below_benches():
     """A bench on the way, and a steep slope below the road; blocks that end on the bench, beyond the foot, below."""
     x = np.arange(100) + 0.5

@@ -1,6 +1,6 @@
 """The page on a study of blocks, and the sentences with which it and the console begin."""
 from pathlib import Path
-from typing import Dict, Iterator, List, Optional, Tuple
+from typing import Dict, Iterator, List, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -65,7 +65,7 @@ def sentences(known) -> Iterator[str]:
     if reach and reach.value.seen:
         yield say_worst(known, ("reach", "", "Of the blocks {} reach the road"),
                         ("past", "", " and {} pass it")) + f": {whose}"
-        widest = max(of.results, key=lambda one: one.reach.high)
+        widest = max(of.results, key=lambda result: result.reach.high)
         if widest.reach.open and widest.reach.high > reach.value.high:
             yield (f"up to {digits.percent(widest.reach.high)} may reach it (rolling resistance {widest.rolling}), as "
                    "some left the terrain before, or still moved")
@@ -160,12 +160,15 @@ def widths(known) -> Table:
     """How wide a ditch must be."""
     of = known.outcome
 
-    def width(result: Result, share: float) -> str:
-        found = result.width(share, of.widths)
-        return f"> {of.widths[-1]:g} m" if found is None else f"{found:g} m"
+    def width_of(results: Sequence[Result], share: float) -> str:
+        wide = [width for result in results if (width := result.width(share, of.widths)) is not None]
+        return f"{max(wide):g} m" if len(wide) == len(results) else f"> {of.widths[-1]:g} m"
+    several = [(one.rolling, [one]) for one in of.results]
+    if len(several) > 1:
+        several.append(("the worst", of.results))
     return Table("Width of a ditch at the foot of the slope that retains so many blocks, to a step of the curve.",
                  ["rolling resistance", *(f"{100 * share:g} %" for share in KEPT)],
-                 [[one.rolling, *(width(one, share) for share in KEPT)] for one in of.results])
+                 [[name, *(width_of(results, share) for share in KEPT)] for name, results in several])
 
 
 def maps(known, data: Data, ground: Ground) -> Dict[str, Picture]:
