@@ -70,17 +70,21 @@ def yield_coefficient(body: Columns, strengths: Strengths, vertical: float = 0.0
 
 def factor_of_safety(body: Columns, strengths: Strengths, horizontal: float = 0.0, vertical: float = 0.0) -> np.ndarray:
     """F of each strength; infinite where nothing drives the body, NaN where the steps found none."""
-    load = float(driving(body, horizontal, vertical))
-    factor, along = np.ones(len(strengths.arrays()[0])), body._replace(normal=None)
-    for _ in range(MOST_STEPS):
+    load, along = float(driving(body, horizontal, vertical)), body._replace(normal=None)
+
+    def find_next(factor: np.ndarray) -> np.ndarray:
         shear = resistance(along, strengths, factor, vertical)
         drives = load + (0.0 if body.normal is None else shear - resistance(body, strengths, factor, vertical))
-        with np.errstate(divide="ignore"):
-            # normal forces that outweigh the load at one F may not do so at a larger one
-            new = np.where(drives > 0, np.maximum(factor * shear / drives, 1 / MOST), 10 * factor)
-        new = np.minimum(new, MOST)
-        done = np.abs(new - factor) <= TOLERANCE * new
-        factor = new
-        if done.all():
-            break
+        # normal forces that outweigh the load at one F may not do so at a larger one
+        return np.minimum(np.where(drives > 0, np.maximum(factor * shear / drives, 1 / MOST), 10 * factor), MOST)
+    factor = np.ones(len(strengths.arrays()[0]))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for _ in range(MOST_STEPS):
+            first = find_next(factor)
+            second = find_next(first)
+            done = np.abs(second - first) <= TOLERANCE * second
+            guess = factor - (first - factor) ** 2 / (second - 2 * first + factor)      # by Aitken's rule
+            factor = np.where(~done & (guess > 0.5 * second) & (guess < 2 * second), guess, second)
+            if done.all():
+                break
     return np.where(done, np.where(factor < MOST, factor, np.inf), np.nan)
