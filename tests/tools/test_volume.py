@@ -530,7 +530,9 @@ def test_the_last_cells_of_the_run_may_reach_beyond_the_terrain(slope, no_map):
 
 def test_part_of_the_road_outside_is_cut_off_with_a_warning(cleared):
     write_run(strip(), 0.0, 2.5)
-    about = cleared(box(90, -200, 110, 200))
+    about = cleared(box(90, -200, 110, 200), "--mesh 10 --road-from 2")
+    assert [(one["from"], one["to"]) for one in about["stretches"]] == [(2280, 2320)]
+    assert about["axis"]["length"] == 200 and about["clearing"]["road_width"] == 20
     assert about["road_area"] == pytest.approx(20 * 200)
     assert warned(about)["cut off"]["percent"] == pytest.approx(50)
     assert about["volume"]["remove"] == pytest.approx(40 * (3 * 20 + 2 * wedge(3, 90, TAN30)), rel=1e-9)

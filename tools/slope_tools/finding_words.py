@@ -169,6 +169,8 @@ WORDS: Dict[str, Union[str, Words]] = {
     "no terrain": "no --terrain and no {file}: no CRS, coordinates are the local metres of the run",
     "no CRS": Words("{file} has no CRS: coordinates are {coordinates}", NOTE),
     "cut off": "{file}: {percent:.3g} % of the polygon lies outside of the grid of the run: cut off",
+    "chainage from the edge": "the road's polygons turn back beyond the grid, where their middle is not followed: "
+                              "chainage begins at the grid's edge; draw the road as a line",
     "edge without ground": "{file}: {percent:.3g} % of the road's edge lies on cells without a height: the cut rises "
                            "there from the height of the nearest ground or edge, the lower one",
     "no ground": "{volume:.6g} m3 lie on cells without ground, beside the road: not in the volume to remove",

@@ -17,7 +17,9 @@ from ..survey import rasters, roads
 from ..survey.lines import read_local
 from ..survey.rasters import crs_name
 from . import clearing, cut, deposit, passed, stretch_files, volume_files
-from .road_axis import profile_road, axes_of, axis_of, by_chainage, in_grid_of, find_profile_stretches, width_of
+from .axis import Axis
+from .road_axis import (axes_of, axes_of_lines, by_chainage, find_profile_stretches, part_in_grid, profile_road,
+                        width_of)
 
 CUT_ANGLE = 30.0       # degrees
 MOST_SAMPLES = 32
@@ -45,7 +47,7 @@ class Removal(NamedTuple):
     """What must be removed from a road, and all that write_removal() needs."""
     run: deposit.Deposit
     road: Any                           # polygon in local metres, the part of it in the grid
-    axis: Any                           # its lines
+    axes: List[Axis]                    # in the grid
     mesh: Mesh
     result: "Result"
     profile: Dict[str, np.ndarray]      # along the axis
@@ -77,14 +79,14 @@ def compute_removal(prefix, wanted: Wanted, terrain=None, tell: Callable[[str], 
     if not np.isfinite(run.base).all():
         require_ground(road, run, wanted.road, warn)
     if wanted.axis:
-        axis = in_grid_of(read_local(wanted.axis, run.raster, wanted.local, "axis"), run.raster, wanted.axis)
-        source, width = str(wanted.axis), width_of(axis, road)
+        axes, source = axes_of_lines(read_local(wanted.axis, run.raster, wanted.local, "axis"), asked, run.raster,
+                                     wanted.axis), str(wanted.axis)
     else:
-        axis, source, width = axis_of(given.lines, road, asked)
+        axes, source = axes_of(given.lines, given.polygon, asked, run.raster, warn)
+    width = asked.width or width_of(axes, road)
     roads.check_lane(asked.lane, width)
     result = evaluate_removal(run, road, wanted.cut_angle, mesh, wanted.samples)
-    profile = profile_road(axis, run, result.removed, asked, road if wanted.axis else None)
-    axes = axes_of(axis, asked)
+    profile = profile_road(axes, run, result.removed, asked, road if wanted.axis else None)
     cleared = clearing.evaluate_clearing(run, result, profile, axes, width, road if given.line is None else None, asked,
                                          mesh, wanted.cut_angle, wanted.samples)
     summary = totals(wanted, run, mesh, result, profile, source)
@@ -94,7 +96,7 @@ def compute_removal(prefix, wanted: Wanted, terrain=None, tell: Callable[[str], 
         warn(Finding("no ground", {"volume": float(result.unknown)}))
         summary["volume"]["unknown"] = result.unknown
     summary["warnings"] = encode_findings(warnings)
-    return Removal(run, road, axis, mesh, result, profile, cleared, wanted.bulk / run.bulk if wanted.bulk else None,
+    return Removal(run, road, axes, mesh, result, profile, cleared, wanted.bulk / run.bulk if wanted.bulk else None,
                    disk.make_plain(summary), warnings)
 
 
@@ -113,7 +115,7 @@ def write_removal(removal: Removal, folder: Path, picture: bool = True) -> None:
         stretch_files.write_stretches_csv(new / "stretches.csv", run, removal.clearing)
         stretch_files.write_stretches_geopackage(new / "stretches.gpkg", run, removal.clearing)
         if picture:
-            volume_files.draw_removal(new / "volume.png", run, removal.road, removal.axis, mesh, result, summary,
+            volume_files.draw_removal(new / "volume.png", run, removal.road, removal.axes, mesh, result, summary,
                                       removal.clearing)
         summary["files"] = sorted(path.name for path in new.iterdir()) + ["volume.yaml"]
         disk.write_yaml(new / "volume.yaml", summary, "slope volume: what must be removed; m, m2, m3, degrees")
@@ -149,8 +151,7 @@ def make_mesh(size, raster):
 
 def in_grid(polygon, raster, path, warn):
     """The part of a polygon (local metres) that lies in the grid; SlopeError if none does."""
-    grid = geometry.box_of(raster)
-    inside = polygon if grid.covers(polygon) else geometry.as_multi(polygon.intersection(grid))
+    inside = part_in_grid(polygon, raster)
     if inside.area <= 0:
         raise SlopeError(path, f"must lie in the grid of the run, {geometry.format_numbers(geometry.extent(raster))} "
                          "(local " "metres)", geometry.format_numbers(polygon.bounds))
@@ -235,7 +236,7 @@ def totals(wanted: Wanted, run_, mesh, result, profile, source) -> Dict[str, Any
     numbers["largest_removed_thickness"] = round(float(result.removed.max()), 6)
     numbers["axis"] = {
         "source": source,
-        "length": round(profile["to"][-1] - profile["from"][0], 6),
+        "length": round(math.fsum(profile["to"] - profile["from"]), 6),
         "blocked_above": wanted.asked.blocked,
         "blocked_length": round(math.fsum(to - start for start, to in blocked), 6),
         "blocked_stretches": [[round(start, 6), round(to, 6)] for start, to in blocked],
