@@ -97,7 +97,7 @@ def evaluated(thickness, ground, road, mesh=10, angle=30, samples=4):
     """Volumes without the command: what is removed on the road, beside it, and where the cut is below the ground."""
     x, y = centres(*thickness.shape, 2.5)
     run = plain_deposit(thickness, ground(x, y) * np.ones_like(x), 2.5)
-    result = volume.evaluate_removal(run, road, angle, volume.make_mesh(mesh, run.raster), samples)
+    result = volume.evaluate_removal(run, road, angle, geometry.make_mesh(mesh, run.raster), samples)
     return result.total(result.road), result.total(result.beside), result.steep
 
 
@@ -286,7 +286,7 @@ def test_strips_and_bounds_change_nothing(monkeypatch, seed, rise):
     thickness, base, road = rough(seed)
     base += rise * centres(*base.shape, 2.0)[0]
     run = plain_deposit(thickness, base, 2.0)
-    mesh = volume.make_mesh(7, run.raster)
+    mesh = geometry.make_mesh(7, run.raster)
     results = []
     for strip_, near, diagonal in ((1000, cut.NEAR, cut.HALF_DIAGONAL), (10 ** 9, 40, 10 ** 9)):
         for name, value in (("STRIP", strip_), ("NEAR", near), ("HALF_DIAGONAL", diagonal)):
@@ -304,7 +304,7 @@ def test_against_a_sum_over_points():
     thickness, base, road = rough(5, 30, 30)
     road = translate(road, -30, -20).intersection(box(0, 0, 60, 60))
     run = plain_deposit(thickness, base, 2.0)
-    got = volume.evaluate_removal(run, road, 30, volume.make_mesh(10, run.raster), 8)
+    got = volume.evaluate_removal(run, road, 30, geometry.make_mesh(10, run.raster), 8)
 
     def height(x, y):
         return cut.Ground(base).height(*(~run.raster.transform @ (x, y)))

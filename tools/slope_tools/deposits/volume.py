@@ -24,7 +24,6 @@ from .road_axis import (axes_of, axes_of_lines, by_chainage, find_profile_stretc
 CUT_ANGLE = 30.0       # degrees
 MOST_SAMPLES = 32
 SAMPLES = 4            # parts of a cell along a side
-MOST_MESH = 4_000_000  # mesh cells
 MUCH_BELOW = 0.1       # of the volume to remove: so much where the cut is below the ground is worth a warning
 EXACT = 1e-13          # of the deposit's volume: volumes are rounded to this once, so that they add up in every output
 FILES = ("volume.csv", "volume.geojson", "volume.tif", "volume_mesh.tif", "axis.csv", "stretches.csv", "stretches.gpkg",
@@ -72,7 +71,7 @@ def compute_removal(prefix, wanted: Wanted, terrain=None, tell: Callable[[str], 
     for one in of_angles({"--cut-angle": wanted.cut_angle}):
         warn(one)
     run = deposit.read_deposit(prefix, terrain, warn)
-    mesh = make_mesh(wanted.mesh, run.raster)
+    mesh = geometry.make_mesh(wanted.mesh, run.raster)
     asked = wanted.asked
     given = roads.read_local(wanted.road, run.raster, asked, wanted.local, warn=warn)
     road = in_grid(given.polygon, run.raster, wanted.road, warn)
@@ -137,16 +136,6 @@ def check_wanted_volume(wanted: Wanted) -> None:
                          wanted.axis)
     if not (2 <= wanted.samples <= MOST_SAMPLES and wanted.samples % 2 == 0):
         raise SlopeError("--samples", f"must be even, 2 to {MOST_SAMPLES}", wanted.samples)
-
-
-def make_mesh(size, raster):
-    """The Mesh of that size over the raster; SlopeError if it would have too many cells."""
-    xlo, ylo, xhi, yhi = geometry.extent(raster)
-    count = ((xhi - xlo) / size + 1) * ((yhi - ylo) / size + 1)
-    if count > MOST_MESH:
-        raise SlopeError("--mesh", f"must give at most {MOST_MESH} mesh cells, the grid would need {count:.3g}",
-                         f"{size:g}")
-    return Mesh(size, raster)
 
 
 def in_grid(polygon, raster, path, warn):

@@ -135,6 +135,8 @@ def build(given: OfMass, known: Derived, new: Path, folder: Path, machine: Machi
     body = site_bodies.widen_body(write_body(new, wanted, released), BODY, several)
     body = body._replace(thick=max(body.thick, given.model.least_thick or 0.0))
     layers = read_layers(given, raster, new, tell, keep)
+    if layers.roads:
+        geometry.make_mesh(given.road.mesh, raster)
     title = given.project.name or folder.absolute().name
     parts = site_deck.Parts(title, ", ".join(Path(name).name for name in given.terrain.files), body,
                             layers.structures, layers.lines, layers.motion, room_of(raster), layers.zones)
