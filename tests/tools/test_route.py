@@ -851,7 +851,8 @@ def test_killed_at_random(slope):
     ({"slides": [((40, 45), 4.0), ((55, 45), 4.0)]}, ("slides.geojson", "feature 1", "feature 2", "0.1")),
     ({"slides": [((40, 45), None)]}, ("slides.geojson", "feature 1", "depth")),
     ({"--reach": "1"}, ("--reach", "1")), ({"--corridor": "-5"}, ("--corridor", "-5")),
-    ({"--friction": None}, ("--friction", "must be given")), ({"--road": "slides.geojson"}, ("slides.geojson", "line")),
+    ({"--friction": None}, ("--friction", "must be given")),
+    ({"--road": "slides.geojson"}, ("slides.geojson", "draw the road's axis as a line")),
     ({"--fragility": "nowhere"}, ("nowhere",)), ({"--minutes": "3"}, ("--minutes", "--balls")),
     ({"--reach": "0.9999"}, ("axis.csv", "--reach"))])
 @needs_lmp

@@ -90,7 +90,8 @@ def test_each_road_has_the_numbers_of_a_site_with_it_alone(done, tmp_path, monke
         assert own["roads"] == beside["roads"] == [] and beside["study"]["road"]["name"] == name
         rows = [row for row in table if row["road"] == name]
         assert [float(row["remove_m3"]) for row in rows] == [row["remove_m3"] for row in own["runs"]]
-        assert not (alone / "mine" / "roads.csv").exists()      # what is known of the other roads stays, and is refused
+        assert not (alone / "mine" / "roads.csv").exists()      # studies of the other roads stay, and are refused
+        assert not list((alone / "mine" / "roads").glob("*/report.*"))
         made = slope(alone, "report", "mine/roads/far", "--no-film")
         assert made.returncode == 2 and "its study had another choice of roads" in made.stderr
         volumes[name] = own["conservative"]["volume_m3"] or max(row["remove_m3"] for row in own["runs"])
@@ -105,12 +106,14 @@ def test_files_of_the_user_stay(done, tmp_path, monkeypatch):
         shutil.copytree(done[0], folder)
         assert slope(folder, "site", "mine", *words.split()).returncode == 0
         mine = folder / "mine"
-        for path in (mine / "roads" / "mine" / "axis.gpkg", mine / "roads" / "far" / "notes.txt", mine / "roads.csv"):
+        theirs = [mine / one for one in ("roads/mine/axis.gpkg", "roads/mine/report.html", "roads/far/notes.txt",
+                                         "roads/far/report.docx", "roads.csv")]
+        for path in theirs:
             path.parent.mkdir(exist_ok=True)
             path.write_text("of the user\n")
         made = slope(folder, "study", "mine", "--levels", "1")
         assert made.returncode == status and ("roads.csv: must not exist" in made.stderr) is bool(status)
-        for path in (mine / "roads" / "mine" / "axis.gpkg", mine / "roads" / "far" / "notes.txt", mine / "roads.csv"):
+        for path in theirs:
             assert path.read_text() == "of the user\n"
         assert (mine / "study" / "study.yaml").is_file()
 

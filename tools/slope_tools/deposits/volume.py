@@ -21,6 +21,7 @@ from .axis import Axis
 from .road_axis import (axes_of, axes_of_lines, by_chainage, find_profile_stretches, part_in_grid, profile_road,
                         width_of)
 
+BULK = 1.0, 10.0       # volume of a body over that of its balls, as fix deposit/grid takes it
 CUT_ANGLE = 30.0       # degrees
 MOST_SAMPLES = 32
 SAMPLES = 4            # parts of a cell along a side
@@ -128,8 +129,8 @@ def check_wanted_volume(wanted: Wanted) -> None:
         raise SlopeError("--cut-angle", "must be > 0 and < 90 degrees", f"{wanted.cut_angle:g}")
     if wanted.mesh <= 0:
         raise SlopeError("--mesh", "must be > 0", f"{wanted.mesh:g}")
-    if wanted.bulk is not None and wanted.bulk <= 0:
-        raise SlopeError("--bulk", "must be > 0", f"{wanted.bulk:g}")
+    if wanted.bulk is not None and not BULK[0] <= wanted.bulk <= BULK[1]:
+        raise SlopeError("--bulk", "must be {:g} to {:g}, as of fix deposit/grid".format(*BULK), f"{wanted.bulk:g}")
     roads.check_road(wanted.asked)
     if wanted.axis is not None and wanted.asked.width is not None:
         raise SlopeError("--axis", "must not be given with --road-width: the axis of such a road is its line",
