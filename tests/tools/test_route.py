@@ -903,10 +903,14 @@ def test_choices_that_fail_later_are_undone(tmp_path):
             raise SlopeError("--crs", "must be known")
         return sorted(path.name for path in folder.iterdir())
 
+    assert fails({**first, "crs": "EPSG:1"}, "terrain.asc", ".lock") == [".lock"]
+    (folder / ".lock").unlink()
     assert fails({**first, "crs": "EPSG:1"}, "terrain.asc") == []
+    (folder / ".lock").write_text("")       # of a command that was refused
     with choices.undone_if_refused(folder, first):
         (folder / "terrain.asc").write_text("")
     before = (folder / choices.NAME).read_text()
+    (folder / ".lock").unlink()
     assert fails({"reach": 0.5}) == ["route.yaml", "terrain.asc"]
     assert fails({"crs": "EPSG:1"}, "terrain.asc") == ["route.yaml"] and (folder / choices.NAME).read_text() == before
     # bodies are of the new choices, which stay; what they vary may change until there are runs

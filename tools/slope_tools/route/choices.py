@@ -122,7 +122,8 @@ def settle(folder: Path, given: Mapping[str, Any]) -> Choices:
                 raise SlopeError(option(name), f"must not have changed since the bodies and runs of {folder} were made "
                                  "of it: take another folder", " ".join(np.ravel(getattr(choices, name))))
             changed.append(name)
-    if not path.is_file() and folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+    if not path.is_file() and folder.exists() and not (folder.is_dir() and {one.name for one in folder.iterdir()} <= {
+            disk.LOCK}):
         raise SlopeError(folder, "must be a new folder, an empty one, or that of a route")
     folder.mkdir(parents=True, exist_ok=True)
     if set(changed) & set(OF):      # there are no bodies yet: what was made for them is begun anew
