@@ -118,6 +118,17 @@ def test_files_of_the_user_stay(done, tmp_path, monkeypatch):
         assert (mine / "study" / "study.yaml").is_file()
 
 
+def test_a_lane_wider_than_a_road_is_refused_before_the_runs(done, tmp_path):
+    folder = tmp_path / "wide"
+    shutil.copytree(done[0], folder)
+    path = folder / "mine" / "site.yaml"
+    path.write_text(path.read_text().replace("lane: null", "lane: 9.5"))
+    shutil.rmtree(folder / "mine" / "runs")
+    made = slope(folder, "study", "mine", "--paper", "--levels", "1")
+    assert made.returncode == 2 and "--lane: must be at most as wide as the road, 8 m, got 9.5" in made.stderr
+    assert not (folder / "mine" / "runs").exists()
+
+
 def test_the_worst_stands_for_the_site(done):
     """In the folder of the site, on its first page, and for whatever takes its folder."""
     folder, _, said = done
