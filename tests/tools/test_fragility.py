@@ -291,6 +291,7 @@ def test_the_share_below_a_peak_is_a_direct_simulation(slips, capsys):
 
 @pytest.mark.parametrize("words, rule", [
     ("--peaks 500:100 --pseudo-static 1", "--peaks: must be LO:HI or LO:HI:STEP"),
+    ("--peaks 50:1500:7000 --pseudo-static 1", "--peaks: must be LO:HI or LO:HI:STEP"),
     ("--peaks 100:500", "--record: must give a motion"),
     ("--peaks 100:500 --record motion.txt --pseudo-static 1", "--pseudo-static: must be without --record"),
     ("--peaks 100:500 --pseudo-static 1 --friction 20:95", "--friction: must be from 0 to 89 degrees"),

@@ -1,4 +1,5 @@
 """Each fact in one place: site.yaml is read once, a length has one ruler, equal runs are one, a gap is no road."""
+import math
 import shutil
 from pathlib import Path
 from types import SimpleNamespace
@@ -7,7 +8,7 @@ import numpy as np
 import pytest
 import yaml
 from shapely.affinity import rotate
-from shapely.geometry import LineString, MultiPolygon, box
+from shapely.geometry import LineString, MultiLineString, MultiPolygon, box
 
 import made_study
 from made_rows import changed, row
@@ -27,7 +28,7 @@ from slope_tools.releases import release_toe
 from slope_tools.report import mobility_part
 from slope_tools.report.numbers import Numbers
 from slope_tools.studies import site_study, study
-from slope_tools.survey import rasters
+from slope_tools.survey import rasters, roads
 from slope_tools.tables import combinations
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
@@ -209,6 +210,39 @@ def test_the_axis_of_a_road_has_its_gaps(name, angle):
     assert len(axis.geoms) == len(PARTS[name])
     assert axis.length == pytest.approx(sum(one.bounds[3] - one.bounds[1] for one in PARTS[name]))
     assert axis.intersection(road.buffer(1e-6)).length == pytest.approx(axis.length)
+    # chainage goes on across a gap
+    axes, ends = road_axis.number_axes(axis.geoms, 2.0), {"two": 160, "small gap": 160, "three": 160,
+                                                          "offset": 130 + math.hypot(30, 30)}
+    assert axes[0].s[0] == 2000 and axes[-1].s[-1] == pytest.approx(2000 + ends[name], abs=1e-6)
+
+
+@pytest.mark.parametrize("lines, ends", [
+    ([(0, 0, 100, 0), (0, 20, 100, 20)], [(0, 100), (100, 200)]),                               # beside each other
+    ([(0, 0, 100, 0), (90, 20, 200, 20)], [(0, 100), (100, 210)]),
+    ([(0, 0, 100, 0), (100, 20, 0, 20)], [(0, 100), (100, 200)]),
+    ([(0, 0, 100, 0), (100, 0, 200, 0)], [(0, 100), (100, 200)]),                               # touch
+    ([(0, 0, 100, 0), (130, 40, 230, 40)], [(0, 100), (150, 250)]),                             # follow each other
+])
+def test_chainage_counts_gaps_of_lines_that_follow_each_other(lines, ends):
+    axes = road_axis.number_axes([LineString([line[:2], line[2:]]) for line in lines], 0.0)
+    assert [(axis.s[0], axis.s[-1]) for axis in axes] == ends
+
+
+def test_chainage_is_that_of_the_whole_road_beyond_the_grid():
+    """Which it leaves and enters again; one that turns back out there counts from the grid's edge, with a warning."""
+    raster, asked, found = rasters.Raster(np.zeros((16, 20)), rasters.Affine(10, 0, 0, 0, -10, 160), None), \
+        roads.Asked(start=2.0), []
+    lines = MultiLineString([[(-150, 20), (100, 20), (100, 200), (150, 200), (150, -30)]])
+    assert [(axis.s[0], axis.s[-1]) for axis in road_axis.axes_of_lines(lines, asked, raster, "a")] == [
+        (2150, 2390), (2520, 2680)]
+    along = MultiLineString([[(-50, 0), (250, 0)]])         # the edge itself
+    assert [(axis.s[0], axis.s[-1]) for axis in road_axis.axes_of_lines(along, asked, raster, "a")] == [(2050, 2250)]
+    for road, starts in ((box(60, -500, 80, 300), [2500]), (box(60, 0, 80, 160), [2000]),
+                         (MultiPolygon([box(60, -80, 80, -20), box(60, 10, 80, 160)]), [2090]),
+                         (LineString([(90, 20), (-900, 20), (-900, 300), (90, 300)]).buffer(10), [2000])):
+        axes, source = road_axis.axes_of([], road, asked, raster, found.append)
+        assert [axis.s[0] for axis in axes] == pytest.approx(starts)
+    assert source.endswith("in the grid") and [one.kind for one in found] == ["chainage from the edge"]
 
 
 @pytest.mark.parametrize("axis", ["", "--axis line.csv"])
@@ -227,6 +261,9 @@ def test_nothing_is_blocked_where_there_is_no_road(tmp_path, monkeypatch, capsys
     about = yaml.safe_load(Path("v/volume.yaml").read_text())
     assert about["axis"]["length"] == pytest.approx(160 if axis else 140)
     assert about["axis"]["blocked_length"] == pytest.approx(80) == pytest.approx(about["clearing"]["blocked_length"])
+    assert [[one["from"], one["to"]] for one in about["stretches"]] == [[30, 70], [90, 130]] == \
+        about["axis"]["blocked_stretches"]
+    assert [start for start, _ in about["by_10_m"]] == [30, 40, 50, 60, 90, 100, 110, 120]
 
 
 # --- one run ---

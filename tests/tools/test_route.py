@@ -868,7 +868,8 @@ def test_killed_at_random(slope):
     ({"slides": [((40, 45), 4.0), ((55, 45), 4.0)]}, ("slides.geojson", "feature 1", "feature 2", "0.1")),
     ({"slides": [((40, 45), None)]}, ("slides.geojson", "feature 1", "depth")),
     ({"--reach": "1"}, ("--reach", "1")), ({"--corridor": "-5"}, ("--corridor", "-5")),
-    ({"--friction": None}, ("--friction", "must be given")), ({"--road": "slides.geojson"}, ("slides.geojson", "line")),
+    ({"--friction": None}, ("--friction", "must be given")),
+    ({"--road": "slides.geojson"}, ("slides.geojson", "draw the road's axis as a line")),
     ({"--fragility": "nowhere"}, ("nowhere",)), ({"--minutes": "3"}, ("--minutes", "--balls")),
     ({"--reach": "0.9999"}, ("axis.csv", "--reach"))])
 @needs_lmp
@@ -891,6 +892,51 @@ def test_wrong_routes(slope, capsys, change, said):
 def test_another_choice_is_refused(two, capsys):
     status, _, err = called(capsys, ["route", str(two[0]), "--cohesion", "8e3"])
     assert status == 2 and err.count("\n") == 1 and "--cohesion" in err and "8000" in err and "another folder" in err
+
+
+@pytest.mark.parametrize("words", [
+    "--cut-angle 95", "--cut-angle 0", "--sample 2", "--mesh 0", "--mesh 1e-3", "--lane 40", "--blocked -1",
+    "--name " + 201 * "x", "--loosening 1.2", "--clearing 0", "--fragility nowhere"])
+@needs_lmp
+def test_a_refused_choice_is_not_kept(two, capsys, words):
+    """Or the next command, without it, would fail, too."""
+    site = two[0] / "bodies/1/site.yaml"
+    before = (two[0] / choices.NAME).read_text()
+    status, _, err = called(capsys, ["route", str(two[0]), "--lane", "2", *words.split()])
+    assert status == 2 and err.count("\n") == 1 and (words.split()[0] in err or "nowhere" in err), err
+    assert (two[0] / choices.NAME).read_text() == before and not site.exists()
+
+
+def test_choices_that_fail_later_are_undone(tmp_path):
+    first = {"terrain": ["dem.asc"], "road": "axis.csv", "road_width": 8.0, "corridor": 60.0, "cohesion": 9e3,
+             "friction": 30.0, "density": 1900.0}
+    folder = tmp_path / "R"
+
+    def fails(given, *files):
+        with pytest.raises(SlopeError), choices.undone_if_refused(folder, given):
+            for file in files:
+                (folder / file).parent.mkdir(exist_ok=True)
+                (folder / file).write_text("")
+            raise SlopeError("--crs", "must be known")
+        return sorted(path.name for path in folder.iterdir())
+
+    assert fails({**first, "crs": "EPSG:1"}, "terrain.asc", ".lock") == [".lock"]
+    (folder / ".lock").unlink()
+    assert fails({**first, "crs": "EPSG:1"}, "terrain.asc") == []
+    (folder / ".lock").write_text("")       # of a command that was refused
+    with choices.undone_if_refused(folder, first):
+        (folder / "terrain.asc").write_text("")
+    before = (folder / choices.NAME).read_text()
+    (folder / ".lock").unlink()
+    assert fails({"reach": 0.5}) == ["route.yaml", "terrain.asc"]
+    assert fails({"crs": "EPSG:1"}, "terrain.asc") == ["route.yaml"] and (folder / choices.NAME).read_text() == before
+    # bodies are of the new choices, which stay; what they vary may change until there are runs
+    assert fails({"corridor": 80.0, "vary": ["roling=0:1"]}, choices.TABLE) == [choices.TABLE, "route.yaml"]
+    assert choices.read_route_choices(folder).corridor == 80
+    with choices.undone_if_refused(folder, {"vary": ["rolling=0:1"]}):
+        (folder / "bodies/1/runs/a").mkdir(parents=True)
+    with pytest.raises(SlopeError, match="--vary: must be that of"):
+        choices.settle(folder, {"vary": ["rolling=0:2"]})
 
 
 @pytest.mark.parametrize("name", ["terrain", "road", "bodies", "ground", "ground_table"])

@@ -90,7 +90,8 @@ def test_each_road_has_the_numbers_of_a_site_with_it_alone(done, tmp_path, monke
         assert own["roads"] == beside["roads"] == [] and beside["study"]["road"]["name"] == name
         rows = [row for row in table if row["road"] == name]
         assert [float(row["remove_m3"]) for row in rows] == [row["remove_m3"] for row in own["runs"]]
-        assert not (alone / "mine" / "roads.csv").exists()      # what is known of the other roads stays, and is refused
+        assert not (alone / "mine" / "roads.csv").exists()      # studies of the other roads stay, and are refused
+        assert not list((alone / "mine" / "roads").glob("*/report.*"))
         made = slope(alone, "report", "mine/roads/far", "--no-film")
         assert made.returncode == 2 and "its study had another choice of roads" in made.stderr
         volumes[name] = own["conservative"]["volume_m3"] or max(row["remove_m3"] for row in own["runs"])
@@ -105,14 +106,27 @@ def test_files_of_the_user_stay(done, tmp_path, monkeypatch):
         shutil.copytree(done[0], folder)
         assert slope(folder, "site", "mine", *words.split()).returncode == 0
         mine = folder / "mine"
-        for path in (mine / "roads" / "mine" / "axis.gpkg", mine / "roads" / "far" / "notes.txt", mine / "roads.csv"):
+        theirs = [mine / one for one in ("roads/mine/axis.gpkg", "roads/mine/report.html", "roads/far/notes.txt",
+                                         "roads/far/report.docx", "roads.csv")]
+        for path in theirs:
             path.parent.mkdir(exist_ok=True)
             path.write_text("of the user\n")
         made = slope(folder, "study", "mine", "--levels", "1")
         assert made.returncode == status and ("roads.csv: must not exist" in made.stderr) is bool(status)
-        for path in (mine / "roads" / "mine" / "axis.gpkg", mine / "roads" / "far" / "notes.txt", mine / "roads.csv"):
+        for path in theirs:
             assert path.read_text() == "of the user\n"
         assert (mine / "study" / "study.yaml").is_file()
+
+
+def test_a_lane_wider_than_a_road_is_refused_before_the_runs(done, tmp_path):
+    folder = tmp_path / "wide"
+    shutil.copytree(done[0], folder)
+    path = folder / "mine" / "site.yaml"
+    path.write_text(path.read_text().replace("lane: null", "lane: 9.5"))
+    shutil.rmtree(folder / "mine" / "runs")
+    made = slope(folder, "study", "mine", "--paper", "--levels", "1")
+    assert made.returncode == 2 and "--lane: must be at most as wide as the road, 8 m, got 9.5" in made.stderr
+    assert not (folder / "mine" / "runs").exists()
 
 
 def test_the_worst_stands_for_the_site(done):

@@ -81,6 +81,24 @@ def test_where_nothing_is_known_of_the_ground():
         site_walls.triangles("line", BENT, ground, 5.0, 1.0)
 
 
+@pytest.mark.parametrize("name, line, lift, stands", [
+    ("level", [(30, 50), (70, 50)], 0, True), ("plane", [(50, 20), (50, 80)], 0, True),
+    ("level", [(10, 20), (90, 20)], 0, False), ("level", [(10, 30.5), (90, 30.5)], 0, False),      # beside, at the rim
+    ("level", [(30, 50), (70, 50)], 30, False), ("level", [(30, 50), (70, 50)], -30, False)])      # above it and below
+def test_what_stands_in_the_body_is_named(tmp_path, name, line, lift, stands):
+    """A body of 4 m, 40 m x 40 m, and a mesh of 5 m above the ground, or 30 m higher or lower."""
+    ground = raster(GROUNDS[name])
+    depth = np.zeros(ground.z.shape)
+    depth[15:35, 15:35] = 4.0
+    mesh = site_walls.triangles("line", LineString(line), ground, 5.0, 1.0) + [0, 0, lift]
+    (tmp_path / "one.stl").write_text(site_walls.stl("one", mesh))
+    one = site_inputs.placed("one", mesh, 5.0)._replace(given="--wall line.csv")
+    if not stands:
+        return site_inputs.check_beside_body([one], tmp_path, ground, depth)
+    with pytest.raises(SlopeError, match="--wall line.csv: must not stand in the release area.*got local x y [34]. 49"):
+        site_inputs.check_beside_body([one], tmp_path, ground, depth)
+
+
 STANDARD = " ".join(["--terrain dem.tif --release release.geojson", *BODY])
 
 
@@ -101,6 +119,11 @@ def test_options_and_keys(inside, gis):  # noqa: F811
     corners = site_inputs.corners(str(gis / "mine" / "second.stl"))
     assert np.ptp(corners[..., 0]) == pytest.approx(1, abs=0.01)
     assert np.ptp(corners[..., 1]) == pytest.approx(60, abs=0.1)
+    write_layer(gis / "within.geojson", [(60, 35), (60, 45)], kind=LineString)
+    # in the body, and in the site as it was; too high for a wall, and a mesh for no volume.csv
+    assert "--wall within.geojson: must not stand in the" in inside("mine --wall within.geojson", 2).err
+    assert "--mesh: must give at most" in inside("mine --mesh 1e-3 --road release.geojson", 2).err
+    assert "--height 400: is it in m" in inside("mine --height 400 --verbose").err
     # lower than a ball: both walls in a line, with what smaller balls take; the meshes alone say it, too
     err = inside("mine --height 1.5 --diameter 3").err
     [line] = [one for one in err.splitlines() if "lower" in one or "less than a ball" in one]

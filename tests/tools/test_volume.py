@@ -97,7 +97,7 @@ def evaluated(thickness, ground, road, mesh=10, angle=30, samples=4):
     """Volumes without the command: what is removed on the road, beside it, and where the cut is below the ground."""
     x, y = centres(*thickness.shape, 2.5)
     run = plain_deposit(thickness, ground(x, y) * np.ones_like(x), 2.5)
-    result = volume.evaluate_removal(run, road, angle, volume.make_mesh(mesh, run.raster), samples)
+    result = volume.evaluate_removal(run, road, angle, geometry.make_mesh(mesh, run.raster), samples)
     return result.total(result.road), result.total(result.beside), result.steep
 
 
@@ -286,7 +286,7 @@ def test_strips_and_bounds_change_nothing(monkeypatch, seed, rise):
     thickness, base, road = rough(seed)
     base += rise * centres(*base.shape, 2.0)[0]
     run = plain_deposit(thickness, base, 2.0)
-    mesh = volume.make_mesh(7, run.raster)
+    mesh = geometry.make_mesh(7, run.raster)
     results = []
     for strip_, near, diagonal in ((1000, cut.NEAR, cut.HALF_DIAGONAL), (10 ** 9, 40, 10 ** 9)):
         for name, value in (("STRIP", strip_), ("NEAR", near), ("HALF_DIAGONAL", diagonal)):
@@ -304,7 +304,7 @@ def test_against_a_sum_over_points():
     thickness, base, road = rough(5, 30, 30)
     road = translate(road, -30, -20).intersection(box(0, 0, 60, 60))
     run = plain_deposit(thickness, base, 2.0)
-    got = volume.evaluate_removal(run, road, 30, volume.make_mesh(10, run.raster), 8)
+    got = volume.evaluate_removal(run, road, 30, geometry.make_mesh(10, run.raster), 8)
 
     def height(x, y):
         return cut.Ground(base).height(*(~run.raster.transform @ (x, y)))
@@ -530,7 +530,9 @@ def test_the_last_cells_of_the_run_may_reach_beyond_the_terrain(slope, no_map):
 
 def test_part_of_the_road_outside_is_cut_off_with_a_warning(cleared):
     write_run(strip(), 0.0, 2.5)
-    about = cleared(box(90, -200, 110, 200))
+    about = cleared(box(90, -200, 110, 200), "--mesh 10 --road-from 2")
+    assert [(one["from"], one["to"]) for one in about["stretches"]] == [(2280, 2320)]
+    assert about["axis"]["length"] == 200 and about["clearing"]["road_width"] == 20
     assert about["road_area"] == pytest.approx(20 * 200)
     assert warned(about)["cut off"]["percent"] == pytest.approx(50)
     assert about["volume"]["remove"] == pytest.approx(40 * (3 * 20 + 2 * wedge(3, 90, TAN30)), rel=1e-9)
@@ -553,7 +555,8 @@ def test_a_cut_angle_that_looks_like_a_tangent_is_asked_about(slope, angle, aske
     ("run --road road.geojson --mesh 0.01", "--mesh: must give at most 4000000 mesh cells"),
     ("run --road road.geojson", "the following arguments are required: --mesh"),
     ("run --mesh 10", "the following arguments are required: --road"),
-    ("run --road road.geojson --mesh 10 --bulk 0", "--bulk: must be > 0, got 0"),
+    ("run --road road.geojson --mesh 10 --bulk 0.5", "--bulk: must be 1 to 10, as of fix deposit/grid, got 0.5"),
+    ("run --road road.geojson --mesh 10 --bulk 11", "--bulk: must be 1 to 10"),
     ("run --road road.geojson --mesh 10 --blocked -1", "--blocked: must be >= 0, got -1"),
     ("run --road road.geojson --mesh 10 --samples 3", "--samples: must be even, 2 to 32, got 3"),
     ("none --road road.geojson --mesh 10", "none.thickness.asc: must be an existing file; none must be the output of"),

@@ -84,6 +84,7 @@ def renaming(folder: Path):
         os.close(handle)        # which ends the lock
 
 
+LOCK = ".lock"      # in a folder in which one process works
 DIGEST = "sha256"
 
 
@@ -165,7 +166,7 @@ def is_finite_number(value: Any) -> bool:
 @contextmanager
 def alone_in(folder, what="study"):
     """No other process works in a folder meanwhile; the lock goes when the process does. SlopeError if one does."""
-    with open(Path(folder) / ".lock", "w", encoding="ascii") as lock:
+    with open(Path(folder) / LOCK, "w", encoding="ascii") as lock:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:

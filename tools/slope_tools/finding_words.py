@@ -153,6 +153,7 @@ WORDS: Dict[str, Union[str, Words]] = {
     "left terrain": "{percent:.2g} % of the mass left the terrain in the trial run: use a larger elevation model",
     "narrow road": "{file}: the road is about {width:.3g} m wide, {balls:.2g} balls of {d:g} m and {cells:.2g} cells "
                    "of {cell:g} m: narrower than a ball or two cells, so what lies on it is a guess: use {remedy}",
+    "high wall": "--height {height:g}: is it in m, above the ground? Walls and dams are rarely higher than {limit:g} m",
     "low wall": "{name}: the wall is {height:.3g} m high, less than a ball of {d:.3g} m: what it holds, and the force "
                 "on it, are of single balls, not of a mass: use {remedy}",
     "few across": "the body is about {across:.2g} cells of {cell:.3g} m across, below {limit:g}: its surface and "
@@ -169,6 +170,8 @@ WORDS: Dict[str, Union[str, Words]] = {
     "no terrain": "no --terrain and no {file}: no CRS, coordinates are the local metres of the run",
     "no CRS": Words("{file} has no CRS: coordinates are {coordinates}", NOTE),
     "cut off": "{file}: {percent:.3g} % of the polygon lies outside of the grid of the run: cut off",
+    "chainage from the edge": "the road's polygons turn back beyond the grid, where their middle is not followed: "
+                              "chainage begins at the grid's edge; draw the road as a line",
     "edge without ground": "{file}: {percent:.3g} % of the road's edge lies on cells without a height: the cut rises "
                            "there from the height of the nearest ground or edge, the lower one",
     "no ground": "{volume:.6g} m3 lie on cells without ground, beside the road: not in the volume to remove",

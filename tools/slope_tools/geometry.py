@@ -7,6 +7,9 @@ from shapely.affinity import affine_transform
 from shapely.geometry import MultiPolygon
 from shapely.geometry.polygon import orient
 
+from .errors import SlopeError
+
+MOST_MESH = 4_000_000  # mesh cells
 ON_LINE = 1e-9         # cells; lines that are closer to each other are one
 
 
@@ -163,6 +166,16 @@ class Mesh:
             starts = np.flatnonzero(np.diff(parts.mesh, prepend=-1))
             values = np.add.reduceat(values, starts, axis)
         return values
+
+
+def make_mesh(size, raster):
+    """The Mesh of that size over the raster; SlopeError if it would have too many cells."""
+    xlo, ylo, xhi, yhi = extent(raster)
+    count = ((xhi - xlo) / size + 1) * ((yhi - ylo) / size + 1)
+    if count > MOST_MESH:
+        raise SlopeError("--mesh", f"must give at most {MOST_MESH} mesh cells, the grid would need {count:.3g}",
+                         f"{size:g}")
+    return Mesh(size, raster)
 
 
 def as_multi(geometry):

@@ -137,7 +137,7 @@ def check_fragility_request(args: Request) -> None:
 
 def peaks_of(text):
     """The peaks of LO:HI[:STEP], gal."""
-    rule = "must be LO:HI or LO:HI:STEP with 0 < LO < HI and STEP > 0, at most 1000 peaks (gal)"
+    rule = "must be LO:HI or LO:HI:STEP with 0 < LO < HI and 0 < STEP <= HI - LO, at most 1000 peaks (gal)"
     try:
         parts = [float(word) for word in text.split(":")]
     except ValueError:
@@ -145,7 +145,7 @@ def peaks_of(text):
     if len(parts) not in (2, 3) or not all(map(math.isfinite, parts)) or not 0 < parts[0] < parts[1]:
         raise SlopeError("--peaks", rule, text)
     step = parts[2] if len(parts) == 3 else (parts[1] - parts[0]) / 44
-    if not step > 0 or (parts[1] - parts[0]) / step > 1000:
+    if not 0 < step <= parts[1] - parts[0] or (parts[1] - parts[0]) / step > 1000:
         raise SlopeError("--peaks", rule, text)
     return parts[0] + step * np.arange(math.floor((parts[1] - parts[0]) / step + 1e-9) + 1)
 

@@ -1,5 +1,6 @@
 """slope route: the bodies along a corridor, runs of all of them, and how likely which stretch is blocked."""
-from dataclasses import dataclass, fields, replace
+import contextlib
+from dataclasses import dataclass, fields
 from pathlib import Path
 from shlex import quote
 from typing import Any, List, Optional
@@ -107,30 +108,26 @@ def run_route(args: Request) -> None:
     given = {field.name: value for field in fields(route_choices.Choices)
              if (value := getattr(args, field.name)) is not None}
     folder, warn = args.folder, printer("route")
-    kept = route_choices.read_route(folder)[0].fragility if (folder / route_choices.NAME).is_file() else None
     try:
-        choices = route_choices.settle(folder, given)
-        with disk.alone_in(folder, "route"), jobs.signals_interrupt():
-            ground = corridor.make_corridor(choices, folder, quiet, warn)
-            lmp = find_lmp(args.lmp)
-            table = search.search_route_bodies(choices, ground, folder, lmp, args.np, tell, warn)
-            try:
+        with contextlib.ExitStack() as stack:
+            with route_choices.undone_if_refused(folder, given) as choices:
+                stack.enter_context(disk.alone_in(folder, "route"))
+                stack.enter_context(jobs.signals_interrupt())
+                ground = corridor.make_corridor(choices, folder, quiet, warn)
+                lmp = find_lmp(args.lmp)
+                table = search.search_route_bodies(choices, ground, folder, lmp, args.np, tell, warn)
                 results.yearly_of(choices, folder, table["bodies"])      # now, not after the runs
-            except SlopeError:
-                _, sources = route_choices.read_route(folder)       # what was there before stays
-                route_choices.write_route_choices(folder, replace(choices, fragility=kept), sources)
-                raise
-            machine = site.Machine(lmp, args.jobs or jobs.cores())
-            several = []
-            for body in table["bodies"]:
-                new = not runs.folder_of(folder, body["body"]).exists()
-                place = runs.make_body_site(choices, folder, body, len(table["bodies"]), machine, quiet, quiet,
-                                            site_map.draw_site_map)
-                if new:
-                    factor = page.format_factor(body)
-                    tell(f"body {body['body']} at {body['chainage_m']:.0f} m: {body['volume_m3']:,.0f} m3"
-                         + f", factor of safety {factor}" * (factor != "-"))
-                several.append(runs.make_route_study(choices, place, engine_of(args)))
+                machine = site.Machine(lmp, args.jobs or jobs.cores())
+                several = []
+                for body in table["bodies"]:
+                    new = not runs.folder_of(folder, body["body"]).exists()
+                    place = runs.make_body_site(choices, folder, body, len(table["bodies"]), machine, quiet, quiet,
+                                                site_map.draw_site_map)
+                    if new:
+                        factor = page.format_factor(body)
+                        tell(f"body {body['body']} at {body['chainage_m']:.0f} m: {body['volume_m3']:,.0f} m3"
+                             + f", factor of safety {factor}" * (factor != "-"))
+                    several.append(runs.make_route_study(choices, place, engine_of(args)))
             if args.dry_run:
                 tell("\n".join(runs.list_route_runs(several)))
                 return

@@ -66,9 +66,13 @@ class Axis:
             n[some] = np.where((gap * self.left).sum(axis=2)[foot] < 0, -1, 1) * distance[foot]
         return s, n
 
+    @property
+    def whole(self) -> LineString:
+        return LineString(self.points)
+
     def line(self, along: Span) -> LineString:
         """The part of the axis between two chainages."""
-        return substring(LineString(self.points), *(np.clip(along, self.s[0], self.s[-1]) - self.s[0]))
+        return substring(self.whole, *(np.clip(along, self.s[0], self.s[-1]) - self.s[0]))
 
     def pieces(self, reach: float) -> List[Piece]:
         """All points within a reach (m) of the axis; the pieces do not overlap but where legs are that near."""

@@ -2,13 +2,12 @@
 from pathlib import Path
 from typing import Optional
 
-from .. import disk, findings
+from .. import disk, findings, geometry
 from ..errors import SlopeError
 from ..survey.rasters import crs_name
 from . import deposit
 from .score import (THRESHOLD, balls, connected_runout, draw_score, mesh_table, overlap, read_observed, compare_runout,
                     compare_volumes, write_score_csv)
-from .volume import make_mesh
 
 FILES = ("score.csv", "score.png", "score.yaml")
 
@@ -27,7 +26,7 @@ def make_score(prefix: str, mapped: Path, folder: Path, threshold: float = THRES
     warn, warnings = findings.warner("score")
     run_ = deposit.read_deposit(prefix, terrain, warn)
     disk.check_folder(folder, FILES, [run_.prefix, mapped], overwrite)
-    squares = make_mesh(mesh or run_.cell, run_.raster)
+    squares = geometry.make_mesh(mesh or run_.cell, run_.raster)
     observed = read_observed(mapped, run_.raster, threshold, local, warn)
     if observed.outside > 0:
         warn(findings.Finding("outside of grid", {"file": str(mapped), "area": observed.outside}))

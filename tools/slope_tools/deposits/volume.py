@@ -17,12 +17,14 @@ from ..survey import rasters, roads
 from ..survey.lines import read_local
 from ..survey.rasters import crs_name
 from . import clearing, cut, deposit, passed, stretch_files, volume_files
-from .road_axis import profile_road, axes_of, axis_of, by_chainage, in_grid_of, find_profile_stretches, width_of
+from .axis import Axis
+from .road_axis import (axes_of, axes_of_lines, by_chainage, find_profile_stretches, part_in_grid, profile_road,
+                        width_of)
 
+BULK = 1.0, 10.0       # volume of a body over that of its balls, as fix deposit/grid takes it
 CUT_ANGLE = 30.0       # degrees
 MOST_SAMPLES = 32
 SAMPLES = 4            # parts of a cell along a side
-MOST_MESH = 4_000_000  # mesh cells
 MUCH_BELOW = 0.1       # of the volume to remove: so much where the cut is below the ground is worth a warning
 EXACT = 1e-13          # of the deposit's volume: volumes are rounded to this once, so that they add up in every output
 FILES = ("volume.csv", "volume.geojson", "volume.tif", "volume_mesh.tif", "axis.csv", "stretches.csv", "stretches.gpkg",
@@ -45,7 +47,7 @@ class Removal(NamedTuple):
     """What must be removed from a road, and all that write_removal() needs."""
     run: deposit.Deposit
     road: Any                           # polygon in local metres, the part of it in the grid
-    axis: Any                           # its lines
+    axes: List[Axis]                    # in the grid
     mesh: Mesh
     result: "Result"
     profile: Dict[str, np.ndarray]      # along the axis
@@ -70,21 +72,21 @@ def compute_removal(prefix, wanted: Wanted, terrain=None, tell: Callable[[str], 
     for one in of_angles({"--cut-angle": wanted.cut_angle}):
         warn(one)
     run = deposit.read_deposit(prefix, terrain, warn)
-    mesh = make_mesh(wanted.mesh, run.raster)
+    mesh = geometry.make_mesh(wanted.mesh, run.raster)
     asked = wanted.asked
     given = roads.read_local(wanted.road, run.raster, asked, wanted.local, warn=warn)
     road = in_grid(given.polygon, run.raster, wanted.road, warn)
     if not np.isfinite(run.base).all():
         require_ground(road, run, wanted.road, warn)
     if wanted.axis:
-        axis = in_grid_of(read_local(wanted.axis, run.raster, wanted.local, "axis"), run.raster, wanted.axis)
-        source, width = str(wanted.axis), width_of(axis, road)
+        axes, source = axes_of_lines(read_local(wanted.axis, run.raster, wanted.local, "axis"), asked, run.raster,
+                                     wanted.axis), str(wanted.axis)
     else:
-        axis, source, width = axis_of(given.lines, road, asked)
+        axes, source = axes_of(given.lines, given.polygon, asked, run.raster, warn)
+    width = asked.width or width_of(axes, road)
     roads.check_lane(asked.lane, width)
     result = evaluate_removal(run, road, wanted.cut_angle, mesh, wanted.samples)
-    profile = profile_road(axis, run, result.removed, asked, road if wanted.axis else None)
-    axes = axes_of(axis, asked)
+    profile = profile_road(axes, run, result.removed, asked, road if wanted.axis else None)
     cleared = clearing.evaluate_clearing(run, result, profile, axes, width, road if given.line is None else None, asked,
                                          mesh, wanted.cut_angle, wanted.samples)
     summary = totals(wanted, run, mesh, result, profile, source)
@@ -94,7 +96,7 @@ def compute_removal(prefix, wanted: Wanted, terrain=None, tell: Callable[[str], 
         warn(Finding("no ground", {"volume": float(result.unknown)}))
         summary["volume"]["unknown"] = result.unknown
     summary["warnings"] = encode_findings(warnings)
-    return Removal(run, road, axis, mesh, result, profile, cleared, wanted.bulk / run.bulk if wanted.bulk else None,
+    return Removal(run, road, axes, mesh, result, profile, cleared, wanted.bulk / run.bulk if wanted.bulk else None,
                    disk.make_plain(summary), warnings)
 
 
@@ -113,7 +115,7 @@ def write_removal(removal: Removal, folder: Path, picture: bool = True) -> None:
         stretch_files.write_stretches_csv(new / "stretches.csv", run, removal.clearing)
         stretch_files.write_stretches_geopackage(new / "stretches.gpkg", run, removal.clearing)
         if picture:
-            volume_files.draw_removal(new / "volume.png", run, removal.road, removal.axis, mesh, result, summary,
+            volume_files.draw_removal(new / "volume.png", run, removal.road, removal.axes, mesh, result, summary,
                                       removal.clearing)
         summary["files"] = sorted(path.name for path in new.iterdir()) + ["volume.yaml"]
         disk.write_yaml(new / "volume.yaml", summary, "slope volume: what must be removed; m, m2, m3, degrees")
@@ -127,8 +129,8 @@ def check_wanted_volume(wanted: Wanted) -> None:
         raise SlopeError("--cut-angle", "must be > 0 and < 90 degrees", f"{wanted.cut_angle:g}")
     if wanted.mesh <= 0:
         raise SlopeError("--mesh", "must be > 0", f"{wanted.mesh:g}")
-    if wanted.bulk is not None and wanted.bulk <= 0:
-        raise SlopeError("--bulk", "must be > 0", f"{wanted.bulk:g}")
+    if wanted.bulk is not None and not BULK[0] <= wanted.bulk <= BULK[1]:
+        raise SlopeError("--bulk", "must be {:g} to {:g}, as of fix deposit/grid".format(*BULK), f"{wanted.bulk:g}")
     roads.check_road(wanted.asked)
     if wanted.axis is not None and wanted.asked.width is not None:
         raise SlopeError("--axis", "must not be given with --road-width: the axis of such a road is its line",
@@ -137,20 +139,9 @@ def check_wanted_volume(wanted: Wanted) -> None:
         raise SlopeError("--samples", f"must be even, 2 to {MOST_SAMPLES}", wanted.samples)
 
 
-def make_mesh(size, raster):
-    """The Mesh of that size over the raster; SlopeError if it would have too many cells."""
-    xlo, ylo, xhi, yhi = geometry.extent(raster)
-    count = ((xhi - xlo) / size + 1) * ((yhi - ylo) / size + 1)
-    if count > MOST_MESH:
-        raise SlopeError("--mesh", f"must give at most {MOST_MESH} mesh cells, the grid would need {count:.3g}",
-                         f"{size:g}")
-    return Mesh(size, raster)
-
-
 def in_grid(polygon, raster, path, warn):
     """The part of a polygon (local metres) that lies in the grid; SlopeError if none does."""
-    grid = geometry.box_of(raster)
-    inside = polygon if grid.covers(polygon) else geometry.as_multi(polygon.intersection(grid))
+    inside = part_in_grid(polygon, raster)
     if inside.area <= 0:
         raise SlopeError(path, f"must lie in the grid of the run, {geometry.format_numbers(geometry.extent(raster))} "
                          "(local " "metres)", geometry.format_numbers(polygon.bounds))
@@ -235,7 +226,7 @@ def totals(wanted: Wanted, run_, mesh, result, profile, source) -> Dict[str, Any
     numbers["largest_removed_thickness"] = round(float(result.removed.max()), 6)
     numbers["axis"] = {
         "source": source,
-        "length": round(profile["to"][-1] - profile["from"][0], 6),
+        "length": round(math.fsum(profile["to"] - profile["from"]), 6),
         "blocked_above": wanted.asked.blocked,
         "blocked_length": round(math.fsum(to - start for start, to in blocked), 6),
         "blocked_stretches": [[round(start, 6), round(to, 6)] for start, to in blocked],

@@ -81,7 +81,7 @@ def write_profile(path, run_, profile):
                                                 for values in zip(*(columns[key].tolist() for key in order)))))
 
 
-def draw_removal(path, run_, road, axis, mesh, result, summary, cleared):
+def draw_removal(path, run_, road, parts, mesh, result, summary, cleared):
     from matplotlib.patches import Rectangle
 
     from ..drawing import maps, pictures
@@ -105,8 +105,8 @@ def draw_removal(path, run_, road, axis, mesh, result, summary, cleared):
                          extent=where, origin="upper")
             axes.plot([], [], color="black", linewidth=0.8, linestyle="dotted", label="deposit")
         maps.outline(axes, road, color="tab:blue", linewidth=1.4, label="road")
-        for number_, line in enumerate(axis.geoms):
-            axes.plot(*np.asarray(line.coords).T, color="tab:blue", linewidth=0.8, linestyle="dashdot",
+        for number_, axis in enumerate(parts):
+            axes.plot(*axis.points.T, color="tab:blue", linewidth=0.8, linestyle="dashdot",
                       label=None if number_ else "axis")
         for number_, one in enumerate(cleared.stretches):
             axes.plot(*np.asarray(one.axis.line(one.along).coords).T, color="tab:red", linewidth=2.4, alpha=0.8,

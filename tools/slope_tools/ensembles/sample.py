@@ -75,11 +75,16 @@ def check_sample(number: int, kind: str, seed: int, vary: Sequence[str], deck: P
         for option, names in (("--set", fixed), ("--repeat", repeated)):
             if one.name in names:
                 raise SlopeError("--vary", f"must not name a variable of {option}", one.name)
-    if number <= len(variables):
-        raise SlopeError(asked, f"must be more runs than there are parameters, {len(variables)}", number)
+    check_number(number, len(variables), asked)
+    return Sample(number, kind, seed, tuple(variables))
+
+
+def check_number(number: int, parameters: int, asked: str = "--sample") -> None:
+    """SlopeError unless a number of runs will do for so many parameters."""
+    if number <= parameters:
+        raise SlopeError(asked, f"must be more runs than there are parameters, {parameters}", number)
     if number > MOST_RUNS:
         raise SlopeError(asked, f"must make at most {MOST_RUNS} runs", number)
-    return Sample(number, kind, seed, tuple(variables))
 
 
 def plan_sample(output: Path, sample: Sample, fixed: Mapping[str, str], repeated: Mapping[str, Sequence[str]],

@@ -2,9 +2,8 @@
 from typing import Any, List, Mapping, Optional, Sequence
 
 from ..deposits.axis import Span
-from ..deposits.road_axis import axes_of, axis_of
+from ..deposits.road_axis import axes_of, part_in_grid, width_of
 from ..digits import percent
-from ..geometry import box_of
 from ..plots import figure_charts, figure_maps, known_reach
 from ..sites.site_roads import FOLDER
 from ..studies import road_numbers
@@ -101,9 +100,10 @@ def rate(asked: Asked) -> str:
 def draw_road_shares(data: Data, asked: Asked, stretches: study_types.Stretches, runs: str, maps):
     """The map of the road, coloured by the share of the runs that block it."""
     raster = data.result.deposit.raster
-    axis, _, width = axis_of(data.road_lines, data.road.intersection(box_of(raster)), asked)
+    axes, _ = axes_of(data.road_lines, data.road, asked, raster)
+    width = asked.width or width_of(axes, part_in_grid(data.road, raster))
     parts = [(one.band(Span(low, high), Span(-width / 2, width / 2)), share)
-             for low, high, share in stretches.shares for one in axes_of(axis, asked)]
+             for low, high, share in stretches.shares for one in axes]
     layers = maps.layers._replace(section=None, reach=known_reach.NOTHING)
     title = "Where the road is blocked"
     return Picture(figure_maps.road_map(layers, parts, ODDS, title, f"share of the {runs}", maps.crs), title,

@@ -1,15 +1,18 @@
 """What is asked of a route, kept in its folder: route.yaml."""
+import contextlib
 import functools
 import os
 import shutil
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, Optional, Tuple
+from typing import Any, Dict, Iterator, List, Mapping, Optional, Tuple
 
 import numpy as np
 
 from .. import disk, schemas
+from ..ensembles import sample
 from ..errors import SlopeError
+from ..sites.site_choices import check_text
 from ..sites.site_keys import NEEDED, key, section_schema
 from ..survey import file_parts, roads, vectors, zips
 
@@ -21,6 +24,7 @@ FILES = ("terrain", "road", "bodies", "ground", "ground_table", "fragility")
 READ = FILES[:-1]       # once: an edit of them afterwards is another question
 SOURCES = "sources"     # in route.yaml: what these held
 TABLE = "bodies.yaml"
+RUNS = "bodies/*/runs/*"
 # what is made before that table, and of which options
 MADE = ("terrain.asc", "terrain.yaml", "road.csv", "windows")
 OF = ("terrain", "crs", "assign_crs", "z_unit", "nodata", "differ", "cell", "fill", "road", "road_width", "corridor",
@@ -28,6 +32,7 @@ OF = ("terrain", "crs", "assign_crs", "z_unit", "nodata", "differ", "cell", "fil
 # may change once bodies are there: only the evaluation of their runs has it
 LATER = ("sample", "fragility", "name", "client", "author", "blocked", "lane", "clearing", "loosening", "cut_angle",
          "mesh")
+BEFORE_RUNS = ("vary",)         # may change until there is one
 GIVEN = ("terrain", "road", "road_width", "corridor", "density")        # with the command, or before
 STRENGTH = ("cohesion", "friction")     # not of bodies that are given: without them these have no factor of safety
 
@@ -37,40 +42,40 @@ class Choices:
     """The options of the command, with their units; see its help."""
     terrain: List[str] = key(NEEDED, fewest=1)
     road: str = key(NEEDED)
-    road_width: float = key(NEEDED)
-    corridor: float = key(NEEDED)
+    road_width: float = key(NEEDED, above=0)
+    corridor: float = key(NEEDED, above=0)
     cohesion: Optional[float] = key(NEEDED)
     friction: Optional[float] = key(NEEDED)
-    density: float = key(NEEDED)
+    density: float = key(NEEDED, above=0)
     water: Optional[float] = key(None)
     crs: Optional[str] = key(None)
     assign_crs: Optional[str] = key(None)
     z_unit: Optional[str] = key(None)
     nodata: Optional[List[float]] = key(None)
     differ: Optional[float] = key(None)
-    cell: Optional[float] = key(None)
-    fill: int = key(0)
+    cell: Optional[float] = key(None, above=0)
+    fill: int = key(0, least=0)
     road_from: float = key(0.0)
-    blocked: float = key(roads.NOTHING.blocked)
-    lane: Optional[float] = key(None)
-    clearing: Optional[float] = key(None)
-    loosening: Optional[float] = key(None)
-    cut_angle: float = key(30.0)
-    mesh: float = key(10.0)
+    blocked: float = key(roads.NOTHING.blocked, least=0)
+    lane: Optional[float] = key(None, above=0)
+    clearing: Optional[float] = key(None, above=0)
+    loosening: Optional[float] = key(None, least=1)
+    cut_angle: float = key(30.0, above=0, below=90)
+    mesh: float = key(10.0, above=0)
     volume: Optional[List[float]] = key(None, fewest=2, most_items=2)
     depth: Optional[List[float]] = key(None, fewest=2, most_items=2)
     keep: int = key(3, least=1)
-    below: float = key(1.5)
+    below: float = key(1.5, above=0)
     bodies: Optional[str] = key(None)
     shape: Optional[str] = key(None)
     ground: Optional[str] = key(None)
     ground_table: Optional[str] = key(None)
-    reach: float = key(0.01)
+    reach: float = key(0.01, least=0, below=1)
     confined: str = key("unknown", of=("yes", "no", "unknown"))
     sample: int = key(4, least=1)
     vary: List[str] = key(["rolling=0:0.1", "packing=1:1000000"])
-    balls: Optional[int] = key(None)
-    minutes: Optional[float] = key(None)
+    balls: Optional[int] = key(None, least=1)
+    minutes: Optional[float] = key(None, above=0)
     fragility: Optional[str] = key(None)
     name: Optional[str] = key(None)
     client: Optional[str] = key(None)
@@ -100,7 +105,8 @@ def settle(folder: Path, given: Mapping[str, Any]) -> Choices:
     known = asdict(made) if made else {}
     changed = [name for name, value in given.items() if known and not is_same_choice(name, known[name], value)]
     for name in changed:
-        if name not in LATER and (folder / TABLE).is_file():
+        if name not in LATER and (folder / TABLE).is_file() and not (name in BEFORE_RUNS and not any(
+                folder.glob(RUNS))):
             raise SlopeError(option(name), f"must be that of {path}, whose bodies and runs it has made: take another "
                              "folder", given[name])
     for name in GIVEN:
@@ -116,15 +122,45 @@ def settle(folder: Path, given: Mapping[str, Any]) -> Choices:
                 raise SlopeError(option(name), f"must not have changed since the bodies and runs of {folder} were made "
                                  "of it: take another folder", " ".join(np.ravel(getattr(choices, name))))
             changed.append(name)
-    if not path.is_file() and folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+    if not path.is_file() and folder.exists() and not (folder.is_dir() and {one.name for one in folder.iterdir()} <= {
+            disk.LOCK}):
         raise SlopeError(folder, "must be a new folder, an empty one, or that of a route")
     folder.mkdir(parents=True, exist_ok=True)
     if set(changed) & set(OF):      # there are no bodies yet: what was made for them is begun anew
-        for place in MADE:
-            shutil.rmtree(folder / place, ignore_errors=True)
-            (folder / place).unlink(missing_ok=True)
+        remove_made(folder)
     write_route_choices(folder, choices, {**before, **now})
     return choices
+
+
+@contextlib.contextmanager
+def undone_if_refused(folder: Path, given: Mapping[str, Any]) -> Iterator[Choices]:
+    """The choices of settle(); where a SlopeError says what is wrong with them, the folder has those of before again.
+
+    Those of which bodies or windows of a search were made stay: the command goes on with these.
+    """
+    path, table = folder / NAME, folder / TABLE
+    before, begun = path.read_text(encoding="utf-8") if path.is_file() else None, table.is_file()
+    known = read_route(folder) if before is not None else None
+    choices = settle(folder, given)
+    try:
+        yield choices
+    except SlopeError:
+        now = read_route(folder)
+        if known is None and not (table.is_file() or (folder / "windows").exists()):
+            remove_made(folder)
+            path.unlink()
+        elif known is not None and before is not None and table.is_file() == begun:
+            if not begun and (known[1] != now[1] or any(getattr(known[0], name) != getattr(now[0], name)
+                                                        for name in OF)):
+                remove_made(folder)
+            disk.write_file(path, before)
+        raise
+
+
+def remove_made(folder: Path) -> None:
+    for place in MADE:
+        shutil.rmtree(folder / place, ignore_errors=True)
+        (folder / place).unlink(missing_ok=True)
 
 
 def content(files: Any) -> str:
@@ -181,12 +217,13 @@ def is_same_choice(name: str, value: Any, other: Any) -> bool:
 
 
 def check_route_choices(choices: Choices) -> None:
-    """The numbers that nothing else checks."""
-    numbers: Dict[str, Optional[float]] = {name: getattr(choices, name) for name in (
-        "road_width", "corridor", "density", "below", "sample", "balls", "minutes")}
-    for name, value in numbers.items():
-        if value is not None and not value > 0:
-            raise SlopeError(option(name), "must be > 0", f"{value:g}")
+    """SlopeError, which names the option, unless they may be kept."""
+    if wrong := schemas.first_error({"slope_route": VERSION, **asdict(choices)}, schema()):
+        place, rule = wrong
+        raise SlopeError(option(place[0]), rule)
+    for name in ("name", "client", "author"):
+        check_text(option(name), getattr(choices, name))
+    sample.check_number(choices.sample, len(choices.vary))
     missing = [name for name in STRENGTH if getattr(choices, name) is None]
     if missing and (not choices.bodies or len(missing) < len(STRENGTH)):
         other = next((name for name in STRENGTH if name not in missing), None)
@@ -194,8 +231,6 @@ def check_route_choices(choices: Choices) -> None:
                          "must be given, unless --bodies are")
     if choices.shape and not choices.bodies:
         raise SlopeError(option("shape"), "must be given with --bodies", choices.shape)
-    if not 0 <= choices.reach < 1:
-        raise SlopeError("--reach", "must be 0 to below 1, a share of known events", f"{choices.reach:g}")
     if choices.balls and choices.minutes:
         raise SlopeError("--minutes", "must be given without --balls", f"{choices.minutes:g}")
     roads.check_road(choices.asked)

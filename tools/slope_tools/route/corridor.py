@@ -10,7 +10,6 @@ from shapely.geometry.base import BaseGeometry
 from shapely.ops import substring
 
 from .. import disk, geometry
-from ..errors import SlopeError
 from ..survey import local_terrain, rasters, roads
 from ..survey.rasters import Raster
 from .choices import Choices
@@ -87,9 +86,9 @@ def make_corridor(choices: Choices, folder: Path, tell, warn) -> Corridor:
 def read_corridor(choices: Choices, folder: Path, warn=roads.vectors.ignore) -> Corridor:
     raster = rasters.read_asc_local(folder / TERRAIN)
     kept = folder / ROAD        # the line as it was first read: what is beside it may have moved
-    found = roads.read_local(kept if kept.is_file() else choices.road, raster, choices.asked, warn=warn)
-    if found.line is None:
-        raise SlopeError("--road", "must be a line, with --road-width", choices.road)
+    found = roads.read_local(kept if kept.is_file() else choices.road, raster, choices.asked, warn=warn,
+                             instead="draw the road's axis as a line")
+    assert found.line is not None       # as there is a width
     if not kept.is_file():
         write_line(kept, found.line, raster)
     return Corridor(raster, found.line, found.polygon, 1000 * choices.road_from, choices.corridor)

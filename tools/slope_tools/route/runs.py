@@ -8,7 +8,7 @@ from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, NamedTuple, Sequence
 
-from .. import disk
+from .. import disk, geometry
 from ..case import decks
 from ..case.data_files import data_files
 from ..case.slip_deck import PREFIX
@@ -17,6 +17,7 @@ from ..errors import SlopeError
 from ..releases.packing import BULK
 from ..runs import jobs
 from ..sites import site, site_budget, site_choices, site_deck, site_zones
+from ..sites.site_choices import LONGEST_TEXT
 from ..sites.site_roads import ROAD
 from ..sites.site_sections import VERSION, Ground, Key, OfMass
 from ..slips import bodies
@@ -50,6 +51,7 @@ def make_body_site(choices: Choices, folder: Path, body: Mapping[str, Any], numb
                    warn, draw) -> Path:
     """The site of a body, unless it is there; number: of bodies, which share the minutes."""
     place, slips = folder_of(folder, body["body"]), folder / SLIPS / str(body["body"])
+    geometry.make_mesh(choices.mesh, rasters.read_asc_local(slips / TERRAIN))
     if not (place / site_choices.NAME).is_file() or site.site_folder.was_not_made(place):
         place.parent.mkdir(exist_ok=True)
         site.make_site(choices_of(choices, slips, body, number), place, machine, tell, warn, draw)
@@ -67,7 +69,7 @@ def later(choices: Choices, body: Mapping[str, Any]) -> Dict[Key, Any]:
     asked = choices.asked._replace(start=body["road_from_m"] / 1000).about()
     return {("road", "cut_angle"): choices.cut_angle, ("road", "mesh"): choices.mesh,
             **{("road", key): value for key, value in asked.items()},
-            ("project", "name"): f"{choices.name + ', ' if choices.name else ''}{body['name']}",
+            ("project", "name"): f"{choices.name + ', ' if choices.name else ''}{body['name']}"[:LONGEST_TEXT],
             ("project", "client"): choices.client, ("project", "author"): choices.author}
 
 

@@ -22,7 +22,8 @@ from ..findings import Finding, finding
 from ..releases import release, release_files, release_toe
 from ..survey import local_terrain, polygons, rasters
 from ..survey.rasters import Raster, crs_name
-from . import site_bodies, site_budget, site_choices, site_deck, site_folder, site_layers, site_trial, site_warnings
+from . import (site_bodies, site_budget, site_choices, site_deck, site_folder, site_inputs, site_layers, site_trial,
+               site_warnings)
 from .site_budget import Size, Trial
 from .site_choices import Derived
 from .site_folder import BODY, BODY_DECK, MAP, TERRAIN
@@ -135,6 +136,9 @@ def build(given: OfMass, known: Derived, new: Path, folder: Path, machine: Machi
     body = site_bodies.widen_body(write_body(new, wanted, released), BODY, several)
     body = body._replace(thick=max(body.thick, given.model.least_thick or 0.0))
     layers = read_layers(given, raster, new, tell, keep)
+    site_inputs.check_beside_body(layers.structures, new, raster, released.depth)
+    if layers.roads:
+        geometry.make_mesh(given.road.mesh, raster)
     title = given.project.name or folder.absolute().name
     parts = site_deck.Parts(title, ", ".join(Path(name).name for name in given.terrain.files), body,
                             layers.structures, layers.lines, layers.motion, room_of(raster), layers.zones)
@@ -154,7 +158,7 @@ def build(given: OfMass, known: Derived, new: Path, folder: Path, machine: Machi
                   *(one for name, road in layers.roads.items() for one in site_warnings.check_road_resolution(
                     road, choices.road.width, size.diameter, max(released.area.cell, choices.model.cell or 0.0),
                     name)),
-                  *site_warnings.of_walls(layers.structures, size.diameter)):
+                  *site_warnings.of_walls(layers.structures, size.diameter, choices.structures)):
         keep(doubt)
     site_warnings.write_site_warnings(new, warnings)
     deck = site_deck.make_site_deck(choices, parts, find_deck_numbers(choices, soil_of(choices.model, parts), trial,

@@ -9,6 +9,7 @@ from typing import Iterable, List, NamedTuple, Optional, Set, Tuple
 
 import numpy as np
 from rasterio.crs import CRS
+from scipy.ndimage import binary_erosion
 
 from .. import disk
 from ..errors import SlopeError
@@ -37,6 +38,7 @@ class Structure(NamedTuple):
     high: np.ndarray
     triangles: int
     above: float            # m, its highest point above the ground there; of a wall along a line its height
+    given: str = ""         # the option that it is of
 
     @property
     def summary(self) -> str:
@@ -123,7 +125,8 @@ def structure(path: str, raster: Raster, folder: Path, taken: Set[str]) -> Struc
     copy(path, folder / f"{name}.stl")
     x, y, z = (points + move).reshape(-1, 3).T
     above = z - sample(raster, x, y)
-    return placed(name, points + move, float(above[np.isfinite(above)].max(initial=0.0)))._replace(move=move)
+    return placed(name, points + move, float(above[np.isfinite(above)].max(initial=0.0)))._replace(
+        move=move, given=f"--structure {path}")
 
 
 def placed(name: str, points: np.ndarray, above: float) -> Structure:
@@ -144,8 +147,22 @@ def walls(drawn: Iterable["Drawn"], raster: Raster, height: Optional[float], wid
         wall = np.round(site_walls.triangles(path, line, raster, height, width or site_walls.WIDTH), 4)
         name = unused(stem(path), taken)
         disk.write_file(folder / f"{name}.stl", site_walls.stl(name, wall))
-        walls_.append(placed(name, wall, height))
+        walls_.append(placed(name, wall, height)._replace(given=f"--wall {path}"))
     return walls_
+
+
+def check_beside_body(structures_: Iterable[Structure], folder: Path, raster: Raster, depth: np.ndarray) -> None:
+    """SlopeError, which names the option, where one stands in a body of a depth (m) on the ground before; its rim, a
+    cell, does not count.
+    """
+    body = binary_erosion(depth > 0)
+    for one in structures_:
+        low, high = site_walls.heights_of(corners(str(folder / one.file)) + one.move, raster)
+        if len(hit := np.argwhere(body & (low < raster.z) & (high > raster.z - depth))):
+            row, column = hit[len(hit) // 2]
+            place = polygons.decimetres(raster.transform @ (column + 0.5, row + 0.5))
+            raise SlopeError(one.given, "must not stand in the release area, where it would be in the balls",
+                             f"local x y {place}")
 
 
 def one_line(geometry, path: str):

@@ -13,6 +13,7 @@ from ..survey.resampling import sample
 
 WIDTH = 1.0             # m, unless it is given
 SHARPEST = 150.0        # degrees, by which a wall may turn at a point
+MOST_PARTS = 300        # of the side of a triangle
 ACROSS = 5              # points across a wall at which the ground is looked at
 
 
@@ -80,6 +81,22 @@ def ground(raster: Raster, left: np.ndarray, right: np.ndarray) -> Tuple[np.ndar
     z += [np.concatenate([edge, between], axis=1), np.concatenate([between, between[:, -1:]], axis=1)]
     whole = np.concatenate(z)
     return whole.min(axis=0), whole.max(axis=0)
+
+
+def heights_of(corners: np.ndarray, raster: Raster) -> Tuple[np.ndarray, np.ndarray]:
+    """The lowest and the highest point (m) of triangles (n, 3, 3) in each cell of a terrain; inf and -inf: none."""
+    low, high = np.full(raster.z.shape, np.inf), np.full(raster.z.shape, -np.inf)
+    sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+    parts = np.clip(np.ceil(2 * sides / raster.transform.a), 1, MOST_PARTS).astype(int)
+    for count in np.unique(parts):
+        i, j = (one.ravel() for one in np.mgrid[:count + 1, :count + 1])
+        shares = np.column_stack([i, j, count - i - j])[i + j <= count] / count
+        x, y, z = np.einsum("sk,nkc->cns", shares, corners[parts == count]).reshape(3, -1)
+        column, row = (np.clip(one, 0, most - 1).astype(int) for one, most in zip(~raster.transform @ (x, y),
+                                                                                  raster.z.shape[::-1]))
+        np.minimum.at(low, (row, column), z)
+        np.maximum.at(high, (row, column), z)
+    return low, high
 
 
 def strip(*edges: np.ndarray) -> np.ndarray:

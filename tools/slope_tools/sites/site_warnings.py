@@ -16,7 +16,7 @@ from ..findings import WARNING, Finding, encode_findings, finding
 from ..releases.release_solve import Measures
 from .site_budget import Size, Trial
 from .site_inputs import Structure
-from .site_sections import Choices, OfMass
+from .site_sections import Choices, OfMass, Structures
 from .site_zones import Zone
 
 NAME = "warnings.yaml"
@@ -28,7 +28,8 @@ HEAVIEST = ("in feet", "no ground's slope", "cliff", "picture", "pits", "no such
             "shift", "stretched", "CRS of terrain", "datums",
             "in a pit", "no way out", "hollow", "above ground", "no body", "little", "road on body", "under road",
             "beyond toe", "bulges", "rim", "parts", "own depth", "shared", "unused depth",
-            "small angle", "large rolling", "narrow road", "low wall", "left terrain", "outside", "not at rest",
+            "small angle", "large rolling", "narrow road", "high wall", "low wall", "left terrain", "outside",
+            "not at rest",
             "zone covered", "zones overlap", "several bodies", "second opinion",
             "blocks on level ground", "thin", "few across", "few cells")
 NAMES = "{file}:", "{name}:"        # with which the words of a kind begin that is of one object
@@ -38,6 +39,7 @@ LEAST_CELLS = 2         # across a road
 ACROSS = 10.0           # cells across a body
 COEFFICIENT = 3.0       # degrees: smaller angles of friction, or of a cut, may be meant as tangents
 ROLLS_NOT = 1.0         # larger coefficients of rolling resistance may be meant as angles or percents
+HIGH = 50.0             # m: walls are rarely higher
 STEEP = 65.0            # degrees; tried: some faces of balls stand at 60, none at 70 and 80, whatever their friction
 # what a run says whose body falls while it settles
 FALLS = ("does not stand before it is shaken", "Lost atoms", "must be the body that the balls fill")
@@ -120,10 +122,12 @@ def check_road_resolution(road: Optional[BaseGeometry], width: Optional[float], 
                                     "cells": wide / cell, "remedy": " and ".join(remedy)})]
 
 
-def of_walls(structures: Sequence[Structure], d: float) -> List[Finding]:
-    """Structures that are not as high above the ground as a ball (d, m)."""
-    return [Finding("low wall", {"name": one.name, "height": one.above, "d": d, "remedy": smaller(d, one.above)})
-            for one in structures if 0 < one.above < d]
+def of_walls(structures: Sequence[Structure], d: float, asked: Structures = Structures()) -> List[Finding]:
+    """Structures that are not as high above the ground as a ball (d, m), and walls of a height that is none."""
+    high = [Finding("high wall", {"height": asked.height, "limit": HIGH})] if asked.walls and (
+        asked.height or 0) > HIGH else []
+    return high + [Finding("low wall", {"name": one.name, "height": one.above, "d": d,
+                                        "remedy": smaller(d, one.above)}) for one in structures if 0 < one.above < d]
 
 
 def smaller(d: float, most: float) -> str:

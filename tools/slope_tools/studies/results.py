@@ -6,10 +6,9 @@ from typing import Any, Dict, Mapping, Optional, Sequence
 
 from .. import kept, provenance, records
 from ..case import run_folders
-from ..deposits.road_axis import axes_of, axis_of
+from ..deposits.road_axis import axes_of
 from ..ensembles import ensemble, known_events
 from ..errors import SlopeError
-from ..geometry import as_multi, box_of
 from ..mobility import known
 from ..mobility.exceedance import Mobility
 from ..runs import jobs
@@ -113,9 +112,9 @@ def write_bodies(path: Path, road: Road, run: Repeat, entries: Sequence[Mapping[
     """Which body brings most to which part of the road, for a GIS."""
     raster = placed(run_folders.load_raster(prefix_of(run), "thickness"), run)
     given = road.read(raster)
-    axis, *_ = axis_of(given.lines, as_multi(given.polygon.intersection(box_of(raster))), road.asked)
+    axes, _ = axes_of(given.lines, given.polygon, road.asked, raster)
     geopackage.write_geopackage(path, {
-        road_runs.BODIES: road_runs.layer_of_bodies(entries, axes_of(axis, road.asked))}, raster)
+        road_runs.BODIES: road_runs.layer_of_bodies(entries, axes)}, raster)
 
 
 def write_study_road(output: Path, road: Road, run: Repeat) -> Dict[str, Any]:

@@ -19,6 +19,8 @@ from ..tables.quantities import OF_ROAD
 from ..tables.rows import finished_of
 
 PAGE = "report.html"    # in that of a road
+PAGES = "report", "paper", "ensemble"
+SUFFIXES = ".html", ".pdf", ".section.csv", ".numbers.csv", ".mp4"      # of what lies beside a page
 KEYS = [one.key for one in OF_ROAD]
 HEAD = ",".join(["run", "road", *KEYS])     # of roads.csv
 
@@ -73,6 +75,7 @@ def evaluate_all_roads(site: Site, several: bool, tell: Callable[[Any], Any],
     names = site_roads.names(site)
     if several:
         check_table(site.folder, bool(names))
+        remove_former_pages(site.folder, names)
     if not names or not several:
         return make(replace(site, road=names[0]) if names else site, (), False)
     made = {name: make(replace(site, road=name), (), True) for name in names}
@@ -128,6 +131,14 @@ def check_table(folder: Path, needed: bool) -> None:
         raise SlopeError(path, "must not exist, slope study makes a file of that name: rename or move it")
     if ours and not needed:
         path.unlink()
+
+
+def remove_former_pages(folder: Path, names: Sequence[str]) -> None:
+    """Remove the pages of roads that are no choice of the site any more; their studies stay, which nothing takes."""
+    for place in (folder / site_roads.FOLDER).glob("*"):
+        if place.name not in names and any((place / one / "study.yaml").is_file() for one in ("study", "ensemble")):
+            for path in (place / f"{page}{suffix}" for page in PAGES for suffix in SUFFIXES):
+                path.unlink(missing_ok=True)
 
 
 def write_road_numbers(folder: Path, studies: Mapping[str, Sequence[study_types.Study]]) -> None:

@@ -14,14 +14,16 @@ from typing import Any, Callable, Dict, Iterable, List, Mapping, NamedTuple, Opt
 from .. import disk, schemas
 from ..case import decks, run_folders
 from ..case.settings import middle as middle_of
+from ..deposits import road_axis
 from ..errors import SlopeError
 from ..findings import Finding, finding
 from ..runs import jobs, repeats
 from ..schemas import FINDINGS
-from ..sites import site_budget, site_choices, site_deck, site_roads, site_warnings
+from ..sites import site_budget, site_choices, site_deck, site_folder, site_roads, site_warnings
 from ..sites.site_choices import Folder, Site
 from ..sites.site_layers import OBSERVED
 from ..sites.site_sections import PACKING, Choices, OfMass
+from ..survey import rasters, roads
 from ..tables import elastic, energy, named_run, study_types
 from ..tables.rows import Failed, finished_of
 from ..tables.sizes import VARIABLE
@@ -219,6 +221,18 @@ def check_site(site: Folder[Choices]) -> None:
             raise SlopeError(folder / name, f"must not have changed since {site_deck.NAME} was made from it: "
                              f"`slope site {quote(str(folder))}` rebuilds the deck")
     mapped.check_mapped_deposit(folder)
+    if isinstance(site.choices, OfMass) and site.choices.road.file:
+        for name in site_found.roads or [""]:
+            check_site_lane(site.choices.road.asked, folder / site_roads.file_name(name))
+
+
+def check_site_lane(asked: roads.Asked, road: Path) -> None:
+    """Raise SlopeError, before any run, if a lane is wider than a road of polygons; of a line slope site says it."""
+    if asked.lane is not None and asked.width is None:
+        raster = rasters.read_asc_local(road.with_name(site_folder.TERRAIN))
+        polygon = roads.read_local(road, raster, asked).polygon
+        axes, _ = road_axis.axes_of((), polygon, asked, raster)
+        roads.check_lane(asked.lane, road_axis.width_of(axes, road_axis.part_in_grid(polygon, raster)))
 
 
 def digests(site: Site) -> Dict[str, str]:

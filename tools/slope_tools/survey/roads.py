@@ -68,6 +68,7 @@ KEYS = {"width": "width", "start": "from", "blocked": "blocked", "lane": "lane",
 OPTIONS = {"width": "--road-width", "start": "--road-from", "blocked": "--blocked", "lane": "--lane",
            "clearing": "--clearing", "loosening": "--loosening"}
 SHORTEST = 1.0          # m, of a line
+WITHOUT_LINE = "leave out --road-width, which is that of a line"
 WITHOUT_WIDTH = "is a line, whose width must be given: --road-width"
 MARK = "# the line of a road, whose width is given apart"
 
@@ -97,10 +98,10 @@ def check_lane(lane: Optional[float], width: float) -> None:
 
 
 def read_local(path, raster, asked: Asked = NOTHING, local=False, crs=None, advice=None,
-               warn=vectors.ignore) -> Road:
+               warn=vectors.ignore, instead=WITHOUT_LINE) -> Road:
     """The road of a file in the local metres of a terrain; arguments as of polygons.read_local(), which see.
 
-    Raises SlopeError, which names the file, and for a line the chainage.
+    Raises SlopeError, which names the file, and for a line the chainage; instead: its remedy for a file of polygons.
     """
     vectors.require_file(path)
     if asked.width is None:
@@ -111,7 +112,7 @@ def read_local(path, raster, asked: Asked = NOTHING, local=False, crs=None, advi
             if not is_line(path):
                 raise
         raise SlopeError(path, WITHOUT_WIDTH)
-    drawn = drawn_in(path, raster, local, crs, advice, warn)
+    drawn = drawn_in(path, raster, local, crs, advice, warn, instead)
     if MARK in (polygons.read_text(path) or ""):
         return together(path, [one.line for one in drawn], raster, asked)
     found = network.roads_of(drawn)
@@ -180,10 +181,9 @@ def free(name: str, taken: Mapping[str, Any]) -> str:
     return next(one for one in (name, *(f"{name}_{k}" for k in range(2, len(taken) + 3))) if one not in taken)
 
 
-def drawn_in(path, raster, local, crs, advice, warn) -> List[network.Drawn]:
+def drawn_in(path, raster, local, crs, advice, warn, instead=WITHOUT_LINE) -> List[network.Drawn]:
     """The lines of a file as they are drawn, in local metres."""
-    return lines.read_drawn(path, raster, local, "road", advice, crs, warn,
-                            "leave out --road-width, which is that of a line")
+    return lines.read_drawn(path, raster, local, "road", advice, crs, warn, instead)
 
 
 def together(path, several: Sequence[LineString], raster, asked: Asked) -> Road:
