@@ -346,6 +346,13 @@ def test_a_wrong_spacing_in_the_file(mine, model, rule):
         site_choices.load_site(mine)
 
 
+def test_a_set_of_known_events_is_checked_before_it_is_kept(inside, mine):
+    before = contents(mine)
+    err = inside("mine --known foo", 2).err
+    assert err.count("\n") == 1 and re.search("slope site: --known: must be .*, got foo$", err)
+    assert contents(mine) == before
+
+
 # --- soil and ground ---
 
 def test_options_of_soil_and_ground_reach_the_deck(inside, mine):

@@ -314,6 +314,8 @@ def choose_site(args: Request) -> Chosen:
             raise SlopeError("--terrain" if args.terrain is None else "-o", "must be given, or the folder of a site")
         folder, choices, known = args.output, kinds.begun(args.blocks), {}
     kinds.check_kind(choices, {name: OPTIONS[name] for name in given})
+    if "known" in given:
+        known_arguments.choice_of(given["known"], [], None)     # SlopeError
     if "density" in given and isinstance(choices, OfMass):
         given["density"] = density_of_ball(given["density"])
     choices = replaced(choices, given)
