@@ -2,7 +2,9 @@
 import importlib.util
 import shutil
 import subprocess
+from pathlib import Path
 
+import numpy as np
 import pytest
 
 from run_helpers import TOP
@@ -26,6 +28,16 @@ def test_the_finest_run_is_judged_by_what_coarser_ones_leave(tmp_path, capsys):
     assert deep[2:4] == ["4.0", "1320"] and float(deep[4]) == pytest.approx(1320, rel=1e-3)
     assert 1386 < float(deep[5]) < 1600 and deep[6:] == ["1600", "False"]
     assert ["remove: 1 of 2 within"] in lines and ["length: 2 of 2 within"] in lines
+
+
+def test_finer_runs_lie_where_coarser_ones_leave_them(capsys):
+    """Ten slides with 51,200 balls (doc/src/sensitivity.rst), by runs with 100, 800 and 6,400: what a study says of
+    finer balls."""
+    family.judge(Path(__file__).with_name("size_family.csv"))
+    lines = capsys.readouterr().out.splitlines()
+    assert {"remove: 10 of 10 within", "on_road: 10 of 10 within", "length: 10 of 10 within"} <= set(lines)
+    rows = [line.split(",") for line in lines if line.startswith("remove,")]
+    assert np.median([(float(high) - float(low)) / 2 / float(mean) for *_, mean, low, high, _, _ in rows]) < 0.11
 
 
 @pytest.mark.parametrize("name, road", [("thin", 10.0), pytest.param("compact", 4.0, marks=pytest.mark.long)])
