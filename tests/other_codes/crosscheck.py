@@ -1,4 +1,4 @@
-"""slope crosscheck: the same scenes in other codes, the paper's own method of verification.
+"""slope crosscheck: the same scenes in other codes, as in the paper's validation.
 
 Order of the work: read a deck's final numbers (its run, with zero steps), write the scene for every code, run, compare.
 

@@ -269,7 +269,7 @@ def slide_roll(work, case):
                  for code, (_, series) in work.run(name, scene, steps, every).items()}
         what = f"friction {theta} degrees"
         work.theory(case, f"path m, {what}", {code: path for code, (path, _) in found.items()}, expected,
-                    0.01 * expected, "1 %: the contact gets steeper on the way (0.5 %), not so in the paper's formula")
+                    0.01 * expected, "1 %: the contact gets steeper on the way (0.5 %), not so in the formula")
         work.theory(case, f"rotation rad, {what}", {code: turn for code, (_, turn) in found.items()},
                     expected / (scene.diameter / 2) if theta else 0.0, 0.01 * expected / (scene.diameter / 2), "1 %")
 

@@ -35,7 +35,7 @@ QUANTITIES = {"to remove": ("m3", 0.05), "on the road": ("m3", 0.05), "beyond": 
 FILE = "table.csv"
 CUT, MESH = 30.0, 5.0           # degrees, m
 WRONG = 2                       # times the rolling resistance, in the control
-# variables of the deck: the paper's set-up; what takes minutes, with which three starts find the control
+# variables of the deck: the paper's rule; what takes minutes, with which three starts find the control
 PAPER: Mapping[str, Any] = {"rule": "paper", "d": 1.25}
 QUICK: Mapping[str, Any] = {"rule": "ours", "d": 4.0}
 

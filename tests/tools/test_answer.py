@@ -1,4 +1,4 @@
-"""The number of a study: the larger of the paper's and an ensemble's, a floor, withheld, or nothing; by hand."""
+"""The number of a study: the larger of the sweep's and an ensemble's, a floor, withheld, or nothing; by hand."""
 import os
 from dataclasses import replace
 from pathlib import Path

@@ -183,7 +183,7 @@ def volumes_by_rolling(factor):
 @pytest.mark.parametrize("quick", [True, False])
 @pytest.mark.parametrize("factor, verdict, passed", [(5, "found", True), (0.1, "not found", False)])
 def test_the_table_must_find_a_doubled_rolling_resistance(here, monkeypatch, factor, verdict, passed, quick):
-    """With balls of 4 m, whatever those of the table: the paper's set-up, or with --quick the same."""
+    """With balls of 4 m, whatever those of the table: the paper's rule, or with --quick the same."""
     monkeypatch.setattr(crosscheck_table, "numbers_of", volumes_by_rolling(factor))
     work = Stub(here, [peers.Slope(LMP), peers.Granular(LMP)])
     work.quick = quick

@@ -47,7 +47,7 @@ def small(mine, gis):  # noqa: F811
 
 @pytest.mark.parametrize("name, words", [("large", "big"), ("small", "mine")])
 def test_both_studies_of_masses_of_all_sizes(request, capsys, monkeypatch, name, words):
-    """The paper's 13 runs, three with the largest restitution, one with half the step where there is a road; 64 that
+    """The sweep's 13 runs, three with the largest restitution, one with half the step where there is a road; 64 that
     known events weigh."""
     request.getfixturevalue(name)
     status, out, err = study(capsys, monkeypatch, words)
@@ -125,7 +125,7 @@ def test_why_not(large, monkeypatch):
 
 
 def test_known_of_site_yaml_reaches_the_study(mine, capsys, monkeypatch):  # noqa: F811
-    """Its row weighs the ensemble, and withholds the paper's number; without one landslides count, and do not."""
+    """Its row weighs the ensemble, and withholds the sweep's number; without one landslides count, and do not."""
     choices = (mine / "site.yaml").read_text()
     for given, path, named in (("null", "all", False), ("debris_flows:channelized", "channelized", True)):
         (mine / "site.yaml").write_text(choices.replace("  set: null", f"  set: {given}"))

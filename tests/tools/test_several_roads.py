@@ -47,7 +47,7 @@ def plain(about):
 
 @pytest.fixture(scope="module")
 def done(tmp_path_factory):
-    """A site with three roads and its study by the paper's method; the folder and what the study printed."""
+    """A site with three roads and its study by the sweep; the folder and what the study printed."""
     folder = tmp_path_factory.mktemp("roads")
     write_files(folder)
     for name, points in (("near", NEAR), ("far", FAR)):

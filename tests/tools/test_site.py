@@ -140,7 +140,7 @@ def gis(tmp_path):
 
 @pytest.fixture(scope="module")
 def done(tmp_path_factory):
-    """The two commands of a new user, of the paper's study alone; gives the folder and what both printed."""
+    """The two commands of a new user, of the sweep alone; gives the folder and what both printed."""
     folder = tmp_path_factory.mktemp("site")
     write_files(folder)
     first = make(folder, "--shape", "ellipsoid", "--depth", "5", "--road", "road.geojson", "--balls", BALLS,
@@ -190,7 +190,7 @@ def test_two_commands_lead_from_gis_files_to_a_report(done):
 
 
 def test_both_studies_give_one_number(done, tmp_path, monkeypatch, capsys):
-    """The paper's runs are taken over; an ensemble of a few runs beside them; the larger number, in both study.yaml."""
+    """The sweep's runs are taken over; an ensemble of a few runs beside them; the larger number, in both study.yaml."""
     mine = tmp_path / "mine"
     shutil.copytree(done[0] / "mine", mine)
     for name in ("dem.tif", "release.geojson", "road.geojson"):
@@ -240,7 +240,7 @@ def test_both_studies_give_one_number(done, tmp_path, monkeypatch, capsys):
             patch.setattr(where, name, fails)
             assert cli.main(["study", "mine", "--levels", "1"]) == 2
         assert before == [(mine / name / "study.yaml").read_bytes() for name in ("study", "ensemble")]
-    # a first study, too: the paper's number alone is never the site's
+    # a first study, too: the sweep's number alone is never the site's
     for name in ("study", "ensemble"):
         (mine / name / "study.yaml").unlink()
     for how, says in ((fails, "x: must fail"), (no_run_finishes, "mine: must have an ensemble for its number")):

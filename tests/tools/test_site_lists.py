@@ -176,7 +176,7 @@ def test_another_place_in_a_sidecar_counts(mine):
 
 
 def test_other_values_of_the_model_leave_the_runs_where_they_are(mine, inside, trials):  # noqa: F811
-    """Those of the paper's study are other ones; the ensemble's have a friction of their own."""
+    """Those of the sweep are other ones; the ensemble's have a friction of their own."""
     runs = set((mine / "runs").iterdir())
     inside("mine --friction 25")
     assert counts(mine) == (POINTS, 17)

@@ -270,7 +270,7 @@ def write_balls(path, arrivals):
 
 
 def draw_travel(path, arrivals, tables, wanted: Wanted) -> None:
-    """The distributions, as the paper's Figure 3: a line for the median of the runs, a band from lowest to highest."""
+    """The distributions, as the paper's Figure 3; a line for the median of the runs, a band from lowest to highest."""
     several = len(arrivals) > 1
     with pictures.settings(figures.STYLE):
         figure, panels = pictures.subplots(1, 2, figsize=(figures.FULL, 2.9), sharey=True)

@@ -1,6 +1,6 @@
 """How far the mass goes with the most elastic rock: runs with soil, slip surface and ground at the largest restitution.
 
-They estimate reach, and the area, after Nakase et al.; the ground's restitution is ours. They are none of those that
+They estimate the area, after Nakase et al., and reach; the ground's restitution is ours. They are none of those that
 the volume is of.
 """
 from dataclasses import replace

@@ -64,8 +64,8 @@ def _path(name, text, source, expected, right, wrong, **values):
 
 SLIDE = 0.5 * G * math.sin(math.radians(30)) * 0.02 ** 2
 CLAIMS = [
-    _path("slide", "Without friction: path after 0.02 s, 0.5 g sin(phi) t^2", FIGURES, SLIDE, 0, 10),
-    _path("roll", "Friction 10 degrees: path after 0.02 s, 5/7 of that", FIGURES, 5 / 7 * SLIDE, 10, 0),
+    _path("slide", "Without friction: path after 0.02 s, 0.5 g sin(phi) t^2", "uniform acceleration", SLIDE, 0, 10),
+    _path("roll", "Friction 10 degrees: path after 0.02 s, 5/7 of that", "uniform acceleration", 5 / 7 * SLIDE, 10, 0),
     Claim("slide_only", "Without friction: share of the path that is rolled", "", FIGURES, (START(theta=0),),
           measure_rolled_share, AtMost(1e-9), Control("friction 10 degrees", (START(theta=10),))),
     Claim("roll_only", "Friction 10 degrees: share of the path that is slid", "", FIGURES, (START(theta=10),), slipping,
