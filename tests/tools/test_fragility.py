@@ -250,6 +250,19 @@ def test_pseudo_static_with_less_than_the_peak_is_not_cautious(slips, capsys):
     assert (less <= more).all() and (less < more - 0.1).any()
 
 
+@pytest.mark.parametrize("first, told", [(50, False), (300, True)])
+def test_a_hazard_curve_that_begins_late_gives_a_lower_bound(slips, capsys, first, told):
+    """A rate of (peak / 100 gal)^-2 / 100 at what each body stands; from 300 gal on most strengths fail below the curve."""
+    Path("late.csv").write_text("peak,exceedance\n" + "".join(
+        f"{peak},{0.01 * (peak / 100) ** -2}\n" for peak in (first, 3000)))
+    status, out, err = ran(capsys, f"slips {SOIL} --peaks 50:1500:50 --pseudo-static 1 --sample 512 --hazard late.csv "
+                           "-o out")
+    rows = list(csv.reader(open("out/capacities.csv")))
+    below = [float(value) for row in rows[1:] for value in row[-1:] if 0 < float(value) < first]
+    assert status == 0 and ("fails at least" in out) == ("first peak" in err) == told == bool(len(below) > 30)
+    assert not told or re.search(f"a curve from {min(below):.3g} gal on", err)
+
+
 def test_strengths_with_which_the_slope_would_not_stand_are_named(slips, capsys):
     """Few, but each earthquake of the curve finds them failed."""
     few = SOIL.replace("3e3:9e3", "list:0@0.02,9e3@0.98")

@@ -221,6 +221,8 @@ WORDS: Dict[str, Union[str, Words]] = {
     "fit is off": "{which}: the lognormal fit is off by up to {difference:.2f}",
     "HCLPF": "{which}: at the HCLPF {percent:.2g} % fail, the lognormal fit says {fitted:.2g} %: it is too favourable "
              "there",
+    "before the curve": "{which}: {percent:.2g} % of its frequency is of strengths that fail below the hazard curve's "
+                        "first peak, so that it fails more often: give a curve from {least:.3g} gal on",
     "beyond the curve": "{which}: peaks above the hazard curve's last may add up to {per_year:.2g} failures per year",
     # of a study
     "ranks": "{runs} runs of {ranks} ranks at a time on {cores} cores: they slow each other down",

@@ -211,6 +211,8 @@ class Frequency(NamedTuple):
     total: Band
     parts: List[Tuple[float, float, Any]]       # from and to which peak (gal), and how much of it comes from there
     beyond: Any         # that the total can be larger by: peaks above the curve's last count as the last
+    before: float = 0.0     # of the total, what fails below the curve's first peak, and counts as failing at it
+    least: float = 0.0      # the smallest of these capacities, gal
 
 
 def frequency(capacity: np.ndarray, hazard: Hazard, peaks: np.ndarray) -> Frequency:
@@ -222,4 +224,6 @@ def frequency(capacity: np.ndarray, hazard: Hazard, peaks: np.ndarray) -> Freque
     total = banded(replicates(hazard.exceeds(capacity)).reshape(REPLICATES, -1).mean(axis=1))
     ends = np.unique(np.concatenate([[first], peaks[(peaks > first) & (peaks < last)], [last, np.inf]]))
     parts = [(float(a), float(b), float(hazard.exceeds(capacity, a, b).mean())) for a, b in zip(ends[:-1], ends[1:])]
-    return Frequency(total, parts, float((1 - (capacity < last).mean()) * hazard.rates[-1]))
+    before = capacity[(capacity > 0) & (capacity < first)]
+    return Frequency(total, parts, float((1 - (capacity < last).mean()) * hazard.rates[-1]),
+                     before.size / capacity.size * float(hazard.rates[0]), float(before.min(initial=first)))
