@@ -252,7 +252,7 @@ def test_pseudo_static_with_less_than_the_peak_is_not_cautious(slips, capsys):
 
 @pytest.mark.parametrize("first, told", [(50, False), (300, True)])
 def test_a_hazard_curve_that_begins_late_gives_a_lower_bound(slips, capsys, first, told):
-    """A rate of (peak / 100 gal)^-2 / 100 at what each body stands; from 300 gal on most strengths fail below the curve."""
+    """A rate of (peak / 100 gal)^-2 / 100; from 300 gal on most strengths fail below the curve."""
     Path("late.csv").write_text("peak,exceedance\n" + "".join(
         f"{peak},{0.01 * (peak / 100) ** -2}\n" for peak in (first, 3000)))
     status, out, err = ran(capsys, f"slips {SOIL} --peaks 50:1500:50 --pseudo-static 1 --sample 512 --hazard late.csv "
