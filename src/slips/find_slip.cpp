@@ -134,7 +134,7 @@ std::vector<SlipBody> FindSlip::search(const SlipOptions &options, SlipBodyMaker
   if (bodies.empty())
     error->all(
         FLERR,
-        "Find_slip limits must leave a sphere inside the terrain, volume {:g} to {:g}, depth "
+        "Find_slip limits must leave a sphere inside the terrain that it finds, volume {:g} to {:g}, depth "
         "{:g} to {:g}, got none of {} that were tried",
         limits.volume_lo, limits.volume_hi, limits.depth_lo, limits.depth_hi, search.surfaces());
   least = search.least();

@@ -487,7 +487,8 @@ std::vector<SlipBody> SlipSearch::apart(const std::vector<SlipBody> &bodies)
 std::vector<SlipBody> SlipSearch::run()
 {
   static constexpr int LINES = 96;
-  const std::vector<SlipBody> found = apart(improve_all("simplex", starts(), false, 0, 100, 1));
+  const std::vector<SlipBody> first = starts();
+  const std::vector<SlipBody> found = apart(improve_all("simplex", first, false, 0, 100, 1));
 
   // one that slides into a better one's place is kept as it was on the way, or before
 
@@ -499,6 +500,10 @@ std::vector<SlipBody> SlipSearch::run()
   add(improve_all("exact columns", way, false, LINES, 100, AGAIN));
   add(way);
   add(improve_all("exact columns", found, false, LINES, 0, 0));
+
+  // coarse columns led to where exact ones leave no body, as in a narrow polygon
+
+  if (all.empty()) add(improve_all("exact columns", first, false, LINES, 100, AGAIN));
   if (limits.ellipsoids) add(improve_all("ellipsoids", apart(all), true, LINES, 200, AGAIN));
   std::vector<SlipBody> kept = distinct(all, limits.keep, SHARED, 1);
   for (SlipBody &body : kept) {

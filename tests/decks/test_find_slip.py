@@ -275,6 +275,16 @@ def test_a_yield_coefficient_that_does_not_exist_is_nan_in_the_deck(tmp_path):
     assert math.isnan(row["yield"]) and f"DECK nan 19.182 {row['factor']:.6g}" in log
 
 
+def test_a_narrow_polygon_has_a_body_though_coarse_columns_lead_out_of_it(tmp_path):
+    write_asc(tmp_path / "ground.asc", numpy.tile(120 + numpy.clip(0.639 * (numpy.arange(1, 141, 2) - 50), 0, 31.945),
+                                                  (70, 1)), cell=2)
+    (tmp_path / "within.csv").write_text("60,60\n98,60\n98,80\n60,80\n")
+    run_deck(deck("10000 30 1900", "volume 700 6000 within inside").replace(
+        "find_slip", "region inside polygon within.csv\nfind_slip", 1), tmp_path)
+    [row] = rows(tmp_path)
+    assert row["volume"] >= 700 and 1.8 < row["factor"] < 1.9
+
+
 def test_the_search_finds_the_least_on_any_number_of_ranks(tmp_path):
     """Not above the 1.0400 of a search by Scoops3D on a lattice, within the limits; the map and the rows agree."""
     of_10_m(tmp_path)
