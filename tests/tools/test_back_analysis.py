@@ -6,7 +6,7 @@ import pytest
 import yaml
 
 from run_helpers import called, write_asc
-from test_slips import CASES, embankment, plane, write_columns
+from test_slips import CASES, embankment, ground, plane, write_columns
 from tiny_collapse import rows_of
 
 from slope_tools.commands import stability
@@ -57,9 +57,8 @@ def test_a_long_ellipsoid_is_that_of_the_core():
     middle = 0.5 * 2161 * 0.5
     left = 32.26 ** 2 - (x - 25.94) ** 2 - ((y - middle) / 15) ** 2
     base = 46.34 - np.sqrt(np.where(left > 0, left, np.nan))
-    body = columns.of_raster(terrain, base, columns.find_largest_part(terrain, base) &
-                             np.isfinite(np.gradient(base)).all(axis=0),
-                             (25.94, middle, 46.34), 180.0, 18.82e3 / columns.GRAVITY)
+    body = columns.of_raster(terrain, base, columns.find_largest_part(terrain, base), (25.94, middle, 46.34), 180.0,
+                             18.82e3 / columns.GRAVITY)
     soil = Strengths(41.65e3, np.tan(np.radians(15.0)))
     assert bishop.factor_of_safety(body, soil)[0] == pytest.approx(1.526, rel=0.01)
 
@@ -76,6 +75,38 @@ def test_a_plane_slab_is_the_infinite_slope_about_any_axis(axis):
     expected = 5e3 / (2000 * columns.GRAVITY * thick * np.sin(beta) * np.cos(beta)) + 0.4 / np.tan(beta)
     assert bishop.factor_of_safety(body, Strengths(5e3, 0.4))[0] == pytest.approx(expected, rel=1e-6)
     assert back.cohesion_of(body, 0.4 / expected)[0] == pytest.approx(5e3 / expected, rel=1e-6)
+
+
+def test_what_a_raster_has_beside_the_body_does_not_count(tmp_path):
+    """The coarse sphere, with the ground around it and with nothing: one line, that of the sphere; no cell is lost."""
+    _, centre, radius, *_ = HIGH
+    z = ground(lambda x: np.clip(15 + (x - 18.25) / 1.5, 15, 35), 27, 27, 2.5)
+    base = columns.base_of(z, centre, radius)
+    body = columns.find_largest_part(z, base + failed.LEAST)
+    exact = columns.of_sphere(z, centre, radius, 180.0, 1900.0)
+    found = []
+    for beside in (z.z, z.z - 0.04, np.nan, base):
+        write_asc(tmp_path / "scar.asc", np.where(body, base, beside), 2.5)
+        found.append(failed.read_failed_body(str(tmp_path / "scar.asc"), z, 180.0, 1900.0))
+        assert found[-1].cells == body.sum() and found[-1].columns.volume == pytest.approx(exact.volume, rel=1e-3)
+    for phi in (0.0, 10.0, 20.0):
+        lines = [back.cohesion_of(one, np.tan(np.radians(phi)))[0] for one in (exact, *(one.columns for one in found))]
+        assert lines[2:] == pytest.approx([lines[1]] * 3, rel=1e-9)
+        assert lines[1] == pytest.approx(lines[0], abs=0.03 * back.cohesion_of(exact, 0.0)[0])
+
+
+def test_cells_without_a_neighbour_have_the_dip_of_the_nearest():
+    """An even slab three cells wide with a tip of one: all of it dips as the slope; a strip is level across."""
+    slope = plane(np.radians(30.0), 0.5)
+    inside = np.zeros(slope.z.shape, bool)
+    inside[100:103, 50:80] = inside[101, 80:90] = inside[103:105, 60] = True
+    body = columns.of_raster(slope, slope.z - 2, inside, (30.0, 20.0, 300.0), 180.0, 2000.0)
+    assert body.sine == pytest.approx(0.5, abs=1e-9) and body.cosine == pytest.approx(np.cos(np.radians(30)), abs=1e-9)
+    assert columns.count_alone(inside) == 12
+    inside[:] = False
+    inside[100, 50:80] = True
+    strip = columns.of_raster(slope, slope.z - 2, inside, (30.0, 20.0, 300.0), 180.0, 2000.0)
+    assert strip.sine == pytest.approx(0.5, abs=1e-9) and columns.count_alone(inside) == 30
 
 
 # --- the command ---
@@ -121,7 +152,7 @@ def test_a_sphere_its_table_and_its_raster(here, capsys):
 
 
 def test_a_plane_scar_has_a_far_axis(here, capsys):
-    """A slab of 0.5 m on a slope of 1:1.5: nearly the infinite slope; its rim, a cell wide, dips otherwise."""
+    """A slab of 0.5 m on a slope of 1:1.5: the infinite slope, at its rim, too."""
     slab = HIGH[0].z.copy()
     slab[40:90, 50:90] -= 0.5
     write_asc("scar.asc", slab, 0.5)
@@ -131,8 +162,8 @@ def test_a_plane_scar_has_a_far_axis(here, capsys):
     assert about["volume"] == pytest.approx(250, rel=1e-6) and about["bearing"] == pytest.approx(270, abs=0.5)
     assert np.isinf(about["radius"])
     beta = np.arctan(1 / 1.5)
-    assert table()[1][0] == pytest.approx(1919.1 * columns.GRAVITY * 0.5 * np.sin(beta) * np.cos(beta), rel=0.1)
-    assert table()[0][-1] == pytest.approx(np.degrees(beta), rel=0.1)
+    assert table()[1][0] == pytest.approx(1919.1 * columns.GRAVITY * 0.5 * np.sin(beta) * np.cos(beta), rel=1e-5)
+    assert table()[0][-1] == pytest.approx(np.degrees(beta), rel=1e-5)
 
 
 def test_a_hollow_that_is_no_sphere(here, capsys):
@@ -149,6 +180,9 @@ def test_a_hollow_that_is_no_sphere(here, capsys):
     assert abs(back.line(body.far).cohesion[0] / line.cohesion[0] - 1) < 0.1
     [text] = map(str, stability.failed_warnings(body, line, line._replace(cohesion=1.2 * line.cohesion)))
     assert "depends on the axis of moments" in text and "+20 %" in text
+    some = [list(stability.failed_warnings(body._replace(alone=int(share * body.cells)), line, None))
+            for share in (0.09, 0.12)]
+    assert [[one.kind for one in of] for of in some] == [[], ["narrow"]]
 
 
 @pytest.mark.parametrize("words, rule", [

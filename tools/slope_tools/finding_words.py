@@ -208,6 +208,8 @@ WORDS: Dict[str, Union[str, Words]] = {
             "have a lower factor",
     "fails": "body {body} has a factor of {value:.3f}, below 1: with these numbers it does not stand",
     "few columns": "the body has {cells} cells, fewer than {limit}: the line is rough",
+    "narrow": "{alone} of the body's {cells} cells have no neighbour in it on one axis, and the dip of the nearest "
+              "cell that has: the line is rough",
     "no sphere": "the body is no sphere, and the line depends on the axis of moments: a far one changes the cohesion "
                  "by {percent:+.0f} % without friction",
     "pseudo-static": "pseudo-static: a body that is at F < 1 for an instant with {factor:g} times the peak counts as "

@@ -14,6 +14,7 @@ from ..programs import find_lmp
 # options without a meaning for --failed; of the cohesion, between the axis of the nearest sphere and a far one
 SEARCH = ("cohesion", "friction", "layer", "volume", "depth", "within", "method", "shape", "keep", "np", "lmp")
 APART = 0.1
+ALONE = 0.1        # of the cells, without a neighbour in the body on one axis
 
 DESCRIPTION = "The slip surfaces with the least factor of safety below a terrain."
 EPILOG = """\
@@ -284,6 +285,8 @@ def failed_warnings(body, line, far):
 
     if body.cells < FEWEST:
         yield findings.Finding("few columns", {"cells": body.cells, "limit": FEWEST})
+    if body.alone > ALONE * body.cells:
+        yield findings.Finding("narrow", {"alone": body.alone, "cells": body.cells})
     if far is not None:
         change = far.cohesion[0] / line.cohesion[0] - 1
         if abs(change) > APART:

@@ -127,10 +127,10 @@ def of_raster(ground: Raster, bottom: np.ndarray, kept: np.ndarray, centre: Sequ
               density: float, table: Optional[np.ndarray] = None) -> Columns:
     """The columns of a body above any surface: the cells `kept`, between the heights `bottom` and the ground.
 
-    The dip of the base is that of the raster. The axis of moments goes through `centre`, across the direction.
+    The dip of the base is that between its cells: what the raster has beside the body, the ground or nothing, is no
+    base. The axis of moments goes through `centre`, across the direction.
     """
-    south, east = np.gradient(bottom, abs(ground.transform.a))
-    dip, across = dips((south, east), kept, direction)
+    dip, across = dips(slopes(np.where(kept, bottom, np.nan), ground), kept, direction)
     return of_cells(ground, bottom, kept, dip, across, centre, direction, density, table)
 
 
@@ -158,15 +158,30 @@ def balanced(area: np.ndarray, u: np.ndarray, e: np.ndarray, dip: np.ndarray, ac
 
 
 def slopes(heights: np.ndarray, raster: Raster) -> Tuple[np.ndarray, np.ndarray]:
-    """dz to the south and to the east, between the neighbours of each cell that have a value."""
+    """dz to the south and to the east, between the neighbours of each cell that have a value.
+
+    A cell without any on an axis has the slope of the nearest that has one, 0 if there is none.
+    """
     gradients = []
     for axis in (0, 1):
         wide = np.pad(heights, [(1, 1) if one == axis else (0, 0) for one in (0, 1)], constant_values=np.nan)
         before, after = (np.take(wide, np.arange(heights.shape[axis]) + k, axis) for k in (0, 2))
         cells = np.isfinite(before).astype(int) + np.isfinite(after)
         rise = np.where(np.isfinite(after), after, heights) - np.where(np.isfinite(before), before, heights)
-        gradients.append(rise / np.maximum(cells, 1) / abs(raster.transform.a))
+        slope = rise / np.maximum(cells, 1) / abs(raster.transform.a)
+        known, alone = (np.isfinite(heights) & one for one in (cells > 0, cells == 0))
+        if alone.any() and known.any():
+            nearest = ndimage.distance_transform_edt(~known, return_distances=False, return_indices=True)
+            slope = slope[tuple(nearest)]
+        gradients.append(slope)
     return gradients[0], gradients[1]
+
+
+def count_alone(inside: np.ndarray) -> int:
+    """The cells of a mask without a neighbour in it on one axis: see slopes()."""
+    wide = np.pad(inside, 1)
+    south, east = wide[:-2, 1:-1] | wide[2:, 1:-1], wide[1:-1, :-2] | wide[1:-1, 2:]
+    return int((inside & ~(south & east)).sum())
 
 
 def dips(gradient: Tuple[np.ndarray, np.ndarray], kept: np.ndarray,

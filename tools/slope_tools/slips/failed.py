@@ -21,6 +21,7 @@ class Failed(NamedTuple):
     direction: float                    # of sliding, degrees counterclockwise from +x
     centre: np.ndarray                  # of the sphere, or a point of the axis of moments
     radius: float                       # m; inf: the base is no hollow, and the axis is the far one
+    alone: int = 0                      # cells of a raster whose dip is in part that of others, see columns.slopes()
 
 
 def parse_sphere(text: str):
@@ -61,7 +62,7 @@ def of_base(raster: Raster, path: Path, direction: Optional[float], density: flo
     if not beside.has_cells(found, raster):
         raise SlopeError(path, "must be on the cells of the terrain")
     base = beside.on_cells(path, found, raster)
-    inside = columns.find_largest_part(raster, base + LEAST) & np.isfinite(np.gradient(base)).all(axis=0)
+    inside = columns.find_largest_part(raster, base + LEAST)
     points = back.list_base_points(raster, base, inside)
     centre, radius = back.sphere_of(points)
     way = back.steepest(raster, base, inside, centre) if direction is None else direction
@@ -70,7 +71,8 @@ def of_base(raster: Raster, path: Path, direction: Optional[float], density: flo
         return columns.of_raster(raster, base, inside, axis, way, density, table)
 
     far = None if math.isinf(radius) else about(back.far_centre(points))
-    return Failed(about(centre), int(inside.sum()), far, way, centre, radius)
+    return Failed(about(centre), int(inside.sum()), far, way, centre, radius,
+                  columns.count_alone(inside))
 
 
 def read_failed_body(text: str, raster: Raster, direction: Optional[float], density: float,
