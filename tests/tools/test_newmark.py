@@ -18,9 +18,10 @@ def noise(points=300, dt=0.02, seed=4):
     return t, rough * np.sin(np.pi * t / t[-1]) * 3.0
 
 
-def test_rectangle():
+@pytest.mark.parametrize("edge", [1e-9, 0.0])
+def test_rectangle(edge):
     """A pulse a of a length T: a (a - y) T^2 / (2 y)."""
-    t = np.array([0.0, 1e-9, 0.8, 0.8 + 1e-9, 60.0])
+    t = np.array([0.0, edge, 0.8, 0.8 + edge, 60.0])
     found = newmark.displacement(t, np.array([0.0, PULSE, PULSE, 0.0, 0.0]), YIELDS)
     assert found == pytest.approx(PULSE * (PULSE - YIELDS) * 0.8 ** 2 / (2 * YIELDS), rel=1e-3)
     assert newmark.displacement(t, np.array([0.0, PULSE, PULSE, 0.0, 0.0]), [PULSE, 5.0]) == pytest.approx(0, abs=1e-9)

@@ -498,6 +498,11 @@ def test_a_motion_in_another_order_or_unit(slope, head, rule):
         motion_file.read_motion("m.txt")
     Path("m.txt").write_text("# of fix ground/motion: t ax ay az (s, m/s2)\n1 1 0 0\n2 2 0 0\n")
     assert motion_file.read_motion("m.txt").shape == (2, 4)
+    Path("m.txt").write_text("0, 1, 0, 0\n1, 1, 0, 0\n1, 2, 0, 0\n2, 2, 0, 0\n")       # as the fix: commas, a jump
+    assert motion_file.read_motion("m.txt").shape == (4, 4)
+    Path("m.txt").write_text("0 1 0 0\n1 1 0 0\n0.5 2 0 0\n")
+    with pytest.raises(SlopeError, match=re.escape("line 3: times must not decrease, 1 s is before it, got 0.5")):
+        motion_file.read_motion("m.txt")
 
 
 @pytest.mark.parametrize("head, unit, option", [

@@ -20,7 +20,7 @@ def displacement(t: np.ndarray, ground: np.ndarray, yields: np.ndarray) -> np.nd
     speed, way = np.zeros(len(yields)), np.zeros(len(yields))
     for h, before, after in zip(np.diff(t), driving[:-1], driving[1:]):
         moving = (speed > 0) | (before > yields) | (after > yields)
-        if not moving.any():
+        if h <= 0 or not moving.any():      # two points of one time are a jump
             continue
         speed[moving], more = over_step(h, before[moving] - yields[moving], after[moving] - yields[moving],
                                         speed[moving])
