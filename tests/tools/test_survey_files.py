@@ -28,7 +28,7 @@ from messages import is_one
 from slope_tools.errors import SlopeError
 from slope_tools.sites import site
 from slope_tools.sites.site_sections import OfMass
-from slope_tools.survey import crs, rasters, vectors, xyz, zips
+from slope_tools.survey import crs, rasters, terrain, vectors, xyz, zips
 from slope_tools.survey.vectors import ignore
 
 COMMAND = "terrain"
@@ -354,6 +354,62 @@ def test_tiles_that_differ_are_refused_or_said(made, slope, here):
     assert "b.tif: its heights differ by up to 30.0 m" in err and "at east 460003, north 101005" in err
     tif("b.tif", z=high - 4.3)
     assert made("a.tif b.tif")[4] == ""
+
+
+def test_a_step_where_tiles_meet_is_refused_or_said(made, slope, here):
+    """Other heights of one of two tiles that have no cell in common; --differ accepts them."""
+    z = points(rows=30, columns=24)[:, 2].reshape(30, 24)
+    tif("a.tif", z=z[:, :12], rows=30)
+    tif("b.tif", z=z[:, 12:] + 37, rows=30, east=EAST + 12)
+    refused(slope, "a.tif b.tif", "b.tif: must meet a.tif without a step of more than 5 m at the median, --differ, got "
+            "+37.0 m in 30 pairs of cells, as at east 460011, north 101014")
+    refused(slope, "b.tif a.tif --differ 36", "a.tif: must meet b.tif without a step of more than 36 m, got -37.0 m")
+    assert "b.tif: its heights are +37.0 m off those of a.tif" in made("a.tif b.tif --differ 40")[4]
+    tif("b.tif", z=z[:, 12:] + 3, rows=30, east=EAST + 12)
+    assert "b.tif: its heights are +3.0 m off those of a.tif" in made("a.tif b.tif")[4]
+    tif("b.tif", z=z[:, 12:], rows=30, east=EAST + 12)
+    *found, err = made("a.tif b.tif")
+    assert in_place(found) and err == ""
+    half = points(rows=30, columns=12, east=EAST + 12.5)[:, 2].reshape(30, 12)      # on another grid
+    tif("b.tif", z=half + 3, rows=30, east=EAST + 12.5)
+    assert "b.tif: its heights are +3.0 m off those of a.tif" in made("a.tif b.tif --cell 1")[4]
+
+
+def rough(z):
+    return z + np.random.default_rng(4).normal(0, 1, z.shape)
+
+
+def cliff(at, rows):
+    def change(z):
+        z = z.copy()
+        z[:rows, at:] += 12
+        return z
+    return change
+
+
+@pytest.mark.parametrize("change, gap, step", [
+    (np.copy, 0, 3.0), (rough, 0, 12.0), (cliff(20, 18), 0, 3.0), (np.copy, 1, 3.0), (np.copy, 2, 3.0),
+    (np.copy, 3, None), (rough, 0, None), (cliff(20, 18), 0, None), (cliff(19, 60), 0, None),
+    (cliff(21, 60), 0, None)])
+@pytest.mark.parametrize("turn", range(4))
+def test_the_ground_makes_no_step_of_two_files(change, gap, step, turn):
+    """Rough ground, slopes, and a cliff over a part of the seam, or beside it, are of the ground."""
+    x, y = np.meshgrid(np.arange(40.0), np.arange(60.0))
+    z = change(0.9 * x - 0.4 * y + 4 * np.sin(y / 5) + 3 * np.cos(x / 6))
+    known = x < 20, x >= 20 + gap
+    one, other = (terrain.Placed(name, 0, 0, np.rot90(np.where(mask, z + more, np.nan), turn))
+                  for name, mask, more in zip("ab", known, (0, step or 0)))
+    found = terrain.seam(one, other, Affine.identity(), 20)
+    assert (found is None) if step is None else abs(found["median"] - step) < 1.5 and found["pairs"] == 60
+
+
+def test_tiles_that_meet_at_a_corner_or_overlap_have_no_seam():
+    z = np.zeros((20, 20))
+    one = terrain.Placed("a", 0, 0, z)
+    for top, left in ((20, 20), (22, 0), (19, 0), (23, 0), (20, 12)):
+        other = terrain.Placed("b", top, left, z + 9)
+        found = terrain.seam(one, other, Affine.identity(), 20)
+        assert (found is not None) == ((top, left) == (22, 0)), (top, left)
 
 
 # --- windows ---

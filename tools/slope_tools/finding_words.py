@@ -90,6 +90,9 @@ WORDS: Dict[str, Union[str, Words]] = {
                   "choose a local CRS, such as a UTM zone, where they shall be from north",
     "tiles differ": "{file}: its heights differ by up to {largest:.1f} m from those of the files before it, which "
                     "count, at east {east:.10g}, north {north:.10g}; by {median:.2g} m at the median of {cells} cells",
+    "step between tiles": "{file}: its heights are {median:+.1f} m off those of {other} where the two meet, at the "
+                          "median of {pairs} pairs of cells, as at east {east:.10g}, north {north:.10g}: have they one "
+                          "datum?",
     "CRS of terrain": "{file} has no CRS: taken to be in that of the terrain{remedy}",
     "local raster": "{file} has neither origin nor CRS: taken to be in the terrain's local metres",
     "survey raster": "{file} has neither origin nor CRS: taken to be in coordinates of the survey; --local if it is in "

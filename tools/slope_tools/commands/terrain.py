@@ -47,7 +47,7 @@ class Request(Overwrite):
         "be given several times", metavar="V")
     differ: Optional[float] = option(
         "accept a median difference of two inputs of up to M m where both have heights (default 5), as of surveys "
-        "before and after a landslide", metavar="M")
+        "before and after a landslide, or step where they meet", metavar="M")
     bounds: Optional[List[float]] = option(
         "crop to this box, in the output's CRS, m; of an input that is larger, no more is read", nargs=4,
         metavar=("W", "S", "E", "N"))

@@ -42,7 +42,8 @@ class Terrain:
         None, "a value of the rasters, or several in brackets, in their own unit, that stands for no height, beside "
         "the one that they declare")
     differ: Optional[float] = key(
-        None, "median difference of the heights of two rasters that is accepted, m; null: 5", above=0)
+        None, "median difference of the heights of two rasters, or step where they meet, that is accepted, m; "
+        "null: 5", above=0)
     bounds: Optional[Numbers] = key(None, "W S E N of the part that is used, m", fewest=4, most_items=4)
     cell: Optional[float] = key(None, "m", above=0)
     fill: int = key(0, "fill holes of at most this many cells", least=0)

@@ -25,7 +25,7 @@ THICK = 10.0            # balls, largest thickness: below, a site should be repe
 MOST = 3                # warnings that are shown before the numbers
 # kinds by what they do to the number, the heaviest first: it may be another ground, another body, another run, or rough
 HEAVIEST = ("in feet", "no ground's slope", "cliff", "picture", "pits", "no such cell", "swapped", "tiles differ",
-            "shift", "stretched", "CRS of terrain", "datums",
+            "step between tiles", "shift", "stretched", "CRS of terrain", "datums",
             "in a pit", "no way out", "hollow", "above ground", "no body", "little", "road on body", "under road",
             "beyond toe", "bulges", "rim", "parts", "own depth", "shared", "unused depth",
             "small angle", "large rolling", "narrow road", "high wall", "low wall", "left terrain", "outside",

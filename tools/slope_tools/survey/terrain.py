@@ -17,6 +17,11 @@ from .resampling import STRIP, footprint, padded, sample
 ON_GRID = 0.01         # cells; grids of two files that differ by less than this are the same grid
 DIFFER = 5.0           # m, at the median, by which heights of two files may differ where both have them
 SAID = 1.0             # m; a larger difference of two heights is said
+# where two files meet, see seam():
+GAP = 2                # cells without a height that may lie between them
+DEEP = 10              # cells of each file that are looked at
+PAIRS = 10             # of cells across the seam, at least; as many cells that both have make an overlap of them
+CLEAR = 3.0            # times the scatter along the seam, and the steps beside it: a step of the files, not the ground
 
 
 class Tile(NamedTuple):
@@ -24,6 +29,26 @@ class Tile(NamedTuple):
     name: str
     raster: Raster          # the part that is wanted
     whole: Raster           # without heights
+
+
+class Placed(NamedTuple):
+    """A file's heights on the merged grid, from a row and a column on."""
+    name: str
+    top: int
+    left: int
+    z: np.ndarray
+
+    def end(self):
+        """The row and column behind its last ones."""
+        return self.top + self.z.shape[0], self.left + self.z.shape[1]
+
+    def cut(self, first, last):
+        """Those from a first to a last row and column, NaN beyond its own."""
+        begin = np.subtract(first, (self.top, self.left))
+        end = begin + np.subtract(last, first)
+        (above, before), (below, behind) = np.maximum(-begin, 0), np.maximum(end - self.z.shape, 0)
+        (top, left), (bottom, right) = np.maximum(begin, 0), np.maximum(end, 0)
+        return np.pad(self.z[top:bottom, left:right], ((above, below), (before, behind)), constant_values=np.nan)
 
 
 def declare(path, crs, tell, warn, assigned=None, unit=None, marks=None, part=None):
@@ -128,7 +153,7 @@ def merge(tiles, tell, warn, cell=None, differ=DIFFER):
     """One Tile of all, which must share the CRS. In an overlap the first one with a height counts.
 
     They must share the grid, too, unless a cell is wanted: then all are brought to the grid of the finest one,
-    bilinearly. differ: the median difference (m) of two files that is an error.
+    bilinearly. differ: the median difference (m) of two files, or step where they meet, that is an error.
     """
     first = tiles[0]
     if len(tiles) == 1:
@@ -152,6 +177,8 @@ def merge(tiles, tell, warn, cell=None, differ=DIFFER):
     merged = make_grid_around(base, [tile.raster for tile in used])
     check_memory(len(merged.z), merged.z.shape[1], "merged raster")
     z, overlaps = np.full(merged.z.shape, np.nan), []
+    placed: list[Placed] = []
+    seams = []
     beyond = []         # by up to half a cell, of tiles on another grid: they may leave a gap where they meet
     for tile in used:
         top, left, heights, more = on_cells(tile.raster, merged, base)
@@ -161,6 +188,9 @@ def merge(tiles, tell, warn, cell=None, differ=DIFFER):
         if np.isfinite(difference).any():
             overlaps.append(differing(tile.name, difference, merged.transform @ Affine.translation(left, top), differ))
         np.copyto(part, heights, where=np.isnan(part))
+        here = Placed(tile.name, top, left, heights)
+        seams += [seam(before, here, merged.transform, differ) for before in placed]
+        placed.append(here)
     for top, left, heights in beyond:
         part = z[top:top + heights.shape[0], left:left + heights.shape[1]]
         np.copyto(part, heights, where=np.isnan(part))
@@ -170,6 +200,9 @@ def merge(tiles, tell, warn, cell=None, differ=DIFFER):
          + (f", heights differ by up to {most['largest']:.3f} m" if twice else ""))
     if most["largest"] > SAID:
         warn(Finding("tiles differ", most))
+    clear = [step for step in seams if step]
+    if clear:
+        warn(Finding("step between tiles", max(clear, key=lambda step: abs(step["median"]))))
     return Tile(first.name, merged._replace(z=z), whole)
 
 
@@ -187,6 +220,73 @@ def differing(name, difference, transform, differ):
                          "{median:.1f} m in {cells} cells, up to {largest:.1f} m at east {east:.10g}, north "
                          "{north:.10g}".format(**difference_))
     return difference_
+
+
+def seam(before, here, transform, differ):
+    """The step (m) from one Placed to another where they meet, and where; None where none is clear or they overlap,
+    SlopeError if it is larger than differ.
+
+    Another datum makes a step that is the same all along the seam, and that the ground beside it does not have. Rough
+    ground, a bank, or a cliff on a part of the seam does not.
+    """
+    top, left = max(before.top, here.top), max(before.left, here.left)
+    bottom, right = min(before.end()[0], here.end()[0]), min(before.end()[1], here.end()[1])
+    if bottom - top < -GAP or right - left < -GAP:
+        return None
+    first, last = np.array([top, left]), np.array([bottom, right])
+    if (last > first).all() and np.isfinite(before.cut(first, last) + here.cut(first, last)).sum() >= PAIRS:
+        return None
+    margin = DEEP + GAP     # cells that are looked at from those that face the other file
+    first, last = first - margin - GAP - 1, last + margin + GAP + 1
+    pairs = across(before.cut(first, last), here.cut(first, last), margin)
+    places, steps, beside = (np.concatenate(part) for part in zip(*pairs))
+    known = np.isfinite(steps)
+    often = np.isfinite(beside).sum(axis=0) >= PAIRS
+    if known.sum() < PAIRS or not often.any():
+        return None
+    median = float(np.median(steps[known]))
+    scatter = 1.4826 * np.median(np.abs(steps[known] - median))     # the standard deviation of a normal distribution
+    if abs(median) <= max(SAID, CLEAR * scatter, CLEAR * np.abs(np.nanmedian(beside[:, often], axis=0)).max()):
+        return None
+    row, column = places[known][known.sum() // 2] + first
+    east, north = transform @ (column + 0.5, row + 0.5)
+    step = {"file": here.name, "other": before.name, "median": median, "pairs": int(known.sum()), "east": float(east),
+            "north": float(north)}
+    if abs(median) > differ:
+        raise SlopeError(here.name, f"must meet {before.name} without a step of more than {differ:g} m at the median: "
+                         "are both in one unit and one datum? --differ M accepts M m, as of a cliff that is there",
+                         "{median:+.1f} m in {pairs} pairs of cells, as at east {east:.10g}, north {north:.10g}"
+                         .format(**step))
+    return step
+
+
+def across(a, b, margin):
+    """Of the pairs of a cell of a and one of b that face each other, by directions and gaps: rows and columns, the
+    step from a to b, and the steps at places in a and b beside (m).
+    """
+    known = [np.isfinite(z) for z in (a, b)]
+    for down, right in ((0, 1), (0, -1), (1, 0), (-1, 0)):
+        def seen(count):
+            return (part[margin + count * down:len(part) - margin + count * down,
+                         margin + count * right:part.shape[1] - margin + count * right] for part in known)
+        in_a, in_b = seen(0)
+        facing = in_a & ~in_b
+        for count in range(1, GAP + 2):
+            in_a, in_b = seen(count)
+            cells = np.argwhere(facing & in_b & ~in_a) + margin
+            facing &= ~(in_a | in_b)
+            lines = [z[tuple(np.moveaxis(cells[:, None] + np.outer(places, (down, right)), -1, 0))]
+                     for z, places in ((a, np.arange(1 - DEEP, 1)), (b, np.arange(count, count + DEEP)))]
+            ground = [rise(line[:, at:at + 2], line[:, at + count + 1:at + count + 3], count)
+                      for line in lines for at in range(DEEP - GAP - 3)]
+            yield cells, rise(lines[0][:, -2:], lines[1][:, :2], count), np.transpose(ground)
+
+
+def rise(before, behind, count):
+    """By how much the ground rises more, or less, from a pair of heights to one `count` cells on than in either."""
+    slopes = count * np.diff(before)[:, 0], count * np.diff(behind)[:, 0]
+    step = behind[:, 0] - before[:, 1]
+    return step - np.clip(step, np.minimum(*slopes), np.maximum(*slopes))
 
 
 def on_grid(raster, base):
