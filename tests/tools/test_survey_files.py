@@ -379,6 +379,15 @@ def rough(z):
     return z + np.random.default_rng(4).normal(0, 1, z.shape)
 
 
+def terraces(z):
+    return z + 4 * (np.arange(40) // 4)
+
+
+def ragged_cliff(z):
+    """From 0 to 12 m high along the seam."""
+    return z + np.where(np.arange(40) < 20, 0, np.linspace(0, 12, 60)[:, None])
+
+
 def cliff(at, rows):
     def change(z):
         z = z.copy()
@@ -390,10 +399,10 @@ def cliff(at, rows):
 @pytest.mark.parametrize("change, gap, step", [
     (np.copy, 0, 3.0), (rough, 0, 12.0), (cliff(20, 18), 0, 3.0), (np.copy, 1, 3.0), (np.copy, 2, 3.0),
     (np.copy, 3, None), (rough, 0, None), (cliff(20, 18), 0, None), (cliff(19, 60), 0, None),
-    (cliff(21, 60), 0, None)])
+    (cliff(21, 60), 0, None), (terraces, 0, None), (ragged_cliff, 0, None)])
 @pytest.mark.parametrize("turn", range(4))
 def test_the_ground_makes_no_step_of_two_files(change, gap, step, turn):
-    """Rough ground, slopes, and a cliff over a part of the seam, or beside it, are of the ground."""
+    """Rough ground, slopes, terraces, and a cliff over a part of the seam, or beside it, are of the ground."""
     x, y = np.meshgrid(np.arange(40.0), np.arange(60.0))
     z = change(0.9 * x - 0.4 * y + 4 * np.sin(y / 5) + 3 * np.cos(x / 6))
     known = x < 20, x >= 20 + gap
