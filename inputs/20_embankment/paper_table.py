@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The paper's second Table 5 from a study of this case: what is to be removed, lies on the road and beyond it.
+"""The paper's second Table 5 from a study of this case; and what lies on the road and beyond it.
 
     paper_table.py STUDY [--as NAME]
 

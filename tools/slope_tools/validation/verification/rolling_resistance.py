@@ -60,7 +60,7 @@ SEEN.append(Seen("half.rotation", (_run(STILL)(HALF),),
 
 
 def at_fall(result):
-    """When the centre has fallen by 0.18 m, the end of the axis of Figure 9, s."""
+    """When the centre has fallen by 0.18 m, the end of the axis of Figure 9 read in m, s."""
     curve = result.curve("rolling_resistance.csv")
     return curve["time"][curve["fall"] >= 0.18][0]
 

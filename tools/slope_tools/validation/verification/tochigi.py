@@ -1,7 +1,7 @@
 """Tochigi's experiment: 177 rocks down a slope come to rest within the axes of the paper's Figure 3
 
-inputs/10_tochigi: the drawing is read from its lengths, and of the paper's curves only the axes are known: -5 to 3 m
-along the slope, -4 to 4 m across it. All rocks must lie within the axes, and the farthest not far from
+inputs/10_tochigi: the drawing is read from its lengths, and of the curves only the axes are known: by our reading
+-5 to 3 m along the slope, -4 to 4 m across it. All rocks must lie within the axes, and the farthest not far from
 their ends: at most 2 m along and 1.5 m across. Each seed is a draw of 177 rocks: the draws must be of one distribution.
 """  # noqa: E501
 import numpy as np
