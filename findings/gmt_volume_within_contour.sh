@@ -3,29 +3,11 @@
 # leave out the ground around (-C0, or -C0.1 for what is thicker than 10 cm), it joins the middles of cells, and half a
 # cell is lost all along a rim beyond which there is no value: 14 % of a deposit of 20 x 10 cells that is 1 m thick. A
 # contour of 0.1 also takes 10 cm off the thickness of all the rest, unless -L0 is given.
-set -euo pipefail
-tmp=$(mktemp -d)
-trap 'rm -rf "$tmp"' EXIT
-cd "$tmp"
+# shellcheck source-path=SCRIPTDIR source=debian.bash
+source "$(dirname "${BASH_SOURCE[0]}")/debian.bash"
 
-# GMT of Debian 12 with all that it needs, unpacked, not installed
-mkdir -p lists/partial debs/partial root && : >status
-# shellcheck disable=SC2016 # apt expands these
-mirror=$(apt-get indextargets --format '$(ORIGIN) $(REPO_URI)' 'Created-By: Packages' |
-  sed -n '/security/d; s/^Debian //p' | head -n 1)
-echo "deb [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] $mirror bookworm main" >sources.list
-apt=(-qq -o Dir::Etc::SourceList="$tmp/sources.list" -o Dir::Etc::SourceParts=/dev/null
-     -o Dir::State::Lists="$tmp/lists" -o Dir::State::status="$tmp/status" -o Dir::Cache="$tmp"
-     -o Dir::Cache::Archives="$tmp/debs" -o Debug::NoLocking=1)
-version=6.4.0+dfsg-2
-{ apt-get "${apt[@]}" update && apt-get "${apt[@]}" -d -y --no-install-recommends install gmt=$version
-} >apt.log 2>&1 || { echo "Debian's gmt $version cannot be had" >&2; exit 77; }
-for deb in debs/*.deb; do dpkg-deb -x "$deb" root; done
-lib=$tmp/root/usr/lib/x86_64-linux-gnu libc=$tmp/root/lib/x86_64-linux-gnu
-gmt() {
-  GMT_SHAREDIR=$tmp/root/usr/share/gmt "$libc/ld-linux-x86-64.so.2" --library-path "$lib:$libc:$lib/blas:$lib/lapack" \
-    "$tmp/root/usr/bin/gmt" "$@"
-}
+unpack gmt 6.4.0+dfsg-2
+gmt() { GMT_SHAREDIR=$usr/share/gmt run gmt "$@"; }
 
 # 24 x 14 cells of 5 m, values in 20 x 10 of them
 { printf 'ncols 24\nnrows 14\nxllcorner 0\nyllcorner 0\ncellsize 5\nNODATA_value -9999\n'

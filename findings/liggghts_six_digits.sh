@@ -2,25 +2,11 @@
 # LIGGGHTS takes a terrain of STL triangles in national coordinates as it is and computes in double precision. What it
 # dumps has six digits: in UTM the northings of balls, and of the terrain itself (mesh/stl), are rounded to 10 m. The
 # triangle here, 8 m wide, comes back as a line under a facet normal that is still right.
-set -euo pipefail
-tmp=$(mktemp -d)
-trap 'rm -rf "$tmp"' EXIT
-cd "$tmp"
+# shellcheck source-path=SCRIPTDIR source=debian.bash
+source "$(dirname "${BASH_SOURCE[0]}")/debian.bash"
 
-# LIGGGHTS of Debian 12 with the libraries that it needs, unpacked, not installed
-mkdir -p lists/partial debs/partial root && : >status
-# shellcheck disable=SC2016 # apt expands these
-mirror=$(apt-get indextargets --format '$(ORIGIN) $(REPO_URI)' 'Created-By: Packages' |
-  sed -n '/security/d; s/^Debian //p' | head -n 1)
-echo "deb [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] $mirror bookworm main" >sources.list
-apt=(-qq -o Dir::Etc::SourceList="$tmp/sources.list" -o Dir::Etc::SourceParts=/dev/null
-     -o Dir::State::Lists="$tmp/lists" -o Dir::State::status="$tmp/status" -o Dir::Cache="$tmp"
-     -o Dir::Cache::Archives="$tmp/debs" -o Debug::NoLocking=1)
-version=3.8.0+repack1-9+b2
-{ apt-get "${apt[@]}" update && apt-get "${apt[@]}" -d -y --no-install-recommends install liggghts=$version
-} >apt.log 2>&1 || { echo "Debian's liggghts $version cannot be had" >&2; exit 77; }
-for deb in debs/*.deb; do dpkg-deb -x "$deb" root; done
-usr=$tmp/root/usr lib=$tmp/root/usr/lib/x86_64-linux-gnu libc=$tmp/root/lib/x86_64-linux-gnu
+unpack liggghts 3.8.0+repack1-9+b2
+
 cat >ground.stl <<'STL'
 solid ground
 facet normal 0 0 1
@@ -59,8 +45,8 @@ dump 2 all mesh/stl 1 mesh*.stl
 run 0
 write_data ball.data
 DECK
-env OPAL_PREFIX="$usr" OMPI_MCA_btl=self OMPI_MCA_ess_singleton_isolated=1 "$libc/ld-linux-x86-64.so.2" --library-path \
-  "$lib:$libc:$lib/blas:$lib/lapack" "$usr/bin/liggghts" -in in.dump >run.log 2>&1 || { cat run.log >&2; exit 1; }
+OPAL_PREFIX=$usr OMPI_MCA_btl=self OMPI_MCA_ess_singleton_isolated=1 run liggghts -in in.dump >run.log 2>&1 || {
+  cat run.log >&2; exit 1; }
 seen="ball $(awk '/^Atoms/ { getline; getline; printf "%.3f", $6 }' ball.data) in the data, "
 seen+="$(tail -n 1 ball.dump | awk '{ print $2 }') in the dump; "
 seen+="vertices $(awk '/vertex/ { print $3 }' mesh*.stl | xargs), normal $(awk '/normal/ { print $4, $5 }' mesh*.stl)"

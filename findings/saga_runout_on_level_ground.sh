@@ -3,30 +3,10 @@
 # and does so if the ground beyond the toe falls by 1 cm in 100 m. Where it is level, as a yard, a lake or a filled sink
 # is in a DEM, the next cell is drawn by lot even in the mode "Maximum Slope", the path winds, and its whole length
 # rubs: the farthest of 1000 paths ends some 150 m short.
-set -euo pipefail
-tmp=$(mktemp -d)
-trap 'rm -rf "$tmp"' EXIT
-cd "$tmp"
+# shellcheck source-path=SCRIPTDIR source=debian.bash
+source "$(dirname "${BASH_SOURCE[0]}")/debian.bash"
 
-# SAGA of Debian 12 with the libraries that it needs, unpacked, not installed
-mkdir -p lists/partial debs/partial root && : >status
-# shellcheck disable=SC2016 # apt expands these
-mirror=$(apt-get indextargets --format '$(ORIGIN) $(REPO_URI)' 'Created-By: Packages' |
-  sed -n '/security/d; s/^Debian //p' | head -n 1)
-echo "deb [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] $mirror bookworm main" >sources.list
-apt=(-qq -o Dir::Etc::SourceList="$tmp/sources.list" -o Dir::Etc::SourceParts=/dev/null
-     -o Dir::State::Lists="$tmp/lists" -o Dir::State::status="$tmp/status" -o Dir::Cache="$tmp"
-     -o Dir::Cache::Archives="$tmp/debs" -o Debug::NoLocking=1)
-version=8.5.0+dfsg-2
-{ apt-get "${apt[@]}" update && apt-get "${apt[@]}" -d -y --no-install-recommends install saga=$version
-} >apt.log 2>&1 || { echo "Debian's saga $version cannot be had" >&2; exit 77; }
-for deb in debs/*.deb; do dpkg-deb -x "$deb" root; done
-lib=$tmp/root/usr/lib/x86_64-linux-gnu libc=$tmp/root/lib/x86_64-linux-gnu
-mkdir tools && ln -s "$lib"/saga/lib{io_grid,sim_geomorphology}.so tools
-saga() {
-  SAGA_TLB=$tmp/tools "$libc/ld-linux-x86-64.so.2" --library-path "$lib:$libc:$lib/blas:$lib/lapack" \
-    "$tmp/root/usr/bin/saga_cmd" --flags=s --cores=1 "$@" >>saga.log 2>&1 || { cat saga.log >&2; exit 1; }
-}
+unpack_saga io_grid sim_geomorphology
 
 # 131 x 81 cells of 5 m: a slope of 35 degrees down to x = 250 m, outrun beyond it; released 150 m above the toe
 grid() {

@@ -4,30 +4,10 @@
 # "cell area weighted" gives a sum times the cell's area, m3 where the values are metres; under the same name, the sum
 # of the others is metres. Shapes to Grid makes 63 cells of the polygon unless told otherwise: one more column in the
 # east, one row in the north.
-set -euo pipefail
-tmp=$(mktemp -d)
-trap 'rm -rf "$tmp"' EXIT
-cd "$tmp"
+# shellcheck source-path=SCRIPTDIR source=debian.bash
+source "$(dirname "${BASH_SOURCE[0]}")/debian.bash"
 
-# SAGA of Debian 12 with the libraries that it needs, unpacked, not installed
-mkdir -p lists/partial debs/partial root && : >status
-# shellcheck disable=SC2016 # apt expands these
-mirror=$(apt-get indextargets --format '$(ORIGIN) $(REPO_URI)' 'Created-By: Packages' |
-  sed -n '/security/d; s/^Debian //p' | head -n 1)
-echo "deb [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] $mirror bookworm main" >sources.list
-apt=(-qq -o Dir::Etc::SourceList="$tmp/sources.list" -o Dir::Etc::SourceParts=/dev/null
-     -o Dir::State::Lists="$tmp/lists" -o Dir::State::status="$tmp/status" -o Dir::Cache="$tmp"
-     -o Dir::Cache::Archives="$tmp/debs" -o Debug::NoLocking=1)
-version=8.5.0+dfsg-2
-{ apt-get "${apt[@]}" update && apt-get "${apt[@]}" -d -y --no-install-recommends install saga=$version
-} >apt.log 2>&1 || { echo "Debian's saga $version cannot be had" >&2; exit 77; }
-for deb in debs/*.deb; do dpkg-deb -x "$deb" root; done
-lib=$tmp/root/usr/lib/x86_64-linux-gnu libc=$tmp/root/lib/x86_64-linux-gnu
-mkdir tools && ln -s "$lib"/saga/lib{io_grid,io_shapes,io_table,grid_gridding,shapes_grid}.so tools
-saga() {
-  SAGA_TLB=$tmp/tools "$libc/ld-linux-x86-64.so.2" --library-path "$lib:$libc:$lib/blas:$lib/lapack" \
-    "$tmp/root/usr/bin/saga_cmd" --flags=s --cores=1 "$@" >>saga.log 2>&1 || { cat saga.log >&2; exit 1; }
-}
+unpack_saga io_grid io_shapes io_table grid_gridding shapes_grid
 
 { printf 'ncols 20\nnrows 15\nxllcorner 0\nyllcorner 0\ncellsize 5\nNODATA_value -9999\n'
   seq 300 | sed 's/.*/1/'

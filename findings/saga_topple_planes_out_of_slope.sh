@@ -3,30 +3,10 @@
 # topple where their planes dip INTO the slope, by at least 90 degrees less the face's angle plus that of friction. The
 # mode "Topple" has this limit, but marks planes that dip OUT of the slope, and none that dip into it: for toppling, the
 # dip direction must be turned by 180 degrees first, which its description does not say. "Slide" takes it as it is.
-set -euo pipefail
-tmp=$(mktemp -d)
-trap 'rm -rf "$tmp"' EXIT
-cd "$tmp"
+# shellcheck source-path=SCRIPTDIR source=debian.bash
+source "$(dirname "${BASH_SOURCE[0]}")/debian.bash"
 
-# SAGA of Debian 12 with the libraries that it needs, unpacked, not installed
-mkdir -p lists/partial debs/partial root && : >status
-# shellcheck disable=SC2016 # apt expands these
-mirror=$(apt-get indextargets --format '$(ORIGIN) $(REPO_URI)' 'Created-By: Packages' |
-  sed -n '/security/d; s/^Debian //p' | head -n 1)
-echo "deb [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] $mirror bookworm main" >sources.list
-apt=(-qq -o Dir::Etc::SourceList="$tmp/sources.list" -o Dir::Etc::SourceParts=/dev/null
-     -o Dir::State::Lists="$tmp/lists" -o Dir::State::status="$tmp/status" -o Dir::Cache="$tmp"
-     -o Dir::Cache::Archives="$tmp/debs" -o Debug::NoLocking=1)
-version=8.5.0+dfsg-2
-{ apt-get "${apt[@]}" update && apt-get "${apt[@]}" -d -y --no-install-recommends install saga=$version
-} >apt.log 2>&1 || { echo "Debian's saga $version cannot be had" >&2; exit 77; }
-for deb in debs/*.deb; do dpkg-deb -x "$deb" root; done
-lib=$tmp/root/usr/lib/x86_64-linux-gnu libc=$tmp/root/lib/x86_64-linux-gnu
-mkdir tools && ln -s "$lib"/saga/lib{io_grid,ta_slope_stability}.so tools
-saga() {
-  SAGA_TLB=$tmp/tools "$libc/ld-linux-x86-64.so.2" --library-path "$lib:$libc:$lib/blas:$lib/lapack" \
-    "$tmp/root/usr/bin/saga_cmd" --flags=s --cores=1 "$@" >>saga.log 2>&1 || { cat saga.log >&2; exit 1; }
-}
+unpack_saga io_grid ta_slope_stability
 
 # a face of 60 degrees that falls to the east, cells of 5 m, friction 30 degrees
 { printf 'ncols 5\nnrows 5\nxllcorner 0\nyllcorner 0\ncellsize 5\nNODATA_value -9999\n'

@@ -2,25 +2,10 @@
 # numpy-stl gives the volume and the centre of gravity of a closed surface. In national coordinates the volume of a body
 # of 40 m x 40 m x 5 m is right to the cubic metre, and its vertices are, to 8 mm or 25 cm; but the centre of the same
 # body is metres away from its place in a plane rectangular system, kilometres in UTM: it is a sum in single precision.
-set -euo pipefail
-tmp=$(mktemp -d)
-trap 'rm -rf "$tmp"' EXIT
-cd "$tmp"
+# shellcheck source-path=SCRIPTDIR source=debian.bash
+source "$(dirname "${BASH_SOURCE[0]}")/debian.bash"
 
-# numpy-stl of Debian 12 with all that it needs, unpacked, not installed
-mkdir -p lists/partial debs/partial root && : >status
-# shellcheck disable=SC2016 # apt expands these
-mirror=$(apt-get indextargets --format '$(ORIGIN) $(REPO_URI)' 'Created-By: Packages' |
-  sed -n '/security/d; s/^Debian //p' | head -n 1)
-echo "deb [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] $mirror bookworm main" >sources.list
-apt=(-qq -o Dir::Etc::SourceList="$tmp/sources.list" -o Dir::Etc::SourceParts=/dev/null
-     -o Dir::State::Lists="$tmp/lists" -o Dir::State::status="$tmp/status" -o Dir::Cache="$tmp"
-     -o Dir::Cache::Archives="$tmp/debs" -o Debug::NoLocking=1)
-version=2.9.0-2+b3
-{ apt-get "${apt[@]}" update && apt-get "${apt[@]}" -d -y --no-install-recommends install python3-stl=$version
-} >apt.log 2>&1 || { echo "Debian's python3-stl $version cannot be had" >&2; exit 77; }
-for deb in debs/*.deb; do dpkg-deb -x "$deb" root; done
-usr=$tmp/root/usr lib=$tmp/root/usr/lib/x86_64-linux-gnu libc=$tmp/root/lib/x86_64-linux-gnu
+unpack python3-stl 2.9.0-2+b3
 
 cat >look.py <<'PYTHON'
 import numpy as np
@@ -37,8 +22,7 @@ for name, corner in corners.items():
     error = np.hypot(*(centre - corner - (20, 20, 2.5))[:2])
     print(f"{name}: {volume:.0f} m3, {error:.0f} m;")
 PYTHON
-seen=$(PYTHONHOME=$usr "$libc/ld-linux-x86-64.so.2" --library-path "$lib:$libc:$lib/blas:$lib/lapack" \
-  "$usr/bin/python3.11" -W ignore look.py 2>look.log | xargs) || { cat look.log >&2; exit 1; }
+seen=$(PYTHONHOME=$usr run python3.11 -W ignore look.py 2>look.log | xargs) || { cat look.log >&2; exit 1; }
 
 echo "software:     numpy-stl, $version of Debian 12"
 echo "a good guess: 8000 m3, and 0 m from its centre to the one given, in each system"

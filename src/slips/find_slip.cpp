@@ -132,12 +132,11 @@ std::vector<SlipBody> FindSlip::search(const SlipOptions &options, SlipBodyMaker
   Slope::SlipSearch search(options.ground(), limits, ranks, maker);
   const std::vector<SlipBody> bodies = search.run();
   if (bodies.empty())
-    error->all(FLERR,
-               "Find_slip limits must leave a sphere inside the terrain that it finds, volume {:g} "
-               "to {:g}, depth "
-               "{:g} to {:g}, got none of {} that were tried",
-               limits.volume_lo, limits.volume_hi, limits.depth_lo, limits.depth_hi,
-               search.surfaces());
+    error->all(
+        FLERR,
+        "Find_slip limits must leave a sphere inside the terrain, volume {:g} to {:g}, depth "
+        "{:g} to {:g}, got none of {} that were tried",
+        limits.volume_lo, limits.volume_hi, limits.depth_lo, limits.depth_hi, search.surfaces());
   least = search.least();
   if (comm->me) return bodies;
   utils::logmesg(lmp, "Find_slip: lattice of {} spheres, {:.3g} s\n", search.surfaces(),

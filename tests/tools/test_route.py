@@ -1,6 +1,7 @@
 """slope route and zones: the corridor, frequencies, what runs made by hand say of a road, wrong input, kills."""
 import csv
 import dataclasses
+import html
 import json
 import math
 import os
@@ -25,6 +26,7 @@ from run_helpers import TOOLS, called, write_asc
 from tiny_collapse import rows_of
 
 from slope_tools.errors import SlopeError
+from slope_tools.findings import Finding
 from slope_tools import disk, records
 from slope_tools.commands import route as route_command
 from slope_tools.route import choices, corridor, page as route_page, results, search, zones
@@ -288,7 +290,9 @@ def with_fragility(two, capacity, monkeypatch):
     """The same route with fragilities of its two bodies, read from nowhere."""
     found = of_capacity(capacity[:, :, :2])
     digests = [results.disk.sha256(two[0] / f"slips/{k}/body.{k}.base.asc") for k in (1, 2)]
-    monkeypatch.setattr(results.fragility_files, "read_fragility", lambda path: found._replace(bases=digests))
+    late = Finding("before the curve", {"which": "any body", "percent": 40, "least": 148}).entry()
+    monkeypatch.setattr(results.fragility_files, "read_fragility",
+                        lambda path: found._replace(bases=digests, warnings=[late]))
     asked = yaml.safe_load((two[0] / choices.NAME).read_text())
     (two[0] / choices.NAME).write_text(yaml.safe_dump({**asked, "fragility": "fragility"}))
     return found
@@ -310,6 +314,8 @@ def test_a_year_of_a_stretch(two, capacity, monkeypatch):
     page = (two[0] / route_page.PAGE).read_text()
     assert page.count("<figure>") == 2 and "0.020 to 0.080" in page and f"{year['counts']:.2g}" in page
     assert any("--sample" in one for one in said)
+    [late] = [one for one in said if one.startswith("fragility: any body: 40 % of its frequency")]
+    assert late in html.unescape(page)
 
 
 def test_a_fragility_of_other_bodies_is_refused(two, capacity, monkeypatch):

@@ -11,6 +11,7 @@ from shapely.ops import substring
 from .. import digits, disk, provenance
 from ..deposits.axis import Axis, Span
 from ..drawing import figures, maps, palettes, pictures
+from ..findings import finding
 from ..report import document, road_part
 from ..report.sections import Figures, Picture, Section, Table
 from ..statistics import hazard
@@ -72,6 +73,8 @@ def how(choices: Choices) -> str:
 
 
 def list_route_caveats(choices: Choices, results: Mapping[str, Any]) -> Iterator[str]:
+    """Of the runs, and those of the fragility, on which frequencies rest."""
+    yield from (f"fragility: {finding(one)}" for one in results["fragility_warnings"])
     failed = [one for one in results["bodies"] if one["failed"]]
     if failed:
         yield f"runs of {len(failed)} bodies failed; their shares are of the others, body {failed[0]['body']} first"

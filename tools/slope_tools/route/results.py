@@ -88,7 +88,8 @@ def make_route_results(choices: Choices, corridor: Corridor, folder: Path, table
         "route": route(bodies, yearly), "pieces": pieces(bodies, yearly),
         "along": road_runs.by_body({one.number: [(1.0, row.at_road.by_10_m) for row in one.rows] for one in bodies}),
         "stretches": [stretch(number, span, bodies, yearly) for number, span in enumerate(spans, 1)],
-        "bodies": [make_body_row(one, yearly) for one in bodies], "left_out": table["left_out"]}
+        "bodies": [make_body_row(one, yearly) for one in bodies], "left_out": table["left_out"],
+        "fragility_warnings": yearly.warnings if yearly else []}
     hits = reached.combine_reached([one.source for one in bodies], corridor.raster, "max_thickness", choices.blocked)
     with disk.complete(folder, RESULTS) as new:
         disk.write_file(new / PIECES, disk.csv_text(("from_m", "to_m", "share", "body", *YEAR), (

@@ -40,7 +40,7 @@ class Yearly:
         if fragility.rate is None:
             raise SlopeError("--fragility", "must be of slope fragility with --hazard, for frequencies per year",
                              fragility.folder)
-        self.names, self.rate = fragility.bodies, fragility.rate
+        self.names, self.rate, self.warnings = fragility.bodies, fragility.rate, fragility.warnings
         first, last = float(self.rate.peaks[0]), float(self.rate.peaks[-1])
         peaks = np.geomspace(first, last, STEPS)
         each = fragility.capacity.reshape(-1, len(self.names))

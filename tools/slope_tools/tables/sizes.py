@@ -30,7 +30,7 @@ OF_SUMS = dict(zip(SUMS, (quantities.REMOVE, "remove_lane_m3", "clear_hours", "l
 UNKNOWN = "; what finer ones would change is not known"
 # of which finer runs held what their last step leaves (tests/size_family.py); they raised what lies beyond the road,
 # and how far the centroid goes, by more
-HELD = {quantities.REMOVE, "remove_on_road_m3", quantities.LENGTH, quantities.DISTANCE}
+HELD = {quantities.REMOVE, "remove_on_road_m3", quantities.LENGTH}
 Point = Sequence[Optional[Finished]]    # its runs by size, the coarsest first; None: not run, or failed
 
 
@@ -199,7 +199,7 @@ def effect(key: str, steps: Sequence[Step]) -> study_types.SizeEffect:
 
 def describe_size(size: study_types.Size) -> str:
     """How many balls were computed, and what finer ones would change, a sentence without its full stop."""
-    key = next((key for key in (quantities.REMOVE, quantities.LENGTH, quantities.DISTANCE) if key in size.effects),
+    key = next((key for key in (quantities.REMOVE, quantities.LENGTH) if key in size.effects),
                None)
     words = f"computed with {size.sizes[0].balls:,} balls"
     if len(size.sizes) > 1:
