@@ -199,8 +199,7 @@ def effect(key: str, steps: Sequence[Step]) -> study_types.SizeEffect:
 
 def describe_size(size: study_types.Size) -> str:
     """How many balls were computed, and what finer ones would change, a sentence without its full stop."""
-    key = next((key for key in (quantities.REMOVE, quantities.LENGTH) if key in size.effects),
-               None)
+    key = next((key for key in (quantities.REMOVE, quantities.LENGTH) if key in size.effects), None)
     words = f"computed with {size.sizes[0].balls:,} balls"
     if len(size.sizes) > 1:
         words += f", some runs with up to {size.sizes[-1].balls:,}, after which the others are corrected"
