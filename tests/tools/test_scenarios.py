@@ -22,7 +22,7 @@ from slope_tools.case import decks
 from slope_tools.commands import study as study_command
 from slope_tools.ensembles import known_study
 from slope_tools.scenarios import compare, method, page
-from slope_tools.sites import site_budget, site_choices, site_scenarios
+from slope_tools.sites import site_choices, site_scenarios, site_trial
 from slope_tools.statistics.answer import Kind, Source
 from slope_tools.studies.road_numbers import Made
 from slope_tools.survey.rasters import Raster
@@ -39,7 +39,7 @@ def whole(tmp_path_factory):
     write_files(folder)
     with pytest.MonkeyPatch.context() as patch:
         work_in(folder, patch)
-        patch.setattr(site_budget, "measure", measure)
+        patch.setattr(site_trial, "measure", measure)
         patch.setenv("LMP", LMP)
         make_mine()
         edit(folder / "mine", "study", packing=[2, 5], rolling=[0.02, 0.08])
@@ -54,7 +54,7 @@ def here(whole, tmp_path, monkeypatch):
     work_in(folder, monkeypatch)
     monkeypatch.setenv("LMP", LMP)
     speeds = [14.0]
-    monkeypatch.setattr(site_budget, "measure", lambda *words: measure(*words)._replace(speed=speeds[0]))
+    monkeypatch.setattr(site_trial, "measure", lambda *words: measure(*words)._replace(speed=speeds[0]))
     return speeds
 
 

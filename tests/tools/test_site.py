@@ -27,7 +27,7 @@ from slope_tools.deposits import volume_files
 from slope_tools.ensembles import farther
 from slope_tools.releases import release_chart
 from slope_tools.runs import jobs
-from slope_tools.sites import site_budget, site_choices, site_deck, site_warnings
+from slope_tools.sites import site_budget, site_choices, site_deck, site_trial, site_warnings
 from slope_tools.sites.site_sections import OfMass, sections
 from slope_tools.sites.site import find_deck_numbers as site_numbers
 from slope_tools.errors import SlopeError
@@ -582,9 +582,9 @@ def test_a_volume_of_frank_by_polygon(tmp_path):
 SOIL = site_budget.Soil(2000.0, 5.0, 47.0, 0.9)
 
 
-def budget(depth=50.0, **balls):
+def budget(depth=50.0, cost=1e-7, **balls):
     choices = OfMass.of({"terrain": {"files": ["dem.tif"]}, "balls": balls, "model": {"duration": 60.0}})
-    trial = site_budget.Trial(800, 3.5, 15.0, True, 13.0, 1e-7, 0.5, 2.0, 0.0)
+    trial = site_budget.Trial(800, 3.5, 15.0, True, 13.0, cost, 0.5, 2.0, 0.0)
     return site_budget.size(choices, 35000.0, depth, SOIL, trial, 2, 6144)
 
 
@@ -650,13 +650,45 @@ def test_the_finest_points_are_as_many_as_time_allows():
     trial = site_budget.Trial(800, 3.5, 15.0, True, 13.0, 1e-7, 0.5, 2.0, 0.0)
     wanted = site_budget.Plan(20, 0, False, 0, "")
     time = site_budget.time_of(3.5, 3e4, trial, SOIL, wanted, 2, 40.0)
-    planned = size_runs.halved("3.5", site_budget.finer(20, time, 40.0, 3), time)
-    as_planned, longer, endless = (planned.fitted([[rest * time.typical] * 20] * 2).points for rest in (1, 2, 99))
+    planned = size_runs.halved("3.5", site_budget.finer(20, time, 3), time)
+    as_planned, longer, endless = (planned.fitted([[rest * time.rest(k)] * 20 for k in (1, 2)]).points
+                                   for rest in (1, 2, 99))
     assert as_planned == planned.points and longer[1] < as_planned[1] and endless[1] == site_budget.LEAST[1]
-    assert sum(number * time.one(k, 2 * time.typical) for k, number in enumerate(longer, 1)) <= time.whole
-    # where no time is given there are as many sizes as a number needs
-    slow = site_budget.time_of(3.5, 3e4, trial._replace(cost=1e-4), SOIL, wanted, 2, None)
-    assert len(site_budget.finer(20, slow, None, None)) == 2 > len(site_budget.finer(20, slow, 10.0, None))
+    assert sum(number * time.one(k, 2 * time.rest(k)) for k, number in enumerate(longer, 1)) <= time.whole
+
+
+@pytest.mark.parametrize("cost, minutes, sizes", [(2e-7, None, 2), (2e-7, 10.0, 1), (5e-7, None, 1)])
+def test_a_number_has_the_sizes_that_it_needs_if_they_fit_in_an_hour(cost, minutes, sizes):
+    """Where no time is given."""
+    trial = site_budget.Trial(800, 3.5, 15.0, True, 13.0, cost, 0.5, 2.0, 0.0)
+    time = site_budget.time_of(3.5, 3e4, trial, SOIL, site_budget.Plan(20, 0, False, 0, ""), 2, minutes)
+    assert len(site_budget.finer(20, time, None)) == sizes
+    took = sum(number * time.one(k, time.rest(k)) for k, number in enumerate(site_budget.within(
+        20, lambda _: 1.0, 0.0, 3), 1)) / 2
+    assert took > 600 and (took < 3600) == (cost < 5e-7)
+
+
+def test_a_study_that_takes_long_has_fewer_points_and_larger_balls():
+    """Half or a quarter of the points where all would take half of the time; a thin body has balls of more than a
+    thousand for no more than that."""
+    def runs(size):
+        return int(re.search(r"(\d+) runs weighted", size.text).group(1))
+
+    plenty, short, shorter = (budget(depth=0.1, minutes=minutes) for minutes in (200, 12, 1))
+    assert [runs(size) for size in (plenty, short, shorter)] == [64, 32, 16]
+    assert plenty.balls == short.balls == pytest.approx(2000, rel=0.02)
+    assert shorter.balls == pytest.approx(400, rel=0.02)
+    assert short.seconds < 12 * 60
+
+
+def test_a_third_trial_tells_how_late_the_ensemble_rests_and_what_its_step_costs():
+    """It has the stiffness of the study: what it takes over what the two others say is what all runs take over that."""
+    both = site_budget.Trial(800, 3.5, 15.0, True, 13.0, 1e-7, 0.5, 2.0, 0.0, middle=15.0, step=3e-5)
+    third = both._replace(balls=300, rest=90.0, seconds=both.run(3.5, 300, SOIL, 90.0) / 2 + 0.25)
+    found = site_trial.corrected(both, third, SOIL)
+    assert (found.step, found.cost) == (pytest.approx(1.5e-5), pytest.approx(5e-8))
+    assert found.typical == 15.0 < found.finer(2) < found.finer(1) == found.finer(0) < found.of_ensemble == 90.0
+    assert found.run(3.5, 300, SOIL, 90.0) == pytest.approx(third.seconds)
 
 
 def test_a_second_trial_tells_how_long_most_runs_take():
@@ -665,7 +697,7 @@ def test_a_second_trial_tells_how_long_most_runs_take():
         return site_budget.Trial(800, d, rest, True, speed, 1e-7, 0.5, 2.0, 0.0)
 
     coarse, fine = trial(3.6, 45.0, 21.0), trial(2.4, 26.0)
-    both = site_budget.joined(coarse, fine)
+    both = site_trial.joined(coarse, fine)
     assert (coarse.typical, both.typical, both.rest, both.speed) == (45.0, 26.0, 45.0, 21.0)
     assert site_budget.duration(both) == site_budget.duration(coarse) == 360.0
     assert site_budget.duration(fine._replace(rest=5.0)) == 120.0
@@ -681,11 +713,11 @@ def test_the_second_trial_has_other_balls():
     trial = site_budget.Trial(800, 3.6, 45.0, True, 21.0, 1e-7, 0.5, 2.0, 0.0)
     balls = OfMass.of({"balls": {"minutes": 1.0}}).balls
     fine, coarse = pytest.approx(3.6 / 3 ** (1 / 3), rel=2e-3), pytest.approx(3.6 * 3 ** (1 / 3), rel=2e-3)
-    assert site_budget.other_diameter(balls, trial) == fine
-    assert site_budget.other_diameter(balls, trial._replace(seconds=3.0)) == coarse       # 13 s, more than a fifth
+    assert site_trial.other_diameter(balls, trial) == fine
+    assert site_trial.other_diameter(balls, trial._replace(seconds=3.0)) == coarse       # 13 s, more than a fifth
     balls = OfMass.of({"balls": {"minutes": 1.0, "number": 3000}}).balls
-    assert site_budget.other_diameter(balls, trial) == coarse
-    assert site_budget.other_diameter(balls, trial._replace(balls=299)) is None
+    assert site_trial.other_diameter(balls, trial) == coarse
+    assert site_trial.other_diameter(balls, trial._replace(balls=299)) is None
 
 
 @pytest.mark.parametrize("order", [1, -1])
@@ -694,12 +726,12 @@ def test_two_trials_tell_what_a_step_costs_and_what_a_ball(order):
     are ten times as many as stay in the cache, 900."""
     first, second = (site_budget.Trial(n, 3.6, 45.0, True, 21.0, 30e-6 / n + 50e-9, 0.5, 2.0, 0.0)
                      for n in (800, 266)[::order])
-    both = site_budget.joined(first, second)
+    both = site_trial.joined(first, second)
     assert (both.balls, both.step, both.cost) == (800, pytest.approx(30e-6), pytest.approx(50e-9))
     steps = 45.0 / site_budget.time_step(1.0, SOIL)
-    assert both.run(1.0, 1000, SOIL) == pytest.approx(0.5 + steps * 80e-6)
-    assert both.run(1.0, 12000, SOIL) == pytest.approx(0.5 + steps * 900e-6)
-    same = site_budget.joined(first, second._replace(cost=first.cost / 2 if order > 0 else first.cost * 2))
+    assert both.run(1.0, 1000, SOIL, 45.0) == pytest.approx(0.5 + steps * 80e-6)
+    assert both.run(1.0, 12000, SOIL, 45.0) == pytest.approx(0.5 + steps * 900e-6)
+    same = site_trial.joined(first, second._replace(cost=first.cost / 2 if order > 0 else first.cost * 2))
     assert same.step >= 0 and same.cost > 0         # noise: nothing is below 0
 
 

@@ -40,7 +40,7 @@ def measure(folder, deck, lmp, values):
 def trials(monkeypatch):
     """The rolling resistances of the trial runs that were made."""
     made = []
-    monkeypatch.setattr(site_budget, "measure",
+    monkeypatch.setattr(site_trial, "measure",
                         lambda *words: made.append(words[-1]["rolling"]) or measure(*words))
     return made
 
@@ -53,7 +53,7 @@ def whole(tmp_path_factory):
     write_layer(folder / "mapped.geojson", MAPPED)
     with pytest.MonkeyPatch.context() as patch:
         work_in(folder, patch)
-        patch.setattr(site_budget, "measure", measure)
+        patch.setattr(site_trial, "measure", measure)
         patch.setenv("LMP", LMP)
         make_mine()
         edit(folder / "mine", "study", points=POINTS, levels=1)
@@ -183,7 +183,7 @@ def test_other_values_of_the_model_leave_the_runs_where_they_are(mine, inside, t
     finish(mine)
     assert set((mine / "runs").iterdir()) > runs and counts(mine) == (ALL, 0)
     inside("mine --friction 30")
-    assert counts(mine) == (ALL, 0) and len(trials) == 4        # two each time, as the machine is measured anew
+    assert counts(mine) == (ALL, 0) and len(trials) == 6        # three each time, as the machine is measured anew
 
 
 def test_an_ensemble_that_does_not_vary_a_list_takes_its_first_value(mine, monkeypatch):

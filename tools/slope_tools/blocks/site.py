@@ -17,7 +17,7 @@ from ..errors import SlopeError
 from ..findings import Finding, finding
 from ..geometry import box_of, extent, polygons_of
 from ..releases.release_area import FLAT
-from ..sites import site, site_budget, site_choices, site_deck, site_layers, site_warnings
+from ..sites import site, site_budget, site_choices, site_deck, site_layers, site_trial, site_warnings
 from ..sites.site_budget import GRAVITY, Trial
 from ..sites.site_choices import Derived
 from ..sites.site_folder import BODY, MAP
@@ -239,7 +239,7 @@ def tried(choices: OfBlocks, start: Start, values: Dict[str, Any], new: Path, ma
         os.symlink(f"../{path.name}", folder / path.name)
     disk.write_file(folder / "blocks.1.data", start.data(1, TRIAL))
     disk.write_file(folder / site_deck.NAME, deck(settled(choices, start, None), values, f"{TRIAL}", "some seconds"))
-    found = site_budget.measure(folder, site_deck.NAME, machine.lmp, {})
+    found = site_trial.measure(folder, site_deck.NAME, machine.lmp, {})
     shutil.rmtree(folder)
     tell(f"trial run, {site.trial_text(found._replace(diameter=start.sizes[0]))}; took {found.seconds:.1f} s")
     return found

@@ -22,7 +22,7 @@ from ..runs import jobs
 from ..sites import site, site_budget, site_choices, site_deck, site_scenarios, site_warnings
 from ..sites.site_sections import VERSION, Choices, Key, OfMass, sections
 from ..slips import bodies
-from ..studies import ahead, outlook, site_ground
+from ..studies import ahead, outlook, site_ground, site_study
 from ..studies.setup import RUNS, Setup
 from ..survey import roads
 from . import known_arguments, road_arguments
@@ -272,7 +272,7 @@ def run_site(args: Request) -> None:
                 keep(differs[0])
                 site_warnings.add(folder, differs)
             if (folder / RUNS).is_dir():
-                lines.append(runs_ahead(args, folder, choices.study.points))
+                lines.append(runs_ahead(args, folder))
         first = None if args.verbose else site_warnings.heaviest(list(doubts.values()))
     finally:        # all of them where it ends with an error
         for one in doubts.values() if first is None else first:
@@ -284,12 +284,13 @@ def run_site(args: Request) -> None:
     print(f"look at {folder / site.MAP}, then: tools/slope study {quote(str(folder))}")
 
 
-def runs_ahead(args: Request, folder: Path, points: int) -> str:
+def runs_ahead(args: Request, folder: Path) -> str:
     """Which runs of the study are there now."""
     engine = Setup(folder / site_deck.NAME, folder, jobs=args.jobs, lmp=args.lmp)
     try:
-        points = 0 if known_study.why_not(folder) else points
-        return f"the study: {ahead.look_ahead(site_choices.load_site(folder), engine, points).text}"
+        site_ = site_choices.load_site(folder)
+        points = 0 if known_study.why_not(folder) else site_study.points_of(site_, engine)
+        return f"the study: {ahead.look_ahead(site_, engine, points).text}"
     except SlopeError as error:
         return f"the study: {error}"
 

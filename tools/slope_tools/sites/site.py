@@ -10,7 +10,7 @@ import shutil
 from dataclasses import replace
 from pathlib import Path
 from shlex import quote
-from typing import Any, Callable, Dict, List, NamedTuple, Optional, Tuple
+from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Tuple
 
 import numpy as np
 
@@ -275,7 +275,7 @@ def find_deck_numbers(choices: OfMass, soil: site_budget.Soil, trial: Optional[T
     d = diameter or (size.diameter if size else 0.0)
     seconds = None
     if trial and size:
-        seconds = trial.run(d, size.balls, soil)
+        seconds = trial.run(d, size.balls, soil, trial.typical)
     return site_deck.Numbers(d, soil.speed,
                              model.duration or site_budget.LONGEST, model.cell or 1.0, model.film or 1.0,
                              choices.motion.peak_friction or site_deck.LEAST_PEAK, trial and trial.typical,
@@ -292,8 +292,8 @@ def with_peak(choices: OfMass, parts: site_deck.Parts, body: release.Body) -> Of
 
 def tried(choices: OfMass, known: Derived, parts: site_deck.Parts, body: release.Body, new: Path,
           folder: Path, machine: Machine, tell) -> Optional[Tried]:
-    """Two trial runs with coarse balls; what the site's folder has of them, if that is still right; None where there is
-    no LAMMPS. They know nothing of what is determined from them.
+    """Trial runs with coarse balls; what the site's folder has of them, if that is still right; None where there is no
+    LAMMPS. They know nothing of what is determined from them, but that the third one has the study's step.
     """
     if machine.lmp is None:
         return None
@@ -301,20 +301,28 @@ def tried(choices: OfMass, known: Derived, parts: site_deck.Parts, body: release
     least, middle = min(choices.study.rolling), settings.middle(choices.study.rolling)
     fixed = all((choices.model.speed, choices.model.duration, choices.model.film, choices.model.cell,
                  choices.balls.diameter))
-    place = trial_folder(site_budget.trial_diameter(own.balls, parts.body.volume), own, parts, body, new)
-    summary = site_trial.summarise_trial(place, site_deck.NAME, machine.lmp, [least, middle])
+    place = trial_folder(site_trial.trial_diameter(own.balls, parts.body.volume), own, parts, body, new)
+    smooth = min([choices.model.spacing, *choices.study.spacing])
+    summary = site_trial.summarise_trial(place, site_deck.NAME, machine.lmp, [least, middle], smooth)
     before = site_trial.kept(folder, summary, fixed)
     if before and (fixed or not own.balls.minutes):
         shutil.rmtree(place)
         tell(f"the trial run is there: {trial_text(before.trial)}")
         return before
-    trial, reached = tried_with(place, least, own, body, machine.lmp, tell)
-    other_d = site_budget.other_diameter(own.balls, trial)
+    trial, reached = tried_with(place, {"rolling": least}, own, body, machine.lmp, tell)
+    other_d = site_trial.other_diameter(own.balls, trial)
     if other_d is None:
         return Tried(trial, reached, summary)
     place = trial_folder(other_d, own, parts, body, new)
-    second, its_reach = tried_with(place, middle, own, body, machine.lmp, tell, f"another, rolling {middle:g}")
-    return Tried(site_budget.joined(trial, second), its_reach if other_d < trial.diameter else reached, summary)
+    second, its_reach = tried_with(place, {"rolling": middle}, own, body, machine.lmp, tell, "another")
+    both = site_trial.joined(trial, second)
+    speed = choices.model.speed or site_budget.stiff_to(both)
+    place = trial_folder(trial.diameter, own, parts, body, new)
+    third, _ = tried_with(place, {"rolling": least, "spacing": smooth, "speed": speed}, own, body, machine.lmp, tell,
+                          "a third one")
+    soil = soil_of(own.model, parts)._replace(speed=speed)
+    both = site_trial.corrected(both, third, soil._replace(spacing=min(soil.spacing, smooth)))
+    return Tried(both, its_reach if other_d < trial.diameter else reached, summary)
 
 
 def trial_folder(d: float, choices: OfMass, parts: site_deck.Parts, body: release.Body, new: Path) -> Path:
@@ -331,19 +339,22 @@ def trial_folder(d: float, choices: OfMass, parts: site_deck.Parts, body: releas
     return folder
 
 
-def tried_with(folder: Path, rolling: float, choices: OfMass, body: release.Body, lmp: Path, tell, what="trial run"):
-    """The Trial of a run in a folder, which is removed, and its largest thickness."""
+def tried_with(folder: Path, values: Mapping[str, float], choices: OfMass, body: release.Body, lmp: Path, tell,
+               what="trial run"):
+    """The Trial of a run in a folder, which is removed, with values of the deck's variables, and its largest
+    thickness."""
     deck = folder / site_deck.NAME
     d = float(decks.index_variables(deck)["d"])
     try:
-        trial = site_budget.measure(folder, deck.name, lmp, {"rolling": rolling})._replace(diameter=d)
+        trial = site_trial.measure(folder, deck.name, lmp, values)._replace(diameter=d)
     except SlopeError as error:
         if choices.motion.file and choices.motion.peak_friction is not None:
             site_warnings.require_standing(error, choices.motion.peak_friction, body.measures.mean_slope)
         raise
     reached = rasters.read_raster(next(iter(folder.glob("*.max_thickness.asc"))), heights=False)
     shutil.rmtree(folder)
-    tell(f"{what}, {trial_text(trial)}; took {trial.seconds:.1f} s")
+    said = ", ".join(f"{name} {value:g}" for name, value in values.items())
+    tell(f"{what}, {said}: {trial_text(trial)}; took {trial.seconds:.1f} s")
     return trial, reached
 
 

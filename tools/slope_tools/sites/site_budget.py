@@ -1,20 +1,10 @@
 """How large the coarsest balls of a site are, how many of its points run with finer ones, and how long that takes.
 
-Two trial runs with coarse balls measure this machine.
-
-A run takes (steps) x ((time of a step) + (balls) x (time of a ball in it)). Two trial runs with different numbers of
-balls measure these, as processor time, the seconds until the mass is at rest at the lowest and the middle rolling
-resistance, and the largest speed, which sets the stiffness and with it the step. Times in s, lengths in m.
+Trial runs with coarse balls measure this machine (site_trial). Times in s, lengths in m.
 """
 import math
-import re
-import resource
-import subprocess
-from pathlib import Path
-from typing import Callable, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import Callable, List, NamedTuple, Optional, Sequence, Tuple
 
-from .. import processes
-from ..case import last_words, logs, run_folders
 from ..case.settings import normalise_value
 from ..digits import at_least, rounded
 from ..errors import SlopeError
@@ -23,18 +13,18 @@ from .site_sections import Balls, OfMass
 
 DEFAULT = 400           # of the coarsest balls, if nothing is given
 THIN = 1.3              # of these over the mean thickness of the body, at least, unless they are
-MANY = 2000             # more than so many, of a thin body
-MINUTES = 10.0          # that a study may take, if nothing is given
+MANY = 2000             # more than so many, of a thin body, or take too long:
+COARSER = 1.1           # each so much larger than those before
+MINUTES = 10.0          # that a study may take, if nothing is given,
+HOUR = 60.0             # or so many where fewer sizes of balls than a number needs would fit
+FEW_POINTS = 16         # of the ensemble, at least, and
+COARSE_SHARE = 0.5      # of the time, at most, that all runs with the coarsest balls take with more of them
 SIZES = 3               # of balls, where nobody knows how long they take: fewer give no number
 MOST_SIZES = 5
 PAIRS = 12, 5           # points with the next finer balls, and with those after, where no time decides
 LEAST = 8, 4            # of them, at least: fewer say too little of what is between two sizes
 ENOUGH = 24, 8          # at most: more time is for finer balls
 LATE = 2                # of the finest, on which numbers rest once all values are at the finest size
-TRIAL = 400             # balls of the trial run
-OTHER = 3               # times as many balls has the second trial run for a budget of time, otherwise as few
-FINER_SHARE = 0.2       # of that budget, which it takes at most
-LEAST_SHARE = 0.3       # of the time of the second trial's balls is that of the balls, not of the steps
 FEWEST = 100            # balls that a budget must allow for
 MOST = 10 ** 9          # far below LAMMPS' own limit, and more than any memory holds
 PER_BALL = 800e-9       # GB, see the page on scaling
@@ -42,7 +32,7 @@ PER_RUN = 0.06          # GB, program and libraries
 PER_CELL = 16e-9        # GB, two terrains of doubles; the deposit's rasters only cover where balls were
 COLLECT = 1.5           # s of a run's volume and maps: after all runs, one after the other
 REPORT = 15.0           # s of the report
-LONGER = 1.2            # times as many steps takes a run of the ensemble, whose ground may be smooth
+LONGER = 3.0            # times as long rests the mass on the ensemble's grounds, where no trial tells
 CACHED = 1200           # balls whose contacts stay in the cache
 LEDGER = 1.4            # times as long takes a run that keeps account of its energy: that with half the step
 SPEED = 47.0            # m/s, where no trial run tells
@@ -57,11 +47,6 @@ AIR = 1.2               # margin of the stiffness over the trial run's largest s
 PATIENCE = 8.0          # duration: times the trial's time to rest; runs of an ensemble on smooth ground took 4 times it
 LEAST_DURATION = 120.0  # s
 LONGEST = 600.0         # s of a collapse in the trial run
-TRIAL_LIMIT = 600.0     # s of waiting for it
-TOO_LARGE = "box size << cutoff"        # LAMMPS, of a ball that is as large as the terrain
-
-LOOP = re.compile(r"^Loop time of (\S+) on \d+ procs for (\d+) steps with (\d+) atoms", re.MULTILINE)
-SHARE = re.compile(r"^(\S+)% CPU use", re.MULTILINE)
 
 
 class Trial(NamedTuple):
@@ -77,18 +62,26 @@ class Trial(NamedTuple):
     left: float             # share of the mass that left the terrain
     middle: Optional[float] = None      # rest of a second trial, with the rolling resistance in the study's middle
     step: float = 0.0       # s of a core per step, whatever the number of balls
+    late: Optional[float] = None        # rest of a third trial, as most runs of the ensemble have it
 
     @property
     def typical(self) -> float:
         """s of the collapse in most runs of the study; rest is of the first, lowest rolling resistance."""
         return self.rest if self.middle is None else self.middle
 
-    def run(self, d: float, balls: float, soil: "Soil", longer: float = 1.0) -> float:
-        """s of a core that a run with balls of diameter d (m) takes."""
-        return self.run_of(d, balls, soil, longer * self.typical)
+    @property
+    def of_ensemble(self) -> float:
+        """s of the collapse in most runs of the ensemble."""
+        return LONGER * self.typical if self.late is None else self.late
 
-    def run_of(self, d: float, balls: float, soil: "Soil", rest: float) -> float:
-        """The same of a run whose collapse takes so long (s)."""
+    def finer(self, k: int) -> float:
+        """s of the collapse on average with balls of 1/2^k of the diameter: of points that rest soon, but for the one
+        on which numbers rest; 0: of the sweep, some of which has smoother grounds or the largest restitution."""
+        late = 0.5 if k < 2 else 0.25
+        return (1 - late) * self.typical + late * self.of_ensemble
+
+    def run(self, d: float, balls: float, soil: "Soil", rest: float) -> float:
+        """s of a core that a run with balls of diameter d (m) takes whose collapse takes so long (s)."""
         # what more balls save of a step's own time is lost again where they leave the cache
         own = self.step * max(1.0, balls / CACHED)
         return self.setup + rest / time_step(d, soil) * (own + balls * self.cost)
@@ -133,82 +126,6 @@ def three_digits(value: float) -> float:
     return float(f"{value:.3g}")
 
 
-# --- the trial run ---
-
-def trial_diameter(balls: Balls, volume: float) -> float:
-    """Of the trial's balls (m): TRIAL of them, or fewer if the site has fewer."""
-    number: float = TRIAL
-    if balls.diameter:
-        number_of(balls, volume, balls.diameter)
-        number = min(number, packing.count_balls(volume, balls.diameter))
-    elif balls.number:
-        number = min(number, balls.number)
-    return three_digits(packing.compute_diameter(volume, max(number, 1)))
-
-
-def other_diameter(balls: Balls, trial: Trial) -> Optional[float]:
-    """Of the balls of a second trial run (m): finer where time allows it; None with too few balls."""
-    if not balls.diameter and not balls.number and \
-            trial.seconds * OTHER ** (4 / 3) <= FINER_SHARE * 60 * (balls.minutes or MINUTES):
-        return three_digits(trial.diameter * OTHER ** (-1 / 3))
-    return three_digits(trial.diameter * OTHER ** (1 / 3)) if trial.balls >= OTHER * FEWEST else None
-
-
-def joined(first: Trial, second: Trial) -> Trial:
-    """The finer of two trials, with what each found: first at the lowest rolling resistance, second in the middle.
-
-    The time of a ball and step falls with the number of balls n as step / n + cost.
-    """
-    fine, coarse = (first, second) if first.balls > second.balls else (second, first)
-    step = 0.0
-    if fine.balls > coarse.balls:
-        step = max(0.0, (coarse.cost - fine.cost) / (1 / coarse.balls - 1 / fine.balls))
-        step = min(step, (1 - LEAST_SHARE) * fine.cost * fine.balls)
-    return fine._replace(rest=max(first.rest, second.rest), at_rest=first.at_rest and second.at_rest,
-                         speed=max(first.speed, second.speed), left=max(first.left, second.left), middle=second.rest,
-                         step=step, cost=fine.cost - step / fine.balls)
-
-
-def measure(folder: Path, deck: str, lmp: Path, values: Mapping[str, float]) -> Trial:
-    """Run a site's deck with values of its variables in its folder and read what it measured; SlopeError with LAMMPS'
-    own message if it fails.
-
-    The caller sets the diameter and removes the files of the run.
-    """
-    log = folder / "log.lammps"
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    with open(folder / "screen.txt", "wb") as screen:
-        try:
-            given = [word for name, value in values.items() for word in ("-var", name, f"{value:.10g}")]
-            process = processes.start([str(lmp), "-in", deck, "-log", log.name, *given], folder, screen, alone=True)
-        except OSError as error:
-            raise SlopeError(lmp, f"cannot be run: {error.strerror}") from None
-        try:
-            status = process.wait(TRIAL_LIMIT)
-        except subprocess.TimeoutExpired:
-            raise SlopeError("trial run", f"must end within {TRIAL_LIMIT:g} s") from None
-        finally:
-            processes.stop([process])
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    summaries = sorted(folder.glob("*.summary.yaml"))
-    if status != 0 or not summaries:
-        words = last_words.reason(logs.Log(log).update(), last_words.Screen(folder / "screen.txt", 0))
-        if words and TOO_LARGE in words:
-            raise SlopeError("trial run", "must have balls that are much smaller than the terrain: use more balls "
-                             "(--balls), or a smaller --diameter, balls.diameter of site.yaml")
-        raise SlopeError("trial run", f"must end without an error: {words or f'ended with status {status}'}")
-    summary = run_folders.load_summary(summaries[0])
-    text = log.read_text(encoding="utf-8", errors="replace")
-    loops = LOOP.findall(text)
-    work = sum(int(steps) * int(atoms) for _, steps, atoms in loops)
-    computed = sum(float(took) * float(share) / 100 for (took, _, _), share in zip(loops, SHARE.findall(text)))
-    volume = summary["volume"]
-    return Trial(summary["balls"]["released"], 0.0, summary["stop"]["time"],
-                 "halt" in str(summary["stop"]["reason"]), summary["largest"]["max_speed"], computed / max(work, 1),
-                 seconds - computed, seconds, (volume["off_grid"] + volume["lost"]) / volume["released"])
-
-
 # --- the size ---
 
 class Plan(NamedTuple):
@@ -217,7 +134,13 @@ class Plan(NamedTuple):
     elastic: int                        # those with the largest restitution
     half_step: bool                     # and one with half the time step, which is compared by the volume to remove
     points: int                         # of the ensemble, which may become twice as many
-    text: str
+    sweep: str                          # its runs in words
+
+    @property
+    def text(self) -> str:
+        """All runs in words."""
+        return self.sweep + (f"; {self.points} runs weighted by known events, and up to as many more where these go "
+                             "farther (study --paper leaves them out)") * bool(self.points)
 
     @property
     def runs(self) -> int:
@@ -235,9 +158,6 @@ def plan_budget(choices: OfMass) -> Plan:
         text += f", {len(grounds)} on other grounds"
     if elastic:
         text += f", {elastic} with the largest restitution"
-    if points:
-        text += (f"; {points} runs weighted by known events, and up to as many more where these go farther (study "
-                 "--paper leaves them out)")
     return Plan(paper, elastic, bool(choices.road.file), points, text)
 
 
@@ -270,32 +190,51 @@ def within(points: int, seconds: Callable[[int], float], left: float, asked: Opt
 
 class Time(NamedTuple):
     """That runs with finer balls may take: one(k, rest) s of a core of a run with balls of 1/2^k of the diameter whose
-    collapse takes rest (s); typical: rest of most; whole: of all of these runs."""
+    collapse takes rest (s); rest(k): of these on average; whole: of all of these runs, where these are more sizes than
+    least: as many as a number needs, if they fit in an HOUR and no minutes are given."""
     one: Callable[[int, float], float]
-    typical: float
+    rest: Callable[[int], float]
     whole: float
+    least: int              # sizes of balls, whatever they take
 
 
 def time_of(d: float, volume: float, trial: Trial, soil: Soil, wanted: Plan, jobs: int,
             minutes: Optional[float]) -> Time:
     """What a study of so many minutes, None: not given, leaves them; d: of the coarsest balls."""
-    whole = 60 * (minutes or MINUTES) - study_seconds(d, volume, trial, soil, wanted, jobs, ())[0]
+    coarse = study_seconds(d, volume, trial, soil, wanted, jobs, ())[0]
 
     def one(k: int, rest: float) -> float:
-        return trial.run_of(d / 2 ** k, packing.count_balls(volume, d / 2 ** k), soil, rest) + COLLECT * jobs
+        return trial.run(d / 2 ** k, packing.count_balls(volume, d / 2 ** k), soil, rest) + COLLECT * jobs
 
-    return Time(one, LONGER * trial.typical, whole * jobs)
+    def left(budget: float) -> float:
+        return jobs * (60 * budget - coarse)
+
+    def seconds(k: int) -> float:
+        return one(k, trial.finer(k))
+
+    enough = sum(each * seconds(k) for k, each in enumerate(
+        within(wanted.paper + wanted.points, seconds, 0.0, SIZES), 1))
+    least = SIZES if not minutes and enough <= left(HOUR) else 1
+    return Time(one, trial.finer, left(minutes or (MINUTES if least > 1 else HOUR)), least)
 
 
-def finer(points: int, time: Optional[Time], minutes: Optional[float], asked: Optional[int]) -> List[int]:
-    """How many of so many points run with each of the finer balls; minutes, asked: None: not given.
-
-    Where no time is given, as many sizes as a number needs.
-    """
+def finer(points: int, time: Optional[Time], asked: Optional[int]) -> List[int]:
+    """How many of so many points run with each of the finer balls; asked: sizes, None: as time allows; where no time
+    is known, as many as a number needs."""
     if time is None:
         return pairs(points, asked or SIZES)
-    one, typical = time.one, time.typical
-    return within(points, lambda k: one(k, typical), time.whole, asked, 1 if minutes else SIZES)
+    one, rest = time.one, time.rest
+    return within(points, lambda k: one(k, rest(k)), time.whole, asked, time.least)
+
+
+def fit_points(d: float, volume: float, trial: Optional[Trial], soil: Soil, wanted: Plan, jobs: int,
+               minutes: Optional[float]) -> Plan:
+    """With half or a quarter of the ensemble's points, where all would take most of the time; as of time_of()."""
+    most = COARSE_SHARE * 60 * (minutes or HOUR)
+    while trial and wanted.points >= 2 * FEW_POINTS and \
+            study_seconds(d, volume, trial, soil, wanted, jobs, ())[0] > most:
+        wanted = wanted._replace(points=wanted.points // 2)
+    return wanted
 
 
 def study_seconds(d: float, volume: float, trial: Trial, soil: Soil, wanted: Plan, jobs: int,
@@ -304,14 +243,14 @@ def study_seconds(d: float, volume: float, trial: Trial, soil: Soil, wanted: Pla
 
     numbers: of points with each of the finer balls.
     """
-    def run(size: float, longer: float = 1.0) -> float:
-        return trial.run(size, packing.count_balls(volume, size), soil, longer)
+    def run(size: float, rest: float) -> float:
+        return trial.run(size, packing.count_balls(volume, size), soil, rest)
 
-    total = (wanted.paper + wanted.elastic) * run(d)
-    total += sum(number * run(d / 2 ** k, LONGER) for k, number in enumerate(numbers, 1))
+    total = (wanted.paper + wanted.elastic) * run(d, trial.finer(0))
+    total += sum(number * run(d / 2 ** k, trial.finer(k)) for k, number in enumerate(numbers, 1))
     if wanted.half_step:
-        total += run(d, 2 * LEDGER)
-    points = wanted.points * (run(d, LONGER) / jobs + COLLECT)
+        total += run(d, 2 * LEDGER * trial.typical)
+    points = wanted.points * (run(d, trial.of_ensemble) / jobs + COLLECT)
     least = total / jobs + COLLECT * (wanted.runs - wanted.points + wanted.half_step + sum(numbers)) + REPORT + points
     return least, least + points
 
@@ -351,7 +290,11 @@ def size(choices: OfMass, volume: float, depth: float, soil: Soil, trial: Option
 
     volume: of the body, m3; depth: its mean thickness, m; cells: of the terrain.
     """
-    balls, wanted, levels = choices.balls, plan_budget(choices), choices.study.levels
+    balls, levels = choices.balls, choices.study.levels
+
+    def wanted_of(d: float) -> Plan:
+        return fit_points(d, volume, trial, soil, plan_budget(choices), jobs, balls.minutes)
+
     if balls.diameter:
         d = balls.diameter
     elif balls.number:
@@ -361,9 +304,14 @@ def size(choices: OfMass, volume: float, depth: float, soil: Soil, trial: Option
                           volume))
     else:
         least, most = (packing.compute_diameter(volume, number) for number in (MANY, DEFAULT))
-        d = three_digits(min(most, max(least, depth / THIN)))
+        d = min(most, max(least, depth / THIN))
+        while trial and d < most and study_seconds(d, volume, trial, soil, wanted_of(d), jobs, ())[0] > \
+                COARSE_SHARE * 60 * (balls.minutes or HOUR):
+            d = min(most, COARSER * d)      # a thin body is rough with all of them
+        d = three_digits(d)
+    wanted = wanted_of(d)
     time = time_of(d, volume, trial, soil, wanted, jobs, balls.minutes) if trial else None
-    numbers = finer(wanted.paper + wanted.points, time, balls.minutes, levels)
+    numbers = finer(wanted.paper + wanted.points, time, levels)
     seconds = study_seconds(d, volume, trial, soil, wanted, jobs, numbers) if trial else (None, None)
     return Size(d, number_of(balls, volume, d), wanted.runs, *seconds,
                 gigabytes(d, volume, cells, jobs, 1 + len(numbers)), wanted.text + finer_text(numbers),

@@ -46,8 +46,9 @@ def describe_outlook(folder: Path) -> List[str]:
             # behind all roads it is no reason against their numbers
             behind = met and all(one.passed < counts.path.length[-1] for one in met.values())
             (lines if behind else floors).append(why)
-    numbers = site_study.wanted(site, site_study.plan_site_study(site, Setup(Path(), Path())), site_study.Asked(),
-                                choices.study.points).points
+    engine = Setup(Path(), Path())
+    numbers = site_study.wanted(site, site_study.plan_site_study(site, engine), site_study.Asked(),
+                                site_study.points_of(site, engine)).points
     lines.append("the study takes about "
                  f"{site_disk.format_disk_size(site_disk.study(folder, choices, site_found, numbers))} " "of disk")
     if why := coarse(1 + len(numbers)):

@@ -125,12 +125,26 @@ def wanted(site: Site, planned: Planned, asked: Asked, points=0, alone=False) ->
     plan_ = site_budget.plan_budget(planned.choices)._replace(points=points)
     if alone:
         plan_ = plan_._replace(paper=0, elastic=0, half_step=False)
-    minutes, time = asked.minutes or planned.choices.balls.minutes, None
+    time = None
     if site_found.body and site_found.trial:
         time = site_budget.time_of(float(planned.variables[VARIABLE]), site_found.body.volume, site_found.trial,
-                                   soil_of(site, planned), plan_, jobs_of(planned.setup), minutes)
-    numbers = site_budget.finer(plan_.paper + plan_.points, time, minutes, levels)
+                                   soil_of(site, planned), plan_, jobs_of(planned.setup), minutes_of(site, asked))
+    numbers = site_budget.finer(plan_.paper + plan_.points, time, levels)
     return size_runs.halved(planned.variables[VARIABLE], numbers, time, more=levels is None)
+
+
+def minutes_of(site: Site, asked: Asked) -> Optional[float]:
+    """That a study may take; None: not given."""
+    return asked.minutes or site.choices.balls.minutes
+
+
+def points_of(site: Site, engine: Setup, asked: Asked = Asked()) -> int:
+    """Of the ensemble of a site: those of site.yaml, or as many of them as time allows."""
+    planned, found = plan_site_study(site, engine), site.found
+    volume, trial = (found.body.volume, found.trial) if found.body else (0.0, None)
+    return site_budget.fit_points(float(planned.variables[VARIABLE]), volume, trial, soil_of(site, planned),
+                                  site_budget.plan_budget(site.choices), jobs_of(planned.setup),
+                                  minutes_of(site, asked)).points
 
 
 def soil_of(site: Site, planned: Planned) -> site_budget.Soil:
