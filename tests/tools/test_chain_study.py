@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import yaml
 
+import made_rows
 import made_study
 from run_helpers import anew, called
 from test_fragility import SOIL, write_slips
@@ -18,13 +19,17 @@ from slope_tools import cli, programs
 from slope_tools.commands import study
 from slope_tools.report import chain_part
 from slope_tools.report.numbers import Numbers
-from slope_tools.seismic import chain_files, fragility_files
+from slope_tools.seismic import chain, chain_files, fragility_files
+from slope_tools.seismic.together import Steps
+from slope_tools.statistics import ball_sizes
+from slope_tools.studies import letter
 from slope_tools.tables import study_types
+from slope_tools.tables.study_file import load_study
 
 needs_lmp = pytest.mark.skipif(not os.environ.get("LMP"), reason="needs the LAMMPS program (LMP)")
 ROAD = "1,0\n8,0\n8,51\n1,51\n"
 FRAGILITY = f"slips {SOIL} --peaks 50:1500:50 --pseudo-static 1 --sample 256"
-STUDY = "mine --sample 6 --vary rolling=0:0.1 --vary packing=1:1000000 --fragility fragility"
+STUDY = "mine --levels 1 --sample 6 --vary rolling=0:0.1 --vary packing=1:1000000 --fragility fragility"
 
 
 @pytest.fixture(scope="module")
@@ -93,6 +98,9 @@ def test_the_chain_of_two_bodies(mine, capsys):
         assert all(f"{text}\n" in out for text in chain_files.sentences(said))
     assert "the road is blocked by more than" in chain_files.sentences(said)[0]
     shown_in_the_report(of)
+    told = letter.write_letter(letter.make_letter(load_study(Path("mine/ensemble/study.yaml"))))
+    assert "2 bodies" in told.down and "how likely" not in told.lacks
+    assert found["withheld"] or told.clear.count("per year") == len(found["per_year"])
 
     # which body brings most, and what both leave: by hand from the runs
 
@@ -134,6 +142,28 @@ def shown_in_the_report(of):
     assert total == pytest.approx(of["chain"]["per_year"][0]["value"], rel=0.05)
     Data.study = made_study.study(chain=replace(chain, withheld=["few balls"]))
     assert chain_part.make_chain_section(Data, Numbers()) is None
+
+
+def test_bounds_have_the_transfer_and_what_finer_balls_would_change(monkeypatch):
+    """By hand: of 100 and 200 m3 the bounds are those of 90 to 110 and of 180 to 220, 5 % less and 20 % more."""
+    def row(of, band=None):
+        return made_rows.row(set={"body": "1"}, remove_on_road_m3=of, bands=band and {
+            chain_files.QUANTITY: band})
+
+    class Given:
+        weights, volumes = {"1": 1.0}, {"1": 500.0}
+
+        class fragility:
+            bodies = ["1"]
+
+    monkeypatch.setattr(chain_files.chain, "compute_left_volume", lambda values, *_: chain.Left(*(
+        Steps(np.array([500.0, *sorted(values)[::-1]]), np.ones(3)),) * 3))
+    rows = [row(100.0, [90.0, 110.0]), row(200.0, [180.0, 220.0])]
+    [left] = chain_files.list_left_volumes(Given, rows, ball_sizes.Left(-0.05, 0.05, 0.2, 0.1, 1.0, False))
+    assert left.value.volumes.tolist() == [500, 200, 100]
+    assert left.low.volumes == pytest.approx([475, 171, 85.5]) and left.high.volumes == pytest.approx([500, 264, 132])
+    [left] = chain_files.list_left_volumes(Given, [row(100.0), row(200.0)], None)
+    assert left.low.volumes.tolist() == left.high.volumes.tolist() == [500, 200, 100]
 
 
 @pytest.fixture

@@ -317,8 +317,7 @@ WORDS: Dict[str, Union[str, Words]] = {
                               "more points (--sample)", NOTE),
     "more per year": Words("peaks above the hazard curve's last may add up to {per_year:.2g} per year to more than "
                            "{volume:,.6g} m3", NOTE),
-    "chain size": Words("balls of one size: what finer ones would change, and so how often the road is blocked, is not "
-                        "known", NOTE),
+    "chain size": Words("what finer balls would change, and so how often the road is blocked, is not known", NOTE),
     # on a calibration
     "failed fits": Words("{failed} of {runs} runs failed and are left out: {which}", NOTE),
     # of sites of single blocks

@@ -321,8 +321,8 @@ def run_site_ensemble(args: Request, site: Site) -> Made:
     """An ensemble of a site's deck with its road, in a folder of the site's, and the report."""
     site_study.check_site(site)
     wanted, beside = of_ensemble(args, site), None
-    if args.fit or args.fragility:
-        refuse(args, ("levels", "minutes"), "--from or --fragility: their runs have balls of one size")
+    if args.fit:
+        refuse(args, ("levels", "minutes"), "--from: its runs have the balls for which its values were found")
     else:
         assert args.sample is not None
         beside = site_study.Beside(None, site_study.wanted(site, site_study.plan_site_study(site, setup_of(args)),

@@ -23,10 +23,12 @@ def make_client_content(data: Data, ground, numbers: Numbers, answers: Sequence[
     """
     letter_ = letter_of(data, ground)
     main = next((card for card in answers if card), None)
-    paragraphs = letter.write_letter(letter_, numbers)._replace(down=body.sentence(body.of_data(data, ground)))
+    paragraphs = letter.write_letter(letter_, numbers)
+    if len(letter_.bodies) < 2:
+        paragraphs = paragraphs._replace(down=body.sentence(body.of_data(data, ground)))
     step = data.study.next_step if data.study else None
     kind = letter_.number.kind if letter_.number else Kind.NUMBER
-    if not letter_.number and main:     # of an ensemble that no known events weigh
+    if not letter_.number and not letter_.chain and main:     # of an ensemble that no known events weigh
         paragraphs = paragraphs._replace(clear=of_card(main))
         if main.withheld:
             kind, step = Kind.WITHHELD, next_step.first_remedy(next_step.Made(data.of_study, data.folder))

@@ -5,7 +5,7 @@ The mathematics are in chain.py; here are the checks, the tables, the entry of s
 import math
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Dict, Iterable, List, Mapping, NamedTuple, Sequence, Tuple
+from typing import Any, Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from ..errors import SlopeError
 from ..findings import Finding, finding, texts
 from ..sites.site_bodies import VARIABLE
 from ..sites.site_found import SlipBody
-from ..statistics import hazard
+from ..statistics import ball_sizes, hazard
 from ..tables import intensity, study_types
 from ..tables.rows import Row, finished_of
 from . import chain
@@ -69,8 +69,9 @@ def options(asked: Chain) -> Tuple[List[str], List[str]]:
 
 # --- after them ---
 
-def list_left_volumes(asked: Chain, rows: Sequence[Row]) -> List[chain.Left]:
-    """What each body leaves on the road; of those that never fail nothing."""
+def list_left_volumes(asked: Chain, rows: Sequence[Row], finer: Optional[ball_sizes.Left]) -> List[chain.Left]:
+    """What each body leaves on the road; of those that never fail nothing. The bounds have those of runs at the finest
+    size, and what finer balls would change."""
     volumes = []
     for name in asked.fragility.bodies:
         if name not in asked.weights:
@@ -80,9 +81,15 @@ def list_left_volumes(asked: Chain, rows: Sequence[Row]) -> List[chain.Left]:
         done = finished_of(mine)
         point = [tuple(row.set.values()) for row in done]
         known = {one: k for k, one in enumerate(dict.fromkeys(point))}
-        volumes.append(chain.compute_left_volume([row.at_road.remove_on_road_m3 for row in done],
-                                                 [known[one] for one in point],
-                                                 asked.volumes[name], len(mine) - len(done)))
+        on_road = [row.at_road.remove_on_road_m3 for row in done]
+        bands = [(row.bands or {}).get(QUANTITY, (volume, volume)) for row, volume in zip(done, on_road)]
+        value, low, high = (chain.compute_left_volume(
+            volumes_, [known[one] for one in point], asked.volumes[name], len(mine) - len(done))
+            for volumes_ in (on_road, [low for low, _ in bands], [high for _, high in bands]))
+        change = (finer.low, finer.high) if finer else (0.0, 0.0)
+        volumes.append(chain.Left(value.value, *(
+            one._replace(volumes=np.minimum((1 + by) * one.volumes, max(asked.volumes[name], one.volumes.max())))
+            for one, by in zip((low.low, high.high), change))))
     return volumes
 
 
@@ -92,10 +99,11 @@ class Evaluated(NamedTuple):
     tables: Dict[str, str]
 
 
-def evaluate_chain(asked: Chain, rows: Sequence[Row], withheld: Sequence[Finding], sizes: bool) -> Evaluated:
-    """What the runs say; rows: of study.csv; withheld: why their volumes may not be used; sizes: whether several were
-    run."""
-    fragility, bodies = asked.fragility, list_left_volumes(asked, rows)
+def evaluate_chain(asked: Chain, rows: Sequence[Row], withheld: Sequence[Finding],
+                   finer: Optional[ball_sizes.Left]) -> Evaluated:
+    """What the runs say; rows: of study.csv; withheld: why their volumes may not be used; finer: what finer balls would
+    change of a volume on the road, None: not known."""
+    fragility, bodies = asked.fragility, list_left_volumes(asked, rows, finer)
     seen = [row.at_road.remove_on_road_m3 for row in finished_of(rows)]
     more_than = list(asked.more_than) or intensity.round_volumes(max(seen)) or [0.0]
     largest = sum(float(one.value.volumes[1:].max(initial=0.0)) for one in bodies)
@@ -117,7 +125,7 @@ def evaluate_chain(asked: Chain, rows: Sequence[Row], withheld: Sequence[Finding
         fragility.folder.name, QUANTITY, hazard.CONFIDENCE, [summarise_chain_body(asked, name, rows) for name
                                                              in fragility.bodies],
         more_than, fragility.peaks.tolist(), curves, per_year, list(withheld), list(tables), [])
-    coarse = [] if sizes else [Finding("chain size")]
+    coarse = [] if finer else [Finding("chain size")]
     return Evaluated(replace(about, doubts=[*find_chain_caveats(about, fragility.warnings), *coarse]), tables)
 
 

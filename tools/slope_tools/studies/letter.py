@@ -8,6 +8,8 @@ from typing import Callable, List, NamedTuple, Optional, Sequence
 
 from ..digits import percent, three
 from ..mobility.how_far import TAIL, Reach
+from ..seismic import chain_files
+from ..sites.site_bodies import VARIABLE
 from ..statistics.answer import Cause, Code, Headline, Kind, Source
 from ..statistics.entries import PaperPart, Road
 from ..tables import answer_words, ensemble_types, judged, sizes, study_types
@@ -35,7 +37,8 @@ class Letter(NamedTuple):
     released: what comes down; number: what must be cleared, None without a road; gap: of it, see entries.KnownQuantile;
     cut: degrees, of the road's edges, above which is removed; events: how many known events weigh the runs, None: none;
     reach: how far; roads: of a site with several, the worst first; lacks: kinds of findings, of what is not in it;
-    size: what the size of the balls would change, a sentence without its full stop.
+    size: what the size of the balls would change, a sentence without its full stop; chain: how often earthquakes block
+    the road, the same; bodies: volumes of several, one of which comes down in a run.
     """
     released: float
     number: Optional[Headline]
@@ -46,6 +49,8 @@ class Letter(NamedTuple):
     size: str
     cut: Optional[float] = None
     events: Optional[int] = None
+    chain: Sequence[str] = ()
+    bodies: Sequence[float] = ()
 
 
 def make_letter(study: study_types.Study) -> Letter:
@@ -58,7 +63,9 @@ def make_letter(study: study_types.Study) -> Letter:
                   read_road_numbers(study), [one.kind for one in judged.limits(study, bool(study.study.repeat))],
                   study.size.text if study.size else sizes.alone(max(
                       (row.released_m3 / row.ball_m3 for row in rows), default=0.0)),
-                  study.study.road["cut_angle"] if study.study.road else None, known.events if known else None)
+                  study.study.road["cut_angle"] if study.study.road else None, known.events if known else None,
+                  chain_files.sentences(study.chain) if study.chain and not study.chain.withheld else (),
+                  list({row.variables.get(VARIABLE): row.released_m3 for row in rows}.values()))
 
 
 class Sentences(NamedTuple):
@@ -80,13 +87,17 @@ def format_console_number(_: str, __: str, value: float) -> str:
 
 def write_letter(letter: Letter, write: Write = format_console_number) -> Sentences:
     number = letter.number
-    clear = describe_clearing(number, write) if number else ""
+    clear = describe_clearing(number, write) if number else " ".join(map(capital, letter.chain))
     basis = f"{describe_cut(letter)} {describe_basis(number, letter, write)}".strip() if number else ""
     far, roads = describe_reach(letter.reach, write), describe_roads(letter, write)
-    lacks = "; ".join([DRY, *(LACKS[kind] for kind in letter.lacks if kind in LACKS)])
+    lacks = "; ".join([DRY, *(LACKS[kind] for kind in letter.lacks if kind in LACKS
+                              and not (letter.chain and kind == "slip assumed"))])
+    down = f"{three(letter.released)} m3 of ground"
+    if len(letter.bodies) > 1:
+        down = f"One of {len(letter.bodies)} bodies of {three(min(letter.bodies))} to {three(max(letter.bodies))} m3"
     in_band = sizes.UNKNOWN not in letter.size and number and any(
         share.cause == Cause.SIZE.value for share in number.band)
-    return Sentences(f"{three(letter.released)} m3 of ground would come down.", clear, basis, far, roads,
+    return Sentences(f"{down} would come down.", clear, basis, far, roads,
                      describe_change(number) if number else "", f"Not in it: {lacks}.",
                      capital(letter.size) + " The band has it." * bool(in_band))
 

@@ -122,7 +122,8 @@ def evaluate_study(questions: Questions, read: Read, header: study_types.Header)
                                                       read.road, groups)
     if at_intensities and best:
         best = replace(best, doubts=[*best.doubts, *intensity.find_intensity_caveats(at_intensities)])
-    chain = chain_files.evaluate_chain(questions.chain, rows, reasons(read), read.size is not None) \
+    effect = read.size.effects.get(chain_files.QUANTITY) if read.size else None
+    chain = chain_files.evaluate_chain(questions.chain, rows, reasons(read), effect.left if effect else None) \
         if questions.chain and several and finished else None
     weighted = several.about if several else None
     source = Source.ENSEMBLE if order else Source.PAPER
