@@ -277,6 +277,42 @@ def test_long_runs_have_finer_balls_but_not_the_finest():
     assert size_runs.orders_of(np.ones(1), np.ones(1, bool), np.zeros((1, 1)), [1, 1]) == [[0], [0]]
 
 
+@pytest.mark.parametrize("chased", [True, False])
+def test_a_study_that_is_made_again_makes_no_finer_runs(monkeypatch, chased):
+    """Numbers that rest on another run each time ask for three more than were wanted; others for as many as wanted."""
+    points = [SimpleNamespace(name=f"p{k}", folder=Path(f"p{k}")) for k in range(12)]
+    wanted, there, made_now = size_runs.Wanted(["4", "2", "1"], [5, 4]), {}, []
+
+    def first_runs(*_):
+        for point, asked in zip(points, ([1, 1], [1, 1], [1, 0], [1, 0], [1, 0])):
+            known = there.get(point.folder, [None, None])
+            there[point.folder] = [run or (point if want else None) for run, want in zip(known, asked)]
+        return size_runs.Made(points, there, points)
+
+    def add(_, made, __, point, k):
+        made_now.append((point.name, k))
+        made.finer.setdefault(point.folder, [None, None])[k] = point
+        return point
+
+    for name, fake in (("make_finer_runs", first_runs), ("add", add), ("read_run_rows", lambda _, runs: [
+            made_rows.row(run=one.name) for one in runs]), ("at_finest", lambda *_: SimpleNamespace(
+                sizes=True, rows=lambda rows: rows, runs=lambda several: several))):
+        monkeypatch.setattr(size_runs, name, fake)
+    work = SimpleNamespace(store=SimpleNamespace(admit=lambda _: None), do=lambda *_, **__: None)
+    setup = SimpleNamespace(tell=lambda _: None)
+
+    def pick(_):
+        finest = [one.name for one in points if there.get(one.folder, [0, None])[1]]
+        return SimpleNamespace(first=[f"p{len(finest)}"] if chased else ["p0"])
+
+    size_runs.settle(setup, work, points, wanted, pick)
+    assert sum(run[1] is not None for run in there.values()) == (4 + size_runs.MORE if chased else 4)
+    assert made_now and all(both[0] for both in there.values())
+    made_now.clear()
+    size_runs.settle(setup, work, points, wanted, pick)
+    assert not made_now
+
+
 def test_points_of_finer_balls_are_spread_and_nested():
     places = np.array([[0.0, 0], [1, 0], [0, 1], [1, 1], [0.5, 0.5], [0.1, 0]])
     assert ball_sizes.order_spread_points(places, [0], 3) == ball_sizes.order_spread_points(places, [0], 5)[:3]

@@ -31,7 +31,7 @@ from .setup import Setup
 OPTION = "--levels"
 FILE = "levels.csv"
 DRAWS = 200             # of the values of transferred runs, for the band of a number
-ROUNDS = 4              # of finest runs of points on which numbers rest once all values are at the finest size
+MORE = 3                # of the finest than were wanted, on which numbers rest once all values are at the finest size
 LONG = 1.5              # times the usual time to rest: points that take longer have none of the finest balls,
 SLOW = 4.0              # and, as those on which numbers rest of these, none finer than the coarsest
 FINER = 1.5             # times, at least, from a size to the next one
@@ -87,12 +87,11 @@ class SizeRun(Repeat):
 class Made(NamedTuple):
     """Points, and those of their runs that have finer balls: {folder of a point: of each finer size, None: not run}.
 
-    next: points that may have them, in the order in which they come; late: how many of these later.
+    next: points that may have them, in the order in which they come.
     """
     points: Sequence[Repeat]
     finer: Dict[Path, List[Optional[Repeat]]]
     next: Sequence[Repeat] = ()
-    late: int = 0
 
     def runs(self, point: Repeat) -> List[Optional[Repeat]]:
         """Of a point, that finished, the coarsest first."""
@@ -212,7 +211,7 @@ def make_finer_runs(setup: Setup, work: jobs.Work, points: Sequence[Repeat], wan
     orders = orders_of(times / max(usual, 1e-9), first, places_of(known, chosen.along), wanted.points)
     wanted = wanted.fitted([times[order].tolist() for order in orders])
     late = min(site_budget.LATE, max(0, [sizes.FEWEST, *wanted.points][-1] - sizes.FEWEST))
-    made = Made(points, {}, [names[known[k].run] for k in orders[-1]], late)
+    made = Made(points, {}, [names[known[k].run] for k in orders[-1]])
     planned = [(k, each) for k, (order, number) in enumerate(zip(orders, wanted.points)) for each in order[:number]]
     there = {(k, each) for k, value in enumerate(wanted.values[1:]) for each, row in enumerate(known)
              if SizeRun(setup.runs, names[row.run], value).made(work.store)}
@@ -253,22 +252,23 @@ def add(setup: Setup, made: Made, wanted: Wanted, point: Repeat, k: int) -> Size
 def settle(setup: Setup, work: jobs.Work, points: Sequence[Repeat], wanted: Optional[Wanted],
            pick: Callable[[Sequence[Finished]], Pick] = pick_largest) -> AtFinest:
     """make_finer_runs(), then the finest runs of those on which numbers rest once all rows are at the finest size, as
-    these change what others are there; at last of others, so that there are as many as were wanted."""
+    these change what others are there; at last of others, so that there are as many as were wanted. Made again, with
+    the same runs there, it has nothing to make."""
     if wanted:
         wanted = wanted.with_finished(
             lambda value: sum(SizeRun(setup.runs, one, value).made(work.store) for one in points))
     made = make_finer_runs(setup, work, points, wanted, pick)
-    at, left = at_finest(setup, made), made.late
-    for _ in range(ROUNDS):
-        if not at.sizes or not wanted or not wanted.points:
-            break
+    at = at_finest(setup, made)
+    while at.sizes and wanted and wanted.points:
+        have = sum(several[len(wanted.points) - 1] is not None for several in made.finer.values())
+        left = max(0, wanted.points[-1] - have)
         rows = [replace(row, run=one.name) for one, row in zip(points, at.rows(read_run_rows(setup, at.runs(points))))]
         first = pick(finished_of(rows)).first
         without = [one for one in made.next if not made.has(one, len(wanted.points) - 1)]
-        now = [one for one in without if one.name in first][:max(left, 1)] or without[:left]
+        asked = [one for one in without if one.name in first] if have < wanted.points[-1] + MORE else []
+        now = asked[:max(left, 1)] or without[:left]
         if not now:
             break
-        left = max(0, left - len(now))
         todo = [add(setup, made, wanted, one, k) for k in range(len(wanted.points))[::-1] for one in now
                 if not made.has(one, k)]
         work.store.admit(todo)
