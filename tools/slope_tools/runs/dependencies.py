@@ -2,6 +2,7 @@
 
 One comparison decides both whether a finished run is taken over and whether an unfinished one is continued.
 """
+import functools
 import hashlib
 import os
 import re
@@ -148,7 +149,12 @@ def by_value(variables: Mapping[str, str]) -> FrozenSet[Tuple[str, Any]]:
 
 def place_of(sidecar: Path) -> Any:
     """What a sidecar says of its raster, without where that came from; as it stands, where that is no mapping."""
-    text = sidecar.read_text(encoding="utf-8", errors="surrogateescape")
+    return parse_sidecar(sidecar.read_text(encoding="utf-8", errors="surrogateescape"))
+
+
+@functools.lru_cache(maxsize=8)
+def parse_sidecar(text: str) -> Any:
+    """The same of its text; the runs of a study have copies of few."""
     try:
         about = written_yaml.load_yaml(text)
     except (yaml.YAMLError, ValueError, RecursionError):
