@@ -6,6 +6,7 @@ from ..schemas import NUMBER, TEXT, list_of, mapping, dict_of
 from .site_budget import Trial
 from .site_sections import Numbers, Texts, frozen
 
+MEASURED = set(Trial._fields) - set(Trial._field_defaults)      # of a trial: what each version has
 PART = mapping({}, null=True)
 BODIES = {**dict_of(mapping({"volume_m3": NUMBER})), "type": ["object", "null"]}
 ZONES = list_of(mapping({"name": TEXT, "variables": TEXT}, share=NUMBER), null=True)
@@ -77,7 +78,7 @@ class Found:
             "body": Body(**taken(Body, body)) if "volume" in body else None,
             "bodies": {str(rank): SlipBody(**taken(SlipBody, one))
                        for rank, one in (entries.get("bodies") or {}).items()},
-            "trial": Trial(**trial) if set(trial) == set(Trial._fields) else None,
+            "trial": Trial(**trial) if MEASURED <= set(trial) <= set(Trial._fields) else None,
             "down": frozen((entries.get("blocks") or {}).get("down") or ())})
 
 
