@@ -8,7 +8,6 @@
 #include "constants.h"
 #include "histogram.h"
 #include "large_messages.h"
-#include "mass_ledger.h"
 #include "requirements.h"
 
 #include "atom.h"
@@ -21,7 +20,6 @@ using namespace LAMMPS_NS;
 using Slope::DepositBins;
 using Slope::DepositSummary;
 using Slope::Histogram;
-using Slope::MassLedger;
 
 static constexpr double SLOWEST = 1.0e-9;    // of the largest speed: slower is 0 in the median
 static constexpr double SHARES[] = {0.5, 0.9, 0.95, 0.99};
@@ -226,7 +224,7 @@ std::vector<DepositSummary::Quantile> DepositBalls::quantiles(const double *plac
   for (const double weight : distances.weights) left += weight;
   for (const double share : SHARES) {
     const double of_left = share * (left + lost) / left;
-    if (of_left <= 1.0 + MassLedger::BALANCE)    // all that is left, but for rounding
+    if (of_left <= 1.0 + BALANCE)    // all that is left, but for rounding
       found.push_back({share, {distances.quantile(of_left), -angles.quantile(of_left)}});
     else
       found.push_back({share, {HUGE_VAL, HUGE_VAL}});    // unknown

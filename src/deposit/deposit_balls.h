@@ -19,6 +19,8 @@ namespace LAMMPS_NS {
 // ground, whose volume is that of the ball times the bulk factor.
 class DepositBalls : protected Pointers {
  public:
+  static constexpr double BALANCE = 1.0e-9;    // rounding, of the released volume
+
   DepositBalls(class LAMMPS *, int groupbit, double bulk);
 
   void set_bulk(double);

@@ -14,6 +14,7 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "update.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,10 +26,11 @@ using namespace LAMMPS_NS;
 using Slope::BallPath;
 using Slope::LeftBall;
 
-static constexpr int PARTS = 4;    // of a cell along a side: ground may be missing in between
+static constexpr int PARTS = 4;        // of a cell along a side: ground may be missing in between
+static constexpr int MAXLOGGED = 5;    // lost balls that get a line in the log
 static const double START[1] = {-1.0};
 
-enum { X, Y };
+enum { X, Y, Z };
 
 static_assert(sizeof(BallPath) == BallPath::NUMBERS * sizeof(double), "numbers only");
 
@@ -37,8 +39,9 @@ static_assert(sizeof(BallPath) == BallPath::NUMBERS * sizeof(double), "numbers o
 DepositLeft::DepositLeft(LAMMPS *lmp, const DepositBalls &balls_in,
                          const DepositOptions &options_in) :
     Pointers(lmp),
-    balls(balls_in), options(options_in), extra(lmp, "path"),
-    sampled(std::numeric_limits<double>::quiet_NaN()), cells(START)
+    lost_number(0.0), lost_volume(0.0), nlogged(0), balls(balls_in), options(options_in),
+    extra(lmp, "path"), sampled(std::numeric_limits<double>::quiet_NaN()), lost_here{0.0, 0.0},
+    cells(START)
 {
 }
 
@@ -138,36 +141,81 @@ void DepositLeft::sample(double now)
    one that leaves the box above ground left there
 ------------------------------------------------------------------------- */
 
-void DepositLeft::lose(int i, double now)
+LeftBall DepositLeft::lost_ball(int i, double now) const
 {
   BallPath path = path_now(i, now);
   if (!path.is_out()) path.left = now;
-  gone.push_back(left_ball(i, path));
+  return left_ball(i, path);
 }
 
 /* ---------------------------------------------------------------------- */
 
-void DepositLeft::begin_command(const std::vector<int> &outside, double now)
+void DepositLeft::before_exchange(double now)
 {
-  doubtful.clear();
-  const size_t before = gone.size();
-  for (const int i : outside) lose(i, now);
-  doubtful.assign(gone.begin() + before, gone.end());
-  gone.resize(before);
+  double volume = 0.0;
+  for (const int i : balls.outside()) {
+    gone.push_back(lost_ball(i, now));
+    volume += gone.back().volume;
+    lost_here[0]++;
+    const double *x = atom->x[i];
+    if (first_lost.size() < MAXLOGGED)
+      first_lost.push_back({(double) atom->tag[i], {x[X], x[Y], x[Z]}, (double) update->ntimestep});
+  }
+  lost_here[1] += volume;
 }
 
-void DepositLeft::end_command(const std::vector<int> &still)
+/* ---------------------------------------------------------------------- */
+
+void DepositLeft::begin_command(double now)
+{
+  doubtful.clear();
+  for (const int i : balls.outside()) doubtful.push_back(lost_ball(i, now));
+}
+
+void DepositLeft::end_command()
 {
   int mine = !doubtful.empty(), any;
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
   if (!any) return;
   std::vector<double> tags;
-  for (const int i : still) tags.push_back((double) atom->tag[i]);
+  for (const int i : balls.outside()) tags.push_back((double) atom->tag[i]);
   tags = gather_records(world, tags);
-  const std::set<double> there(tags.begin(), tags.end());
-  for (const LeftBall &ball : gather_records(world, doubtful))
-    if (!there.count(ball.tag)) gone.push_back(ball);
+  const std::set<double> still(tags.begin(), tags.end());
+  for (const LeftBall &ball : gather_records(world, doubtful)) {
+    if (still.count(ball.tag)) continue;
+    gone.push_back(ball);
+    lost_here[0]++;
+    lost_here[1] += ball.volume;
+  }
   doubtful.clear();
+}
+
+/* ----------------------------------------------------------------------
+   the first balls by step, then by ball
+------------------------------------------------------------------------- */
+
+std::vector<std::string> DepositLeft::add_up_lost()
+{
+  double all[2], before = lost_number;
+  MPI_Allreduce(lost_here, all, 2, MPI_DOUBLE, MPI_SUM, world);
+  lost_number += all[0];
+  lost_volume += all[1];
+  lost_here[0] = lost_here[1] = 0.0;
+  if (all[0] == 0.0 || nlogged >= MAXLOGGED) return {};
+  std::vector<Place> first = gather_records(world, first_lost);
+  broadcast(world, first);
+  first_lost.clear();
+  std::sort(first.begin(), first.end(), [](const Place &a, const Place &b) {
+    return a.step < b.step || (a.step == b.step && a.tag < b.tag);
+  });
+  std::vector<std::string> lines;
+  for (const Place &ball : first)
+    if (nlogged < MAXLOGGED)
+      lines.push_back(fmt::format(
+          "ball {:.0f} left the box at {:.8g} {:.8g} {:.8g}, step {:.0f}, lost so far: {:.0f}{}",
+          ball.tag, ball.x[X], ball.x[Y], ball.x[Z], ball.step, ++before,
+          ++nlogged < MAXLOGGED ? "" : ", more are only counted"));
+  return lines;
 }
 
 /* ---------------------------------------------------------------------- */

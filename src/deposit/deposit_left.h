@@ -20,8 +20,8 @@
 namespace LAMMPS_NS {
 
 // Which balls of fix deposit/grid left the ground of its rasters, the edge of the grid or of the terrain's data,
-// and where. Looked at at each sample of the maxima, so that a run that was cut sees the same; what is asked for in
-// between is found from the places of that moment.
+// and where; and which left the box, and are lost. Looked at at each sample of the maxima, so that a run that was cut
+// sees the same; what is asked for in between is found from the places of that moment.
 class DepositLeft : protected Pointers {
  public:
   DepositLeft(class LAMMPS *, const class DepositBalls &, const struct DepositOptions &);
@@ -32,12 +32,20 @@ class DepositLeft : protected Pointers {
 
   // --- what LAMMPS deletes ---
 
-  void lose(int i, double now);    // a ball of this rank, which is about to go
+  // LAMMPS is about to send every ball to the rank that owns its place. A ball that is beyond a fixed
+  // side of the box has no owner and is deleted without a message.
+  void before_exchange(double now);
 
-  // balls that are outside of the box when a command begins, and may be gone when it ends; collective: still are
-  // those that are there then
-  void begin_command(const std::vector<int> &outside, double now);
-  void end_command(const std::vector<int> &still);
+  // write_restart and others move the atoms to their ranks without a call of a fix, and then drop
+  // those outside of the box: who was outside before and is gone afterwards was lost in the command;
+  // the end is collective
+  void begin_command(double now);
+  void end_command();
+
+  // collective: adds what all ranks lost since the last time; returns lines on the first balls
+  std::vector<std::string> add_up_lost();
+  double lost_number, lost_volume;    // so far; bulk
+  int nlogged;                        // losses that got a line so far
 
   // of all ranks, on rank 0; collective
   std::string csv(double now) const;
@@ -69,6 +77,12 @@ class DepositLeft : protected Pointers {
   std::vector<Slope::LeftBall> gone;        // no longer there; on any rank
   std::vector<Slope::LeftBall> doubtful;    // may be gone when the command ends
 
+  double lost_here[2];    // number, volume, of this rank since add_up_lost()
+  struct Place {          // numbers only, so that ranks can send them
+    double tag, x[3], step;
+  };
+  std::vector<Place> first_lost;    // of this rank, as many as get a line
+
   // of a ground that is no raster, whose height takes long: whether there is ground everywhere in a cell
   enum { UNKNOWN = -1, SOMEWHERE, EVERYWHERE };
   mutable Slope::DepositBlocks<1> cells;
@@ -77,6 +91,7 @@ class DepositLeft : protected Pointers {
   bool everywhere(int i, int j) const;
   Slope::BallPath path_now(int i, double now) const;
   Slope::LeftBall left_ball(int i, const Slope::BallPath &) const;
+  Slope::LeftBall lost_ball(int i, double now) const;
   void wrap(double *x) const;
 };
 

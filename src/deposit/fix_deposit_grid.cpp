@@ -32,7 +32,6 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 using Slope::DepositBins;
 using Slope::DepositRasters;
-using Slope::MassLedger;
 typedef DepositResults Result;
 
 static const std::string CALLER = "Fix deposit/grid ";
@@ -54,9 +53,9 @@ enum { X, Y, Z };
 
 FixDepositGrid::FixDepositGrid(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), options(DepositOptions::read(lmp, narg, arg)),
-    balls(lmp, groupbit, options.bulk), left(lmp, balls, options), losses(lmp, balls, left),
-    report(lmp, id, options, balls), results(), started(false), fresh(false), sampled(-1),
-    warned(false), kept_by_atom(false), elapsed(0.0), offset(0.0)
+    balls(lmp, groupbit, options.bulk), left(lmp, balls, options), report(lmp, id, options, balls),
+    results(), started(false), fresh(false), sampled(-1), warned(false), kept_by_atom(false),
+    elapsed(0.0), offset(0.0)
 {
   nevery = options.nevery;
   make_rasters();
@@ -128,8 +127,8 @@ void FixDepositGrid::init()
 
   // this may be the init() of a command that drops balls outside of the box
 
-  if (started) losses.end_command();
-  losses.begin_command(elapsed);
+  if (started) left.end_command();
+  left.begin_command(elapsed);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -137,7 +136,7 @@ void FixDepositGrid::init()
 void FixDepositGrid::setup_pre_exchange()
 {
   if (!started && update->whichflag == 1) start();
-  if (started) losses.end_command();
+  if (started) left.end_command();
   offset = elapsed - clock();
   pre_exchange();
 }
@@ -146,7 +145,7 @@ void FixDepositGrid::setup_pre_exchange()
 
 void FixDepositGrid::pre_exchange()
 {
-  if (started) losses.before_exchange(now());
+  if (started) left.before_exchange(now());
 }
 
 /* ----------------------------------------------------------------------
@@ -160,7 +159,7 @@ void FixDepositGrid::start()
   released = release.find();
   if (!options.body.empty()) {
     balls.set_bulk(released.body / released.mass.solid);
-    losses.begin_command(elapsed);    // now that the volume of balls is known
+    left.begin_command(elapsed);    // now that the volume of balls is known
   }
   released.volume = balls.volume();
   released.stiffness_number = release.stiffness_number(released);
@@ -226,7 +225,7 @@ double FixDepositGrid::compute_vector(int k)
 void FixDepositGrid::sample(bool record)
 {
   const DepositBalls::Sums sums = balls.bin(bins);    // of all ranks
-  for (const std::string &line : losses.add_up()) report.warn(line);
+  for (const std::string &line : left.add_up_lost()) report.warn(line);
 
   const double released = results.released.volume;
   double *value = results.vector;
@@ -235,10 +234,10 @@ void FixDepositGrid::sample(bool record)
   value[Result::RELEASED] = released;
   value[Result::ON_GRID] = add_bins(record);
   value[Result::OFF_GRID] = sums.off_grid;
-  value[Result::LOST] = losses.lost.volume;
-  value[Result::RESIDUAL] = losses.residual(released, value[Result::ON_GRID], sums.off_grid);
+  value[Result::LOST] = left.lost_volume;
+  value[Result::RESIDUAL] = released - value[Result::ON_GRID] - sums.off_grid - left.lost_volume;
   value[Result::CHANGE] = rasters.change;
-  value[Result::NLOST] = losses.lost.number;
+  value[Result::NLOST] = left.lost_number;
   value[Result::FAST_SHARE] = sums.fast / released;
   find_travel(sums);
   sampled = update->ntimestep;
@@ -284,7 +283,8 @@ void FixDepositGrid::find_travel(const DepositBalls::Sums &sums)
 void FixDepositGrid::check_balance()
 {
   const double *value = results.vector;
-  if (warned || std::fabs(value[Result::RESIDUAL]) <= MassLedger::BALANCE * value[Result::RELEASED])
+  if (warned ||
+      std::fabs(value[Result::RESIDUAL]) <= DepositBalls::BALANCE * value[Result::RELEASED])
     return;
   warned = true;
   report.warn(fmt::format(
@@ -369,9 +369,9 @@ void FixDepositGrid::archive(Slope::Archive &archive)
   archive.number("thick", released.thick);
   archive.number("stiffness_number", released.stiffness_number);
   archive.number("bulk_of_the_release", bulk);
-  archive.number("lost_number", losses.lost.number);
-  archive.number("lost_volume", losses.lost.volume);
-  archive.number("losses_in_the_log", losses.nlogged);
+  archive.number("lost_number", left.lost_number);
+  archive.number("lost_volume", left.lost_volume);
+  archive.number("losses_in_the_log", left.nlogged);
   archive.number("elapsed", time);
   archive.number("snapshot_time", rasters.snapshot_time);
   archive.number("change", rasters.change);
@@ -386,7 +386,7 @@ void FixDepositGrid::archive(Slope::Archive &archive)
 
 void FixDepositGrid::write_restart(FILE *fp)
 {
-  if (started) losses.end_command();
+  if (started) left.end_command();
   if (started && (sampled != update->ntimestep || update->whichflag == 0)) sample(false);
   if (update->whichflag == 1) report.note_guards(guards());    // between runs they begin anew
   left.collect();

@@ -18,7 +18,6 @@ FixStyle(deposit/grid,FixDepositGrid);
 #include "deposit_balls.h"
 #include "deposit_bins.h"
 #include "deposit_left.h"
-#include "deposit_losses.h"
 #include "deposit_options.h"
 #include "deposit_rasters.h"
 #include "deposit_release.h"
@@ -65,7 +64,6 @@ class FixDepositGrid : public Fix {
   const DepositOptions options;
   DepositBalls balls;
   DepositLeft left;
-  DepositLosses losses;
   DepositReport report;
 
   Slope::DepositBins bins;          // of the balls of this rank
