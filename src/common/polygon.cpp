@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -19,7 +20,6 @@ using namespace Slope;
 static constexpr double LARGEST = 1.0e12;      // coordinates; their products must be finite
 static constexpr double MOST_PARTS = 64.0;     // of edges in strips, per edge: bounds the memory
 static constexpr double ROUNDING = 4.0e-16;    // relative error of a determinant's terms
-static constexpr double ON_LINE = 1.0e-9;      // of a cell
 
 namespace {
 
@@ -149,75 +149,29 @@ Point meeting(const Segment &s, const Segment &t)
   return s.a;
 }
 
-// Calls work(cell) for the cells of a grid over the bounding box that an edge touches, and maybe
-// for some that it only comes near to
-
-struct Cells {
-  double xlo, ylo, dx, dy;
-  int n;    // along each axis
-
-  int column(double x) const { return clamped((x - xlo) / dx); }
-  int row(double y) const { return clamped((y - ylo) / dy); }
-  int clamped(double at) const { return at > 0.0 ? (int) std::min(n - 1.0, at) : 0; }    // NaN: 0
-
-  template <class Work> void along(const Segment &s, Work work) const
-  {
-    const double slope = (s.b.y - s.a.y) / (s.b.x - s.a.x);    // not used if infinite
-    const int last = column(s.xmax() + ON_LINE * dx);
-    for (int i = column(s.xmin() - ON_LINE * dx); i <= last; i++) {
-      double y0 = s.ymin(), y1 = s.ymax();
-      if (s.xmax() - s.xmin() > dx) {    // shorter ones: all rows that they reach
-        const double ya = s.a.y + slope * (xlo + (i - ON_LINE) * dx - s.a.x);
-        const double yb = s.a.y + slope * (xlo + (i + 1 + ON_LINE) * dx - s.a.x);
-        y0 = std::max(y0, std::min(ya, yb));
-        y1 = std::min(y1, std::max(ya, yb));
-      }
-      const int top = row(y1 + ON_LINE * dy);
-      for (int j = row(y0 - ON_LINE * dy); j <= top; j++) work((size_t) j * n + i);
-    }
-  }
-};
-
-// The first edge (in the file) that meets another one where it may not, and the first such one
+// The first edge (in the file) that meets another one where it may not, and the first such one. Edges are
+// compared with those that begin beside them, along the longer side of the box.
 
 void check_crossings(const std::string &path, const std::vector<Segment> &all, const Polygon &box)
 {
-  Cells cells;
-  cells.n = 1 + (int) std::sqrt((double) all.size());
-  cells.xlo = box.xlo;
-  cells.ylo = box.ylo;
-  cells.dx = (box.xhi - box.xlo) / cells.n;
-  cells.dy = (box.yhi - box.ylo) / cells.n;
-
-  // edges cell by cell: counted, then put
-
-  std::vector<size_t> first((size_t) cells.n * cells.n + 1, 0);
-  for (const Segment &s : all)
-    cells.along(s, [&](size_t cell) {
-      first[cell + 1]++;
-    });
-  for (size_t k = 1; k < first.size(); k++) first[k] += first[k - 1];
-  std::vector<int> member(first.back());
-  std::vector<size_t> place = first;
-  for (size_t e = 0; e < all.size(); e++)
-    cells.along(all[e], [&](size_t cell) {
-      member[place[cell]++] = (int) e;
-    });
-
+  const bool wide = box.xhi - box.xlo > box.yhi - box.ylo;
+  const auto from = [&](int e) {
+    return wide ? all[e].xmin() : all[e].ymin();
+  };
+  std::vector<int> order(all.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](int a, int b) {
+    return from(a) < from(b);
+  });
   std::pair<int, int> found((int) all.size(), 0);
-  for (size_t cell = 0; cell + 1 < first.size(); cell++)
-    for (size_t k = first[cell]; k < first[cell + 1]; k++) {
-      const Segment &s = all[member[k]];
-      for (size_t l = k + 1; l < first[cell + 1]; l++) {
-        const Segment &t = all[member[l]];
-        if (s.xmin() > t.xmax() || t.xmin() > s.xmax() || s.ymin() > t.ymax() ||
-            t.ymin() > s.ymax())
-          continue;
-        const std::pair<int, int> pair(member[k], member[l]);    // members ascend
-        if (pair < found && meet(s, t, pair.second == s.next || pair.second == s.prev))
-          found = pair;
-      }
+  for (auto e = order.begin(); e != order.end(); ++e) {
+    const double end = wide ? all[*e].xmax() : all[*e].ymax();
+    for (auto other = e + 1; other != order.end() && from(*other) <= end; ++other) {
+      const std::pair<int, int> pair = std::minmax(*e, *other);
+      const Segment &s = all[pair.first], &t = all[pair.second];
+      if (pair < found && meet(s, t, pair.second == s.next || pair.second == s.prev)) found = pair;
     }
+  }
   if (found.first == (int) all.size()) return;
 
   const Segment &s = all[found.first], &t = all[found.second];
