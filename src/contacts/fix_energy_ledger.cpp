@@ -8,6 +8,7 @@
 
 #include "fix_energy_ledger.h"
 
+#include "gravity_work.h"
 #include "lammps_compat.h"
 #include "pair_gran_restitution.h"
 #include "requirements.h"
@@ -84,22 +85,6 @@ double FixEnergyLedger::kinetic() const
 }
 
 /* ----------------------------------------------------------------------
-   work of gravity in a step; fix freeze takes it from the balls that it holds, whose velocity is zero
-------------------------------------------------------------------------- */
-
-double FixEnergyLedger::gravity() const
-{
-  double work = 0.0;
-  for (Fix *fix : compat::fixes_of_style(lmp, "gravity")) {
-    int dim;
-    const double *g = static_cast<double *>(fix->extract("gvec", dim));
-    for (int i = 0; i < atom->nlocal; i++)
-      if (atom->mask[i] & fix->groupbit) work += atom->rmass[i] * dot(g, atom->v[i]);
-  }
-  return update->dt * work;
-}
-
-/* ----------------------------------------------------------------------
    work of fixes ground/motion so far
 ------------------------------------------------------------------------- */
 
@@ -131,7 +116,9 @@ void FixEnergyLedger::end_of_step()
       on_places += update->dt * dot(atom->f[i], atom->v[i]);
       on_spins += update->dt * dot(atom->torque[i], atom->omega[i]);
     }
-    const double fallen = gravity(), ground = motion - shaken;
+    const double fallen =
+        update->dt * GravityWork(lmp).weighed(atom->v);    // 0 of balls that fix freeze holds
+    const double ground = motion - shaken;
     item[GRAVITY] += fallen;
     item[OTHERS] += on_places - fallen - (c.spring + c.dashpot + c.sliding - c.by_torque);
     item[GROUND] += ground;

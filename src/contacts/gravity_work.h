@@ -23,11 +23,11 @@ class GravityWork : protected Pointers {
   void count_step();    // in the middle of a step
   double done() const { return sum; }    // since start(), on this rank's balls, J
 
+  double weighed(double **vectors) const;    // sum of vector * weight of each ball
+
  private:
   bool by_step;
   double at_begin, sum;
-
-  double weighed(double **vectors) const;    // sum of vector * weight of each ball
 };
 
 }    // namespace LAMMPS_NS
