@@ -422,7 +422,7 @@ bool compat::shape(Region *region, Cylinder &c)
 {
   const auto r = seen_as<RegCylinder>(region, c);
   if (!r) return false;
-  c = {r->*RegCylinder_axis::at(),   r->*RegCylinder_c1::at(), r->*RegCylinder_c2::at(),
-       r->*RegCylinder_radius::at(), r->*RegCylinder_lo::at(), r->*RegCylinder_hi::at()};
+  c = {r->*RegCylinder_axis::at() + 0.0, r->*RegCylinder_c1::at(), r->*RegCylinder_c2::at(),
+       r->*RegCylinder_radius::at(),     r->*RegCylinder_lo::at(), r->*RegCylinder_hi::at()};
   return true;
 }

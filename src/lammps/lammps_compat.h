@@ -77,7 +77,7 @@ struct Insertion {
 };
 bool insertion(Fix *, Insertion &);    // false: unseen
 
-// the shapes of LAMMPS' own regions: one with side out does not even have a bounding box
+// the shapes of LAMMPS' own regions, numbers only: one with side out does not even have a bounding box
 struct Sphere {
   double x, y, z, radius;
 };
@@ -88,7 +88,7 @@ struct Plane {
   double x, y, z, normal[3];
 };
 struct Cylinder {
-  char axis;
+  double axis;                      // 'x', 'y' or 'z'
   double c1, c2, radius, lo, hi;    // c1 c2: y z, x z, x y of the axis
 };
 

@@ -12,7 +12,6 @@
 #include "region_union.h"
 
 #include <cmath>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 
@@ -24,32 +23,12 @@ typedef std::vector<double> Marks;
 
 /* ---------------------------------------------------------------------- */
 
-static Marks numbers_of(const compat::Sphere &s)
-{
-  return {s.x, s.y, s.z, s.radius};
-}
-
-static Marks numbers_of(const compat::Block &b)
-{
-  return {b.lo[0], b.lo[1], b.lo[2], b.hi[0], b.hi[1], b.hi[2]};
-}
-
-static Marks numbers_of(const compat::Plane &p)
-{
-  return {p.x, p.y, p.z, p.normal[0], p.normal[1], p.normal[2]};
-}
-
-static Marks numbers_of(const compat::Cylinder &c)
-{
-  return {c.axis + 0.0, c.c1, c.c2, c.radius, c.lo, c.hi};
-}
-
 template <class Shape> static bool take_numbers(Region *region, Marks &marks)
 {
   Shape shape;
   if (!compat::shape(region, shape)) return false;
-  const Marks numbers = numbers_of(shape);
-  marks.insert(marks.end(), numbers.begin(), numbers.end());
+  const auto *const numbers = reinterpret_cast<const double *>(&shape);
+  marks.insert(marks.end(), numbers, numbers + sizeof(shape) / sizeof(double));
   return true;
 }
 
