@@ -10,7 +10,6 @@
 #include "deposit_summary.h"
 #include "pointers.h"
 
-#include <string>
 #include <vector>
 
 namespace LAMMPS_NS {

@@ -58,12 +58,6 @@ class PlanNodes {
   // remembered.
   double probe(int i, int j) const;
 
-  // 0 to 4 of the corners of a cell that have a ball
-  int corners(int i, int j)
-  {
-    return has_ball(i, j) + has_ball(i + 1, j) + has_ball(i, j + 1) + has_ball(i + 1, j + 1);
-  }
-
   // a cell's number, and the tile that it belongs to
   int64_t cell(int i, int j) const { return static_cast<int64_t>(j + 1) * (nx + 1) + (i + 1); }
   int cell_i(int64_t cell) const { return static_cast<int>(cell % (nx + 1)) - 1; }

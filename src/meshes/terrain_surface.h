@@ -53,8 +53,6 @@ class TerrainSurface : public TouchedSurface {
     return static_cast<double>(own.capacity()) * sizeof(double);
   }
 
-  int holes() const { return about_.missing; }
-
  private:
   About about_;
   std::vector<double> own;

@@ -554,7 +554,7 @@ TEST(TerrainSurface, FindsAllThatIsNear)
   for (double &z : grid.z) z = height(random);
   grid.at(7, 9) = NAN;
   const TerrainSurface ground(grid, "g");
-  EXPECT_EQ(ground.holes(), 4);
+  EXPECT_EQ(ground.about().missing, 4);
   size_t near = 0;
   for (int k = 0; k < 300; k++) {
     const Vector x = {any(random), any(random), 2.0 * height(random)};
