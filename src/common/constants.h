@@ -11,6 +11,7 @@ namespace Slope {
 
 static constexpr double PI = 3.14159265358979323846;
 static constexpr double DEGREE = PI / 180.0;    // rad
+static constexpr double GRAVITY = 9.80665;      // m/s2, standard
 static constexpr double SIMPLE_CUBIC =
     6.0 / PI;    // bulk volume / volume of a ball, on this lattice
 

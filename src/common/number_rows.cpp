@@ -6,6 +6,7 @@
 
 #include "number_rows.h"
 
+#include "constants.h"
 #include "decimal_number.h"
 #include "text_file.h"
 
@@ -20,7 +21,6 @@ using namespace Slope;
 
 typedef std::vector<std::string> Words;
 
-static constexpr double STANDARD_GRAVITY = 9.80665;    // m/s2
 static constexpr double AMPLIFIED = 10.0;    // at most, up or down, beside a change of units
 
 // letters of columns; lon and lat belong to no file of a deck
@@ -52,10 +52,10 @@ static const Units LENGTHS = {
 static const Units TIMES = {
     {"s", 1.0},   {"sec", 1.0},   {"secs", 1.0}, {"second", 1.0},       {"seconds", 1.0},
     {"ms", 1e-3}, {"msec", 1e-3}, {"min", 60.0}, {"millisecond", 1e-3}, {"milliseconds", 1e-3}};
-static const Units ACCELERATIONS = {{"m/s2", 1.0},     {"m/s/s", 1.0},         {"ms-2", 1.0},
-                                    {"gal", 0.01},     {"gals", 0.01},         {"cm/s2", 0.01},
-                                    {"cm/s/s", 0.01},  {"cms-2", 0.01},        {"mm/s2", 1e-3},
-                                    {"ft/s2", 0.3048}, {"g", STANDARD_GRAVITY}};
+static const Units ACCELERATIONS = {{"m/s2", 1.0},     {"m/s/s", 1.0},  {"ms-2", 1.0},
+                                    {"gal", 0.01},     {"gals", 0.01},  {"cm/s2", 0.01},
+                                    {"cm/s/s", 0.01},  {"cms-2", 0.01}, {"mm/s2", 1e-3},
+                                    {"ft/s2", 0.3048}, {"g", GRAVITY}};
 static const Words VELOCITIES = {"m/s", "cm/s", "mm/s", "kine"};
 
 static bool is_of(const Words &list, const std::string &word)

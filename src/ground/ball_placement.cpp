@@ -33,9 +33,8 @@ using Slope::PlacedBall;
 using Slope::SurfaceCounts;
 
 static constexpr double MAX_BALLS = 2147483647.0;
-static constexpr double COUNTED = 131072.0;    // plan nodes of a ground that is counted at once
-static constexpr double TAKES = 32.0;          // a scattered ball to make, in plan nodes
-static constexpr double RADIANS = Slope::PI / 180.0;
+static constexpr double COUNTED = 131072.0;     // plan nodes of a ground that is counted at once
+static constexpr double TAKES = 32.0;           // a scattered ball to make, in plan nodes
 static constexpr int MARKS = 4096;              // columns that tell one ground from another
 static constexpr double SAME_PLACE = 1.0e-6;    // in diameters
 static constexpr double IN_ORDER = 1.0e-8;      // of a file's balls, in diameters, in the mean
@@ -382,7 +381,7 @@ void BallPlacement::report(const SurfaceCounts &counts, bool known) const
   } else {
     const double nodes = Slope::count_nodes(ground->grid());
     const std::string turned =
-        a.angle == 0.0 ? "" : fmt::format(", turned by {:.6g} degrees", a.angle / RADIANS);
+        a.angle == 0.0 ? "" : fmt::format(", turned by {:.6g} degrees", a.angle / Slope::DEGREE);
     const std::string scattered =
         fmt::format("scattered with seed {}, one for each square of {}", a.seed, a.spacing);
     if (!known)

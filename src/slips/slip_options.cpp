@@ -23,7 +23,6 @@ using Slope::ElevationGrid;
 using Slope::SlipFactor;
 using Slope::SlipSoil;
 
-static constexpr double RADIANS = Slope::PI / 180.0;
 static constexpr int MOST_KEPT = 1000;
 
 /* ----------------------------------------------------------------------
@@ -69,7 +68,7 @@ SlipSoil::Strength SlipOptions::strength(int k) const
   if (c == 0.0 && phi == 0.0) error->all(FLERR, "{} C or PHI must be > 0, got 0 and 0", what);
   if (!(density > 0.0))
     error->all(FLERR, "{} DENSITY must be > 0 (kg/m3), got {}", what, text(k + 2));
-  return {c, std::tan(phi * RADIANS), density};
+  return {c, std::tan(phi * Slope::DEGREE), density};
 }
 
 /* ----------------------------------------------------------------------
@@ -150,7 +149,7 @@ int SlipOptions::read_seismic()
 int SlipOptions::read_direction()
 {
   task.any_direction = strcmp(text(1), "search") == 0;
-  if (!task.any_direction) task.direction = number(1) * RADIANS;
+  if (!task.any_direction) task.direction = number(1) * Slope::DEGREE;
   return 1;
 }
 

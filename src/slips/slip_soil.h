@@ -7,6 +7,7 @@
 #ifndef SLOPE_SLIP_SOIL_H
 #define SLOPE_SLIP_SOIL_H
 
+#include "constants.h"
 #include "elevation_grid.h"
 
 #include <cmath>
@@ -19,8 +20,7 @@ namespace Slope {
 // units.
 class SlipSoil {
  public:
-  static constexpr double GRAVITY = 9.80665;    // m/s2
-  static constexpr double WATER = 1000.0;       // kg/m3
+  static constexpr double WATER = 1000.0;    // kg/m3
 
   struct Strength {
     double cohesion, friction, density;    // Pa, tangent of the friction angle, kg/m3

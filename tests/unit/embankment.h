@@ -17,8 +17,6 @@
 
 namespace embankment {
 
-constexpr double PI = 3.14159265358979323846;
-
 // rises by step per cell of 0.5 m, from cell first on
 inline Slope::ElevationGrid extruded(int nx, int ny, double low, int first, double step, int steps)
 {
@@ -34,15 +32,15 @@ inline Slope::ElevationGrid of_20_m(int ny = 133) { return extruded(133, ny, 15.
 // c (kPa), phi (degrees), unit weight (kN/m3)
 inline Slope::SlipSoil::Strength strength(double c, double phi, double weight)
 {
-  return {1000.0 * c, std::tan(phi * PI / 180.0), 1000.0 * weight / Slope::SlipSoil::GRAVITY};
+  return {1000.0 * c, std::tan(phi * Slope::PI / 180.0), 1000.0 * weight / Slope::GRAVITY};
 }
 
 inline Slope::SlipSoil::Strength strength_10_m() { return strength(3.0, 19.6, 20.0); }
 inline Slope::SlipSoil::Strength strength_20_m() { return strength(41.65, 15.0, 18.82); }
 
 // the critical spheres of Scoops3D's searches
-inline Slope::SlipSurface sphere_10_m() { return {10.25, 25.25, 54.0, 28.9617, PI}; }
-inline Slope::SlipSurface sphere_20_m() { return {25.75, 33.25, 49.0, 36.6347, PI}; }
+inline Slope::SlipSurface sphere_10_m() { return {10.25, 25.25, 54.0, 28.9617, Slope::PI}; }
+inline Slope::SlipSurface sphere_20_m() { return {25.75, 33.25, 49.0, 36.6347, Slope::PI}; }
 
 // rises towards +x by a dip (radians); height 0 in the middle
 inline Slope::ElevationGrid plane(int n, double cell, double dip)
@@ -57,7 +55,7 @@ inline Slope::ElevationGrid plane(int n, double cell, double dip)
 inline Slope::SlipSurface cap(double radius, double half_angle, double dip)
 {
   const double up = radius * std::cos(half_angle);
-  return {-up * std::sin(dip), 0.0, up * std::cos(dip), radius, PI};
+  return {-up * std::sin(dip), 0.0, up * std::cos(dip), radius, Slope::PI};
 }
 
 }    // namespace embankment

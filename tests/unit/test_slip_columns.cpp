@@ -202,7 +202,7 @@ TEST_F(Columns, OnlyInAllowedCells)
 
 TEST(SlipSoil, LayersAndWater)
 {
-  const double g = SlipSoil::GRAVITY;
+  const double g = Slope::GRAVITY;
   const ElevationGrid ground(10, 10, -5.0, -5.0, 1.0, 0.0), second(10, 10, -5.0, -5.0, 1.0, -2.0),
       third(10, 10, -5.0, -5.0, 1.0, -5.0), water(10, 10, -5.0, -5.0, 1.0, -1.0);
   SlipSoil soil({1000.0, 0.1, 1000.0});

@@ -204,7 +204,7 @@ TEST(SlipFactor, WaterInAShallowCap)
   SlipSoil ratio(strength(0.0, phi, weight)), table(strength(0.0, phi, weight));
   ratio.set_ratio(0.3);
   table.set_table(ground);
-  const double share = 1e-3 * SlipSoil::WATER * SlipSoil::GRAVITY / weight;
+  const double share = 1e-3 * SlipSoil::WATER * Slope::GRAVITY / weight;
   for (const SlipFactor::Method method : METHODS) {
     expect_ratio(analyse(ground, ratio, surface, method).factor, dry * (1.0 - 0.3 / square), 5e-3);
     expect_ratio(analyse(ground, table, surface, method).factor, dry * (1.0 - share / square), 5e-3);
@@ -325,7 +325,7 @@ TEST(SlipFactor, EllipsoidByVectors)
       const double e = std::sqrt(square), zx = dx / (a * e), zy = dy / (b * e);
       const double length = std::sqrt(1.0 + zx * zx + zy * zy), area = h * h * length;
       const double thick = top - s.z + e;
-      const double w = strong.density * SlipSoil::GRAVITY * thick * h * h;
+      const double w = strong.density * Slope::GRAVITY * thick * h * h;
       const double cosine = 1.0 / std::hypot(1.0, zx), sine = zx * cosine;
       const double n = (w - strong.cohesion * area * sine / f) /
           (1.0 / length + sine * strong.friction / f);

@@ -7,7 +7,8 @@ BRACKETS = re.compile(r"(.*?)[\s_]*[(\[\uff08]\s*(.*?)\s*[)\]\uff09]")
 LENGTHS = {"m": 1.0, "metre": 1.0, "metres": 1.0, "meter": 1.0, "meters": 1.0}
 TIMES = {"s": 1.0, "sec": 1.0, "secs": 1.0, "second": 1.0, "seconds": 1.0, "ms": 1e-3, "msec": 1e-3,
          "millisecond": 1e-3, "milliseconds": 1e-3}     # s
-ACCELERATIONS = {"m/s2": 1.0, "m/s/s": 1.0, "g": 9.80665, **dict.fromkeys(("gal", "gals", "cm/s2", "cm/s/s"), 0.01),
+GRAVITY = 9.80665       # m/s2, standard
+ACCELERATIONS = {"m/s2": 1.0, "m/s/s": 1.0, "g": GRAVITY, **dict.fromkeys(("gal", "gals", "cm/s2", "cm/s/s"), 0.01),
                  **dict.fromkeys(("mm/s2", "mm/s/s"), 1e-3)}      # m/s2
 DEGREES = ("deg", "degree", "degrees", "\u00b0")
 

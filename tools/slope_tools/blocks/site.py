@@ -16,9 +16,10 @@ from ..digits import metres
 from ..errors import SlopeError
 from ..findings import Finding, finding
 from ..geometry import box_of, extent, polygons_of
+from ..heads import GRAVITY
 from ..releases.release_area import FLAT
 from ..sites import site, site_budget, site_choices, site_deck, site_layers, site_trial, site_warnings
-from ..sites.site_budget import GRAVITY, Trial
+from ..sites.site_budget import Trial
 from ..sites.site_choices import Derived
 from ..sites.site_folder import BODY, MAP
 from ..sites.site_inputs import Line

@@ -8,6 +8,7 @@ from scipy import ndimage
 from ..case import run_folders
 from ..errors import SlopeError
 from ..geometry import extent
+from ..heads import GRAVITY
 from ..survey.rasters import Raster
 from . import dumps
 from .deposit import Deposit
@@ -16,7 +17,6 @@ from .flow_path import snapshots
 HEAD = "ball,volume,time,x,y,from_x,from_y"
 FILE, DUMPS, NOTHING = "table", "dumps", "nothing left"      # where it is known from
 HALVINGS = 40           # of a ball's way, to where it left
-GRAVITY = 9.80665       # m/s2
 FLATTEST = 0.05         # fall over length: no mass is taken to run out flatter
 LEAST = 10.0            # m of terrain that are added, or a multiple of it
 AROUND = 1              # cells, of the place where a ball left: its speed there

@@ -9,6 +9,7 @@ from rasterio.features import geometry_mask
 from shapely.geometry.base import BaseGeometry
 
 from ..deposits.deposit import Deposit
+from ..heads import GRAVITY
 from ..quantiles import within
 from ..survey.rasters import Raster
 from . import fall_path, run_length
@@ -17,7 +18,6 @@ from .fall_path import FallPath
 
 SHARES = 0.5, 0.9, 0.99         # of the volume
 HEIGHTS, MOST = 2.0, 50.0       # from the toe, in heights, and m at most: Japan's Sediment Disaster Act, steep slopes
-GRAVITY = 9.80665               # m/s2
 
 
 class Slope(NamedTuple):

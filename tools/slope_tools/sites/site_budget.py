@@ -8,6 +8,7 @@ from typing import Callable, List, NamedTuple, Optional, Sequence, Tuple
 from ..case.settings import normalise_value
 from ..digits import at_least, rounded
 from ..errors import SlopeError
+from ..heads import GRAVITY
 from ..releases import packing
 from .site_sections import Balls, OfMass
 
@@ -37,7 +38,6 @@ CACHED = 1200           # balls whose contacts stay in the cache
 LEDGER = 1.4            # times as long takes a run that keeps account of its energy: that with half the step
 SPEED = 47.0            # m/s, where no trial run tells
 SLOW = 1.0              # m/s, least speed; that of the trial run, which has the stiffness that the weight needs
-GRAVITY = 9.80665       # m/s2
 STIFFNESS_NUMBER = 2e4          # K: least stiffness over density of the ground, gravity, thickness and diameter
 LAYERS = 7.0            # balls; bodies thicker than this need harder contacts, in proportion
 STEP = 1.5              # of the rule's: the longest that holds the restitution where several contacts begin at once,

@@ -10,9 +10,9 @@ import numpy as np
 from scipy import ndimage
 
 from ..errors import SlopeError
+from ..heads import GRAVITY
 from ..survey.rasters import Raster
 
-GRAVITY = 9.80665       # m/s2
 WATER = 1000.0          # kg/m3
 FEWEST = 50             # cells of a body, below which a factor of safety is rough
 LEAST_NORMAL = 1e-6     # lever of the normal force over that of the shear force that is more than rounding
