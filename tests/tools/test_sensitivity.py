@@ -81,10 +81,27 @@ def test_what_is_clear_depends_on_the_number_of_equivalent_runs():
             assert sensitivity.is_clear(tried, "front_m", about) is clear
 
 
-def test_without_repeats_the_scatter_is_said_to_be_unknown(succeed):
-    out, _ = succeed(f"--try rolling=0.2 --set steps=100 {ROAD} -o out")
-    assert "without --repeat its scatter is unknown" in out
-    assert [row["clear_of_remove_m3"] for row in rows_of("out/sensitivity.csv")] == ["", ""]
+def test_a_repeat_without_effect_is_none_and_what_runs_warn_of_is_told(here, succeed):
+    """A seed that the deck does not use made every change clear; of what the grid cuts off nothing was said."""
+    edit("case/in.tiny", "index 900", "index 900\nvariable  seed  index 0",
+         "terrain base", "terrain base extent 12 40 0 24")
+    succeed(f"--try rolling=0.2 --set steps=300 --repeat seed=1 {ROAD} -o out")
+    assert [(row["kind"], row["clear_of_remove_m3"]) for row in rows_of("out/sensitivity.csv")] == [
+        ("base", ""), ("vary", "")]
+    about = yaml.safe_load(Path("out/sensitivity.yaml").read_text())
+    assert about["scatter"]["remove_m3"]["standard_deviation"] is None
+    told = {one["kind"]: one.get("runs") for one in about["warnings"]}
+    assert told["no effect"] == ["steps_300_seed_1"] and {"not repeated", "in motion", "cut off"} <= told.keys()
+
+
+def test_runs_that_are_equal_by_chance_alone_tell_no_scatter():
+    """As where nothing reaches the road: one run is not accurate to +- 0."""
+    tried = [sensitivity.Tried(kind, "seed", "1", made_rows.row(front_m=value, length_m=5.0))
+             for kind, value in (("base", 1.0), ("repeat", 2.0), ("vary", 1.0), ("repeat", 1.0))]
+    kept, found = sensitivity.leave_out_same(tried)
+    assert kept == tried[:3] and [one.numbers["on"] for one in found] == [" at 1"] * 2
+    assert sensitivity.measure_spread(kept, "length_m")["standard_deviation"] is None
+    assert sensitivity.measure_spread(kept, "front_m")["standard_deviation"] == pytest.approx(math.sqrt(0.5))
 
 
 def test_a_failed_run_is_told_and_the_others_are_collected(slope):

@@ -25,7 +25,7 @@ example: what the size of the balls and the time step do, against the scatter ov
   tools/slope sensitivity inputs/20_embankment/in.embankment --road inputs/20_embankment/road.csv --local \\
       --set d=2.5 --try d=1.25 --try step=0.5 --repeat xoffset=0.25,0.5,0.75 -o out
 
-the effect of the size of the balls, with constant field balls: the value for small balls, the error of each size:
+the effect of the size of the balls, with constant field balls: whether halving them changes more than chance:
   tools/slope sensitivity inputs/20_embankment/in.embankment --road inputs/20_embankment/road.csv --local \\
       --converge d=4,2.5,1.25 --set field_d=1.25 --repeat xoffset=0.25,0.5 -o sizes
 
@@ -43,8 +43,8 @@ class Request(run_arguments.Repeats, run_arguments.Runs):
         "A + STEP, ... up to B", "--try", metavar="NAME=V1,V2,...")
     levels: List[str] = several(argparse.SUPPRESS)
     converge: Optional[str] = option(
-        "sizes of the balls, or another variable that should tend to zero; fits a line and gives its value at 0; with "
-        "--repeat at each size, without --try", metavar="NAME=V1,V2,...")
+        "sizes of the balls, or another variable that should tend to 0, each half of the one before: whether halving "
+        "it changes more than chance; with --repeat at each size, without --try", metavar="NAME=V1,V2,...")
     set: List[str] = several("value of an index variable in the base run (default: the deck's)", metavar="NAME=VALUE")
     of: Optional[str] = option(
         f"quantities to examine (default {OF_ROAD}; {OF_TRAVEL} of --converge without a road), of "

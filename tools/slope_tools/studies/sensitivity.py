@@ -1,7 +1,7 @@
 """What one variable of a deck does to a quantity, beside the scatter by chance."""
 import math
 import statistics
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from rich.table import Table
 
@@ -13,9 +13,10 @@ from ..errors import SlopeError
 from ..findings import Finding, encode_findings
 from ..runs import repeats
 from ..statistics.conservative_volume import Scatter
-from ..tables import judged, study_table
+from ..tables import combinations, judged, study_table
 from ..tables.quantities import ALL, NEED_ROAD, On, keys, format_quantity
 from ..tables.rows import Finished, encode_row
+from .outcome import unseen
 from .run_rows import read_run_rows
 from .setup import Setup
 
@@ -76,21 +77,18 @@ def plan_trials(setup: Setup, base: Mapping[str, str], kinds) -> List[Trial]:
 def collect_trials(setup: Setup, base, of, todo, work):
     """Table, chart and sensitivity.yaml over all runs that finished."""
     defaults = {**work.defaults, **base}
-    tried: List[Tried] = []
-    warnings = []
-    for trial, row in zip(todo, read_run_rows(setup, todo)):
-        if isinstance(row, Finished):
-            tried.append(Tried(trial.kind, trial.variable, trial.chosen[trial.variable] if trial.variable else None,
-                               row))
-        else:
-            warnings.append(Finding("failed", {"error": row.error}, (trial.name,)))
+    rows = read_run_rows(setup, todo)
+    tried = [Tried(trial.kind, trial.variable, trial.chosen[trial.variable] if trial.variable else None, row)
+             for trial, row in zip(todo, rows) if isinstance(row, Finished)]
     if not tried or tried[0].kind != "base":
         return      # nothing to hold the others against; which run failed is said at the end
     for name in of:
         for trial in tried:
             if trial.row.value(name) is None:
                 raise SlopeError("--of", f"must be known of every run; {name} is not of {trial.row.run}")
-    warnings += judged.not_at_rest([one.row for one in tried])
+    repeated = {one.variable: () for one in todo if one.kind == "repeat" and one.variable}
+    tried, same = leave_out_same(tried)
+    warnings = [*judged.of_runs(rows), *unseen(repeated, defaults), *same]
     scatter = {name: measure_spread(tried, name) for name in of}
     summary = {"study": {"deck": setup.deck.name, "base": defaults, "runs": len(todo), "finished": len(tried),
                          "ranks": work.ranks, "package": work.package, "collected": provenance.now(),
@@ -114,11 +112,23 @@ def collect_trials(setup: Setup, base, of, todo, work):
 
 # --- numbers ---
 
+def leave_out_same(tried: Sequence[Tried]) -> Tuple[List[Tried], List[Finding]]:
+    """Without repeats that have the numbers of another run, to the last digit, and so no chance; choices that have
+    those of the base run stay, and both are told."""
+    first = combinations.same_as([one.row for one in tried])
+    same = [one for k, one in enumerate(tried) if first[k] != k and (one.kind == "repeat" or first[k] == 0)]
+    findings = [Finding("no effect", {
+        "which": one.variable, "on": f" at {one.value}", "then": "left out" if one.kind == "repeat" else
+        "it is not tested"}, (one.row.run,)) for one in same]
+    return [one for one in tried if one.kind != "repeat" or one not in same], findings
+
+
 def measure_spread(tried: Sequence[Tried], name):
-    """Mean, standard deviation and range of the base run and its repeats; the deviation is None without repeats."""
+    """Mean, standard deviation and range of the base run and its repeats; the deviation is None where nothing tells
+    it: without repeats, or where all are equal, as where nothing reaches the road."""
     values = [one.of(name) for one in tried if one.kind != "vary"]
     return {"runs": len(values), "mean": statistics.fmean(values), "smallest": min(values), "largest": max(values),
-            "standard_deviation": statistics.stdev(values) if len(values) > 1 else None}
+            "standard_deviation": statistics.stdev(values) if min(values) < max(values) else None}
 
 
 def effect(trial: Tried, name, summary):
@@ -144,7 +154,8 @@ def trust(tried: Sequence[Tried], name, summary):
     what, unit = ALL[name].name, ALL[name].unit
     mean, deviation = summary["mean"], summary["standard_deviation"]
     if deviation is None:
-        text = f"{what}: {format_quantity(mean)} {unit} in the base run; without --repeat its scatter is unknown"
+        runs = f"each of {summary['runs']} equivalent runs" if summary["runs"] > 1 else "the base run"
+        text = f"{what}: {format_quantity(mean)} {unit} in {runs}; how it scatters is unknown"
     else:
         deviation_of_run = scatter_of(summary).quantile * deviation
         text = (f"{what}: {summary['runs']} equivalent runs give {format_quantity(summary['smallest'])} to "
