@@ -26,7 +26,7 @@ from slope_tools.sites import site_choices, site_scenarios, site_trial
 from slope_tools.statistics.answer import Kind, Source
 from slope_tools.studies.road_numbers import Made
 from slope_tools.survey.rasters import Raster
-from slope_tools.tables import study_file
+from slope_tools.tables import study_file, study_types
 
 KEPT = ("d", "cell", "duration", "film", "density", "spacing", "friction")
 FILES = ("release.depth.asc", "release.slip.asc", "release.csv", "terrain.asc", "road.csv")
@@ -249,6 +249,20 @@ def test_numbers_side_by_side_are_of_the_studies_that_all_have(tmp_path):
     known = of_roads(tmp_path, **{"": {"ensemble": BOTH["ensemble"]}})
     said = method.difference({"mine": known, "half": sweep}, folders)
     assert method.common([known, sweep]) == [] and "mine: runs that are weighted" in said and "half: a sweep" in said
+
+
+def test_numbers_of_balls_of_other_sizes_do_not_compare(here, tmp_path):
+    """One study has balls of half the diameter, too: the page said that what is asked for alone differs."""
+    mine = compare.read_scenarios(Path("mine"))[0]
+    d = float(mine.variables["d"])
+    size = study_types.Size([study_types.SizeRuns(one, 10, None, 2) for one in (d, d / 2)], [], {}, "")
+    finer = {"": {name: replace(about, size=size) for name, about in BOTH.items()}}
+    coarse, fine = (mine._replace(name=name, studied=of_roads(tmp_path, **roads))
+                    for name, roads in (("coarse", {}), ("fine", finer)))
+    assert compare.different_sizes([coarse, coarse._replace(name="half"), mine]) == ""
+    assert compare.different_sizes([fine, fine._replace(name="half"), mine]) == ""
+    said = compare.different_sizes([coarse, fine])
+    assert f"coarse {d:.3g} m, fine {d / 2:.3g} m" in said and said.count("--levels 2") == 1
 
 
 def test_every_road_has_a_column(here, tmp_path):

@@ -1,6 +1,8 @@
 """A site and its scenarios: what each releases, what its study says, and in what its choices and its model differ."""
+import math
 import os
 from pathlib import Path
+from shlex import quote
 from typing import Any, Iterator, List, Mapping, NamedTuple, Optional, Sequence
 
 from .. import disk
@@ -18,6 +20,7 @@ STIFFNESS = {"speed": ("the stiffness is for a speed of", "m/s"), "thick": ("the
              "density": ("a ball has", "kg/m3")}
 GROUND = {"friction": ("friction of", "degrees"), "slip": ("friction on the slip surface of", "degrees"),
           "spacing": ("spacing of the ground's balls", "diameters"), "field_e": ("restitution on the ground", "")}
+SAME_SIZE = 1.2         # ratio of diameters: finer balls are half as large
 BALLS = {"d": ("balls of", "m"), "cell": ("cells of", "m"), "duration": ("runs of at most", "s")}
 
 
@@ -53,6 +56,22 @@ def run_of(studied: method.Studied, names: Sequence[str]) -> Path:
     if len(inside) != 1:
         raise SlopeError(study, "must hold the governing run of the study, with its summary")
     return run_folders.prefix_of(inside[0])
+
+
+def different_sizes(several: Sequence[One]) -> str:
+    """That the numbers are of balls of different sizes, in a sentence, and what mends it; "" if they are of one."""
+    names = method.common([one.studied for one in several])
+    finest = {one.name: max(about.size.sizes[-1].d if about.size else float(one.variables["d"])
+                            for studies in one.studied.roads.values() for about in method.taken(studies, names))
+              for one in several if one.studied and one.variables}
+    least = min(finest.values(), default=0.0)
+    coarser = [one for one in several if finest.get(one.name, 0.0) > SAME_SIZE * least]
+    if not coarser:
+        return ""
+    again = ", ".join(f"slope study {quote(str(one.site.folder))} --levels "
+                      f"{1 + round(math.log2(float(one.variables['d']) / least))}" for one in coarser)
+    return ("These numbers are of balls of different sizes, which may change them as much as what is asked for: " +
+            ", ".join(f"{name} {d:.3g} m" for name, d in finest.items()) + f" ({again}).")
 
 
 def choices_that_differ(mine: Site, other: Site) -> List[str]:

@@ -19,7 +19,7 @@ from ..survey import rasters, roads
 from ..survey.rasters import Raster, crs_name
 from ..tables import answer_words, usable
 from . import method
-from .compare import One, choices_that_differ, differences, read_scenarios, run_of
+from .compare import One, choices_that_differ, different_sizes, differences, read_scenarios, run_of
 
 PAGE = "scenarios.html"
 BODY = f"{NAME_OF_BODY}.depth.asc"
@@ -47,8 +47,8 @@ def write_scenarios_page(folder: Path, output: Path, overwrite: bool) -> str:
     """Write the page of a site's folder beside its report; a line for the user."""
     disk.check_standing(output, [output], [document.MADE_BY], overwrite, f"slope report {quote(str(folder))}")
     several = read_scenarios(folder)
-    difference = method.difference({one.name: one.studied for one in several},
-                                   {one.name: one.site.folder for one in several})
+    difference = " ".join(filter(None, (method.difference({one.name: one.studied for one in several}, {
+        one.name: one.site.folder for one in several}), different_sizes(several))))
     content = {
         "title": several[0].name, "client": several[0].site.choices.project.client,
         "author": several[0].site.choices.project.author, "made": provenance.now(),
