@@ -27,7 +27,8 @@ using Slope::ElevationGrid;
 using Slope::SlipBody;
 using Slope::SlipBodyMaker;
 
-static constexpr double DOUBTED = 0.05;    // of the weight
+static constexpr double DOUBTED = 0.05;     // of the weight
+static constexpr double LEFT_OUT = 0.05;    // of the least factor, by how much it may be less
 static constexpr double HUGE_FACTOR = 100.0;
 static constexpr double TELL_EVERY = 10.0;    // s
 
@@ -131,6 +132,12 @@ std::vector<SlipBody> FindSlip::search(const SlipOptions &options, SlipBodyMaker
   const Slope::SlipRanks ranks = {comm->me, comm->nprocs, least_of_all, progress};
   Slope::SlipSearch search(options.ground(), limits, ranks, maker);
   const std::vector<SlipBody> bodies = search.run();
+  if (bodies.empty() && search.least_left_out() < HUGE_VAL)
+    error->all(FLERR,
+               "Find_slip method spencer must balance a surface within the limits, got none, where "
+               "bishop has {:.4g} "
+               "at least: use bishop",
+               search.least_left_out());
   if (bodies.empty())
     error->all(
         FLERR,
@@ -139,8 +146,17 @@ std::vector<SlipBody> FindSlip::search(const SlipOptions &options, SlipBodyMaker
         limits.volume_lo, limits.volume_hi, limits.depth_lo, limits.depth_hi, search.surfaces());
   least = search.least();
   if (comm->me) return bodies;
+  SlipBody first;
+  maker.exact(bodies[0].surface, first);
+  warn(maker);
   utils::logmesg(lmp, "Find_slip: lattice of {} spheres, {:.3g} s\n", search.surfaces(),
                  MPI_Wtime() - begun);
+  if (search.least_left_out() < (1.0 - LEFT_OUT) * bodies[0].factor)
+    error->warning(
+        FLERR,
+        "Find_slip method spencer has no factor for surfaces that bishop gives {:.4g}, where "
+        "the least that it has is {:.4g}: these may be the first to slide, use bishop",
+        search.least_left_out(), bodies[0].factor);
   if (bodies.size() < static_cast<size_t>(limits.keep))
     error->warning(FLERR, "Find_slip keep: only {} of {} bodies that differ were found",
                    bodies.size(), limits.keep);

@@ -47,6 +47,7 @@ class SlipBodyMaker {
 
   // of the last body
   double yield() const { return factor.yield(task.seismic.vertical); }
+  double of_moments(double precision) const { return factor.of_moments(task.seismic, precision); }
   double share_bounded() const { return factor.share_bounded(); }
   double share_pulled() const { return factor.share_pulled(); }
   const SlipColumns &columns() const { return found; }

@@ -405,6 +405,7 @@ void SlipColumnMaker::piece(SlipColumns &c, int number, double y, double width, 
     for (int m = 0; m < 2 * n; m++) {
       const double x = lo + (m / 2 + 0.5) * step + (m % 2 ? GAUSS : -GAUSS) * step;
       const double below = depth(x - surface.x, dy);
+      if (!(below > 0.0)) continue;    // of a sliver at a vertical rim, by rounding: it has no dip
       add(c, x - surface.x, dy, below, p.rock_at(q, x), p.ground_at(q, x), 0.5 * step * width);
     }
   }

@@ -194,6 +194,11 @@ double SlipFactor::factor(const Seismic &k, double precision) const
   return inclined_to(solve, excess, precision);
 }
 
+double SlipFactor::of_moments(const Seismic &k, double precision) const
+{
+  return factor_at(0.0, k, precision, 1.0);
+}
+
 double SlipFactor::yield(double vertical) const
 {
   const auto solve = [&](double inclination) {

@@ -44,6 +44,9 @@ class SlipFactor {
   // infinite if nothing drives the body; NaN if no inclination of the forces between columns balances it
   double factor(const Seismic &, double precision = PRECISION) const;
 
+  // by the moments about the axis alone: Bishop's where the method is Spencer's
+  double of_moments(const Seismic &, double precision) const;
+
   // horizontal coefficient at which the factor is 1, with this vertical one; negative if the body
   // slides without an earthquake; NaN if no coefficient does it
   double yield(double vertical) const;

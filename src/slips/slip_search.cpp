@@ -239,9 +239,14 @@ void SlipSearch::above_place(size_t place, double *factors)
   SlipBody body;
   for (size_t k = 0; k < per_place(); k++) {
     const SlipSurface s = lattice_surface(place * per_place() + k);
-    if (!(s.radius > 0.0) || !compute(s, 0, body)) continue;
-    factors[k] = body.factor;
-    mark(body);
+    if (!(s.radius > 0.0) || !maker.coarse(s, stride_for(s), body, ROUGH)) continue;
+    if (std::isnan(body.factor)) {
+      body.factor = maker.of_moments(ROUGH);
+      if (within(body)) left_out = std::min(left_out, body.factor);
+    } else if (within(body)) {
+      factors[k] = body.factor;
+      mark(body);
+    }
   }
 }
 
@@ -274,6 +279,7 @@ SlipSearch::Best SlipSearch::lattice()
     ranks.progress("lattice", (place + 1.0) / places);
   }
   ranks.least(factors.data(), factors.size());
+  ranks.least(&left_out, 1);
   ranks.least(map.z.data(), map.z.size());
   for (double &f : map.z)
     if (f == HUGE_VAL) f = std::numeric_limits<double>::quiet_NaN();

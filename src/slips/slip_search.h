@@ -51,6 +51,8 @@ class SlipSearch {
 
   // least factor of the lattice's surfaces through each cell
   const ElevationGrid &least() const { return map; }
+  // least factor by moments alone of the lattice's surfaces for which the method has none; HUGE_VAL: none
+  double least_left_out() const { return left_out; }
   size_t surfaces() const { return static_cast<size_t>(centres[0]) * centres[1] * per_place(); }
 
  private:
@@ -64,6 +66,7 @@ class SlipSearch {
   SlipRanks ranks;
   SlipBodyMaker &maker;
   ElevationGrid map;
+  double left_out = HUGE_VAL;
 
   double size_lo, size_hi;    // of bodies, in plan
   double origin[2], spacing;

@@ -2,6 +2,7 @@
 
 import csv
 import math
+import re
 
 import numpy
 import pytest
@@ -244,6 +245,32 @@ def test_spencer_balances_a_body_or_says_that_nothing_does(tmp_path):
     of_20_m(tmp_path)
     run_deck(deck(f"40000 0 {19000 / GRAVITY:.12g}", f"{HIGH_SPHERE} method spencer"), tmp_path,
              expect_error="Find_slip method spencer must find forces between columns")
+
+
+def steep(path, rise, first):
+    """A face of 10 m in cells of 1 m, which rises by so much per cell from column first on."""
+    write_asc(path / "ground.asc", numpy.tile(numpy.clip(rise * (numpy.arange(20) - first), 0, 10), (18, 1)))
+
+
+def test_a_search_by_spencer_says_what_it_leaves_out(tmp_path):
+    """On a steep face most surfaces have no factor by Spencer; the least of the others was given alone."""
+    steep(tmp_path, 2.5, 8)
+    log = run_deck(deck("30000 5 2039", "volume 100 150 method spencer"), tmp_path)
+    [bishop] = re.findall("no factor for surfaces that bishop gives ([0-9.]+)", log)
+    assert 1.3 < float(bishop) < 1.5 < rows(tmp_path)[0]["factor"]
+    steep(tmp_path, 4, 10)
+    run_deck(deck("30000 0 2039", "volume 100 150 method spencer"), tmp_path,
+             expect_error="Find_slip method spencer must balance a surface within the limits, got none")
+
+
+def test_a_rim_that_is_vertical_leaves_the_factor_finite(tmp_path):
+    """Where the centre is as high as the ground: columns of rounding had no dip, and the search gave inf."""
+    steep(tmp_path, 4, 10)
+    log = run_deck(deck("30000 0 2039", "volume 100 150"), tmp_path)
+    [row] = rows(tmp_path)
+    assert row["z"] == pytest.approx(10, abs=1e-3) and row["factor"] == pytest.approx(1.3295, rel=1e-3)
+    assert row["yield"] == pytest.approx(0.618, rel=1e-2)
+    assert re.search("normal forces pull below 0.1[0-9]* of the weight", log)   # what was said of a given surface alone
 
 
 @pytest.mark.parametrize("ranks", (1, 2))

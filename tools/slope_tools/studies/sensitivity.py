@@ -15,7 +15,7 @@ from ..runs import repeats
 from ..statistics.conservative_volume import Scatter
 from ..tables import combinations, judged, study_table
 from ..tables.quantities import ALL, NEED_ROAD, On, keys, format_quantity
-from ..tables.rows import Finished, encode_row
+from ..tables.rows import Finished, encode_row, finished_of
 from .outcome import unseen
 from .run_rows import read_run_rows
 from .setup import Setup
@@ -90,14 +90,14 @@ def collect_trials(setup: Setup, base, of, todo, work):
     tried, same = leave_out_same(tried)
     warnings = [*judged.of_runs(rows), *unseen(repeated, defaults), *same]
     scatter = {name: measure_spread(tried, name) for name in of}
-    summary = {"study": {"deck": setup.deck.name, "base": defaults, "runs": len(todo), "finished": len(tried),
-                         "ranks": work.ranks, "package": work.package, "collected": provenance.now(),
-                         "machine": provenance.machine(),
+    summary = {"study": {"deck": setup.deck.name, "base": defaults, "runs": len(todo),
+                         "finished": len(finished_of(rows)), "ranks": work.ranks, "package": work.package,
+                         "collected": provenance.now(), "machine": provenance.machine(),
                          "road": setup.road.about() if setup.road else None},
                "scatter": scatter, "trust": [trust(tried, name, scatter[name]) for name in of],
                "warnings": encode_findings(warnings)}
-    for trial in warnings:
-        setup.warn(trial)
+    for found in warnings:
+        setup.warn(found)
     disk.write_file(setup.output / "sensitivity.csv", tabulate_sensitivity(tried, of, scatter, defaults))
     disk.write_file(setup.output / "sensitivity.yaml", disk.yaml_text(
         "slope sensitivity: volumes in m3 of ground (bulk), lengths in m, angles in degrees", summary))
