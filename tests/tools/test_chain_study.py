@@ -99,7 +99,7 @@ def test_the_chain_of_two_bodies(mine, capsys):
     assert "the road is blocked by more than" in chain_files.sentences(said)[0]
     shown_in_the_report(of)
     told = letter.write_letter(letter.make_letter(load_study(Path("mine/ensemble/study.yaml"))))
-    assert "2 bodies" in told.down and "how likely" not in told.lacks
+    assert told.down.startswith("2 bodies of ") and "how likely" not in told.lacks
     assert found["withheld"] or told.clear.count("per year") == len(found["per_year"])
 
     # which body brings most, and what both leave: by hand from the runs

@@ -329,7 +329,7 @@ def test_a_site_has_one_number_of_three_sizes_of_balls(tmp_path, monkeypatch, ca
     abouts = {name: yaml.safe_load((mine / name / "study.yaml").read_text()) for name in ("study", "ensemble")}
     made = [path.name for path in runs_in(mine / "runs")]
     finer = sum("_d_" in name for name in made)
-    assert len(made) == 4 + 1 + 8 + finer and 4 + 2 < finer <= 4 + 2 + 2 * size_runs.ROUNDS    # on which numbers rest
+    assert len(made) == 4 + 1 + 8 + finer and 4 + 2 < finer <= 4 + 2 + 2 * size_runs.MORE    # on which numbers rest
     assert abouts["study"]["size"]["effects"] == abouts["ensemble"]["size"]["effects"]
     coarse, half, quarter = (one["runs"] for one in abouts["study"]["size"]["sizes"])
     assert coarse == 12 and half >= quarter > 2 and half + quarter == finer     # each of the finest is a pair

@@ -31,6 +31,7 @@ from slope_tools.findings import Finding
 from slope_tools.mobility import body, known
 from slope_tools.plots import site_map
 from slope_tools.sites import site_budget, site_choices, site_deck, site_folder, site_trial, site_warnings
+from slope_tools.sites.site_found import Body
 from slope_tools.studies import site_study
 from slope_tools.survey.resampling import sample
 
@@ -312,6 +313,16 @@ def test_the_map_has_the_fall_path(inside, mine, monkeypatch):
 
 def test_a_large_body_needs_a_past_event():
     assert site_warnings.of_thickness(3.1, 10.0) == []
+
+
+def test_a_study_says_how_thick_the_body_is_in_the_balls_that_it_ran():
+    """Not in those that were planned, with which there was no such finding, or another."""
+    others = [Finding("first look", {"balls": 8.0, "limit": 10.0}), Finding("few across")]
+    body = Body(1000.0, 8.0, 12.0)
+    assert site_warnings.thickness_at(body, 1.0, others) == others[1:]
+    one, other = site_warnings.thickness_at(body, 4.0, others)
+    assert (one.kind, one.numbers["balls"], other) == ("thin", 2.0, others[1])
+    assert site_warnings.thickness_at(Body(1000.0), 4.0, others) == others
     assert site_warnings.of_volume(9.9e5) == []
     line = str(*site_warnings.of_volume(3.6e7))
     assert "36 million m3" in line and "farther" in line and "slope calibrate" in line

@@ -64,7 +64,7 @@ WORDS: Dict[str, Union[str, Words]] = {
                               "steeper cut angle gives less", NOTE,
                               "{percent:.0f} % of the volume to remove lies where the hillside is as steep as the cut "
                               "or steeper: a steeper cut gives less."),
-    "thin": Words("the body is {balls:.1f} balls thick on average, below {limit:g}, with the finest ones planned: the "
+    "thin": Words("the body is {balls:.1f} balls thick on average, below {limit:g}, with the finest ones: the "
                   "numbers will be rough; use more balls (--balls, --minutes)", client=(
                       "The model is coarse for so thin a body: the numbers are rough.")),
     "lost": Words(LEFT, NOTE, LOST),
@@ -162,7 +162,7 @@ WORDS: Dict[str, Union[str, Words]] = {
     "few across": "the body is about {across:.2g} cells of {cell:.3g} m across, below {limit:g}: its surface and "
                   "volume are rough; use a finer elevation model",
     "not at rest": "the trial run was not at rest after {seconds:.0f} s: the run time of the study is a guess",
-    "first look": Words("the body is {balls:.1f} balls thick at most, below {limit:g}, with the finest ones planned: a "
+    "first look": Words("the body is {balls:.1f} balls thick at most, below {limit:g}, with the finest ones: a "
                         "first look; to repeat it, use more balls (--balls, --minutes)", NOTE),
     "small angle": "{option} {degrees:g}: is it in degrees? A coefficient of {degrees:g} is {meant:.3g} degrees",
     "large rolling": "{option} {rolling:g}: is it a coefficient? More than {limit:g} stands for bodies that do not "

@@ -35,9 +35,10 @@ class Zone:
 
 @dataclass(frozen=True)
 class Body:
-    """m3, m; mean_depth: None in older sites."""
+    """m3, m; depths: None in older sites."""
     volume: float
     mean_depth: Optional[float] = None
+    largest_depth: Optional[float] = None
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ from ..finding_words import words_of
 from ..findings import WARNING, Finding, encode_findings, finding
 from ..releases.release_solve import Measures
 from .site_budget import Size, Trial
+from .site_found import Body
 from .site_inputs import Structure
 from .site_sections import Choices, OfMass, Structures
 from .site_zones import Zone
@@ -22,6 +23,7 @@ from .site_zones import Zone
 NAME = "warnings.yaml"
 ROUGH = 3.0             # balls, mean thickness of the body: below, the numbers are rough
 THICK = 10.0            # balls, largest thickness: below, a site should be repeated with more balls
+OF_THICKNESS = "thin", "first look"
 MOST = 3                # warnings that are shown before the numbers
 # kinds by what they do to the number, the heaviest first: it may be another ground, another body, another run, or rough
 HEAVIEST = ("in feet", "no ground's slope", "cliff", "picture", "pits", "no such cell", "swapped", "tiles differ",
@@ -97,6 +99,14 @@ def of_angles(angles: Mapping[str, float]) -> List[Finding]:
     """Angles (degrees, by their options) that look like coefficients."""
     return [Finding("small angle", {"option": option, "degrees": value, "meant": math.degrees(math.atan(value))})
             for option, value in angles.items() if 0 < value < COEFFICIENT]
+
+
+def thickness_at(body: Optional[Body], finest: float, findings: Sequence[Finding]) -> List[Finding]:
+    """The findings of a site with those on the thickness of its body as balls of that diameter (m) have it."""
+    if not body or body.mean_depth is None or body.largest_depth is None:
+        return list(findings)
+    return [*of_thickness(body.mean_depth / finest, body.largest_depth / finest),
+            *(one for one in findings if one.kind not in OF_THICKNESS)]
 
 
 def of_thickness(mean: float, largest: float) -> List[Finding]:

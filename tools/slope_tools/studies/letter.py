@@ -92,12 +92,12 @@ def write_letter(letter: Letter, write: Write = format_console_number) -> Senten
     far, roads = describe_reach(letter.reach, write), describe_roads(letter, write)
     lacks = "; ".join([DRY, *(LACKS[kind] for kind in letter.lacks if kind in LACKS
                               and not (letter.chain and kind == "slip assumed"))])
-    down = f"{three(letter.released)} m3 of ground"
+    down = f"{three(letter.released)} m3 of ground would come down."
     if len(letter.bodies) > 1:
-        down = f"One of {len(letter.bodies)} bodies of {three(min(letter.bodies))} to {three(max(letter.bodies))} m3"
+        down = f"{len(letter.bodies)} bodies of {three(min(letter.bodies))} to {three(max(letter.bodies))} m3 may come down."
     in_band = sizes.UNKNOWN not in letter.size and number and any(
         share.cause == Cause.SIZE.value for share in number.band)
-    return Sentences(f"{down} would come down.", clear, basis, far, roads,
+    return Sentences(down, clear, basis, far, roads,
                      describe_change(number) if number else "", f"Not in it: {lacks}.",
                      capital(letter.size) + " The band has it." * bool(in_band))
 

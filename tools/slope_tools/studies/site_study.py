@@ -192,8 +192,9 @@ def collect_site_results(site: Site, planned: Planned, method: str, finer: Calla
     def results_of(_, work):
         at = finer(work)
         questions = results.Questions(
-            planned.settings, planned.repeated, THRESHOLDS, notes=[*notes_of(site, roads), *at.warnings], site=folder,
-            sizes=at, most_elastic=elastic_of(setup, planned.elastics, at),
+            planned.settings, planned.repeated, THRESHOLDS, notes=[*site_warnings.thickness_at(
+                site.found.body, at.finest or float(planned.variables[VARIABLE]), notes_of(site, roads)), *at.warnings],
+            site=folder, sizes=at, most_elastic=elastic_of(setup, planned.elastics, at),
             step=judge_step_run(setup, half[0], planned.middle, planned.variables, at) if half else None, method=method,
             known=asdict(planned.choices.known), roads=roads, alone=alone)
         return results.collect_results(setup, questions, todo, work)

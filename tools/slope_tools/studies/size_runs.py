@@ -113,6 +113,11 @@ class AtFinest(NamedTuple):
     sizes: Optional[Sizes]
     warnings: Sequence[Finding] = ()
 
+    @property
+    def finest(self) -> Optional[float]:
+        """The diameter of the finest balls that tell, m; None of one size."""
+        return self.sizes.diameters[-1] if self.sizes else None
+
     def runs(self, points: Sequence[Repeat]) -> List[Repeat]:
         """The finest run of each point."""
         return self.made.finest(points, len(self.sizes.diameters) if self.sizes else 1)
