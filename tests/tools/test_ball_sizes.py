@@ -279,7 +279,7 @@ def test_long_runs_have_finer_balls_but_not_the_finest():
 
 @pytest.mark.parametrize("chased", [True, False])
 def test_a_study_that_is_made_again_makes_no_finer_runs(monkeypatch, chased):
-    """Numbers that rest on another run each time ask for three more than were wanted; others for as many as wanted."""
+    """Numbers that rest on another run each time ask for four more than were wanted; others for as many as wanted."""
     points = [SimpleNamespace(name=f"p{k}", folder=Path(f"p{k}")) for k in range(12)]
     wanted, there, made_now = size_runs.Wanted(["4", "2", "1"], [5, 4]), {}, []
 

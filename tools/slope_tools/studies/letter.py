@@ -94,7 +94,8 @@ def write_letter(letter: Letter, write: Write = format_console_number) -> Senten
                               and not (letter.chain and kind == "slip assumed"))])
     down = f"{three(letter.released)} m3 of ground would come down."
     if len(letter.bodies) > 1:
-        down = f"{len(letter.bodies)} bodies of {three(min(letter.bodies))} to {three(max(letter.bodies))} m3 may come down."
+        least, most = map(three, (min(letter.bodies), max(letter.bodies)))
+        down = f"{len(letter.bodies)} bodies of {least} to {most} m3 may come down."
     in_band = sizes.UNKNOWN not in letter.size and number and any(
         share.cause == Cause.SIZE.value for share in number.band)
     return Sentences(down, clear, basis, far, roads,

@@ -31,7 +31,7 @@ from .setup import Setup
 OPTION = "--levels"
 FILE = "levels.csv"
 DRAWS = 200             # of the values of transferred runs, for the band of a number
-MORE = 3                # of the finest than were wanted, on which numbers rest once all values are at the finest size
+MORE = 4                # of the finest than were wanted, on which numbers rest once all values are at the finest size
 LONG = 1.5              # times the usual time to rest: points that take longer have none of the finest balls,
 SLOW = 4.0              # and, as those on which numbers rest of these, none finer than the coarsest
 FINER = 1.5             # times, at least, from a size to the next one
