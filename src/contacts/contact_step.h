@@ -57,7 +57,7 @@ static constexpr double POINT = 3.5;
 //   damping ratio (contact_step());
 //   gives the steps in which a contact begins and ends the part of the dashpot that is theirs (ContactOf of contact_force.h);
 //   gives contacts of a ball that has several the dashpots of contacts that act together, and less where they would
-//   take more of a motion than there is (acting_together(), held_back()).
+//   take more of a motion than there is (acting_together(), held_back(), there, too).
 // Derivation: doc/src/theory.rst.
 static constexpr double AHEAD = 0.25;
 

@@ -37,7 +37,7 @@ class DepositRelease : protected Pointers {
   // heights of the ground at the cell centres, NaN where there is none, row by row from the south; on rank 0
   std::vector<double> ground() const;
 
-  Released find() const;    // all but the bulk volume
+  Released find() const;    // without volume, stiffness_number: FixDepositGrid::start()
 
   // K, the stiffness of the softest contacts between the balls over density of the ground, gravity, largest
   // thickness of the body and largest diameter; 0 where there is no body, weight or such contact

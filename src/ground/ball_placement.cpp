@@ -157,13 +157,6 @@ void BallPlacement::place_surface()
   if (writing) write_file(text, counted);
 }
 
-/* ----------------------------------------------------------------------
-   balls on a plan grid, and more where the surface is steep: how far a point of the surface may be
-   from the nearest ball, from the plan grid alone on level ground, with extra balls where it is
-   steep. The smallest ball touches one whose centre is contact away: what is said of equal balls
-   holds with half of that for their radius.
-------------------------------------------------------------------------- */
-
 std::unique_ptr<Slope::BallSampler> BallPlacement::new_sampler() const
 {
   std::unique_ptr<Slope::BallSampler> made;
@@ -182,6 +175,13 @@ std::unique_ptr<Slope::BallSampler> BallPlacement::new_sampler() const
     scattered->add(spacings[k], ground->surface_of(spacings[k]));
   return made;
 }
+
+/* ----------------------------------------------------------------------
+   balls on a plan grid, and more where the surface is steep: how far a point of the surface may be
+   from the nearest ball, from the plan grid alone on level ground, with extra balls where it is
+   steep. The smallest ball touches one whose centre is contact away: what is said of equal balls
+   holds with half of that for their radius.
+------------------------------------------------------------------------- */
 
 void BallPlacement::warn_of_spacing() const
 {

@@ -34,7 +34,6 @@ class BallTiles {
   const Vector *places() const { return place.data(); }
   int64_t number(int k) const { return numbers[k]; }
   int zone(int k) const { return zones[k]; }
-  size_t size() const { return place.size(); }
 
   // Between lists of neighbors: drop the tiles that none of the last lists asked for, if their balls
   // are more than half of all. Balls change their k. A single tile is kept.

@@ -27,7 +27,7 @@ from slope_tools.case import data_files
 from slope_tools.errors import SlopeError
 from slope_tools.plots import site_map
 from slope_tools.releases import release_chart
-from slope_tools.sites import site_budget
+from slope_tools.sites import site_trial
 from slope_tools.survey import rasters
 
 RIGHT, ASKED = "right: ", "asked: "     # before answers of commands that succeed
@@ -434,7 +434,7 @@ def test_a_wrong_input(case, files, tmp_path, monkeypatch, capsys):
 def test_a_site_with_pits_ends_before_the_trial_run(files, tmp_path, monkeypatch, capsys, value, kind, units, rule):
     shutil.copytree(files, tmp_path, dirs_exist_ok=True)
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(site_budget, "trial_diameter", lambda *_: pytest.fail("a trial run"))
+    monkeypatch.setattr(site_trial, "trial_diameter", lambda *_: pytest.fail("a trial run"))
     tif("dem.tif", spoilt(ground() / (0.3048 if units else 1), HOLE, value), units=units, kind=kind)
     status, _, err = called(capsys, SITE + ["--z-unit", units] * bool(units))
     assert status == 2 and err.startswith(f"slope site: {rule}") and f"--nodata {value:g} " in err

@@ -1,4 +1,4 @@
-"""How a road is cleared: its blocked stretches, what each takes, a lane through all of them, and the hours.
+"""How a road is cleared (how much: volume.py): blocked stretches, what each takes, a lane through all, and the hours.
 
 What must be removed anywhere belongs to the stretch that is nearest along the axis, so that the stretches add up to the
 whole. The lanes of several stretches may cut the same ground, which counts once in their total.

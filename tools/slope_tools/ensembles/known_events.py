@@ -223,7 +223,7 @@ def list_known_quantiles(curve: hazard.Curve, runs: Runs, name: str, shares: Seq
 
 def transferred(several: Sequence[KnownQuantile], runs: Runs, draw: Optional[Draw]) -> List[KnownQuantile]:
     """Quantiles of the volume to remove with what lengths and volumes of transferred runs may be: with each draw the
-    runs have other weights, too."""
+    runs have other weights, too. That may raise the quantile itself."""
     if draw is None:
         return list(several)
     lengths, volumes = (draw(runs.rows, key) for key in ("length_m", REMOVE))

@@ -22,7 +22,6 @@ from ..tables.rows import Finished
 
 ZONES = 6
 SHARES = {True: (0.5, 0.9, 0.99), False: (0.99,)}      # of an outline, of a raster
-ROAD = "remove_on_road_m3"
 KINDS = ("observed", "front", "area", "volume")     # what can be observed, as the options call it
 # what is compared with a front: name, column of the table of `slope study`
 FRONTS = {"length": ("length along the fall path", "length_m"),

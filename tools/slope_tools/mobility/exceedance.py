@@ -122,16 +122,6 @@ def compute_mobility(body: Body, law: Law, chosen: Optional[str] = None, path: O
     Raises SlopeError for a body on level ground.
     """
     path = path or path_of(body, [law])
-    return on(body, path, law, chosen or law.kinds[-1])
-
-
-def path_of(body: Body, laws: Sequence[Law]) -> FallPath:
-    """The fall path as far as hardly any of the laws' events went."""
-    volume, relief = body.volume / 1e6, body.crown[2] - float(np.nanmin(body.raster.z))
-    return fall_path.trace(body, max(law.farthest(FAR, volume, relief) for law in laws))
-
-
-def on(body: Body, path: FallPath, law: Law, chosen: str) -> Mobility:
     volume, toe = body.volume / 1e6, fall_path.from_toe(body, path).length[0]
     low, high = law.falls
     covered = (path.fall >= low) & (path.fall <= high) & (path.fall > 0) & (path.length > 0) & (path.length >= toe)
@@ -140,8 +130,14 @@ def on(body: Body, path: FallPath, law: Law, chosen: str) -> Mobility:
         share = np.ones(len(path.length))
         share[covered] = law.beyond(kind, path.length[covered], volume, path.fall[covered])
         curves[kind] = np.minimum.accumulate(share)
-    mobility = Mobility(path, volume, law, curves, chosen, covered, [])
+    mobility = Mobility(path, volume, law, curves, chosen or law.kinds[-1], covered, [])
     return mobility._replace(outside=outside(mobility))
+
+
+def path_of(body: Body, laws: Sequence[Law]) -> FallPath:
+    """The fall path as far as hardly any of the laws' events went."""
+    volume, relief = body.volume / 1e6, body.crown[2] - float(np.nanmin(body.raster.z))
+    return fall_path.trace(body, max(law.farthest(FAR, volume, relief) for law in laws))
 
 
 def outside(mobility: Mobility) -> List[str]:

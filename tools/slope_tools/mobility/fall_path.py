@@ -56,7 +56,7 @@ def trace(body: Body, longest: float) -> FallPath:
     points, edge = descend(ground, centre, downhill, longest)
     line = LineString([centre - above * downhill, *points] if above > 0 else points)
     line = line.simplify(ground.step * ground.cell)       # the descent along a valley swings from side to side
-    return on(body, line, TERRAIN if edge else EVENTS)
+    return path_along(body, line, TERRAIN if edge else EVENTS)
 
 
 def given(body: Body, line: LineString, where) -> FallPath:
@@ -67,7 +67,7 @@ def given(body: Body, line: LineString, where) -> FallPath:
     crown = body.crown
     if math.dist(line.coords[-1][:2], crown[:2]) < math.dist(line.coords[0][:2], crown[:2]):
         line = LineString(line.coords[::-1])
-    path = on(body, line, LINE)
+    path = path_along(body, line, LINE)
     beyond = np.flatnonzero(~np.isfinite(sample(body.raster, path.x, path.y)))
     if not len(beyond):
         return path
@@ -77,7 +77,7 @@ def given(body: Body, line: LineString, where) -> FallPath:
     return FallPath(x, y, length, fall, TERRAIN, crown)
 
 
-def on(body: Body, line: LineString, end: str) -> FallPath:
+def path_along(body: Body, line: LineString, end: str) -> FallPath:
     """The path along a line (local m), in even steps of about a cell."""
     crown = body.crown
     count = min(MOST_POINTS, max(2, math.ceil(line.length / body.cell) + 1))

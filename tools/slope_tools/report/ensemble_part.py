@@ -25,8 +25,8 @@ EVENTS = "known events"
 SHARES = ("50 %", "90 %", "95 %", "99 %")
 
 
-def answer(data: Data, numbers: Numbers) -> Optional[MainCard]:
-    """For the card on top: of the known events where these weigh the runs, else of the runs; None of other studies."""
+def ensemble_card(data: Data, numbers: Numbers) -> Optional[MainCard]:
+    """For the top of the appendix: of the known events where these weigh the runs, else of the runs; None of others."""
     about = data.study.ensemble if data.study else None
     if not about:
         return None

@@ -103,8 +103,8 @@ class MainCard(NamedTuple):
     road: Optional[Mapping[str, Any]] = None
 
 
-def answer(data: Data, numbers: Numbers) -> Optional[MainCard]:
-    """The conservative volume: its number (or why it is withheld), what it may be called, its parts.
+def sweep_card(data: Data, numbers: Numbers) -> Optional[MainCard]:
+    """The conservative volume on top of the appendix: its number (or why it is withheld), what it may be called, parts.
 
     None without a road.
     """

@@ -11,7 +11,7 @@ from . import (body, chain_part, client_part, convergence_part, ensemble_part, h
 from .data import Data
 from .heading import Asked
 from .maps_part import Maps
-from .numbers import Numbers, answer, cards
+from .numbers import Numbers, cards, sweep_card
 from .sections import Picture
 from .structures_part import Structures
 from .warnings import findings, rank_warnings
@@ -43,7 +43,7 @@ class Page:
         if self.film_file:
             self.film = film.film(data, ground, self.section, maps.layers, self.frames, self.film_file.name)
         of_run, made = maps.of_run(), run_part.utc(provenance.now())
-        answers = answer(data, numbers), ensemble_part.answer(data, numbers)
+        answers = sweep_card(data, numbers), ensemble_part.ensemble_card(data, numbers)
         top = {"made": made, "study": data.study, "summary": data.result.summary, "repeats": data.repeats,
                "varied": [key for key, several in data.settings.items() if len(several) > 1],
                "heading": self.heading, "body": body.of_data(data, ground), "warnings": self.warnings,

@@ -1,7 +1,7 @@
 """Numbers rounded to what is known of them: to a power of ten, by their uncertainty or to three digits."""
 import math
 
-from ..digits import SIGNIFICANT
+from ..digits import SIGNIFICANT, to_three
 
 NOISE = dict.fromkeys(("m", "m2", "m3", "m/s"), 1e-6)      # of a unit: what sums of areas and lengths leave
 
@@ -13,7 +13,7 @@ def choose_rounding(uncertainty: float) -> float:
 
 def place_of_digits(value: float, unit: str = "") -> float:
     """The power of ten that leaves three digits of a value; 1 of 0, and of less than the noise of its unit."""
-    return 10.0 ** (math.floor(math.log10(abs(value)) + 1e-9) - SIGNIFICANT + 1) \
+    return 10.0 ** (math.floor(math.log10(abs(to_three(value))) + 1e-9) - SIGNIFICANT + 1) \
         if abs(value) > NOISE.get(unit, 0.0) else 1.0
 
 

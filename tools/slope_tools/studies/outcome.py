@@ -116,7 +116,7 @@ def evaluate_study(questions: Questions, read: Read, header: study_types.Header)
         if several:
             several = several._replace(about=replace(several.about, withheld=reasons(read)))
     elif read.road and finished:
-        best, step = conservative(questions, read, groups)
+        best, step = judge_conservative(questions, read, groups)
     if finished and not order:      # drawn values have one run
         at_intensities = intensity.evaluate_intensity(questions.intensity, questions.more_than, questions.settings,
                                                       read.road, groups)
@@ -184,7 +184,7 @@ def reasons(read: Read) -> List[Finding]:
     return usable.reasons_of_ensemble(read.rows, read.events, read.case._replace(sampled=True)) if read.road else []
 
 
-def conservative(questions: Questions, read: Read, groups: Sequence[combinations.Group]) -> Tuple[
+def judge_conservative(questions: Questions, read: Read, groups: Sequence[combinations.Group]) -> Tuple[
         study_types.Conservative, Optional[study_types.HalfStep]]:
     """The entries of the conservative volume and of the run with half the time step."""
     best = combinations.conservative(questions.settings, read.rows, groups)
