@@ -220,7 +220,9 @@ def make_finer_runs(setup: Setup, work: jobs.Work, points: Sequence[Repeat], wan
     planned = [(k, each) for k, (order, number) in enumerate(zip(orders, wanted.points)) for each in order[:number]]
     there = {(k, each) for k, value in enumerate(wanted.values[1:]) for each, row in enumerate(known)
              if SizeRun(setup.runs, names[row.run], value).made(work.store)}
-    missing = [(k, times[each]) for k, each in planned if (k, each) not in there]
+    have = [sum(which == k for which, _ in there) for k in range(len(orders))]      # of those before, others, too
+    missing = [(k, times[each]) for k, (order, number) in enumerate(zip(orders, wanted.points)) for each in
+               [one for one in order[:number] if (k, one) not in there][:max(0, number - have[k])]]
     setup.tell(told(wanted, len(missing), wanted.time and sum(
         wanted.time.one(k + 1, rest) for k, rest in missing) / work.jobs))
     todo = {(j, each) for k, each in planned[:len(planned) - late] for j in range(k + 1)} | there   # each is a pair
