@@ -209,6 +209,16 @@ def test_what_is_ahead_is_said_before_anything_runs(mine, monkeypatch, capsys):
     assert ahead.look_ahead(site_choices.load_site(mine), ENGINE, POINTS).seconds is None and seconds > 0
 
 
+def test_points_that_are_there_count_whatever_time_is_left(mine, monkeypatch):
+    monkeypatch.setattr(site_budget, "FEW_POINTS", 2)
+    site, short = site_choices.load_site(mine), site_study.Asked(minutes=1e-6)
+    assert site_study.points_of(site, ENGINE) == POINTS and site_study.points_of(site, ENGINE, short) == 2
+    assert ahead.choose_points(site, ENGINE, short) == POINTS
+    last = ahead.plan_weighted_points(site_study.plan_site_study(site, ENGINE), POINTS)[0][-1]
+    shutil.rmtree(last.folder)
+    assert ahead.choose_points(site, ENGINE, short) == POINTS // 2 and ahead.choose_points(site, ENGINE) == POINTS
+
+
 def test_a_trial_run_is_kept_until_what_it_depends_on_changes(mine, inside, trials, monkeypatch):  # noqa: F811
     out = inside("mine --client somebody --rolling 0.1 0.2").out
     assert "the trial run is there" in out and trials == []

@@ -22,7 +22,7 @@ from ..runs import jobs
 from ..sites import site, site_budget, site_choices, site_deck, site_scenarios, site_warnings
 from ..sites.site_sections import VERSION, Choices, Key, OfMass, sections
 from ..slips import bodies
-from ..studies import ahead, outlook, site_ground, site_study
+from ..studies import ahead, outlook, site_ground
 from ..studies.setup import RUNS, Setup
 from ..survey import roads
 from . import known_arguments, road_arguments
@@ -289,7 +289,7 @@ def runs_ahead(args: Request, folder: Path) -> str:
     engine = Setup(folder / site_deck.NAME, folder, jobs=args.jobs, lmp=args.lmp)
     try:
         site_ = site_choices.load_site(folder)
-        points = 0 if known_study.why_not(folder) else site_study.points_of(site_, engine)
+        points = 0 if known_study.why_not(folder) else ahead.choose_points(site_, engine)
         return f"the study: {ahead.look_ahead(site_, engine, points).text}"
     except SlopeError as error:
         return f"the study: {error}"

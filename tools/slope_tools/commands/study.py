@@ -144,7 +144,7 @@ def run_site_of(args: Request, site: Site) -> Made:
     if args.sample is not None or args.fit is not None:
         return run_site_ensemble(args, site)
     site_study.check_site(site)
-    points = site_study.points_of(site, setup_of(args), sizes_of(args))
+    points = ahead.choose_points(site, setup_of(args), sizes_of(args))
     why = "" if args.paper else known_study.why_not(args.deck) if points else known_study.NONE
     if args.paper or why:
         condition_of(replace(args, around=site))        # has no meaning here

@@ -41,11 +41,7 @@ def look_ahead(site: Site, engine: Setup, points: int, asked: site_study.Asked =
     SlopeError on bad input, and if a run is there with other data and engine.anew does not ask for it again.
     """
     planned = site_study.plan_site_study(site, engine)
-    setup = planned.setup
-    files = data_files(setup.deck, {**planned.settings, **planned.repeated})
-    depends = dependencies.Dependencies(setup.deck, {name: disk.sha256(path) for name, path in files.items()},
-                                        study.program_of(setup))
-    runs = store.Store(setup.runs, depends, setup.older, setup.anew)
+    setup, runs = planned.setup, known_runs(planned)
     runs.admit(planned.runs)
     once = store.select_distinct_runs(planned.runs)
     wanted = [one for one in once if not one.finished]
@@ -69,6 +65,27 @@ def look_ahead(site: Site, engine: Setup, points: int, asked: site_study.Asked =
     known = new and setup.engine == "local"
     return Ahead(there, new, seconds(site, planned, len(wanted) - half, half > 0, len(design), numbers)
                  if known else None, more)
+
+
+def known_runs(planned: site_study.Planned) -> store.Store:
+    """Which runs of a site's study are there."""
+    setup = planned.setup
+    files = data_files(setup.deck, {**planned.settings, **planned.repeated})
+    depends = dependencies.Dependencies(setup.deck, {name: disk.sha256(path) for name, path in files.items()},
+                                        study.program_of(setup))
+    return store.Store(setup.runs, depends, setup.older, setup.anew)
+
+
+def choose_points(site: Site, engine: Setup, asked: site_study.Asked = site_study.Asked()) -> int:
+    """Of the ensemble of a site: as many of those of site.yaml as time allows, and as are there already."""
+    fit, points = site_study.points_of(site, engine, asked), site.choices.study.points
+    if fit < points:
+        planned = site_study.plan_site_study(site, engine)
+        todo, _ = plan_weighted_points(planned, points)
+        known_runs(planned).admit(todo)
+        while points > fit and not all(one.finished for one in todo[:points]):
+            points //= 2        # the first half of a sequence is a design of its own
+    return points
 
 
 def plan_weighted_points(planned: site_study.Planned, points: int):
