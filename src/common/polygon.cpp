@@ -150,11 +150,16 @@ Point meeting(const Segment &s, const Segment &t)
 }
 
 // The first edge (in the file) that meets another one where it may not, and the first such one. Edges are
-// compared with those that begin beside them, along the longer side of the box.
+// compared with those that begin beside them, along the side of the box of which they are the smaller part.
 
 void check_crossings(const std::string &path, const std::vector<Segment> &all, const Polygon &box)
 {
-  const bool wide = box.xhi - box.xlo > box.yhi - box.ylo;
+  double x = 0.0, y = 0.0;
+  for (const Segment &s : all) {
+    x += s.xmax() - s.xmin();
+    y += s.ymax() - s.ymin();
+  }
+  const bool wide = x * (box.yhi - box.ylo) < y * (box.xhi - box.xlo);
   const auto from = [&](int e) {
     return wide ? all[e].xmin() : all[e].ymin();
   };
@@ -169,6 +174,9 @@ void check_crossings(const std::string &path, const std::vector<Segment> &all, c
     for (auto other = e + 1; other != order.end() && from(*other) <= end; ++other) {
       const std::pair<int, int> pair = std::minmax(*e, *other);
       const Segment &s = all[pair.first], &t = all[pair.second];
+      if (wide ? s.ymin() > t.ymax() || t.ymin() > s.ymax()
+               : s.xmin() > t.xmax() || t.xmin() > s.xmax())
+        continue;
       if (pair < found && meet(s, t, pair.second == s.next || pair.second == s.prev)) found = pair;
     }
   }

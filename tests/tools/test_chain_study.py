@@ -166,6 +166,16 @@ def test_bounds_have_the_transfer_and_what_finer_balls_would_change(monkeypatch)
     assert left.low.volumes.tolist() == left.high.volumes.tolist() == [500, 200, 100]
 
 
+def test_a_body_without_the_finest_balls_is_named():
+    def row(run, body, d, **entries):
+        return made_rows.row(run=run, set={"body": body}, variables={"d": d} if d else {}, **entries)
+
+    of_two = [row("a", "1", "2"), row("b", "1", "0.5"), row("c", "2", "1")]
+    assert chain_files.bodies_without_finer(of_two) == ["2"]
+    assert chain_files.bodies_without_finer([*of_two, row("e", "2", "0.5")]) == []
+    assert chain_files.bodies_without_finer([row("a", "1", "2"), row("c", "2", "2")]) == []
+
+
 @pytest.fixture
 def bad(mine, capsys, monkeypatch):
     """Sites of all bodies, of one, and without a road, which nothing is run of; fragilities that do not fit."""

@@ -317,6 +317,8 @@ WORDS: Dict[str, Union[str, Words]] = {
                               "more points (--sample)", NOTE),
     "more per year": Words("peaks above the hazard curve's last may add up to {per_year:.2g} per year to more than "
                            "{volume:,.6g} m3", NOTE),
+    "body size": Words("no run of body {body} has the finest balls: it is corrected by what other bodies tell; more "
+                       "points with finer balls (--minutes)", NOTE),
     "chain size": Words("what finer balls would change, and so how often the road is blocked, is not known", NOTE),
     # on a calibration
     "failed fits": Words("{failed} of {runs} runs failed and are left out: {which}", NOTE),

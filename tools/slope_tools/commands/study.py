@@ -85,8 +85,8 @@ class Request(Sample, known_arguments.Known, Repeats, Intensity, Runs):
         "a deck diameters, d=D1,D2,...: all points run with the first, some with the others; results are of the last",
         metavar="N|d=D1,D2,...")
     minutes: Optional[float] = option(
-        "of a site: that the study may take on this machine, which decides how many points run with finer balls "
-        "(default: site.yaml's, else 10)", metavar="T")
+        "of a site: that the study may take on this machine, which decides how many points run, and with finer "
+        "balls (default: site.yaml's, else 10, or up to 60 for a bound)", metavar="T")
     fine: Optional[str] = option(argparse.SUPPRESS)
     exceed: Optional[str] = option("thicknesses of the maps of exceedance, m (default 0.1,0.5,1)", metavar="T1,T2,...")
     exceed_speed: Optional[str] = option(

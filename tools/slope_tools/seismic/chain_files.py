@@ -18,6 +18,7 @@ from ..sites.site_found import SlipBody
 from ..statistics import ball_sizes, hazard
 from ..tables import intensity, study_types
 from ..tables.rows import Row, finished_of
+from ..tables.sizes import VARIABLE as SIZE
 from . import chain
 from .fragility import Frequency
 from .fragility_files import Fragility
@@ -125,8 +126,17 @@ def evaluate_chain(asked: Chain, rows: Sequence[Row], withheld: Sequence[Finding
         fragility.folder.name, QUANTITY, hazard.CONFIDENCE, [summarise_chain_body(asked, name, rows) for name
                                                              in fragility.bodies],
         more_than, fragility.peaks.tolist(), curves, per_year, list(withheld), list(tables), [])
-    coarse = [] if finer else [Finding("chain size")]
+    coarse = [Finding("body size", {"body": name}) for name in bodies_without_finer(rows)] if finer else \
+        [Finding("chain size")]
     return Evaluated(replace(about, doubts=[*find_chain_caveats(about, fragility.warnings), *coarse]), tables)
+
+
+def bodies_without_finer(rows: Sequence[Row]) -> List[str]:
+    """Of which no run has the finest balls, so that theirs are corrected by what other bodies tell."""
+    done = finished_of(rows)
+    sizes = {row.run: float(row.variables[SIZE]) for row in done if SIZE in row.variables}
+    with_finest = {row.set[VARIABLE] for row in done if sizes.get(row.run, 0.0) == min(sizes.values(), default=0.0)}
+    return sorted({row.set[VARIABLE] for row in done} - with_finest)
 
 
 def summarise_chain_body(asked: Chain, name: str, rows: Sequence[Row]) -> study_types.ChainBody:

@@ -229,7 +229,7 @@ def finer(points: int, time: Optional[Time], asked: Optional[int]) -> List[int]:
 
 def fit_points(d: float, volume: float, trial: Optional[Trial], soil: Soil, wanted: Plan, jobs: int,
                minutes: Optional[float]) -> Plan:
-    """With half or a quarter of the ensemble's points, where all would take most of the time; as of time_of()."""
+    """With half of the ensemble's points or fewer, where all would take most of the time; as of time_of()."""
     most = COARSE_SHARE * 60 * (minutes or HOUR)
     while trial and wanted.points >= 2 * FEW_POINTS and \
             study_seconds(d, volume, trial, soil, wanted, jobs, ())[0] > most:

@@ -171,7 +171,8 @@ class Balls:
     diameter: Optional[float] = key(None, "m", above=0)
     number: Optional[int] = key(None, "of balls in the body", least=1)
     minutes: Optional[float] = key(
-        None, "that the study may take on this machine; null: 10. They decide how many points run with finer balls",
+        None, "that the study may take on this machine; null: 10, or up to 60 for a bound. They decide how many points "
+        "run, and with finer balls",
         above=0)
     memory: Optional[float] = key(None, "GB that its runs may take together, the finest ones, too", above=0)
 

@@ -42,7 +42,8 @@ def run_ensemble(setup: Setup, questions: results.Questions, fixed: Mapping[str,
         if beside:
             beside.at = at
         return results.collect_results(setup, questions._replace(
-            order=made, settings=sample.settings_of(todo), sizes=at, notes=() if beside else at.warnings), todo, work)
+            order=made, settings=sample.settings_of(todo), sizes=at,
+            notes=() if beside and beside.planned else at.warnings), todo, work)
 
     several = sample.settings_of(todo)
     return study.perform(setup, {**sample.all_values(several, plan), **repeated,

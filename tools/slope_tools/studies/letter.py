@@ -65,6 +65,7 @@ def make_letter(study: study_types.Study) -> Letter:
                       (row.released_m3 / row.ball_m3 for row in rows), default=0.0)),
                   study.study.road["cut_angle"] if study.study.road else None, known.events if known else None,
                   chain_files.sentences(study.chain) if study.chain and not study.chain.withheld else (),
+                  [one.volume_m3 for one in study.chain.bodies if one.volume_m3 is not None] if study.chain else
                   list({row.variables.get(VARIABLE): row.released_m3 for row in rows}.values()))
 
 

@@ -223,8 +223,9 @@ def make_finer_runs(setup: Setup, work: jobs.Work, points: Sequence[Repeat], wan
     have = [sum(which == k for which, _ in there) for k in range(len(orders))]      # of those before, others, too
     missing = [(k, times[each]) for k, (order, number) in enumerate(zip(orders, wanted.points)) for each in
                [one for one in order[:number] if (k, one) not in there][:max(0, number - have[k])]]
-    setup.tell(told(wanted, len(missing), wanted.time and sum(
-        wanted.time.one(k + 1, rest) for k, rest in missing) / work.jobs))
+    if wanted.points:
+        setup.tell(told(wanted, len(missing), wanted.time and sum(
+            wanted.time.one(k + 1, rest) for k, rest in missing) / work.jobs))
     todo = {(j, each) for k, each in planned[:len(planned) - late] for j in range(k + 1)} | there   # each is a pair
     runs = [add(setup, made, wanted, names[known[each].run], k) for k, each in sorted(todo, reverse=True)]
     work.store.admit(runs)
