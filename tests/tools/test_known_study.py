@@ -1,5 +1,7 @@
 """tools/slope study SITE: by a sweep, and weighted by known events, for masses of all sizes."""
 from dataclasses import asdict
+from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,7 +13,7 @@ from test_site_anew import inside, mine, once  # noqa: F401
 from tiny_collapse import LMP
 
 from slope_tools.commands import known_arguments, study as study_command
-from slope_tools.ensembles import known_events, known_study
+from slope_tools.ensembles import known_events, known_study, sample
 from slope_tools.errors import SlopeError
 from slope_tools.mobility import body, known
 from slope_tools.sites import site_budget, site_choices
@@ -185,6 +187,25 @@ def test_the_method_is_in_the_results(mine, monkeypatch, capsys):  # noqa: F811
     with pytest.raises(AssertionError):       # there is no study.yaml, as nothing is collected
         study_command.run_both(study_command.Request(deck=mine), site_choices.load_site(mine), 8)
     assert seen.pop() == known_study.BESIDE
+
+
+def test_failed_finer_runs_are_told_once(monkeypatch):
+    """By the sweep, where there is one beside the ensemble, else by the ensemble."""
+    seen = []
+    for module, name, fake in ((sample, "plan_sample", lambda *_: []), (sample, "check_growth", lambda *_: None),
+                               (sample, "settings_of", lambda _: {}), (sample, "all_values", lambda *_: {}),
+                               (ensemble_study.size_runs, "settle", lambda *_: SimpleNamespace(warnings=["failed"])),
+                               (ensemble_study.study, "perform", lambda setup, values, todo, collect, begin: collect(
+                                   todo, None)),
+                               (ensemble_study.results, "collect_results", lambda setup, questions, *_: seen.append(
+                                   list(questions.notes)))):
+        monkeypatch.setattr(module, name, fake)
+    order = SimpleNamespace(sample=SimpleNamespace(names=()), condition=None)
+    setup = SimpleNamespace(site=Path("mine"), runs=Path("runs"), output=Path("out"))
+    for planned in (None, SimpleNamespace(todo=[])):
+        ensemble_study.run_ensemble(setup, results.Questions({}, {}, (), order), {}, {}, None,
+                                    site_study.Beside(planned, None))
+    assert seen == [["failed"], []]
 
 
 def test_a_site_of_a_mass_on_top_of_the_terrain(large, inside):  # noqa: F811

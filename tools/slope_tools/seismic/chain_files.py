@@ -122,13 +122,13 @@ def evaluate_chain(asked: Chain, rows: Sequence[Row], withheld: Sequence[Finding
         yearly = chain.frequency(fragility.capacity, fragility.rate, fragility.peaks, bodies, volumes)
         tables[PER_YEAR] = format_chain_table(("volume_m3", "per_year", "low", "high"), zip(volumes, *yearly.total))
         per_year = [of_year(yearly, volume, k) for volume, k in zip(more_than, at)]
-    about = study_types.Chain(
+    entry = study_types.Chain(
         fragility.folder.name, QUANTITY, hazard.CONFIDENCE, [summarise_chain_body(asked, name, rows) for name
                                                              in fragility.bodies],
         more_than, fragility.peaks.tolist(), curves, per_year, list(withheld), list(tables), [])
     coarse = [Finding("body size", {"body": name}) for name in bodies_without_finer(rows)] if finer else \
         [Finding("chain size")]
-    return Evaluated(replace(about, doubts=[*find_chain_caveats(about, fragility.warnings), *coarse]), tables)
+    return Evaluated(replace(entry, doubts=[*find_chain_caveats(entry, fragility.warnings), *coarse]), tables)
 
 
 def bodies_without_finer(rows: Sequence[Row]) -> List[str]:
