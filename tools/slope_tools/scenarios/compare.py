@@ -7,6 +7,7 @@ from typing import Any, Iterator, List, Mapping, NamedTuple, Optional, Sequence
 
 from .. import disk
 from ..case import decks, run_folders
+from ..digits import metres
 from ..errors import SlopeError
 from ..sites import site_choices, site_deck, site_folder, site_scenarios
 from ..sites.site_choices import FILES, Site
@@ -71,7 +72,7 @@ def different_sizes(several: Sequence[One]) -> str:
     again = ", ".join(f"slope study {quote(str(one.site.folder))} --levels "
                       f"{1 + round(math.log2(float(one.variables['d']) / least))}" for one in coarser)
     return ("These numbers are of balls of different sizes, which may change them as much as what is asked for: " +
-            ", ".join(f"{name} {d:.3g} m" for name, d in finest.items()) + f" ({again}).")
+            ", ".join(f"{name} {metres(d)}" for name, d in finest.items()) + f" ({again}).")
 
 
 def choices_that_differ(mine: Site, other: Site) -> List[str]:
