@@ -180,6 +180,7 @@ def test_the_method_is_in_the_results(mine, monkeypatch, capsys):  # noqa: F811
     monkeypatch.setattr(site_study.size_runs.Wanted, "with_finished", lambda wanted, _: wanted)
     monkeypatch.setattr(site_study, "judge_step_run", lambda *_: None)
     monkeypatch.setattr(site_study, "elastic_of", lambda *_: None)
+    monkeypatch.setattr(study_command.ahead, "choose_points", lambda *_: pytest.fail("runs of no sweep"))
     study(capsys, monkeypatch, "mine --paper")
     assert seen.pop() == known_study.ASKED and not seen
     monkeypatch.setattr(study_command, "run_deck", lambda args, beside: setattr(

@@ -209,6 +209,21 @@ def test_what_is_ahead_is_said_before_anything_runs(mine, monkeypatch, capsys):
     assert ahead.look_ahead(site_choices.load_site(mine), ENGINE, POINTS).seconds is None and seconds > 0
 
 
+def test_a_site_is_made_without_a_third_trial(mine, inside, trials, monkeypatch):  # noqa: F811
+    """One that does not end, or fails, makes the forecast a guess, and nothing else."""
+    right = site_trial.measure
+
+    def failing(*words):
+        if len(trials) == 2:
+            raise SlopeError("trial run", "must end within 600 s")
+        return right(*words)
+
+    monkeypatch.setattr(site_trial, "measure", failing)
+    out = inside("mine --friction 26").out
+    assert len(trials) == 2 and "a third one, spacing 0.5: trial run: must end within 600 s" in out
+    assert site_choices.found(mine).trial.late is None and not (mine / "trial").exists()
+
+
 def test_points_that_are_there_count_whatever_time_is_left(mine, monkeypatch):
     monkeypatch.setattr(site_budget, "FEW_POINTS", 2)
     site, short = site_choices.load_site(mine), site_study.Asked(minutes=1e-6)

@@ -144,13 +144,13 @@ def run_site_of(args: Request, site: Site) -> Made:
     if args.sample is not None or args.fit is not None:
         return run_site_ensemble(args, site)
     site_study.check_site(site)
-    points = ahead.choose_points(site, setup_of(args), sizes_of(args))
-    why = "" if args.paper else known_study.why_not(args.deck) if points else known_study.NONE
+    why = "" if args.paper else known_study.why_not(args.deck) if site.choices.study.points else known_study.NONE
     if args.paper or why:
         condition_of(replace(args, around=site))        # has no meaning here
         method = f"{known_study.PAPER}; {why}" if why else known_study.ASKED
         say(args, site, method, 0)
         return make_site_study(args, site, method)
+    points = ahead.choose_points(site, setup_of(args), sizes_of(args))
     say(args, site, f"{known_study.WEIGHTED}, which --paper makes alone", points)
     return run_both(args, site, points)
 

@@ -318,10 +318,14 @@ def tried(choices: OfMass, known: Derived, parts: site_deck.Parts, body: release
     both = site_trial.joined(trial, second)
     speed = choices.model.speed or site_budget.stiff_to(both)
     place = trial_folder(trial.diameter, own, parts, body, new)
-    third, _ = tried_with(place, {"rolling": least, "spacing": smooth, "speed": speed}, own, body, machine.lmp, tell,
-                          "a third one")
     soil = soil_of(own.model, parts)._replace(speed=speed)
-    both = site_trial.corrected(both, third, soil._replace(spacing=min(soil.spacing, smooth)))
+    try:
+        third, _ = tried_with(place, {"rolling": least, "spacing": smooth, "speed": speed}, own, body, machine.lmp,
+                              tell, "a third one")
+        both = site_trial.corrected(both, third, soil._replace(spacing=min(soil.spacing, smooth)))
+    except SlopeError as error:     # the site is right without it, its forecast a guess
+        shutil.rmtree(place)
+        tell(f"a third one, spacing {smooth:g}: {error}; how long the study takes is a guess")
     return Tried(both, its_reach if other_d < trial.diameter else reached, summary)
 
 
