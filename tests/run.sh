@@ -9,7 +9,8 @@
 #
 # The short run and --all keep the times of all tests in build/times.csv. --times also writes those of files into
 # tests/times.csv, which says which files begin first: after the short run.
-# JOBS=<n> in the environment: number of compilers, and of tests, at a time (default 2).
+# JOBS=<n> in the environment: number of compilers, and of tests in C++, at a time (default 2). One more of those in Python, as
+# they wait for what they start.
 set -euo pipefail
 export LC_ALL=C
 
@@ -66,7 +67,7 @@ failed=0
 ctest --test-dir "$top/build" -j "$jobs" --output-on-failure "${units[@]}" >"$work/ctest.log" || failed=1
 grep -v " Passed " "$work/ctest.log" | sed '/^ *Start /d' || true
 if ((${#files[@]})); then
-  sh "$top/build/tests/pytest.sh" -n "$jobs" --dist loadfile --basetemp "$work/pytest" "${mark[@]}" "${files[@]}" |
+  sh "$top/build/tests/pytest.sh" -n "$((jobs + 1))" --dist loadfile --basetemp "$work/pytest" "${mark[@]}" "${files[@]}" |
     tee "$work/pytest.log" || failed=1
 fi
 if ((counted)); then

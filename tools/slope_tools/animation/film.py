@@ -78,7 +78,7 @@ def encode(program: str, picture: "Picture", times: np.ndarray) -> bytes:
     with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryFile() as errors:
         path = Path(folder) / "film.mp4"
         command = [program, "-nostdin", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgba", "-s",
-                   f"{wide}x{tall}", "-r", str(RATE), "-i", "-", "-c:v", "libx264", "-preset", "fast", "-crf", "24",
+                   f"{wide}x{tall}", "-r", str(RATE), "-i", "-", "-c:v", "libx264", "-preset", "veryfast", "-crf", "24",
                    "-pix_fmt", "yuv420p", "-vf", "crop=trunc(iw/2)*2:trunc(ih/2)*2", "-movflags", "+faststart",
                    "-threads", "1", "-y", str(path)]
         with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=errors) as process:

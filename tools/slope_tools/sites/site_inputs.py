@@ -156,8 +156,15 @@ def check_beside_body(structures_: Iterable[Structure], folder: Path, raster: Ra
     cell, does not count.
     """
     body = binary_erosion(depth > 0)
+    if not body.any():
+        return
+    rows, columns = np.nonzero(body)
+    x, y = raster.transform @ (np.array([columns.min(), columns.max() + 1]), np.array([rows.max() + 1, rows.min()]))
     for one in structures_:
-        low, high = site_walls.heights_of(corners(str(folder / one.file)) + one.move, raster)
+        mesh = corners(str(folder / one.file)) + one.move
+        low, high = mesh[..., :2].min(axis=1), mesh[..., :2].max(axis=1)
+        near = ((high >= (x[0], y[0])) & (low <= (x[1], y[1]))).all(axis=1)
+        low, high = site_walls.heights_of(mesh[near], raster)
         if len(hit := np.argwhere(body & (low < raster.z) & (high > raster.z - depth))):
             row, column = hit[len(hit) // 2]
             place = polygons.decimetres(raster.transform @ (column + 0.5, row + 0.5))
