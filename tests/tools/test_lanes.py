@@ -148,9 +148,8 @@ def evaluated(road, deposit, ground, cell, lane=LANE, blocked=0.1):
 
 
 @pytest.mark.parametrize("way, ground, deposit", [
-    ("straight", "level", "prism"), ("straight", "falling", "half"), ("straight", "rising", "wedge"),
-    ("oblique", "level", "half"), ("oblique", "falling", "cone"), ("oblique", "rising", "prism"),
-    ("curved", "level", "cone"), ("curved", "falling", "prism"), ("curved", "rising", "wedge")])
+    ("straight", "level", "prism"), ("straight", "falling", "half"), ("oblique", "falling", "cone"),
+    ("oblique", "rising", "prism"), ("curved", "level", "cone"), ("curved", "rising", "wedge")])
 def test_stretch_and_least_lane_are_the_integrals(way, ground, deposit):
     """Cells of 0.5 m, for the prism of 1 m: the volume to 0.1 %, on curved roads to 0.5 %; no place takes less."""
     road, thickness, height = ROADS[way], DEPOSITS[deposit], GROUNDS[ground]
