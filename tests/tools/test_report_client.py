@@ -111,7 +111,7 @@ SAID = {"number": ("35,800 m³ must be cleared from the road; within the model t
                    "parameters -14,000 +12,000 m³, a still more detailed model -400 m³."),
         "within": ("12,000 m³ must be cleared", "between 9,000 and 15,000 m³", "88 % of known events",
                    "What would change it: 12 % of known events of this volume and height go farther than all 24 runs "
-                   "that they weigh, and may leave more; none of these runs leaves more than 15,000 m³ to remove."),
+                   "that they weigh, and may leave more; of these runs the largest leaves 15,000 m³ to remove."),
         "floor": ("At least 12,000 m³", "It is the lower end, with 90 % confidence, of what 90 % of known events",
                   "Why: 12 % of known events of this volume and height go farther", "Next step: a larger "
                   "elevation model"),

@@ -248,7 +248,7 @@ WORDS: Dict[str, Union[str, Words]] = {
     "rule": "{study}: withheld by the rule {rule}",
     # why it is a floor, and why no more runs were added
     "known beyond runs": "{far} of known events of this volume and height go farther than all {runs} runs that they "
-                         "weigh, and may leave more; none of these runs leaves more than {most} to remove",
+                         "weigh, and may leave more; of these runs the largest leaves {most} to remove",
     "road not reached": "known events reach the road and no run does: how much they leave these runs do not show",
     "some runs reach": "{reach} runs bring something to the road{left}",
     "one scatter reaches": "{shares} of them reach the road, as their scatter is taken: only the larger of two "
