@@ -210,11 +210,11 @@ def test_layers_and_water(tmp_path):
 
 @pytest.mark.parametrize("more, message", [
     ("surface ellipsoid 10.25 25.25 54.0 28.9617 1 1.5 0", "Find_slip direction DEG must be given with surface ellips"),
-    ("surface ellipsoid 10.25 25.25 54.0 28.9617 1 0 0 direction 180", "Find_slip surface A and B must be > 0 (of R)"),
+    ("surface ellipsoid 10.25 25.25 54.0 28.9617 1 0 0 direction 180", "Find_slip surface B must be > 0, got 0"),
     ("surface ellipsoid 10.25 25.25 54.0 28.9617 1 1 -1 direction 180", "Find_slip surface L must be >= 0, got -1"),
     ("surface ellipsoid 10.25 2 54 29 1 1.5 0 direction 180", "got ellipsoid 10.25 2 54 29: the body reaches the edge"),
     (f"{LOW_SPHERE} method janbu", "Find_slip method must be bishop, ordinary or spencer, got janbu"),
-    ("surface raster ground.asc", "Find_slip surface raster is not available"),
+    ("surface raster ground.asc", "Find_slip surface must be sphere or ellipsoid, got raster"),
     (f"{LOW_SPHERE} shape cube", "Find_slip shape must be sphere or ellipsoid, got cube"),
     (f"{LOW_SPHERE} water ru 1.5", "Find_slip water ru must be 0 to below 1, got 1.5"),
     (f"{LOW_SPHERE} seismic -0.1", "Find_slip seismic KH must be >= 0 (of the weight), got -0.1"),

@@ -225,7 +225,7 @@ NAMES_NONE = {
     "rolling_spring", "rotate", "scale", "scattered", "scheme", "seed", "seismic", "series", "shape", "side", "sink",
     "smallest", "spacing", "stiffness", "strength", "sunk", "surface", "units", "upper", "volume", "water", "window",
     "within", "write", "zone"}
-WORD = re.compile(r'(?:strcmp\(\w+\[[^]]*\], |given\(|\b(?:keyword|word|key|name) == )"([a-z_]+)"')
+WORD = re.compile(r'(?:strcmp\(\w+\[[^]]*\], |\b(?:is|of_stl)\(|given\(|\b(?:keyword|word|key|name) == )"([a-z_]+)"')
 
 
 def sources():
