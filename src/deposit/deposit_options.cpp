@@ -111,7 +111,7 @@ void Words::read_keywords(int narg, char **arg)
       word.must(window >= 1 && window % nevery == 0,
                 fmt::format("a multiple of Nevery {}", nevery));
     } else if (word.is("series", "yes|no"))
-      series = word.choice({"no", "yes"}) == 1;
+      series = word.choice({"yes", "no"}) == 0;
     else
       word.unknown();
 }

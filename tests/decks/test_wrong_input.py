@@ -164,7 +164,7 @@ TABLE = {
         2 1.0 surface ground upper spacing 1 inside -> inside must be followed by REGION, got 0 of 1 values
         2 1.0 surface ground upper spacing 1 inside nowhere -> region nowhere does not exist
         2 1.0 surface ground upper spacing 1 inside road outside road -> : the surface of region ground holds no balls
-        2 1.0 surface ground upper spacing 1 color red -> : unknown keyword color, must be spacing, origin, pattern, angle, sink, sunk,
+        2 1.0 surface ground upper spacing 1 color red -> : unknown keyword color, must be spacing, origin, pattern,
         2 1.0 surface ground upper spacing 1 write -> write must be followed by FILE, got 0 of 1 values
         2 1.0 surface ground upper spacing 1 write none/a.txt -> : cannot write none/a.txt: No such file or directory
         2 1.0 file -> file must be followed by FILE, got 0 of 1 values
@@ -240,7 +240,7 @@ TABLE = {
         3 1.0 2000 file outside.txt -> balls must lie in the simulation box (below its upper faces), got 1 of 1
         3 1.0 2000 file two.txt -> : two.txt, line 2: must be 3 numbers, x y z, got 1 2
         3 1.0 2000 file balls.txt write a.txt -> : unknown keyword write, must be inside or outside
-        3 1.0 2000 surface ground upper spacing 1 write a.txt -> : unknown keyword write, must be spacing, origin, pattern, angle,
+        3 1.0 2000 surface ground upper spacing 1 write a.txt -> : unknown keyword write, must be spacing, origin,
         3 1.0 2000 surface ground upper -> surface needs a spacing, got none
         3 1.0 2000 surface ground upper spacing 0 -> spacing must be > 0, got 0
         3 1.0 2000 surface ground upper spacing 1 sink -1 -> sink must be 0 or at least 0.05 (0.05 diameters), got -1
