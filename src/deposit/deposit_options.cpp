@@ -16,8 +16,6 @@
 #include "domain.h"
 #include "error.h"
 
-#include <algorithm>
-
 using namespace LAMMPS_NS;
 using Slope::DepositRasters;
 using Slope::DepositSummary;
@@ -26,32 +24,11 @@ using Slope::PlanGrid;
 static constexpr double MAXBULK = 1.0e3;     // a ball's square must not be cut by countless cells
 static constexpr double MAXCELL = 1.0e12;    // the area of a cell must be finite
 
-// reads and checks them, one by one
-namespace {
-class Words : public DepositOptions, protected Pointers {
- public:
-  Words(LAMMPS *, int narg, char **arg);
-
- private:
-  bool extent_set;
-  double extent[4];
-
-  void read_keywords(int narg, char **arg);
-  void check() const;
-  void make_grid();
-};
-}    // namespace
-
-DepositOptions DepositOptions::read(LAMMPS *lmp, int narg, char **arg)
-{
-  return Words(lmp, narg, arg);
-}
-
 /* ----------------------------------------------------------------------
    fix ID group deposit/grid Nevery Nfreq cell S terrain REGION output PREFIX keyword value ...
 ------------------------------------------------------------------------- */
 
-Words::Words(LAMMPS *lmp, int narg, char **arg) : Pointers(lmp), extent_set(false)
+DepositOptions::DepositOptions(LAMMPS *lmp, int narg, char **arg) : Pointers(lmp)
 {
   if (narg < 5)
     error->all(FLERR, "Fix deposit/grid needs Nevery Nfreq cell S terrain REGION output PREFIX");
@@ -76,7 +53,7 @@ Words::Words(LAMMPS *lmp, int narg, char **arg) : Pointers(lmp), extent_set(fals
 
 /* ---------------------------------------------------------------------- */
 
-void Words::read_keywords(int narg, char **arg)
+void DepositOptions::read_keywords(int narg, char **arg)
 {
   KeywordReader word(lmp, "Fix deposit/grid", narg, arg);
   const auto positive_up_to = [&word](double most) {
@@ -100,8 +77,7 @@ void Words::read_keywords(int narg, char **arg)
       } else
         bulk = positive_up_to(MAXBULK);
     } else if (word.is("extent", "xlo xhi ylo yhi")) {
-      for (int k = 0; k < 4; k++) extent[k] = word.number(k + 1);
-      extent_set = true;
+      extent = {word.number(1), word.number(2), word.number(3), word.number(4)};
     } else if (word.is("motion", "V"))
       motion = word.positive();
     else if (word.is("rest", "SHARE"))
@@ -118,7 +94,7 @@ void Words::read_keywords(int narg, char **arg)
 
 /* ---------------------------------------------------------------------- */
 
-void Words::check() const
+void DepositOptions::check() const
 {
   if (cell == 0.0) error->all(FLERR, "Fix deposit/grid keyword cell is missing");
   if (terrain.empty()) error->all(FLERR, "Fix deposit/grid keyword terrain is missing");
@@ -131,7 +107,7 @@ void Words::check() const
    whole cells cover the extent, from its south-west corner on
 ------------------------------------------------------------------------- */
 
-void Words::make_grid()
+void DepositOptions::make_grid()
 {
   const RegionSurface ground(lmp, "Fix deposit/grid terrain", terrain.c_str(),
                              RegionSurface::UPPER);
@@ -139,7 +115,7 @@ void Words::make_grid()
     error->all(FLERR, "Fix deposit/grid terrain region {} must have an upper boundary, got INF",
                terrain);
   const double whole[4] = {ground.xlo, ground.xhi, ground.ylo, ground.yhi};
-  if (!extent_set) std::copy(whole, whole + 4, extent);
+  if (extent.empty()) extent.assign(whole, whole + 4);
   const std::string got =
       fmt::format("{:.10g} {:.10g} {:.10g} {:.10g}", extent[0], extent[1], extent[2], extent[3]);
   if (!(extent[0] < extent[1] && extent[2] < extent[3]))
@@ -160,5 +136,5 @@ void Words::make_grid()
                "Fix deposit/grid cell must give at most {:.0f} cells, got {:.0f} cells, they need "
                "{:.3g} GB of memory",
                most, ncells, 1.0e-9 * ncells * DepositRasters::MOST_BYTES_PER_CELL);
-  grid = PlanGrid(extent, cell);
+  grid = PlanGrid(extent.data(), cell);
 }

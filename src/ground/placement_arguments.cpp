@@ -122,10 +122,11 @@ bool PlacementArguments::parse_of_wall(KeywordReader &word)
     return true;
   }
   if (!word.is("zone", "REGION TYPE")) return false;
-  Zone zone = {word.text(1), word.atom_type(2), 0.0};
+  const std::string of = fmt::format("{} zone {} ", caller, word.text(1));
+  Zone zone = {word.text(1), atom_type_argument(lmp, of + "type", word.text(2)), 0.0};
   if (Slope::read_number(word.after(), zone.spacing)) {
     word.more("S");
-    zone.spacing = word.positive(3);
+    zone.spacing = positive_argument(lmp, of + "spacing", word.text(3));
   }
   zones.push_back(zone);
   return true;

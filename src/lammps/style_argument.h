@@ -49,7 +49,6 @@ class KeywordReader {
   double number(int k = 1) const { return number_argument(lmp, item(k), arg[k]); }
   double positive(int k = 1) const { return positive_argument(lmp, item(k), arg[k]); }
   int whole_number(int k = 1) const { return whole_number_argument(lmp, item(k), arg[k]); }
-  int atom_type(int k = 1) const { return atom_type_argument(lmp, item(k), arg[k]); }
   int choice(const std::vector<std::string> &words, int k = 1) const;    // which one of these
   void must(bool holds, const std::string &rule,
             int k = 1) const;    // "ITEM must be RULE, got VALUE"
