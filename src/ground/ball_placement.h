@@ -46,7 +46,7 @@ class BallPlacement : protected Pointers {
   // all ranks: the regions must be those of the constructor
   void check_regions() const;
 
-  const class BallGround &on() const { return *ground; }
+  const class BallGround &on() const { return *ground; }    // what they lie on
 
   // diameter of the smallest ball that finds no way through, 0 if that is not known
   double smallest() const { return arguments.smallest; }
