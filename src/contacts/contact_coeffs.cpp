@@ -46,7 +46,7 @@ struct Number {
 };
 
 struct Word {
-  const char *word;
+  const char *word, *values;
   std::vector<Number> numbers;
 };
 }    // namespace
@@ -73,17 +73,20 @@ static bool angle(double x)
 
 static const std::vector<Word> WORDS = {
     {"stiffness",
-     {{&ContactCoeffs::kn, "kn", "> 0 (kn)", positive},
-      {&ContactCoeffs::kt, "kt", ">= 0 (kt)", not_negative}}},
-    {"restitution", {{&ContactCoeffs::e, "restitution", "> 0 and <= 1", share}}},
+     "kn kt",
+     {{&ContactCoeffs::kn, "kn", "> 0", positive},
+      {&ContactCoeffs::kt, "kt", ">= 0", not_negative}}},
+    {"restitution", "e", {{&ContactCoeffs::e, "restitution", "> 0 and <= 1", share}}},
     {"damping",
-     {{&ContactCoeffs::cn, "cn", ">= 0 (cn)", not_negative},
-      {&ContactCoeffs::ct, "ct", ">= 0 (ct)", not_negative}}},
-    {"friction", {{&ContactCoeffs::phi, "friction", ">= 0 and < 90 degrees", angle}}},
-    {"rolling", {{&ContactCoeffs::rolling, "rolling", ">= 0", not_negative}}},
+     "cn ct",
+     {{&ContactCoeffs::cn, "cn", ">= 0", not_negative},
+      {&ContactCoeffs::ct, "ct", ">= 0", not_negative}}},
+    {"friction", "phi", {{&ContactCoeffs::phi, "friction", ">= 0 and < 90 degrees", angle}}},
+    {"rolling", "mu_r", {{&ContactCoeffs::rolling, "rolling", ">= 0", not_negative}}},
     {"rolling_spring",
-     {{&ContactCoeffs::kr, "kr", ">= 0 (kr)", not_negative},
-      {&ContactCoeffs::cr, "cr", ">= 0 (cr)", not_negative}}}};
+     "kr cr",
+     {{&ContactCoeffs::kr, "kr", ">= 0", not_negative},
+      {&ContactCoeffs::cr, "cr", ">= 0", not_negative}}}};
 
 static bool given(double value)
 {
@@ -95,38 +98,18 @@ static double or_zero(double value)
   return given(value) ? value : 0.0;
 }
 
-// a, b, c or d
-template <class Words> static std::string listed(const Words &words)
-{
-  std::string text;
-  const size_t n = std::end(words) - std::begin(words);
-  for (size_t k = 0; k < n; k++)
-    text += (k == 0 ? "" : k + 1 < n ? ", " : " or ") + std::string(words[k].word);
-  return text;
-}
-
 /* ---------------------------------------------------------------------- */
 
 void ContactSettings::read(LAMMPS *lmp, int narg, char **arg)
 {
-  Error *const error = lmp->error;
   *this = ContactSettings();
-  for (int iarg = 0; iarg < narg; iarg += 2) {
-    const std::string keyword = arg[iarg];
-    if (iarg + 2 > narg)
-      error->all(FLERR, "Pair gran/restitution {}: value missing or unknown keyword", keyword);
-    const Setting *s =
-        std::find_if(std::begin(SETTINGS), std::end(SETTINGS), [&](const Setting &x) {
-          return keyword == x.word;
-        });
-    if (s == std::end(SETTINGS))
-      error->all(FLERR, "Pair gran/restitution: unknown keyword {}, must be {}", keyword,
-                 listed(SETTINGS));
-    const std::string value = arg[iarg + 1];
-    if (value != s->values[0] && value != s->values[1])
-      error->all(FLERR, "Pair gran/restitution {} must be {} or {}, got {}", keyword, s->values[0],
-                 s->values[1], value);
-    this->*s->value = value == s->values[1];
+  for (KeywordReader word(lmp, "Pair gran/restitution", narg, arg); word.next();) {
+    const auto is_it = [&](const Setting &s) {
+      return word.is(s.word, s.values[0] + std::string("|") + s.values[1]);
+    };
+    const Setting *s = std::find_if(std::begin(SETTINGS), std::end(SETTINGS), is_it);
+    if (s == std::end(SETTINGS)) word.unknown();
+    this->*s->value = word.choice({s->values[0], s->values[1]}) == 1;
   }
 }
 
@@ -141,26 +124,17 @@ void ContactCoeffs::read(LAMMPS *lmp, const std::string &types, int narg, char *
 {
   Error *const error = lmp->error;
   *this = ContactCoeffs();
-  for (int iarg = 0; iarg < narg; iarg++) {
-    const std::string keyword = arg[iarg];
-    const auto word = std::find_if(WORDS.begin(), WORDS.end(), [&](const Word &w) {
-      return keyword == w.word;
-    });
-    if (word == WORDS.end())
-      error->all(FLERR, "Pair gran/restitution pair_coeff: unknown keyword {}, must be {}", keyword,
-                 listed(WORDS));
-    const int n = static_cast<int>(word->numbers.size());
-    for (int k = 1; k <= n; k++) {
-      if (iarg + k >= narg)
-        error->all(FLERR, "Pair gran/restitution {}: value {} is missing", keyword, k);
-      this->*word->numbers[k - 1].value = number_argument(
-          lmp, fmt::format("Pair gran/restitution {}: value {}", keyword, k), arg[iarg + k]);
+  for (KeywordReader word(lmp, "Pair gran/restitution", narg, arg); word.next();) {
+    const auto is_it = [&](const Word &w) {
+      return word.is(w.word, w.values);
+    };
+    const auto its = std::find_if(WORDS.begin(), WORDS.end(), is_it);
+    if (its == WORDS.end()) word.unknown();
+    int k = 1;
+    for (const Number &number : its->numbers) {
+      this->*number.value = word.number(k);
+      word.must(number.holds(this->*number.value), number.rule, k++);
     }
-    for (const Number &number : word->numbers)
-      if (!number.holds(this->*number.value))
-        error->all(FLERR, "Pair gran/restitution {} must be {}, got {:.15g}", keyword, number.rule,
-                   this->*number.value);
-    iarg += n;
   }
 
   // what they must be together

@@ -24,7 +24,7 @@ namespace LAMMPS_NS {
 // sees the same; what is asked for in between is found from the places of that moment.
 class DepositLeft : protected Pointers {
  public:
-  DepositLeft(class LAMMPS *, const class DepositBalls &, const struct DepositOptions &);
+  DepositLeft(class LAMMPS *, const class DepositBalls &, const class DepositOptions &);
   ~DepositLeft() override;
 
   void begin_run();           // the ground as it is now; collective
@@ -68,7 +68,7 @@ class DepositLeft : protected Pointers {
 
  private:
   const class DepositBalls &balls;
-  const struct DepositOptions &options;
+  const class DepositOptions &options;
   std::unique_ptr<class RegionSurface> ground;
   RestartExtra extra;
 

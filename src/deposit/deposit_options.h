@@ -6,16 +6,20 @@
 #ifndef SLOPE_DEPOSIT_OPTIONS_H
 #define SLOPE_DEPOSIT_OPTIONS_H
 
+#include "pointers.h"
+
 #include "constants.h"
 #include "plan_grid.h"
 
 #include <string>
+#include <vector>
 
 namespace LAMMPS_NS {
 
 // What the arguments of fix deposit/grid say. Wrong ones end the run with one line.
-struct DepositOptions {
-  static DepositOptions read(class LAMMPS *, int narg, char **arg);
+class DepositOptions : protected Pointers {
+ public:
+  DepositOptions(class LAMMPS *, int narg, char **arg);
 
   int nevery, nfreq, window = 0;
   std::string terrain, prefix;          // region of the ground; begins all names of files
@@ -25,6 +29,13 @@ struct DepositOptions {
   std::string body;                     // region of the released ground; empty: bulk was given
   bool series = false;
   Slope::PlanGrid grid;
+
+ private:
+  std::vector<double> extent;    // empty: that of the terrain
+
+  void read_keywords(int narg, char **arg);
+  void check() const;
+  void make_grid();
 };
 
 }    // namespace LAMMPS_NS

@@ -83,17 +83,15 @@ FixControlLine::~FixControlLine()
 
 void FixControlLine::read_keywords(int narg, char **arg)
 {
-  for (int iarg = 4; iarg < narg; iarg += 2) {
-    const std::string keyword = arg[iarg];
-    if (keyword != "deposit" && keyword != "output" && keyword != "lower")
-      error->all(FLERR, "Fix control/line: unknown keyword {}, must be deposit, lower or output",
-                 keyword);
-    if (iarg + 1 == narg) error->all(FLERR, "Fix control/line {}: value is missing", keyword);
-    if (keyword == "lower")
-      lower = number_argument(lmp, "Fix control/line lower", arg[iarg + 1]);
+  for (KeywordReader word(lmp, "Fix control/line", narg - 4, arg + 4); word.next();)
+    if (word.is("deposit", "ID"))
+      deposit_id = word.text();
+    else if (word.is("lower", "L"))
+      lower = word.number();
+    else if (word.is("output", "PREFIX"))
+      prefix = word.text();
     else
-      (keyword == "deposit" ? deposit_id : prefix) = arg[iarg + 1];
-  }
+      word.unknown();
   if (prefix.empty()) error->all(FLERR, "Fix control/line keyword output is missing");
 }
 

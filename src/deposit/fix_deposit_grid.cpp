@@ -52,10 +52,9 @@ enum { X, Y, Z };
 /* ---------------------------------------------------------------------- */
 
 FixDepositGrid::FixDepositGrid(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), options(DepositOptions::read(lmp, narg, arg)),
-    balls(lmp, groupbit, options.bulk), left(lmp, balls, options), report(lmp, id, options, balls),
-    results(), started(false), fresh(false), sampled(-1), warned(false), kept_by_atom(false),
-    elapsed(0.0), offset(0.0)
+    Fix(lmp, narg, arg), options(lmp, narg, arg), balls(lmp, groupbit, options.bulk),
+    left(lmp, balls, options), report(lmp, id, options, balls), results(), started(false),
+    fresh(false), sampled(-1), warned(false), kept_by_atom(false), elapsed(0.0), offset(0.0)
 {
   nevery = options.nevery;
   make_rasters();

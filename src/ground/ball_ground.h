@@ -8,14 +8,60 @@
 
 #include "pointers.h"
 
+#include "ball_sampler.h"
 #include "placement_arguments.h"
-#include "plan_nodes.h"
+#include "region_surface.h"
 
 #include <memory>
 #include <string>
 #include <vector>
 
+namespace Slope {
+class SunkSurface;
+}
+
 namespace LAMMPS_NS {
+
+// The boundary of a region sunk along its normal, doc/src/surface_sampling.rst. The lower boundary is
+// that of a body: it continues beyond the body's rim, up to the ground, which is the region whose upper
+// boundary is that of the body, too, the widest of these in plan.
+class SunkRegion : protected Pointers {
+ public:
+  // diameter: of the balls, which tells how closely the boundary is looked at. All ranks; errors end
+  // the run and start with caller.
+  SunkRegion(class LAMMPS *, const std::string &caller, const std::string &region, int side,
+             double sink, double diameter);
+  ~SunkRegion() override;
+
+  const std::string region;
+  const int side;
+  const double sink, diameter;
+  std::string ground;    // ID, empty: none
+
+  // Look at the boundary, once; may throw. Needs the region; the others need this.
+  void build();
+  void plan(double &xlo, double &xhi, double &ylo, double &yhi) const;    // of height()
+  bool height(double x, double y, double &z) const;    // of ball centres, below the ground only
+  bool centre(double x, double y, double &z) const;    // of a body: above it, too
+
+  double lowest() const;    // of the centres, about
+  double floor() const;     // what they must lie above
+
+  // whether the regions are those of the constructor; if not, which one is not
+  bool stands(std::string &changed) const;
+
+  // whether all of the body lies in columns of another region
+  bool lies_in(const RegionSurface &columns) const;
+
+ private:
+  std::unique_ptr<RegionSurface> boundary, top;    // top: of the ground
+  std::unique_ptr<Slope::SunkSurface> surface;
+  std::vector<double> columns;    // x y of some of the body's columns
+  bool flush;                     // all of them end at the ground
+
+  void find_columns();
+  void find_ground(const std::string &caller);
+};
 
 // What placement_arguments.h says of each column of the ground: the region whose boundary it is, sunk
 // or not, where balls are wanted, the bodies of sunk balls outside of which they are, the zones.
@@ -24,7 +70,7 @@ class BallGround : protected Pointers {
   BallGround(class LAMMPS *, const PlacementArguments &);    // all ranks
   ~BallGround() override;
 
-  typedef std::shared_ptr<class SunkRegion> Sunk;
+  typedef std::shared_ptr<SunkRegion> Sunk;
   Sunk sunk;                   // below which the balls are, nullptr: not sunk
   std::vector<Sunk> bodies;    // sunk ones outside of which the balls are
   std::string outside;         // region, empty if the arguments say how it is sunk
@@ -55,7 +101,7 @@ class BallGround : protected Pointers {
  private:
   const PlacementArguments &arguments;
   // within: of what they are inside of, columns: of what they are outside of
-  std::unique_ptr<class RegionSurface> boundary, within, columns;
+  std::unique_ptr<RegionSurface> boundary, within, columns;
   struct Zone {
     std::unique_ptr<RegionSurface> columns;
     double xlo, xhi, ylo, yhi;
@@ -68,6 +114,15 @@ class BallGround : protected Pointers {
   bool height(double x, double y, double &z) const;
   bool scar(double x, double y, double &z) const;
   void check_floor() const;
+};
+
+// What has balls on a ground, and shows it to those that are placed later: a fix, whose header includes this one.
+class OnBallGround {
+ public:
+  virtual const BallGround &ground() const = 0;
+
+ protected:
+  ~OnBallGround() = default;
 };
 
 }    // namespace LAMMPS_NS

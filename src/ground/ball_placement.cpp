@@ -15,11 +15,9 @@
 #include "large_messages.h"
 #include "number_rows.h"
 #include "rank_zero.h"
-#include "region_surface.h"
 #include "requirements.h"
 #include "scattered_sampler.h"
 #include "style_argument.h"
-#include "sunk_region.h"
 #include "surface_sampler.h"
 #include "text_file.h"
 #include "update.h"
@@ -73,21 +71,11 @@ BallPlacement::BallPlacement(LAMMPS *lmp, const std::string &caller_in, double d
 
 BallPlacement::~BallPlacement() = default;
 
-std::shared_ptr<SunkRegion> BallPlacement::sunk() const
-{
-  return ground->sunk;
-}
-
 std::vector<int> BallPlacement::zone_types() const
 {
   std::vector<int> types;
   for (const PlacementArguments::Zone &zone : arguments.zones) types.push_back(zone.type);
   return types;
-}
-
-const std::string &BallPlacement::outside() const
-{
-  return ground->outside;
 }
 
 double BallPlacement::smallest_ball(LAMMPS *lmp, int groupbit)

@@ -46,11 +46,9 @@ class BallPlacement : protected Pointers {
   // all ranks: the regions must be those of the constructor
   void check_regions() const;
 
-  // what others need to know of a placement: the body that these balls lie below, nullptr if they are
-  // not sunk; the region outside of which they are, empty if sunk says that it is sunk; the diameter
-  // of the smallest ball that finds no way through, 0 if that is not known
-  std::shared_ptr<class SunkRegion> sunk() const;
-  const std::string &outside() const;
+  const class BallGround &on() const { return *ground; }    // what they lie on
+
+  // diameter of the smallest ball that finds no way through, 0 if that is not known
   double smallest() const { return arguments.smallest; }
 
   // atom types of the zones; of a ball by its zone
@@ -62,7 +60,7 @@ class BallPlacement : protected Pointers {
  private:
   const std::string caller;
   const PlacementArguments arguments;
-  std::unique_ptr<class BallGround> ground;
+  std::unique_ptr<BallGround> ground;
   std::unique_ptr<Slope::BallSampler> sampler;    // empty: a file, or no column at all
   std::vector<Slope::PlacedBall> from_file;
   double sums[3];               // of these

@@ -4,8 +4,9 @@
    Distributed under the GNU General Public License, version 2
 ------------------------------------------------------------------------- */
 
-/* From a surface to the centres of fixed balls on it, tile by tile. Any tile can be asked for alone,
-   in any order: its balls and their numbers are always the same. */
+/* From a surface, as heights over a plan, to the centres of fixed balls on it, tile by tile: what all patterns ask and
+   give. Any tile can be asked for alone, in any order: its balls and their numbers are always the same. Lengths are in one
+   unit of the caller's choice (m). */
 
 #ifndef SLOPE_BALL_SAMPLER_H
 #define SLOPE_BALL_SAMPLER_H
@@ -13,9 +14,30 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace Slope {
+
+// square plan grid: nodes at origin + integers * spacing, those inside the rectangle
+struct NodeGrid {
+  double xlo, xhi, ylo, yhi;
+  double spacing;
+  double xorigin, yorigin;
+};
+
+// the surface, column by column; called only inside the rectangle of the plan grid
+struct GroundHeights {
+  // height of the surface at x,y; false where there is none
+  std::function<bool(double x, double y, double &z)> height;
+
+  // true where balls are wanted; empty: everywhere
+  std::function<bool(double x, double y)> keep;
+
+  // Where keep() is false: height of the ground that other balls make there, below height();
+  // false where unknown. The vertical gap at the rim of keep() is closed. Empty: leave it.
+  std::function<bool(double x, double y, double &z)> scar;
+};
 
 // A ball, and its number, below 2^52: the cell of the plan that it belongs to, and which one of that
 // cell it is. Rounding does not change the numbers of others.

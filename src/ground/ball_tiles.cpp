@@ -17,7 +17,7 @@ static constexpr int64_t LONG_AGO = 100;    // lists of neighbors
 /* ---------------------------------------------------------------------- */
 
 BallTiles::BallTiles(const TilePlan &p, double d, const Make &m) :
-    plan(p), diameter(d), make(m), ntiles(0), now(0)
+    plan(p), diameter(d), make(m), now(0)
 {
   slot.assign(static_cast<size_t>(plan.nx) * plan.ny, -1);
 }
@@ -43,7 +43,7 @@ void BallTiles::add(int number)
   numbers.resize(size);
   zones.resize(size);
   sort(tile);
-  slot[number] = ntiles++;
+  slot[number] = made() - 1;
 }
 
 /* ----------------------------------------------------------------------
@@ -124,7 +124,6 @@ void BallTiles::drop_unused()
     tiles[left++] = std::move(tile);
   }
   tiles.resize(left);
-  ntiles = static_cast<int>(left);
 
   std::vector<Vector> fewer;
   fewer.reserve(balls + 1);

@@ -39,7 +39,7 @@ class BallTiles {
   // are more than half of all. Balls change their k. A single tile is kept.
   void drop_unused();
 
-  int made() const { return ntiles; }
+  int made() const { return static_cast<int>(tiles.size()); }
   double memory_usage() const;
 
  private:
@@ -58,7 +58,6 @@ class BallTiles {
   };
   std::vector<int> slot;      // of the plan's tiles, -1: not made
   std::vector<Tile> tiles;    // those that are made
-  int ntiles;
   int64_t now;
 
   std::vector<Vector> place;

@@ -41,14 +41,9 @@ void CreateBalls::command(int narg, char **arg)
                "Create_balls needs TYPE DIAMETER DENSITY and surface, file or fill, got {} "
                "arguments",
                narg);
-  const int type = whole_number_argument(lmp, "Create_balls type", arg[0]);
-  const double diameter = number_argument(lmp, "Create_balls diameter", arg[1]);
-  const double density = number_argument(lmp, "Create_balls density", arg[2]);
-  if (type < 1 || type > atom->ntypes)
-    error->all(FLERR, "Create_balls type must be 1 to {} (the atom types of the box), got {}",
-               atom->ntypes, arg[0]);
-  if (!(diameter > 0.0)) error->all(FLERR, "Create_balls diameter must be > 0, got {}", arg[1]);
-  if (!(density > 0.0)) error->all(FLERR, "Create_balls density must be > 0, got {}", arg[2]);
+  const int type = atom_type_argument(lmp, "Create_balls type", arg[0]);
+  const double diameter = positive_argument(lmp, "Create_balls diameter", arg[1]);
+  const double density = positive_argument(lmp, "Create_balls density", arg[2]);
 
   const bool filling = strcmp(arg[3], "fill") == 0;
   std::vector<double> xyz;    // of this rank
@@ -126,12 +121,14 @@ bigint CreateBalls::place(double diameter, int narg, char **arg, std::vector<dou
 
 bigint CreateBalls::fill(double diameter, int narg, char **arg, std::vector<double> &xyz) const
 {
-  if (narg != 1 && narg != 3)
-    error->all(FLERR, "Create_balls fill must be followed by REGION [seed N], got {} words", narg);
-  if (narg == 3 && strcmp(arg[1], "seed") != 0)
-    error->all(FLERR, "Create_balls fill keyword must be seed, got {}", arg[1]);
-  const int seed = narg == 3 ? whole_number_argument(lmp, "Create_balls fill seed", arg[2]) : 1;
-  if (seed < 1) error->all(FLERR, "Create_balls fill seed must be > 0, got {}", arg[2]);
+  if (narg < 1)
+    error->all(FLERR, "Create_balls fill must be followed by REGION [seed N], got no words");
+  int seed = 1;
+  for (KeywordReader word(lmp, "Create_balls fill", narg - 1, arg + 1); word.next();) {
+    if (!word.is("seed", "N")) word.unknown();
+    seed = word.whole_number();
+    word.must(seed >= 1, "> 0");
+  }
   Region *region = compat::find_region(lmp, arg[0]);
   if (!region) error->all(FLERR, "Create_balls fill region {} does not exist", arg[0]);
   region->init();

@@ -18,7 +18,6 @@
 #include "neighbor.h"
 #include "pair_gran_restitution.h"
 #include "style_argument.h"
-#include "sunk_region.h"
 #include "update.h"
 
 #include <algorithm>
@@ -42,12 +41,8 @@ FixWallGranBalls::FixWallGranBalls(LAMMPS *lmp, int narg, char **arg) :
     error->all(FLERR, "{}: needs TYPE DIAMETER and surface or file, got {} arguments", caller,
                narg - 3);
 
-  wall_type = whole_number_argument(lmp, caller + " type", arg[3]);
-  if (wall_type < 1 || wall_type > atom->ntypes)
-    error->all(FLERR, "{} type must be 1 to {} (the atom types of the box), got {}", caller,
-               atom->ntypes, wall_type);
-  diameter = number_argument(lmp, caller + " diameter", arg[4]);
-  if (!(diameter > 0.0)) error->all(FLERR, "{} diameter must be > 0, got {}", caller, arg[4]);
+  wall_type = atom_type_argument(lmp, caller + " type", arg[3]);
+  diameter = positive_argument(lmp, caller + " diameter", arg[4]);
   radius = 0.5 * diameter;
 
   const double moving = BallPlacement::smallest_ball(lmp, groupbit);
@@ -120,15 +115,9 @@ void FixWallGranBalls::check_sizes()
 
 /* ---------------------------------------------------------------------- */
 
-std::shared_ptr<SunkRegion> FixWallGranBalls::body() const
+const BallGround &FixWallGranBalls::ground() const
 {
-  const auto sunk = placement->sunk();
-  return sunk && sunk->side == RegionSurface::LOWER ? sunk : nullptr;
-}
-
-const std::string &FixWallGranBalls::left_out() const
-{
-  return placement->outside();
+  return placement->on();
 }
 
 /* ----------------------------------------------------------------------

@@ -14,7 +14,7 @@ FixStyle(wall/gran/balls,FixWallGranBalls);
 
 #include "fix_contact_wall.h"
 
-#include "ball_body.h"
+#include "ball_ground.h"
 #include "ball_tiles.h"
 #include "contact_list.h"
 
@@ -24,7 +24,7 @@ FixStyle(wall/gran/balls,FixWallGranBalls);
 
 namespace LAMMPS_NS {
 
-class FixWallGranBalls : public FixContactWall, public BallBody {
+class FixWallGranBalls : public FixContactWall, public OnBallGround {
  public:
   FixWallGranBalls(class LAMMPS *, int, char **);
   int setmask() override;
@@ -44,8 +44,7 @@ class FixWallGranBalls : public FixContactWall, public BallBody {
   // largest overlap (m) of a ball at x with any fixed ball, <= 0 if it touches none
   double deepest_overlap(const double *x, double radius) const;
 
-  std::shared_ptr<class SunkRegion> body() const override;
-  const std::string &left_out() const override;
+  const BallGround &ground() const override;
 
  private:
   double diameter, radius;

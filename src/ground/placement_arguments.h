@@ -51,16 +51,12 @@ class PlacementArguments : protected Pointers {
   double smallest;
 
  private:
-  void need(int n, const char *values, int, char **) const;
-  double number(const char *what, int, char **) const;
   void parse(int, char **, bool);
-  int parse_surface(int, char **);
-  int parse_pattern(int, char **);
-  int parse_zone(int, char **);
+  bool parse_surface(class KeywordReader &);
+  bool parse_filter(KeywordReader &);
+  bool parse_of_wall(KeywordReader &);
   void check_zones();
   void check_pattern() const;
-  int parse_any(int, char **, bool);
-  void check_sink(double, char **) const;
 };
 
 }    // namespace LAMMPS_NS

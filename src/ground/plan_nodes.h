@@ -10,7 +10,7 @@
 #ifndef SLOPE_PLAN_NODES_H
 #define SLOPE_PLAN_NODES_H
 
-#include "ground_heights.h"
+#include "ball_sampler.h"
 
 #include <cstdint>
 #include <memory>

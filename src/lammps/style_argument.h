@@ -8,38 +8,63 @@
 
 #include "decimal_number.h"
 
-#include "error.h"
 #include "lammps.h"
 
-#include <cctype>
-#include <cerrno>
-#include <climits>
-#include <cstdlib>
 #include <string>
+#include <vector>
 
 namespace LAMMPS_NS {
 
 // Numbers among the arguments of a style. LAMMPS' own errors do not say which argument it was; here
 // what names style and argument: "Fix deposit/grid cell".
+double number_argument(LAMMPS *, const std::string &what, const char *text);
+double positive_argument(LAMMPS *, const std::string &what, const char *text);
+int whole_number_argument(LAMMPS *, const std::string &what, const char *text);
+int atom_type_argument(LAMMPS *, const std::string &what, const char *text);
 
-inline double number_argument(LAMMPS *lmp, const std::string &what, const char *text)
-{
-  double value;
-  if (!Slope::read_number(text, value))
-    lmp->error->all(FLERR, "{} must be a finite number, got {}", what, text);
-  return value;
-}
+// "a, b or c"
+std::string listed(const std::vector<std::string> &);
 
-inline int whole_number_argument(LAMMPS *lmp, const std::string &what, const char *text)
-{
-  char *end;
-  errno = 0;
-  const long value = strtol(text, &end, 10);
-  const bool whole = *text && !isspace(static_cast<unsigned char>(*text)) && *end == '\0';
-  if (!whole || errno != 0 || value > INT_MAX || value < INT_MIN)
-    lmp->error->all(FLERR, "{} must be a whole number below 2^31, got {}", what, text);
-  return (int) value;
-}
+// Keywords among the arguments, each with its values. Wrong ones end the run with one line, as below.
+//
+//   for (KeywordReader word(lmp, caller, narg, arg); word.next();)
+//     if (word.is("cell", "S"))
+//       cell = word.positive();
+//     else
+//       word.unknown();
+//
+// Values are counted from 1 on; messages name them where a keyword has several.
+class KeywordReader {
+ public:
+  KeywordReader(LAMMPS *, const std::string &caller, int narg, char **arg);
+
+  bool next();    // go to the first keyword, then to the next one; false: there is none
+
+  // whether it is this one, which has these values: "xlo xhi"; more of them, where they are optional
+  bool is(const std::string &keyword, const std::string &values);
+  void more(const std::string &values);
+  const char *after() const;    // the word after these, "": none
+
+  const char *text(int k = 1) const { return arg[k]; }
+  double number(int k = 1) const { return number_argument(lmp, item(k), arg[k]); }
+  double positive(int k = 1) const { return positive_argument(lmp, item(k), arg[k]); }
+  int whole_number(int k = 1) const { return whole_number_argument(lmp, item(k), arg[k]); }
+  int choice(const std::vector<std::string> &words, int k = 1) const;    // which one of these
+  void must(bool holds, const std::string &rule,
+            int k = 1) const;    // "ITEM must be RULE, got VALUE"
+  void unknown() const;          // it is none of those that were asked for
+
+  char **begin() const { return arg; }    // the keyword and its values
+  char **end() const { return arg + 1 + names.size(); }
+
+ private:
+  LAMMPS *const lmp;
+  const std::string caller;
+  char **const first, **arg, **const last;
+  std::vector<std::string> names, asked;    // of the values; keywords
+
+  std::string item(int k) const;
+};
 
 // Coordinates beyond it are mistakes: places closer to each other than 1e-4 would be one there.
 static constexpr double FARTHEST = 1.0e12;

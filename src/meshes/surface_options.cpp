@@ -15,7 +15,6 @@
 #include "text_file.h"
 #include "triangle_mesh.h"
 
-#include "atom.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
@@ -38,54 +37,43 @@ SurfaceOptions::SurfaceOptions(LAMMPS *lmp, const std::string &_caller, int narg
   if (narg < 2)
     error->all(FLERR, "{}: needs TYPE and FILE.stl or terrain FILE.asc, got {} arguments", caller,
                narg);
-  type = whole_number_argument(lmp, caller + " type", arg[0]);
-  if (type < 1 || type > atom->ntypes)
-    error->all(FLERR, "{} type must be 1 to {} (the atom types of the box), got {}", caller,
-               atom->ntypes, type);
+  type = atom_type_argument(lmp, caller + " type", arg[0]);
 
   int iarg = 1;
   terrain = std::string(arg[iarg]) == "terrain";
   if (terrain && ++iarg == narg) error->all(FLERR, "{} terrain: FILE.asc is missing", caller);
   file = arg[iarg++];
-  while (iarg < narg) iarg += read_keyword(narg - iarg, &arg[iarg]);
+  read_keywords(narg - iarg, &arg[iarg]);
   point.z -= lower;
 }
 
 /* ---------------------------------------------------------------------- */
 
-int SurfaceOptions::read_keyword(int narg, char **arg)
+void SurfaceOptions::read_keywords(int narg, char **arg)
 {
-  const std::string keyword = arg[0];
-  const int n = keyword == "scale" || keyword == "lower" ? 1
-      : keyword == "move" || keyword == "point"          ? 3
-      : keyword == "output"                              ? 2
-                                                         : 0;
-  if (n == 0)
-    error->all(FLERR, "{}: unknown keyword {}, must be scale, move, lower, point or output", caller,
-               keyword);
-  if (narg <= n)
-    error->all(FLERR, "{} {} must be followed by {} value{}, got {}", caller, keyword, n,
-               n > 1 ? "s" : "", narg - 1);
-  if (terrain && (keyword == "scale" || keyword == "move" || keyword == "lower"))
-    error->all(FLERR, "{}: {} is for STL files, a terrain stays where its file has it", caller,
-               keyword);
-
-  const std::string what = caller + " " + keyword;
-  if (keyword == "scale") {
-    scale = number_argument(lmp, what, arg[1]);
-    if (!(scale > 0.0)) error->all(FLERR, "{} must be > 0, got {}", what, arg[1]);
-  } else if (keyword == "lower") {
-    lower = number_argument(lmp, what, arg[1]);
-  } else if (keyword == "output") {
-    output = arg[1];
-    every = whole_number_argument(lmp, what + " Nevery", arg[2]);
-    if (every < 1) error->all(FLERR, "{} Nevery must be >= 1, got {}", what, arg[2]);
-  } else {
-    Vector &v = keyword == "move" ? move : point;
-    v = {number_argument(lmp, what, arg[1]), number_argument(lmp, what, arg[2]),
-         number_argument(lmp, what, arg[3])};
-  }
-  return 1 + n;
+  KeywordReader word(lmp, caller, narg, arg);
+  const auto of_stl = [&](const char *keyword, const char *values) {
+    const bool is_it = word.is(keyword, values);
+    if (is_it && terrain)
+      error->all(FLERR, "{}: {} is for STL files, a terrain stays where its file has it", caller,
+                 keyword);
+    return is_it;
+  };
+  while (word.next())
+    if (of_stl("scale", "F"))
+      scale = word.positive();
+    else if (of_stl("move", "dx dy dz"))
+      move = {word.number(1), word.number(2), word.number(3)};
+    else if (of_stl("lower", "L"))
+      lower = word.number();
+    else if (word.is("point", "x y z"))
+      point = {word.number(1), word.number(2), word.number(3)};
+    else if (word.is("output", "PREFIX Nevery")) {
+      output = word.text(1);
+      every = word.whole_number(2);
+      word.must(every >= 1, ">= 1", 2);
+    } else
+      word.unknown();
 }
 
 /* ----------------------------------------------------------------------

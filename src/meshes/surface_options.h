@@ -38,7 +38,7 @@ class SurfaceOptions : protected Pointers {
   double scale, lower;
   Slope::Vector move;
 
-  int read_keyword(int narg, char **arg);
+  void read_keywords(int narg, char **arg);
   std::unique_ptr<Slope::TouchedSurface> read_stl() const;
   std::unique_ptr<Slope::TouchedSurface> read_terrain() const;
   std::unique_ptr<Slope::TouchedSurface> shared(std::unique_ptr<Slope::TerrainSurface>) const;

@@ -61,14 +61,13 @@ FixGroundMotion::FixGroundMotion(LAMMPS *lmp, int narg, char **arg) :
 
 void FixGroundMotion::read_keywords(int narg, char **arg)
 {
-  for (int iarg = 4; iarg < narg; iarg += 2) {
-    const std::string keyword = arg[iarg];
-    if (keyword != "scale" && keyword != "start")
-      error->all(FLERR, "Fix ground/motion: unknown keyword {}, must be scale or start", keyword);
-    if (iarg + 1 == narg) error->all(FLERR, "Fix ground/motion {}: value is missing", keyword);
-    (keyword == "scale" ? scale : start) =
-        number_argument(lmp, "Fix ground/motion " + keyword, arg[iarg + 1]);
-  }
+  for (KeywordReader word(lmp, "Fix ground/motion", narg - 4, arg + 4); word.next();)
+    if (word.is("scale", "S"))
+      scale = word.number();
+    else if (word.is("start", "T"))
+      start = word.number();
+    else
+      word.unknown();
 }
 
 /* ----------------------------------------------------------------------

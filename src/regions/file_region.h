@@ -33,7 +33,7 @@ class FileRegion : public Region {
  private:
   std::map<std::string, double> values;
 
-  int check_keyword(const std::string &own, int narg, char **arg) const;
+  void check_keyword(class KeywordReader &) const;
   int no_contacts();
 };
 

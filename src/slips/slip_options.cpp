@@ -29,192 +29,115 @@ static constexpr int MOST_KEPT = 1000;
    find_slip REGION strength C PHI DENSITY keyword value ... output PREFIX
 ------------------------------------------------------------------------- */
 
-SlipOptions::SlipOptions(LAMMPS *lmp, int narg_in, char **arg_in) :
-    Pointers(lmp), lone(false), narg(narg_in), iarg(1), arg(arg_in), ru(0.0),
-    has_strength(false), top{0.0, 0.0, 0.0}
+SlipOptions::SlipOptions(LAMMPS *lmp, int narg, char **arg) :
+    Pointers(lmp), lone(false), ru(0.0), has_strength(false), top{0.0, 0.0, 0.0}
 {
   if (narg < 1)
     error->all(FLERR,
                "Find_slip needs REGION strength C PHI DENSITY ... output PREFIX, got no "
                "arguments");
   region = arg[0];
-  while (iarg < narg) iarg += 1 + keyword();
+  for (KeywordReader word(lmp, "Find_slip", narg - 1, arg + 1); word.next();)
+    if (!read_soil(word) && !read_search(word)) word.unknown();
   check();
 }
 
 /* ----------------------------------------------------------------------
-   value k of the keyword
+   values k to k + 2
 ------------------------------------------------------------------------- */
 
-const char *SlipOptions::text(int k) const
+SlipSoil::Strength SlipOptions::strength(const KeywordReader &word, int k) const
 {
-  if (iarg + k >= narg) error->all(FLERR, "Find_slip {}: value {} is missing", arg[iarg], k);
-  return arg[iarg + k];
-}
-
-double SlipOptions::number(int k, const std::string &of) const
-{
-  return number_argument(lmp, std::string("Find_slip ") + arg[iarg] + of, text(k));
-}
-
-SlipSoil::Strength SlipOptions::strength(int k) const
-{
-  const std::string what = std::string("Find_slip ") + arg[iarg];
-  const double c = number(k, " C"), phi = number(k + 1, " PHI"),
-               density = number(k + 2, " DENSITY");
-  if (c < 0.0) error->all(FLERR, "{} C must be >= 0 (Pa), got {}", what, text(k));
-  if (!(phi >= 0.0 && phi < 90.0))
-    error->all(FLERR, "{} PHI must be 0 to below 90 (degrees), got {}", what, text(k + 1));
-  if (c == 0.0 && phi == 0.0) error->all(FLERR, "{} C or PHI must be > 0, got 0 and 0", what);
-  if (!(density > 0.0))
-    error->all(FLERR, "{} DENSITY must be > 0 (kg/m3), got {}", what, text(k + 2));
+  const double c = word.number(k), phi = word.number(k + 1), density = word.number(k + 2);
+  word.must(c >= 0.0, ">= 0 (Pa)", k);
+  word.must(phi >= 0.0 && phi < 90.0, "0 to below 90 (degrees)", k + 1);
+  if (c == 0.0 && phi == 0.0)
+    error->all(FLERR, "Find_slip {} C or PHI must be > 0, got 0 and 0", *word.begin());
+  word.must(density > 0.0, "> 0 (kg/m3)", k + 2);
   return {c, std::tan(phi * Slope::DEGREE), density};
 }
 
 /* ----------------------------------------------------------------------
-   the keyword at iarg; returns how many values it has
+   keywords of the soil and its loads, and of the surfaces: whether it is one of them
 ------------------------------------------------------------------------- */
 
-int SlipOptions::keyword()
+bool SlipOptions::read_soil(KeywordReader &word)
 {
-  const std::string keyword = arg[iarg];
-  if (keyword == "strength") {
-    top = strength(1);
+  if (word.is("strength", "C PHI DENSITY")) {
+    top = strength(word, 1);
     has_strength = true;
-    return 3;
+  } else if (word.is("layer", "FILE C PHI DENSITY")) {
+    layers.push_back({word.text(1), strength(word, 2)});
+  } else if (word.is("water", "ru|table")) {
+    const bool is_table = word.choice({"ru", "table"}) == 1;
+    word.more(is_table ? "FILE" : "ru");
+    table = is_table ? word.text(2) : "";
+    ru = is_table ? 0.0 : word.number(2);
+    word.must(ru >= 0.0 && ru < 1.0, "0 to below 1", 2);
+  } else if (word.is("bedrock", "FILE")) {
+    bedrock = word.text();
+  } else if (word.is("seismic", "KH")) {
+    const bool both = *word.after() && !isalpha(static_cast<unsigned char>(*word.after()));
+    if (both) word.more("KV");
+    task.seismic = {word.number(1), both ? word.number(2) : 0.0};
+    word.must(task.seismic.horizontal >= 0.0, ">= 0 (of the weight)", 1);
+    word.must(std::fabs(task.seismic.vertical) < 1.0, "above -1 and below 1 (of the weight)", 2);
+  } else {
+    return false;
   }
-  if (keyword == "layer") {
-    layers.push_back({text(1), strength(2)});
-    return 4;
-  }
-  if (keyword == "output" || keyword == "bedrock" || keyword == "within") {
-    (keyword == "output" ? output : keyword == "bedrock" ? bedrock : within) = text(1);
-    return 1;
-  }
-  if (keyword == "water") return read_water();
-  if (keyword == "seismic") return read_seismic();
-  if (keyword == "direction") return read_direction();
-  if (keyword == "volume" || keyword == "depth") return read_limits();
-  if (keyword == "keep") {
-    limits.keep = whole_number_argument(lmp, "Find_slip keep", text(1));
-    if (limits.keep < 1 || limits.keep > MOST_KEPT)
-      error->all(FLERR, "Find_slip keep must be 1 to {}, got {}", MOST_KEPT, text(1));
-    return 1;
-  }
-  if (keyword == "method") return read_method();
-  if (keyword == "shape") return read_shape();
-  if (keyword == "surface") return read_surface();
-  error->all(FLERR,
-             "Find_slip: unknown keyword {}, must be strength, layer, water, bedrock, seismic, "
-             "within, volume, depth, keep, direction, method, shape, surface or output",
-             keyword);
-  return 0;
+  return true;
 }
 
-/* ---------------------------------------------------------------------- */
-
-int SlipOptions::read_water()
+bool SlipOptions::read_search(KeywordReader &word)
 {
-  const std::string kind = text(1);
-  if (kind == "table") {
-    table = text(2);
-    ru = 0.0;
-  } else if (kind == "ru") {
-    ru = number(2, " ru");
-    table.clear();
-    if (!(ru >= 0.0 && ru < 1.0))
-      error->all(FLERR, "Find_slip water ru must be 0 to below 1, got {}", text(2));
-  } else
-    error->all(FLERR, "Find_slip water must be ru or table, got {}", kind);
-  return 2;
+  if (word.is("within", "REGION")) {
+    within = word.text();
+  } else if (word.is("volume", "LO HI")) {
+    read_limits(word, limits.volume_lo, limits.volume_hi);
+  } else if (word.is("depth", "LO HI")) {
+    read_limits(word, limits.depth_lo, limits.depth_hi);
+  } else if (word.is("keep", "N")) {
+    limits.keep = word.whole_number();
+    word.must(limits.keep >= 1 && limits.keep <= MOST_KEPT, fmt::format("1 to {}", MOST_KEPT));
+  } else if (word.is("direction", "DEG|search")) {
+    task.any_direction = word.text() == std::string("search");
+    if (!task.any_direction) task.direction = word.number() * Slope::DEGREE;
+  } else if (word.is("method", "bishop|ordinary|spencer")) {
+    static_assert(SlipFactor::ORDINARY == 0 && SlipFactor::SPENCER == 2, "the order of the words");
+    task.method = static_cast<SlipFactor::Method>(word.choice({"ordinary", "bishop", "spencer"}));
+  } else if (word.is("shape", "sphere|ellipsoid")) {
+    limits.ellipsoids = word.choice({"sphere", "ellipsoid"}) == 1;
+  } else if (word.is("surface", "sphere|ellipsoid")) {
+    read_surface(word);
+  } else if (word.is("output", "PREFIX")) {
+    output = word.text();
+  } else {
+    return false;
+  }
+  return true;
 }
 
-/* ---------------------------------------------------------------------- */
-
-int SlipOptions::read_seismic()
+void SlipOptions::read_limits(const KeywordReader &word, double &lo, double &hi) const
 {
-  task.seismic = {number(1, " KH"), 0.0};
-  if (task.seismic.horizontal < 0.0)
-    error->all(FLERR, "Find_slip seismic KH must be >= 0 (of the weight), got {}", text(1));
-  if (iarg + 2 >= narg || isalpha(static_cast<unsigned char>(arg[iarg + 2][0]))) return 1;
-  task.seismic.vertical = number(2, " KV");
-  if (!(std::fabs(task.seismic.vertical) < 1.0))
-    error->all(FLERR, "Find_slip seismic KV must be above -1 and below 1 (of the weight), got {}",
-               text(2));
-  return 2;
-}
-
-/* ---------------------------------------------------------------------- */
-
-int SlipOptions::read_direction()
-{
-  task.any_direction = strcmp(text(1), "search") == 0;
-  if (!task.any_direction) task.direction = number(1) * Slope::DEGREE;
-  return 1;
-}
-
-/* ---------------------------------------------------------------------- */
-
-int SlipOptions::read_limits()
-{
-  const double lo = number(1, " LO"), hi = number(2, " HI");
+  lo = word.number(1);
+  hi = word.number(2);
   if (!(lo >= 0.0 && lo < hi))
-    error->all(FLERR, "Find_slip {} must be LO HI with 0 <= LO < HI, got {} {}", arg[iarg], text(1),
-               text(2));
-  const bool volume = strcmp(arg[iarg], "volume") == 0;
-  (volume ? limits.volume_lo : limits.depth_lo) = lo;
-  (volume ? limits.volume_hi : limits.depth_hi) = hi;
-  return 2;
+    error->all(FLERR, "Find_slip {} must be LO HI with 0 <= LO < HI, got {} {}", *word.begin(),
+               word.text(1), word.text(2));
 }
 
-/* ---------------------------------------------------------------------- */
-
-int SlipOptions::read_method()
+void SlipOptions::read_surface(KeywordReader &word)
 {
-  const std::string method = text(1);
-  if (method == "bishop")
-    task.method = SlipFactor::BISHOP;
-  else if (method == "ordinary")
-    task.method = SlipFactor::ORDINARY;
-  else if (method == "spencer")
-    task.method = SlipFactor::SPENCER;
-  else
-    error->all(FLERR, "Find_slip method must be bishop, ordinary or spencer, got {}", method);
-  return 1;
-}
-
-/* ---------------------------------------------------------------------- */
-
-int SlipOptions::read_shape()
-{
-  const std::string shape = text(1);
-  if (shape != "sphere" && shape != "ellipsoid")
-    error->all(FLERR, "Find_slip shape must be sphere or ellipsoid, got {}", shape);
-  limits.ellipsoids = shape == "ellipsoid";
-  return 1;
-}
-
-/* ---------------------------------------------------------------------- */
-
-int SlipOptions::read_surface()
-{
-  const std::string kind = text(1);
-  if (kind == "raster") error->all(FLERR, "Find_slip surface raster is not available");
-  if (kind != "sphere" && kind != "ellipsoid")
-    error->all(FLERR, "Find_slip surface must be sphere or ellipsoid, got {}", kind);
-  surface = {number(2, " X"), number(3, " Y"), number(4, " Z"), number(5, " R")};
-  if (!(surface.radius > 0.0))
-    error->all(FLERR, "Find_slip surface R must be > 0, got {}", text(5));
+  const bool ellipsoid = word.choice({"sphere", "ellipsoid"}) == 1;
+  word.more("X Y Z R");
+  surface = {word.number(2), word.number(3), word.number(4), word.positive(5)};
   lone = true;
-  if (kind == "sphere") return 5;
-  surface.along = number(6, " A");
-  surface.across = number(7, " B");
-  surface.straight = number(8, " L");
-  if (!(surface.along > 0.0 && surface.across > 0.0))
-    error->all(FLERR, "Find_slip surface A and B must be > 0 (of R), got {} {}", text(6), text(7));
-  if (!(surface.straight >= 0.0))
-    error->all(FLERR, "Find_slip surface L must be >= 0, got {}", text(8));
-  return 8;
+  if (!ellipsoid) return;
+  word.more("A B L");
+  surface.along = word.positive(6);
+  surface.across = word.positive(7);
+  surface.straight = word.number(8);
+  word.must(surface.straight >= 0.0, ">= 0", 8);
 }
 
 /* ---------------------------------------------------------------------- */

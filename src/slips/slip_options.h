@@ -35,8 +35,6 @@ class SlipOptions : protected Pointers {
   Slope::SlipSurface surface;    // this one
 
  private:
-  int narg, iarg;
-  char **arg;
   std::string region, within, table, bedrock, name;
   double ru;
   bool has_strength;
@@ -47,17 +45,11 @@ class SlipOptions : protected Pointers {
   };
   std::vector<Layer> layers;
 
-  const char *text(int k) const;
-  double number(int k, const std::string &of = "") const;
-  Slope::SlipSoil::Strength strength(int k) const;
-  int keyword();
-  int read_water();
-  int read_seismic();
-  int read_direction();
-  int read_limits();
-  int read_method();
-  int read_shape();
-  int read_surface();
+  Slope::SlipSoil::Strength strength(const class KeywordReader &, int k) const;
+  bool read_soil(KeywordReader &);
+  bool read_search(KeywordReader &);
+  void read_limits(const KeywordReader &, double &lo, double &hi) const;
+  void read_surface(KeywordReader &);
   void check();
   template <class Kind>
   void check_region(const char *what, const std::string &named, const char *style) const;

@@ -160,12 +160,12 @@ def test_wide_spacing_is_warned_of(tmp_path, spacing, warning):
 
 
 BAD = [    # what test_wrong_input.py does not have
-    ("surface ball upper spacing 0.4 pattern", "w pattern must be followed by grid or scattered, got 0 of 1 values"),
+    ("surface ball upper spacing 0.4 pattern", "w pattern must be followed by grid|scattered, got 0 of 1 values"),
     ("surface ball upper spacing 0.4 pattern hexagonal", "w pattern must be grid or scattered, got hexagonal"),
-    ("surface ball upper spacing 0.4 pattern scattered 0", "w pattern scattered SEED must be > 0, got 0"),
-    ("surface ball upper spacing 0.4 pattern scattered -3", "w pattern scattered SEED must be > 0, got -3"),
+    ("surface ball upper spacing 0.4 pattern scattered 0", "w pattern SEED must be > 0, got 0"),
+    ("surface ball upper spacing 0.4 pattern scattered -3", "w pattern SEED must be > 0, got -3"),
     ("surface ball upper spacing 0.4 pattern scattered 1.5",
-     "w pattern scattered SEED must be a whole number, got 1.5"),
+     "w pattern SEED must be a whole number, got 1.5"),
     ("surface ball upper spacing 0.4 pattern scattered angle 10",
      "w angle must be 0 with pattern scattered, which has no direction, got 10"),
     ("surface ball upper spacing 0.4 angle 400", "w angle must be within +-360 (degrees), got 400"),

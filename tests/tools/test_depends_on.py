@@ -223,9 +223,9 @@ NAMES_NONE = {
     "headroom", "inside", "keep", "limit_damping", "lower", "mass", "method", "motion", "move", "open", "origin",
     "output", "outside", "overlap", "pattern", "point", "rest", "restitution", "rim", "rolling", "rolling_radius",
     "rolling_spring", "rotate", "scale", "scattered", "scheme", "seed", "seismic", "series", "shape", "side", "sink",
-    "smallest", "spacing", "stiffness", "strength", "sunk", "surface", "units", "upper", "volume", "water", "window",
-    "within", "write", "zone"}
-WORD = re.compile(r'(?:strcmp\(\w+\[[^]]*\], |given\(|\b(?:keyword|word|key|name) == )"([a-z_]+)"')
+    "smallest", "spacing", "start", "stiffness", "strength", "sunk", "surface", "units", "upper", "volume", "water",
+    "window", "within", "write", "zone"}
+WORD = re.compile(r'(?:strcmp\(\w+\[[^]]*\], |\b(?:is|of_stl)\(|given\(|\b(?:keyword|word|key|name) == )"([a-z_]+)"')
 
 
 def sources():
