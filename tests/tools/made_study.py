@@ -10,7 +10,7 @@ import yaml
 
 from slope_tools import records
 from slope_tools.findings import Finding, finding
-from slope_tools.statistics import answer
+from slope_tools.statistics.entries import Headline
 from slope_tools.tables import ensemble_types, study_file, study_types
 
 HEADER = {"deck": "in.site", "known": {}, "set": {}, "repeat": {}, "runs": 1, "finished": 1, "method": "", "ranks": 1,
@@ -97,7 +97,7 @@ def weighted(**entries):
 
 
 def headline(**entries):
-    return made(answer.Headline, {
+    return made(Headline, {
         "kind": "number", "volume_m3": None, "share": None, "low_m3": None, "high_m3": None, "source": None,
         "paper": None, "ensemble": None, "road": None, "reasons": [], "band": [], **entries})
 

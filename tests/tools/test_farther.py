@@ -11,7 +11,7 @@ from slope_tools.ensembles import conditioned, farther, known_study, sample
 from slope_tools.errors import SlopeError
 from slope_tools.mobility import weights
 from slope_tools.statistics import designs, distributions
-from slope_tools.statistics.answer import Code
+from slope_tools.statistics.entries import Code
 from slope_tools.studies import farther_runs
 from slope_tools.tables import answer_words
 

@@ -18,7 +18,7 @@ from slope_tools.mobility.results import percent
 from slope_tools.plots import known_reach
 from slope_tools.report import mobility_part
 from slope_tools.report.numbers import Numbers
-from slope_tools.statistics.answer import Source
+from slope_tools.statistics.entries import Source
 from slope_tools.studies import letter
 from slope_tools.tables import usable
 

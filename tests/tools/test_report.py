@@ -30,7 +30,6 @@ from slope_tools.plots import (figure_charts, figure_maps, ground as report_grou
                                section as report_section)
 from slope_tools.report import data as report_data, printing
 from slope_tools.deposits import travel_shares
-from slope_tools.statistics import answer
 from slope_tools.studies import outcome
 from slope_tools.tables import headline, judged, quantities, rows, study_file
 from slope_tools.tables.rows import finished_of
@@ -299,7 +298,7 @@ def stands(name):
     for parts in (best, best["rounded"]):
         parts["volume_m3"] = parts["mean_m3"] + (parts["chance_m3"] or 0)
     path.write_text(yaml.safe_dump(about))
-    said = answer.combine_answers(headline.paper_of(study_file.load_study(path)), None, None)
+    said = headline.combine_answers(headline.paper_of(study_file.load_study(path)), None, None)
     path.write_text(yaml.safe_dump({**about, "headline": records.encode_record(said)}))
     return best
 

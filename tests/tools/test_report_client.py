@@ -21,7 +21,7 @@ from slope_tools.findings import LIMIT, NOTE, WARNING, Finding, finding, gathere
 from slope_tools.plots.obstacles import Obstacles
 from slope_tools.report import body, client_part, ensemble_part, limits_part, numbers, structures_part, warnings
 from slope_tools.report.numbers import Numbers
-from slope_tools.statistics.answer import Kind
+from slope_tools.statistics.entries import Kind
 from slope_tools.statistics.withheld import Kind as Rule
 from slope_tools.studies import letter, outcome, size_runs
 from slope_tools.tables import answer_words, judged, next_step, study_file

@@ -23,7 +23,7 @@ from slope_tools.commands import study as study_command
 from slope_tools.ensembles import known_study
 from slope_tools.scenarios import compare, method, page
 from slope_tools.sites import site_choices, site_scenarios, site_trial
-from slope_tools.statistics.answer import Kind, Source
+from slope_tools.statistics.entries import Kind, Source
 from slope_tools.studies.road_numbers import Made
 from slope_tools.survey.rasters import Raster
 from slope_tools.tables import study_file, study_types

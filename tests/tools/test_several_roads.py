@@ -17,7 +17,7 @@ from slope_tools.commands import study as study_command
 from slope_tools.deposits import volume_files
 from slope_tools.errors import SlopeError
 from slope_tools.sites import site_choices, site_layers, site_roads
-from slope_tools.statistics.answer import Kind
+from slope_tools.statistics.entries import Kind
 from slope_tools.studies import road_numbers
 from slope_tools.studies.road_numbers import Number
 from slope_tools.survey import network, rasters, roads

@@ -17,7 +17,7 @@ from slope_tools.commands.study import Request
 from slope_tools.case.settings import check_settings, one_value_each
 from slope_tools.ensembles import sample
 from slope_tools.statistics import distributions, withheld
-from slope_tools.statistics.answer import Code
+from slope_tools.statistics.entries import Code
 from slope_tools.statistics.withheld import Facts, Kind
 from slope_tools.tables import combinations, next_step, usable, withheld_words
 from slope_tools.tables.usable import Events

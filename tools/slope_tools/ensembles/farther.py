@@ -21,7 +21,7 @@ from .. import disk, schemas
 from ..digits import metres, percent
 from ..schemas import NUMBER, OBJECT, TEXT, list_of, mapping, dict_of
 from ..statistics import backanalysis, designs, distributions, emulator
-from ..statistics.answer import Code, Reason
+from ..statistics.entries import Code, Reason
 from ..tables import ensemble_types
 from .sample import Sample
 

@@ -18,10 +18,10 @@ from ..errors import SlopeError
 from ..findings import Finding, texts
 from ..mobility import body, exceedance, known, run_length, weights
 from ..quantiles import within
-from ..statistics import answer, emulator, hazard
+from ..statistics import emulator, hazard
 from ..statistics.entries import Analysis, KnownQuantile
 from ..survey.rasters import Place
-from ..tables import answer_words, combinations, ensemble_types, quantities, sizes, usable
+from ..tables import answer_words, combinations, ensemble_types, headline, quantities, sizes, usable
 from ..tables.quantities import REMOVE
 from ..tables.rows import Finished, Row, finished_of
 from . import conditioned, ensemble_maps, farther, known_influence
@@ -123,7 +123,7 @@ class Runs:
 
 def resting(runs: Runs) -> List[str]:
     """Names of the runs on which the quantiles of the headline rest."""
-    found = within(runs.column(REMOVE), runs.mass.share, answer.choose_known_shares(runs.weights.far), runs.mass.far)
+    found = within(runs.column(REMOVE), runs.mass.share, headline.choose_known_shares(runs.weights.far), runs.mass.far)
     return [sizes.nearest(runs.rows, REMOVE, one).run for one in found if np.isfinite(one)]
 
 
@@ -187,7 +187,7 @@ def evaluate_known_events(condition: Condition, sample: Sample, added: farther.A
         quantities={name: ensemble_types.OfKnown(*names[name], list_known_quantiles(curve, runs, name, hazard.SHARES))
                     for name, curve in curves.items()},
         to_remove=transferred(list_known_quantiles(curves[REMOVE], runs, REMOVE,
-                                                   answer.choose_known_shares(weights_.far)),
+                                                   headline.choose_known_shares(weights_.far)),
                               runs, draw)
         if REMOVE in curves else None,
         variables={name: variable(runs, k, emulated.main) for k, name in enumerate(sample.names)},

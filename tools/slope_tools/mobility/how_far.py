@@ -17,7 +17,7 @@ BAND = 0.1              # of each of both, whose bands may lie apart
 class Reach:
     """What half of the pool, and TAIL at either end, stay within; None: they go beyond the terrain (end_m).
 
-    runs: how many, of which study (answer.Source; None: a run alone); along: run_length.ON_PATH or STRAIGHT; events:
+    runs: how many, of which study (entries.Source; None: a run alone); along: run_length.ON_PATH or STRAIGHT; events:
     whether known events count; why: not; farther: who goes farther, where the bands lie apart; least_m: nearer the
     events tell nothing.
     """

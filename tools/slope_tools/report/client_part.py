@@ -5,7 +5,7 @@ No names of options, variables or files: these are in the appendix, and on the c
 from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 from .. import digits
-from ..statistics.answer import Kind
+from ..statistics.entries import Kind
 from ..studies import letter
 from ..studies.letter import Letter
 from ..tables import judged, next_step, sizes, usable

@@ -10,7 +10,7 @@ from ..digits import format_measured_share, rounded
 from ..findings import Finding
 from ..mobility.run_length import ON_PATH
 from ..statistics import rounding
-from ..statistics.answer import Source
+from ..statistics.entries import Source
 from ..tables import named_run, withheld_words
 from ..tables.quantities import ALL, KNOWN, LENGTH, REACH, written
 from ..tables.released import over_runs

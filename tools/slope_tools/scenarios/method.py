@@ -8,7 +8,7 @@ from ..deposits import travel_shares
 from ..ensembles import known_study
 from ..sites import site_roads
 from ..sites.site_choices import Site
-from ..statistics.answer import Headline
+from ..statistics.entries import Headline
 from ..studies import outdated
 from ..tables import headline, study_file, study_types, usable
 from ..tables.rows import Finished, finished_of

@@ -14,7 +14,7 @@ from ..report import document
 from ..report.sections import Cell, Figures, Listing, Picture, Section, Table, Text
 from ..sites.site_folder import BODY as NAME_OF_BODY, TERRAIN
 from ..sites.site_roads import ROAD
-from ..statistics.answer import Headline
+from ..statistics.entries import Headline
 from ..survey import rasters, roads
 from ..survey.rasters import Raster, crs_name
 from ..tables import answer_words, usable

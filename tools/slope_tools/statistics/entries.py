@@ -1,8 +1,9 @@
 """What study.yaml has of quantiles, of emulators and of the headline: see tables/study_types."""
 from dataclasses import dataclass, replace
-from typing import Dict, List, NamedTuple, Optional, Sequence
+from enum import Enum
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence
 
-from .withheld import Kind
+from .withheld import Kind as Rule
 
 
 class Quantile(NamedTuple):
@@ -96,7 +97,7 @@ class AtRoad(NamedTuple):
 @dataclass(frozen=True)
 class PaperPart:
     volume_m3: Optional[float]
-    withheld: List[Kind]
+    withheld: List[Rule]
     runs: int
 
 
@@ -132,7 +133,68 @@ class Road:
 
 
 class Share(NamedTuple):
-    """Of a band: how far (m3) the number may lie below and above for one cause (answer.Cause)."""
+    """Of a band: how far (m3) the number may lie below and above for one cause (Cause)."""
     cause: str
     below_m3: float
     above_m3: float
+
+
+# --- the headline ---
+
+class Kind(Enum):
+    """What the number is."""
+    NUMBER = "number"
+    FLOOR = "floor"             # at least so much
+    OPEN = "open"               # that of the runs, and neither an upper nor a lower bound
+    WITHHELD = "withheld"
+    NOTHING = "nothing"         # 0: no run of any study reaches the road, and no more than MANY of the known events
+
+
+class Source(Enum):
+    """Which study it is of."""
+    PAPER = "paper"
+    ENSEMBLE = "ensemble"
+
+
+class Code(Enum):
+    """Of a reason: why a number is a floor, why no more runs were added, what a rule says."""
+    BEYOND = "known beyond runs"
+    NOT_REACHED = "road not reached"
+    SOME = "some runs reach"
+    ONE_SCATTER = "one scatter reaches"
+    TERRAIN = "terrain ends"
+    RANGE = "range ends"
+    RUNS = "no more runs"
+    FEW = "too few runs"
+    SIZE = "size of balls"
+    RULE = "rule"
+
+
+class Reason(NamedTuple):
+    """A code and its numbers."""
+    code: Code
+    numbers: Mapping[str, Any]
+
+
+class Cause(Enum):
+    """Of a share of a band."""
+    RUNS = "chance and parameters"
+    TRANSFER = "transfer to the finest balls"
+    SIZE = "finer balls"
+    OTHER = "the other study"       # whose upper end is higher
+
+
+class Headline(NamedTuple):
+    """See the page on `slope study`."""
+    kind: Kind
+    volume_m3: Optional[float]
+    share: Optional[float]
+    low_m3: Optional[float]
+    high_m3: Optional[float]
+    source: Optional[Source]
+    paper: Optional[PaperPart]
+    ensemble: Optional[EnsemblePart]
+    road: Optional[Road]
+    reasons: List[Reason]
+    band: List[Share]
+    open_above: bool = False        # nothing but the runs bounds it from above

@@ -18,7 +18,7 @@ from ..mobility.exceedance import Mobility
 from ..runs import repeats
 from ..seismic import chain_files
 from ..sites.site_bodies import VARIABLE
-from ..statistics.answer import Source
+from ..statistics.entries import Source
 from ..statistics.conservative_volume import Scatter
 from ..tables import (combinations, elastic, ensemble_types, intensity, judged, quantities, road_runs, step_check,
                       study_types, usable, withheld_words)

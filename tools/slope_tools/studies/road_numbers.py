@@ -13,7 +13,7 @@ from .. import digits, disk, records
 from ..errors import SlopeError
 from ..sites import site_roads
 from ..sites.site_choices import Site
-from ..statistics.answer import Kind
+from ..statistics.entries import Kind
 from ..tables import answer_words, study_types
 from ..tables.quantities import OF_ROAD
 from ..tables.rows import finished_of

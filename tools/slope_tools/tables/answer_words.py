@@ -3,7 +3,7 @@ from typing import Any, Dict, Iterable, List, Mapping, Optional, Tuple
 
 from ..digits import metres, percent, three
 from ..findings import Finding
-from ..statistics.answer import Code, Headline, Kind, Reason, Source
+from ..statistics.entries import Code, Headline, Kind, Reason, Source
 from . import quantities
 
 STUDY = {Source.PAPER.value: "the sweep", Source.ENSEMBLE.value: "the runs weighted by known events"}

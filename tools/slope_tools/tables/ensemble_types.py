@@ -4,7 +4,7 @@ from typing import Any, Dict, List, Optional, Union
 
 from ..findings import Finding
 from ..mobility.weights import Gap
-from ..statistics.answer import Reason
+from ..statistics.entries import Reason
 from ..statistics.entries import Analysis, KnownQuantile, Quantile
 
 MapEntry = Dict[str, Any]           # of a map over all runs: file, what it shows, and of which threshold or quantile

@@ -7,7 +7,7 @@ from ..case.run_folders import OF_RUN, RASTERS, prefix_of, summaries, summary_of
 from ..deposits import travel_shares
 from ..errors import SlopeError
 from ..sites import site_choices
-from ..statistics.answer import Source
+from ..statistics.entries import Source
 from ..statistics.entries import KnownQuantile, Quantile
 from . import ensemble_types, sizes, study_types
 from .rows import Finished, finished_of

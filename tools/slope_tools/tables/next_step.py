@@ -9,7 +9,7 @@ from ..findings import Finding
 from ..mobility import events
 from ..runs import again
 from ..sites import site_choices, site_roads
-from ..statistics.answer import Code, Headline, Kind, Reason, Source
+from ..statistics.entries import Code, Headline, Kind, Reason, Source
 from ..statistics.withheld import Kind as Rule
 from . import answer_words, study_types
 from .rows import finished_of

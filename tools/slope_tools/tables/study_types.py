@@ -11,7 +11,7 @@ from ..findings import Finding
 from ..mobility.how_far import Reach
 from ..sites.site_budget import duration_text
 from ..statistics.ball_sizes import Left
-from ..statistics.answer import Headline
+from ..statistics.entries import Headline
 from ..statistics.entries import Road
 from .ensemble_types import Ensemble, MapEntry
 from .rows import Row

@@ -11,7 +11,7 @@ from ..findings import Finding
 from ..mobility import how_far, known
 from ..mobility.road import at_road
 from ..mobility.run_length import ON_PATH
-from ..statistics import answer, entries, withheld
+from ..statistics import entries, withheld
 from ..statistics.withheld import Facts
 from . import study_types, withheld_words
 from .rows import Finished, Row, finished_of
@@ -45,7 +45,7 @@ def known_of(prefix: Path, terrain: Optional[Path], choice: Mapping[str, Any],
     return known.of_mass(read.raster, *scar.before(read.raster, read.base, terrain), choice, site)
 
 
-def reach(rows: Sequence[Finished], source: Optional[answer.Source], among: known.Known) -> Optional[how_far.Reach]:
+def reach(rows: Sequence[Finished], source: Optional[entries.Source], among: known.Known) -> Optional[how_far.Reach]:
     """How far the mass of runs goes, without those that were added for their length; source: None of a run alone."""
     mine = [row for row in rows if row.length_m is not None and not row.batch]
     lengths = [math.inf if travel_shares.lost(row) else row.length_m or 0.0 for row in mine]
