@@ -12,7 +12,7 @@ from test_mobility_path import RADIUS, STEEP, disc, hillside, terrain
 
 from slope_tools.digits import three
 from slope_tools.errors import SlopeError
-from slope_tools.mobility import body, exceedance, fall_path, known, landslides, lucas, offices, results, road
+from slope_tools.mobility import body, fall_path, known, landslides, lucas, offices, results
 from slope_tools.releases import release
 from slope_tools.survey import rasters
 
@@ -90,7 +90,7 @@ def test_where_the_two_have_nothing_in_common_a_warning_says_so(moved, farther):
     """Of a row whose line lies where it does, and far above and below it, with a small scatter."""
     mass = gentle()
     row = ROW._replace(a=ROW.a + moved, limit=0.1, r2=0.97)
-    found = known.Found(None, exceedance.compute_mobility(mass, row))
+    found = known.Found(None, known.compute_mobility(mass, row))
     said = lucas.opinion(mass, found.decides.path)
     assert said.steep > said.angle > said.flat and said.toe > 0
     assert [(one.kind, one.numbers["farther"]) for one in results.disagreement(mass, found)] == (
@@ -226,7 +226,7 @@ def test_the_family_of_the_embankment():
         found = known.compute_known_mobility(embankment(factor), known.choice())
         which[factor] = found.decides.chosen
         assert all((np.diff(curve) <= 0).all() for one in found.each for curve in one.curves.values())
-        lane = road.at_road(found.decides.path, box(60 * factor, 0, 80 * factor, 160 * factor))
+        lane = fall_path.at_road(found.decides.path, box(60 * factor, 0, 80 * factor, 160 * factor))
         assert lane.met and lane.passed - lane.length == pytest.approx(20 * factor, rel=0.01)
     assert [*which.values()] == ["landslides"] * 7 + ["mixture"] * 2
     low, high = max(f for f, kind in which.items() if kind == "landslides"), min(
@@ -259,9 +259,9 @@ def test_at_the_road_that_lies_too_high():
     """A fall that no event of the set had: at least what they say farther down."""
     mass = disc(hillside(), (300, 300))
     found = known.compute_known_mobility(mass, known.choice())
-    at = road.at_road(found.decides.path, box(500, 0, 520, 600))
+    at = fall_path.at_road(found.decides.path, box(500, 0, 520, 600))
     told = results.at_road(found, at)
     assert at.fall < 220 and told["exceedance"] is None and told["at_least"] == pytest.approx(
         found.decides.exceedance(found.decides.path.length[np.flatnonzero(found.decides.said)[0]]))
-    assert told["exceedance_landslides"] == exceedance.compute_mobility(mass, ROW,
-                                                                        path=found.by_row.path).exceedance(at.length)
+    assert told["exceedance_landslides"] == known.compute_mobility(mass, ROW,
+                                                                   path=found.by_row.path).exceedance(at.length)

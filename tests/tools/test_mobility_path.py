@@ -16,8 +16,8 @@ from run_helpers import TOP, run_command, write_asc, write_geojson, examples
 from tiny_collapse import rows_of
 
 from slope_tools.errors import SlopeError
-from slope_tools.mobility import body, charts, events, exceedance, fall_path, known as known_events
-from slope_tools.mobility import relation, results, road
+from slope_tools.mobility import body, charts, events, fall_path, known as known_events
+from slope_tools.mobility import relation, results
 from slope_tools.releases import release
 from slope_tools.survey import rasters
 from slope_tools.survey.rasters import Raster
@@ -177,7 +177,7 @@ def by_hand(path, volume, confined):
 
 @pytest.fixture(scope="module")
 def known():
-    return exceedance.compute_mobility(disc(hillside(), (300, 300)), SET)
+    return known_events.compute_mobility(disc(hillside(), (300, 300)), SET)
 
 
 @pytest.mark.parametrize("kind, confined", [("confined", True), ("unconfined", False), ("mixture", "mixture")])
@@ -193,7 +193,7 @@ def test_what_counts(known):
     assert known.chosen == "mixture" and (known.curves["confined"] >= known.curves["unconfined"]).all()
     least, mixture, most = (known.exceedance(1800, kind) for kind in ("unconfined", None, "confined"))
     assert most > mixture + 0.05 > least + 0.1
-    for answer, kind in exceedance.CONFINED.items():
+    for answer, kind in known_events.CONFINED.items():
         found = known_events.compute_known_mobility(disc(hillside(), (300, 300)), known_events.choice(confined=answer))
         assert found.decides is found.by_set and found.decides.chosen == kind
         assert found.decides.exceedance(1800) == pytest.approx(known.exceedance(1800, kind), abs=1e-3)
@@ -203,7 +203,7 @@ def test_it_never_rises():
     """Before a cliff the probability is less than by the height below the cliff."""
     mass = disc(terrain(lambda x, y: 3000 - STEEP * np.minimum(x, 700) - 900 / (1 + np.exp((1900 - x) / 15))),
                 (200, 600))
-    found = exceedance.compute_mobility(mass, SET, "unconfined")
+    found = known_events.compute_mobility(mass, SET, "unconfined")
     raw = by_hand(found.path, found.volume, False)
     far = found.path.fall >= 220
     assert np.diff(raw[far]).max() > 0.1
@@ -224,7 +224,7 @@ def test_where_a_run_lies(known):
 @pytest.mark.parametrize("depth, slope, words", [(1.0, STEEP, ["volume, 3"]), (20.0, 0.05, ["height, "])])
 def test_out_of_range(depth, slope, words):
     mass = disc(terrain(lambda x, y: 3000 - slope * x), (300, 600), depth)
-    found = exceedance.compute_mobility(mass, SET)
+    found = known_events.compute_mobility(mass, SET)
     assert not found.in_range and len(found.outside) == len(words)
     assert all(f"does not cover this {word}" in line for word, line in zip(words, found.outside))
 
@@ -251,9 +251,9 @@ def test_of_several_bodies_the_largest_has_the_path(other):
 
 def test_a_road(known):
     lane = box(1000, 0, 1020, 1190)
-    first = road.at_road(known.path, lane)
+    first = fall_path.at_road(known.path, lane)
     assert first.met and first.x == pytest.approx(1000) and first.length == pytest.approx(1000 - 155, abs=3)
-    beside = road.at_road(known.path, box(1000, 400, 1020, 590))
+    beside = fall_path.at_road(known.path, box(1000, 400, 1020, 590))
     assert not beside.met and beside.beside == pytest.approx(100, abs=3) and beside.x == pytest.approx(1010, abs=11)
 
 
@@ -265,7 +265,7 @@ def test_the_frank_slide():
     others = [one for one in ALL if one.name != "Frank Slide"]
     across = fall_path.given(mass, LineString([(413, 1264), (3960, 3633)]), "line")
     for path in (None, across):
-        found = exceedance.compute_mobility(mass, relation.of_events(others), "unconfined", path)
+        found = known_events.compute_mobility(mass, relation.of_events(others), "unconfined", path)
         assert found.in_range and found.volume == pytest.approx(36.0, abs=0.1)
         assert 0.1 < found.exceedance(3080) < 0.9
     assert found.length_at(0.5) == pytest.approx(3080, rel=0.05)
@@ -435,5 +435,5 @@ def test_pictures(known, tmp_path):
     charts.draw_map(tmp_path / "map.png", known, mass, lane)
     found = known_events.compute_known_mobility(mass, known_events.choice(), known.path)
     out = found._replace(by_set=found.by_set._replace(outside=["x"]))
-    charts.draw_profile(tmp_path / "profile.png", out, mass, road.at_road(known.path, lane))
+    charts.draw_profile(tmp_path / "profile.png", out, mass, fall_path.at_road(known.path, lane))
     assert all((tmp_path / name).read_bytes()[:4] == b"\x89PNG" for name in ("map.png", "profile.png"))

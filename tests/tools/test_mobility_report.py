@@ -11,7 +11,7 @@ import made_rows
 from test_mobility_path import SET, disc, hillside
 
 from slope_tools.digits import three
-from slope_tools.mobility import exceedance, how_far, known as known_events
+from slope_tools.mobility import known as known_events
 from slope_tools.mobility.fall_path import TERRAIN
 from slope_tools.mobility.known import Known
 from slope_tools.mobility.results import percent
@@ -20,7 +20,7 @@ from slope_tools.report import mobility_part
 from slope_tools.report.numbers import Numbers
 from slope_tools.statistics.entries import Source
 from slope_tools.studies import letter
-from slope_tools.tables import usable
+from slope_tools.tables import how_far
 
 
 def case(lengths, volume=0.78e6, study=True, scar=1, **about):
@@ -81,7 +81,7 @@ def test_a_terrain_that_ends_before_half_of_the_events(columns, length):
     if length is None:
         assert "terrain shows the first" not in text
         return
-    found = exceedance.compute_mobility(disc(hillside(), (300, 300)), SET)
+    found = known_events.compute_mobility(disc(hillside(), (300, 300)), SET)
     shares = [percent(found.exceedance(length, kind)) for kind in ("unconfined", "confined")]
     assert f"terrain shows the first 1,340 m of the way, where {shares[0]} ({shares[1]}) of them go on" in text
 
@@ -183,9 +183,9 @@ def test_of_which_runs_the_reach_is():
     """Not of those that were added for their length, nor of one without a deposit; one that lost mass goes beyond."""
     rows = [made_rows.row(length_m=60.0), made_rows.row(length_m=None), made_rows.row(length_m=99.0, batch=1),
             made_rows.row(length_m=70.0, released_m3=100.0, lost_m3=1.5)]
-    one = usable.reach(rows, Source.PAPER, Known(None, "no path"))
+    one = how_far.reach(rows, Source.PAPER, Known(None, "no path"))
     assert (one.runs, one.near_m, one.far_m, one.source, one.why) == (2, 60.0, None, "paper", "no path")
-    assert usable.reach(rows[1:3], None, Known(None, "")) is None
+    assert how_far.reach(rows[1:3], None, Known(None, "")) is None
 
 
 def test_nearer_than_events_tell_the_distance_may_be_less(known):
@@ -217,7 +217,7 @@ def test_marks_lie_across_the_path_where_shares_of_the_events_go_farther(known):
     assert LineString(reach.path).length == pytest.approx(max(wanted.values()), rel=1e-3)
     text = known_reach.describe_known_reach(reach)
     assert f"beyond them go half{' and a tenth' * (0.1 in wanted)} of known events" in text
-    assert exceedance.WORDS["mixture"] in text and ("would lie beyond the terrain" in text) == (len(reach.marks) < 2)
+    assert known_events.WORDS["mixture"] in text and ("would lie beyond the terrain" in text) == (len(reach.marks) < 2)
     fewer = known_reach.describe_known_reach(reach._replace(marks=reach.marks[:1]))
     assert "a tenth" not in fewer and fewer.endswith("; other marks would lie beyond the terrain.")
 

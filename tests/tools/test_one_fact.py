@@ -23,7 +23,7 @@ from slope_tools.commands import study as study_command
 from slope_tools.deposits import road_axis
 from slope_tools.ensembles import ensemble, farther, known_events
 from slope_tools.errors import SlopeError
-from slope_tools.mobility import exceedance
+from slope_tools.mobility import known
 from slope_tools.releases import release_toe
 from slope_tools.report import mobility_part
 from slope_tools.report.numbers import Numbers
@@ -310,8 +310,8 @@ def test_one_run_of_known_events_has_no_bounds():
 def test_no_run_is_longer_than_the_way_that_the_terrain_shows():
     """The path ends at 162.5 m; a run ends 166.9 m from where it begins, beside the path's end."""
     path = SimpleNamespace(length=np.array([0.0, 100.0, 162.5]))
-    mobility = exceedance.Mobility(path, 0.05, SimpleNamespace(), {"k": np.array([1.0, 0.6, 0.55])}, "k",
-                                   np.ones(3, bool), [])
+    mobility = known.Mobility(path, 0.05, SimpleNamespace(), {"k": np.array([1.0, 0.6, 0.55])}, "k",
+                              np.ones(3, bool), [])
     assert mobility.end(166.9) == 166.9 and mobility.end(120.0) == 162.5
     rows = [changed(one, length_by_lobe_m=[one.length_m] * 2) for one in rows_of([100.0, 140.0, 166.9])]
     runs = known_events.Runs(PLAN, [], rows, mobility)

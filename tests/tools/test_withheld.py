@@ -19,9 +19,9 @@ from slope_tools.ensembles import sample
 from slope_tools.statistics import distributions, withheld
 from slope_tools.statistics.entries import Code
 from slope_tools.statistics.withheld import Facts, Kind
-from slope_tools.tables import combinations, next_step, usable, withheld_words
-from slope_tools.tables.usable import Events
-from slope_tools.tables.withheld_words import Case
+from slope_tools.tables import combinations, next_step, usable
+from slope_tools.tables.how_far import Events
+from slope_tools.tables.usable import Case
 
 GOOD = Facts(volume=5000.0, on_road=3000.0, ball=10.0, runs=20, failed=0, moving=0, left=0.0, length=900.0,
              median=800.0)
@@ -76,7 +76,7 @@ ANEW = "tools/slope site 'my site'{} && tools/slope study 'my site' --anew"
      "the same command with --set duration=120"),
     ({"failed": 5}, DECK, "5 of 20 runs", "once the cause of the failures is removed: the same command again")])
 def test_the_reason_and_the_command_that_mends_it(changed, case, text, remedy):
-    [entry] = withheld_words.with_remedies(withheld.reasons(GOOD._replace(**changed)), case)
+    [entry] = usable.with_remedies(withheld.reasons(GOOD._replace(**changed)), case)
     assert text in entry.text and entry.remedy == remedy
 
 
@@ -84,7 +84,7 @@ def test_the_reason_and_the_command_that_mends_it(changed, case, text, remedy):
                                   DECK._replace(variables={"friction": "30", "rolling": "0"})])
 @pytest.mark.parametrize("changed", [{"on_road": 50.0}, {"length": 700.0}, {"left": 0.3}, {"moving": 5}])
 def test_the_commands_are_ones_that_the_tools_take(case, changed):
-    [entry] = withheld_words.with_remedies(withheld.reasons(GOOD._replace(**changed)), case)
+    [entry] = usable.with_remedies(withheld.reasons(GOOD._replace(**changed)), case)
     typed = re.findall(r"tools/slope (?:'[^']*'|[^&;,])*", entry.remedy)
     assert typed or case.site is None or case.sampled
     for words in map(shlex.split, typed):
@@ -158,7 +158,7 @@ def test_what_is_proposed_can_be_run(here, given):
     variables = {"friction": "30", "rolling": "0.1", "d": "2", "duration": "60"}
     case = Case(Path("in.all"), site, variables, 1000, given=asked, sampled=bool(asked.sample))
     found = [one for facts in ({"on_road": 50.0}, {"length": 700.0}, {"left": 0.3}, {"moving": 5}, {"failed": 15})
-             for one in withheld_words.with_remedies(withheld.reasons(GOOD._replace(**facts)), case)]
+             for one in usable.with_remedies(withheld.reasons(GOOD._replace(**facts)), case)]
     ranges = dict(one.split("=", 1) for one in asked.vary) or {
         "friction": "uniform:20:40", "rolling": "0:0.2", "spacing": "0.3:0.95", "packing": "uniform:1:1000000"}
     whole = made_study.ensemble({"set": "rock_avalanches.csv"}, withheld=found, design={

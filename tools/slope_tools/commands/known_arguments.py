@@ -3,7 +3,7 @@ from dataclasses import dataclass
 from typing import Any, List, Optional
 
 from ..mobility import known, landslides
-from ..mobility.exceedance import CONFINED
+from ..mobility.known import CONFINED
 from ..options import option, several
 from ..sites.site_choices import Site
 from ..sites.site_sections import OfMass

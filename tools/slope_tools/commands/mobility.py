@@ -6,7 +6,7 @@ from typing import Optional
 from .. import disk
 from ..errors import SlopeError
 from ..findings import printer
-from ..mobility import body, fall_path, known, results, road
+from ..mobility import body, fall_path, known, results
 from ..options import Overwrite, option, positional
 from ..releases import release
 from ..sites import site_choices, site_roads
@@ -56,7 +56,7 @@ def run_mobility(args: Request) -> None:
     lane = road_of(args, site, mass)
     path = fall_path.given(mass, line_of(args.path, args.local, mass), args.path) if args.path else None
     mobilities = known.compute_known_mobility(mass, asked, path)
-    met = lane and road.at_road(mobilities.decides.path, lane)
+    met = lane and fall_path.at_road(mobilities.decides.path, lane)
     source = results.Source(args.terrain, mass, asked, lane)
     results.write_mobility(args.output, mobilities, source, met)
     print("\n".join(results.describe_mobility(mobilities, source, met)))
@@ -64,7 +64,7 @@ def run_mobility(args: Request) -> None:
         for name in site_roads.names(site):
             other = roads.read_local(site.folder / site_roads.file_name(name), mass.raster, site.choices.road.asked,
                                      local=True).polygon
-            print(outlook.road_text(mobilities.decides, road.at_road(mobilities.decides.path, other), name))
+            print(outlook.road_text(mobilities.decides, fall_path.at_road(mobilities.decides.path, other), name))
     for line in (*results.find_mobility_caveats(mass, mobilities), *results.disagreement(mass, mobilities)):
         tell(line)
     print(f"wrote {', '.join(str(args.output / name) for name in results.FILES)}")

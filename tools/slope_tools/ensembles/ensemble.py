@@ -14,11 +14,11 @@ from ..case import run_folders
 from ..deposits import travel_shares
 from ..errors import SlopeError
 from ..findings import Finding, texts
-from ..mobility.exceedance import Mobility
+from ..mobility.known import Mobility
 from ..statistics import emulator, hazard
 from ..statistics.entries import Analysis, Check, Influence, KnownQuantile
 from ..survey.rasters import Place
-from ..tables import combinations, ensemble_types, quantities, withheld_words
+from ..tables import combinations, ensemble_types, quantities, usable
 from ..tables.quantities import On
 from ..tables.rows import Finished, Row, finished_of
 from . import ensemble_maps, farther, known_events
@@ -225,7 +225,7 @@ def describe_ensemble(ensemble: ensemble_types.Ensemble) -> List[str]:
     lines = [f"ensemble: {ensemble.finished} runs of {ensemble.points} points; bounds hold with "
              f"{100 * ensemble.confidence:g} %"]
     of = ensemble.of
-    lines += withheld_words.describe_withheld(ensemble.withheld) if ensemble.withheld else []
+    lines += usable.describe_withheld(ensemble.withheld) if ensemble.withheld else []
     if of:
         entry = ensemble.quantities[of]
         if not ensemble.withheld:

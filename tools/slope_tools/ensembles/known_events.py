@@ -16,12 +16,13 @@ from ..case import logs, run_folders
 from ..digits import metres, percent, three_at_least
 from ..errors import SlopeError
 from ..findings import Finding, texts
-from ..mobility import body, exceedance, known, run_length, weights
+from ..mobility import body, known, run_length, weights
+from ..mobility.known import WORDS, Mobility
 from ..quantiles import within
 from ..statistics import emulator, hazard
 from ..statistics.entries import Analysis, KnownQuantile
 from ..survey.rasters import Place
-from ..tables import answer_words, combinations, ensemble_types, headline, quantities, sizes, usable
+from ..tables import answer_words, combinations, ensemble_types, headline, how_far, quantities, sizes
 from ..tables.quantities import REMOVE
 from ..tables.rows import Finished, Row, finished_of
 from . import conditioned, ensemble_maps, farther, known_influence
@@ -57,7 +58,7 @@ def check_condition(asked: known.Choice, name: Optional[str], site: Optional[Pat
     return Condition(asked, bodies, name is not None)
 
 
-def mobility_of(condition: Condition, folder: Path, summary: Path) -> exceedance.Mobility:
+def mobility_of(condition: Condition, folder: Path, summary: Path) -> Mobility:
     """The Mobility by which runs count; folder, summary: of a run, of whose body it is if there is no site."""
     among = condition.found
     if among is None:
@@ -65,7 +66,7 @@ def mobility_of(condition: Condition, folder: Path, summary: Path) -> exceedance
         terrain = log.terrain and folder / log.terrain
         if not terrain or not terrain.is_file():
             raise SlopeError(folder, "must have a deck with region terrain, for the ground before the collapse")
-        among, why = usable.known_of(run_folders.prefix_of(summary), terrain, condition.asked.about())
+        among, why = how_far.known_of(run_folders.prefix_of(summary), terrain, condition.asked.about())
         if among is None:
             raise SlopeError(folder, f"must have a mass that can be compared with known events: {why}")
     return among.by_set if condition.named and among.by_set else among.decides
@@ -77,7 +78,7 @@ class Runs:
     """Those runs of an ensemble that have a length: rows; point: of the design; failed: number of others."""
 
     def __init__(self, sample: Sample, added: Sequence[farther.Batch], rows: Sequence[Row],
-                 mobility: exceedance.Mobility):
+                 mobility: Mobility):
         self.sample, self.added = sample, added
         self.rows = [row for row in finished_of(rows) if row.length_m is not None]
         self.failed = len(rows) - len(self.rows)
@@ -127,7 +128,7 @@ def resting(runs: Runs) -> List[str]:
     return [sizes.nearest(runs.rows, REMOVE, one).run for one in found if np.isfinite(one)]
 
 
-def weighs(mobility: exceedance.Mobility, runs: Runs) -> bool:
+def weighs(mobility: Mobility, runs: Runs) -> bool:
     """Whether known events weigh the runs."""
     return not mobility.outside and len(runs.rows) >= 2
 
@@ -148,7 +149,7 @@ class Emulated:
     influence: Dict[str, Analysis]
 
 
-def emulate(sample: Sample, added: farther.Added, rows: Sequence[Row], mobility: exceedance.Mobility,
+def emulate(sample: Sample, added: farther.Added, rows: Sequence[Row], mobility: Mobility,
             main: Sequence[str]) -> Emulated:
     """main: quantities whose dependence counts, the one of the curve first."""
     runs = Runs(sample, added.batches, rows, mobility)
@@ -160,7 +161,7 @@ def emulate(sample: Sample, added: farther.Added, rows: Sequence[Row], mobility:
 
 
 def evaluate_known_events(condition: Condition, sample: Sample, added: farther.Added, rows: Sequence[Row],
-                          mobility: exceedance.Mobility, names: Mapping[str, Tuple[str, str]], emulated: Emulated,
+                          mobility: Mobility, names: Mapping[str, Tuple[str, str]], emulated: Emulated,
                           draw: Optional[Draw] = None) -> Evaluated:
     """What the weighted runs say.
 
@@ -170,7 +171,7 @@ def evaluate_known_events(condition: Condition, sample: Sample, added: farther.A
     asked = condition.asked
     known = ensemble_types.Known(
         asked.name(mobility), asked.number(mobility), list(asked.left_out), asked.confined,
-        exceedance.WORDS[mobility.chosen], mobility.volume, mobility.outside, None, [])
+        WORDS[mobility.chosen], mobility.volume, mobility.outside, None, [])
     runs = Runs(sample, added.batches, rows, mobility)
     if not weighs(mobility, runs):
         said = [Finding("no event", {"text": text}) for text in mobility.outside] or [Finding("few lengths")]
@@ -240,7 +241,7 @@ def transferred(several: Sequence[KnownQuantile], runs: Runs, draw: Optional[Dra
     return quantiles
 
 
-def far_by_lobe(runs: Runs, mobility: exceedance.Mobility) -> List[float]:
+def far_by_lobe(runs: Runs, mobility: Mobility) -> List[float]:
     """The shares of known events beyond the runs if other lobes count."""
     return [float(mobility.exceedance(max(row.length_by_lobe_m[k] for row in runs.rows if row.length_by_lobe_m)))
             for k in range(len(run_length.OTHERS))]

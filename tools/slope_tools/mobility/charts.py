@@ -11,9 +11,8 @@ from ..drawing import figures, maps, palettes, pictures
 from ..survey.crs import crs_name
 from ..survey.resampling import sample
 from .body import Body
-from .exceedance import WORDS, Mobility
-from .known import Found
-from .road import AtRoad
+from .fall_path import AtRoad
+from .known import WORDS, Found, Mobility
 
 MARKED = (0.9, 0.5, 0.1, 0.01)      # probabilities that are marked on the path
 STYLES = ("-", "--", ":")           # of the curve that counts, and the others

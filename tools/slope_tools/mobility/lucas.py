@@ -13,8 +13,8 @@ from scipy import stats
 
 from . import fall_path
 from .body import Body
-from .exceedance import Mobility
 from .fall_path import FallPath
+from .known import Mobility
 
 EXPONENT, DEVIATION = -0.0774, 0.0667
 BAND = 0.95             # of the landslides lie in it

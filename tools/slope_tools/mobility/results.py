@@ -16,11 +16,9 @@ from ..survey import geopackage
 from ..survey.geopackage import Layer
 from . import body, lucas
 from .body import Body
-from .exceedance import WORDS, Mobility
-from .fall_path import LINE, TERRAIN
-from .known import Choice, Found, choice, compute_known_mobility
+from .fall_path import LINE, TERRAIN, AtRoad
+from .known import WORDS, Choice, Found, Mobility, choice, compute_known_mobility
 from .landslides import NOT_OF_ROADS
-from .road import AtRoad
 
 TABLE, SUMMARY, MAP, PROFILE = "mobility.csv", "mobility.yaml", "mobility_map.png", "mobility_profile.png"
 LINES = "mobility.gpkg"

@@ -8,7 +8,7 @@ from typing import Iterator, List, NamedTuple, Tuple
 import numpy as np
 from shapely.geometry import LineString, Point
 
-from ..mobility.exceedance import WORDS, Mobility
+from ..mobility.known import WORDS, Mobility
 
 SHARES = {0.5: "half", 0.1: "a tenth"}      # that go farther
 WIDE = 0.04         # half of a mark's length, of the length of the path to the farthest mark

@@ -8,7 +8,7 @@ from .. import digits
 from ..statistics.entries import Kind
 from ..studies import letter
 from ..studies.letter import Letter
-from ..tables import judged, next_step, sizes, usable
+from ..tables import how_far, judged, next_step, sizes
 from ..tables.quantities import ALL
 from . import body, mobility_part, road_part, structures_part, warnings
 from .data import Data
@@ -43,7 +43,7 @@ def letter_of(data: Data, ground) -> Letter:
     if data.study:
         return letter.make_letter(data.study)
     row = data.result.row
-    return Letter(row.released_m3, None, None, usable.reach([row], None, ground.known), [],
+    return Letter(row.released_m3, None, None, how_far.reach([row], None, ground.known), [],
                   [one.kind for one in judged.limits(None, False)], sizes.alone(row.released_m3 / row.ball_m3))
 
 

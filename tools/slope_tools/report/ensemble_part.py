@@ -12,7 +12,7 @@ from ..errors import SlopeError
 from ..findings import texts
 from ..plots import ensemble_charts, figure_maps
 from ..statistics import entries
-from ..tables import ensemble_types, quantities, study_types, withheld_words
+from ..tables import ensemble_types, quantities, study_types, usable
 from .charts import AXIS
 from .data import Data, is_number_text
 from .numbers import CardPart, MainCard, Numbers
@@ -58,7 +58,7 @@ class Ensemble:
         if not entry:
             return None
         if self.about.withheld:
-            return MainCard(withheld_words.UNUSABLE.capitalize(), None, entry.unit, withheld=self.about.withheld,
+            return MainCard(usable.UNUSABLE.capitalize(), None, entry.unit, withheld=self.about.withheld,
                             note=self.design())
         return card(entry, "the runs", self.about.confidence, self.number, self.design())
 

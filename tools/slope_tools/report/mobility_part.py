@@ -5,7 +5,7 @@ The lengths of both are along the fall path, from crown to tip (mobility.run_len
 from typing import Any, List, NamedTuple, Optional, Sequence, Tuple
 
 from ..digits import percent
-from ..mobility import exceedance
+from ..mobility.known import WORDS, Mobility
 from ..mobility.landslides import NOT_OF_ROADS, LandslideKind
 from ..studies.mapped import mass, of_rows
 from ..tables.quantities import BEYOND_MAPPED as BEYOND, LENGTH, OVERLAP
@@ -20,7 +20,7 @@ WHAT = "Known events"
 class Lies(NamedTuple):
     """Where runs lie; mobility: None, and why, where they cannot be compared."""
     lengths: List[float]                # m, of the runs that left a deposit
-    mobility: Optional[exceedance.Mobility]
+    mobility: Optional[Mobility]
     why: str
 
 
@@ -62,12 +62,12 @@ def sentence(counted: Lies, numbers: Numbers, label: str) -> str:
     for kind in (counted.mobility.chosen, *others):
         lies = [counted.mobility.where_lies(length, kind) for length in ends]
         for one in lies:
-            numbers.rows.append((f"known events that reach at most as far, {exceedance.WORDS[kind]}", "%", label,
+            numbers.rows.append((f"known events that reach at most as far, {WORDS[kind]}", "%", label,
                                  percent(one.at_most).split()[-2], 100 * one.at_most))
         shares.append("at least " * lies[-1].beyond
                       + " to ".join(dict.fromkeys(percent(one.at_most) for one in lies)))
     who = "The deposit reaches" if len(ends) == 1 else "The deposits of the runs reach"
-    chosen = exceedance.WORDS[counted.mobility.chosen]
+    chosen = WORDS[counted.mobility.chosen]
     if isinstance(law, LandslideKind):
         return (f"{who} {reach} m: as far as {shares[0]} of landslides of this volume and height do ({law.name}; "
                 f"{chosen}; {shares[1]} by the smaller, {shares[2]} by the larger); the others go farther; "

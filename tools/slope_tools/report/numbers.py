@@ -11,7 +11,7 @@ from ..findings import Finding
 from ..mobility.run_length import ON_PATH
 from ..statistics import rounding
 from ..statistics.entries import Source
-from ..tables import named_run, withheld_words
+from ..tables import named_run, usable
 from ..tables.quantities import ALL, KNOWN, LENGTH, REACH, written
 from ..tables.released import over_runs
 from .data import Data, is_number_text
@@ -113,7 +113,7 @@ def sweep_card(data: Data, numbers: Numbers) -> Optional[MainCard]:
         return None
     road, place = data.study.study.road, best.place_m3
     if best.withheld:
-        return MainCard(withheld_words.UNUSABLE.capitalize(), None, withheld=best.withheld, road=road)
+        return MainCard(usable.UNUSABLE.capitalize(), None, withheld=best.withheld, road=road)
     who = best.label or best.combination
     rounded_ = best.rounded
 

@@ -10,7 +10,7 @@ from ..sites import site_roads
 from ..sites.site_choices import Site
 from ..statistics.entries import Headline
 from ..studies import outdated
-from ..tables import headline, study_file, study_types, usable
+from ..tables import headline, how_far, study_file, study_types
 from ..tables.rows import Finished, finished_of
 
 # folders of study_file.INSIDE, what they are of
@@ -89,7 +89,7 @@ def headline_of(studies: Studies, names: Sequence[str]) -> Optional[Headline]:
     [about] = mine
     rows, road = finished_of(about.runs), about.headline.road if about.headline else None
     return headline.make_headline([replace(about, at_road=road and replace(
-        road, longest_m=usable.longest(rows), brought=usable.at_the_road(rows)))])
+        road, longest_m=how_far.longest(rows), brought=how_far.at_the_road(rows)))])
 
 
 def list_finished_rows(studies: Studies, names: Sequence[str]) -> List[Finished]:

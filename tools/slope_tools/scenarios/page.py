@@ -17,7 +17,7 @@ from ..sites.site_roads import ROAD
 from ..statistics.entries import Headline
 from ..survey import rasters, roads
 from ..survey.rasters import Raster, crs_name
-from ..tables import answer_words, usable
+from ..tables import answer_words, how_far
 from . import method
 from .compare import One, choices_that_differ, different_sizes, differences, read_scenarios, run_of
 
@@ -103,7 +103,7 @@ def list_scenario_numbers(scenario: One, names: Sequence[str], roads: Sequence[s
         return [released, "-", "-", *["-"] * max(1, len(roads)), "not studied as it is"]
     first = next(iter(studied.roads.values()))
     finished, far = method.list_finished_rows(first, names), method.find_farthest_reach(first, names)
-    length = usable.longest(finished)
+    length = how_far.longest(finished)
     return [released, "unknown" if far is None else digits.three(far), "-" if length is None else digits.three(length),
             *(to_remove(method.headline_of(studied.roads[road], names)) if road in studied.roads else "-"
               for road in roads), f"{len(finished)} of {sum(len(about.runs) for about in method.taken(first, names))}"]

@@ -1,6 +1,6 @@
 """When the number of a study is withheld, because it governs nothing: one function for each rule.
 
-A rule takes the Facts of a study and returns a Finding, or None where the number may stand; withheld_words adds the
+A rule takes the Facts of a study and returns a Finding, or None where the number may stand; tables/usable adds the
 command that mends it.
 """
 from enum import Enum

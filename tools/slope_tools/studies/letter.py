@@ -1,18 +1,18 @@
 """The letter with which page 1 begins and the console ends: what must be cleared, how far it goes, which share of known
 events; its parts, then a sentence for each.
 
-The number and its share are of tables/headline, the length of tables/usable.reach(): README.md has the
+The number and its share are of tables/headline, the length of tables/how_far.reach(): README.md has the
 whole way.
 """
 from typing import Callable, List, NamedTuple, Optional, Sequence
 
 from ..digits import percent, three
-from ..mobility.how_far import TAIL, Reach
 from ..seismic import chain_files
 from ..sites.site_bodies import VARIABLE
 from ..statistics.entries import Cause, Code, Headline, Kind, Source
 from ..statistics.entries import PaperPart, Road
 from ..tables import answer_words, ensemble_types, judged, sizes, study_types
+from ..tables.how_far import TAIL, Reach
 from ..tables.rows import finished_of
 from .road_numbers import Number, read_road_numbers
 

@@ -14,14 +14,14 @@ from ..ensembles import ensemble
 from ..ensembles.known_events import TAILS, Draw
 from ..findings import Finding, finding
 from ..mobility import known
-from ..mobility.exceedance import Mobility
+from ..mobility.known import Mobility
 from ..runs import repeats
 from ..seismic import chain_files
 from ..sites.site_bodies import VARIABLE
-from ..statistics.entries import Source
 from ..statistics.conservative_volume import Scatter
-from ..tables import (combinations, elastic, ensemble_types, intensity, judged, quantities, road_runs, step_check,
-                      study_types, usable, withheld_words)
+from ..statistics.entries import Source
+from ..tables import (combinations, elastic, ensemble_types, how_far, intensity, judged, quantities, road_runs,
+                      step_check, study_types, usable)
 from ..tables.rows import Finished, Row, finished_of
 from .size_runs import AtFinest
 
@@ -72,7 +72,7 @@ class Read(NamedTuple):
     rows: List[Row]
     road: bool
     among: known.Known
-    events: Optional[usable.Events]
+    events: Optional[how_far.Events]
     mobility: Optional[Mobility]
     emulated: Optional[ensemble.Emulated]
     observed: Optional[study_types.Observed]
@@ -80,7 +80,7 @@ class Read(NamedTuple):
     draw: Optional[Draw]
     elastic: Optional[elastic.Runs]
     problem: Optional[str]
-    case: Optional[withheld_words.Case]
+    case: Optional[usable.Case]
     balls_thick: Optional[float]
     defaults: Mapping[str, str]
 
@@ -138,7 +138,7 @@ def evaluate_study(questions: Questions, read: Read, header: study_types.Header)
         observed=read.observed,
         roads=[dict(one) for one in questions.roads], warnings=collect_study_warnings(questions, read), runs=rows,
         headline=None,
-        reach=usable.reach(finished, source, read.among),
+        reach=how_far.reach(finished, source, read.among),
         stretches=evaluate_stretches(
             finished, events.weights if (events := ensemble_types.weighted(weighted)) else None)
         if read.road and finished else None,

@@ -8,8 +8,8 @@ from ..digits import metres, three
 from ..ensembles.farther import REACHED
 from ..errors import SlopeError
 from ..geometry import extent
-from ..mobility import body, known, results, road
-from ..mobility.exceedance import Mobility
+from ..mobility import body, fall_path, known, results
+from ..mobility.known import Mobility
 from ..mobility.fall_path import TERRAIN, FallPath
 from ..sites import site_budget, site_choices, site_disk, site_roads
 from ..survey import roads
@@ -38,7 +38,7 @@ def describe_outlook(folder: Path) -> List[str]:
         length, fall = (metres(values[-1]) for values in (counts.path.length, counts.path.fall))
         lines += [f"fall path of {length}, down to {fall} below the crown, {counts.path.end}",
                   events_text(counts, asked)]
-        met = {name: road.at_road(counts.path, roads.read_local(
+        met = {name: fall_path.at_road(counts.path, roads.read_local(
             folder / site_roads.file_name(name), mass.raster, choices.road.asked, local=True).polygon)
             for name in site_roads.names(site) or [""] * bool(choices.road.file)}
         lines += [road_text(counts, one, name) for name, one in met.items()]
@@ -64,7 +64,7 @@ def events_text(counts: Mobility, asked: known.Choice) -> str:
     return f"{name}: " + (results.lengths(counts, counts.chosen) if counts.in_range else "; ".join(counts.outside))
 
 
-def road_text(counts: Mobility, met: road.AtRoad, name: str) -> str:
+def road_text(counts: Mobility, met: fall_path.AtRoad, name: str) -> str:
     """Which share of known events reaches and passes the road; name: of one of several."""
     where = "first met" if met.met else f"which the fall path passes {metres(met.beside)} beside,"
     return (f"the road{name and f' {name}'}, {where} after {metres(met.length)}: "

@@ -10,11 +10,11 @@ from ..deposits.road_axis import axes_of
 from ..ensembles import ensemble, known_events
 from ..errors import SlopeError
 from ..mobility import known
-from ..mobility.exceedance import Mobility
+from ..mobility.known import Mobility
 from ..runs import jobs
 from ..runs.repeats import Repeat
 from ..survey import geopackage, roads
-from ..tables import elastic, headline, road_runs, study_maps, study_types, usable, withheld_words
+from ..tables import elastic, headline, how_far, road_runs, study_maps, study_types, usable
 from ..tables.rows import Row, finished_of
 from . import body_depth, console, files, mapped, size_runs
 from .outcome import Questions, Read, evaluate_study
@@ -77,14 +77,14 @@ def read_results(setup: Setup, questions: Questions, todo: Sequence[Repeat], row
     if first and row:
         prefix = run_folders.prefix_of(run_folders.summary_of(setup.output, row.summary))
         try:
-            among = usable.known_of(prefix, terrain_of(first.folder, first.log), questions.among, setup.body)
+            among = how_far.known_of(prefix, terrain_of(first.folder, first.log), questions.among, setup.body)
         except SlopeError as error:     # a terrain that only LAMMPS finds, a raster that was changed
             if setup.road:
                 raise
             among = known.Known(None, str(error))
         if setup.road:
             raster = placed(run_folders.load_raster(prefix, "thickness"), first)
-            events = usable.compute_events_at_road(among.found, setup.road.read(raster).polygon)
+            events = how_far.compute_events_at_road(among.found, setup.road.read(raster).polygon)
     if row and questions.order and questions.order.condition:
         summary = run_folders.summary_of(setup.output, row.summary)
         mobility = known_events.mobility_of(questions.order.condition, summary.parent, summary)
@@ -93,8 +93,8 @@ def read_results(setup: Setup, questions: Questions, todo: Sequence[Repeat], row
                                      setup.output) if row and questions.most_elastic else None
     size = size_runs.summarise_finer_runs(setup, questions.sizes) if row and questions.sizes else None
     return Read(rows, setup.road is not None, among, events, mobility, emulated, observed, size, None, most, problem,
-                withheld_words.Case(setup.deck, questions.site, row.variables, round(row.released_m3 / row.ball_m3),
-                                    given=setup.given) if row else None,
+                usable.Case(setup.deck, questions.site, row.variables, round(row.released_m3 / row.ball_m3),
+                            given=setup.given) if row else None,
                 body_depth.in_balls(setup, finished), defaults)
 
 

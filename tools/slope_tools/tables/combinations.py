@@ -10,7 +10,7 @@ from ..runs import jobs
 from ..runs.repeats import Settings, key_of
 from ..statistics import conservative_volume, rounding
 from ..statistics.conservative_volume import Combination, Scatter
-from . import quantities, study_types, withheld_words
+from . import quantities, study_types, usable
 from .rows import Finished, Row, finished_of
 
 GROUND = ("pattern", "spacing", "angle")        # variables of decks that make another ground
@@ -241,7 +241,7 @@ def describe_combinations(best: study_types.Conservative) -> List[str]:
         return rounding.format_rounded(value, best.place_m3)
 
     if best.withheld:
-        return [*withheld_words.describe_withheld(best.withheld), *(f"caveat: {text}" for text in texts(best.doubts))]
+        return [*usable.describe_withheld(best.withheld), *(f"caveat: {text}" for text in texts(best.doubts))]
     parts = {name: best.rounded[f"{name}_m3"] for name in ("volume", "mean", "chance")}
     if parts["chance"] is None:
         text = f"{best.kind}: {number(parts['volume'])} m3 to remove; run {best.run}"

@@ -112,7 +112,7 @@ class Ensemble:
     doubts: List[Finding]
     maps: List[MapEntry]
     known_events: Optional[Union[Weighted, Known]]
-    withheld: List[Finding]         # why: withheld_words
+    withheld: List[Finding]         # why: usable.with_remedies()
 
 
 def weighted(ensemble: Optional[Ensemble]) -> Optional[Weighted]:

@@ -15,7 +15,7 @@ from . import answer_words, study_types
 from .rows import finished_of
 from .sizes import VARIABLE
 from .study_types import NextStep
-from .withheld_words import times_the_balls
+from .usable import times_the_balls
 
 MORE = 2            # times the runs, where more are needed
 LESS = {"friction": 0.0, "rolling": 0.0, "spacing": 0.2}      # what resists less with a smaller value, and its least

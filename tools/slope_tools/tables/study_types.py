@@ -8,12 +8,11 @@ from dataclasses import dataclass
 from typing import Any, Dict, List, Mapping, Optional
 
 from ..findings import Finding
-from ..mobility.how_far import Reach
 from ..sites.site_budget import duration_text
 from ..statistics.ball_sizes import Left
-from ..statistics.entries import Headline
-from ..statistics.entries import Road
+from ..statistics.entries import Headline, Road
 from .ensemble_types import Ensemble, MapEntry
+from .how_far import Reach
 from .rows import Row
 
 PROGRAM = "tools/slope "
@@ -67,7 +66,7 @@ class Difference:
 
 @dataclass(frozen=True)
 class Zero:
-    """What a volume of 0 is worth (withheld_words.zero)."""
+    """What a volume of 0 is worth (usable.zero)."""
     runs: int
     exceeded_at_most: float
     known_events: Optional[float]
@@ -98,7 +97,7 @@ class Conservative:
     remove_m3: float
     differences: List[Difference]
     doubts: List[Finding]
-    withheld: List[Finding]         # why: withheld_words
+    withheld: List[Finding]         # why: usable.with_remedies()
     zero: Optional[Zero]
     transfer_m3: Optional[List[float]] = None   # how far the mean may be below and above, as balls are of several sizes
 
@@ -276,7 +275,7 @@ class Chain:
     peaks_gal: List[float]
     curves: List[ChainCurve]
     per_year: Optional[List[PerYear]]
-    withheld: List[Finding]         # why: withheld_words
+    withheld: List[Finding]         # why: usable.with_remedies()
     files: List[str]
     doubts: List[Finding]
 

@@ -1,86 +1,33 @@
-"""Whether the number of a study may be used: the Facts that withheld looks at, from its rows; and how far known events
-of the mass, and its runs, go: reach(), and at a road compute_events_at_road()."""
-import math
+"""Whether the number of a study may be used: the Facts that withheld looks at, from its rows; the command that mends
+each reason, and what is said in the place of the number."""
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from shlex import quote
+from typing import Any, List, Mapping, NamedTuple, Optional, Sequence
 
-from ..deposits import deposit, left_words, scar, travel_shares
+from ..deposits import left_words
 from ..deposits.road_sides import BEFORE
-from ..findings import Finding
-from ..mobility import how_far, known
-from ..mobility.road import at_road
-from ..mobility.run_length import ON_PATH
-from ..statistics import entries, withheld
-from ..statistics.withheld import Facts
-from . import study_types, withheld_words
+from ..digits import cents, percent
+from ..findings import Finding, texts
+from ..runs import again
+from ..statistics.withheld import BALLS, CONFIDENCE, Facts, Kind, exceeded_at_most, reasons
+from . import how_far, study_types
+from .how_far import Events
 from .rows import Finished, Row, finished_of
-from .withheld_words import Case
+
+UNUSABLE = "not usable as a conservative volume"
+MARGIN = 1.1            # of the balls: chance
+LEAST = 2.0             # times the balls: fewer tell hardly more than the study that is there
 
 
-class Events(NamedTuple):
-    """What known events of the mass's volume and height did.
-
-    median: m, length that half of them exceed, that of the fall path where it ends before; None: they withhold nothing,
-    see known.Found.strict. near, far: m, the edges of the road; reached, passed: shares of them beyond these, by the
-    smaller and the larger scatter.
-    """
-    median: Optional[float]
-    near: float
-    far: float
-    reached: Tuple[float, float]
-    passed: Tuple[float, float]
-
-    def road(self, rows: Sequence[Finished]) -> entries.Road:
-        """With the runs of a study."""
-        return entries.Road(self.near, self.far, sorted(self.reached), sorted(self.passed), longest(rows),
-                            at_the_road(rows))
-
-
-def known_of(prefix: Path, terrain: Optional[Path], choice: Mapping[str, Any],
-             site: Optional[Path] = None) -> known.Known:
-    """The mass of a run among known events; prefix: of its deposit; terrain: the ground before it; choice: of the
-    events, see known.of_about(); site: see known.of_mass()."""
-    read = deposit.read_deposit(prefix, terrain, lambda text: None)
-    return known.of_mass(read.raster, *scar.before(read.raster, read.base, terrain), choice, site)
-
-
-def reach(rows: Sequence[Finished], source: Optional[entries.Source], among: known.Known) -> Optional[how_far.Reach]:
-    """How far the mass of runs goes, without those that were added for their length; source: None of a run alone."""
-    mine = [row for row in rows if row.length_m is not None and not row.batch]
-    lengths = [math.inf if travel_shares.lost(row) else row.length_m or 0.0 for row in mine]
-    return how_far.pool(lengths, among.found and among.found.decides, source.value if source else None,
-                        mine[0].length_is or ON_PATH if mine else ON_PATH, among.why)
-
-
-def compute_events_at_road(mobilities: Optional[known.Found], road: Any) -> Optional[Events]:
-    """What they did at a road, polygons in local metres; None where the mass has no fall path."""
-    if mobilities is None:
-        return None
-    one, median = mobilities.decides, mobilities.strict and mobilities.strict.length_at(0.5)
-    if mobilities.strict and median is None:
-        median = float(one.path.length[-1])
-    at = at_road(one.path, road)
-    return Events(median, at.length, at.passed, one.shares(at.length), one.shares(at.passed))
-
-
-def longest(rows: Sequence[Finished]) -> Optional[float]:
-    """Length (m) of the longest of the runs that finished."""
-    return max((row.length_m for row in rows if row.length_m is not None), default=None)
-
-
-def at_the_road(rows: Sequence[Finished]) -> entries.AtRoad:
-    """How many of the runs that finished bring a ball to the road, or past it: what lies there at the end, or left the
-    terrain there. A lobe counts, however small.
-    """
-    ball = [row.ball_m3 for row in rows]
-    past = [row.at_road.beyond_road_m3 or 0.0 for row in rows]
-    brought = [(row.at_road.on_road_m3 or 0.0) + one for row, one in zip(rows, past)]
-    balls, most = max((one / size, one) for one, size in zip(brought, ball))
-    left = [row.at_road.remove_m3 for row in rows if row.at_road.remove_m3]
-    return entries.AtRoad(len(rows), sum(one >= size for one, size in zip(brought, ball)),
-                          sum(one >= size for one, size in zip(past, ball)), most, balls, min(left, default=0.0),
-                          max(left, default=0.0))
+class Case(NamedTuple):
+    """What was run: for the command that mends a reason."""
+    deck: Path
+    site: Optional[Path]            # its folder, where it is one
+    variables: Mapping[str, Any]    # of a run: name and value
+    balls: int                      # in the body
+    sampled: bool = False           # an ensemble
+    given: Any = None               # the request of the study; None: not known
 
 
 def left_before(row: Finished) -> float:
@@ -101,7 +48,7 @@ def facts(rows: Sequence[Row], volume: float, on_road: float, events: Optional[E
         if worst.at_road.left_before_road_m3 is None else ""
     return Facts(volume, on_road, min(row.ball_m3 for row in finished), len(rows), len(rows) - len(finished),
                  sum(not row.at_rest for row in finished), left_before(worst) / worst.released_m3,
-                 longest(finished), events and events.median, where, left_words.to_add(left))
+                 how_far.longest(finished), events and events.median, where, left_words.to_add(left))
 
 
 def reasons_of_ensemble(rows: Sequence[Row], events: Optional[Events], case: Case) -> List[Finding]:
@@ -112,7 +59,7 @@ def reasons_of_ensemble(rows: Sequence[Row], events: Optional[Events], case: Cas
     finished = finished_of(rows)
     largest = max(row.at_road.remove_m3 for row in finished)
     on_road = max(row.at_road.remove_on_road_m3 for row in finished)
-    return withheld_words.with_remedies(withheld.reasons(facts(rows, largest, on_road, events)), case)
+    return with_remedies(reasons(facts(rows, largest, on_road, events)), case)
 
 
 def judge(best: study_types.Conservative, rows: Sequence[Row], events: Optional[Events],
@@ -123,10 +70,118 @@ def judge(best: study_types.Conservative, rows: Sequence[Row], events: Optional[
     """
     mine = [row.at_road.remove_on_road_m3 for row in finished_of(rows) if row.set == best.set]
     assert best.volume_m3 is not None        # until it is judged
-    found = withheld.reasons(facts(rows, best.volume_m3, sum(mine) / len(mine), events))
+    found = reasons(facts(rows, best.volume_m3, sum(mine) / len(mine), events))
     if found:
-        return replace(best, withheld=withheld_words.with_remedies(found, case), volume_m3=None,
+        return replace(best, withheld=with_remedies(found, case), volume_m3=None,
                        rounded={**best.rounded, "volume_m3": None})
     if best.volume_m3 == 0:
-        return replace(best, zero=withheld_words.zero(len(finished_of(rows)), events and max(events.reached)))
+        return replace(best, zero=zero(len(finished_of(rows)), events and max(events.reached)))
     return best
+
+
+# --- what mends a reason ---
+
+def suggest_withheld_remedy(reason: Finding, case: Case) -> str:
+    """The command that mends it."""
+    if reason.kind == Kind.BALLS:
+        return finer(case, times_the_balls(reason.numbers["number"]))
+    if reason.kind == Kind.MOBILITY:
+        return mobile(case)
+    if reason.kind == Kind.LEFT:
+        more = f", by {reason.numbers['add']}" if reason.numbers["add"] else ""
+        return changed(case, f"a larger elevation model{more} (terrain.files, terrain.bounds)",
+                       f"a larger terrain and box in the deck{more}")
+    if 2 * reason.numbers["failed"] > reason.numbers["number"]:
+        return f"once the cause of the failures is removed: {repeat_command(case, 'the same command again')}"
+    if case.site is None and "duration" in case.variables:
+        return with_value(case, "duration", twice(case))
+    return changed(case, "more time (model.duration)", "more time in the deck")
+
+
+def times_the_balls(on_road: float) -> float:
+    """How many times the balls bring enough of them to a road on which so many lie."""
+    return max(LEAST, MARGIN * BALLS / max(on_road, 1.0))
+
+
+def finer(case: Case, factor: float) -> str:
+    """The same with so many times the balls."""
+    number = round(float(f"{factor * case.balls:.2g}"))
+    if case.site:
+        return anew(case, f" --balls {number}")
+    try:
+        return with_value(case, "d", f"{float(case.variables['d']) / factor ** (1 / 3):.3g}")
+    except (KeyError, ValueError):
+        return f"the same with smaller balls, about {number:,.0f} of them"
+
+
+def mobile(case: Case) -> str:
+    """An ensemble that has mobile masses too, weighted by the known events."""
+    if case.sampled:
+        return "the same command with --vary of more mobile masses: less friction and rolling, a denser field"
+    known = {"sample": 64, "known": "rock_avalanches"}
+    ranges = {name: span for name, span in (("friction", "10:30"), ("rolling", "0:0.1")) if name in case.variables}
+    if case.site:
+        place = quote(str(case.site))
+        return again.command(case.given, paper=False, fine=None, **known) if case.given else (
+            f"tools/slope study {place} --sample 64 --known rock_avalanches")
+    if not ranges:
+        return "a calibration with a past event: tools/slope calibrate --help"
+    if case.given:
+        return again.command(case.given, **again.as_ensemble(case.given, ranges, **known))
+    return ("the same command with --sample 64 --known rock_avalanches " +
+            " ".join(f"--vary {name}={span}" for name, span in ranges.items()) + " instead of --set")
+
+
+def changed(case: Case, in_site: str, in_deck: str) -> str:
+    """What must be changed, and what is run then."""
+    if not case.site:
+        return f"{in_deck}, then: {repeat_command(case, 'the same command with --anew', anew=True)}"
+    return f"{in_site} in {quote(str(case.site))}/site.yaml, then: {anew(case)}"
+
+
+def anew(case: Case, options: str = "") -> str:
+    """A site and its study, or ensemble, once more; runs of the deck before are not mixed with new ones."""
+    study = f" && {again.command(case.given, anew=True)}" if case.given else "; the same command with --anew"
+    return f"tools/slope site {quote(str(case.site))}{options}{study}"
+
+
+def repeat_command(case: Case, words: str, **changes: Any) -> str:
+    """The command once more; words: for it, where it is not known."""
+    return again.command(case.given, **changes) if case.given else words
+
+
+def with_value(case: Case, name: str, value: str) -> str:
+    """The same with another value of a variable."""
+    words = f"the same command with --set {name}={value}"
+    return again.command(case.given, **again.with_value(case.given, name, value)) if case.given else words
+
+
+def twice(case: Case) -> str:
+    try:
+        return f"{2 * float(case.variables['duration']):g}"
+    except ValueError:
+        return "SECONDS"
+
+
+def with_remedies(several: Sequence[Finding], case: Case) -> List[Finding]:
+    """Reasons with what mends each."""
+    return [one._replace(remedy=suggest_withheld_remedy(one, case)) for one in several]
+
+
+def describe_withheld(withheld: Sequence[Finding]) -> List[str]:
+    """What stands in the place of the number, of with_remedies()."""
+    return [f"{UNUSABLE}:", *(f"  {text}" for text in texts(withheld))]
+
+
+def zero(runs: int, known: Optional[float]) -> study_types.Zero:
+    """What study.yaml says of a volume of 0: with which probability it is exceeded.
+
+    known: the share of known events that go as far as the road, None where no set covers the mass.
+    """
+    most = exceeded_at_most(runs)
+    which = f"any of {runs} runs" if runs > 1 else "the only run"
+    words = (f"nothing is to be removed in {which}: in another one something is with a probability of at most "
+             f"{cents(most)} ({100 * CONFIDENCE:g} % confidence)")
+    if known is not None:
+        words += f"; {percent(known)} of known events of this volume and height go as far as the road"
+    return study_types.Zero(runs, most, known, words)
