@@ -18,7 +18,6 @@ sys.path[:0] = [str(TOP / "tests" / "tools"), str(TOP / "tools")]
 
 import known_twins as twins  # noqa: E402  (after the path is set)
 from slope_tools.ensembles import conditioned  # noqa: E402
-from slope_tools.mobility import weights  # noqa: E402
 from slope_tools.statistics import designs  # noqa: E402
 
 RUNS, REFERENCE, MANY = 100, 4000, 400
@@ -26,7 +25,7 @@ LEVELS = np.array([5e3, 2e4, 4e4, 7e4])     # m3
 
 
 def mass_of(lengths):
-    return conditioned.masses(weights.of_lengths(lengths, twins.exceedance(lengths)))
+    return conditioned.masses(conditioned.compute_weights(lengths, twins.exceedance(lengths)))
 
 
 def shares(lengths, volumes):

@@ -18,7 +18,6 @@ sys.path[:0] = [str(TOP / "tests" / "tools"), str(TOP / "tools")]
 import known_twins as twins  # noqa: E402  (after the path is set)
 import test_farther as stand_in  # noqa: E402
 from slope_tools.ensembles import conditioned  # noqa: E402
-from slope_tools.mobility import weights  # noqa: E402
 from slope_tools.statistics import designs  # noqa: E402
 
 
@@ -33,7 +32,7 @@ def error(one, found):
 
 def main(repetitions=40):
     lengths, volumes = stand_in.response(designs.points(designs.SOBOL, 3, 40000, 10), np.random.default_rng(1))
-    mass = conditioned.masses(weights.of_lengths(lengths, twins.exceedance(lengths)))
+    mass = conditioned.masses(conditioned.compute_weights(lengths, twins.exceedance(lengths)))
     truth = mass.share @ conditioned.are_above_levels(volumes, stand_in.LEVELS) + mass.far
     held = {True: [], False: []}
     for seed in range(repetitions):

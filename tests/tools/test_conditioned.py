@@ -17,7 +17,6 @@ from tiny_collapse import read_asc, rows_of
 from slope_tools import cli
 from slope_tools.deposits import travel_shares
 from slope_tools.ensembles import conditioned, known_events
-from slope_tools.mobility import weights
 from slope_tools.quantiles import within
 from slope_tools.report import ensemble_part
 from slope_tools.report.numbers import Numbers
@@ -33,7 +32,7 @@ LEVELS = np.array([5e3, 2e4, 4e4, 7e4])     # m3
 
 
 def mass_of(lengths):
-    return conditioned.masses(weights.of_lengths(lengths, twins.exceedance(lengths)))
+    return conditioned.masses(conditioned.compute_weights(lengths, twins.exceedance(lengths)))
 
 
 def shares(lengths, volumes):
@@ -104,7 +103,7 @@ def test_events_before_the_shortest_run_may_leave_more_on_a_road(shortest):
     """A road at 500 m that the runs pass and 2 to 22 % of events may not: the bounds hold what these leave there."""
     law = stats.lognorm(0.115 * np.log(10), scale=800)
     lengths, events = np.linspace(shortest, 1500, 64), law.ppf((np.arange(4000) + 0.5) / 4000)
-    mass = conditioned.masses(weights.of_lengths(lengths, law.sf(lengths)))
+    mass = conditioned.masses(conditioned.compute_weights(lengths, law.sf(lengths)))
     assert mass.early.sum() == pytest.approx(law.cdf(shortest))
     left, lost = (10000 * np.exp(-((length - 500) / 150) ** 2) for length in (lengths, events))
     curve = conditioned.compute_known_curve(left, mass)
@@ -122,7 +121,7 @@ GAPPED = np.concatenate([np.linspace(700, 1200, 40), np.linspace(1500, 2600, 24)
 @pytest.mark.parametrize("values", [GAPPED, 5e3 + 2 * GAPPED, 2e4 - 3 * GAPPED, np.full(64, 7.0)])
 def test_a_quantile_in_a_gap_is_no_number(share, values):
     """Of the length it holds the known one; others have it where they depend on what ends in the gap."""
-    found = weights.of_lengths(GAPPED, LAW.sf(GAPPED))
+    found = conditioned.compute_weights(GAPPED, LAW.sf(GAPPED))
     (low, high, _), = found.gaps
     assert (low, high) == (1200, 1500)
     mass = conditioned.masses(found)
@@ -141,7 +140,7 @@ def test_a_quantile_in_a_gap_is_no_number(share, values):
 
 def test_without_a_gap_there_is_no_either():
     lengths = LAW.ppf(np.linspace(0.01, 0.99, 64))
-    mass = conditioned.masses(weights.of_lengths(lengths, LAW.sf(lengths)))
+    mass = conditioned.masses(conditioned.compute_weights(lengths, LAW.sf(lengths)))
     assert mass.either is None
     one, = conditioned.compute_known_quantiles(conditioned.compute_known_curve(lengths, mass), (0.5,), lengths, mass)
     assert one.gap is None
@@ -166,7 +165,7 @@ def test_words_of_a_quantile_in_a_gap(gap):
 
 
 def test_runs_that_reach_no_event_say_nothing():
-    mass = conditioned.masses(weights.of_lengths([2000, 2000], [0.4, 0.4]))
+    mass = conditioned.masses(conditioned.compute_weights([2000, 2000], [0.4, 0.4]))
     curve = conditioned.compute_known_curve([1.0, 2.0], mass)
     assert (curve.low[-1], curve.high[0]) == (0, 1)
 
@@ -216,7 +215,7 @@ def test_an_ensemble_is_weighted(slope, succeed, capsys, monkeypatch):
     weight, length, beyond, ratio = (np.array([float(row[key]) for row in rows])
                                      for key in ("weight", "length_m", "beyond", "ratio"))
     assert weight.sum() == pytest.approx(found["reached"], abs=1e-4)
-    again = weights.of_lengths(length, beyond, ratio)
+    again = conditioned.compute_weights(length, beyond, ratio)
     assert again.weights == pytest.approx(weight, abs=1e-4)
 
     # the runs do not reach far enough: half as many are added, which count in nothing but what is weighted

@@ -9,7 +9,6 @@ import known_twins as twins
 
 from slope_tools.ensembles import conditioned, farther, known_study, sample
 from slope_tools.errors import SlopeError
-from slope_tools.mobility import weights
 from slope_tools.statistics import designs, distributions
 from slope_tools.statistics.entries import Code
 from slope_tools.studies import farther_runs
@@ -62,7 +61,7 @@ class Ensemble:
     def weights(self, ratio=True, first=False):
         part = slice(RUNS if first else None)
         given = farther.ratio(self.u, self.batch, self.added.batches) if ratio else None
-        return weights.of_lengths(self.lengths[part], twins.exceedance(self.lengths[part]), given)
+        return conditioned.compute_weights(self.lengths[part], twins.exceedance(self.lengths[part]), given)
 
 
 @pytest.fixture(scope="module")
@@ -74,7 +73,7 @@ def ensembles():
 def reference():
     u = designs.points(designs.SOBOL, 3, 20000, 10)
     lengths, volumes = response(u, np.random.default_rng(1))
-    return u, volumes, conditioned.masses(weights.of_lengths(lengths, twins.exceedance(lengths)))
+    return u, volumes, conditioned.masses(conditioned.compute_weights(lengths, twins.exceedance(lengths)))
 
 
 def test_more_is_reached(ensembles):
@@ -121,8 +120,8 @@ def test_ratios_by_hand():
     inside, outside = 5 / (4 + 1 / 0.1), 5 / 4
     assert ratio == pytest.approx([inside, inside, outside, outside, inside])
     lengths = np.random.default_rng(3).uniform(900, 4000, 60)
-    plain = weights.of_lengths(lengths, twins.exceedance(lengths))
-    same = weights.of_lengths(lengths, twins.exceedance(lengths), np.full(60, 0.3))
+    plain = conditioned.compute_weights(lengths, twins.exceedance(lengths))
+    same = conditioned.compute_weights(lengths, twins.exceedance(lengths), np.full(60, 0.3))
     assert same.weights == pytest.approx(plain.weights, rel=1e-12)
 
 

@@ -5,14 +5,14 @@ import pytest
 
 
 import known_twins as twins
-from slope_tools.mobility import weights
+from slope_tools.ensembles import conditioned
 from slope_tools.statistics import designs
 
 RUNS = 100
 
 
 def weighted(lengths):
-    return weights.of_lengths(lengths, twins.exceedance(lengths))
+    return conditioned.compute_weights(lengths, twins.exceedance(lengths))
 
 
 @pytest.mark.parametrize("kind", designs.KINDS)
@@ -64,22 +64,22 @@ def test_weights_are_the_quotient_of_densities():
     from scipy import stats
     runs, events = stats.norm(5, 1.5), stats.norm(5.5, 1)
     x = runs.ppf((np.arange(2000) + 0.5) / 2000)
-    found = weights.of_lengths(x[::-1], events.sf(x[::-1]))
+    found = conditioned.compute_weights(x[::-1], events.sf(x[::-1]))
     exact = events.pdf(x) / runs.pdf(x) / 2000
     inside = (x > 2.5) & (x < 8)
     assert found.weights[::-1][inside] == pytest.approx(exact[inside], rel=0.06)
 
 
 def test_runs_of_one_length():
-    found = weights.of_lengths([1000, 2000, 2000, 2000, 3000], [1, 0.5, 0.5, 0.5, 0])
+    found = conditioned.compute_weights([1000, 2000, 2000, 2000, 3000], [1, 0.5, 0.5, 0.5, 0])
     assert found.weights.sum() == pytest.approx(1)
-    found = weights.of_lengths([2000, 2000], [0.4, 0.4])
+    found = conditioned.compute_weights([2000, 2000], [0.4, 0.4])
     assert (found.reached, found.short, found.far, found.effective) == (0, pytest.approx(0.6), pytest.approx(0.4), 0)
     assert (found.weights == 0).all()
 
 
 def test_few_runs_share_what_lies_between_two_of_them():
-    found = weights.of_lengths([3000, 1000, 2000], [0.1, 0.8, 0.5])
+    found = conditioned.compute_weights([3000, 1000, 2000], [0.1, 0.8, 0.5])
     assert found.window == 1
     assert found.weights == pytest.approx([0.2, 0.15, 0.35])
     assert found.effective == pytest.approx(0.7 ** 2 / (0.2 ** 2 + 0.15 ** 2 + 0.35 ** 2))

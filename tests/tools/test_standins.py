@@ -11,7 +11,7 @@ import numpy as np
 
 
 from slope_tools.ensembles import conditioned
-from slope_tools.mobility import events, relation, weights
+from slope_tools.mobility import events, relation
 from slope_tools.statistics import designs
 
 RELATION = relation.of_events(events.read_events())
@@ -35,7 +35,7 @@ def stand_in(rng, mean_exponent):
     u = designs.points(designs.SOBOL, 3, RUNS, int(rng.integers(1000)))
     lengths = RELATION.quantile(0.5, volume, fall) * 10 ** (-0.5 + u[:, 0] + 0.02 * rng.standard_normal(RUNS))
     found = on_road(1e6 * volume, lengths, at, mean_exponent - 0.4 + 0.8 * u[:, 1], 0.7 + 0.6 * u[:, 2])
-    weighted = weights.of_lengths(lengths, RELATION.exceedance(lengths, volume, np.full(RUNS, fall)))
+    weighted = conditioned.compute_weights(lengths, RELATION.exceedance(lengths, volume, np.full(RUNS, fall)))
     assert weighted.far < 0.05
     curve = conditioned.compute_known_curve(found, conditioned.masses(weighted))
     return truth, [one.value for one in conditioned.compute_known_quantiles(curve, BAND)]

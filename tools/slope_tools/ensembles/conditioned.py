@@ -1,10 +1,26 @@
-"""How likely a value is exceeded if the runs end where known events ended: weighted curves, quantiles and bounds.
+"""Weights of runs such that the weighted runs end where known events ended on this path; how likely a value is exceeded
+then: weighted curves, quantiles and bounds.
 
-The share of known events whose run exceeds v is an integral over their lengths, of which the weights (mobility.weights)
-make a sum over the runs in the order of their lengths. What scatters in it is whether a run of a length exceeds v, not
-where the runs lie: so the variance is that of successive differences, for neighbours in this order have nearly the same
-length (Wolter, Introduction to Variance Estimation, 2007, chapter 8). The plain bootstrap, which draws the
-lengths anew, is too narrow where the response jumps.
+Data-consistent inversion (Butler, Jakeman and Wildey, SIAM Journal on Scientific Computing 40 (2018), A984-A1011): a
+run weighs the density of the known events at its length over the density of the runs there; runs of one length keep
+the parameters' distribution as given. Neither density is estimated on its own. The runs in the order of their lengths
+divide the known events among themselves: each has a cell, from halfway (in known events) to the run before to halfway
+to the run after, and what lies in a cell is the quotient of both densities over the number of runs. A single cell
+scatters as the distance to the next run does; so a weight is the mean of the cells of a window of about the root of the
+number of runs, reflected at both ends. A kernel density of log L was tried instead: it follows the known events less
+well, and needs a width and a correction at the ends.
+
+Points that do not follow the parameters' distribution have a ratio, of its density over theirs. A cell is divided among
+the runs of its window in proportion to the ratio over its mean around each run: this makes up for the parameters of
+runs of one length, and leaves the lengths as the cells have them. With equal ratios that is the mean again.
+
+Known events shorter than the shortest run, and those longer than the longest one, are in no weight: they are reported.
+
+The share of known events whose run exceeds v is an integral over their lengths, of which the weights make a sum over
+the runs in the order of their lengths. What scatters in it is whether a run of a length exceeds v, not where the runs
+lie: so the variance is that of successive differences, for neighbours in this order have nearly the same length
+(Wolter, Introduction to Variance Estimation, 2007, chapter 8). The plain bootstrap, which draws the lengths anew, is
+too narrow where the response jumps.
 
 The points of a design are more even than independent ones. By how much this lowers the variance is found on emulators
 of the length and of the quantity: many designs of the same kind against as many of independent points, each weighted
@@ -15,17 +31,21 @@ near the source they may leave more), so that in an upper bound they exceed ever
 beyond the longest exceed every value, in a lower bound none; in places the longest run stands for them, see
 weigh_runs().
 """
+import math
 from dataclasses import dataclass
-from typing import Callable, ClassVar, List, Optional, Sequence, Tuple
+from typing import Callable, ClassVar, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 from scipy import linalg, stats
 
-from ..mobility import weights
 from ..quantiles import within
 from ..statistics import designs, hazard
 from ..statistics.entries import KnownQuantile
+from ..tables.ensemble_types import Gap
 
+GAP = 0.05              # share of the known events in it from which on a gap is one
+NEAR = 8                # distances on either side of a gap that say how large one is there
+ONCE = 20               # a gap is one that chance makes in at most one of so many ensembles
 SIMULATED = 100         # designs of either kind
 LEVELS = 25             # values at which designs are compared
 UNSEEN = 0.5            # pairs of neighbours that differ, beside those that are seen: a few, or none, say little
@@ -33,12 +53,90 @@ MOST_EMULATED = 400     # runs; with more of them the evenness of a design count
 NORMAL = float(stats.norm.ppf((1 + hazard.CONFIDENCE) / 2))
 
 
+class Weights(NamedTuple):
+    """Of runs, in the order that they were given in.
+
+    weights: sum up to reached; reached, short, far: shares of the known events within the range of the runs' lengths,
+    before and beyond it, 1 together; effective: number of runs of equal weight that say as much (Kish), of
+    weights / reached; distance: largest difference (Kolmogorov) of the distribution of the weighted runs from that of
+    the known events, within the range; gaps: in it, by length; window: number of cells that a weight is the mean of;
+    order: of the runs, by length; ratio: compute_weights'; below: share of the known events before each, in this order;
+    before: places in it of the runs before the gaps.
+    """
+    weights: np.ndarray
+    reached: float
+    short: float
+    far: float
+    effective: float
+    distance: float
+    gaps: List[Gap]
+    window: int
+    order: np.ndarray
+    ratio: np.ndarray
+    below: np.ndarray
+    before: List[int]
+
+
+def compute_weights(lengths, exceedance, ratio=None) -> Weights:
+    """The weights of at least two runs; lengths: m; exceedance: share of known events that go beyond each of them.
+
+    ratio: density of the parameters' distribution over that of the points, of each run; None: they are the same.
+    The exceedance must not rise with the length. If no known event lies within the range of the runs, all weights are
+    0, and so is effective.
+    """
+    lengths, beyond = np.asarray(lengths, float), np.asarray(exceedance, float)
+    order = np.argsort(lengths, kind="stable")
+    below = 1 - beyond[order]
+    cells = np.diff(np.concatenate([below[:1], (below[1:] + below[:-1]) / 2, below[-1:]]))
+    window = 2 * max(0, int(math.sqrt(len(lengths)) / 2 - 0.5)) + 1     # 7 of 60 runs, 9 of 100, 63 of 4000
+    reached = float(below[-1] - below[0])
+    rest = float(1 - below[-1])
+    weights = np.zeros(len(lengths))
+    given = np.ones(len(lengths)) if ratio is None else np.asarray(ratio, float)
+    if reached <= 0:
+        return Weights(weights, 0.0, float(below[0]), rest, 0.0, 0.0, [], window, order, given, below, [])
+    counts = given[order] / averaged(given[order], window)
+    smooth = counts * averaged(cells / averaged(counts, window), window)
+    weights[order] = smooth
+    upto, before = below[0] + np.cumsum(smooth), find_weight_gaps(below)
+    distance = max(np.abs(upto - below).max(), np.abs(upto - smooth - below).max())
+    return Weights(weights, reached, float(below[0]), rest, float(reached ** 2 / (smooth ** 2).sum()), float(distance),
+                   [Gap(*map(float, (*lengths[order][i:i + 2], below[i + 1] - below[i]))) for i in before], window,
+                   order, given, below, before)
+
+
+def averaged(cells: np.ndarray, window: int) -> np.ndarray:
+    """The mean of a window of cells around each; beyond an end they are reflected, which keeps their sum."""
+    half = window // 2
+    wide = np.concatenate([cells[:half][::-1], cells, cells[len(cells) - half:][::-1]])
+    return np.convolve(wide, np.full(window, 1 / window), "valid")
+
+
+def find_weight_gaps(below: np.ndarray) -> List[int]:
+    """Behind which run none ends though known events do; below: share of known events up to each, ascending.
+
+    The shares of the known events between runs drawn independently are distributed exponentially, about the mean that
+    the density of the runs makes. So one of them over the mean of k others, those around it, exceeds x with the
+    probability (1 + x / k)^-k; a gap is what the largest of all exceeds by chance but once in ONCE ensembles.
+    """
+    share = np.diff(below)
+    gaps = []
+    for i in np.flatnonzero(share >= GAP):
+        near = np.delete(share[max(0, i - NEAR):i + NEAR + 1], min(i, NEAR))
+        k = len(near)
+        if not k or share[i] > near.mean() * k * ((len(share) * ONCE) ** (1 / k) - 1):
+            gaps.append(int(i))
+    return gaps
+
+
+# --- curves and quantiles ---
+
 @dataclass(frozen=True)
 class Masses:
     """Of the runs of an ensemble, in their own order.
 
     share: of the known events that each run stands for, with those before the shortest run; far: of those beyond the
-    longest; order: of the runs by length; effective: number of runs of equal weight; window: runs, see weights.Weights;
+    longest; order: of the runs by length; effective: number of runs of equal weight; window: runs, see Weights;
     early: what of share stands for the events before the shortest run; either: share if those that end in gaps, where
     no run does, count as the run before, and as the one after; None without gaps.
     """
@@ -51,30 +149,30 @@ class Masses:
     either: Optional[Tuple[np.ndarray, np.ndarray]] = None
 
 
-def masses(weights_: weights.Weights) -> Masses:
-    first, early = weights_.order[:weights_.window], np.zeros(len(weights_.order))
-    early[first] = weights_.short * weights_.ratio[first] / weights_.ratio[first].sum()
-    share = weights_.weights + early
+def masses(weights: Weights) -> Masses:
+    first, early = weights.order[:weights.window], np.zeros(len(weights.order))
+    early[first] = weights.short * weights.ratio[first] / weights.ratio[first].sum()
+    share = weights.weights + early
     inside = share.sum()
     effective = float(inside ** 2 / (share ** 2).sum()) if inside > 0 else 0.0
-    return Masses(share, weights_.far, weights_.order, effective, weights_.window, early, either_side(share, weights_))
+    return Masses(share, weights.far, weights.order, effective, weights.window, early, either_side(share, weights))
 
 
-def either_side(share: np.ndarray, weights_: weights.Weights) -> Optional[Tuple[np.ndarray, np.ndarray]]:
+def either_side(share: np.ndarray, weights: Weights) -> Optional[Tuple[np.ndarray, np.ndarray]]:
     """The shares with the events in the gaps on the run before, and on the one after; None without gaps."""
-    if not weights_.before:
+    if not weights.before:
         return None
-    of, begins = share[weights_.order], [0, *(i + 1 for i in weights_.before)]
-    ends = np.append(weights_.below[weights_.before], weights_.below[-1])        # of the known events, before each gap
-    starts = np.append(0.0, weights_.below[begins[1:]])
+    of, begins = share[weights.order], [0, *(i + 1 for i in weights.before)]
+    ends = np.append(weights.below[weights.before], weights.below[-1])        # of the known events, before each gap
+    starts = np.append(0.0, weights.below[begins[1:]])
     parts = np.split(of, begins[1:])
     inside = np.concatenate([part * (end - start) / part.sum() if part.sum() > 0 else part
                              for part, start, end in zip(parts, starts, ends)])
     both = []
     for after in (0, 1):
         one = np.empty_like(share)
-        one[weights_.order] = inside
-        one[weights_.order[np.array(weights_.before) + after]] += starts[1:] - ends[:-1]
+        one[weights.order] = inside
+        one[weights.order[np.array(weights.before) + after]] += starts[1:] - ends[:-1]
         both.append(one)
     return both[0], both[1]
 
@@ -210,7 +308,7 @@ class Design:
         self.points += [snap(rng.random((number, dimensions))) for _ in range(SIMULATED)]
         self.chance = rng.integers(0, number, (len(self.points), number))
         simulated = 10 ** self.simulate(np.log10(lengths))
-        self.masses = [masses(weights.of_lengths(one, exceedance(one))) for one in simulated]
+        self.masses = [masses(compute_weights(one, exceedance(one))) for one in simulated]
 
     def simulate(self, values: np.ndarray) -> np.ndarray:
         """Values of the runs of each simulated ensemble: the emulator's, with residuals of runs that it left out."""

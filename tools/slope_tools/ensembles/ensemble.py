@@ -18,7 +18,7 @@ from ..mobility.known import Mobility
 from ..statistics import emulator, hazard
 from ..statistics.entries import Analysis, Check, Influence, KnownQuantile
 from ..survey.rasters import Place
-from ..tables import combinations, ensemble_types, quantities, usable
+from ..tables import combinations, ensemble_types, quantities, sizes, usable
 from ..tables.quantities import On
 from ..tables.rows import Finished, Row, finished_of
 from . import ensemble_maps, farther, known_events
@@ -101,7 +101,7 @@ def emulate(order: Order, rows: Sequence[Row], mobility: Optional[Mobility]) -> 
 
 
 def evaluate_ensemble(order: Order, rows: Sequence[Row], mobility: Optional[Mobility], emulated: Emulated,
-                      draw: Optional[known_events.Draw] = None) -> Optional[Evaluated]:
+                      draw: Optional[sizes.Draw] = None) -> Optional[Evaluated]:
     """What an ensemble says, None where all runs failed.
 
     rows: of study.csv; mobility: of an order with a condition; emulated: of emulate(); draw: see known_events.

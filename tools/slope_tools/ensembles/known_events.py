@@ -1,13 +1,13 @@
 """An ensemble that is weighted by known events: what study.yaml says of it, and its tables.
 
-Order of the work: where known events end on the path of this mass (mobility), the weights that make the runs end there
-(mobility.weights), curves and quantiles of the weighted runs (conditioned), the parameters that they have, maps
+Order of the work: where known events end on the path of this mass (mobility), the weights that make the runs end there,
+curves and quantiles of the weighted runs (conditioned), the parameters that they have, maps
 (ensemble_maps). The numbers of the ensemble as its distributions have it are not touched.
 """
 import functools
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Callable, Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from ..case import logs, run_folders
 from ..digits import metres, percent, three_at_least
 from ..errors import SlopeError
 from ..findings import Finding, texts
-from ..mobility import body, known, run_length, weights
+from ..mobility import body, known, run_length
 from ..mobility.known import WORDS, Mobility
 from ..quantiles import within
 from ..statistics import emulator, hazard
@@ -24,7 +24,7 @@ from ..statistics.entries import Analysis, KnownQuantile
 from ..survey.rasters import Place
 from ..tables import answer_words, combinations, ensemble_types, headline, how_far, quantities, sizes
 from ..tables.quantities import REMOVE
-from ..tables.rows import Finished, Row, finished_of
+from ..tables.rows import Row, finished_of
 from . import conditioned, ensemble_maps, farther, known_influence
 from .sample import Sample
 
@@ -32,8 +32,6 @@ FOLDER, HAZARD, WEIGHTS = "known_events", "hazard_known_events.csv", "weights.cs
 LEAST_EFFECTIVE = 20    # runs; fewer say little
 LEFT = 0.01             # share of the released volume beyond the grid, from which on a run's length is not its own
 MIDDLE = 0.05, 0.5, 0.95        # quantiles of the parameters of the weighted runs
-TAILS = (1 - hazard.CONFIDENCE) / 2, (1 + hazard.CONFIDENCE) / 2
-Draw = Callable[[Sequence[Finished], str], np.ndarray]      # values (n, runs) of a column, as they may be
 NOT_FARTHER = "released_m3", "stop_time_s"      # columns that a mass that goes farther need not exceed; nor any angle
 
 
@@ -89,7 +87,7 @@ class Runs:
         self.beyond = np.asarray(mobility.exceedance(self.lengths), float)
         if len(self.rows) >= 2:
             ratio = farther.ratio(self.places, [row.batch for row in self.rows], added) if added else None
-            self.weights = weights.of_lengths(self.lengths, self.beyond, ratio)
+            self.weights = conditioned.compute_weights(self.lengths, self.beyond, ratio)
             self.mass = conditioned.masses(self.weights)
 
     def column(self, name: str) -> np.ndarray:
@@ -162,7 +160,7 @@ def emulate(sample: Sample, added: farther.Added, rows: Sequence[Row], mobility:
 
 def evaluate_known_events(condition: Condition, sample: Sample, added: farther.Added, rows: Sequence[Row],
                           mobility: Mobility, names: Mapping[str, Tuple[str, str]], emulated: Emulated,
-                          draw: Optional[Draw] = None) -> Evaluated:
+                          draw: Optional[sizes.Draw] = None) -> Evaluated:
     """What the weighted runs say.
 
     rows: of study.csv, finished and failed; mobility: the mass among known events; names: {column: (what, unit)} of the
@@ -222,18 +220,18 @@ def list_known_quantiles(curve: hazard.Curve, runs: Runs, name: str, shares: Seq
     return found
 
 
-def transferred(several: Sequence[KnownQuantile], runs: Runs, draw: Optional[Draw]) -> List[KnownQuantile]:
+def transferred(several: Sequence[KnownQuantile], runs: Runs, draw: Optional[sizes.Draw]) -> List[KnownQuantile]:
     """Quantiles of the volume to remove with what lengths and volumes of transferred runs may be: with each draw the
     runs have other weights, too. That may raise the quantile itself."""
     if draw is None:
         return list(several)
     lengths, volumes = (draw(runs.rows, key) for key in ("length_m", REMOVE))
-    masses = [conditioned.masses(weights.of_lengths(one, np.asarray(runs.exceedance(one), float), runs.weights.ratio))
-              for one in lengths]
+    masses = [conditioned.masses(conditioned.compute_weights(one, np.asarray(runs.exceedance(one), float),
+                                                             runs.weights.ratio)) for one in lengths]
     quantiles = []
     for quantile in several:
         low, high = np.quantile([np.fmin(within(volume, mass.share, quantile.share, mass.far), volume.max())
-                                 for volume, mass in zip(volumes, masses)], TAILS).tolist()
+                                 for volume, mass in zip(volumes, masses)], hazard.TAILS).tolist()
         if quantile.value is not None:     # errors of runs raise a high quantile: it is no lower than it is with them
             value = max(quantile.value, low)
             quantile = quantile._replace(value=value, transfer=[value - min(value, low), max(value, high) - value])

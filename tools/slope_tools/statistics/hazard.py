@@ -18,6 +18,7 @@ from .entries import Quantile
 
 Values = Union[Sequence[float], np.ndarray]
 CONFIDENCE = 0.9                # of bounds, two-sided: 5 % beyond either
+TAILS = (1 - CONFIDENCE) / 2, (1 + CONFIDENCE) / 2
 SHARES = 0.5, 0.9, 0.95, 0.99   # of the quantiles
 
 

@@ -1,17 +1,18 @@
-"""What the runs of a study say together: an Outcome, evaluated from what was read of them; nothing is written or told.
+"""What the runs of a study say together: what is read of them (read_study), and the Outcome that is evaluated from it.
 
-Files, console and pages are made of it side by side (files, console, report); results reads the runs.
+No file of the study is written here, and nothing told: files, console and pages are made of an Outcome side by side
+(files, console, report), by results.
 """
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
-import numpy as np
-
+from .. import kept, records
+from ..case import run_folders
 from ..case.settings import normalise_value
 from ..deposits import travel_shares
-from ..ensembles import ensemble
-from ..ensembles.known_events import TAILS, Draw
+from ..ensembles import ensemble, known_events
+from ..errors import SlopeError
 from ..findings import Finding, finding
 from ..mobility import known
 from ..mobility.known import Mobility
@@ -20,9 +21,12 @@ from ..seismic import chain_files
 from ..sites.site_bodies import VARIABLE
 from ..statistics.conservative_volume import Scatter
 from ..statistics.entries import Source
-from ..tables import (combinations, elastic, ensemble_types, how_far, intensity, judged, quantities, road_runs,
-                      step_check, study_types, usable)
+from ..tables import (combinations, elastic, ensemble_types, how_far, intensity, judged, road_runs, sizes, step_check,
+                      study_types, usable)
 from ..tables.rows import Finished, Row, finished_of
+from . import body_depth, mapped, size_runs
+from .run_rows import placed, read_run_rows, terrain_of
+from .setup import Setup
 from .size_runs import AtFinest
 
 # variables that calibrated values do not depend on: chance, time, what is written; of the size of the balls see LIKE
@@ -77,7 +81,7 @@ class Read(NamedTuple):
     emulated: Optional[ensemble.Emulated]
     observed: Optional[study_types.Observed]
     size: Optional[study_types.Size]
-    draw: Optional[Draw]
+    draw: Optional[sizes.Draw]
     elastic: Optional[elastic.Runs]
     problem: Optional[str]
     case: Optional[usable.Case]
@@ -101,6 +105,53 @@ class Outcome:
     chain: Optional[chain_files.Evaluated]
     about: study_types.Study
 
+
+def read_study(setup: Setup, questions: Questions, at: AtFinest, todo: Sequence[repeats.Repeat],
+               defaults: Mapping[str, str]) -> Read:
+    """What an Outcome is evaluated from, of runs of which the finest count."""
+    raw = read_run_rows(setup, todo)
+    rows, observed = mapped.compare(mapped.find_mapped_deposit(questions.site), setup.output, sizes.transfer_rows(
+        at.sizes, raw), [terrain_of(run.folder, run.log) for run in todo])
+    first, finished = next((run for run in todo if not run.error), None), finished_of(rows)
+    row = finished[0] if finished else None
+    events = mobility = None
+    among = known.Known(None, "")
+    if first and row:
+        prefix = run_folders.prefix_of(run_folders.summary_of(setup.output, row.summary))
+        try:
+            among = how_far.known_of(prefix, terrain_of(first.folder, first.log), questions.among, setup.body)
+        except SlopeError as error:     # a terrain that only LAMMPS finds, a raster that was changed
+            if setup.road:
+                raise
+            among = known.Known(None, str(error))
+        if setup.road:
+            raster = placed(run_folders.load_raster(prefix, "thickness"), first)
+            events = how_far.compute_events_at_road(among.found, setup.road.read(raster).polygon)
+    if row and questions.order and questions.order.condition:
+        summary = run_folders.summary_of(setup.output, row.summary)
+        mobility = known_events.mobility_of(questions.order.condition, summary.parent, summary)
+    emulated = emulated_of(setup, questions.order, rows, mobility) if questions.order else None
+    most = elastic.read_elastic_runs(questions.most_elastic, rows,
+                                     setup.output) if row and questions.most_elastic else None
+    size = size_runs.summarise_finer_runs(setup, at) if row else None
+    return Read(rows, setup.road is not None, among, events, mobility, emulated, observed, size,
+                sizes.draw_rows(at.sizes, raw), most, None,
+                usable.Case(setup.deck, questions.site, row.variables, round(row.released_m3 / row.ball_m3),
+                            given=setup.given) if row else None,
+                body_depth.in_balls(setup, finished), defaults)
+
+
+def emulated_of(setup: Setup, order: ensemble.Order, rows: Sequence[Row],
+                mobility: Optional[Mobility]) -> ensemble.Emulated:
+    """What emulators say of the runs of an ensemble, kept with the study."""
+    made_of = [order.sample.about, order.of, order.added and order.added.batches, rows,
+               mobility and [mobility.outside, mobility.path.length, mobility.curves[mobility.chosen]]]
+    return records.read_record(ensemble.Emulated, kept.value(
+        setup.output / ".emulated.json", made_of, lambda: records.encode_record(
+            ensemble.emulate(order, rows, mobility))))
+
+
+# --- what they say together ---
 
 def evaluate_study(questions: Questions, read: Read, header: study_types.Header) -> Outcome:
     """The Outcome of a study; of an ensemble one run at least has finished."""
@@ -187,21 +238,13 @@ def reasons(read: Read) -> List[Finding]:
 def judge_conservative(questions: Questions, read: Read, groups: Sequence[combinations.Group]) -> Tuple[
         study_types.Conservative, Optional[study_types.HalfStep]]:
     """The entries of the conservative volume and of the run with half the time step."""
-    best = combinations.conservative(questions.settings, read.rows, groups)
+    best = combinations.conservative(questions.settings, read.rows, groups, read.draw)
     doubts, step = [*best.doubts, *unseen(questions.repeated, read.defaults)], None
     if questions.step:
         step, more = step_check.compare(questions.step, groups)
         doubts += more
     assert read.case
-    best = replace(best, doubts=doubts, transfer_m3=transfer(best, groups, read.draw) if read.draw else None)
-    return usable.judge(best, read.rows, read.events, read.case), step
-
-
-def transfer(best: study_types.Conservative, groups: Sequence[combinations.Group], draw: Draw) -> List[float]:
-    """How far (m3) the mean of the governing combination may lie below and above, as its runs are transferred."""
-    rows = next(group.rows for group in groups if group.name == best.combination)
-    low, high = np.quantile(draw(rows, quantities.REMOVE).mean(axis=1), TAILS)
-    return [max(0.0, best.mean_m3 - float(low)), max(0.0, float(high) - best.mean_m3)]
+    return usable.judge(replace(best, doubts=doubts), read.rows, read.events, read.case), step
 
 
 def unseen(repeated: Mapping[str, Sequence[str]], defaults: Mapping[str, str]) -> List[Finding]:

@@ -3,13 +3,14 @@ import functools
 import os
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Dict, List, Optional, Sequence, Tuple
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 
 from .. import disk, kept, records
 from ..case import logs, run_folders
 from ..findings import Finding, encode_findings
+from ..mobility import run_length
 from ..releases import release_toe
 from ..runs.repeats import Repeat
 from ..survey import file_parts, rasters
@@ -64,7 +65,6 @@ def alone(folder: Path, summary: Path, log: logs.Log) -> Finished:
 def measure_run(folder: Path, summary_name: str, log: logs.Log) -> Dict[str, Any]:
     """The fields of a Finished, but for what is asked of it; the summary as named in the run's folder."""
     from ..deposits import deposit, gone
-    from ..mobility import run_length
     prefix, marker = run_folders.prefix_of(folder / summary_name), run_folders.ended(folder)
     begun = run_folders.begun(folder) if (folder / run_folders.VARIABLES).is_file() else {}
     summary = run_folders.load_summary(folder / summary_name)
@@ -78,13 +78,29 @@ def measure_run(folder: Path, summary_name: str, log: logs.Log) -> Dict[str, Any
     return {"variables": begun.get("variables") or {},
             quantities.STOP: site_ground.of_variables(begun.get("variables")), "ranks": begun.get("ranks"),
             "package": begun.get("package"),
-            **quantities.of_length(length), "left": gone.list_gone_groups(left),
+            **of_length(length), "left": gone.list_gone_groups(left),
             "ball_m3": volume["released"] / summary["balls"]["released"],
             "mass_error": (on_grid - stays) / volume["released"],
             **quantities.of_summary(summary), **judged.list_ending_columns(summary, log),
             "change_rate": summary.get("change_rate"), "wall_s": marker.get("wall_seconds"), "summary": summary_name,
             "slope_version": summary["slope_version"], "lammps_version": summary["lammps_version"],
             "lmp_sha256": begun.get("lmp_sha256"), **structures.read_run_structures(folder, log.settings)}
+
+
+def of_length(length: Optional[run_length.RunLength]) -> Dict[str, Any]:
+    """The columns of a run's length, None where there is no deposit."""
+    return {quantities.LENGTH: length and length.distance,
+            "length_is": length and (run_length.ON_PATH if length.on_path else run_length.STRAIGHT),
+            "length_by_lobe_m": length and list(length.others), "length_deg": length and length.angle}
+
+
+def of_division(divided: Optional[Mapping[str, Any]], left: Optional[Mapping[str, Any]]) -> Dict[str, Any]:
+    """Those of the mass on both sides of a road, by `divided` and `left` of volume.yaml; None is not known."""
+    def of(key: str) -> Any:
+        return divided and divided[key]
+    return {"before_road_m3": of("before"), "on_road_m3": of("on"), "beyond_road_m3": of("past"),
+            "past_end_m3": of("past_end"), "unknown_m3": of("unknown"), "left": left and left["sides"],
+            "left_before_road_m3": left and left["road_ahead"]}
 
 
 def with_road(run: Repeat, road: Road, row: Finished) -> Finished:
@@ -119,7 +135,7 @@ def measured_on(road: Road, run: Repeat, row: Finished) -> Dict[str, Any]:
     return {"road_on_body_m2": taken.area if taken else 0.0, "remove_m3": numbers["volume"]["remove"],
             "remove_on_road_m3": numbers["volume"]["remove_on_road"],
             "remove_beside_road_m3": numbers["volume"]["remove_beside_road"],
-            **quantities.of_division(numbers["divided"], numbers["left"]),
+            **of_division(numbers["divided"], numbers["left"]),
             "blocked_m": total["blocked_length"], "axis_thickness_m": numbers["axis"]["largest_thickness"],
             "remove_lane_m3": total.get("remove_lane"), "lane_hours": total.get("hours_lane"),
             "clear_hours": total.get("hours"), "stretches": numbers["stretches"], "clearing": total,

@@ -24,7 +24,7 @@ from ..sites.site_choices import Folder, Site
 from ..sites.site_layers import OBSERVED
 from ..sites.site_sections import PACKING, Choices, OfMass
 from ..survey import rasters, roads
-from ..tables import elastic, energy, named_run, study_types
+from ..tables import elastic, energy, named_run, sizes, study_types
 from ..tables.rows import Failed, finished_of
 from ..tables.sizes import VARIABLE
 from ..tables.step_check import Step, half_of
@@ -280,7 +280,7 @@ def grounds(choices: OfMass) -> List[Dict[str, str]]:
 def judge_step_run(setup: Setup, run_: repeats.Repeat, rolling: str, variables: Dict[str, str],
                    at: size_runs.AtFinest) -> Step:
     """What that run tells, at the finest size as the others."""
-    [row] = at.rows(read_run_rows(setup, [run_]))
+    [row] = sizes.transfer_rows(at.sizes, read_run_rows(setup, [run_]))
     if isinstance(row, Failed):
         return Step(rolling, None, f"{run_.name}: {row.error}", step=float(run_.chosen["step"]))
     prefix = run_folders.prefix_of(run_folders.summary_of(setup.output, row.summary))
@@ -304,7 +304,7 @@ def elastic_of(setup: Setup, runs: List[repeats.Repeat], at: size_runs.AtFinest)
     """What these runs tell at the finest size, whatever the road; None: there are none."""
     if not runs:
         return None
-    rows = at.rows(read_run_rows(setup._replace(road=None), runs))
+    rows = sizes.transfer_rows(at.sizes, read_run_rows(setup._replace(road=None), runs))
     return elastic.Made(float(runs[0].chosen[elastic.VARIABLES[0]]), runs[0].chosen["rolling"], rows)
 
 

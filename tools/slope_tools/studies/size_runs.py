@@ -22,7 +22,7 @@ from ..sites import site_budget
 from ..statistics import ball_sizes, conservative_volume
 from ..tables import combinations, judged, sizes, study_table, study_types
 from ..tables.quantities import REMOVE
-from ..tables.rows import Finished, Row, finished_of
+from ..tables.rows import Finished, finished_of
 from ..tables.sizes import VARIABLE, Sizes
 from . import body_depth
 from .run_rows import read_run_rows
@@ -30,7 +30,6 @@ from .setup import Setup
 
 OPTION = "--levels"
 FILE = "levels.csv"
-DRAWS = 200             # of the values of transferred runs, for the band of a number
 MORE = 4                # of the finest than were wanted, on which numbers rest once all values are at the finest size
 LONG = 1.5              # times the usual time to rest: points that take longer have none of the finest balls,
 SLOW = 4.0              # and, as those on which numbers rest of these, none finer than the coarsest
@@ -121,18 +120,6 @@ class AtFinest(NamedTuple):
     def runs(self, points: Sequence[Repeat]) -> List[Repeat]:
         """The finest run of each point."""
         return self.made.finest(points, len(self.sizes.diameters) if self.sizes else 1)
-
-    def rows(self, rows: Sequence[Row]) -> List[Row]:
-        """At the finest size."""
-        return [self.sizes.row(row) for row in rows] if self.sizes else list(rows)
-
-    def draw(self, raw: Sequence[Row]) -> Optional[Callable[[Sequence[Finished], str], np.ndarray]]:
-        """A function of rows() of these, as they were run, and a column: DRAWS values of each as they may be."""
-        by_name, found = {row.run: row for row in finished_of(raw)}, self.sizes
-        if found is None:
-            return None
-        draws = found.draws
-        return lambda rows, key: draws([by_name[row.run] for row in rows], key, DRAWS)
 
 
 # --- how many ---
@@ -270,7 +257,8 @@ def settle(setup: Setup, work: jobs.Work, points: Sequence[Repeat], wanted: Opti
     while at.sizes and wanted and wanted.points:
         have = sum(several[len(wanted.points) - 1] is not None for several in made.finer.values())
         left = max(0, wanted.points[-1] - have)
-        rows = [replace(row, run=one.name) for one, row in zip(points, at.rows(read_run_rows(setup, at.runs(points))))]
+        rows = [replace(row, run=one.name) for one, row in zip(points, sizes.transfer_rows(
+            at.sizes, read_run_rows(setup, at.runs(points))))]
         first = pick(finished_of(rows)).first
         without = [one for one in made.next if not made.has(one, len(wanted.points) - 1)]
         asked = [one for one in without if one.name in first] if have < wanted.points[-1] + MORE else []

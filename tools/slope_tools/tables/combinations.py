@@ -3,14 +3,16 @@ import itertools
 from dataclasses import dataclass, field
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
+import numpy as np
+
 from .. import disk
 from ..case.settings import normalise_value
 from ..findings import Finding, texts
 from ..runs import jobs
 from ..runs.repeats import Settings, key_of
-from ..statistics import conservative_volume, rounding
+from ..statistics import conservative_volume, hazard, rounding
 from ..statistics.conservative_volume import Combination, Scatter
-from . import quantities, study_types, usable
+from . import quantities, sizes, study_types, usable
 from .rows import Finished, Row, finished_of
 
 GROUND = ("pattern", "spacing", "angle")        # variables of decks that make another ground
@@ -117,8 +119,12 @@ FEW = 0.05      # of the largest volume of runs that differ by chance alone: les
 STANDS = 0.1    # of the largest travel of the centroid among them: less, and the slope did not fail
 
 
-def conservative(settings: Settings, rows: Sequence[Row], groups: Sequence[Group]) -> study_types.Conservative:
-    """The entry of the conservative volume in study.yaml: its parts, what it is based on, its caveats (doubts)."""
+def conservative(settings: Settings, rows: Sequence[Row], groups: Sequence[Group],
+                 draw: Optional[sizes.Draw] = None) -> study_types.Conservative:
+    """The entry of the conservative volume in study.yaml: its parts, what it is based on, its caveats (doubts).
+
+    draw: of runs that are transferred to the finest balls.
+    """
     parts = [group.of("remove_m3") for group in groups]
     best = conservative_volume.predict(parts)
     governing = next(group for group in groups if group.name == best.combination)
@@ -144,7 +150,14 @@ def conservative(settings: Settings, rows: Sequence[Row], groups: Sequence[Group
         starts_m3=[min(volumes), max(volumes)] if len(volumes) > 1 else None,   # of the same combination
         run=largest.run, remove_m3=largest.at_road.remove_m3,                   # the one whose maps represent it
         differences=differences, doubts=find_combination_caveats(settings, rows, groups, best, differences),
-        withheld=[], zero=None)     # see usable.judge
+        withheld=[], zero=None,     # see usable.judge
+        transfer_m3=transfer(best.mean, governing, draw) if draw else None)
+
+
+def transfer(mean: float, group: Group, draw: sizes.Draw) -> List[float]:
+    """How far (m3) the mean of a combination may lie below and above, as its runs are transferred."""
+    low, high = np.quantile(draw(group.rows, quantities.REMOVE).mean(axis=1), hazard.TAILS)
+    return [max(0.0, mean - float(low)), max(0.0, float(high) - mean)]
 
 
 def find_combination_caveats(settings: Settings, rows: Sequence[Row], groups: Sequence[Group],

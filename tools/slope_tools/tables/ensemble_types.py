@@ -1,13 +1,19 @@
 """What a study says of an ensemble, as study.yaml has it: the part of study_types that is of its runs together."""
 from dataclasses import dataclass
-from typing import Any, Dict, List, Optional, Union
+from typing import Any, Dict, List, NamedTuple, Optional, Union
 
 from ..findings import Finding
-from ..mobility.weights import Gap
 from ..statistics.entries import Reason
 from ..statistics.entries import Analysis, KnownQuantile, Quantile
 
 MapEntry = Dict[str, Any]           # of a map over all runs: file, what it shows, and of which threshold or quantile
+
+
+class Gap(NamedTuple):
+    """Two lengths (m) between which no run ends, and the share of known events that do."""
+    low_m: float
+    high_m: float
+    share: float
 
 
 @dataclass(frozen=True)

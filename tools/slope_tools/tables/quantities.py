@@ -4,7 +4,7 @@ Tables on the screen, study.csv, study.yaml, pages, charts, ensembles and their 
 entry and a field of a row, with its place in a summary; else studies/run_rows gives its value.
 """
 from enum import Flag, auto
-from typing import Any, Callable, Dict, Iterable, List, Mapping, NamedTuple, Optional, Union
+from typing import Any, Callable, Dict, Iterable, List, Mapping, NamedTuple, Union
 
 from ..deposits import travel_shares
 from ..digits import format_measured_share, to_three
@@ -168,22 +168,6 @@ def of_summary(summary: Mapping[str, Any]) -> Dict[str, Any]:
         return found
 
     return {**{one.key: value(one.at.split()) for one in OF_RUN if one.at}, **travel_shares.read_share_columns(summary)}
-
-
-def of_length(length) -> Dict[str, Any]:
-    """Those of a run_length.RunLength, None where there is no deposit."""
-    return {LENGTH: length and length.distance,
-            "length_is": length and (ON_PATH if length.on_path else STRAIGHT),
-            "length_by_lobe_m": length and list(length.others), "length_deg": length and length.angle}
-
-
-def of_division(divided: Optional[Mapping[str, Any]], left: Optional[Mapping[str, Any]]) -> Dict[str, Any]:
-    """Those of the mass on both sides of a road, by `divided` and `left` of volume.yaml; None is not known."""
-    def of(key):
-        return divided and divided[key]
-    return {"before_road_m3": of("before"), "on_road_m3": of("on"), "beyond_road_m3": of("past"),
-            "past_end_m3": of("past_end"), "unknown_m3": of("unknown"), "left": left and left["sides"],
-            "left_before_road_m3": left and left["road_ahead"]}
 
 
 def format_quantity(value, sign=""):

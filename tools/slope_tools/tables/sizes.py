@@ -5,7 +5,7 @@ finest run; each quantity passes through the steps that are left (statistics/bal
 size, whatever was run.  What steps through are volumes, lengths, thicknesses, speeds and hours; angles with them.
 """
 from dataclasses import dataclass, replace
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -16,13 +16,14 @@ from ..statistics.ball_sizes import Finest, Step
 from . import quantities, study_types
 from .quantities import On
 from .road_runs import SUMS
-from .rows import Finished, OnRoad, Row
+from .rows import Finished, OnRoad, Row, finished_of
 
 VARIABLE = "d"                  # of a deck: the diameter of the balls, m
 VOLUMES = {"m3"}                # units of quantities of which ten balls count
 NOT = {"released_m3", "on_grid_m3", "stop_time_s"}      # columns that the size does not change, or that tell of a run
 PARTS = quantities.REMOVE, "before_road_m3", "on_road_m3", "beyond_road_m3"      # of what was released
 SAME = 0.05             # of a value: another is it as far as a page with its maps is concerned
+DRAWS = 200             # of the values of transferred runs, for the band of a number
 FEWEST = 2              # pairs of two sizes; fewer tell nothing of the finer one
 BANDS = quantities.REMOVE, "remove_on_road_m3", "beyond_road_m3", quantities.LENGTH     # that a row has
 # of stretches and their sums: of which column they are a part
@@ -31,6 +32,7 @@ UNKNOWN = "; what finer ones would change is not known"
 # of which finer runs held what their last step leaves (tests/size_family.py); they raised what lies beyond the road,
 # and how far the centroid goes, by more
 HELD = {quantities.REMOVE, "remove_on_road_m3", quantities.LENGTH}
+Draw = Callable[[Sequence[Finished], str], np.ndarray]      # values (n, runs) of a column, as they may be
 Point = Sequence[Optional[Finished]]    # its runs by size, the coarsest first; None: not run, or failed
 
 
@@ -98,6 +100,19 @@ class Sizes:
         found = ball_sizes.draws([self.left(row, key) for row in rows], [float(row.value(key)) for row in rows],
                                  [self.places.of(row) for row in rows], number)
         return np.minimum(found, [row.released_m3 for row in rows]) if key in PARTS else found
+
+
+def transfer_rows(known: Optional[Sizes], rows: Sequence[Row]) -> List[Row]:
+    """At the finest size; known: None of one size."""
+    return [known.row(row) for row in rows] if known else list(rows)
+
+
+def draw_rows(known: Optional[Sizes], raw: Sequence[Row]) -> Optional[Draw]:
+    """A function of transfer_rows() of these, as they were run, and a column: DRAWS values of each as they may be."""
+    if known is None:
+        return None
+    draws, by_name = known.draws, {row.run: row for row in finished_of(raw)}
+    return lambda rows, key: draws([by_name[row.run] for row in rows], key, DRAWS)
 
 
 def nearest(rows: Sequence[Finished], key: str, value: float) -> Finished:
