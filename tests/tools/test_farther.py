@@ -11,7 +11,7 @@ from slope_tools.ensembles import conditioned, farther, known_study, sample
 from slope_tools.errors import SlopeError
 from slope_tools.statistics import designs, distributions
 from slope_tools.statistics.entries import Code
-from slope_tools.studies import farther_runs
+from slope_tools.studies import ensemble_study
 from slope_tools.tables import answer_words
 
 RUNS, SEEDS, PATH = 64, 4, farther.End(1e5, 0.0)
@@ -145,7 +145,7 @@ def test_where_runs_are_longer_is_found_once(tmp_path, monkeypatch):
     setup, order = SimpleNamespace(output=tmp_path), SimpleNamespace(sample=planned())
     for wanted, scale in ((1, 1.0), (1, 1.0), (2, np.linspace(0.99, 1, RUNS)), (2, np.linspace(0.99, 1, RUNS))):
         runs = SimpleNamespace(places=u, lengths=response(u)[0] * scale)
-        assert farther_runs.longer(setup, order, runs) == really(u, runs.lengths, planned()) and len(fitted) == wanted
+        assert ensemble_study.longer(setup, order, runs) == really(u, runs.lengths, planned()) and len(fitted) == wanted
 
 
 def test_why_no_more_are_added():

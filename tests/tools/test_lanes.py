@@ -24,7 +24,7 @@ from run_helpers import (CRS_M, EAST, NORTH, centres, run_command, write_geojson
 import test_site
 from tiny_collapse import LMP, write_case
 
-from slope_tools.deposits import lanes, volume_files
+from slope_tools.deposits import clearing, volume_files
 from slope_tools.deposits.axis import Axis, Span, longest_gap, merged
 from slope_tools.report import road_part
 from slope_tools.report.numbers import Numbers
@@ -142,8 +142,8 @@ def gridded(function, cell, west=0.0, south=0.0, size=SIDE):
 def evaluated(road, deposit, ground, cell, lane=LANE, blocked=0.1):
     """The only stretch, its lane's place and the Cutter."""
     raster = gridded(deposit, cell)
-    [one] = lanes.find_lane_stretches(raster, [road.axis()], WIDTH, blocked)
-    cutter = lanes.Cutter(raster, gridded(ground, cell).z, 30, 4)
+    [one] = clearing.find_lane_stretches(raster, [road.axis()], WIDTH, blocked)
+    cutter = clearing.Cutter(raster, gridded(ground, cell).z, 30, 4)
     return one, cutter.least(one, WIDTH, lane), cutter
 
 
@@ -179,8 +179,8 @@ def test_stretch_and_passable_width_beside_a_cone(way, cell):
     def cone(px, py):
         return np.clip(2 - 0.4 * np.hypot(px - x, py - y), 0, None)
 
-    [one] = lanes.find_lane_stretches(gridded(cone, cell, round(float(x)) - 5.0, round(float(y)) - 5.0, 10.0),
-                                      [road.axis()], WIDTH, 0.1)
+    [one] = clearing.find_lane_stretches(gridded(cone, cell, round(float(x)) - 5.0, round(float(y)) - 5.0, 10.0),
+                                         [road.axis()], WIDTH, 0.1)
     half = math.sqrt(4.75 ** 2 - 1)     # where the road's edge cuts the circle
     if way == "curved":
         half = 80 * math.acos((75 ** 2 + 76 ** 2 - 4.75 ** 2) / (2 * 75 * 76))
@@ -308,8 +308,8 @@ def test_the_union_of_lanes_along_rising_ground():
         return 0.4 * y + 0 * x
 
     road, raster = ROADS["straight"], gridded(deposit, 1.0)
-    found = lanes.find_lane_stretches(raster, [road.axis()], WIDTH, 0.1)
-    cutter = lanes.Cutter(raster, gridded(ground, 1.0).z, 30, 4)
+    found = clearing.find_lane_stretches(raster, [road.axis()], WIDTH, 0.1)
+    cutter = clearing.Cutter(raster, gridded(ground, 1.0).z, 30, 4)
     got = cutter.removed([cutter.area(one, 0.0, LANE) for one in found]).cells.sum()
     step = 0.1
     x, y = centres(round(SIDE / step), round(SIDE / step), step)

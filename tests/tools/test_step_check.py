@@ -5,7 +5,7 @@ import pytest
 from made_rows import row
 
 from slope_tools.errors import SlopeError
-from slope_tools.tables import combinations, energy, step_check
+from slope_tools.tables import combinations, step_check
 from slope_tools.tables.step_check import Step
 
 
@@ -65,7 +65,7 @@ def written(here, *rows):
 
 def test_where_the_energy_went(tmp_path):
     path = written(tmp_path, [0] + 11 * [0], [100, 1e6, 2e9, 0, 3e6, 1e8, 7e8, 1.9e8, 1e7, 1e3, 0, 5e5])
-    spent = energy.read_energies(path)
+    spent = step_check.read_energies(path)
     assert (spent["sliding"], spent["residual"], spent["left"]) == (7e8, 1e3, 5e5)
     assert spent["text"] == (
         "of 2.00 GJ that weight and ground motion put in, 1.00 GJ was taken: 70 % by sliding, 19 % by rolling "
@@ -79,7 +79,7 @@ def test_the_columns_of_an_energy_file_are_those_of_its_head(tmp_path):
     order = [6, 1, 2, 3, 4, 5, 11, 7, 8, 9, 10]
     path = written(tmp_path, [0] + [values[k] for k in order])
     path.write_text(path.read_text().replace("f_ledger[1]", " ".join(f"f_ledger[{k}]" for k in order)))
-    spent = energy.read_energies(path)
+    spent = step_check.read_energies(path)
     assert (spent["sliding"], spent["left"], spent["kinetic"]) == (7e8, 5e5, 1e6)
     for names in (" ".join(["v_kinetic"] + 10 * ["v_x"]), " ".join(11 * ["f_ledger[1]"]), "f_ledger[2] f_ledger[1]",
                   " ".join(f"f_ledger[{k}]" for k in range(2, 13)),
@@ -87,17 +87,17 @@ def test_the_columns_of_an_energy_file_are_those_of_its_head(tmp_path):
         path = written(tmp_path, values)
         path.write_text(path.read_text().replace("f_ledger[1]", names))
         with pytest.raises(SlopeError, match="site.energy: must be what the run wrote of its energy"):
-            energy.read_energies(path)
+            step_check.read_energies(path)
 
 
 def test_the_energy_of_a_continued_run_is_not_known(tmp_path):
-    assert energy.read_energies(written(tmp_path, [300] + 11 * [1])) is None
+    assert step_check.read_energies(written(tmp_path, [300] + 11 * [1])) is None
 
 
 def test_a_file_of_the_energy_that_is_damaged_is_named(tmp_path):
     for rows in ([[0] + 10 * [1]], [[0] + 10 * [1] + ["nan"]]):
         with pytest.raises(SlopeError, match="site.energy: must be what the run wrote of its energy"):
-            energy.read_energies(written(tmp_path, *rows))
+            step_check.read_energies(written(tmp_path, *rows))
 
 
 @pytest.mark.parametrize("variables, half", [({"step": "1.0"}, "0.5"), ({"step": "1.5"}, "0.75"), ({}, "0.5")])

@@ -19,7 +19,7 @@ import country_grids
 from messages import says
 from run_helpers import examples
 
-from slope_tools.survey import crs, holes as small_holes, marks, plausible, rasters
+from slope_tools.survey import crs, local_terrain, marks, plausible, rasters
 
 TOP = Path(__file__).resolve().parents[2]
 TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
@@ -617,7 +617,7 @@ def test_small_holes_against_a_flood_fill():
                 if len(group) <= 4 and all(0 < r < 12 and 0 < c < 16 for r, c in group):
                     count += 1
                     expected[tuple(zip(*group))] = True
-            mask, holes = small_holes.small_holes(empty, 4)
+            mask, holes = local_terrain.small_holes(empty, 4)
             assert (mask == expected).all() and holes == count
 
 

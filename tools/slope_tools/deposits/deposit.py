@@ -5,7 +5,7 @@ There a cell is the unit square between whole numbers, and areas are in cells.
 """
 import os
 from pathlib import Path
-from typing import NamedTuple, Optional
+from typing import NamedTuple, Optional, Tuple
 
 import numpy as np
 
@@ -15,9 +15,11 @@ from ..findings import Finding
 from ..geometry import extent, format_numbers
 from ..survey import rasters
 from ..survey.rasters import Raster
+from ..survey.resampling import sample
 
 SAME_BALANCE = 1e-6    # relative; volume of the raster and in the summary
 SAME_HEIGHT = 1e-7     # of the largest height; two rasters of nine digits
+SCAR = 0.01            # m; ground that lies so much lower than before is the slip surface
 
 
 class Deposit(NamedTuple):
@@ -124,3 +126,19 @@ def find_terrain(prefix, terrain, raster, warn):
         warn(Finding("no CRS", {"file": str(path), "coordinates": "metres as in that file" if place.offset != (0, 0)
                                 else "the local metres of the run"}))
     return str(path), place
+
+
+def find_ground_before(raster: Raster, base: np.ndarray, terrain: Optional[Path]) -> Tuple[np.ndarray, np.ndarray]:
+    """Height of the ground before (m), and depth of the body below it (m, 0 beside it).
+
+    raster: the deposit's grid; base: the ground without the body; terrain: the file of the ground before, None where it
+    is not in reach: the ground is then the base, and there is no body.
+    """
+    rows, columns = base.shape
+    heights = np.full(base.shape, np.nan)
+    if terrain:
+        x, y = raster.transform @ np.meshgrid(np.arange(columns) + 0.5, np.arange(rows) + 0.5)
+        heights = sample(rasters.read_asc_local(terrain), x, y)
+    heights = np.where(np.isfinite(heights), heights, base)
+    with np.errstate(invalid="ignore"):
+        return heights, np.where(heights - base > SCAR, heights - base, 0)

@@ -16,7 +16,7 @@ from ..sites.site_warnings import of_angles
 from ..survey import rasters, roads
 from ..survey.lines import read_local
 from ..survey.rasters import crs_name
-from . import clearing, cut, deposit, passed, stretch_files, volume_files
+from . import clearing, cut, deposit, passed, volume_files
 from .axis import Axis
 from .road_axis import (axes_of, axes_of_lines, by_chainage, find_profile_stretches, part_in_grid, profile_road,
                         width_of)
@@ -112,8 +112,8 @@ def write_removal(removal: Removal, folder: Path, picture: bool = True) -> None:
         rasters.write_geotiff(new / "volume_mesh.tif", {"volume to remove (m3)": result.volume},
                               run.raster._replace(transform=mesh.transform))
         volume_files.write_profile(new / "axis.csv", run, removal.profile)
-        stretch_files.write_stretches_csv(new / "stretches.csv", run, removal.clearing)
-        stretch_files.write_stretches_geopackage(new / "stretches.gpkg", run, removal.clearing)
+        volume_files.write_stretches_csv(new / "stretches.csv", run, removal.clearing)
+        volume_files.write_stretches_geopackage(new / "stretches.gpkg", run, removal.clearing)
         if picture:
             volume_files.draw_removal(new / "volume.png", run, removal.road, removal.axes, mesh, result, summary,
                                       removal.clearing)

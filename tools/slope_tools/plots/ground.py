@@ -7,7 +7,7 @@ from scipy.ndimage import distance_transform_edt, label
 from shapely.geometry import LineString, box
 
 from .. import geometry
-from ..deposits import scar
+from ..deposits.deposit import find_ground_before
 from ..drawing import maps
 from ..errors import SlopeError
 from ..mobility import body, known, steeper
@@ -31,7 +31,7 @@ class Ground:
         self.raster, self.base, self.cell = run.deposit.raster, run.deposit.base, run.deposit.cell
         rows, columns = self.base.shape
         self.x, self.y = self.raster.transform @ np.meshgrid(np.arange(columns) + 0.5, np.arange(rows) + 0.5)
-        self.before, self.slip_depth = scar.before(self.raster, self.base, run.terrain_path)
+        self.before, self.slip_depth = find_ground_before(self.raster, self.base, run.terrain_path)
         self.arrival, self.max_thickness = run.raster("arrival"), run.raster("max_thickness")
         self.max_speed = run.raster("max_speed")
         # balls larger than the cells leave holes between them

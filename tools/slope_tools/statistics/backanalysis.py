@@ -21,9 +21,8 @@ import numpy as np
 from scipy import ndimage, stats
 from scipy.stats import qmc
 
-from ..statistics import designs, tempering
-from ..statistics.emulator import Emulator
-from ..statistics.gaps import Gap, find_gaps as gaps_of
+from . import designs, tempering
+from .emulator import Emulator
 
 CLOUD = 4096            # points that stand for the cube
 ENOUGH = 300.0          # of them that must count, or others are drawn where the likelihood is
@@ -38,6 +37,35 @@ SEED = 1
 # a variable whose interval is wider than these shares of its range is not, or only roughly, known
 UNKNOWN, ROUGH = 0.6, 0.3
 TIED = 0.75             # rank correlation from which on two variables make up for each other
+CHANCES = 1000          # data sets, in fewer than one of which chance makes a gap
+
+
+class Gap(NamedTuple):
+    """No run gives a value between these."""
+    low: float
+    high: float
+
+    def holds(self, value: float) -> bool:
+        return self.low < value < self.high
+
+
+def find_gaps(values: np.ndarray, emulator: Emulator) -> List[Gap]:
+    """Gaps in the response of a model: values that no run gives, because the response jumps; from the lowest.
+
+    A mass that gets over a step of a valley goes on to its foot; between the two no run stops. An emulator is smooth
+    there, and so predicts what no run gives. Each run is therefore predicted from the others: if so many of them should
+    have ended between two neighbouring results that chance leaves it empty in less than one of CHANCES data sets, it is
+    a gap. values (n): of the runs that the emulator was fitted to.
+    """
+    edges = np.unique(values)
+    if len(edges) < 2:
+        return []
+    mean, deviation = emulator.unseen(values)
+    below = stats.norm.cdf((edges[:, None] - mean) / deviation)     # (edges, runs)
+    inside = np.clip(np.diff(below, axis=0), 0, 1 - 1e-12)
+    empty = np.log1p(-inside).sum(axis=1)                           # logarithm of the probability that no run is in it
+    found = (empty < -np.log(CHANCES * len(inside)))
+    return [Gap(float(edges[i]), float(edges[i + 1])) for i in np.flatnonzero(found)]
 
 
 class Target(NamedTuple):
@@ -167,7 +195,7 @@ def posterior(points: np.ndarray, outputs: np.ndarray, targets: Sequence[Target]
         box = np.maximum(0, low - room), np.minimum(1, high + room)
     mean = weights @ cloud
     likely = log_likelihood(*measured(mean[None]))[0] > logs.max() + math.log(LIKELY)
-    jumps = [gaps_of(column, one) for column, one in zip(outputs.T, emulators)]
+    jumps = [find_gaps(column, one) for column, one in zip(outputs.T, emulators)]
     return Posterior(cloud, weights, logs, mean if likely else cloud[int(logs.argmax())], box, emulators, goals, noise,
                      jumps, misfit)
 

@@ -4,23 +4,25 @@ from typing import Any, Dict, List, Mapping, Optional
 from ..case import decks
 from ..errors import SlopeError
 from ..mobility import body, steeper
-from ..sites import ground, site_deck, site_zones
+from ..sites import site_deck, site_zones
 from ..sites.site_choices import Site
 from ..sites.site_found import Zone
 from ..sites.site_sections import Model
 from ..sites.stop_angle import stop_angle
 
 FIELD_SIZE = 1e-6       # of d; the table is of grounds of balls as large as the soil's
+SEED = "ground_seed"    # variable of a deck whose ground is scattered balls; without it, it is a plan grid
+SCALED = "${d}"         # field_d of a deck whose ground scales with its balls
 
 
 def of_variables(variables: Optional[Mapping[str, Any]]) -> Optional[float]:
     """The stop angle (degrees) of a run's ground by the values of its deck's variables; None where it is unknown."""
     values = variables or {}
     try:
-        d, field = (float(values[name]) if values[name] != ground.SCALED else None for name in ("d", "field_d"))
+        d, field = (float(values[name]) if values[name] != SCALED else None for name in ("d", "field_d"))
         if field is not None and d is not None and abs(field - d) > FIELD_SIZE * d:
             return None
-        scattered = ground.SEED in values or str(values.get("pattern", "")).startswith("scattered")
+        scattered = SEED in values or str(values.get("pattern", "")).startswith("scattered")
         return stop_angle(float(values["spacing"]), float(values["friction"]), float(values["rolling"]),
                           float(values["field_e"]), "scattered" if scattered else "grid").degrees
     except (KeyError, ValueError):
@@ -42,7 +44,7 @@ def stop_angles(site: Site, others: bool = False) -> Dict[str, Dict[str, float]]
     """
     variables, choices = decks.index_variables(site.folder / site_deck.NAME), site.choices
     runs = [(variables.get("spacing", ""), f"{one:g}") for one in choices.study.rolling]
-    if others and ground.SEED in variables:
+    if others and SEED in variables:
         runs += [(f"{spacing:g}", f"{rolling:g}") for spacing, rolling in choices.other_grounds]
     found: Dict[str, Dict[str, float]] = {}
     for spacing, rolling in runs:

@@ -24,10 +24,10 @@ from ..sites.site_choices import Folder, Site
 from ..sites.site_layers import OBSERVED
 from ..sites.site_sections import PACKING, Choices, OfMass
 from ..survey import rasters, roads
-from ..tables import elastic, energy, named_run, sizes, study_types
+from ..tables import elastic, named_run, sizes, study_types
 from ..tables.rows import Failed, finished_of
 from ..tables.sizes import VARIABLE
-from ..tables.step_check import Step, half_of
+from ..tables.step_check import SUFFIX, Step, half_of, read_energies
 from . import mapped, results, size_runs, study
 from .run_rows import read_run_rows
 from .setup import Road, Setup
@@ -284,7 +284,7 @@ def judge_step_run(setup: Setup, run_: repeats.Repeat, rolling: str, variables: 
     if isinstance(row, Failed):
         return Step(rolling, None, f"{run_.name}: {row.error}", step=float(run_.chosen["step"]))
     prefix = run_folders.prefix_of(run_folders.summary_of(setup.output, row.summary))
-    return Step(rolling, row.at_road.remove_m3, energy=energy.read_energies(Path(f"{prefix}.{energy.SUFFIX}"))
+    return Step(rolling, row.at_road.remove_m3, energy=read_energies(Path(f"{prefix}.{SUFFIX}"))
                 if LEDGER in variables else None, spacing=variables.get("spacing"),
                 step=float(run_.chosen["step"]))
 

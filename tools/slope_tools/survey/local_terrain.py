@@ -4,7 +4,7 @@ Order of the work: read, merge, fill holes, crop or resample, move to the local 
 """
 import math
 from pathlib import Path
-from typing import Any, Callable, Dict, List, NamedTuple, Mapping, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 from affine import Affine
@@ -15,7 +15,6 @@ from ..findings import Finding
 from ..geometry import format_numbers
 from . import fggml, plausible, rasters, xyz, zips
 from .crs import as_crs, require_axes, require_metres, require_order, warn_of_north, warn_of_stretch
-from .holes import fill, small_holes
 from .marks import Marks, format_mark
 from .rasters import Raster
 from .resampling import needed, regrid
@@ -155,3 +154,44 @@ def describe_terrain(name: object, sidecar: Dict[str, Any]) -> str:
             f"x {extent['xlo']:.3f} to {extent['xhi']:.3f}, y {extent['ylo']:.3f} to {extent['yhi']:.3f}, "
             f"z {height['min']:.3f} to {height['max']:.3f} m, {sidecar['nodata_cells']} NODATA cells, "
             f"local origin at east {origin['east']:.10g}, north {origin['north']:.10g}")
+
+
+# --- holes of NODATA ---
+
+def small_holes(empty: np.ndarray, most: int) -> Tuple[np.ndarray, int]:
+    """Mask and number of the holes in a boolean array: groups of at most `most` True cells, none of them at the edge.
+
+    Cells that touch, corners included, are one group.
+    """
+    from scipy import ndimage
+    groups, number = ndimage.label(empty, np.ones((3, 3)))
+    hole = np.bincount(groups.ravel(), minlength=number + 1) <= most
+    hole[0] = False         # no group
+    for side in (groups[0], groups[-1], groups[:, 0], groups[:, -1]):
+        hole[side] = False
+    return hole[groups], int(hole.sum())
+
+
+def fill(z: np.ndarray, holes: np.ndarray) -> np.ndarray:
+    """Heights with the holes (a mask, none of it at the edge) filled: each cell is the mean of its four neighbours.
+
+    That is the membrane on the rim; it fills a hole in a plane exactly. GDAL's fillnodata leaves a step: on a slope of
+    0.76 and cells of 5 m, 1.4 m at a single cell. All holes are one sparse linear system.
+    """
+    row, column = np.nonzero(holes)
+    if not len(row):
+        return z
+    from scipy import sparse
+    from scipy.sparse.linalg import spsolve
+    near_row, near_column = row[:, None] + [-1, 1, 0, 0], column[:, None] + [0, 0, -1, 1]
+    number = np.full(z.shape, -1)       # of an unknown; -1 for a known height
+    number[row, column] = np.arange(len(row))
+    near = number[near_row, near_column]
+    rim = np.where(near < 0, z[near_row, near_column], 0).sum(axis=1)
+    cell, side = np.nonzero(near >= 0)
+    matrix = sparse.diags(np.full(len(row), 4.0)) - sparse.coo_matrix(
+        (np.ones(len(cell)), (cell, near[cell, side])), shape=(len(row), len(row)))
+    middle = np.nanmean(z)      # heights against it, so that digits of a high mountain are not lost
+    filled = z.copy()
+    filled[row, column] = middle + spsolve(matrix.tocsc(), rim - middle * (near < 0).sum(axis=1))
+    return filled

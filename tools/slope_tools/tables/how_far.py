@@ -10,7 +10,7 @@ from typing import Any, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
-from ..deposits import deposit, scar, travel_shares
+from ..deposits import deposit, travel_shares
 from ..mobility import fall_path, known
 from ..mobility.known import Mobility
 from ..mobility.run_length import ON_PATH
@@ -47,7 +47,7 @@ def known_of(prefix: Path, terrain: Optional[Path], choice: Mapping[str, Any],
     """The mass of a run among known events; prefix: of its deposit; terrain: the ground before it; choice: of the
     events, see known.of_about(); site: see known.of_mass()."""
     read = deposit.read_deposit(prefix, terrain, lambda text: None)
-    return known.of_mass(read.raster, *scar.before(read.raster, read.base, terrain), choice, site)
+    return known.of_mass(read.raster, *deposit.find_ground_before(read.raster, read.base, terrain), choice, site)
 
 
 def reach(rows: Sequence[Finished], source: Optional[entries.Source], among: known.Known) -> Optional[Reach]:
