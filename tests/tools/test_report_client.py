@@ -81,7 +81,7 @@ MOVING = {"code": "rule", "numbers": {"source": "paper", "rule": "runs not at re
 
 
 def headline_of(kind, **more):
-    """An entry of study.yaml as statistics.answer writes it."""
+    """An entry of study.yaml as tables.headline writes it."""
     return {"kind": kind, "volume_m3": None, "share": None, "low_m3": None, "high_m3": None, "source": None,
             "paper": {"volume_m3": None, "withheld": [], "runs": 13},
             "ensemble": {"volume_m3": None, "far": 0.03, "withheld": [], "runs": 24},

@@ -1,7 +1,7 @@
 """The ensemble of a site's study, which counts as known events of this volume and height say: how many runs, of what.
 
 Its runs go from masses as sluggish as the defaults to rock avalanches. Beside it stands the sweep, the largest
-volume over rolling resistances and grounds; the larger of both counts (statistics.answer).
+volume over rolling resistances and grounds; the larger of both counts (tables.headline).
 """
 from pathlib import Path
 

@@ -34,7 +34,7 @@ class Made(NamedTuple):
 
 
 class Number(NamedTuple):
-    """Of a road; kind: of its headline (statistics.answer), None without one; volume_m3: of it; most_m3: of a run.
+    """Of a road; kind: of its headline (tables.headline), None without one; volume_m3: of it; most_m3: of a run.
 
     reaching, runs: how many runs of both studies bring something onto it, and how many finished; reached: the share of
     known events that does, the larger probability, 0 where nobody knows; page: in its folder.

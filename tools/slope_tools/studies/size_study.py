@@ -1,7 +1,7 @@
 """slope sensitivity --converge: runs with balls of several sizes, and whether halving them changes more than chance.
 
 Order of the work: plan sizes and repeats (repeats.py), run them as `slope study` does (study.py, jobs.py), compare
-(convergence.py), write converge.yaml, converge.csv, converge_runs.csv and the chart (convergence_chart.py).
+(convergence.py), write converge.yaml, converge.csv, converge_runs.csv and the chart.
 """
 from typing import Dict, List, Mapping, NamedTuple, Sequence
 
@@ -96,8 +96,7 @@ def collect_sizes(planned: Plan, of, work) -> None:
                                                                                    work.defaults))
     disk.write_file(setup.output / "converge.yaml", disk.yaml_text(
         f"slope sensitivity --converge: values of {variable}; volumes in m3 of ground (bulk), lengths in m", summary))
-    from ..tables import convergence_chart
-    convergence_chart.draw_convergence(
+    draw_convergence(
         setup.output / "converge.png", variable, [(*names[name], convergences[name], [
             (float(group.set[variable]), row.value(name)) for group in groups for row in group.rows]) for name in of],
         f"{setup.deck.name}: {len(finished)} runs, {len(groups)} values of {variable}")
@@ -149,3 +148,33 @@ def shown_of(convergences, variable, names, deck) -> Table:
             cells.append(write(mine.mean) + (f" s {write(mine.scatter)}" if mine.scatter is not None else ""))
         shown.add_row(*cells)
     return shown
+
+
+def draw_convergence(path, variable, panels, title):
+    """The chart (PNG): every run and the means, over the thickness in balls; panels: list of (name, unit, Convergence,
+    [(size, value of a run), ...])."""
+    from matplotlib.ticker import StrMethodFormatter    # nothing else here needs it
+
+    from ..drawing import pictures
+    from ..drawing.figures import COLOURS, FULL, GRAY, STYLE
+    with pictures.settings(STYLE):
+        width = FULL if len(panels) > 1 else 0.6 * FULL
+        figure, axes = pictures.subplots(1, len(panels), figsize=(width, 2.9), squeeze=False)
+        for axis, (name, unit, fit, points) in zip(axes[0], panels):
+            thick = {size.d: size.balls for size in fit.sizes if size.balls is not None}
+            at = (lambda d: thick[d]) if thick else (lambda d: d)
+            axis.plot([at(size) for size, _ in points], [value for _, value in points], "o", color=GRAY, ms=3,
+                      mfc="none", mew=0.7, label="runs")
+            axis.errorbar([at(size.d) for size in fit.sizes], [size.mean for size in fit.sizes],
+                          [size.scatter or 0.0 for size in fit.sizes], fmt="-D", color=COLOURS[1], ms=3.5, lw=0.9,
+                          capsize=2.5, label="means, and the scatter of a run")
+            axis.set_title(f"{name} ({unit})", loc="left")
+            axis.set_xlabel("balls over the thickness of the body" if thick else variable)
+            axis.set_xlim(left=0)
+            axis.yaxis.set_major_formatter(StrMethodFormatter("{x:,.6g}"))
+            axis.grid(color="#dddddd", lw=0.5)
+            axis.set_axisbelow(True)
+            axis.spines[["top", "right"]].set_visible(False)
+            axis.legend(loc="best")
+        figure.suptitle(title, fontsize=7.5, x=0.01, ha="left")
+        pictures.save(figure, path)
