@@ -4,6 +4,7 @@ import re
 import shlex
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -19,6 +20,7 @@ from slope_tools.ensembles import sample
 from slope_tools.statistics import distributions, withheld
 from slope_tools.statistics.entries import Code
 from slope_tools.statistics.withheld import Facts, Kind
+from slope_tools.studies import outcome
 from slope_tools.tables import combinations, next_step, usable
 from slope_tools.tables.how_far import Events
 from slope_tools.tables.usable import Case
@@ -205,8 +207,9 @@ def events(median, reached):
 
 
 def judged(several, events=None):
-    best = combinations.conservative({"rolling": ["0"]}, several, combinations.grouped(several))
-    return usable.judge(best, several, events, SITE)
+    read = SimpleNamespace(rows=several, finished=several, events=events, case=SITE, draw=None, defaults={})
+    return outcome.judge_conservative(outcome.Questions({"rolling": ["0"]}, {}, ()), read,
+                                      combinations.grouped(several))[0]
 
 
 def test_a_number_that_may_stand():

@@ -237,14 +237,22 @@ def reasons(read: Read) -> List[Finding]:
 
 def judge_conservative(questions: Questions, read: Read, groups: Sequence[combinations.Group]) -> Tuple[
         study_types.Conservative, Optional[study_types.HalfStep]]:
-    """The entries of the conservative volume and of the run with half the time step."""
+    """The entries of the conservative volume and of the run with half the time step.
+
+    A volume that is withheld is None there, so that no reader takes it for one.
+    """
     best = combinations.conservative(questions.settings, read.rows, groups, read.draw)
     doubts, step = [*best.doubts, *unseen(questions.repeated, read.defaults)], None
     if questions.step:
         step, more = step_check.compare(questions.step, groups)
         doubts += more
     assert read.case
-    return usable.judge(replace(best, doubts=doubts), read.rows, read.events, read.case), step
+    withheld, zero = usable.reasons_of_sweep(best, read.rows, read.events, read.case), None
+    if withheld:
+        best = replace(best, volume_m3=None, rounded={**best.rounded, "volume_m3": None})
+    elif best.volume_m3 == 0:
+        zero = usable.zero(len(read.finished), read.events and max(read.events.reached))
+    return replace(best, doubts=doubts, withheld=withheld, zero=zero), step
 
 
 def unseen(repeated: Mapping[str, Sequence[str]], defaults: Mapping[str, str]) -> List[Finding]:

@@ -150,7 +150,7 @@ def conservative(settings: Settings, rows: Sequence[Row], groups: Sequence[Group
         starts_m3=[min(volumes), max(volumes)] if len(volumes) > 1 else None,   # of the same combination
         run=largest.run, remove_m3=largest.at_road.remove_m3,                   # the one whose maps represent it
         differences=differences, doubts=find_combination_caveats(settings, rows, groups, best, differences),
-        withheld=[], zero=None,     # see usable.judge
+        withheld=[], zero=None,     # see outcome.judge_conservative
         transfer_m3=transfer(best.mean, governing, draw) if draw else None)
 
 

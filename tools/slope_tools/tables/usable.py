@@ -1,6 +1,5 @@
 """Whether the number of a study may be used: the Facts that withheld looks at, from its rows; the command that mends
 each reason, and what is said in the place of the number."""
-from dataclasses import replace
 from pathlib import Path
 from shlex import quote
 from typing import Any, List, Mapping, NamedTuple, Optional, Sequence
@@ -62,21 +61,12 @@ def reasons_of_ensemble(rows: Sequence[Row], events: Optional[Events], case: Cas
     return with_remedies(reasons(facts(rows, largest, on_road, events)), case)
 
 
-def judge(best: study_types.Conservative, rows: Sequence[Row], events: Optional[Events],
-          case: Case) -> study_types.Conservative:
-    """The entry of the conservative volume with why it is withheld, and if it is 0, with what that is worth.
-
-    A volume that is withheld is None there, so that no reader takes it for one.
-    """
+def reasons_of_sweep(best: study_types.Conservative, rows: Sequence[Row], events: Optional[Events],
+                     case: Case) -> List[Finding]:
+    """Why the conservative volume is withheld; empty: it may stand."""
     mine = [row.at_road.remove_on_road_m3 for row in finished_of(rows) if row.set == best.set]
     assert best.volume_m3 is not None        # until it is judged
-    found = reasons(facts(rows, best.volume_m3, sum(mine) / len(mine), events))
-    if found:
-        return replace(best, withheld=with_remedies(found, case), volume_m3=None,
-                       rounded={**best.rounded, "volume_m3": None})
-    if best.volume_m3 == 0:
-        return replace(best, zero=zero(len(finished_of(rows)), events and max(events.reached)))
-    return best
+    return with_remedies(reasons(facts(rows, best.volume_m3, sum(mine) / len(mine), events)), case)
 
 
 # --- what mends a reason ---
