@@ -22,7 +22,7 @@ from tiny_collapse import TOP, loaded, write_case
 
 from slope_tools.digits import three
 from slope_tools.errors import SlopeError
-from slope_tools.fitting import calibration, fit, fit_words, observations
+from slope_tools.fitting import calibration, fit, observations
 from slope_tools.runs import repeats
 from slope_tools.statistics import backanalysis, designs, distributions, emulator, tempering
 from slope_tools.studies import mapped
@@ -166,11 +166,11 @@ def test_a_gap_is_named_where_there_is_one_and_the_region_holds_the_truth():
     (low, high), = one.gaps
     assert one.near and one.holds and 1600 < low <= 1750 and 2300 <= high < 2450
     assert plain.holds and not plain.gaps
-    line, = fit_words.jumps(one.found, one.targets)
+    line, = fit.jumps(one.found, one.targets)
     assert line.startswith(f"run-out: no run gives a value between {three(low)} and {three(high)} m, where the "
                            "response jumps")
     inside = [one.targets[0]._replace(value=2000.0), one.targets[1]]
-    line, = fit_words.jumps(one.found, inside)
+    line, = fit.jumps(one.found, inside)
     assert line.endswith("; the observed 2,000 lies there, and no values reproduce it")
 
 
@@ -193,10 +193,10 @@ def test_a_run_is_predicted_from_the_others():
 def test_a_best_run_that_misses_is_said_first():
     one = twins.Steep(0, 550.0)
     value = one.targets[0].value
-    assert fit_words.misses(one.found, one.targets, np.array([target.value for target in one.targets])) == []
-    line, = fit_words.misses(one.found, one.targets, np.array([value + 500, one.targets[1].value]))
+    assert fit.misses(one.found, one.targets, np.array([target.value for target in one.targets])) == []
+    line, = fit.misses(one.found, one.targets, np.array([value + 500, one.targets[1].value]))
     assert line.endswith(f"explain: run-out {three(value + 500)} instead of {three(value)} m")
-    assert "says nothing" in fit_words.misses(one.found, one.targets, None)[0]
+    assert "says nothing" in fit.misses(one.found, one.targets, None)[0]
 
 
 def test_sets_stand_for_the_region():

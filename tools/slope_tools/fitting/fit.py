@@ -1,4 +1,5 @@
 """Fitting the variables of a deck to an observed deposit."""
+import math
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, Optional, Sequence
 
@@ -12,11 +13,13 @@ from ..deposits.rest import CUT
 from ..findings import Finding, encode_findings
 from ..runs import jobs, repeats
 from ..statistics import backanalysis
+from ..statistics.backanalysis import Posterior, Target
 from ..studies import body_depth, mapped, run_rows
 from ..studies.setup import Setup
 from ..tables import judged, quantities
+from ..tables.quantities import format_quantity
 from ..tables.rows import Finished, Row, finished_of
-from . import calibration, fit_words, observations
+from . import calibration, observations
 
 # variables of the package's decks that are of the law of contact or of the ground
 MODEL = "friction", "rolling", "restitution", "e", "field_e", "spacing", "pattern", "angle"
@@ -24,6 +27,7 @@ SETS = 64               # sets of values that stand for the region
 DURATION = "duration"   # variable of a deck, its time limit
 DOUBLED = 3             # times, at most, where a run is not at rest then
 TABLE, ABOUT, CHART, MAP = "calibrate.csv", "calibrate.yaml", "calibrate.png", "predicted.png"
+BEYOND = 2.0            # standard deviations of tolerance and chance together
 
 
 def in_words(number: int) -> str:
@@ -106,7 +110,7 @@ class Fit:
         output, plan, targets = self.setup.output, self.plan, self.observed.targets
         best = plan.runs[plan.number - 1]
         predicted = plan.outputs[plan.number - 1]
-        words = [*fit_words.misses(posterior, targets, predicted), *fit_words.jumps(posterior, targets),
+        words = [*misses(posterior, targets, predicted), *jumps(posterior, targets),
                  *backanalysis.judgement(posterior, self.variables)]
         doubts = self.doubts(posterior)
         failed = [one.name for one in plan.runs if one.error]
@@ -246,3 +250,32 @@ class Fit:
             lines.append(f"{one['name']}: predicted {predicted}, observed {goal} ({one['unit']}; s of a run "
                          f"by chance {number_(one['chance'])})")
         return lines
+
+
+# --- what is said first of a calibration ---
+
+def misses(posterior: Posterior, targets: Sequence[Target], predicted: Optional[np.ndarray]) -> List[str]:
+    """The observed numbers that the run at the best values is far from; predicted: its outputs, None if it has none."""
+    if predicted is None:
+        return ["the run at the best values says nothing: it failed, or left the terrain"]
+    lines = []
+    for one, value, noise in zip(targets, predicted, posterior.noise):
+        if one.value is not None and abs(value - one.value) > BEYOND * math.hypot(one.deviation, noise):
+            lines.append("the run at the best values misses the observation by more than tolerance and chance "
+                         f"explain: {one.name} {format_quantity(value)} instead of {format_quantity(one.value)} "
+                         f"{one.unit}")
+    return lines
+
+
+def jumps(posterior: Posterior, targets: Sequence[Target]) -> List[str]:
+    """The gaps of the observed numbers."""
+    lines = []
+    for target, several in zip(targets, posterior.gaps):
+        for gap in several:
+            text = (f"{target.name}: no run gives a value between {format_quantity(gap.low)} and "
+                    f"{format_quantity(gap.high)} {target.unit}, "
+                    "where the response jumps, as over a step of the ground")
+            if target.value is not None and gap.holds(target.value):
+                text += f"; the observed {format_quantity(target.value)} lies there, and no values reproduce it"
+            lines.append(text)
+    return lines
