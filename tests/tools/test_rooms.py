@@ -23,6 +23,7 @@ ROOMS = ("", "drawing", "survey", "case", "quakes", "releases", "slips", "sites"
          "blocks", "route", "validation", "commands")
 MOST = 25           # modules of a room; its __init__.py is one
 ALIKE = 3           # public functions of one name
+FILES = r"\*[\w/]+\.py\*(?: or \*[\w/]+\.py\*)?"       # that a README names; of two either
 # names that say nothing of a value: not of a parameter, nor of what is used on more than LIVES lines
 SAY_NOTHING = {"one", "found", "about", "said", "item", "it", "thing"}
 LIVES = 5
@@ -87,6 +88,31 @@ def test_a_room_tells_of_files_and_functions_that_are_there(room_):
     there = {node.name for module in MODULES for node in ast.walk(ast.parse(module.read_text(encoding="utf-8")))
              if isinstance(node, ast.FunctionDef)} if "()`" in text else set()
     assert set(re.findall(r"`(?:\w+\.)*(\w+)\(\)`", text)) <= there
+
+
+def columns_of(text):
+    """The columns of a table of a README, each with the first where it has a cell; "the same" is as to the left."""
+    lines = [line for line in text.splitlines() if line.startswith("| ")]
+    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
+    for k, (first, *cells) in enumerate(rows):
+        for place, cell in enumerate(cells):
+            if cell.startswith("the same"):
+                cells[place] = f"{cells[place - 1]} {cell}"
+        rows[k] = [f"{first} {cell}" if cell else "" for cell in cells]
+    return [" ".join(column) for column in zip(*rows)]
+
+
+def test_a_number_of_page_1_is_made_in_ten_files():
+    """By studies/README.md: of two files with "or" between them one counts; functions are in the files beside them."""
+    table = "| | a | b |\n|---|---|---|\n| *x.py* | *y.py* or *z.py* | the same, *u.py* |\n| *v.py* | | *w.py* |\n"
+    assert [len(re.findall(FILES, column)) for column in columns_of(table)] == [2, 5]
+    text = (PACKAGE / "studies" / "README.md").read_text(encoding="utf-8")
+    columns = columns_of(text)
+    assert len(columns) == 4 and [column for column in columns if len(set(re.findall(FILES, column))) > 10] == []
+    for name, functions in re.findall(r"\*([\w/]+)\.py\*((?:,? (?:and )?`\w+\(\)`)+)", text):
+        path = PACKAGE / f"{name}.py" if "/" in name else PACKAGE / "studies" / f"{name}.py"
+        assert set(re.findall(r"\w+(?=\()", functions)) <= {
+            node.name for node in ast.parse(path.read_text(encoding="utf-8")).body if isinstance(node, ast.FunctionDef)}
 
 
 def test_every_command_is_a_module_and_every_module_in_a_room():

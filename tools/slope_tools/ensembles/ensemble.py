@@ -18,7 +18,7 @@ from ..mobility.known import Mobility
 from ..statistics import emulator, hazard
 from ..statistics.entries import Analysis, Check, Influence, KnownQuantile
 from ..survey.rasters import Place
-from ..tables import combinations, ensemble_types, quantities, sizes, usable
+from ..tables import combinations, ensemble_types, quantities, usable
 from ..tables.quantities import On
 from ..tables.rows import Finished, Row, finished_of
 from . import ensemble_maps, farther, known_events
@@ -73,11 +73,6 @@ class Emulated:
     known_events: Optional[known_events.Emulated]
 
 
-def select_planned_rows(rows: Sequence[Row]) -> List[Row]:
-    """The rows of the design, without those that were added."""
-    return [row for row in rows if not row.batch]
-
-
 def main_of(order: Order, finished: Sequence[Finished]) -> List[str]:
     """The quantities whose dependence on the variables counts."""
     known = quantities.known(On.ASKED, finished)
@@ -86,7 +81,7 @@ def main_of(order: Order, finished: Sequence[Finished]) -> List[str]:
 
 def emulate(order: Order, rows: Sequence[Row], mobility: Optional[Mobility]) -> Emulated:
     """For evaluate_ensemble(), which does without where all runs failed."""
-    finished = finished_of(select_planned_rows(rows))
+    finished = finished_of(known_events.select_planned_rows(rows))
     if not finished:
         return Emulated({}, None)
     point, places, main = number_design_points(order.sample, finished), order.sample.places(finished), main_of(order,
@@ -100,25 +95,19 @@ def emulate(order: Order, rows: Sequence[Row], mobility: Optional[Mobility]) -> 
     return Emulated(influence, known_events.emulate(order.sample, order.added, rows, mobility, main))
 
 
-def evaluate_ensemble(order: Order, rows: Sequence[Row], mobility: Optional[Mobility], emulated: Emulated,
-                      draw: Optional[sizes.Draw] = None) -> Optional[Evaluated]:
+def evaluate_ensemble(order: Order, rows: Sequence[Row], emulated: Emulated,
+                      known: Optional[known_events.Evaluated] = None) -> Optional[Evaluated]:
     """What an ensemble says, None where all runs failed.
 
-    rows: of study.csv; mobility: of an order with a condition; emulated: of emulate(); draw: see known_events.
+    rows: of study.csv; emulated: of emulate(); known: of known_events.evaluate_known_events().
     """
-    finished = finished_of(select_planned_rows(rows))
+    finished = finished_of(known_events.select_planned_rows(rows))
     if not finished:
         return None
-    failed = len(select_planned_rows(rows)) - len(finished)
+    failed = len(known_events.select_planned_rows(rows)) - len(finished)
     point = number_design_points(order.sample, finished)
-    of_quantity = {name: (quantities.name_quantity(name, finished), quantities.ALL[name].unit)
-                   for name in quantities.known(On.ASKED, finished)}
+    of_quantity = quantities.name_asked(finished)
     curves = {name: hazard.compute_hazard_curve(column(finished, name), point, failed) for name in of_quantity}
-    known = None
-    if order.condition:
-        assert order.added and mobility and emulated.known_events
-        known = known_events.evaluate_known_events(order.condition, order.sample, order.added, rows, mobility,
-                                                   of_quantity, emulated.known_events, draw)
     ensemble = ensemble_types.Ensemble(
         design=order.sample.about, runs=len(finished) + failed, finished=len(finished), failed=failed,
         points=len(set(point)), confidence=hazard.CONFIDENCE, of=order.of if order.of in curves else None,

@@ -7,7 +7,7 @@ curves and quantiles of the weighted runs (conditioned), the parameters that the
 import functools
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence
 
 import numpy as np
 
@@ -158,14 +158,19 @@ def emulate(sample: Sample, added: farther.Added, rows: Sequence[Row], mobility:
                     {name: known_influence.evaluate_influence(runs, name) for name in comparable[:1]})
 
 
+def select_planned_rows(rows: Sequence[Row]) -> List[Row]:
+    """The rows of the design, without those that were added."""
+    return [row for row in rows if not row.batch]
+
+
 def evaluate_known_events(condition: Condition, sample: Sample, added: farther.Added, rows: Sequence[Row],
-                          mobility: Mobility, names: Mapping[str, Tuple[str, str]], emulated: Emulated,
-                          draw: Optional[sizes.Draw] = None) -> Evaluated:
+                          mobility: Mobility, emulated: Emulated, draw: Optional[sizes.Draw] = None) -> Evaluated:
     """What the weighted runs say.
 
-    rows: of study.csv, finished and failed; mobility: the mass among known events; names: {column: (what, unit)} of the
-    quantities; emulated: of emulate(); draw: of runs that are transferred to the finest balls.
+    rows: of study.csv, finished and failed; mobility: the mass among known events; emulated: of emulate(); draw: of
+    runs that are transferred to the finest balls.
     """
+    names = quantities.name_asked(finished_of(select_planned_rows(rows)))
     asked = condition.asked
     known = ensemble_types.Known(
         asked.name(mobility), asked.number(mobility), list(asked.left_out), asked.confined,

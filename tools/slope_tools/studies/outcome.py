@@ -163,7 +163,12 @@ def evaluate_study(questions: Questions, read: Read, header: study_types.Header)
     several = best = step = at_intensities = None
     if order:
         assert read.emulated is not None
-        several = ensemble.evaluate_ensemble(order, rows, read.mobility, read.emulated, read.draw)
+        weighed = None
+        if order.condition and read.emulated.known_events:
+            assert order.added and read.mobility
+            weighed = known_events.evaluate_known_events(order.condition, order.sample, order.added, rows,
+                                                         read.mobility, read.emulated.known_events, read.draw)
+        several = ensemble.evaluate_ensemble(order, rows, read.emulated, weighed)
         if several:
             several = several._replace(about=replace(several.about, withheld=reasons(read)))
     elif read.road and finished:

@@ -4,7 +4,7 @@ Tables on the screen, study.csv, study.yaml, pages, charts, ensembles and their 
 entry and a field of a row, with its place in a summary; else studies/run_rows gives its value.
 """
 from enum import Flag, auto
-from typing import Any, Callable, Dict, Iterable, List, Mapping, NamedTuple, Union
+from typing import Any, Callable, Dict, Iterable, List, Mapping, NamedTuple, Sequence, Tuple, Union
 
 from ..deposits import travel_shares
 from ..digits import format_measured_share, to_three
@@ -150,6 +150,11 @@ def name_quantity(key: str, rows: Iterable[Finished]) -> str:
     kinds = {row.length_is for row in rows if row.length_is}
     return f"{STRAIGHT} length" if kinds == {STRAIGHT} else \
         f"length ({STRAIGHT} in some runs)" if STRAIGHT in kinds else ALL[key].name
+
+
+def name_asked(rows: Sequence[Finished]) -> Dict[str, Tuple[str, str]]:
+    """{key: (what it is called, unit)} of the quantities that may be asked for, of which every run has a number."""
+    return {key: (name_quantity(key, rows), ALL[key].unit) for key in known(On.ASKED, rows)}
 
 
 # --- values ---
