@@ -296,7 +296,7 @@ def test_a_study_that_is_made_again_makes_no_finer_runs(monkeypatch, chased):
 
     for name, fake in (("make_finer_runs", first_runs), ("add", add), ("read_run_rows", lambda _, runs: [
             made_rows.row(run=one.name) for one in runs]), ("at_finest", lambda *_: SimpleNamespace(
-                sizes=True, rows=lambda rows: rows, runs=lambda several: several))):
+                sizes=SimpleNamespace(row=lambda row: row), runs=lambda several: several))):
         monkeypatch.setattr(size_runs, name, fake)
     work = SimpleNamespace(store=SimpleNamespace(admit=lambda _: None), do=lambda *_, **__: None)
     setup = SimpleNamespace(tell=lambda _: None)
