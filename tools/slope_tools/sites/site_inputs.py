@@ -160,15 +160,15 @@ def check_beside_body(structures_: Iterable[Structure], folder: Path, raster: Ra
         return
     rows, columns = np.nonzero(body)
     x, y = raster.transform @ (np.array([columns.min(), columns.max() + 1]), np.array([rows.max() + 1, rows.min()]))
-    for one in structures_:
-        mesh = corners(str(folder / one.file)) + one.move
+    for structure_ in structures_:
+        mesh = corners(str(folder / structure_.file)) + structure_.move
         low, high = mesh[..., :2].min(axis=1), mesh[..., :2].max(axis=1)
         near = ((high >= (x[0], y[0])) & (low <= (x[1], y[1]))).all(axis=1)
         low, high = site_walls.heights_of(mesh[near], raster)
         if len(hit := np.argwhere(body & (low < raster.z) & (high > raster.z - depth))):
             row, column = hit[len(hit) // 2]
             place = polygons.decimetres(raster.transform @ (column + 0.5, row + 0.5))
-            raise SlopeError(one.given, "must not stand in the release area, where it would be in the balls",
+            raise SlopeError(structure_.given, "must not stand in the release area, where it would be in the balls",
                              f"local x y {place}")
 
 
