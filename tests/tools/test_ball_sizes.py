@@ -277,6 +277,13 @@ def test_long_runs_have_finer_balls_but_not_the_finest():
     assert size_runs.orders_of(np.ones(1), np.ones(1, bool), np.zeros((1, 1)), [1, 1]) == [[0], [0]]
 
 
+@pytest.mark.parametrize("finest, left", [(5, 3), (4, 2), (3, 2), (2, 2), (1, 1), (0, 0)])
+def test_points_that_rest_too_late_leave_no_size_untold(finest, left):
+    """Where fewer may have the finest balls than were wanted, two are made at first, and all of the size before."""
+    planned = [(0, each) for each in range(5)] + [(1, each) for each in range(finest)]
+    assert size_runs.without_late(planned, 1) == planned[:5 + left]
+
+
 @pytest.mark.parametrize("chased", [True, False])
 def test_a_study_that_is_made_again_makes_no_finer_runs(monkeypatch, chased):
     """Numbers that rest on another run each time ask for four more than were wanted; others for as many as wanted."""

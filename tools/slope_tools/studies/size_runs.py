@@ -6,7 +6,7 @@ that parameters and lengths are spread; those with the finest rest soon, and hav
 import math
 from dataclasses import replace
 from pathlib import Path
-from typing import Callable, Dict, List, NamedTuple, Optional, Sequence
+from typing import Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -202,7 +202,6 @@ def make_finer_runs(setup: Setup, work: jobs.Work, points: Sequence[Repeat], wan
     usual = np.median([one for one, row in zip(times, known) if not row.batch] or times)
     orders = orders_of(times / max(usual, 1e-9), first, places_of(known, chosen.along), wanted.points)
     wanted = wanted.fitted([times[order].tolist() for order in orders])
-    late = min(site_budget.LATE, max(0, [sizes.FEWEST, *wanted.points][-1] - sizes.FEWEST))
     made = Made(points, {}, [names[known[k].run] for k in orders[-1]])
     planned = [(k, each) for k, (order, number) in enumerate(zip(orders, wanted.points)) for each in order[:number]]
     there = {(k, each) for k, value in enumerate(wanted.values[1:]) for each, row in enumerate(known)
@@ -213,11 +212,18 @@ def make_finer_runs(setup: Setup, work: jobs.Work, points: Sequence[Repeat], wan
     if wanted.points:
         setup.tell(told(wanted, len(missing), wanted.time and sum(
             wanted.time.one(k + 1, rest) for k, rest in missing) / work.jobs))
-    todo = {(j, each) for k, each in planned[:len(planned) - late] for j in range(k + 1)} | there   # each is a pair
+    todo = {(j, each) for k, each in without_late(planned, len(orders) - 1) for j in range(k + 1)} | there  # in pairs
     runs = [add(setup, made, wanted, names[known[each].run], k) for k, each in sorted(todo, reverse=True)]
     work.store.admit(runs)
     work.do(runs)
     return made
+
+
+def without_late(planned: Sequence[Tuple[int, int]], finest: int) -> Sequence[Tuple[int, int]]:
+    """Of planned runs (size, point), the finest ones last, those that come first: settle() chooses the last of the
+    finest, where as many are left as tell of that size."""
+    late = min(site_budget.LATE, max(0, sum(k == finest for k, _ in planned) - sizes.FEWEST))
+    return planned[:len(planned) - late]
 
 
 def orders_of(times: np.ndarray, first: np.ndarray, where: np.ndarray, numbers: Sequence[int]) -> List[List[int]]:
