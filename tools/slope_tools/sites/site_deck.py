@@ -76,7 +76,8 @@ def fill_deck_values(choices: OfMass, parts: Parts, numbers: Numbers) -> Dict[st
     model, motion, body = choices.model, choices.motion, parts.body
     balls = packing.count_balls(body.volume, numbers.diameter)
     parameters: Dict[str, Any] = {
-        "title": parts.title, "terrain": parts.terrain, "deck": NAME, "volume": f"{body.volume:,.0f}",
+        "title": parts.title, "terrain": parts.terrain, "deck": NAME,
+        "volume": "up to " * bool(choices.release.bodies) + f"{body.volume:,.0f}",
         "balls": f"about {balls:,.0f}", "rest_s": "some" if numbers.rest is None else f"{numbers.rest:.0f}",
         "run_time": run_time(numbers.run_seconds), "lower": math.ceil(body.lower),
         "box": " ".join(format_deck_number(value) for value in body.box), "types": types_before(parts) +
