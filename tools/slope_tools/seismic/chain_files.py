@@ -174,8 +174,9 @@ def sentences(chain_: study_types.Chain) -> List[str]:
     """How often, or at which peaks, the road is blocked by more than each of the volumes."""
     sure = f"{100 * chain_.confidence:g} %"
     if chain_.per_year:
-        return [f"the road is blocked by more than {one.more_than_m3:,.6g} m3 with {one.value:.2g} per year "
-                f"({sure}: {one.low:.2g} to {one.high:.2g})" for one in chain_.per_year]
+        return [f"the road is blocked by more than {one.more_than_m3:,.6g} m3 with " +
+                (f"{one.value:.2g} per year ({sure}: {one.low:.2g} to {one.high:.2g})" if one.value else
+                 f"at most {one.high:.2g} per year ({sure})") for one in chain_.per_year]
     words = []
     for one in chain_.curves:
         k = int(np.argmin(np.abs(np.array(one.probability) - 0.5)))
