@@ -77,7 +77,7 @@ def fill_deck_values(choices: OfMass, parts: Parts, numbers: Numbers) -> Dict[st
     balls = packing.count_balls(body.volume, numbers.diameter)
     parameters: Dict[str, Any] = {
         "title": parts.title, "terrain": parts.terrain, "deck": NAME,
-        "volume": "up to " * bool(choices.release.bodies) + f"{body.volume:,.0f}",
+        "mass": f"one of {len(of)} bodies" if (of := choices.release.bodies) else f"{body.volume:,.0f} m3",
         "balls": f"about {balls:,.0f}", "rest_s": "some" if numbers.rest is None else f"{numbers.rest:.0f}",
         "run_time": run_time(numbers.run_seconds), "lower": math.ceil(body.lower),
         "box": " ".join(format_deck_number(value) for value in body.box), "types": types_before(parts) +
