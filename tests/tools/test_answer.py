@@ -251,6 +251,13 @@ def test_rules_that_withhold_one_of_both():
     found = combine_answers(Paper(70.0), ensemble(rules=[Rule.BALLS]),
                             road(0.5, 0.6))     # its largest is less than balls
     assert (found.kind, found.volume_m3) == (Kind.NUMBER, 70.0)
+    # but a narrow road, or one below a steep hillside, has few balls on it and much to remove
+    for volume, kind in ((1045.0, Kind.NUMBER), (1046.0, Kind.FLOOR)):
+        large = [Finding(Rule.BALLS.value, {"number": 1.5, "bound": 10, "volume": volume})]
+        found = combine_answers(Paper(None, large), ensemble(), road(0.5, 0.6))
+        assert (found.kind, codes(found)) == (kind, [Code.RULE] * (kind is Kind.FLOOR)), volume
+        found = combine_answers(Paper(1045.0, least=1000.0), ensemble()._replace(withheld=large), road(0.5, 0.6))
+        assert (found.kind, found.source) == (kind, Source.PAPER), volume
     found = combine_answers(Paper(None, [left]), ensemble(rules=[Rule.RUNS]), road(0.5, 0.6))
     assert (found.kind, found.volume_m3, found.source) == (Kind.WITHHELD, None, None)
     assert codes(found) == [Code.RULE, Code.RULE]

@@ -226,7 +226,8 @@ def test_the_family_of_the_embankment():
         found = known.compute_known_mobility(embankment(factor), known.choice())
         which[factor] = found.decides.chosen
         assert all((np.diff(curve) <= 0).all() for one in found.each for curve in one.curves.values())
-        lane = fall_path.at_road(found.decides.path, box(60 * factor, 0, 80 * factor, 160 * factor))
+        lane = fall_path.at_road(found.decides.path, box(60 * factor, 0, 80 * factor, 160 * factor),
+                                 embankment(factor).raster, found.decides.width)
         assert lane.met and lane.passed - lane.length == pytest.approx(20 * factor, rel=0.01)
     assert [*which.values()] == ["landslides"] * 7 + ["mixture"] * 2
     low, high = max(f for f, kind in which.items() if kind == "landslides"), min(
@@ -259,7 +260,7 @@ def test_at_the_road_that_lies_too_high():
     """A fall that no event of the set had: at least what they say farther down."""
     mass = disc(hillside(), (300, 300))
     found = known.compute_known_mobility(mass, known.choice())
-    at = fall_path.at_road(found.decides.path, box(500, 0, 520, 600))
+    at = fall_path.at_road(found.decides.path, box(500, 0, 520, 600), mass.raster, found.decides.width)
     told = results.at_road(found, at)
     assert at.fall < 220 and told["exceedance"] is None and told["at_least"] == pytest.approx(
         found.decides.exceedance(found.decides.path.length[np.flatnonzero(found.decides.said)[0]]))

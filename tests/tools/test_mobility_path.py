@@ -10,7 +10,7 @@ import yaml
 from affine import Affine
 from rasterio.crs import CRS
 from scipy import stats
-from shapely.geometry import LineString, Point, box
+from shapely.geometry import LineString, Point, Polygon, box
 
 from run_helpers import TOP, run_command, write_asc, write_geojson, examples
 from tiny_collapse import rows_of
@@ -21,6 +21,7 @@ from slope_tools.mobility import relation, results
 from slope_tools.releases import release
 from slope_tools.survey import rasters
 from slope_tools.survey.rasters import Raster
+from slope_tools.tables import how_far
 
 ALL = events.read_events()
 SET = relation.of_events(ALL)
@@ -251,10 +252,43 @@ def test_of_several_bodies_the_largest_has_the_path(other):
 
 def test_a_road(known):
     lane = box(1000, 0, 1020, 1190)
-    first = fall_path.at_road(known.path, lane)
+    ground = hillside()[0], known.width
+    first = fall_path.at_road(known.path, lane, *ground)
     assert first.met and first.x == pytest.approx(1000) and first.length == pytest.approx(1000 - 155, abs=3)
-    beside = fall_path.at_road(known.path, box(1000, 400, 1020, 590))
+    beside = fall_path.at_road(known.path, box(1000, 400, 1020, 590), *ground)
     assert not beside.met and beside.beside == pytest.approx(100, abs=3) and beside.x == pytest.approx(1010, abs=11)
+    assert not beside.behind
+
+
+def test_a_road_along_the_path():
+    """The road beside the stream counts where the mass comes to it, not where it crosses the stream, or is nearest."""
+    mass = disc(hillside(), (300, 300))
+    ground = mass.raster
+    found = known_events.compute_known_mobility(mass, known_events.choice()).decides
+    width = mass.volume ** (1 / 3)
+    for turn in (0, 7, 170):        # stays beside, comes nearer, crosses
+        lane = LineString([(600, 370), (3000, 370), (3100, 370 - turn), (4000, 370 - turn)]).buffer(6)
+        at = fall_path.at_road(found.path, lane, ground, width)
+        assert not at.met and at.beside == pytest.approx(64, abs=1) and at.length < 600 - 155 + 2 * width + 10, turn
+    straight = fall_path.at_road(found.path, LineString([(600, 370), (600, 300), (700, 200)]).buffer(6), ground, width)
+    assert straight.met and straight.length == pytest.approx(600 - 6 - 155, abs=5)
+
+
+@pytest.mark.parametrize("lane, behind", [
+    (box(60, 10, 80, 590), True), (box(60, 500, 160, 590), True),       # beside the crown, on its level, too
+    (Polygon([(40, 20), (60, 20), (160, 590), (140, 590)]), True),      # a rim askew
+    (box(60, 500, 400, 590), False)])                                   # and down the slope beside the body
+def test_a_road_behind_the_crown(lane, behind):
+    """The mass goes away from it: no known event says that it is reached."""
+    mass = disc(hillside(), (300, 300))
+    among = known_events.Known(known_events.compute_known_mobility(mass, known_events.choice()), "", mass.raster)
+    counts = among.found.decides
+    at = fall_path.at_road(counts.path, lane, mass.raster, counts.width)
+    events = how_far.compute_events_at_road(among, lane)
+    assert at.behind == behind and (events.behind, max(events.reached) > 0.5) == ((at.beside, False) if behind else
+                                                                                  (0.0, True))
+    told = results.at_road(among.found, at)
+    assert (told["at_least"] is None and told["exceedance_landslides"] is None) == behind
 
 
 @pytest.mark.skipif(not FRANK.is_dir(), reason="the rasters of inputs/30_frank are not here")
@@ -435,5 +469,6 @@ def test_pictures(known, tmp_path):
     charts.draw_map(tmp_path / "map.png", known, mass, lane)
     found = known_events.compute_known_mobility(mass, known_events.choice(), known.path)
     out = found._replace(by_set=found.by_set._replace(outside=["x"]))
-    charts.draw_profile(tmp_path / "profile.png", out, mass, fall_path.at_road(known.path, lane))
+    at = fall_path.at_road(known.path, lane, mass.raster, known.width)
+    charts.draw_profile(tmp_path / "profile.png", out, mass, at)
     assert all((tmp_path / name).read_bytes()[:4] == b"\x89PNG" for name in ("map.png", "profile.png"))

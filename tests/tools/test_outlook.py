@@ -76,6 +76,10 @@ def test_the_side_at_which_a_path_leaves(mine, side, x, y):  # noqa: F811
     ends = np.array([60.0, x]), np.array([40.0, y])
     path = outlook.FallPath(*ends, np.zeros(2), np.zeros(2), outlook.TERRAIN, (0.0, 0.0, 0.0))
     assert outlook.side_of(path, mass.raster) == side
+    z = mass.raster.z.copy()
+    z[18:22, 20:30] = np.nan        # 40 to 60 m in x, 36 to 44 in y: a lake
+    there = np.isfinite(z)
+    assert not outlook.gone.is_in_hole(x, y, there, mass.raster) and outlook.gone.is_in_hole(63, 40, there, mass.raster)
 
 
 @pytest.mark.parametrize("words, balls, cells", [

@@ -145,13 +145,25 @@ def test_the_numbers_of_a_road_that_ends_inside():
                                               "unknown": 0.0})
     one = about["left"]
     assert [one[key] for key in ("volume", "balls", "before", "on", "past", "past_end", "road_ahead")] == pytest.approx(
-        [28.0, 4, 7.0, 7.0, 14.0, 7.0, 7.0])
+        [28.0, 4, 7.0, 7.0, 14.0, 7.0, 14.0])
     entries = {(each["side"], each["where"]): each for each in one["sides"]}
     assert set(entries) == {("north", "before"), ("south", "on"), ("east", "past"), ("east", "past its end")}
     assert entries["north", "before"]["distance"] == pytest.approx(math.hypot(200, 500))
     assert entries["east", "past"]["distance"] == 390
     far = 20 ** 2 / (2 * 9.80665 * math.tan(math.radians(20)))
     assert {each["add"] for each in one["sides"]} == {10 * math.ceil(far / 10)}
+
+
+@pytest.mark.parametrize("lost, thick, where", [(405, 1.0, "on"), (411, 1.0, "close to it"), (413, 1.0, "past"),
+                                                (411, 0.0, "past")])
+def test_what_leaves_on_the_road_or_close_to_it_might_have_stayed_there(lost, thick, where):
+    """Up to where a deposit as thick as that on the road is cut: 1 m at 30 degrees, 1.7 m beyond it."""
+    thickness, rise = np.zeros((ROWS, COLUMNS)), math.tan(math.radians(30))
+    thickness[30, 40] = thick
+    about = passed.of_mass(ground_of(thickness, lost=7.0), sides_of(box(400, 0, 410, 600)),
+                           balls((lost, 600, 100, 300), volume=7.0), rise)["left"]
+    assert about["road_ahead"] == (0.0 if where == "past" else 7.0)
+    assert [one["where"] for one in about["sides"]] == [where]
 
 
 def test_what_areas_and_sums_round_off_is_no_mass():

@@ -16,6 +16,7 @@ from run_helpers import TOP
 from slope_tools import cli, options
 from slope_tools.commands.study import Request
 from slope_tools.case.settings import check_settings, one_value_each
+from slope_tools.deposits.passed import CLOSE
 from slope_tools.ensembles import sample
 from slope_tools.statistics import distributions, withheld
 from slope_tools.statistics.entries import Code
@@ -65,7 +66,7 @@ ANEW = "tools/slope site 'my site'{} && tools/slope study 'my site' --anew"
      "deposit", "a calibration with a past event: tools/slope calibrate --help"),
     ({"length": 700.0}, DECK._replace(variables={"friction": "30"}), "no run reaches", "the same command with "
      "--sample 64 --known rock_avalanches --vary friction=10:30 instead of --set"),
-    ({"left": 0.3}, SITE, "30 % of the released volume left the terrain before or beside the road, more than 1 %",
+    ({"left": 0.3}, SITE, "30 % of the released volume left the terrain before, beside or on the road, more than 1 %",
      "a larger elevation model (terrain.files, terrain.bounds) in 'my site'/site.yaml, then: " + ANEW.format("")),
     ({"on_road": 10.0}, PAPER, "the volume of 1 ball, fewer than 10",
      ANEW.format(" --balls 11000").replace("--anew", "--anew --paper")),
@@ -247,10 +248,13 @@ def test_what_left_before_the_road_withholds_and_what_passed_it_does_not():
     assert judged(several, events(400.0, 0.6)).withheld == []
     several[1] = changed(several[1], left_before_road_m3=20.0, left=LEFT)
     [entry] = judged(several, events(400.0, 0.6)).withheld
-    assert entry.text == ("2 % of the released volume left the terrain before or beside the road, more than 1 %: "
+    assert entry.text == ("2 % of the released volume left the terrain before, beside or on the road, more than 1 %: "
                           "12 m3 in the north, 123 m before the road; 8 m3 in the south, 40 m before the road")
     assert entry.remedy == ("a larger elevation model, by about 170 m in the north, about 60 m in the south "
                             "(terrain.files, terrain.bounds) in 'my site'/site.yaml, then: " + ANEW.format(""))
+    several[1] = changed(several[1], left=[{**one, "where": where} for one, where in zip(LEFT, (CLOSE, "on", "past"))])
+    [entry] = judged(several, events(400.0, 0.6)).withheld
+    assert "30 m3 in the east" in entry.text and "12 m3 in the north" in entry.text and "south" not in entry.text
 
 
 def test_where_it_is_not_known_what_left_all_of_it_withholds():
@@ -273,6 +277,14 @@ def test_a_run_reaches_the_road_by_what_lies_there_however_small_the_lobe():
     assert not road.missed and road.longest_m == 200 < road.near_m
     several = [changed(one, on_road_m3=0.4, beyond_road_m3=0.5, length_m=900.0) for one in several]
     assert events(400.0, 0.6).road(several).missed
+
+
+def test_a_run_of_which_something_is_to_be_removed_reaches_the_road():
+    """By a part of a ball, or beside the road; "none reaches it" would deny what the number says."""
+    several = [changed(one, on_road_m3=on, beyond_road_m3=0.0)
+               for one, on in zip(rows(0.0, 19.7, 400.0), (0.0, 0.1, 0.0))]
+    road = events(400.0, 0.6).road(several)
+    assert (road.brought.reach, road.brought.least_m3, road.brought.most_m3) == (2, 19.7, 400.0) and not road.missed
 
 
 # --- what the sources name ---

@@ -153,7 +153,8 @@ WORDS: Dict[str, Union[str, Words]] = {
                       "known events are those of the volume of all, {all:,.0f} m3. One site for each body?",
     # of a body and its balls
     "no program": "no LAMMPS program (LMP, --lmp, build/lmp): no trial run, time and speeds are unknown",
-    "left terrain": "{percent:.2g} % of the mass left the terrain in the trial run: use a larger elevation model",
+    "left terrain": "{percent:.2g} % of the mass left the terrain in the trial run: use an elevation model that is "
+                    "larger, or has no hole there",
     "narrow road": "{file}: the road is about {width:.3g} m wide, {balls:.2g} balls of {d:g} m and {cells:.2g} cells "
                    "of {cell:g} m: narrower than a ball or two cells, so what lies on it is a guess: use {remedy}",
     "high wall": "--height {height:g}: is it in m, above the ground? Walls and dams are rarely higher than {limit:g} m",
@@ -234,13 +235,13 @@ WORDS: Dict[str, Union[str, Words]] = {
     "no effect": Words("{which} has no effect{on}, to the last digit: {then}", NOTE),
     # why the number of a study is withheld
     "balls on the road": Words("on the road lies the volume of {balls}, fewer than {bound:g}", client=(
-        "So little comes to lie on the road that it is single blocks, and no volume.")),
+        "Too few of the model's balls come to lie on the road itself for a volume.")),
     "known events": Words("no run reaches {bound} m, as half of known events of this volume and height do; {longest}",
                           client="No run goes as far as half of known events of this volume and height."),
-    "left the terrain": Words("{percent:.2g} % of the released volume left the terrain before or beside the road, more "
-                              "than {most:g} %{where}", client=(
-                                  "A part of the mass left the elevation model before it came to the road, and is not "
-                                  "counted.")),
+    "left the terrain": Words("{percent:.2g} % of the released volume left the terrain before, beside or on the road, "
+                              "more than {most:g} %{where}", client=(
+                                  "A part of the mass left the elevation model before it had passed the road, and is "
+                                  "not counted.")),
     "runs not at rest or failed": Words("{number} of {bound} runs failed or are not at rest at the end, more than "
                                         "{most:g} %", client=(
                                             "More than a tenth of the runs failed, or had not come to rest when they "

@@ -178,14 +178,28 @@ def edge(above: np.ndarray, beyond: np.ndarray, ground: Ground) -> np.ndarray:
 
 # --- where ---
 
+def find_holes(known: np.ndarray) -> np.ndarray:
+    """Cells without ground that do not lead to the edge, a mask with one cell more on each side."""
+    unknown = ~np.pad(known, 1)
+    parts, _ = ndimage.label(unknown, np.ones((3, 3)))
+    return unknown & (parts != parts[0, 0])
+
+
+def is_in_hole(x: float, y: float, known: np.ndarray, raster: Raster) -> bool:
+    """Whether the cell without ground that is nearest to a place is one of a hole."""
+    column, row = np.floor(~raster.transform @ np.array([x, y])).astype(int) + 1
+    near = ndimage.distance_transform_edt(np.pad(known, 1), return_distances=False, return_indices=True)
+    rows, columns = near.shape[1:]
+    nearest = near[:, np.clip(row, 0, rows - 1), np.clip(column, 0, columns - 1)]
+    return bool(find_holes(known)[tuple(nearest)])
+
+
 def sides(gone: Gone, ground: Ground) -> np.ndarray:
     """Of each ball, the side on which it left: of WINDS, or HOLE."""
-    known = np.pad(ground.known, 1)
-    outside, _ = ndimage.label(~known, np.ones((3, 3)))
-    holes = (outside != outside[0, 0]) & ~known
+    holes = find_holes(ground.known)
     column, row = np.floor(~ground.raster.transform @ gone.place.T).astype(int) + 1
     near = ndimage.binary_dilation(holes, np.ones((3, 3)))
-    rows, columns = known.shape
+    rows, columns = holes.shape
     row, column = np.clip(row, 1, rows - 2), np.clip(column, 1, columns - 2)
     xlo, ylo, xhi, yhi = extent(ground.raster)
     x, y = gone.place.T

@@ -3,11 +3,12 @@ from typing import Any, Dict, Mapping, Optional, Sequence
 
 from ..digits import rounded
 from .gone import DUMPS, HOLE
-from .passed import AROUND, AWAY
+from .passed import AROUND, AWAY, CLOSE
 from .road_sides import BEFORE, ON, PAST
 
 MOST = 3                # entries that are named
 BESIDE = {BEFORE: "{:,.0f} m before the road", ON: "on the road", PAST: "{:,.0f} m beyond the road",
+          CLOSE: "{:,.2g} m beyond the road, where it is cut",
           AWAY: "{:,.0f} m from the road, which is behind it", AROUND: "{:,.0f} m beyond the road, past its end"}
 
 Entry = Mapping[str, Any]       # of gone.groups()

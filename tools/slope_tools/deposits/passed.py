@@ -1,4 +1,5 @@
 """What of a mass lies before a road, on it and beyond it, or left the terrain there."""
+import math
 from pathlib import Path
 from typing import Any, Dict, NamedTuple, Optional
 
@@ -16,35 +17,42 @@ from .road_sides import BEFORE, ON, PAST, Sides, divide
 
 AROUND = "past its end"      # beyond the road, but not across it
 AWAY = "away from it"        # before the road, which is behind
+CLOSE = "close to it"        # beyond the road, where what lies may have to be removed
+COUNT = BEFORE, ON, CLOSE    # what left there might lie on the road, or keep there what does
 PARTS = BEFORE, ON, PAST
 ROUNDING = 1e-9              # of the mass: less is what areas and sums round off
 
 
 class Left(NamedTuple):
-    """Of balls that left: BEFORE, ON or PAST; whether a road was ahead; whether it went past an end; m to the road."""
+    """Of balls that left: BEFORE, ON or PAST; whether a road was ahead, under or close before it; whether it was close
+    beyond; whether it went past an end; m to the road."""
     part: np.ndarray
     ahead: np.ndarray
+    close: np.ndarray
     around: np.ndarray
     distance: np.ndarray
 
 
-def evaluate_passed(run: Deposit, road: BaseGeometry, line: Optional[LineString]) -> Dict[str, Any]:
+def evaluate_passed(run: Deposit, road: BaseGeometry, line: Optional[LineString],
+                    cut_angle: float = 90.0) -> Dict[str, Any]:
     """What volume.yaml says; None where the run does not tell where its mass began.
 
-    road: polygons in local metres, in the grid of the run; line: its axis, of a road that is one.
+    road: polygons in local metres, in the grid of the run; line: its axis, of a road that is one; cut_angle: degrees,
+    of what is removed beside it.
     """
     ground = Ground.of(run)
     if ground is None:
         return {"divided": None, "left": None}
     return of_mass(ground, divide(road, line, ground.raster, ground.released),
-                   gone.read_balls_gone(Path(run.prefix), ground))
+                   gone.read_balls_gone(Path(run.prefix), ground), math.tan(math.radians(cut_angle)))
 
 
-def of_mass(ground: Ground, sides: Sides, left: Optional[Gone]) -> Dict[str, Any]:
+def of_mass(ground: Ground, sides: Sides, left: Optional[Gone], rise: float = math.inf) -> Dict[str, Any]:
     """What volume.yaml says, m3: `divided`, whose before, on, past and unknown are what was released, and `left`.
 
     A ball that left counts with all of its volume where it left; so does what is beyond an edge of those that did not.
-    left: None where it is not known which balls did; it is unknown then where they are.
+    left: None where it is not known which balls did; it is unknown then where they are; rise: of the cut from the edges
+    of the road, m per m.
     """
     mass, edge = (per_part(values, ground, sides) for values in (
         np.where(ground.known, ground.raster.z, 0.0), np.where(rim(ground.known), ground.raster.z, 0.0)))
@@ -52,7 +60,7 @@ def of_mass(ground: Ground, sides: Sides, left: Optional[Gone]) -> Dict[str, Any
     unknown = ground.gone
     numbers: Optional[Dict[str, Any]] = None
     if left is not None:
-        balls = sort_by_side(left, sides)
+        balls = sort_by_side(left, sides, thickest_on_road(ground, sides.road) / rise)
         numbers = of_balls(left, balls, ground)
         around += numbers["past_end"]
         over = ground.gone - numbers["volume"]      # halves of balls at the edge, above ground or not
@@ -82,7 +90,15 @@ def rim(known: np.ndarray) -> np.ndarray:
     return known & ~ndimage.binary_erosion(known, np.ones((3, 3)))
 
 
-def sort_by_side(left: Gone, sides: Sides) -> Left:
+def thickest_on_road(ground: Ground, road: BaseGeometry) -> float:
+    """m, of the cells that the road covers in part at least."""
+    lines = (np.arange(size + 1.0) for size in ground.raster.z.shape[::-1])
+    covered = geometry.coverage(geometry.to_index(road, ground.raster), *lines)[0] > 0
+    return float(np.nan_to_num(ground.raster.z)[covered].max(initial=0.0))
+
+
+def sort_by_side(left: Gone, sides: Sides, reach: float = 0.0) -> Left:
+    """reach: m beyond the road, up to which a deposit as thick as that on the road is cut."""
     part = sides.of_places(left.place)
     road, before = prep(sides.road), sides.before
     points = [Point(place) for place in left.place]
@@ -92,13 +108,16 @@ def sort_by_side(left: Gone, sides: Sides) -> Left:
                      for one, within, point in zip(part, left.within, points)], bool)
     around = np.array([one == PAST and not road.intersects(LineString([start, place]))
                        for one, start, place in zip(part, left.start, left.place)], bool)
-    return Left(part, ahead | near, around, np.array([sides.road.distance(point) for point in points]))
+    distance = np.array([sides.road.distance(point) for point in points])
+    close = (part == PAST) & (distance < reach)
+    return Left(part, ahead | near | close | (part == ON), close, around, distance)
 
 
 def of_balls(left: Gone, balls: Left, ground: Ground) -> Dict[str, Any]:
     def volume(mask) -> float:
         return float(left.volume[mask].sum())
     where = np.where(balls.around, AROUND, np.where((balls.part == BEFORE) & ~balls.ahead, AWAY, balls.part))
+    where = np.where(balls.close, CLOSE, where)
     return {"source": left.source, "volume": volume(slice(None)), "balls": len(left.volume),
             **{name: volume(balls.part == name) for name in PARTS}, "past_end": volume(balls.around),
             "road_ahead": volume(balls.ahead), "within": float(left.within.max(initial=0.0)),

@@ -91,7 +91,7 @@ def compute_removal(prefix, wanted: Wanted, terrain=None, tell: Callable[[str], 
                                          mesh, wanted.cut_angle, wanted.samples)
     summary = totals(wanted, run, mesh, result, profile, source)
     summary.update(clearing=cleared.totals, stretches=cleared.entries, by_10_m=by_chainage(run, road, axes),
-                   **passed.evaluate_passed(run, road, given.line))
+                   **passed.evaluate_passed(run, road, given.line, wanted.cut_angle))
     if result.unknown > 0:
         warn(Finding("no ground", {"volume": float(result.unknown)}))
         summary["volume"]["unknown"] = result.unknown

@@ -64,9 +64,10 @@ def mobility_of(condition: Condition, folder: Path, summary: Path) -> Mobility:
         terrain = log.terrain and folder / log.terrain
         if not terrain or not terrain.is_file():
             raise SlopeError(folder, "must have a deck with region terrain, for the ground before the collapse")
-        among, why = how_far.known_of(run_folders.prefix_of(summary), terrain, condition.asked.about())
-        if among is None:
-            raise SlopeError(folder, f"must have a mass that can be compared with known events: {why}")
+        mass = how_far.known_of(run_folders.prefix_of(summary), terrain, condition.asked.about())
+        if mass.found is None:
+            raise SlopeError(folder, f"must have a mass that can be compared with known events: {mass.why}")
+        among = mass.found
     return among.by_set if condition.named and among.by_set else among.decides
 
 

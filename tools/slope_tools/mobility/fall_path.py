@@ -17,7 +17,10 @@ from shapely.geometry import LineString, Point
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import nearest_points
 
+from ..deposits.gone import FLATTEST
 from ..errors import SlopeError
+from ..geometry import polygons_of
+from ..survey.rasters import Raster
 from ..survey.resampling import sample
 from .body import Body
 
@@ -26,6 +29,7 @@ LEVEL = 1e-3            # m; heights that differ by less are the same
 LEAST = 1e-5            # a gradient below is none
 SHORTEST = 8            # a step that does not descend is halved, down to this part of it
 MOST_POINTS = 4000      # of a path
+MANY = 2.0              # widths of the mass, that a path may go on beside a road before it meets it
 RIM = 0.01              # of a body's largest depth
 PARTS = 50              # of a step of the path, at the toe
 TERRAIN, EVENTS, LINE = "where the terrain ends", "where hardly any known event arrives", "where the given line ends"
@@ -50,7 +54,12 @@ class FallPath(NamedTuple):
 
 
 class AtRoad(NamedTuple):
-    """The first point of a path on a road; of a path that does not meet it, its point nearest to the road."""
+    """The first point of a path on a road; of a path that does not meet it, or goes beside it before, not farther away
+    than the mass is wide, the nearest one there; else its point nearest to the road.
+
+    behind: a path does not meet it, and no part of it lies ahead of the path's beginning and clearly lower: the mass
+    goes away from it, so that known events, whose lengths begin there, say nothing of it.
+    """
     met: bool
     beside: float       # m from that point to the road, 0 where they meet
     length: float       # m, along the path
@@ -58,6 +67,7 @@ class AtRoad(NamedTuple):
     fall: float         # m below the crown
     x: float            # local m
     y: float
+    behind: bool = False
 
 
 def trace(body: Body, longest: float) -> FallPath:
@@ -300,8 +310,27 @@ def below(ground: Smooth, start, other, level: float) -> bool:
 
 # --- a road on it ---
 
-def at_road(path: FallPath, road: BaseGeometry) -> AtRoad:
-    """road: polygons in local metres."""
+def at_road(path: FallPath, road: BaseGeometry, ground: Raster, width: float) -> AtRoad:
+    """road: polygons in local metres; ground: before the collapse; width: of the mass, m."""
+    met = first_met(path, road)
+    away = np.array([road.distance(Point(place)) for place in zip(path.x, path.y)])
+    within = np.flatnonzero((away <= width) & (path.length >= width))
+    start = path.length[within[0]] if len(within) else np.inf
+    if met and met.length <= start + MANY * width:
+        return met
+    if len(within):     # where a valley leads along the road, it may be met far down, or nowhere
+        beside = (path.length >= start) & (path.length <= start + MANY * width)
+        k = int(np.argmin(np.where(beside, away, np.inf)))
+        at = point_on(path, float(path.length[k]), False, float(away[k]))
+    else:
+        line = LineString(np.column_stack([path.x, path.y]))
+        here, there = nearest_points(line, road)
+        at = point_on(path, line.project(here), False, here.distance(there))
+    return at._replace(behind=is_behind(path, road, ground))
+
+
+def first_met(path: FallPath, road: BaseGeometry) -> Optional[AtRoad]:
+    """The first point of a path on a road, None without one."""
     line = LineString(np.column_stack([path.x, path.y]))
     for k, (one, other) in enumerate(zip(line.coords[:-1], line.coords[1:])):
         # piece by piece: a path that crosses itself has no other order
@@ -310,8 +339,18 @@ def at_road(path: FallPath, road: BaseGeometry) -> AtRoad:
         if not crossed.is_empty:
             length = path.length[k] + piece.project(nearest_points(crossed, Point(one))[0])
             return point_on(path, length, True, 0.0, far_edge(path, line, k, road))
-    here, there = nearest_points(line, road)
-    return point_on(path, line.project(here), False, here.distance(there))
+    return None
+
+
+def is_behind(path: FallPath, road: BaseGeometry, ground: Raster) -> bool:
+    """Whether nothing of a road lies ahead of a path's beginning and so low that a mass may get there."""
+    rings = [polygon.exterior for polygon in polygons_of(road)]
+    x, y = np.array([ring.interpolate(at).coords[0] for ring in rings
+                     for at in np.arange(0.0, ring.length, ground.transform.a)]).T
+    fall = path.crown[2] - sample(ground, x, y)
+    x, y = x - path.x[0], y - path.y[0]
+    ahead = x * (path.x[1] - path.x[0]) + y * (path.y[1] - path.y[0]) > 0
+    return bool((fall <= FLATTEST * np.hypot(x, y))[ahead].all())       # not where the ground is not known
 
 
 def far_edge(path: FallPath, line: LineString, k: int, road: BaseGeometry) -> float:
@@ -328,5 +367,5 @@ def far_edge(path: FallPath, line: LineString, k: int, road: BaseGeometry) -> fl
 
 
 def point_on(path: FallPath, length: float, met: bool, beside: float, passed: Optional[float] = None) -> AtRoad:
-    return AtRoad(met, float(beside), float(length), float(length if passed is None else passed),
-                  *(float(np.interp(length, path.length, values)) for values in (path.fall, path.x, path.y)))
+    fall, x, y = (float(np.interp(length, path.length, values)) for values in (path.fall, path.x, path.y))
+    return AtRoad(met, float(beside), float(length), float(length if passed is None else passed), fall, x, y)

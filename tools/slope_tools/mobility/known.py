@@ -57,6 +57,11 @@ class Mobility(NamedTuple):
     outside: List[str]
 
     @property
+    def width(self) -> float:
+        """Of the mass, m."""
+        return float((1e6 * self.volume) ** (1 / 3))
+
+    @property
     def in_range(self) -> bool:
         """Whether the events cover the volume, and the fall at their median; else nothing may be conditioned on it."""
         return not self.outside
@@ -171,9 +176,10 @@ class Found(NamedTuple):
 
 
 class Known(NamedTuple):
-    """found: of a mass, None and why (a sentence without its full stop) where it has no fall path."""
+    """found: of a mass, None and why (a sentence without its full stop) where it has no fall path; ground: its own."""
     found: Optional[Found]
     why: str
+    ground: Optional[Raster] = None
 
 
 def choice(name: Optional[str] = None, left_out: Sequence[str] = (), confined: str = "unknown") -> Choice:
@@ -215,7 +221,7 @@ def of_mass(raster: Raster, before: np.ndarray, depth: np.ndarray, kept_choice: 
     """
     try:
         mass = body.read_mobility_body(site) if site else body.of_arrays(raster._replace(z=before), depth, "the run")
-        return Known(compute_known_mobility(mass, of_about(kept_choice)), "")
+        return Known(compute_known_mobility(mass, of_about(kept_choice)), "", mass.raster)
     except SlopeError as error:
         return Known(None, f"The runs cannot be compared with known events: {error}")
 

@@ -128,12 +128,14 @@ def at_road(mobilities: Found, road: AtRoad) -> Dict[str, Any]:
     at_least: where those that count say nothing, as the road lies so near to the body.
     """
     counts = mobilities.decides
-    about: Dict[str, Any] = {"at_least": None if counts.says(road.length) else at_least(counts, road.length)}
+    told: Dict[str, Any] = {"at_least": None if road.behind or counts.says(road.length) else
+                            at_least(counts, road.length)}
     for name, length in (("exceedance", road.length), ("passed", road.passed)):
-        about.update({f"{name}_{kind}": float(one.exceedance(length, kind)) if one.says(length) else None
-                      for one in mobilities.each for kind in one.curves})
-        about[name] = about[f"{name}_{counts.chosen}"]
-    return about
+        told.update({f"{name}_{kind}": float(one.exceedance(length, kind))
+                     if one.says(length) and not road.behind else None
+                     for one in mobilities.each for kind in one.curves})
+        told[name] = told[f"{name}_{counts.chosen}"]
+    return told
 
 
 def at_least(mobility: Mobility, length: float) -> Optional[float]:
@@ -155,8 +157,8 @@ def summarise_mobility(mobilities: Found, source: Source, road: Optional[AtRoad]
     for one in mobilities.each:
         whole.update(of_events(one))
     whole["road"] = road and {
-        "on_path": road.met, "beside_path_m": road.beside, "length_m": road.length, "passed_m": road.passed,
-        "height_m": road.fall, "x": road.x, "y": road.y, **at_road(mobilities, road)}
+        "on_path": road.met, "behind": road.behind, "beside_path_m": road.beside, "length_m": road.length,
+        "passed_m": road.passed, "height_m": road.fall, "x": road.x, "y": road.y, **at_road(mobilities, road)}
     whole["landslides"] = {"row": f"{row.type}:{row.path}", "events": row.events, "a": row.a, "b": row.b,
                            "deviations": list(row.deviations), "note": NOT_OF_ROADS,
                            **(whole["landslides"] or {})}
@@ -188,7 +190,7 @@ def describe_mobility(mobilities: Found, source: Source, road: Optional[AtRoad])
         lines += [f"  {WORDS[kind]}: {lengths(mobility, kind)}" for kind in mobility.curves]
     if road:
         where = "the road, first met" if road.met else \
-            f"the path does not meet the road, and is nearest to it, {metres(road.beside)} beside,"
+            f"the road, which the path passes {metres(road.beside)} beside,"
         lines.append(f"{where} after {metres(road.length)}, {metres(road.fall)} below the crown: "
                      f"{describe_road_reach(counts, road)}")
     return [*lines, second_opinion(source.body, mobilities)]
@@ -209,6 +211,8 @@ def lengths(mobility: Mobility, kind: str) -> str:
 
 def describe_road_reach(counts: Mobility, road: AtRoad) -> str:
     """What the events that count say of the road."""
+    if road.behind:
+        return "nothing, it lies behind the crown or as high"
     if not counts.says(road.length):
         least = at_least(counts, road.length)
         return "nothing, no known event had such a fall" if least is None else \

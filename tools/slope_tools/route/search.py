@@ -263,7 +263,7 @@ def reaches(choices: Choices, mass: falling.Body, lane) -> Dict[str, Any]:
         mobility = known.compute_known_mobility(mass, known.choice(confined=choices.confined)).decides
     except SlopeError as error:     # without a fall path nothing says that it does not reach the road
         return {"known_share": None, "known_law": str(error), "why_not": ""}
-    met = fall_path.at_road(mobility.path, lane)
+    met = fall_path.at_road(mobility.path, lane, mass.raster, mobility.width)
     share = float(mobility.exceedance(met.length))
     why = ""
     if not met.met and met.beside > mass.volume ** (1 / 3):

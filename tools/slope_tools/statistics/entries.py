@@ -112,7 +112,8 @@ class Road:
 
     Two of each, the smaller one first: of a row of landslides by the smaller and the larger scatter, of a set of events
     twice the same. longest_m: of the runs, without lobes below 1 % of the mass; None: none has a length. brought: what
-    the runs bring to it, all of it.
+    the runs bring to it, all of it. behind_m: m from the path to a road behind the crown, of which known
+    events say nothing; else 0.
     """
     near_m: float
     far_m: float
@@ -120,6 +121,7 @@ class Road:
     passed: Sequence[float]
     longest_m: Optional[float]
     brought: AtRoad
+    behind_m: float = 0.0
 
     @property
     def missed(self) -> bool:

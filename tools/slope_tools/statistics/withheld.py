@@ -10,7 +10,7 @@ from ..digits import metres
 from ..findings import Finding
 
 BALLS = 10              # on the road: fewer are not a volume but single balls
-LEFT = 0.01             # of the released volume, that left the terrain before or beside the road
+LEFT = 0.01             # of the released volume, that left the terrain before, beside or on the road
 UNFINISHED = 0.1        # of all runs, that failed or are not at rest
 CONFIDENCE = 0.95       # of the probability that no volume at all is exceeded
 
@@ -45,7 +45,7 @@ def few_balls(facts: Facts) -> Optional[Finding]:
     if not facts.volume > 0 or number >= BALLS:
         return None
     balls = "less than one ball" if number < 1 else f"{number:.2g} ball{'s' * (f'{number:.2g}' != '1')}"
-    return Finding(Kind.BALLS.value, {"number": number, "bound": BALLS, "balls": balls})
+    return Finding(Kind.BALLS.value, {"number": number, "bound": BALLS, "balls": balls, "volume": facts.volume})
 
 
 def short(facts: Facts) -> Optional[Finding]:

@@ -287,6 +287,10 @@ def describe_roads(letter: Letter, write: Write) -> str:
 
 def describe_road_reach(road: Road, both: str, write: Write) -> str:
     some = f"{road.brought.reach or 'none'} of {counted(road.brought.runs)}{both}"
+    if road.behind_m:
+        beside = write("road, beside the fall path", "m", road.behind_m)
+        return (f"The road lies behind the crown or as high, {beside} m from the fall path, where {EVENTS} do not go; "
+                f"{some} reach it.")
     return (f"The road begins after {write('road, near edge', 'm', road.near_m)} m: "
             f"{answer_words.format_shares(road.reached)} of {EVENTS}, and {some}, reach it.")
 

@@ -126,7 +126,7 @@ def read_study(setup: Setup, questions: Questions, at: AtFinest, todo: Sequence[
             among = known.Known(None, str(error))
         if setup.road:
             raster = placed(run_folders.load_raster(prefix, "thickness"), first)
-            events = how_far.compute_events_at_road(among.found, setup.road.read(raster).polygon)
+            events = how_far.compute_events_at_road(among, setup.road.read(raster).polygon)
     if row and questions.order and questions.order.condition:
         summary = run_folders.summary_of(setup.output, row.summary)
         mobility = known_events.mobility_of(questions.order.condition, summary.parent, summary)
@@ -256,7 +256,8 @@ def judge_conservative(questions: Questions, read: Read, groups: Sequence[combin
     if withheld:
         best = replace(best, volume_m3=None, rounded={**best.rounded, "volume_m3": None})
     elif best.volume_m3 == 0:
-        zero = usable.zero(len(read.finished), read.events and max(read.events.reached))
+        zero = usable.zero(len(read.finished), max(
+            read.events.reached) if read.events and not read.events.behind else None)
     return replace(best, doubts=doubts, withheld=withheld, zero=zero), step
 
 

@@ -4,6 +4,7 @@ from typing import List, Optional
 
 import numpy as np
 
+from ..deposits import gone
 from ..digits import metres, three
 from ..ensembles.farther import REACHED
 from ..errors import SlopeError
@@ -39,7 +40,8 @@ def describe_outlook(folder: Path) -> List[str]:
         lines += [f"fall path of {length}, down to {fall} below the crown, {counts.path.end}",
                   events_text(counts, asked)]
         met = {name: fall_path.at_road(counts.path, roads.read_local(
-            folder / site_roads.file_name(name), mass.raster, choices.road.asked, local=True).polygon)
+            folder / site_roads.file_name(name), mass.raster, choices.road.asked, local=True).polygon, mass.raster,
+            counts.width)
             for name in site_roads.names(site) or [""] * bool(choices.road.file)}
         lines += [road_text(counts, one, name) for name, one in met.items()]
         if why := terrain_ends(counts, mass.raster):
@@ -66,6 +68,9 @@ def events_text(counts: Mobility, asked: known.Choice) -> str:
 
 def road_text(counts: Mobility, met: fall_path.AtRoad, name: str) -> str:
     """Which share of known events reaches and passes the road; name: of one of several."""
+    if met.behind:
+        return (f"the road{name and f' {name}'} lies behind the crown or as high, {metres(met.beside)} from the fall "
+                "path, where no known event goes")
     where = "first met" if met.met else f"which the fall path passes {metres(met.beside)} beside,"
     return (f"the road{name and f' {name}'}, {where} after {metres(met.length)}: "
             f"{results.describe_road_reach(counts, met)}")
@@ -76,8 +81,10 @@ def terrain_ends(counts: Mobility, raster: Raster) -> Optional[str]:
     path, beyond = counts.path, counts.beyond_path()
     if path.end != TERRAIN or not counts.in_range or beyond < 1 - REACHED:
         return None
-    more = missing(counts)
+    more, x, y = missing(counts), float(path.x[-1]), float(path.y[-1])
     how = "" if more is None else f": add about {three(more)} m of terrain in the {side_of(path, raster)}"
+    if gone.is_in_hole(x, y, np.isfinite(raster.z), raster):
+        how = f" into a hole, at x y {x:.0f} {y:.0f}: give heights there (slope site --fill)"
     return (f"{results.percent(beyond)} of known events go beyond the terrain, which the fall path leaves after "
             f"{metres(path.length[-1])}{how}")
 

@@ -178,17 +178,25 @@ def choose_known_shares(far: float) -> List[float]:
     return [SHARE] if within >= SHARE else [SHARE, within]
 
 
-def of_paper(paper: Paper, beside: bool) -> Optional[Part]:
-    """beside: an ensemble stands beside it, which makes up for HARMLESS rules; None: those alone withhold it."""
+def of_paper(paper: Paper, beside: Optional[Part]) -> Optional[Part]:
+    """beside: of an ensemble, which makes up for HARMLESS rules; None: those alone withhold it."""
     if paper.volume is not None:
         known = paper.least is not None       # chance
         band = [Share(Cause.RUNS.value, max(0.0, paper.volume - paper.least), 0.0)] if paper.least is not None else []
         return correct_part(Part(Kind.NUMBER, paper.volume, None, [*band, Share(Cause.TRANSFER.value, *paper.transfer)],
                                  bound=known), paper.size)
-    grave = [rule for rule in paper.withheld if not (beside and rule.kind in HARMLESS)]
+    grave = [rule for rule in paper.withheld if not (
+        beside and rule.kind in HARMLESS and is_within(rule.numbers.get("volume"), beside))]
     if not grave:
         return None
     return Part(Kind.WITHHELD, None, reasons=[explain_rule(rule, Source.PAPER) for rule in grave])
+
+
+def is_within(volume: Optional[float], part: Part) -> bool:
+    """Whether a volume (m3) that is withheld is no larger than a number that stands may be: few balls on a narrow road,
+    or below a steep hillside, may be a large one.
+    """
+    return volume is None or part.volume is None or volume <= low_high(part.volume, part.band)[1]
 
 
 def of_ensemble(ensemble: Ensemble, road: Optional[Road]) -> Part:
@@ -223,7 +231,7 @@ def of_ensemble(ensemble: Ensemble, road: Optional[Road]) -> Part:
 def explain_rule(rule: Finding, source: Source) -> Reason:
     """That a number breaks it."""
     return Reason(Code.RULE, {"source": source.value, "rule": rule.kind, "number": rule.numbers.get("number"),
-                              "bound": rule.numbers.get("bound")})
+                              "bound": rule.numbers.get("bound"), "volume": rule.numbers.get("volume")})
 
 
 def explain_known_beyond(ensemble: Ensemble) -> Reason:
@@ -259,10 +267,11 @@ def combine_answers(paper: Optional[Paper], ensemble: Optional[Ensemble], road: 
     chance or what finer balls would change is not known, or is 0, the number stays open.
     """
     parts: List[Tuple[Source, Part]] = []
-    if paper and (mine := of_paper(paper, ensemble is not None)):
+    weighted = of_ensemble(ensemble, road) if ensemble else None
+    if paper and (mine := of_paper(paper, weighted)):
         parts.append((Source.PAPER, mine))
-    if ensemble:
-        parts.append((Source.ENSEMBLE, of_ensemble(ensemble, road)))
+    if weighted:
+        parts.append((Source.ENSEMBLE, weighted))
     if not parts:
         return None
     broken = [[Rule(rule.kind) for rule in study.withheld] if study else [] for study in (paper, ensemble)]
@@ -282,7 +291,7 @@ def combine_answers(paper: Optional[Paper], ensemble: Optional[Ensemble], road: 
         elif min(road.reached) > MANY and not any(one.code is Code.NOT_REACHED for one in reasons):
             some = [explain_missed(road)]
     open_ = bool(some) or any(
-        part.kind is Kind.FLOOR or part.kind is Kind.WITHHELD and not few(part) for _, part in parts)
+        part.kind is Kind.FLOOR or part.kind is Kind.WITHHELD and not few(part, best) for _, part in parts)
     low, high = low_high(volume, best.band)
     if open_ and volume:        # of lower bounds the largest counts
         lows = [(low_high(part.volume, part.band)[0], each, part) for each, part in known if part.bound and part.volume]
@@ -304,6 +313,7 @@ def combine_answers(paper: Optional[Paper], ensemble: Optional[Ensemble], road: 
                     best.open)
 
 
-def few(part: Part) -> bool:
-    """Whether a number is withheld only because hardly a ball lies on the road."""
-    return all(one.numbers.get("rule") == Rule.BALLS.value for one in part.reasons)
+def few(part: Part, beside: Part) -> bool:
+    """Whether a number is withheld only because hardly a ball lies on the road, and is no larger than the other one."""
+    return all(one.numbers.get("rule") == Rule.BALLS.value and is_within(one.numbers.get("volume"), beside)
+               for one in part.reasons)

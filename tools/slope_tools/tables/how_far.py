@@ -125,29 +125,34 @@ class Events(NamedTuple):
 
     median: m, length that half of them exceed, that of the fall path where it ends before; None: they withhold nothing,
     see known.Found.strict. near, far: m, the edges of the road; reached, passed: shares of them beyond these, by the
-    smaller and the larger scatter.
+    smaller and the larger scatter; behind: m from the path to a road behind the crown, of which they say
+    nothing, else 0.
     """
     median: Optional[float]
     near: float
     far: float
     reached: Tuple[float, float]
     passed: Tuple[float, float]
+    behind: float = 0.0
 
     def road(self, rows: Sequence[Finished]) -> entries.Road:
         """With the runs of a study."""
         return entries.Road(self.near, self.far, sorted(self.reached), sorted(self.passed), longest(rows),
-                            at_the_road(rows))
+                            at_the_road(rows), self.behind)
 
 
-def compute_events_at_road(mobilities: Optional[known.Found], road: Any) -> Optional[Events]:
+def compute_events_at_road(among: known.Known, road: Any) -> Optional[Events]:
     """What they did at a road, polygons in local metres; None where the mass has no fall path."""
-    if mobilities is None:
+    mobilities = among.found
+    if mobilities is None or among.ground is None:
         return None
-    one, median = mobilities.decides, mobilities.strict and mobilities.strict.length_at(0.5)
+    counts, median = mobilities.decides, mobilities.strict and mobilities.strict.length_at(0.5)
     if mobilities.strict and median is None:
-        median = float(one.path.length[-1])
-    at = fall_path.at_road(one.path, road)
-    return Events(median, at.length, at.passed, one.shares(at.length), one.shares(at.passed))
+        median = float(counts.path.length[-1])
+    at = fall_path.at_road(counts.path, road, among.ground, counts.width)
+    if at.behind:
+        return Events(median, at.length, at.passed, (0.0, 0.0), (0.0, 0.0), at.beside)
+    return Events(median, at.length, at.passed, counts.shares(at.length), counts.shares(at.passed))
 
 
 def longest(rows: Sequence[Finished]) -> Optional[float]:
@@ -157,13 +162,15 @@ def longest(rows: Sequence[Finished]) -> Optional[float]:
 
 def at_the_road(rows: Sequence[Finished]) -> entries.AtRoad:
     """How many of the runs that finished bring a ball to the road, or past it: what lies there at the end, or left the
-    terrain there. A lobe counts, however small.
+    terrain there. A lobe counts, however small; so does a part of a ball, or what lies beside the road, of which
+    something is to be removed.
     """
     ball = [row.ball_m3 for row in rows]
     past = [row.at_road.beyond_road_m3 or 0.0 for row in rows]
     brought = [(row.at_road.on_road_m3 or 0.0) + one for row, one in zip(rows, past)]
     balls, most = max((one / size, one) for one, size in zip(brought, ball))
-    left = [row.at_road.remove_m3 for row in rows if row.at_road.remove_m3]
-    return entries.AtRoad(len(rows), sum(one >= size for one, size in zip(brought, ball)),
-                          sum(one >= size for one, size in zip(past, ball)), most, balls, min(left, default=0.0),
-                          max(left, default=0.0))
+    removed = [row.at_road.remove_m3 for row in rows]
+    left = [one for one in removed if one]
+    reached = sum(bool(one >= size or volume) for one, size, volume in zip(brought, ball, removed))
+    return entries.AtRoad(len(rows), reached, sum(one >= size for one, size in zip(past, ball)), most, balls,
+                          min(left, default=0.0), max(left, default=0.0))

@@ -5,7 +5,7 @@ from shlex import quote
 from typing import Any, List, Mapping, NamedTuple, Optional, Sequence
 
 from ..deposits import left_words
-from ..deposits.road_sides import BEFORE
+from ..deposits.passed import COUNT
 from ..digits import cents, percent
 from ..findings import Finding, texts
 from ..runs import again
@@ -30,7 +30,7 @@ class Case(NamedTuple):
 
 
 def left_before(row: Finished) -> float:
-    """m3 that left the terrain with the road ahead; where it is not known which balls did, all that left."""
+    """m3 that left the terrain with the road ahead, on it or close to it; where nobody knows which, all that left."""
     known = row.at_road.left_before_road_m3
     return row.off_grid_m3 + row.lost_m3 if known is None else known
 
@@ -42,7 +42,7 @@ def facts(rows: Sequence[Row], volume: float, on_road: float, events: Optional[E
     """
     finished = finished_of(rows)
     worst = max(finished, key=lambda row: left_before(row) / row.released_m3)
-    left = [one for one in worst.left or () if one.get("where") == BEFORE]
+    left = [one for one in worst.left or () if one.get("where") in COUNT]
     where = f": {left_words.where(left)}" if left else ": it is not known where, as the runs are of an older version" \
         if worst.at_road.left_before_road_m3 is None else ""
     return Facts(volume, on_road, min(row.ball_m3 for row in finished), len(rows), len(rows) - len(finished),
