@@ -14,7 +14,7 @@ from slope_tools.errors import SlopeError
 from slope_tools.findings import Finding
 from slope_tools.sites import site_choices
 from slope_tools.sites.site_sections import OfMass
-from slope_tools.statistics.entries import AtRoad, Cause, Code, Headline, Kind, KnownQuantile, Reason, Road, Source
+from slope_tools.statistics.entries import Brought, Cause, Code, Headline, Kind, KnownQuantile, Reason, Road, Source
 from slope_tools.statistics.withheld import Kind as Rule
 from slope_tools.studies import site_study
 from slope_tools.studies.letter import Letter, write_letter
@@ -40,7 +40,7 @@ def ensemble(far=0.01, rules=(), values=1000.0, **more):
 
 def road(low, high, longest=500.0):
     """Runs that bring 50 m3 to a road unless the longest one is short, without a lobe on it."""
-    brought = AtRoad(8, 2, 1, 50.0, 5.0) if longest and longest >= 400 else AtRoad(8, 0, 0, 9.0, 0.9)
+    brought = Brought(8, 2, 1, 50.0, 5.0) if longest and longest >= 400 else Brought(8, 0, 0, 9.0, 0.9)
     return Road(400.0, 410.0, [low, high], [0.9 * low, 0.9 * high], longest, brought)
 
 
@@ -223,7 +223,7 @@ def test_a_road_that_known_events_reach_and_no_run_does(reached, paper, rules, k
 @pytest.mark.parametrize("reached", [(0.02, 0.05), (0.11, 0.33), (0.9, 0.95)])
 def test_nothing_is_said_only_where_no_run_brings_a_ball(rules, reached):
     """Of either study, whatever governs: 2 of 26 runs leave 530 and 614 m3."""
-    beside = AtRoad(26, 2, 1, 1621.0, 5.8, 530.0, 614.0).and_of(AtRoad(6, 0, 0, 9.0, 0.1))
+    beside = Brought(26, 2, 1, 1621.0, 5.8, 530.0, 614.0).and_of(Brought(6, 0, 0, 9.0, 0.1))
     for mass in (ensemble(values=0.0, rules=rules), ensemble(0.7, rules, 0.0), None):
         found = combine_answers(Paper(0.0), mass, Road(151.0, 158.0, reached, reached, 165.0, beside))
         assert (found.kind, found.volume_m3, found.high_m3) == (Kind.FLOOR, 0.0, None)
@@ -232,7 +232,7 @@ def test_nothing_is_said_only_where_no_run_brings_a_ball(rules, reached):
         assert first.clear.startswith("More than 0 m3") and "no run" not in (first.clear + first.basis).lower()
         assert "2 of 32" in first.change and "530 to 614" in first.change and "2 of 32 runs" in first.roads
     found = combine_answers(Paper(0.0), ensemble(values=0.0),
-                            Road(151.0, 158.0, (0.0, 0.05), (0.0, 0.0), 120.0, AtRoad(26, 0, 0, 3.0, 0.4)))
+                            Road(151.0, 158.0, (0.0, 0.05), (0.0, 0.0), 120.0, Brought(26, 0, 0, 3.0, 0.4)))
     assert found.kind is Kind.NOTHING
 
 

@@ -495,8 +495,8 @@ def test_stretches_of_a_study_are_unions_with_shares_and_quantiles():
     ("--road line.geojson --road-width 4 --loosening 1.3", "--loosening: must be given with --clearing, got 1.3"),
     ("--road line.geojson --road-width 4 --clearing 60 --loosening 0.9", "--loosening: must be >= 1"),
     ("--road line.geojson --road-width 4 --blocked -1", "--blocked: must be >= 0, got -1"),
-    ("--road far.geojson --road-width 4 --road-from 2", "far.geojson: must lie in the terrain, local x y 0 0 80 80; it "
-     "leaves it at the chainage 2070.0 m, got 40 80"),
+    ("--road far.geojson --road-width 4 --road-from 2", "far.geojson: must lie in the terrain, local x y 0 0 80 80: "
+     "give the part in it, or a larger terrain; it leaves it at the chainage 2070.0 m, got 40 80"),
     ("--road crossing.geojson --road-width 4", "crossing.geojson: must be a line that does not cross itself; it does "
      "at the chainage 20.0 m, got 30 10"),
     ("--road lines.geojson --road-width 4", "lines.geojson: must hold one line, for --road-width, got 2 that do not"),

@@ -121,7 +121,7 @@ class Runs:
                                   self.sample.snap)
 
 
-def resting(runs: Runs) -> List[str]:
+def find_runs_of_quantiles(runs: Runs) -> List[str]:
     """Names of the runs on which the quantiles of the headline rest."""
     found = within(runs.column(REMOVE), runs.mass.share, headline.choose_known_shares(runs.weights.far), runs.mass.far)
     return [sizes.nearest(runs.rows, REMOVE, one).run for one in found if np.isfinite(one)]

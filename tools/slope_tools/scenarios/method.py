@@ -89,7 +89,7 @@ def headline_of(studies: Studies, names: Sequence[str]) -> Optional[Headline]:
     [about] = mine
     rows, road = finished_of(about.runs), about.headline.road if about.headline else None
     return headline.make_headline([replace(about, at_road=road and replace(
-        road, longest_m=how_far.longest(rows), brought=how_far.at_the_road(rows)))])
+        road, longest_m=how_far.longest(rows), brought=how_far.count_brought(rows)))])
 
 
 def list_finished_rows(studies: Studies, names: Sequence[str]) -> List[Finished]:

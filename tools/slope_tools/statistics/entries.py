@@ -73,7 +73,7 @@ class Analysis:
     variables: Dict[str, Influence]
 
 
-class AtRoad(NamedTuple):
+class Brought(NamedTuple):
     """Of runs: how many there are, bring a ball to the road, past it; the most that one brings, m3 and balls.
 
     least_m3, most_m3: to remove, of the runs after which something is; 0: of none.
@@ -86,12 +86,12 @@ class AtRoad(NamedTuple):
     least_m3: float = 0.0
     most_m3: float = 0.0
 
-    def and_of(self, other: "AtRoad") -> "AtRoad":
+    def and_of(self, other: "Brought") -> "Brought":
         """Of the runs of both."""
         most = max(self, other, key=lambda at_road: at_road.balls)
         least = min((one.least_m3 for one in (self, other) if one.least_m3), default=0.0)
-        return AtRoad(self.runs + other.runs, self.reach + other.reach, self.passing + other.passing, most.volume,
-                      most.balls, least, max(self.most_m3, other.most_m3))
+        return Brought(self.runs + other.runs, self.reach + other.reach, self.passing + other.passing, most.volume,
+                       most.balls, least, max(self.most_m3, other.most_m3))
 
 
 @dataclass(frozen=True)
@@ -120,7 +120,7 @@ class Road:
     reached: Sequence[float]
     passed: Sequence[float]
     longest_m: Optional[float]
-    brought: AtRoad
+    brought: Brought
     behind_m: float = 0.0
 
     @property

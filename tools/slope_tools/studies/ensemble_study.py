@@ -99,7 +99,7 @@ def pick(setup: Setup, order: Order, others: Sequence[repeats.Repeat], rows: Seq
         found = known_events.mobility_of(order.condition, summary.parent, summary)
         runs = known_events.Runs(order.sample, order.added.batches, mine, found)
         if known_events.weighs(found, runs):
-            first = [*first, *(known_events.resting(runs) if mine[0].road else [])]
+            first = [*first, *(known_events.find_runs_of_quantiles(runs) if mine[0].road else [])]
             return size_runs.Pick(first, np.asarray(found.exceedance(size_runs.lengths_of(rows)), float))
     return size_runs.pick_largest(rows)._replace(first=[*first, *size_runs.pick_largest(mine).first])
 

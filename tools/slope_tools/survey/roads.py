@@ -232,8 +232,9 @@ def check_line(path, line: LineString, within, start: float) -> None:
     outside = line.difference(box(*within).buffer(SLACK))
     if not outside.is_empty:
         first = min((Point(one.coords[0]) for one in getattr(outside, "geoms", [outside])), key=line.project)
-        raise SlopeError(path, f"must lie in the terrain, local x y {polygons.decimetres(within)}; it leaves it at the "
-                         f"chainage {chainage(line.project(first))}", polygons.decimetres(first.coords[0]))
+        raise SlopeError(path, f"must lie in the terrain, local x y {polygons.decimetres(within)}: give the part in "
+                         f"it, or a larger terrain; it leaves it at the chainage {chainage(line.project(first))}",
+                         polygons.decimetres(first.coords[0]))
 
 
 def write_road(path: Path, road: Road, raster) -> BaseGeometry:

@@ -138,7 +138,7 @@ class Events(NamedTuple):
     def road(self, rows: Sequence[Finished]) -> entries.Road:
         """With the runs of a study."""
         return entries.Road(self.near, self.far, sorted(self.reached), sorted(self.passed), longest(rows),
-                            at_the_road(rows), self.behind)
+                            count_brought(rows), self.behind)
 
 
 def compute_events_at_road(among: known.Known, road: Any) -> Optional[Events]:
@@ -160,7 +160,7 @@ def longest(rows: Sequence[Finished]) -> Optional[float]:
     return max((row.length_m for row in rows if row.length_m is not None), default=None)
 
 
-def at_the_road(rows: Sequence[Finished]) -> entries.AtRoad:
+def count_brought(rows: Sequence[Finished]) -> entries.Brought:
     """How many of the runs that finished bring a ball to the road, or past it: what lies there at the end, or left the
     terrain there. A lobe counts, however small; so does a part of a ball, or what lies beside the road, of which
     something is to be removed.
@@ -172,5 +172,5 @@ def at_the_road(rows: Sequence[Finished]) -> entries.AtRoad:
     removed = [row.at_road.remove_m3 for row in rows]
     left = [one for one in removed if one]
     reached = sum(bool(one >= size or volume) for one, size, volume in zip(brought, ball, removed))
-    return entries.AtRoad(len(rows), reached, sum(one >= size for one, size in zip(past, ball)), most, balls,
-                          min(left, default=0.0), max(left, default=0.0))
+    return entries.Brought(len(rows), reached, sum(one >= size for one, size in zip(past, ball)), most, balls,
+                           min(left, default=0.0), max(left, default=0.0))

@@ -102,16 +102,16 @@ class Sizes:
         return np.minimum(found, [row.released_m3 for row in rows]) if key in PARTS else found
 
 
-def transfer_rows(known: Optional[Sizes], rows: Sequence[Row]) -> List[Row]:
-    """At the finest size; known: None of one size."""
-    return [known.row(row) for row in rows] if known else list(rows)
+def transfer_rows(sizes: Optional[Sizes], rows: Sequence[Row]) -> List[Row]:
+    """At the finest size; sizes: None of one size."""
+    return [sizes.row(row) for row in rows] if sizes else list(rows)
 
 
-def draw_rows(known: Optional[Sizes], raw: Sequence[Row]) -> Optional[Draw]:
+def draw_rows(sizes: Optional[Sizes], raw: Sequence[Row]) -> Optional[Draw]:
     """A function of transfer_rows() of these, as they were run, and a column: DRAWS values of each as they may be."""
-    if known is None:
+    if sizes is None:
         return None
-    draws, by_name = known.draws, {row.run: row for row in finished_of(raw)}
+    draws, by_name = sizes.draws, {row.run: row for row in finished_of(raw)}
     return lambda rows, key: draws([by_name[row.run] for row in rows], key, DRAWS)
 
 

@@ -150,7 +150,7 @@ class HalfStep:
     mean_m3: Optional[float]
     chance_m3: Optional[float]
     within_chance: Optional[bool]
-    energy: Optional[Mapping[str, Any]]         # energy.read_energies()
+    energy: Optional[Mapping[str, Any]]         # step_check.read_energies()
     text: str
 
 
