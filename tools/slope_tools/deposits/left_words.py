@@ -8,7 +8,7 @@ from .road_sides import BEFORE, ON, PAST
 
 MOST = 3                # entries that are named
 BESIDE = {BEFORE: "{:,.0f} m before the road", ON: "on the road", PAST: "{:,.0f} m beyond the road",
-          CLOSE: "{:,.2g} m beyond the road, where it is cut",
+          CLOSE: "{:,.0f} m beyond the road, where it is cut",
           AWAY: "{:,.0f} m from the road, which is behind it", AROUND: "{:,.0f} m beyond the road, past its end"}
 
 Entry = Mapping[str, Any]       # of gone.groups()
