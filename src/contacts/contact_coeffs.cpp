@@ -123,8 +123,9 @@ void ContactSettings::archive(Archive &archive)
 void ContactCoeffs::read(LAMMPS *lmp, const std::string &types, int narg, char **arg)
 {
   Error *const error = lmp->error;
+  const std::string caller = "Pair gran/restitution pair_coeff " + types;
   *this = ContactCoeffs();
-  for (KeywordReader word(lmp, "Pair gran/restitution", narg, arg); word.next();) {
+  for (KeywordReader word(lmp, caller, narg, arg); word.next();) {
     const auto is_it = [&](const Word &w) {
       return word.is(w.word, w.values);
     };
@@ -139,24 +140,20 @@ void ContactCoeffs::read(LAMMPS *lmp, const std::string &types, int narg, char *
 
   // what they must be together
 
-  if (!given(kn))
-    error->all(FLERR, "Pair gran/restitution pair_coeff {}: stiffness kn kt is required", types);
+  if (!given(kn)) error->all(FLERR, "{}: stiffness kn kt is required", caller);
   if (kt == 0.0 && ct > 0.0)
-    error->all(
-        FLERR,
-        "Pair gran/restitution pair_coeff {}: ct must be 0 where kt is 0, got {:.15g}: give the "
-        "contact a tangential stiffness",
-        types, ct);
+    error->all(FLERR,
+               "{}: ct must be 0 where kt is 0, got {:.15g}: give the contact a tangential "
+               "stiffness",
+               caller, ct);
   if (rolling > 0.0 && kr == 0.0 && cr == 0.0)
     error->all(FLERR,
-               "Pair gran/restitution pair_coeff {}: rolling_spring must not be 0 0 where rolling "
-               "is > 0, got rolling {:.15g}: without spring and dashpot nothing resists rolling",
-               types, rolling);
+               "{}: rolling_spring must not be 0 0 where rolling is > 0, got rolling {:.15g}: "
+               "without spring and dashpot nothing resists rolling",
+               caller, rolling);
   if (given(cn) == given(e))
-    error->all(FLERR,
-               "Pair gran/restitution pair_coeff {}: exactly one of restitution and damping is "
-               "required, got {}",
-               types, given(cn) ? "both" : "neither");
+    error->all(FLERR, "{}: exactly one of restitution and damping is required, got {}", caller,
+               given(cn) ? "both" : "neither");
 }
 
 void ContactCoeffs::archive(Archive &archive)

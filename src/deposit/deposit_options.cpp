@@ -68,7 +68,7 @@ void DepositOptions::read_keywords(int narg, char **arg)
       terrain = word.text();
     else if (word.is("output", "PREFIX"))
       prefix = word.text();
-    else if (word.is("bulk", "B")) {
+    else if (word.is("bulk", "B|region")) {
       body.clear();
       bulk = 0.0;
       if (word.text() == std::string("region")) {

@@ -77,8 +77,7 @@ bool PlacementArguments::parse_surface(KeywordReader &word)
     }
   } else if (word.is("pattern", "grid|scattered")) {
     scattered = word.choice({"grid", "scattered"}) == 1;
-    double number;
-    if (!scattered || !Slope::read_number(word.after(), number)) return true;
+    if (!scattered || !word.value_follows()) return true;
     word.more("SEED");
     seed = word.whole_number(2);
     word.must(seed >= 1, "> 0", 2);
@@ -93,10 +92,10 @@ bool PlacementArguments::parse_surface(KeywordReader &word)
   } else if (word.is("smallest", "D")) {
     smallest = word.positive();
   } else if (*word.begin() == std::string("rim")) {
-    error->all(
-        FLERR, "{} rim is no keyword any more, got {}: {}", caller,
-        *word.after() ? word.after() : "rim",
-        "ground and slip surface are one surface now; make the site anew, slope site FOLDER");
+    error->all(FLERR,
+               "{} rim is no keyword any more, ground and slip surface are one surface now; make "
+               "the site anew, slope site FOLDER",
+               caller);
   } else {
     return false;
   }
@@ -124,7 +123,7 @@ bool PlacementArguments::parse_of_wall(KeywordReader &word)
   if (!word.is("zone", "REGION TYPE")) return false;
   const std::string of = fmt::format("{} zone {} ", caller, word.text(1));
   Zone zone = {word.text(1), atom_type_argument(lmp, of + "type", word.text(2)), 0.0};
-  if (Slope::read_number(word.after(), zone.spacing)) {
+  if (word.value_follows()) {
     word.more("S");
     zone.spacing = positive_argument(lmp, of + "spacing", word.text(3));
   }

@@ -94,20 +94,31 @@ void KeywordReader::more(const std::string &values)
   const size_t before = names.size(), left = last - arg - 1;
   for (std::string word; words >> word;) names.push_back(word);
   if (left < names.size())
-    lmp->error->all(FLERR, "{} {} must be followed by {}, got {} of {} values", caller, *arg,
-                    values, left - before, names.size() - before);
+    lmp->error->all(FLERR, "{} must be followed by {}, got {} of {} values",
+                    choices(static_cast<int>(before)), values, left - before,
+                    names.size() - before);
 }
 
-const char *KeywordReader::after() const
+bool KeywordReader::value_follows() const
 {
-  return end() < last ? *end() : "";
+  return end() < last && !isalpha(static_cast<unsigned char>(**end()));
 }
 
 /* ---------------------------------------------------------------------- */
 
+// the keyword, and which ones were chosen among its first k values: others follow these
+
+std::string KeywordReader::choices(int k) const
+{
+  std::string text = caller + " " + *arg;
+  for (int j = 0; j < k; j++)
+    if (names[j].find('|') != std::string::npos) text += std::string(" ") + arg[j + 1];
+  return text;
+}
+
 std::string KeywordReader::item(int k) const
 {
-  return caller + " " + *arg + (names.size() > 1 ? " " + names[k - 1] : "");
+  return choices(k - 1) + (names.size() > 1 ? " " + names[k - 1] : "");
 }
 
 int KeywordReader::choice(const std::vector<std::string> &words, int k) const

@@ -43,7 +43,7 @@ class KeywordReader {
   // whether it is this one, which has these values: "xlo xhi"; more of them, where they are optional
   bool is(const std::string &keyword, const std::string &values);
   void more(const std::string &values);
-  const char *after() const;    // the word after these, "": none
+  bool value_follows() const;    // one more, as it is no keyword, which begins with a letter
 
   const char *text(int k = 1) const { return arg[k]; }
   double number(int k = 1) const { return number_argument(lmp, item(k), arg[k]); }
@@ -63,6 +63,7 @@ class KeywordReader {
   char **const first, **arg, **const last;
   std::vector<std::string> names, asked;    // of the values; keywords
 
+  std::string choices(int k) const;
   std::string item(int k) const;
 };
 

@@ -15,7 +15,6 @@
 #include "comm.h"
 #include "error.h"
 
-#include <cctype>
 #include <cmath>
 
 using namespace LAMMPS_NS;
@@ -70,17 +69,17 @@ bool SlipOptions::read_soil(KeywordReader &word)
     layers.push_back({word.text(1), strength(word, 2)});
   } else if (word.is("water", "ru|table")) {
     const bool is_table = word.choice({"ru", "table"}) == 1;
-    word.more(is_table ? "FILE" : "ru");
+    word.more(is_table ? "FILE" : "R");
     table = is_table ? word.text(2) : "";
     ru = is_table ? 0.0 : word.number(2);
     word.must(ru >= 0.0 && ru < 1.0, "0 to below 1", 2);
   } else if (word.is("bedrock", "FILE")) {
     bedrock = word.text();
   } else if (word.is("seismic", "KH")) {
-    const bool both = *word.after() && !isalpha(static_cast<unsigned char>(*word.after()));
+    const bool both = word.value_follows();
     if (both) word.more("KV");
     task.seismic = {word.number(1), both ? word.number(2) : 0.0};
-    word.must(task.seismic.horizontal >= 0.0, ">= 0 (of the weight)", 1);
+    word.must(task.seismic.horizontal >= 0.0, ">= 0 (horizontal, of the weight)", 1);
     word.must(std::fabs(task.seismic.vertical) < 1.0, "above -1 and below 1 (of the weight)", 2);
   } else {
     return false;

@@ -182,6 +182,7 @@ def test_inside_and_outside_together(site):
 @pytest.mark.parametrize("ground, message", [
     (f"{SURFACE} zone fan 9", "zone fan type must be 1 to 5 .*, got 9"),
     (f"{SURFACE} zone fan 3 0.99", "zone fan spacing must be <= 0.95 .*, got 0.99"),
+    (f"{SURFACE} zone fan 3 1e999", "zone fan spacing must be a finite number, got 1e999"),
     (f"{SURFACE} zone fan 3 -1", "zone fan spacing must be > 0, got -1"),
     (f"{SURFACE} zone fan", "zone fan type must be a whole number, got smallest"),
     (f"{SURFACE} zone none 3", "region none does not exist"),

@@ -73,42 +73,42 @@ TABLE = {
         1 2*1 stiffness 1 1 restitution 0.5 -> pair_coeff 1 2*1: types must be 1 to 3, or a range of them with *, got 2*1
         nan 1 stiffness 1 1 restitution 0.5 -> pair_coeff nan 1: types must be 1 to 3, or a range of them with *, got nan
         1 1 -> pair_coeff 1 1: stiffness kn kt is required
-        1 1 stiffness -> stiffness must be followed by kn kt, got 0 of 2 values
-        1 1 stiffness 1e6 -> stiffness must be followed by kn kt, got 1 of 2 values
-        1 1 stiffness 1e6 restitution 0.5 -> stiffness kt must be a finite number, got restitution
-        1 1 stiffness nan 1e6 restitution 0.5 -> stiffness kn must be a finite number, got nan
-        1 1 stiffness 1e6 inf restitution 0.5 -> stiffness kt must be a finite number, got inf
-        1 1 stiffness 1e999 1e6 restitution 0.5 -> stiffness kn must be a finite number, got 1e999
-        1 1 stiffness 1.0.0 1e6 restitution 0.5 friction 30 -> stiffness kn must be a finite number, got 1.0.0
-        1 1 stiffness 1e6 . restitution 0.5 friction 30 -> stiffness kt must be a finite number, got .
-        1 1 stiffness 1e6 1e restitution 0.5 friction 30 -> stiffness kt must be a finite number, got 1e
-        1 1 stiffness 1e6 1e7e2 restitution 0.5 friction 30 -> stiffness kt must be a finite number, got 1e7e2
-        1 1 stiffness 1e6 0x10 restitution 0.5 friction 30 -> stiffness kt must be a finite number, got 0x10
-        1 1 stiffness 1e6 1e6 restitution - friction 30 -> restitution must be a finite number, got -
-        1 1 stiffness 1e6 1e6 restitution 0.5 friction 30- -> friction must be a finite number, got 30-
-        1 1 stiffness 0 1e6 restitution 0.5 -> stiffness kn must be > 0, got 0
-        1 1 stiffness 1e6 -1 restitution 0.5 -> stiffness kt must be >= 0, got -1
+        1 1 stiffness -> pair_coeff 1 1 stiffness must be followed by kn kt, got 0 of 2 values
+        1 1 stiffness 1e6 -> pair_coeff 1 1 stiffness must be followed by kn kt, got 1 of 2 values
+        1 1 stiffness 1e6 restitution 0.5 -> pair_coeff 1 1 stiffness kt must be a finite number, got restitution
+        1 1 stiffness nan 1e6 restitution 0.5 -> pair_coeff 1 1 stiffness kn must be a finite number, got nan
+        1 1 stiffness 1e6 inf restitution 0.5 -> pair_coeff 1 1 stiffness kt must be a finite number, got inf
+        1 1 stiffness 1e999 1e6 restitution 0.5 -> pair_coeff 1 1 stiffness kn must be a finite number, got 1e999
+        1 1 stiffness 1.0.0 1e6 restitution 0.5 friction 30 -> pair_coeff 1 1 stiffness kn must be a finite number, got 1.0.0
+        1 1 stiffness 1e6 . restitution 0.5 friction 30 -> pair_coeff 1 1 stiffness kt must be a finite number, got .
+        1 1 stiffness 1e6 1e restitution 0.5 friction 30 -> pair_coeff 1 1 stiffness kt must be a finite number, got 1e
+        1 1 stiffness 1e6 1e7e2 restitution 0.5 friction 30 -> pair_coeff 1 1 stiffness kt must be a finite number, got 1e7e2
+        1 1 stiffness 1e6 0x10 restitution 0.5 friction 30 -> pair_coeff 1 1 stiffness kt must be a finite number, got 0x10
+        1 1 stiffness 1e6 1e6 restitution - friction 30 -> pair_coeff 1 1 restitution must be a finite number, got -
+        1 1 stiffness 1e6 1e6 restitution 0.5 friction 30- -> pair_coeff 1 1 friction must be a finite number, got 30-
+        1 1 stiffness 0 1e6 restitution 0.5 -> pair_coeff 1 1 stiffness kn must be > 0, got 0
+        1 1 stiffness 1e6 -1 restitution 0.5 -> pair_coeff 1 1 stiffness kt must be >= 0, got -1
         1 1 stiffness 1e6 1e6 -> pair_coeff 1 1: exactly one of restitution and damping is required, got neither
         1 1 restitution 0.5 -> pair_coeff 1 1: stiffness kn kt is required
-        1 1 stiffness 1e6 1e6 restitution -> restitution must be followed by e, got 0 of 1 values
-        1 1 stiffness 1e6 1e6 restitution 0 -> restitution must be > 0 and <= 1, got 0
-        1 1 stiffness 1e6 1e6 restitution 1.2 -> restitution must be > 0 and <= 1, got 1.2
+        1 1 stiffness 1e6 1e6 restitution -> pair_coeff 1 1 restitution must be followed by e, got 0 of 1 values
+        1 1 stiffness 1e6 1e6 restitution 0 -> pair_coeff 1 1 restitution must be > 0 and <= 1, got 0
+        1 1 stiffness 1e6 1e6 restitution 1.2 -> pair_coeff 1 1 restitution must be > 0 and <= 1, got 1.2
         1 1 stiffness 1e6 1e6 restitution 0.5 damping 1 1 -> pair_coeff 1 1: exactly one of restitution and damping is
-        1 1 stiffness 1e6 1e6 damping 1 -> damping must be followed by cn ct, got 1 of 2 values
-        1 1 stiffness 1e6 1e6 damping -1 0 -> damping cn must be >= 0, got -1
-        1 1 stiffness 1e6 1e6 damping 1 -1 -> damping ct must be >= 0, got -1
-        1 1 stiffness 1e6 1e6 damping 1 inf -> damping ct must be a finite number, got inf
+        1 1 stiffness 1e6 1e6 damping 1 -> pair_coeff 1 1 damping must be followed by cn ct, got 1 of 2 values
+        1 1 stiffness 1e6 1e6 damping -1 0 -> pair_coeff 1 1 damping cn must be >= 0, got -1
+        1 1 stiffness 1e6 1e6 damping 1 -1 -> pair_coeff 1 1 damping ct must be >= 0, got -1
+        1 1 stiffness 1e6 1e6 damping 1 inf -> pair_coeff 1 1 damping ct must be a finite number, got inf
         1 1 stiffness 1e6 0 damping 1 2.5 -> pair_coeff 1 1: ct must be 0 where kt is 0, got 2.5: give the contact a
-        1 1 stiffness 1e6 1e6 restitution 0.5 friction 90 -> friction must be >= 0 and < 90 degrees, got 90
-        1 1 stiffness 1e6 1e6 restitution 0.5 friction -1 -> friction must be >= 0 and < 90 degrees, got -1
-        1 1 stiffness 1e6 1e6 restitution 0.5 rolling -0.1 -> rolling must be >= 0, got -0.1
-        1 1 stiffness 1e6 1e6 restitution 0.5 rolling inf -> rolling must be a finite number, got inf
-        1 1 stiffness 1e6 1e6 restitution 0.5 rolling_spring 1 -> rolling_spring must be followed by kr cr, got 1 of 2 values
-        1 1 stiffness 1e6 1e6 restitution 0.5 rolling_spring -1 1 -> rolling_spring kr must be >= 0, got -1
-        1 1 stiffness 1e6 1e6 restitution 0.5 rolling_spring 1 -1 -> rolling_spring cr must be >= 0, got -1
+        1 1 stiffness 1e6 1e6 restitution 0.5 friction 90 -> pair_coeff 1 1 friction must be >= 0 and < 90 degrees, got 90
+        1 1 stiffness 1e6 1e6 restitution 0.5 friction -1 -> pair_coeff 1 1 friction must be >= 0 and < 90 degrees, got -1
+        1 1 stiffness 1e6 1e6 restitution 0.5 rolling -0.1 -> pair_coeff 1 1 rolling must be >= 0, got -0.1
+        1 1 stiffness 1e6 1e6 restitution 0.5 rolling inf -> pair_coeff 1 1 rolling must be a finite number, got inf
+        1 1 stiffness 1e6 1e6 restitution 0.5 rolling_spring 1 -> pair_coeff 1 1 rolling_spring must be followed by kr cr, got 1 of 2 values
+        1 1 stiffness 1e6 1e6 restitution 0.5 rolling_spring -1 1 -> pair_coeff 1 1 rolling_spring kr must be >= 0, got -1
+        1 1 stiffness 1e6 1e6 restitution 0.5 rolling_spring 1 -1 -> pair_coeff 1 1 rolling_spring cr must be >= 0, got -1
         1 1 stiffness 1e6 1e6 restitution 0.5 rolling 0.05 rolling_spring 0 0 -> pair_coeff 1 1: rolling_spring must not be 0 0
-        1 1 stiffness 1e6 1e6 restitution 0.5 7 -> : unknown keyword 7, must be stiffness, restitution
-        1 1 stiffness 1e6 1e6 restitution 0.5 color red -> : unknown keyword color, must be stiffness
+        1 1 stiffness 1e6 1e6 restitution 0.5 7 -> pair_coeff 1 1: unknown keyword 7, must be stiffness, restitution
+        1 1 stiffness 1e6 1e6 restitution 0.5 color red -> pair_coeff 1 1: unknown keyword color, must be stiffness
         """,  # noqa: E501
     ("wall", "fix wall soil wall/gran/balls", "Fix wall/gran/balls wall"): """
         -> : needs TYPE DIAMETER and surface or file, got 0 arguments
@@ -155,8 +155,7 @@ TABLE = {
         2 1.0 surface ground upper spacing 1 sunk 1 -> sunk needs outside REGION, got none
         2 1.0 surface ground upper spacing 1 inside block sunk 1 -> sunk needs outside REGION, got none
         2 1.0 surface ground upper spacing 1 outside road sunk 1 -> sunk region road must have a lower boundary, got INF
-        2 1.0 surface ground lower spacing 1 sink 0.5 rim within -> rim is no keyword any more, got within: ground and
-        2 1.0 surface ground lower spacing 1 sink 0.5 rim -> rim is no keyword any more, got rim: ground and slip
+        2 1.0 surface ground lower spacing 1 sink 0.5 rim within -> rim is no keyword any more, ground and slip surface
         2 1.0 surface ground upper spacing 1 smallest -> smallest must be followed by D, got 0 of 1 values
         2 1.0 surface ground upper spacing 1 smallest 0 -> smallest must be > 0, got 0
         2 1.0 surface ground upper spacing 1 smallest x -> smallest must be a finite number, got x
@@ -283,7 +282,7 @@ TABLE = {
         10 20 bulk 1e300 -> bulk must be at most 1000, got 1e300
         10 20 bulk 0 -> bulk must be > 0, got 0
         10 20 bulk nan -> bulk must be a finite number, got nan
-        10 20 bulk region -> bulk must be followed by REGION, got 0 of 1 values
+        10 20 bulk region -> bulk region must be followed by REGION, got 0 of 1 values
         10 20 cell 1 terrain ground output out bulk region nowhere -> bulk region nowhere does not exist
         10 20 cell 1 terrain ground output out bulk region road -> bulk region road must be bounded on all sides, got one
         10 20 cell 1 terrain ground output out bulk region space -> bulk region space must be bounded on all sides, got
