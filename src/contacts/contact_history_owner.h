@@ -11,8 +11,8 @@ namespace LAMMPS_NS {
 // What fix CONTACT_HISTORY asks of the pair style whose histories it keeps, and which includes its header.
 class ContactHistoryOwner {
  public:
-  // histories from the contact lists to where the neighbor list has them
-  virtual void store_flags() const = 0;
+  // which contacts have a history, to where LAMMPS keeps the histories, which are there already
+  virtual void flag_histories() const = 0;
 
   // guards of a run: with the energy of all springs at the set-up, every EnergyGuard::EVERY steps and at the end
   virtual void watch_energy() = 0;

@@ -29,7 +29,7 @@ class ContactList : public ContactSizes {
 
   std::vector<Entry> entries;
   std::vector<double *> histories;    // HISTORY values of each
-  std::vector<int *> flags;    // where LAMMPS wants to know what has a history: store_flags()
+  std::vector<int *> flags;    // where LAMMPS wants to know what has a history: flag_histories()
 
   ContactList() { clear(); }
 
@@ -133,7 +133,7 @@ class ContactList : public ContactSizes {
     ContactKernels::current().find_contacts(partners)(v, repeat, balls, partners);
   }
 
-  void store_flags() const
+  void flag_histories() const
   {
     for (size_t k = 0; k < flags.size(); k++) *flags[k] = has_history(k);
   }

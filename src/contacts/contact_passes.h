@@ -4,8 +4,8 @@
    Distributed under the GNU General Public License, version 2
 ------------------------------------------------------------------------- */
 
-/* The two passes over a list of contacts, for one set of instructions: find() and apply() of
-   ContactKernel. Contacts are evaluated four or eight at a time (SIMD). Included by contact_kernel_*.cpp alone. No
+/* The two passes over a list of contacts, for one set of instructions: find_contacts() and
+   apply_contacts() of ContactKernel. Contacts are evaluated four or eight at a time (SIMD). Included by contact_kernel_*.cpp alone. No
    LAMMPS. */
 
 #ifndef SLOPE_CONTACT_PASSES_H

@@ -64,7 +64,7 @@ void FixContactHistory::store_contacts()
 {
   if (!lists_used) return;
   lists_used = false;
-  owner->store_flags();
+  owner->flag_histories();
   FixNeighHistory::pre_exchange();
   maxexchange = exchange_size(lmp, most_packed());
   std::copy_n(atom->tag, atom->nlocal, known_as);

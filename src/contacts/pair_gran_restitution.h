@@ -72,7 +72,7 @@ class PairGranRestitution : public Pair, public ContactHistoryOwner {
   Slope::ContactWorks works;    // of fix energy/ledger, walls included
 
   // for fix CONTACT_HISTORY
-  void store_flags() const override { lists.store_flags(); }
+  void flag_histories() const override { lists.flag_histories(); }
   void watch_energy() override;
   ContactGuards &run_guards() override { return guards; }
 

@@ -101,9 +101,9 @@ double PairLists::elastic_energy(const MovingBalls &balls, const MovingPartners 
 
 /* ---------------------------------------------------------------------- */
 
-void PairLists::store_flags() const
+void PairLists::flag_histories() const
 {
-  for (const ContactList &l : lists) l.store_flags();
+  for (const ContactList &l : lists) l.flag_histories();
 }
 
 double PairLists::memory_usage() const

@@ -40,7 +40,7 @@ class PairLists : protected Pointers {
   // of the springs of this rank's contacts, J
   double elastic_energy(const Slope::MovingBalls &, const Slope::MovingPartners &, ContactGuards &);
 
-  void store_flags() const;    // which contacts have a history, to where LAMMPS keeps it
+  void flag_histories() const;    // which contacts have a history, to where LAMMPS keeps it
   double memory_usage() const;
 
  private:

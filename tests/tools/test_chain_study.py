@@ -27,7 +27,7 @@ from slope_tools.tables import study_types
 from slope_tools.tables.study_file import load_study
 
 needs_lmp = pytest.mark.skipif(not os.environ.get("LMP"), reason="needs the LAMMPS program (LMP)")
-ROAD = "1,0\n8,0\n8,51\n1,51\n"
+ROAD = "10,0\n14,0\n14,51\n10,51\n"
 FRAGILITY = f"slips {SOIL} --peaks 50:1500:50 --pseudo-static 1 --sample 256"
 STUDY = "mine --levels 1 --sample 6 --vary rolling=0:0.1 --vary packing=1:1000000 --fragility fragility"
 
