@@ -178,7 +178,7 @@ WORDS: Dict[str, Union[str, Words]] = {
                               "chainage begins at the grid's edge; draw the road as a line",
     "edge without ground": "{file}: {percent:.3g} % of the road's edge lies on cells without a height: the cut rises "
                            "there from the height of the nearest ground or edge, the lower one",
-    "no ground": "{volume:.6g} m3 lie on cells without ground, beside the road: not in the volume to remove",
+    "no ground": "{volume:,.0f} m3 lie on cells without ground, beside the road: not in the volume to remove",
     "outside of grid": "{file}: {area:.6g} m2 of it lie outside of the grid of the run: counted as false negative",
     "nowhere thicker": "{file} is nowhere thicker than {threshold:g} m",
     "no base": "no {file}, as of a run by an older version: no ground without the body",
