@@ -77,25 +77,25 @@ def test_each_road_has_the_numbers_of_a_site_with_it_alone(done, tmp_path, monke
     monkeypatch.setattr(study_command, "write_site_report", lambda *_, **__: None)
     with open(mine / "roads.csv", encoding="utf-8", newline="") as file:
         table = list(csv.DictReader(file))
-    volumes = {}
-    for name in ("far", "near"):
-        alone = tmp_path / name
-        shutil.copytree(folder, alone)
-        made = slope(alone, "site", "mine", "--road", f"{name}.geojson")
-        assert made.returncode == 0, made.stderr
-        made = slope(alone, "study", "mine", "--paper", "--levels", "1")
-        assert made.returncode == 0 and "are finished already" in made.stdout, made.stderr
-        own, beside = about_in(alone / "mine" / "study"), about_in(mine / "roads" / name / "study")
-        assert plain(own) == plain(beside)
-        assert own["roads"] == beside["roads"] == [] and beside["study"]["road"]["name"] == name
-        rows = [row for row in table if row["road"] == name]
-        assert [float(row["remove_m3"]) for row in rows] == [row["remove_m3"] for row in own["runs"]]
-        assert not (alone / "mine" / "roads.csv").exists()      # studies of the other roads stay, and are refused
-        assert not list((alone / "mine" / "roads").glob("*/report.*"))
-        made = slope(alone, "report", "mine/roads/far", "--no-film")
-        assert made.returncode == 2 and "its study had another choice of roads" in made.stderr
-        volumes[name] = own["conservative"]["volume_m3"] or max(row["remove_m3"] for row in own["runs"])
-    assert len(table) == 3 * len(own["runs"]) and len(set(volumes.values())) == 2
+    alone = tmp_path / "near"
+    shutil.copytree(folder, alone)
+    made = slope(alone, "site", "mine", "--road", "near.geojson")
+    assert made.returncode == 0, made.stderr
+    made = slope(alone, "study", "mine", "--paper", "--levels", "1")
+    assert made.returncode == 0 and "are finished already" in made.stdout, made.stderr
+    own, beside, far = (about_in(part / "study") for part in (alone / "mine", *(
+        mine / "roads" / name for name in ("near", "far"))))
+    assert plain(own) == plain(beside)
+    assert own["roads"] == beside["roads"] == [] and beside["study"]["road"]["name"] == "near"
+    removed = [row["remove_m3"] for row in own["runs"]]
+    assert [float(row["remove_m3"]) for row in table if row["road"] == "near"] == removed
+    assert removed != [row["remove_m3"] for row in far["runs"]] == [
+        float(row["remove_m3"]) for row in table if row["road"] == "far"]
+    assert not (alone / "mine" / "roads.csv").exists()      # studies of the other roads stay, and are refused
+    assert not list((alone / "mine" / "roads").glob("*/report.*"))
+    made = slope(alone, "report", "mine/roads/far", "--no-film")
+    assert made.returncode == 2 and "its study had another choice of roads" in made.stderr
+    assert len(table) == 3 * len(own["runs"])
 
 
 def test_files_of_the_user_stay(done, tmp_path, monkeypatch):
