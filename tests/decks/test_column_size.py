@@ -43,7 +43,8 @@ def runner(tmp_path_factory):
     return verify.Runner(tmp_path_factory.mktemp("columns"), LMP)
 
 
-@pytest.mark.parametrize("material", ["sand", pytest.param("glass", marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("material", ["sand", "glass"])
 def test_columns_of_8_and_12_diameters_lie_on_the_published_line(runner, material):
     """Within 0.6 of a ring, as single fillings scatter; another friction does not."""
     deck, line = case.MATERIALS[material](a=0.5), case.LINES[material, 0.5]

@@ -65,7 +65,7 @@ def below_ground(site, balls):
             + u * v * z[j + 1, i + 1]) - balls[:, 2]
 
 
-@pytest.mark.parametrize("d", [8, 6, 4])
+@pytest.mark.parametrize("d", [8, *(pytest.param(d, marks=pytest.mark.long) for d in (6, 4))])
 def test_next_to_nothing_of_the_body_is_left_out(site, d):
     share, slip, field = left_out(site, d=d, sink=d)
     assert share < 0.01

@@ -48,6 +48,7 @@ def test_beads_wait_behind_the_gate_and_flow_below_it(sarno, tmp_path, monkeypat
     assert ((balls[:, 1] > 0.93) & (balls[:, 1] < 0.97) & (balls[:, 2] > 0) & (balls[:, 2] < 0.08)).all()
 
 
+@pytest.mark.long
 def test_a_smooth_bed_is_faster_and_a_low_gate_holds_back(sarno, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     left = {}

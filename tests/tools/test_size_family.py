@@ -40,7 +40,8 @@ def test_finer_runs_lie_where_coarser_ones_leave_them(capsys):
     assert np.median([(float(high) - float(low)) / 2 / float(mean) for *_, mean, low, high, _, _ in rows]) < 0.11
 
 
-@pytest.mark.parametrize("name, road", [("thin", 10.0), pytest.param("compact", 4.0, marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("name, road", [("thin", 10.0), ("compact", 4.0)])
 def test_two_slides_of_the_family_in_small(tmp_path, monkeypatch, name, road):
     """100 balls and half their diameter: what is released stays, the travel within 25 %, and the thickness doubles."""
     monkeypatch.setenv("LMP", LMP)
