@@ -18,6 +18,10 @@ TESTS = Path(__file__).resolve().parent
 LONGEST = 200       # letters of a test's name that are kept
 
 sys.path.insert(0, os.environ.get("SLOPE_TOOLS", str(TESTS.parent / "tools")))
+if "PYTEST_XDIST_WORKER" in os.environ:       # Open MPI's session folders: runs that start at once would share one
+    os.environ["TMPDIR"] = str(Path(tempfile.gettempdir()) / os.environ["PYTEST_XDIST_WORKER"])
+    os.makedirs(os.environ["TMPDIR"], exist_ok=True)
+    tempfile.tempdir = None
 gc.set_threshold(50_000, 10, 10)        # looking for garbage took a third of the tests' collection
 
 

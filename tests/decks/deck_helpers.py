@@ -29,10 +29,15 @@ ALONE = {"OMPI_MCA_ess_singleton_isolated": "1", "OMPI_MCA_orte_create_session_d
 
 
 @functools.lru_cache
+def lammps_help():
+    """What `lmp -h` prints; several workers ask at once."""
+    return subprocess.run([LMP, "-h"], env={**ENVIRONMENT, **ALONE}, stdin=subprocess.DEVNULL, capture_output=True,
+                          text=True).stdout
+
+
 def serial():
     """Whether LMP was built with LAMMPS' stand-in for MPI, which knows one rank."""
-    help = subprocess.run([LMP, "-h"], env=ENVIRONMENT, stdin=subprocess.DEVNULL, capture_output=True, text=True)
-    return "LAMMPS MPI STUBS" in help.stdout
+    return "LAMMPS MPI STUBS" in lammps_help()
 
 
 def script_of(path):

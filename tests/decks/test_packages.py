@@ -1,26 +1,19 @@
 """Suffixes, bonds, compute fabric: some need packages of LAMMPS that the default build does not have (tests/matrix.sh
 --only packages)."""
 
-import functools
 import os
 import re
-import subprocess
 from datetime import datetime
 
 import deck_helpers
 import numpy
 import pytest
-from deck_helpers import ENVIRONMENT, LMP, collapse_deck, read_dump, run_deck, write_collapse
-
-
-@functools.lru_cache
-def help_text():
-    return subprocess.run([LMP, "-h"], env=ENVIRONMENT, stdin=subprocess.DEVNULL, capture_output=True, text=True).stdout
+from deck_helpers import collapse_deck, lammps_help, read_dump, run_deck, write_collapse
 
 
 def needs(package):
     """Skip where LMP is built without a package of LAMMPS."""
-    installed = help_text().split("Installed packages:")[1].split("* ")[0].split()
+    installed = lammps_help().split("Installed packages:")[1].split("* ")[0].split()
     if package not in installed:
         pytest.skip(f"LMP is built without package {package}")
 
@@ -151,7 +144,7 @@ def test_bonded_balls_touch(tmp_path):
 def test_bonded_balls_do_not_touch_where_lammps_can_leave_them_out(tmp_path):
     """LAMMPS before 23Jun2022 would make them touch: the run ends."""
     needs("MOLECULE")
-    date = re.search(r"\d+ \w{3} \d{4}", help_text())[0]
+    date = re.search(r"\d+ \w{3} \d{4}", lammps_help())[0]
     if datetime.strptime(date, "%d %b %Y") < datetime(2022, 6, 23):
         run_deck(BONDS.format(special="lj/coul 0 1 1"), tmp_path,
                  expect_error="special_bonds must be lj/coul 1 1 1 where balls have bonds")

@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy
 import pytest
-from deck_helpers import ALONE, ENVIRONMENT, LMP, run_deck, write_asc
+from deck_helpers import ALONE, ENVIRONMENT, LMP, lammps_help, run_deck, write_asc
 
 # every style of the package once; a row of the tables below replaces a line
 DECK = {
@@ -429,12 +429,8 @@ def rows():
             arguments, message = row.strip().split("-> ")
             yield {line: f"{command} {arguments}"}, style + ("" if message[0] == ":" else " ") + message
     yield from SETUPS
-    if "29 Sep 2021" in lammps():     # others put it in other words
+    if "29 Sep 2021" in lammps_help():     # others put it in other words
         yield from OF_LAMMPS
-
-
-def lammps():
-    return subprocess.run([LMP, "-h"], env=ENVIRONMENT, stdin=subprocess.DEVNULL, capture_output=True, text=True).stdout
 
 
 ROWS = list(rows())
