@@ -10,6 +10,7 @@ import yaml
 from affine import Affine
 from rasterio.crs import CRS
 from scipy import stats
+from shapely import affinity
 from shapely.geometry import LineString, Point, Polygon, box
 
 from run_helpers import TOP, run_command, write_asc, write_geojson, examples
@@ -272,6 +273,22 @@ def test_a_road_along_the_path():
         assert not at.met and at.beside == pytest.approx(64, abs=1) and at.length < 600 - 155 + 2 * width + 10, turn
     straight = fall_path.at_road(found.path, LineString([(600, 370), (600, 300), (700, 200)]).buffer(6), ground, width)
     assert straight.met and straight.length == pytest.approx(600 - 6 - 155, abs=5)
+
+
+@pytest.mark.parametrize("turn", [0, 90, 217])
+@pytest.mark.parametrize("beside", [80, 150])
+def test_a_valley_that_leads_back_comes_to_a_road(beside, turn):
+    """Within the mass's width of 100 m, and farther away, whichever way the site lies."""
+    line = LineString([(0, 0), (500, 0), (700, 300), (500, 600), (-900, 600)])
+    lane = box(-400, 600 + beside, -390, 620 + beside)
+    line, lane = (affinity.rotate(one, turn, origin=(0, 0)) for one in (line, lane))
+    points = np.array([line.interpolate(at).coords[0] for at in np.arange(0, line.length, 10)])
+    length = 10.0 * np.arange(len(points))
+    path = fall_path.FallPath(*points.T, length, 0.3 * length, "", np.array([0, 0, 1000.0]))
+    level = Raster(np.full((400, 400), 900.0), Affine(10, 0, -2000, 0, -10, 2000), None)
+    at = fall_path.at_road(path, lane, level, 100.0)
+    assert not at.met and not at.behind and at.beside == pytest.approx(beside, abs=5) and at.length > 1900
+    assert fall_path.at_road(path, affinity.rotate(box(-60, -20, -40, 20), turn, origin=(0, 0)), level, 100.0).behind
 
 
 @pytest.mark.parametrize("lane, behind", [

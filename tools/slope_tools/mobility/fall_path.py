@@ -57,7 +57,7 @@ class AtRoad(NamedTuple):
     """The first point of a path on a road; of a path that does not meet it, or goes beside it before, not farther away
     than the mass is wide, the nearest one there; else its point nearest to the road.
 
-    behind: a path does not meet it, and no part of it lies ahead of the path's beginning and clearly lower: the mass
+    behind: a path is nearest to it where it begins, and no part of it lies ahead of that and clearly lower: the mass
     goes away from it, so that known events, whose lengths begin there, say nothing of it.
     """
     met: bool
@@ -321,12 +321,11 @@ def at_road(path: FallPath, road: BaseGeometry, ground: Raster, width: float) ->
     if len(within):     # where a valley leads along the road, it may be met far down, or nowhere
         beside = (path.length >= start) & (path.length <= start + MANY * width)
         k = int(np.argmin(np.where(beside, away, np.inf)))
-        at = point_on(path, float(path.length[k]), False, float(away[k]))
-    else:
-        line = LineString(np.column_stack([path.x, path.y]))
-        here, there = nearest_points(line, road)
-        at = point_on(path, line.project(here), False, here.distance(there))
-    return at._replace(behind=is_behind(path, road, ground))
+        return point_on(path, float(path.length[k]), False, float(away[k]))
+    line = LineString(np.column_stack([path.x, path.y]))
+    here, there = nearest_points(line, road)
+    at = point_on(path, line.project(here), False, here.distance(there))
+    return at._replace(behind=at.length <= width and is_behind(path, road, ground))
 
 
 def first_met(path: FallPath, road: BaseGeometry) -> Optional[AtRoad]:
