@@ -478,25 +478,27 @@ def fit_of(tmp_path, monkeypatch, rest_after, duration="10", fixed=(), fails=())
 
 def test_a_run_that_is_not_at_rest_gets_more_time(tmp_path, monkeypatch):
     found, told = fit_of(tmp_path, monkeypatch, rest_after=35.0)
-    assert found.evaluate(list(found.plan.runs)) == [40.0, 40.0]
-    assert [one.chosen["duration"] for one in found.plan.runs] == ["40", "40"]
+    assert found.evaluate(list(found.plan.runs)) == [80.0, 80.0]
+    assert [one.chosen["duration"] for one in found.plan.runs] == ["80", "80"]
     assert found.plan.runs[1].repeat == {"xoffset": "0.5"} and len(found.rows) == 2
-    assert [line.split(",")[-1] for line in told] == [" 20 s", " 40 s"]
+    assert told == ["2 runs not at rest at the end of the duration: again until rest, for 80 s at most"]
 
 
 @pytest.mark.parametrize("more, seconds", [
-    ({"rest_after": 1e9}, 80.0),                                # three times, and no more
+    ({"rest_after": 1e9}, 80.0),                                # once, and no more
     ({"rest_after": 5.0}, 10.0), ({"rest_after": 35.0, "fixed": {"duration": "10"}.items()}, 10.0),
-    ({"rest_after": 35.0, "duration": "${T}"}, None), ({"rest_after": 35.0, "fails": (40.0,)}, 20.0)])
+    ({"rest_after": 35.0, "fails": (80.0,)}, 10.0)])
 def test_how_much_more_time(tmp_path, monkeypatch, more, seconds):
-    if seconds is None:
-        found, _ = fit_of(tmp_path, monkeypatch, rest_after=35.0)
-        found.work.defaults["duration"] = "${T}"
-        cut = made_rows.row(at_rest=False, stop_reason="run completed")
-        assert not found.was_cut(repeats.Repeat(tmp_path, {}), cut)
-        return
     found, _ = fit_of(tmp_path, monkeypatch, **more)
     assert found.evaluate(list(found.plan.runs)) == [seconds] * 2
+
+
+@pytest.mark.parametrize("duration, told, more", [("10", True, True), ("${T}", True, False), ("10", False, False)])
+def test_more_time_needs_a_duration_of_numbers_and_a_run_that_counts(tmp_path, monkeypatch, duration, told, more):
+    found, _ = fit_of(tmp_path, monkeypatch, rest_after=35.0)
+    found.work.defaults["duration"], found.observed.told_by = duration, lambda row: told
+    cut = made_rows.row(at_rest=False, stop_reason="run completed")
+    assert found.was_cut(repeats.Repeat(tmp_path, {}), cut) is more
 
 
 def test_a_mapped_deposit_of_another_mass_is_named(tmp_path, monkeypatch):

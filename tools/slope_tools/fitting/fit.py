@@ -25,7 +25,7 @@ from . import calibration, observations
 MODEL = "friction", "rolling", "restitution", "e", "field_e", "spacing", "pattern", "angle"
 SETS = 64               # sets of values that stand for the region
 DURATION = "duration"   # variable of a deck, its time limit
-DOUBLED = 3             # times, at most, where a run is not at rest then
+LONGER = 8              # times as much, where a run is not at rest then: rest ends it
 TABLE, ABOUT, CHART, MAP = "calibrate.csv", "calibrate.yaml", "calibrate.png", "predicted.png"
 BEYOND = 2.0            # standard deviations of tolerance and chance together
 
@@ -55,13 +55,11 @@ class Fit:
         """Run what is not finished, longer where a deposit is not at rest, and measure all."""
         rows = self.made(todo)
         todo = list(todo)
-        for _ in range(DOUBLED):
-            longer = {i: self.longer(todo[i]) for i, row in enumerate(rows) if self.was_cut(todo[i], row)}
-            if not longer:
-                break
+        longer = {i: self.longer(todo[i]) for i, row in enumerate(rows) if self.was_cut(todo[i], row)}
+        if longer:
             times = ", ".join(sorted({one.chosen[DURATION] for one in longer.values()}))
             self.setup.tell(f"{len(longer)} run{'s' * (len(longer) > 1)} not at rest at the end of the duration: again "
-                            f"with twice as much, {times} s")
+                            f"until rest, for {times} s at most")
             for (i, run), row in zip(longer.items(), self.made(list(longer.values()))):
                 if isinstance(row, Finished):         # else the shorter one stays
                     self.plan.replace(todo[i], run)
@@ -80,16 +78,16 @@ class Fit:
         return run_rows.read_run_rows(self.setup, todo)
 
     def was_cut(self, run: repeats.Repeat, row: Row) -> bool:
-        """Whether a run was stopped at its duration before it was at rest, and the duration may be another one."""
+        """Whether a run that counts was stopped at its duration before it was at rest, and that may be another one."""
         named = {variable.name for variable in self.variables} | self.plan.fixed.keys()
-        return (isinstance(row, Finished) and not row.at_rest and row.stop_reason == CUT
+        return (isinstance(row, Finished) and not row.at_rest and row.stop_reason == CUT and self.observed.told_by(row)
                 and DURATION in self.work.defaults and DURATION not in named
                 and isinstance(normalise_value(run.chosen.get(DURATION, self.work.defaults[DURATION])), float))
 
     def longer(self, run: repeats.Repeat) -> repeats.Repeat:
-        """The same run with twice its duration."""
+        """The same run with LONGER times its duration."""
         seconds = float(run.chosen.get(DURATION, self.work.defaults[DURATION]))
-        return repeats.Repeat(self.setup.output, {**run.combination, DURATION: f"{2 * seconds:.10g}"}, run.repeat)
+        return repeats.Repeat(self.setup.output, {**run.combination, DURATION: f"{LONGER * seconds:.10g}"}, run.repeat)
 
     @property
     def finished(self) -> List[Finished]:
