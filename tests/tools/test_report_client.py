@@ -208,6 +208,12 @@ def test_the_number_says_that_it_is_in_a_gap(gap, source, said):
     assert ("between 2,000 and 9,000 m3" in text) == said and ("no run ends" in text) == said
 
 
+@pytest.mark.parametrize("warnings", [[], [{"kind": "road on body", "numbers": {"file": "a", "part": "", "Part": ""}}]])
+def test_a_road_that_goes_with_the_mass_is_in_the_letter(warnings):
+    text = letter.write_letter(letter.make_letter(made_study.study(runs=[row()], warnings=warnings))).lacks
+    assert ("; what it takes to build the road anew" in text) == bool(warnings)
+
+
 def test_the_next_step_and_its_time(tmp_path):
     """By the first reason that something can be done about; as long as the runs took, several at a time."""
     design = {"points": 64, "variables": {"friction": "2:30", "rolling": "uniform:0:0.15", "slip": "list:a,b"}}

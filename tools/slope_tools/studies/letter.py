@@ -25,7 +25,8 @@ CAUSES = {Cause.RUNS.value: "chance and parameters", Cause.TRANSFER.value: "from
 NARROWS = {Cause.RUNS.value: "more runs, or a past event for calibration", Cause.TRANSFER.value:
            "more runs of the detailed model", Cause.SIZE.value: "a more detailed model"}
 LACKS = {"no repeats": "what chance changes, as no run was repeated",
-         "slip assumed": "whether, and how likely, the slope fails, and with which slip surface"}
+         "slip assumed": "whether, and how likely, the slope fails, and with which slip surface",
+         "road on body": "what it takes to build the road anew where it lies on the mass and goes with it"}
 DRY = "water in the mass or on its way, with which it would go farther"
 TOLD = Code.NOT_REACHED,       # reasons that are said with the road
 REMOVE = "volume to remove from the road"
@@ -60,7 +61,8 @@ def make_letter(study: study_types.Study) -> Letter:
     gap = next((one.gap for one in known.to_remove or () if one.share == number.share), None) \
         if known and number and number.source is Source.ENSEMBLE else None
     return Letter(max((row.released_m3 for row in rows), default=0.0), number, gap, study.reach,
-                  read_road_numbers(study), [one.kind for one in judged.limits(study, bool(study.study.repeat))],
+                  read_road_numbers(study),
+                  [one.kind for one in (*judged.limits(study, bool(study.study.repeat)), *study.warnings)],
                   study.size.text if study.size else sizes.alone(max(
                       (row.released_m3 / row.ball_m3 for row in rows), default=0.0)),
                   study.study.road["cut_angle"] if study.study.road else None, known.events if known else None,
@@ -91,7 +93,7 @@ def write_letter(letter: Letter, write: Write = format_console_number) -> Senten
     clear = describe_clearing(number, write) if number else " ".join(map(capital, letter.chain))
     basis = f"{describe_cut(letter)} {describe_basis(number, letter, write)}".strip() if number else ""
     far, roads = describe_reach(letter.reach, write), describe_roads(letter, write)
-    lacks = "; ".join([DRY, *(LACKS[kind] for kind in letter.lacks if kind in LACKS
+    lacks = "; ".join([DRY, *(text for kind, text in LACKS.items() if kind in letter.lacks
                               and not (letter.chain and kind == "slip assumed"))])
     down = f"{three(letter.released)} m3 of ground would come down."
     if len(letter.bodies) > 1:
