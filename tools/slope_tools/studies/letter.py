@@ -62,7 +62,8 @@ def make_letter(study: study_types.Study) -> Letter:
         if known and number and number.source is Source.ENSEMBLE else None
     return Letter(max((row.released_m3 for row in rows), default=0.0), number, gap, study.reach,
                   read_road_numbers(study),
-                  [one.kind for one in (*judged.limits(study, bool(study.study.repeat)), *study.warnings)],
+                  [*(one.kind for one in judged.limits(study, bool(study.study.repeat))),
+                   *(one.kind for one in study.warnings if one.kind in LACKS)],
                   study.size.text if study.size else sizes.alone(max(
                       (row.released_m3 / row.ball_m3 for row in rows), default=0.0)),
                   study.study.road["cut_angle"] if study.study.road else None, known.events if known else None,
