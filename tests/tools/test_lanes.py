@@ -487,6 +487,7 @@ def test_stretches_of_a_study_are_unions_with_shares_and_quantiles():
     ("--road two.csv", "two.csv: is a line, whose width must be given: --road-width"),
     ("--road line.wkt", "line.wkt: is a line, whose width must be given: --road-width"),
     ("--road line.geojson --road-width 0", "--road-width: must be > 0, got 0"),
+    ("--road line.geojson --road-width 7500", "--road-width: must be at most 1000 m, got 7500"),
     ("--road line.geojson --road-width 4 --lane 4.5", "--lane: must be at most as wide as the road, 4 m, got 4.5"),
     ("--road polygon.geojson --lane 9", "--lane: must be at most as wide as the road, 8 m, got 9"),
     ("--road line.geojson --road-width 4 --lane 0", "--lane: must be > 0, got 0"),

@@ -68,6 +68,7 @@ KEYS = {"width": "width", "start": "from", "blocked": "blocked", "lane": "lane",
 OPTIONS = {"width": "--road-width", "start": "--road-from", "blocked": "--blocked", "lane": "--lane",
            "clearing": "--clearing", "loosening": "--loosening"}
 SHORTEST = 1.0          # m, of a line
+WIDEST = 1000.0         # m: wider is no road, but a number in millimetres or a slip of the pen
 WITHOUT_LINE = "leave out --road-width, which is that of a line"
 WITHOUT_WIDTH = "is a line, whose width must be given: --road-width"
 MARK = "# the line of a road, whose width is given apart"
@@ -88,6 +89,8 @@ def check_road(asked: Asked) -> None:
         if getattr(asked, given) is not None and getattr(asked, other) is None:
             raise SlopeError(OPTIONS[given], f"must be given with {OPTIONS[other]}", f"{getattr(asked, given):g}")
     if asked.width is not None:
+        if asked.width > WIDEST:
+            raise SlopeError(OPTIONS["width"], f"must be at most {WIDEST:g} m", f"{asked.width:g}")
         check_lane(asked.lane, asked.width)
 
 
