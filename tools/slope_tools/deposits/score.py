@@ -11,8 +11,8 @@ from ..quantiles import within
 from ..survey import beside, polygons
 from ..survey.crs import same_crs
 from ..survey.rasters import HIGHEST, Raster, crs_name, is_raster
-from . import reach
 from .connected import connected, top
+from .travel_shares import PARTS
 from .volume_files import format_csv_number
 
 THRESHOLD = 0.1   # m
@@ -167,7 +167,7 @@ def compare_quantiles(run_, simulated, observed, place):
     x, y = run_.raster.transform @ (columns + 0.5, rows + 0.5)
     distance = np.hypot(x - place[0], y - place[1])
     found = []
-    for share in reach.SHARES:
+    for share in PARTS:
         near, far = (round(within(distance[of > 0], of[of > 0], share), 9) for of in (ours, theirs))
         found.append({"share": share, "simulated": near, "observed": far, "difference": round(near - far, 9)})
     return found
