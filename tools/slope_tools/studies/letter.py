@@ -9,8 +9,7 @@ from typing import Callable, List, NamedTuple, Optional, Sequence
 from ..digits import percent, three
 from ..seismic import chain_files
 from ..sites.site_bodies import VARIABLE
-from ..statistics.entries import Cause, Code, Headline, Kind, Source
-from ..statistics.entries import PaperPart, Road
+from ..statistics.entries import Cause, Code, Headline, Kind, PaperPart, Road, Source
 from ..tables import answer_words, ensemble_types, judged, sizes, study_types
 from ..tables.how_far import TAIL, Reach
 from ..tables.rows import finished_of

@@ -6,8 +6,7 @@ from typing import NamedTuple, Optional, Sequence, Tuple, Union
 from ..case.run_folders import OF_RUN, RASTERS, prefix_of, summaries, summary_of
 from ..errors import SlopeError
 from ..sites import site_choices
-from ..statistics.entries import Source
-from ..statistics.entries import KnownQuantile, Quantile
+from ..statistics.entries import KnownQuantile, Quantile, Source
 from . import ensemble_types, sizes, study_types
 from .rows import Finished, find_farthest_run, finished_of
 from .study_file import STUDY, load_study, study_in, without_study
