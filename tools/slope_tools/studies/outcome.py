@@ -76,7 +76,7 @@ class Read(NamedTuple):
     rows: List[Row]
     road: bool
     among: known.Known
-    events: Optional[how_far.Events]
+    events: Optional[how_far.EventsAtRoad]
     mobility: Optional[Mobility]
     emulated: Optional[ensemble.Emulated]
     observed: Optional[study_types.Observed]

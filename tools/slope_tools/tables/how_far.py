@@ -120,7 +120,7 @@ def bounds(known: Mobility, share: float) -> Tuple[float, float]:
 
 # --- at a road ---
 
-class Events(NamedTuple):
+class EventsAtRoad(NamedTuple):
     """What known events of the mass's volume and height did.
 
     median: m, length that half of them exceed, that of the fall path where it ends before; None: they withhold nothing,
@@ -141,7 +141,7 @@ class Events(NamedTuple):
                             count_brought(rows), self.behind)
 
 
-def compute_events_at_road(among: known.Known, road: Any) -> Optional[Events]:
+def compute_events_at_road(among: known.Known, road: Any) -> Optional[EventsAtRoad]:
     """What they did at a road, polygons in local metres; None where the mass has no fall path."""
     mobilities = among.found
     if mobilities is None or among.ground is None:
@@ -151,8 +151,8 @@ def compute_events_at_road(among: known.Known, road: Any) -> Optional[Events]:
         median = float(counts.path.length[-1])
     at = fall_path.at_road(counts.path, road, among.ground, counts.width)
     if at.behind:
-        return Events(median, at.length, at.passed, (0.0, 0.0), (0.0, 0.0), at.beside)
-    return Events(median, at.length, at.passed, counts.shares(at.length), counts.shares(at.passed))
+        return EventsAtRoad(median, at.length, at.passed, (0.0, 0.0), (0.0, 0.0), at.beside)
+    return EventsAtRoad(median, at.length, at.passed, counts.shares(at.length), counts.shares(at.passed))
 
 
 def longest(rows: Sequence[Finished]) -> Optional[float]:
