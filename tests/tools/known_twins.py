@@ -5,12 +5,12 @@ ends between 1750 and 2300 m. All functions are for arrays.
 """
 import numpy as np
 
-from slope_tools.mobility import events, relation
+from slope_tools.mobility import events
 from slope_tools.statistics import designs
 
 JUMP = 1750.0, 2300.0       # m
 ROAD = 1500.0               # m, where the road lies
-RELATION = relation.of_events(events.read_events())
+RELATION = events.fit_relation(events.read_events())
 
 
 def exceedance(length):

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from run_helpers import write_run
 
-from slope_tools.deposits import connected, deposit
+from slope_tools.deposits import deposit, score
 
 CELL = 2.0
 
@@ -15,7 +15,7 @@ def found(here):
     """A function: what is found in a raster (rows from the north) over ground at height 5; top at 0 0 35."""
     def make(thickness, threshold=0.1, top=(0.0, 0.0, 35.0), base=5.0):
         write_run(thickness, base, CELL, travel={"top": list(top)} if top else {})
-        return connected.connected(deposit.read_deposit("run", None, lambda text: None), threshold)
+        return score.connected(deposit.read_deposit("run", None, lambda text: None), threshold)
     return make
 
 

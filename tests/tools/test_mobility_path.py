@@ -17,15 +17,14 @@ from run_helpers import TOP, run_command, write_asc, write_geojson, examples
 from tiny_collapse import rows_of
 
 from slope_tools.errors import SlopeError
-from slope_tools.mobility import body, charts, events, fall_path, known as known_events
-from slope_tools.mobility import relation, results
+from slope_tools.mobility import body, charts, events, fall_path, known as known_events, results
 from slope_tools.releases import release
 from slope_tools.survey import rasters
 from slope_tools.survey.rasters import Raster
 from slope_tools.tables import how_far
 
 ALL = events.read_events()
-SET = relation.of_events(ALL)
+SET = events.fit_relation(ALL)
 DATA = next((folder for folder in (top / "shared" / "data" for top in TOP.parents) if folder.is_dir()), TOP / "none")
 FRANK = DATA / "frank"
 STEEP = 0.5         # slope of the ground
@@ -316,7 +315,7 @@ def test_the_frank_slide():
     others = [one for one in ALL if one.name != "Frank Slide"]
     across = fall_path.given(mass, LineString([(413, 1264), (3960, 3633)]), "line")
     for path in (None, across):
-        found = known_events.compute_mobility(mass, relation.of_events(others), "unconfined", path)
+        found = known_events.compute_mobility(mass, events.fit_relation(others), "unconfined", path)
         assert found.in_range and found.volume == pytest.approx(36.0, abs=0.1)
         assert 0.1 < found.exceedance(3080) < 0.9
     assert found.length_at(0.5) == pytest.approx(3080, rel=0.05)

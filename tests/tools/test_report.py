@@ -452,7 +452,7 @@ def test_the_run_that_lost_most_went_farthest(slope, here):
         for row, share, distance, front in zip(about["runs"], lost, distances, fronts):
             row.update(lost_m3=share * row["released_m3"], distance_99_m=distance, front_m=front)
         path.write_text(yaml.safe_dump(about))
-        assert travel_shares.find_farthest_run(finished_of(map(rows.read_row, about["runs"]))).run == farthest["run"]
+        assert rows.find_farthest_run(finished_of(map(rows.read_row, about["runs"]))).run == farthest["run"]
         assert report_data.Data(Path("out")).result.name == farthest["run"]
 
 

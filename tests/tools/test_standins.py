@@ -11,10 +11,10 @@ import numpy as np
 
 
 from slope_tools.ensembles import conditioned
-from slope_tools.mobility import events, relation
+from slope_tools.mobility import events
 from slope_tools.statistics import designs
 
-RELATION = relation.of_events(events.read_events())
+RELATION = events.fit_relation(events.read_events())
 NUMBER, RUNS, ROAD = 20, 64, 10.0
 INSIDE, FACTOR = (15, 20), 4.0
 BAND = 0.05, 0.5, 0.95

@@ -23,7 +23,7 @@ from slope_tools.statistics.entries import Code
 from slope_tools.statistics.withheld import Facts, Kind
 from slope_tools.studies import outcome
 from slope_tools.tables import combinations, next_step, usable
-from slope_tools.tables.how_far import Events
+from slope_tools.tables.how_far import EventsAtRoad
 from slope_tools.tables.usable import Case
 
 GOOD = Facts(volume=5000.0, on_road=3000.0, ball=10.0, runs=20, failed=0, moving=0, left=0.0, length=900.0,
@@ -204,7 +204,7 @@ def rows(*volumes, **more):
 
 def events(median, reached):
     """Known events, of which a share reaches the near edge of the road."""
-    return Events(median, 300.0, 310.0, (reached / 2, reached), (0.0, reached / 2))
+    return EventsAtRoad(median, 300.0, 310.0, (reached / 2, reached), (0.0, reached / 2))
 
 
 def judged(several, events=None):

@@ -14,8 +14,7 @@ from ..errors import SlopeError
 from ..options import Overwrite, flag, option, positional
 from ..plots.section import FALL
 from ..report import document, printing
-from ..report.heading import Asked
-from ..report.heading import SITE
+from ..report.heading import SITE, Asked
 from ..sites import site_scenarios
 from ..studies import outdated
 from ..tables import study_file

@@ -3,6 +3,7 @@
 Plan geometry on its grid is done in index coordinates: x in columns from the west edge, y in rows from the north edge.
 There a cell is the unit square between whole numbers, and areas are in cells.
 """
+import math
 import os
 from pathlib import Path
 from typing import NamedTuple, Optional, Tuple
@@ -19,6 +20,7 @@ from ..survey.resampling import sample
 
 SAME_BALANCE = 1e-6    # relative; volume of the raster and in the summary
 SAME_HEIGHT = 1e-7     # of the largest height; two rasters of nine digits
+EIGHT = np.ones((3, 3), int)    # neighbours of a cell, for ndimage.label
 SCAR = 0.01            # m; ground that lies so much lower than before is the slip surface
 
 
@@ -43,6 +45,14 @@ class Deposit(NamedTuple):
     def bulk(self):
         """The run's bulk factor: volume of ground / volume of the balls."""
         return float(self.summary["bulk_factor"])
+
+
+class Top(NamedTuple):
+    """The highest released point, local metres; z is NaN where the ground below it is not known."""
+    x: float
+    y: float
+    z: float
+    source: str                 # where it is known from, for people
 
 
 def read_deposit(prefix, terrain, warn):
@@ -126,6 +136,28 @@ def find_terrain(prefix, terrain, raster, warn):
         warn(Finding("no CRS", {"file": str(path), "coordinates": "metres as in that file" if place.offset != (0, 0)
                                 else "the local metres of the run"}))
     return str(path), place
+
+
+def top(deposit):
+    """The Top of a deposit.Deposit: where its highest ball was released, from its summary.
+
+    A summary of an older run does not tell it. Then it is the centre of the highest cell that the mass was ever in, or,
+    without PREFIX.max_thickness.asc, of the deposit, which is lower on the slope.
+    """
+    top = (deposit.summary.get("travel") or {}).get("top")
+    if isinstance(top, list) and len(top) == 3 and all(isinstance(v, (int, float)) for v in top):
+        return Top(float(top[0]), float(top[1]), float(top[2]), "summary: highest released ball")
+    name = f"{deposit.prefix}.max_thickness.asc"
+    source, thickness = "highest cell of the deposit", deposit.raster.z
+    if Path(name).is_file():
+        largest = rasters.read_raster(name, heights=False)
+        if largest.z.shape == thickness.shape and largest.transform == deposit.raster.transform:
+            source, thickness = "highest cell that the mass was in", largest.z
+    surface = np.where((thickness > 0) & np.isfinite(deposit.base), deposit.base + thickness, -np.inf)
+    row, column = np.unravel_index(surface.argmax(), surface.shape)
+    x, y = deposit.raster.transform @ (column + 0.5, row + 0.5)
+    z = float(surface[row, column])
+    return Top(float(x), float(y), z if math.isfinite(z) else math.nan, source)
 
 
 def find_ground_before(raster: Raster, base: np.ndarray, terrain: Optional[Path]) -> Tuple[np.ndarray, np.ndarray]:

@@ -3,6 +3,7 @@ import math
 from typing import List, NamedTuple, Optional, Tuple
 
 import numpy as np
+from scipy import ndimage
 
 from .. import disk, geometry
 from ..errors import SlopeError
@@ -11,12 +12,13 @@ from ..quantiles import within
 from ..survey import beside, polygons
 from ..survey.crs import same_crs
 from ..survey.rasters import HIGHEST, Raster, crs_name, is_raster
-from . import reach
-from .connected import connected, top
+from .deposit import EIGHT, top
+from .travel_shares import PARTS
 from .volume_files import format_csv_number
 
 THRESHOLD = 0.1   # m
 FULL = 1e-9       # a smaller share of a cell, or of the largest thickness, is rounding
+CORNERS = (0, 0), (0, 1), (1, 0), (1, 1)    # of a cell, columns and rows
 
 
 class Observed(NamedTuple):
@@ -167,10 +169,50 @@ def compare_quantiles(run_, simulated, observed, place):
     x, y = run_.raster.transform @ (columns + 0.5, rows + 0.5)
     distance = np.hypot(x - place[0], y - place[1])
     found = []
-    for share in reach.SHARES:
+    for share in PARTS:
         near, far = (round(within(distance[of > 0], of[of > 0], share), 9) for of in (ours, theirs))
         found.append({"share": share, "simulated": near, "observed": far, "difference": round(near - far, 9)})
     return found
+
+
+class Connected(NamedTuple):
+    """The largest connected part of a deposit; see `connected`."""
+    parts: int                  # connected parts that the deposit has
+    volume: float               # m3, bulk
+    share: float                # of the volume on the grid, 0 to 1
+    area: float                 # m2
+    distance: float             # m, in plan, from the highest released ball to its farthest point
+    farthest: tuple             # local x, y of that point, m
+    reach_angle: Optional[float]    # degrees below the horizontal; None where no height is known
+    mask: np.ndarray            # its cells, bool, rows from the north
+
+
+def connected(deposit, threshold):
+    """The largest 8-connected part of a Deposit that is thicker than threshold (m): a Connected.
+
+    Largest is the one of the largest volume. None where the deposit is nowhere thicker than threshold.
+
+    distance (m, in plan): from the highest released ball (see deposit.top) to the farthest corner of the part's cells.
+    reach_angle (degrees): the angle below the horizontal at which the surface of that cell is seen from that ball;
+    None where the cell has no ground, or the height of the top is not known.
+    """
+    thickness, cell = deposit.raster.z, deposit.cell
+    labels, parts = ndimage.label(thickness > threshold, EIGHT)
+    if parts == 0:
+        return None
+    volume = ndimage.sum_labels(thickness, labels, np.arange(1, parts + 1))
+    mask = labels == 1 + int(np.argmax(volume))
+    highest = top(deposit)
+    rows, columns = np.nonzero(mask)
+    x, y = np.moveaxis(np.array([deposit.raster.transform @ (columns + i, rows + j) for i, j in CORNERS]), 1, 0)
+    distances = np.hypot(x - highest.x, y - highest.y)     # of each corner of each cell
+    corner, far = np.unravel_index(distances.argmax(), distances.shape)
+    distance = float(distances[corner, far])
+    drop = highest.z - float((deposit.base + thickness)[rows[far], columns[far]])
+    angle = math.degrees(math.atan2(drop, distance)) if math.isfinite(drop) else None
+    total = float(volume.max()) * cell ** 2
+    return Connected(int(parts), total, total / deposit.volume, len(rows) * cell ** 2, distance,
+                     (float(x[corner, far]), float(y[corner, far])), angle, mask)
 
 
 def connected_runout(run_, threshold, observed):

@@ -9,7 +9,8 @@ from ..drawing import figures, pictures
 from ..errors import SlopeError
 from ..findings import Finding
 from ..survey import rasters
-from . import dumps, reach
+from . import dumps
+from .travel_shares import PARTS, compute_reach_quantiles
 
 DIRECTIONS = "along", "across"
 SHARES = {"min": 0, "p1": 1, "p5": 5, "p10": 10, "p25": 25, "p50": 50, "p75": 75, "p90": 90, "p95": 95, "p99": 99,
@@ -95,7 +96,7 @@ def of_dumps(paths: Sequence[str], starts: Optional[Sequence[str]], wanted: Want
                              ("distance", "drop", "reach_angle")}
         summary["runout"]["quantiles"] = [
             {"share": share, **{key: spread_over_runs([one["runout"]["quantiles"][k][key] for one in single])
-                                for key in ("distance", "reach_angle")}} for k, share in enumerate(reach.SHARES)]
+                                for key in ("distance", "reach_angle")}} for k, share in enumerate(PARTS)]
     summary["each_run"] = [known(one) for one in single]
     summary["warnings"] = warnings
     with disk.complete(folder, "travel.yaml") as new:
@@ -218,7 +219,7 @@ def measure_runout(arrival):
     by_volume = arrival.volume is not None and (arrival.lost is not None or not arrival.missing)
     weights = (arrival.volume, arrival.lost or 0.0) if by_volume else (np.ones(len(distance)), float(arrival.missing))
     shares = [{"share": share, "distance": within, "reach_angle": angle}
-              for share, within, angle in reach.compute_reach_quantiles(arrival.place, arrival.top, *weights)]
+              for share, within, angle in compute_reach_quantiles(arrival.place, arrival.top, *weights)]
     return {"distance": round(float(distance[far]), 9), "drop": round(float(drop), 9),
             "reach_angle": round(math.degrees(math.atan2(drop, distance[far])), 9), "ball": int(arrival.id[far]),
             "quantiles_of": "volume" if by_volume else "balls", "quantiles": shares}

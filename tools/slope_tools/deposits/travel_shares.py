@@ -1,7 +1,13 @@
-"""How far the volume travels, by the shares that stay within a distance: what a summary's travel: quantiles say."""
-from typing import Any, Dict, Mapping, Optional, Protocol, Sequence, TypeVar
+"""How far the volume travels, by the shares that stay within a distance and a reach angle from the highest released
+ball: what a summary's travel: quantiles say, and the same of balls and of other deposits."""
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional
 
-SHARES = (50, 90, 95, 99)       # percent of the volume
+import numpy as np
+
+from ..quantiles import within
+
+SHARES = (50, 90, 95, 99)       # percent of the volume, as fix deposit/grid tells them
+PARTS = tuple(share / 100 for share in SHARES)
 HEADLINE = SHARES[-1]           # the distance that counts: one stray ball does not move it
 COLUMNS = (*(f"distance_{share}_m" for share in SHARES), *(f"reach_{share}_deg" for share in SHARES))
 DISTANCE = f"distance_{HEADLINE}_m"
@@ -22,34 +28,22 @@ def read_share_columns(summary: Mapping[str, Any]) -> Dict[str, Optional[float]]
     return found
 
 
-class Traveled(Protocol):
-    """What a run (a rows.Finished) says of it: volumes in m3, distances in m."""
-    @property
-    def lost_m3(self) -> float: ...
-    @property
-    def released_m3(self) -> float: ...
-    @property
-    def front_m(self) -> float: ...
-    @property
-    def distance_99_m(self) -> Optional[float]: ...
+class Quantile(NamedTuple):
+    """This share of the volume stays within both, each for itself; infinite where it lies beyond, among lost balls."""
+    share: float            # 0 to 1
+    distance: float         # m, in plan
+    reach_angle: float      # degrees below the horizontal: the share is seen at this angle or a steeper one
 
 
-One = TypeVar("One", bound=Traveled)
+def compute_reach_quantiles(places, top, volumes, lost=0.0) -> List[Quantile]:
+    """Of balls at places (x y z, m) of some volumes (any unit), seen from top (x y z): a Quantile of each of PARTS.
 
-
-def lost(row: Traveled) -> bool:
-    """Whether so much of a run left the box that nobody knows how far it went."""
-    return row.lost_m3 > BEYOND * row.released_m3
-
-
-def find_farthest_run(rows: Sequence[One]) -> One:
-    """The run that went farthest.
-
-    Of those that left the box, which went beyond all others, it is the one that lost most. Where a run of an older
-    version has no shares, the farthest balls are compared.
+    lost: volume of the balls that are not there; they went farther than the others.
+    As fix deposit/grid counts them, which takes bins of 1/8192 of the range. A ball at the top itself went nowhere: its
+    angle is 90 degrees.
     """
-    gone = [row for row in rows if lost(row)]
-    if gone:
-        return max(gone, key=lambda row: row.lost_m3 / row.released_m3)
-    known = all(row.distance_99_m is not None for row in rows)
-    return max(rows, key=lambda row: row.distance_99_m or 0.0 if known else row.front_m)
+    x, y, z = np.asarray(places, float).T
+    distance = np.hypot(x - top[0], y - top[1])
+    angle = np.where(distance > 0, np.degrees(np.arctan2(top[2] - z, distance)), 90.0)
+    return [Quantile(share, within(distance, volumes, share, lost), -within(-angle, volumes, share, lost))
+            for share in PARTS]

@@ -13,7 +13,7 @@ from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple
 import numpy as np
 
 from ..case import run_folders
-from ..deposits import connected, deposit, score, travel_shares
+from ..deposits import deposit, score
 from ..errors import SlopeError
 from ..quantiles import within
 from ..statistics.backanalysis import Target
@@ -106,7 +106,7 @@ class Observations:
         A length or an area that the edge of the terrain cuts off is none.
         """
         asked = self.wanted.front is not None or self.wanted.area is not None
-        return not (asked and travel_shares.lost(row))
+        return not (asked and row.left_box)
 
     def measure(self, summary: Path, terrain: Optional[Path], row: Finished) -> np.ndarray:
         """The outputs of a run, in the order of the targets; row: of the table of `slope study`."""
@@ -191,7 +191,7 @@ def front(summary: Path, row: Finished, column: str) -> float:
 
 def compute_cell_distances(run_: deposit.Deposit) -> np.ndarray:
     """Plan distance of each cell's centre from the highest released ball, m."""
-    x, y = connected.top(run_)[:2]
+    x, y = deposit.top(run_)[:2]
     rows, columns = np.indices(run_.raster.z.shape)
     east, north = run_.raster.transform @ (columns + 0.5, rows + 0.5)
     return np.hypot(east - x, north - y)

@@ -15,11 +15,11 @@ import numpy as np
 from .. import digits
 from ..errors import SlopeError
 from ..survey.rasters import Raster
-from . import body, events, fall_path, landslides, relation
+from . import body, events, fall_path, landslides
 from .body import Body
+from .events import Relation
 from .fall_path import FallPath
 from .landslides import LandslideKind
-from .relation import Relation
 
 FAR = 0.999             # the path is followed to where so many events ended
 HALF = 0.5
@@ -137,7 +137,7 @@ class Choice(NamedTuple):
 
     @property
     def relation(self) -> Relation:
-        return relation.of_events(self.known, self.file)
+        return events.fit_relation(self.known, self.file)
 
     def name(self, mobility: Mobility) -> str:
         """Of the events of one of both."""

@@ -16,13 +16,13 @@ from affine import Affine
 from scipy import ndimage
 from scipy.spatial import cKDTree
 
-from ..deposits.connected import EIGHT, THRESHOLD, top
-from ..deposits.deposit import Deposit, find_ground_before
+from ..deposits.deposit import EIGHT, Deposit, find_ground_before, top
 from ..errors import SlopeError
 from ..survey.rasters import Raster
 from . import body, fall_path
 from .fall_path import FallPath
 
+THRESHOLD = 0.1         # m; cells of a lobe are thicker
 LEAST = 0.01            # of the released volume, in a lobe
 OTHERS = 0.005, 0.02    # what else it might be: the change is shown
 OF_99 = 0.933           # 99 % of a volume stay within this part of the straight length: Acheron's deposit and its runs

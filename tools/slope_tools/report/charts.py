@@ -50,7 +50,7 @@ class Charts:
         if not data.study or len(data.finished) < 2 or data.study.ensemble:
             return []
         far = [travel_shares.DISTANCE] if all(row.value(travel_shares.DISTANCE) is not None for row in data.finished) \
-            else [] if any(map(travel_shares.lost, data.finished)) else ["front_m"]
+            else [] if any(row.left_box for row in data.finished) else ["front_m"]
         wanted = [*([REMOVE] if self.has_removal() else []), *far, "thickness_m"]
         wanted += [name for name in (self.reference.quantities if self.reference else ()) if name not in wanted]
         name = self.variable()

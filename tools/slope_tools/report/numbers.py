@@ -185,7 +185,7 @@ def travel_card(data: Data, numbers: Numbers):
         who = data.label_of(names[far.run])
         farthest = f"; farthest ball {numbers.quantity('front_m', far.value, who)} m, {who}"
         if key not in largest:
-            left = any(map(travel_shares.lost, data.finished))
+            left = any(row.left_box for row in data.finished)
             return {"what": what, "number": UNKNOWN, "unit": "", "note": f"a run {LOST if left else OLD}{farthest}"}
         row = names[largest[key].run]
         value, angle, name = row.value(key), row.value(REACH), data.label_of(row)

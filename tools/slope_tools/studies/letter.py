@@ -9,8 +9,7 @@ from typing import Callable, List, NamedTuple, Optional, Sequence
 from ..digits import percent, three
 from ..seismic import chain_files
 from ..sites.site_bodies import VARIABLE
-from ..statistics.entries import Cause, Code, Headline, Kind, Source
-from ..statistics.entries import PaperPart, Road
+from ..statistics.entries import Cause, Code, Headline, Kind, PaperPart, Road, Source
 from ..tables import answer_words, ensemble_types, judged, sizes, study_types
 from ..tables.how_far import TAIL, Reach
 from ..tables.rows import finished_of
@@ -29,7 +28,7 @@ LACKS = {"no repeats": "what chance changes, as no run was repeated",
          "road on body": "what it takes to build the road anew where it lies on the mass and goes with it"}
 DRY = "water in the mass or on its way, with which it would go farther"
 TOLD = Code.NOT_REACHED,       # reasons that are said with the road
-REMOVE = "volume to remove from the road"
+VOLUME = "volume to remove from the road"
 
 
 class Letter(NamedTuple):
@@ -149,7 +148,7 @@ def describe_clearing(number: Headline, write: Write) -> str:
 
 
 def describe_number(number: Headline, write: Write) -> str:
-    low, high = (write(f"{REMOVE}, {name} end", "m3", value or 0.0)
+    low, high = (write(f"{VOLUME}, {name} end", "m3", value or 0.0)
                  for value, name in ((number.low_m3, "lower"), (number.high_m3, "upper")))
     ends = f"between {low} and {high} m3"
     if not has_chance(number):
@@ -158,7 +157,7 @@ def describe_number(number: Headline, write: Write) -> str:
         ends = f"with 95 % confidence above {low} m3, and below {high} m3 as far as these runs go"
     else:
         ends = f"with 90 % confidence {ends}"
-    return (f"{write(REMOVE, 'm3', number.volume_m3 or 0.0)} m3 must be cleared from the road; "
+    return (f"{write(VOLUME, 'm3', number.volume_m3 or 0.0)} m3 must be cleared from the road; "
             f"within the model this figure lies {ends}.")
 
 
@@ -169,7 +168,7 @@ def has_chance(number: Headline) -> bool:
 
 def describe_floor(number: Headline, write: Write) -> str:
     if number.volume_m3:
-        return (f"At least {write(f'{REMOVE}, at least', 'm3', number.volume_m3)} m3 must be cleared from the road: no "
+        return (f"At least {write(f'{VOLUME}, at least', 'm3', number.volume_m3)} m3 must be cleared from the road: no "
                 "number to design with.")
     reached = number.road and number.road.brought.reach
     where = "" if reached else ", where the mass reaches it as known events do and no run does"
@@ -177,7 +176,7 @@ def describe_floor(number: Headline, write: Write) -> str:
 
 
 def describe_open(number: Headline, write: Write) -> str:
-    return (f"{write(f'{REMOVE}, of these runs', 'm3', number.volume_m3 or 0.0)} m3 must be cleared from the road by "
+    return (f"{write(f'{VOLUME}, of these runs', 'm3', number.volume_m3 or 0.0)} m3 must be cleared from the road by "
             "these runs, which is neither an upper nor a lower bound: no number to design with.")
 
 
@@ -186,7 +185,7 @@ def describe_withheld_number(_: Headline, __: Write) -> str:
 
 
 def describe_nothing(number: Headline, write: Write) -> str:
-    return (f"{write(REMOVE, 'm3', 0.0)} m3 must be cleared from the road, by these runs: in none does anything come "
+    return (f"{write(VOLUME, 'm3', 0.0)} m3 must be cleared from the road, by these runs: in none does anything come "
             "to lie on it.")
 
 
@@ -210,9 +209,9 @@ def describe_basis(number: Headline, letter: Letter, write: Write) -> str:
             f"By those of {runs} that leave most" + ", with what chance may add" * has_chance(number)
         other, beside = Source.ENSEMBLE, number.ensemble
     if beside and beside.volume_m3 is not None:
-        text += f"; {count_runs_of(number, other)} give {write(f'{REMOVE}, other runs', 'm3', beside.volume_m3)} m3"
+        text += f"; {count_runs_of(number, other)} give {write(f'{VOLUME}, other runs', 'm3', beside.volume_m3)} m3"
     if letter.gap:
-        low, high = (write(f"{REMOVE}, {end} of the gap where no run ends", "m3", value)
+        low, high = (write(f"{VOLUME}, {end} of the gap where no run ends", "m3", value)
                      for end, value in zip(("begin", "end"), letter.gap))
         text += f"; no run ends where these events do, between {low} and {high} m3, of which the larger counts"
     parts = describe_band_shares(number) if number.high_m3 is not None else ""

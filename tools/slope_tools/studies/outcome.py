@@ -23,7 +23,7 @@ from ..statistics.conservative_volume import Scatter
 from ..statistics.entries import Source
 from ..tables import (combinations, elastic, ensemble_types, how_far, intensity, judged, road_runs, sizes, step_check,
                       study_types, usable)
-from ..tables.rows import Finished, Row, finished_of
+from ..tables.rows import Finished, Row, find_farthest_run, finished_of
 from . import body_depth, mapped, size_runs
 from .run_rows import placed, read_run_rows, terrain_of
 from .setup import Setup
@@ -76,7 +76,7 @@ class Read(NamedTuple):
     rows: List[Row]
     road: bool
     among: known.Known
-    events: Optional[how_far.Events]
+    events: Optional[how_far.EventsAtRoad]
     mobility: Optional[Mobility]
     emulated: Optional[ensemble.Emulated]
     observed: Optional[study_types.Observed]
@@ -185,7 +185,7 @@ def evaluate_study(questions: Questions, read: Read, header: study_types.Header)
     source = Source.ENSEMBLE if order else Source.PAPER
     study = study_types.Study(
         study=header, largest={key: find_largest_row(finished, key) for key in keys if finished},
-        farthest=travel_shares.find_farthest_run(finished).run if finished else None, conservative=best, size=read.size,
+        farthest=find_farthest_run(finished).run if finished else None, conservative=best, size=read.size,
         ensemble=weighted, step=step, largest_restitution=elastic.evaluate_elastic(read.elastic) if read.elastic
         else None,
         scatter={name: {"deviation": one.deviation, "degrees_of_freedom": one.degrees_of_freedom} if one else None

@@ -76,7 +76,7 @@ def measure_run(folder: Path, summary_name: str, log: logs.Log) -> Dict[str, Any
     left = deposit.Deposit(str(prefix), thickness, base, summary, None)
     length = run_length.measure_run_length(left, terrain_of(folder, log))
     return {"variables": begun.get("variables") or {},
-            quantities.STOP: site_ground.of_variables(begun.get("variables")), "ranks": begun.get("ranks"),
+            "stop_angle_deg": site_ground.of_variables(begun.get("variables")), "ranks": begun.get("ranks"),
             "package": begun.get("package"),
             **of_length(length), "left": gone.list_gone_groups(left),
             "ball_m3": volume["released"] / summary["balls"]["released"],
@@ -89,7 +89,7 @@ def measure_run(folder: Path, summary_name: str, log: logs.Log) -> Dict[str, Any
 
 def of_length(length: Optional[run_length.RunLength]) -> Dict[str, Any]:
     """The columns of a run's length, None where there is no deposit."""
-    return {quantities.LENGTH: length and length.distance,
+    return {"length_m": length and length.distance,
             "length_is": length and (run_length.ON_PATH if length.on_path else run_length.STRAIGHT),
             "length_by_lobe_m": length and list(length.others), "length_deg": length and length.angle}
 

@@ -12,7 +12,6 @@ import numpy as np
 
 from .. import disk
 from ..case.settings import normalise_value, check_settings
-from ..deposits import travel_shares
 from ..digits import metres
 from ..errors import SlopeError
 from ..findings import Finding
@@ -22,7 +21,7 @@ from ..sites import site_budget
 from ..statistics import ball_sizes, conservative_volume
 from ..tables import combinations, judged, sizes, study_table, study_types
 from ..tables.quantities import REMOVE
-from ..tables.rows import Finished, finished_of
+from ..tables.rows import Finished, find_farthest_run, finished_of
 from ..tables.sizes import VARIABLE, Sizes
 from . import body_depth
 from .run_rows import read_run_rows
@@ -179,7 +178,7 @@ def pick_largest(rows: Sequence[Finished]) -> Pick:
     lengths = lengths_of(rows)
     along = lengths / max(lengths.max(initial=0.0), 1e-9)
     if not rows or not rows[0].road:
-        return Pick([travel_shares.find_farthest_run(rows).run] if rows else [], along)
+        return Pick([find_farthest_run(rows).run] if rows else [], along)
     groups = combinations.grouped(rows)
     best = conservative_volume.predict([one.of(REMOVE) for one in groups]).combination
     rows = next(one.rows for one in groups if one.name == best)

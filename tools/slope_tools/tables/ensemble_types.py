@@ -3,8 +3,7 @@ from dataclasses import dataclass
 from typing import Any, Dict, List, NamedTuple, Optional, Union
 
 from ..findings import Finding
-from ..statistics.entries import Reason
-from ..statistics.entries import Analysis, KnownQuantile, Quantile
+from ..statistics.entries import Analysis, KnownQuantile, Quantile, Reason
 
 MapEntry = Dict[str, Any]           # of a map over all runs: file, what it shows, and of which threshold or quantile
 

@@ -178,7 +178,7 @@ def choose_known_shares(far: float) -> List[float]:
     return [SHARE] if within >= SHARE else [SHARE, within]
 
 
-def of_paper(paper: Paper, beside: Optional[Part]) -> Optional[Part]:
+def judge_paper(paper: Paper, beside: Optional[Part]) -> Optional[Part]:
     """beside: of an ensemble, which makes up for HARMLESS rules; None: those alone withhold it."""
     if paper.volume is not None:
         known = paper.least is not None       # chance
@@ -199,7 +199,7 @@ def is_within(volume: Optional[float], part: Part) -> bool:
     return volume is None or part.volume is None or volume <= low_high(part.volume, part.band)[1]
 
 
-def of_ensemble(ensemble: Ensemble, road: Optional[Road]) -> Part:
+def judge_ensemble(ensemble: Ensemble, road: Optional[Road]) -> Part:
     # that no run goes as far as half of the known events is said beside the number of those that the runs cover
     grave = [rule for rule in ensemble.withheld if rule.kind != Rule.MOBILITY]
     if grave:
@@ -267,8 +267,8 @@ def combine_answers(paper: Optional[Paper], ensemble: Optional[Ensemble], road: 
     chance or what finer balls would change is not known, or is 0, the number stays open.
     """
     parts: List[Tuple[Source, Part]] = []
-    weighted = of_ensemble(ensemble, road) if ensemble else None
-    if paper and (mine := of_paper(paper, weighted)):
+    weighted = judge_ensemble(ensemble, road) if ensemble else None
+    if paper and (mine := judge_paper(paper, weighted)):
         parts.append((Source.PAPER, mine))
     if weighted:
         parts.append((Source.ENSEMBLE, weighted))

@@ -10,7 +10,7 @@ from typing import Any, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
-from ..deposits import deposit, travel_shares
+from ..deposits import deposit
 from ..mobility import fall_path, known
 from ..mobility.known import Mobility
 from ..mobility.run_length import ON_PATH
@@ -53,7 +53,7 @@ def known_of(prefix: Path, terrain: Optional[Path], choice: Mapping[str, Any],
 def reach(rows: Sequence[Finished], source: Optional[entries.Source], among: known.Known) -> Optional[Reach]:
     """How far the mass of runs goes, without those that were added for their length; source: None of a run alone."""
     mine = [row for row in rows if row.length_m is not None and not row.batch]
-    lengths = [math.inf if travel_shares.lost(row) else row.length_m or 0.0 for row in mine]
+    lengths = [math.inf if row.left_box else row.length_m or 0.0 for row in mine]
     return pool(lengths, among.found and among.found.decides, source.value if source else None,
                 mine[0].length_is or ON_PATH if mine else ON_PATH, among.why)
 
@@ -120,7 +120,7 @@ def bounds(known: Mobility, share: float) -> Tuple[float, float]:
 
 # --- at a road ---
 
-class Events(NamedTuple):
+class EventsAtRoad(NamedTuple):
     """What known events of the mass's volume and height did.
 
     median: m, length that half of them exceed, that of the fall path where it ends before; None: they withhold nothing,
@@ -141,7 +141,7 @@ class Events(NamedTuple):
                             count_brought(rows), self.behind)
 
 
-def compute_events_at_road(among: known.Known, road: Any) -> Optional[Events]:
+def compute_events_at_road(among: known.Known, road: Any) -> Optional[EventsAtRoad]:
     """What they did at a road, polygons in local metres; None where the mass has no fall path."""
     mobilities = among.found
     if mobilities is None or among.ground is None:
@@ -151,8 +151,8 @@ def compute_events_at_road(among: known.Known, road: Any) -> Optional[Events]:
         median = float(counts.path.length[-1])
     at = fall_path.at_road(counts.path, road, among.ground, counts.width)
     if at.behind:
-        return Events(median, at.length, at.passed, (0.0, 0.0), (0.0, 0.0), at.beside)
-    return Events(median, at.length, at.passed, counts.shares(at.length), counts.shares(at.passed))
+        return EventsAtRoad(median, at.length, at.passed, (0.0, 0.0), (0.0, 0.0), at.beside)
+    return EventsAtRoad(median, at.length, at.passed, counts.shares(at.length), counts.shares(at.passed))
 
 
 def longest(rows: Sequence[Finished]) -> Optional[float]:

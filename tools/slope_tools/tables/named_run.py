@@ -4,13 +4,11 @@ from pathlib import Path
 from typing import NamedTuple, Optional, Sequence, Tuple, Union
 
 from ..case.run_folders import OF_RUN, RASTERS, prefix_of, summaries, summary_of
-from ..deposits import travel_shares
 from ..errors import SlopeError
 from ..sites import site_choices
-from ..statistics.entries import Source
-from ..statistics.entries import KnownQuantile, Quantile
+from ..statistics.entries import KnownQuantile, Quantile, Source
 from . import ensemble_types, sizes, study_types
-from .rows import Finished, finished_of
+from .rows import Finished, find_farthest_run, finished_of
 from .study_file import STUDY, load_study, study_in, without_study
 
 
@@ -44,7 +42,7 @@ def governing(study: study_types.Study) -> str:
         if at is None:      # events beyond the runs decide
             return max(having, key=lambda row: row.value(of)).run
         return sizes.nearest(having, of, at).run
-    return best.run if best else travel_shares.find_farthest_run(rows).run
+    return best.run if best else find_farthest_run(rows).run
 
 
 def of_headline(study: study_types.Study, rows: Sequence[Finished]) -> Optional[str]:

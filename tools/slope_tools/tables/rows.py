@@ -6,6 +6,7 @@ from dataclasses import dataclass, fields, replace
 from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence, Union
 
 from .. import records
+from ..deposits.travel_shares import BEYOND
 from ..findings import Finding
 from .released import Release
 
@@ -127,6 +128,11 @@ class Finished(Run):
         assert self.road is not None
         return self.road
 
+    @property
+    def left_box(self) -> bool:
+        """Whether so much of it left the box that nobody knows how far it went."""
+        return self.lost_m3 > BEYOND * self.released_m3
+
     def value(self, key: str) -> Any:
         """That of a quantity (see quantities); None: the run has none."""
         return next((getattr(part, key) for part in (self, self.road, self.mapped) if hasattr(part, key)), None)
@@ -138,6 +144,19 @@ PARTS = {"road": OnRoad, "mapped": Mapped}      # of Finished, flat in a file
 
 def finished_of(rows: Iterable[Row]) -> List[Finished]:
     return [row for row in rows if isinstance(row, Finished)]
+
+
+def find_farthest_run(rows: Sequence[Finished]) -> Finished:
+    """The run that went farthest.
+
+    Of those that left the box, which went beyond all others, it is the one that lost most. Where a run of an older
+    version has no shares, the farthest balls are compared.
+    """
+    gone = [row for row in rows if row.left_box]
+    if gone:
+        return max(gone, key=lambda row: row.lost_m3 / row.released_m3)
+    known = all(row.distance_99_m is not None for row in rows)
+    return max(rows, key=lambda row: row.distance_99_m or 0.0 if known else row.front_m)
 
 
 def encode_row(row: Row) -> Dict[str, Any]:

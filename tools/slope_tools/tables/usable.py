@@ -11,7 +11,7 @@ from ..findings import Finding, texts
 from ..runs import again
 from ..statistics.withheld import BALLS, CONFIDENCE, Facts, Kind, exceeded_at_most, reasons
 from . import how_far, study_types
-from .how_far import Events
+from .how_far import EventsAtRoad
 from .rows import Finished, Row, finished_of
 
 UNUSABLE = "not usable as a conservative volume"
@@ -35,7 +35,7 @@ def left_before(row: Finished) -> float:
     return row.off_grid_m3 + row.lost_m3 if known is None else known
 
 
-def facts(rows: Sequence[Row], volume: float, on_road: float, events: Optional[Events]) -> Facts:
+def facts(rows: Sequence[Row], volume: float, on_road: float, events: Optional[EventsAtRoad]) -> Facts:
     """Of the rows of a study with a road, of which one finished at least.
 
     volume, on_road: the number that is to be used, and its part on the road itself, m3.
@@ -50,7 +50,7 @@ def facts(rows: Sequence[Row], volume: float, on_road: float, events: Optional[E
                  how_far.longest(finished), events and events.median, where, left_words.to_add(left))
 
 
-def reasons_of_ensemble(rows: Sequence[Row], events: Optional[Events], case: Case) -> List[Finding]:
+def reasons_of_ensemble(rows: Sequence[Row], events: Optional[EventsAtRoad], case: Case) -> List[Finding]:
     """Why the quantiles of an ensemble with a road are withheld; empty: they may stand.
 
     Of volumes the largest of all runs count: where even those govern nothing, no quantile does.
@@ -61,7 +61,7 @@ def reasons_of_ensemble(rows: Sequence[Row], events: Optional[Events], case: Cas
     return with_remedies(reasons(facts(rows, largest, on_road, events)), case)
 
 
-def reasons_of_sweep(best: study_types.Conservative, rows: Sequence[Row], events: Optional[Events],
+def reasons_of_sweep(best: study_types.Conservative, rows: Sequence[Row], events: Optional[EventsAtRoad],
                      case: Case) -> List[Finding]:
     """Why the conservative volume is withheld; empty: it may stand."""
     mine = [row.at_road.remove_on_road_m3 for row in finished_of(rows) if row.set == best.set]

@@ -4,8 +4,7 @@ import math
 import numpy as np
 import pytest
 
-
-from slope_tools.deposits import reach
+from slope_tools.deposits.travel_shares import compute_reach_quantiles
 from slope_tools.quantiles import within
 
 
@@ -28,10 +27,9 @@ def test_quantiles_are_those_of_the_volume():
     """1 of 100 balls holds 2 % of the volume and lies farthest: 98 % stay within the others' distance."""
     places = np.array([[float(k), 0, 0] for k in range(1, 100)] + [[500.0, 0, 0]])
     volumes = np.array([0.98 / 99] * 99 + [0.02])
-    found = {one.share: one for one in reach.compute_reach_quantiles(places, (0, 0, 0), volumes)}
+    found = {one.share: one for one in compute_reach_quantiles(places, (0, 0, 0), volumes)}
     assert found[0.99].distance == 500 and found[0.95].distance == 96
-    assert {one.share: one.distance for one in reach.compute_reach_quantiles(places, (0, 0, 0),
-                                                                             np.ones(100))}[0.99] == 99
+    assert {one.share: one.distance for one in compute_reach_quantiles(places, (0, 0, 0), np.ones(100))}[0.99] == 99
 
 
 def test_the_angle_has_quantiles_of_its_own():
@@ -42,13 +40,12 @@ def test_the_angle_has_quantiles_of_its_own():
     volumes = random.uniform(1, 5, 500)
     distance = np.hypot(places[:, 0], places[:, 1])
     angle = np.degrees(np.arctan2(70 - places[:, 2], distance))
-    for share, far, flat in reach.compute_reach_quantiles(places, top, volumes):
+    for share, far, flat in compute_reach_quantiles(places, top, volumes):
         assert volumes[distance <= far].sum() >= share * volumes.sum() > volumes[distance < far].sum()
         assert volumes[angle >= flat].sum() >= share * volumes.sum() > volumes[angle > flat].sum()
-    assert angle[distance.argmax()] != pytest.approx(reach.compute_reach_quantiles(places, top,
-                                                                                   volumes)[-1].reach_angle)
+    assert angle[distance.argmax()] != pytest.approx(compute_reach_quantiles(places, top, volumes)[-1].reach_angle)
 
 
 def test_a_ball_at_the_top_went_nowhere():
-    found = reach.compute_reach_quantiles([[5, 5, 9], [5, 5, 9]], (5, 5, 9), [1, 1])
+    found = compute_reach_quantiles([[5, 5, 9], [5, 5, 9]], (5, 5, 9), [1, 1])
     assert all((one.distance, one.reach_angle) == (0, 90) for one in found)
