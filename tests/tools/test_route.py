@@ -232,6 +232,22 @@ def test_runs_under_a_condition_are_not_of_the_sample(two):
     assert (found["bodies"][0]["runs"], found["bodies"][0]["share_blocked"]) == (3, pytest.approx(2 / 3))
 
 
+def test_mass_that_leaves_beside_the_road_is_said_with_what_is_blocked(two):
+    """Of body 1 a twentieth left with the road ahead, and body 2 has a run that was cut: shares are least ones."""
+    assert "at least" not in " ".join(route_page.sentences(made(*two)[0]))
+    for body, about in ((1, {"left_before_road_m3": 50.0}), (2, {"at_rest": False})):
+        path = two[0] / f"bodies/{body}/ensemble/study.yaml"
+        study = yaml.safe_load(path.read_text())
+        study["runs"][2].update(about)
+        path.write_text(yaml.safe_dump(study))
+    found, _ = made(*two)
+    assert all("at least" in text for text in route_page.sentences(found))
+    said = list(route_page.list_route_caveats(choices.read_route_choices(two[0]), found))
+    assert said[0].startswith("body 1: 5 % of the released volume left the terrain before, beside or on the road")
+    assert said[1].startswith("body 2: 1 of 4 runs failed or are not at rest"), said
+    assert [row["left_share"] for row in rows_of(two[0] / results.BODIES)] == ["0.05", "0.0"]
+
+
 def test_who_hits_what(two):
     found, ground = made(*two)
     folder = two[0]
