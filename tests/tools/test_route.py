@@ -331,7 +331,7 @@ def test_a_year_of_a_stretch(two, capacity, monkeypatch):
     assert page.count("<figure>") == 2 and "0.020 to 0.080" in page and f"{year['counts']:.2g}" in page
     assert any("--sample" in one for one in said)
     [late] = [one for one in said if one.startswith("fragility: any body: 40 % of its frequency")]
-    assert late in html.unescape(page)
+    assert late in html.unescape(page) and "The route is blocked at least " in page
 
 
 def test_a_fragility_of_other_bodies_is_refused(two, capacity, monkeypatch):

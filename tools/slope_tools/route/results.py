@@ -189,7 +189,8 @@ def make_body_row(body_runs: BodyRuns, yearly: Optional[Yearly]) -> Dict[str, An
             "known_law")
     return {**{key: body_runs.about[key] for key in keys}, "runs": len(body_runs.runs),
             "failed": body_runs.source.failed, "left_share": max(
-                usable.left_before(row) / row.released_m3 for row in body_runs.rows), "share_blocked": share, "share_low": low, "share_high": high,
+                usable.left_before(row) / row.released_m3 for row in body_runs.rows),
+            "share_blocked": share, "share_low": low, "share_high": high,
             "on_road_median_m3": float(np.median(on_road)), "on_road_most_m3": float(on_road.max()),
             "no_factor": body_runs.about.get("no_factor", ""), "per_year": per_year}
 
