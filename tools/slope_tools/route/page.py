@@ -43,8 +43,8 @@ def sentences(results: Mapping[str, Any]) -> List[str]:
                 "(--fragility)"]
     one = route["per_year"]
     return [text, f"the route is blocked {rate}{one['counts']:.2g} times per year: {one['independent']:.2g} if the "
-            f"bodies are independent, {one['dependent']:.2g} if all have the strength of one sample; the larger counts; "
-            f"bounds of the runs (90 %), for any dependence: {one['low']:.2g} to {one['high']:.2g}"]
+            f"bodies are independent, {one['dependent']:.2g} if all have the strength of one sample; the larger "
+            f"counts; bounds of the runs (90 %), for any dependence: {one['low']:.2g} to {one['high']:.2g}"]
 
 
 def write_route_page(choices: Choices, corridor: Corridor, folder: Path, results: Mapping[str, Any], warn) -> None:
