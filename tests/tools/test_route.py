@@ -377,6 +377,19 @@ def test_zones_of_shares(two, capsys):
     assert about["per_year"] is False and about["runs"] == 8
 
 
+def test_zones_are_said_to_end_where_mass_left_the_terrain(two, capsys):
+    """The terrain of a body's runs ends before the corridor does, which the zones are of."""
+    assert "left the grid" not in zones_of(two[0], capsys, "--zones", "0.5")[2]
+    path = two[0] / "bodies/2/ensemble/study.yaml"
+    about = yaml.safe_load(path.read_text())
+    about["runs"][1].update(lost_m3=300.0, on_grid_m3=700.0)
+    path.write_text(yaml.safe_dump(about))
+    status, _, err = zones_of(two[0], capsys, "--zones", "0.5", "--overwrite")
+    assert status == 0 and "body 2: 300 m3 (30 % of the released volume) left the grid or the box" in err, err
+    [doubt] = yaml.safe_load((two[0] / "zones/zones.yaml").read_text())["doubts"]
+    assert doubt["kind"] == "lost much" and doubt["part"] == "body 2"
+
+
 @pytest.mark.parametrize("words, got", [
     ("1/100,1/1000", "1/100"), ("0.5,1/100", "1/100"), ("1/2", "1/2"), ("0.01,0.001", "0.01 and 0.001"),
     ("0.5,1e-3,1e-4", "0.001 and 0.0001")])

@@ -122,12 +122,12 @@ def find_doubts(several: Sequence[BodyRuns]) -> List[Finding]:
     for body in several:
         for doubt in usable.doubts_of_shares(body.rows):
             kinds.setdefault(doubt.kind, []).append(doubt._replace(part=f"body {body.number}"))
-    return [gravest(same) for same in kinds.values()]
+    return [gravest(same, "number") for same in kinds.values()]
 
 
-def gravest(same: Sequence[Finding]) -> Finding:
-    """That of the gravest body, which says how many others there are."""
-    worst = max(same, key=lambda one: one.numbers["number"])
+def gravest(same: Sequence[Finding], number: str) -> Finding:
+    """That of the gravest body by one of its numbers, which says how many others there are."""
+    worst = max(same, key=lambda one: one.numbers[number])
     return worst._replace(part=worst.part + f", as {len(same) - 1} more" * (len(same) > 1))
 
 
