@@ -127,7 +127,7 @@ def find_doubts(several: Sequence[BodyRuns]) -> List[Finding]:
 
 def gravest(same: Sequence[Finding], number: str) -> Finding:
     """That of the gravest body by one of its numbers, which says how many others there are."""
-    worst = max(same, key=lambda one: one.numbers[number])
+    worst = max(same, key=lambda doubt: doubt.numbers[number])
     return worst._replace(part=worst.part + f", as {len(same) - 1} more" * (len(same) > 1))
 
 

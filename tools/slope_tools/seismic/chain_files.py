@@ -186,18 +186,18 @@ def sentences(chain_: study_types.Chain) -> List[str]:
     return words
 
 
-def describe_yearly(one: study_types.PerYear, sure: str, before: bool) -> str:
+def describe_yearly(rate: study_types.PerYear, sure: str, before: bool) -> str:
     """How often; before: peaks below the hazard curve's first, which are not counted, make bodies fail, too."""
-    if not one.value:
+    if not rate.value:
         aside = ", but for peaks below the hazard curve's first" * before
-        return f"at most {one.high + one.more_at_most:.2g} per year ({sure}{aside})"
-    least = "at least " * (before or is_more(one))
-    return f"{least}{one.value:.2g} per year ({sure}: {one.low:.2g} to {one.high:.2g})"
+        return f"at most {rate.high + rate.more_at_most:.2g} per year ({sure}{aside})"
+    least = "at least " * (before or is_more(rate))
+    return f"{least}{rate.value:.2g} per year ({sure}: {rate.low:.2g} to {rate.high:.2g})"
 
 
-def is_more(one: study_types.PerYear) -> bool:
+def is_more(rate: study_types.PerYear) -> bool:
     """Whether peaks above the hazard curve's last may add much."""
-    return one.more_at_most > BEYOND * one.value
+    return rate.more_at_most > BEYOND * rate.value
 
 
 def describe_chain(chain_: study_types.Chain, output: Path) -> List[str]:
