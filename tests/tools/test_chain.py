@@ -1,9 +1,12 @@
 """From an earthquake to the volume on the road: sums over bodies, peaks and runs against direct simulations."""
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy import stats
 
-from slope_tools.seismic import chain, fragility
+from slope_tools.seismic import chain, chain_files, fragility
+from slope_tools.tables import study_types
 
 RATE = fragility.Hazard(np.array([50.0, 200.0, 800.0, 2000.0]), np.array([1e-2, 1e-3, 3e-5, 1e-6]))
 VOLUMES = np.array([0.0, 50.0, 120.0, 200.0, 350.0, 450.0])
@@ -117,12 +120,18 @@ def test_weights_are_the_frequencies_of_failure():
 
 
 def test_what_no_peak_of_the_curve_reaches_does_not_fail():
-    """Half of the samples fail above the curve's last peak: the other half alone counts, and beyond says so."""
+    """Half of the samples fail above the curve's last peak: the other half alone counts, and beyond says so, for what
+    the body leaves in its runs; of a body that no peak of the curve reaches there are none."""
     capacity = np.full((fragility.REPLICATES * 4, 1, 1), 300.0)
     capacity[::2] = 3000.0
-    found = chain.frequency(capacity, RATE, PEAKS, bodies([[100.0, 200.0]]), np.array([0.0, 150.0]))
-    assert found.total.value == pytest.approx(float(RATE.at(300.0)) * np.array([0.5, 0.25]))
-    assert found.beyond == pytest.approx(1e-6 * np.array([0.5, 0.75]))
+    found = chain.frequency(capacity, RATE, PEAKS, bodies([[100.0, 200.0]]), np.array([0.0, 150.0, 250.0]))
+    assert found.total.value == pytest.approx(float(RATE.at(300.0)) * np.array([0.5, 0.25, 0.0]))
+    assert found.beyond == pytest.approx(1e-6 * np.array([0.5, 0.25, 0.0]))
+    for other, beyond in ((3000.0, [0.5, 0.75, 1.0]), (np.inf, [0.5, 0.25, 0.0])):
+        never = np.concatenate([capacity, np.full(capacity.shape, other)], axis=2)
+        both = [*bodies([[100.0, 200.0]]), chain.compute_left_volume([0.0], [0], 0.0)]
+        found = chain.frequency(never, RATE, PEAKS, both, np.array([0.0, 150.0, 250.0]))
+        assert found.beyond == pytest.approx(1e-6 * np.array(beyond))
 
 
 def test_a_peak_at_which_no_sample_fails_is_bounded():
@@ -187,3 +196,15 @@ def test_upper_bounds_hold_for_the_worst_dependence(number):
                             level)
         held += [band.high[0, 0] >= worst, band.low[0, 0] <= apart <= band.high[0, 0]]
     assert (held >= 95).all()
+
+
+def test_a_frequency_that_the_curve_cuts_is_a_least_one():
+    """Where the letter and the console have it, not only among the caveats."""
+    one = study_types.PerYear(50.0, 2e-3, 1e-3, 3e-3, 1e-4, [])
+    assert chain_files.describe_yearly(one, "90 %", False) == "0.002 per year (90 %: 0.001 to 0.003)"
+    assert chain_files.describe_yearly(one, "90 %", True).startswith("at least 0.002 per year")
+    assert chain_files.describe_yearly(replace(one, more_at_most=3e-4), "90 %", False).startswith("at least 0.002 ")
+    never = replace(one, value=0.0, low=0.0, high=1e-5)
+    assert chain_files.describe_yearly(never, "90 %", False) == "at most 0.00011 per year (90 %)"
+    assert chain_files.describe_yearly(never, "90 %", True).endswith(
+        "(90 %, but for peaks below the hazard curve's first)")

@@ -98,7 +98,7 @@ def test_the_chain_of_two_bodies(mine, capsys):
     if not found["withheld"]:
         assert all(f"{text}\n" in out for text in chain_files.sentences(said))
     assert "the road is blocked by more than" in chain_files.sentences(said)[0]
-    never = replace(said, per_year=[replace(said.per_year[0], value=0.0, low=0.0, high=1e-5)])
+    never = replace(said, per_year=[replace(said.per_year[0], value=0.0, low=0.0, high=1e-5, more_at_most=0.0)])
     assert "with at most 1e-05 per year (90 %)" in chain_files.sentences(never)[0]
     shown_in_the_report(of)
     told = letter.write_letter(letter.make_letter(load_study(Path("mine/ensemble/study.yaml"))))

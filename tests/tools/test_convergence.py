@@ -12,6 +12,7 @@ import made_rows
 from run_helpers import called
 from tiny_collapse import edit, rows_of
 
+from slope_tools.fitting import fit
 from slope_tools.statistics import convergence
 from slope_tools.studies import body_depth, outcome, size_study
 from slope_tools.studies.setup import Setup
@@ -246,3 +247,29 @@ def test_calibrated_values_belong_to_what_was_set_beside_them(succeed, asked, ot
     beside = {"d": "1", "duration": "60", "step": "2", "packing": "3", "not in the deck": "5", "friction": "30"}
     here = {"d": "2", "duration": "90", "step": "1", "packing": "1", "friction": "30.0"}
     assert outcome.other_settings(beside, here) is None
+
+
+def test_a_forecast_says_that_the_observation_was_missed(succeed):
+    """And what else was doubtful of the calibration; with a front that no run comes near."""
+    words = "--vary friction=20:40 --runs 5 --set steps=200 --jobs 2"
+    front = 2500.0
+    for missed in (True, False):
+        succeed(f"{words} --front {front} -o fit{front}", "calibrate")
+        about = yaml.safe_load(Path(f"fit{front}/calibrate.yaml").read_text())
+        assert (about["misfit"] > 1) == missed
+        succeed(f"--from fit{front} --sample 2 --set steps=200 --exceed 0.1 --jobs 2 -o out{front}", "study")
+        found = [one for one in yaml.safe_load(Path(f"out{front}/study.yaml").read_text())["warnings"]
+                 if one.get("part") == "calibration"]
+        assert [one["kind"] for one in found] == ["observation missed"] * missed + [
+            one["kind"] for one in about["doubts"]]
+        lengths = [float(row["length along the fall path (m)"]) for row in rows_of(f"fit{front}/calibrate.csv")]
+        front = statistics.median(lengths)
+        assert not missed or f"the closest are {about['misfit'] ** 0.5:.1f} times as far" in found[0]["text"]
+
+
+def test_calibrated_values_belong_to_the_friction_of_the_slip_surface():
+    """As calibrate keeps it, of a deck that has it; with more a forecast goes less far."""
+    row = made_rows.row(variables={"friction": "30", "slip": "0", "d": "2"})
+    kept = fit.Fit.model(SimpleNamespace(finished=[row], variables=[SimpleNamespace(name="friction")]))
+    doubt = outcome.other_settings(kept, {**row.variables, "slip": "20"})
+    assert doubt and doubt.numbers == {"found": "slip 0", "here": "slip 20"}

@@ -263,6 +263,16 @@ def test_a_hazard_curve_that_begins_late_gives_a_lower_bound(slips, capsys, firs
     assert not told or re.search(f"a curve from {min(below):.3g} gal on", err)
 
 
+def test_a_hazard_curve_that_ends_early_gives_a_lower_bound(slips, capsys):
+    """Rates of the same line: up to 250 gal hardly a strength fails, and the last peak is exceeded far more often."""
+    for last, told in ((250, True), (3000, False)):
+        Path("early.csv").write_text("peak,exceedance\n" + "".join(
+            f"{peak},{0.01 * (peak / 100) ** -2}\n" for peak in (50, last)))
+        status, out, err = ran(capsys, f"slips {SOIL} --peaks 50:1500:50 --pseudo-static 1 --sample 512 --hazard "
+                               "early.csv -o out --overwrite")
+        assert status == 0 and ("fails at least" in out) == ("above the hazard curve's last" in err) == told, out + err
+
+
 def test_strengths_with_which_the_slope_would_not_stand_are_named(slips, capsys):
     """Few, but each earthquake of the curve finds them failed."""
     few = SOIL.replace("3e3:9e3", "list:0@0.02,9e3@0.98")

@@ -232,6 +232,22 @@ def test_runs_under_a_condition_are_not_of_the_sample(two):
     assert (found["bodies"][0]["runs"], found["bodies"][0]["share_blocked"]) == (3, pytest.approx(2 / 3))
 
 
+def test_mass_that_leaves_beside_the_road_is_said_with_what_is_blocked(two):
+    """Of body 1 a twentieth left with the road ahead, and body 2 has a run that was cut: shares are least ones."""
+    assert "at least" not in " ".join(route_page.sentences(made(*two)[0]))
+    for body, about in ((1, {"left_before_road_m3": 50.0}), (2, {"at_rest": False})):
+        path = two[0] / f"bodies/{body}/ensemble/study.yaml"
+        study = yaml.safe_load(path.read_text())
+        study["runs"][2].update(about)
+        path.write_text(yaml.safe_dump(study))
+    found, _ = made(*two)
+    assert all("at least" in text for text in route_page.sentences(found))
+    said = list(route_page.list_route_caveats(choices.read_route_choices(two[0]), found))
+    assert said[0].startswith("body 1: 5 % of the released volume left the terrain before, beside or on the road")
+    assert said[1].startswith("body 2: 1 of 4 runs failed or are not at rest"), said
+    assert [row["left_share"] for row in rows_of(two[0] / results.BODIES)] == ["0.05", "0.0"]
+
+
 def test_who_hits_what(two):
     found, ground = made(*two)
     folder = two[0]
@@ -315,7 +331,7 @@ def test_a_year_of_a_stretch(two, capacity, monkeypatch):
     assert page.count("<figure>") == 2 and "0.020 to 0.080" in page and f"{year['counts']:.2g}" in page
     assert any("--sample" in one for one in said)
     [late] = [one for one in said if one.startswith("fragility: any body: 40 % of its frequency")]
-    assert late in html.unescape(page)
+    assert late in html.unescape(page) and "The route is blocked at least " in page
 
 
 def test_a_fragility_of_other_bodies_is_refused(two, capacity, monkeypatch):
@@ -359,6 +375,19 @@ def test_zones_of_shares(two, capsys):
                 assert area.area == pytest.approx(one["area_m2"] - rings * CELL ** 2 / 2) and area.is_valid
     assert {one["class"] for _, one in found} == {zones.AT_LEAST, zones.UNSURE}
     assert about["per_year"] is False and about["runs"] == 8
+
+
+def test_zones_are_said_to_end_where_mass_left_the_terrain(two, capsys):
+    """The terrain of a body's runs ends before the corridor does, which the zones are of."""
+    assert "left the grid" not in zones_of(two[0], capsys, "--zones", "0.5")[2]
+    path = two[0] / "bodies/2/ensemble/study.yaml"
+    about = yaml.safe_load(path.read_text())
+    about["runs"][1].update(lost_m3=300.0, on_grid_m3=700.0)
+    path.write_text(yaml.safe_dump(about))
+    status, _, err = zones_of(two[0], capsys, "--zones", "0.5", "--overwrite")
+    assert status == 0 and "body 2: 300 m3 (30 % of the released volume) left the grid or the box" in err, err
+    [doubt] = yaml.safe_load((two[0] / "zones/zones.yaml").read_text())["doubts"]
+    assert doubt["kind"] == "lost much" and doubt["part"] == "body 2"
 
 
 @pytest.mark.parametrize("words, got", [

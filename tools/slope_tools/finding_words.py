@@ -32,6 +32,9 @@ WORDS: Dict[str, Union[str, Words]] = {
                                          "not those of a deposit."),
     "lost much": Words(f"{LEFT}, and how far they went is unknown: enlarge the terrain and the box{{add}}",
                        client=LOST),
+    "observation missed": Words("no calibrated values reproduce what was observed: the closest are {times:.1f} times "
+                                "as far from it as chance and tolerance explain", client=(
+                                    "The model was calibrated with a past event that it does not reproduce.")),
     "bulk factor": Words(f"{DOUBTFUL}the bulk factor {{factor:.3g}} is {{off}} {{side}} {{usual}}: {{why}}", NOTE,
                          "{who} released a doubtful mass, {released:cubic}{of_body}: {why}."),
     "body volume": Words(f"{DOUBTFUL}it is {{off}} {{side}} than the body of {{body:,.0f}} m3", NOTE, NOT_BODY),

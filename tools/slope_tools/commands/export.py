@@ -74,7 +74,8 @@ def run_zones(args: Request, zones_: str) -> None:
     disk.check_folder(folder)
     if (study := study_file.study_in(Path(args.prefix), weighted=True)):
         outdated.check_study_current(Path(args.prefix), study)
-    ground = zones.ground_of(args.prefix, findings.printer("export"))
+    warn = findings.printer("export")
+    ground = zones.ground_of(args.prefix, warn)
     zones.check_zones(ground, wanted, args.prefix, zones_)
     asked = zones.asked(ground, zones_, limits)
     disk.check_folder(folder, ["zones.gpkg", "zones.yaml"], [args.prefix, asked], args.overwrite)
@@ -84,6 +85,8 @@ def run_zones(args: Request, zones_: str) -> None:
         geopackage.write_geopackage(new / "zones.gpkg", zones.layers(ground, several, wanted), ground.raster,
                                     {zones.LAYER: zones.style(several, wanted, summary["per_year"])})
         disk.write_yaml(new / "zones.yaml", summary, "slope export --zones: m2; probabilities per year, or of the runs")
+    for doubt in ground.doubts:
+        warn(doubt)
     for one in summary["zones"]:
         print(f"{one['quantity']} > {one['exceeds']:g}, {'per year' if summary['per_year'] else 'of the runs'} at "
               "least "

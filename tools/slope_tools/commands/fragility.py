@@ -12,6 +12,7 @@ from ..errors import SlopeError
 from ..options import Overwrite, flag, option, positional, several, parse_whole_number
 
 BEFORE = 0.05       # of a frequency, what fails below the hazard curve's first peak: more is said
+BEYOND = 0.1        # of a frequency, what peaks above its last may add: the same
 DESCRIPTION = "How likely the bodies of find_slip fail at a peak acceleration."
 EPILOG = """\
 SLIPS: PREFIX.slips.csv of find_slip or slope stability, with its other files beside it, or the folder with it. Or the
@@ -216,7 +217,7 @@ def find_fragility_warnings(curves, peaks, bodies, pseudo_static, records, hazar
             yield findings.Finding("before the curve", {
                 "which": curve.title, "percent": 100 * curve.frequency.before / float(curve.frequency.total.value),
                 "least": curve.frequency.least})
-        if curve.frequency and curve.frequency.beyond > 0.1 * curve.frequency.total.value:
+        if curve.frequency and curve.frequency.beyond > BEYOND * curve.frequency.total.value:
             yield findings.Finding("beyond the curve", {"which": curve.title,
                                                         "per_year": float(curve.frequency.beyond)})
 
@@ -233,7 +234,8 @@ def describe_fragility(curves, folder, files):
                      f"beta_r {curve.fit.beta_r:.2f}, beta_u {curve.fit.beta_u:.2f}, HCLPF {curve.fit.hclpf:.4g} gal")
         if curve.frequency:
             total = curve.frequency.total
-            least = "at least " if curve.frequency.before > BEFORE * total.value else ""
+            least = "at least " * (curve.frequency.before > BEFORE * total.value
+                                   or curve.frequency.beyond > BEYOND * total.value)
             line += (f"; fails {least}{float(total.value):.3g} times per year (90 %: {float(total.low):.3g} to "
                      f"{float(total.high):.3g})")
             if curve.name == ANY:

@@ -9,6 +9,7 @@ import numpy as np
 from .. import disk, records, schemas
 from ..case.settings import MOST_RUNS
 from ..errors import SlopeError
+from ..findings import Finding
 from ..runs import repeats
 from ..schemas import OBJECT
 from ..statistics import designs, distributions
@@ -28,6 +29,7 @@ class Sample:
     variables: Tuple[Any, ...]
     balls_thick: Optional[float] = None     # over the thickness of the body, where its values were found; None: unknown
     beside: Mapping[str, str] = field(default_factory=dict)     # values of other variables, where they were found
+    doubts: Tuple[Finding, ...] = ()        # about the values, from where they were found
 
     @property
     def names(self) -> List[str]:

@@ -1,4 +1,5 @@
 """The sets of values that a calibration found equally good, as the points of an ensemble."""
+import math
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
@@ -6,7 +7,8 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 from .. import disk, schemas
 from ..ensembles.sample import Sample
 from ..errors import SlopeError
-from ..schemas import MAYBE, TEXT, list_of, mapping, dict_of
+from ..findings import Finding, finding
+from ..schemas import FINDINGS, MAYBE, TEXT, list_of, mapping, dict_of
 from ..statistics import distributions
 from ..tables import ensemble_types
 from .fit import ABOUT
@@ -17,7 +19,8 @@ WHAT = "what `slope calibrate` wrote, with its sets"
 TEXTS = dict_of(TEXT, 1)
 SCHEMA = mapping({"calibration": mapping({"variables": TEXTS}, balls_thick=MAYBE, set=dict_of(TEXT),
                                          model=dict_of(TEXT)),
-                  "sets": list_of(TEXTS, 2)})
+                  "sets": list_of(TEXTS, 2)}, misfit=MAYBE, doubts=FINDINGS)
+PART = "calibration"    # of a study, that its doubts are of
 
 
 @dataclass(frozen=True)
@@ -37,6 +40,13 @@ class Calibrated(Sample):
 def texts_of(folder: Path) -> Dict[str, str]:
     """{variable: distribution} of a calibration's folder."""
     return load_calibration(folder)["calibration"]["variables"]
+
+
+def doubts_of(calibration: Mapping[str, Any]) -> Tuple[Finding, ...]:
+    """What was said of the values, and whether they give what was observed."""
+    misfit = calibration.get("misfit") or 0.0
+    missed = [Finding("observation missed", {"times": math.sqrt(misfit)})] * (misfit > 1)
+    return tuple(one._replace(part=PART) for one in (*missed, *map(finding, calibration.get("doubts") or ())))
 
 
 def load_calibration(folder: Path) -> Dict[str, Any]:
@@ -66,4 +76,4 @@ def sample(folder: Path, number: Optional[int], deck: Path, fixed: Mapping[str, 
     made = calibration["calibration"]
     beside = {**made.get("model", {}), **made.get("set", {})}
     return Calibrated(number or min(NUMBER, len(different)), KIND, made.get("seed", 1), tuple(variables),
-                      made.get("balls_thick"), beside, tuple(different), disk.sha256(path))
+                      made.get("balls_thick"), beside, doubts_of(calibration), tuple(different), disk.sha256(path))

@@ -21,8 +21,8 @@ from ..tables.quantities import format_quantity
 from ..tables.rows import Finished, Row, finished_of
 from . import calibration, observations
 
-# variables of the package's decks that are of the law of contact or of the ground
-MODEL = "friction", "rolling", "restitution", "e", "field_e", "spacing", "pattern", "angle"
+# variables of the package's decks that are of the law of contact, of the ground or of the slip surface
+MODEL = "friction", "slip", "rolling", "restitution", "e", "field_e", "spacing", "pattern", "angle"
 SETS = 64               # sets of values that stand for the region
 DURATION = "duration"   # variable of a deck, its time limit
 LONGER = 8              # times as much, where a run is not at rest then: rest ends it

@@ -23,6 +23,7 @@ PAGE = "route.html"
 ALONG = 4000.0      # m of the road in a map
 KM = "{:.3f}"
 LEAST = 1e-6        # per year: the lower end of the colours
+OPEN = "before the curve", "beyond the curve"       # of a fragility: bodies fail more often
 
 
 def km(metres: float) -> str:
@@ -32,16 +33,18 @@ def km(metres: float) -> str:
 def sentences(results: Mapping[str, Any]) -> List[str]:
     """The answer."""
     route, stretches = results["route"], results["stretches"]
-    blocked = sum(one["to"] - one["from"] for one in stretches)
+    blocked, least = sum(one["to"] - one["from"] for one in stretches), "at least " * bool(results["doubts"])
+    rate = "at least " * (bool(least) or any(finding(one).kind in OPEN for one in results["fragility_warnings"]))
     text = (f"{len(results['bodies'])} bodies can reach the road; their runs block {len(stretches)} stretches of it, "
-            f"{blocked:,.0f} m in all")
+            f"{least}{blocked:,.0f} m in all")
     if route["per_year"] is None:
-        return [text, f"the largest chance that a body which fails blocks the road is {100 * route['share']:.0f} % "
-                f"(body {route['body']}); how often they fail is not known (--fragility)"]
+        return [text, "the largest chance that a body which fails blocks the road is "
+                f"{least}{100 * route['share']:.0f} % (body {route['body']}); how often they fail is not known "
+                "(--fragility)"]
     one = route["per_year"]
-    return [text, f"the route is blocked {one['counts']:.2g} times per year: {one['independent']:.2g} if the bodies "
-            f"are independent, {one['dependent']:.2g} if all have the strength of one sample; the larger counts; "
-            f"bounds of the runs (90 %), for any dependence: {one['low']:.2g} to {one['high']:.2g}"]
+    return [text, f"the route is blocked {rate}{one['counts']:.2g} times per year: {one['independent']:.2g} if the "
+            f"bodies are independent, {one['dependent']:.2g} if all have the strength of one sample; the larger "
+            f"counts; bounds of the runs (90 %), for any dependence: {one['low']:.2g} to {one['high']:.2g}"]
 
 
 def write_route_page(choices: Choices, corridor: Corridor, folder: Path, results: Mapping[str, Any], warn) -> None:
@@ -74,6 +77,7 @@ def how(choices: Choices) -> str:
 
 def list_route_caveats(choices: Choices, results: Mapping[str, Any]) -> Iterator[str]:
     """Of the runs, and those of the fragility, on which frequencies rest."""
+    yield from (f"{finding(one)}: more of the road may be blocked, and more often" for one in results["doubts"])
     yield from (f"fragility: {finding(one)}" for one in results["fragility_warnings"])
     failed = [one for one in results["bodies"] if one["failed"]]
     if failed:

@@ -11,11 +11,12 @@ from .. import disk, provenance
 from ..case import run_folders
 from ..deposits.axis import SAME, Axis, Span, merged
 from ..errors import SlopeError
+from ..findings import Finding, encode_findings
 from ..geometry import as_multi
 from ..seismic import fragility_files
 from ..survey import geopackage, rasters
 from ..survey.geopackage import Layer
-from ..tables import road_runs
+from ..tables import road_runs, usable
 from ..tables.rows import Finished, finished_of
 from ..tables.study_file import load_study
 from . import reached, runs, search
@@ -89,6 +90,7 @@ def make_route_results(choices: Choices, corridor: Corridor, folder: Path, table
         "along": road_runs.by_body({one.number: [(1.0, row.at_road.by_10_m) for row in one.rows] for one in bodies}),
         "stretches": [stretch(number, span, bodies, yearly) for number, span in enumerate(spans, 1)],
         "bodies": [make_body_row(one, yearly) for one in bodies], "left_out": table["left_out"],
+        "doubts": encode_findings(find_doubts(bodies)),
         "fragility_warnings": yearly.warnings if yearly else []}
     hits = reached.combine_reached([one.source for one in bodies], corridor.raster, "max_thickness", choices.blocked)
     with disk.complete(folder, RESULTS) as new:
@@ -112,6 +114,21 @@ def make_route_results(choices: Choices, corridor: Corridor, folder: Path, table
         write_layers(new / LAYERS, corridor, folder, results, hits, of_sets)
         disk.write_yaml(new / RESULTS, results, "slope route: m, m3 of ground (bulk), hours, per year")
     return results
+
+
+def find_doubts(several: Sequence[BodyRuns]) -> List[Finding]:
+    """Why more of the road may be blocked, or more often, than runs say: of each kind that of the gravest body."""
+    kinds: Dict[str, List[Finding]] = {}
+    for body in several:
+        for doubt in usable.doubts_of_shares(body.rows):
+            kinds.setdefault(doubt.kind, []).append(doubt._replace(part=f"body {body.number}"))
+    return [gravest(same, "number") for same in kinds.values()]
+
+
+def gravest(same: Sequence[Finding], number: str) -> Finding:
+    """That of the gravest body by one of its numbers, which says how many others there are."""
+    worst = max(same, key=lambda doubt: doubt.numbers[number])
+    return worst._replace(part=worst.part + f", as {len(same) - 1} more" * (len(same) > 1))
 
 
 YEAR = ("per_year", "independent", "dependent", "low", "high")
@@ -171,7 +188,9 @@ def make_body_row(body_runs: BodyRuns, yearly: Optional[Yearly]) -> Dict[str, An
     keys = ("body", "name", "chainage_m", "x", "y", "factor", "volume_m3", "area_m2", "depth_m", "known_share",
             "known_law")
     return {**{key: body_runs.about[key] for key in keys}, "runs": len(body_runs.runs),
-            "failed": body_runs.source.failed, "share_blocked": share, "share_low": low, "share_high": high,
+            "failed": body_runs.source.failed, "left_share": max(
+                usable.left_before(row) / row.released_m3 for row in body_runs.rows),
+            "share_blocked": share, "share_low": low, "share_high": high,
             "on_road_median_m3": float(np.median(on_road)), "on_road_most_m3": float(on_road.max()),
             "no_factor": body_runs.about.get("no_factor", ""), "per_year": per_year}
 

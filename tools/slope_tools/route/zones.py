@@ -16,10 +16,11 @@ from shapely.geometry import Point, Polygon, shape
 from ..case import run_folders
 from ..deposits import deposit
 from ..errors import SlopeError
+from ..findings import Finding, encode_findings
 from ..survey.geopackage import Layer
 from ..survey.rasters import Raster, crs_name
-from ..tables import ensemble_types, named_run, study_file
-from ..tables.rows import Failed, finished_of
+from ..tables import ensemble_types, judged, named_run, study_file
+from ..tables.rows import Failed, Finished, finished_of
 from . import choices, corridor, reached, results, search
 from .reached import Source
 from .yearly import Yearly
@@ -35,11 +36,13 @@ COLOURS = ("215,48,39", "252,141,89", "254,224,139", "217,239,139", "145,191,219
 
 
 class Ground(NamedTuple):
-    """Where the zones are; like: {body: the known events with which it is compared}."""
+    """Where the zones are; like: {body: the known events with which it is compared}; doubts: mass that left the terrain
+    of its runs, and what that did beyond it."""
     raster: Raster
     sources: Sequence[Source]
     yearly: Optional[Yearly]
     like: Mapping[int, str]
+    doubts: Sequence[Finding] = ()
 
 
 class Limit(NamedTuple):
@@ -85,10 +88,12 @@ def ground_of(name: str, warn) -> Ground:
     if (folder / choices.NAME).is_file():
         asked = choices.read_route_choices(folder)
         table = search.table_of(folder)
-        return Ground(corridor.read_corridor(asked, folder).raster,
-                      [results.read_body(folder, about).source for about in table["bodies"]],
+        bodies = [results.read_body(folder, about) for about in table["bodies"]]
+        gone = [one._replace(part=f"body {body.number}", runs=()) for body in bodies for one in lost_much(body.rows)]
+        return Ground(corridor.read_corridor(asked, folder).raster, [body.source for body in bodies],
                       results.yearly_of(asked, folder, table["bodies"]),
-                      {about["body"]: about["known_law"] for about in table["bodies"]})
+                      {about["body"]: about["known_law"] for about in table["bodies"]},
+                      [results.gravest(gone, "percent")] if gone else [])
     study = study_file.study_in(folder, weighted=True)
     if study is None and not (folder / "site.yaml").is_file():
         run = deposit.read_deposit(named_run.read_named_run(name).prefix, None, warn)
@@ -106,7 +111,12 @@ def ground_of(name: str, warn) -> Ground:
     failed = sum(isinstance(row, Failed) and bool(known or not row.batch) for row in study_.runs)
     effect = 1.0 if known else len(rows) / len({str(row.set) for row in rows})
     return Ground(run.raster, [Source(1, prefixes, weights / weights.sum(), failed, run.raster.offset, effect)], None,
-                  {1: weighted.set} if weighted else {})
+                  {1: weighted.set} if weighted else {}, lost_much(rows))
+
+
+def lost_much(rows: Sequence[Finished]) -> List[Finding]:
+    """Of runs whose mass went where no map shows it."""
+    return [one for one in judged.lost(rows) if one.kind == "lost much"]
 
 
 def check_zones(ground: Ground, wanted: Sequence[float], name: object, text: str = "") -> None:
@@ -208,9 +218,10 @@ def asked(ground: Ground, text: str, several: Sequence[Limit]) -> str:
 def summarise_zones(ground: Ground, several: Sequence[Zones], wanted: Sequence[float]) -> Dict[str, Any]:
     """What zones.yaml says."""
     area = float(ground.raster.transform.a) ** 2
+    least = reached.combined(ground.sources, [0.0] * len(ground.sources), ground.yearly)
     return {"per_year": ground.yearly is not None, "crs": ground.raster.crs and crs_name(ground.raster.crs),
-            "runs": sum(len(one.prefixes) for one in ground.sources), "unreached_at_most": probable(
-        reached.combined(ground.sources, [0.0] * len(ground.sources), ground.yearly))[1], "zones": [
+            "runs": sum(len(one.prefixes) for one in ground.sources), "unreached_at_most": probable(least)[1],
+            "doubts": encode_findings(ground.doubts), "zones": [
                 {"quantity": zones.limit.quantity, "exceeds": zones.limit.value, "probability": probability,
                  "at_least_m2": float((classes == 1).sum()) * area,
                  "cannot_tell_m2": float((classes == 2).sum()) * area}

@@ -117,7 +117,8 @@ def frequency(capacity: np.ndarray, rate: Hazard, peaks: np.ndarray, bodies: Seq
               volumes: np.ndarray) -> Frequency:
     """The annual frequency of volumes > v for capacities (samples, records, bodies); peaks: between which it is parted.
 
-    Peaks below the curve's first are not counted; those above its last count as the last.
+    Peaks below the curve's first are not counted; those above its last count as the last: with larger ones all bodies
+    may fail, and what one leaves that never did so far is not known.
     """
     first, last = float(rate.peaks[0]), float(rate.peaks[-1])
     sums = Sums(bodies, volumes)
@@ -129,7 +130,9 @@ def frequency(capacity: np.ndarray, rate: Hazard, peaks: np.ndarray, bodies: Seq
     parts = [(a, b, between(a, b).value) for a, b in zip(ends[:-1], ends[1:])]
     at_last = bits(capacity < last)
     share = over_sets(summed(at_last, np.ones(at_last.shape)), sums).value
-    return Frequency(between(first, np.inf), parts, (1 - share) * float(rate.rates[-1]))
+    untold = ((capacity >= last).all(axis=(0, 1)) & np.isfinite(capacity).any(axis=(0, 1))).any()
+    most = np.ones(len(volumes)) if untold else sums.of((1 << len(bodies)) - 1).value
+    return Frequency(between(first, np.inf), parts, np.maximum(most - share, 0.0) * float(rate.rates[-1]))
 
 
 def weights(capacity: np.ndarray, peaks: np.ndarray, rate: Optional[Hazard] = None) -> np.ndarray:

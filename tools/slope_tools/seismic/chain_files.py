@@ -161,7 +161,7 @@ def find_chain_caveats(chain_: study_types.Chain, warnings: Sequence[Any]) -> Li
             *(Finding("body without run", {"body": one.body, "volume": one.volume_m3})
               for one in chain_.bodies if one.weight > 0 and not one.finished),
             *(Finding("more per year", {"per_year": one.more_at_most, "volume": one.more_than_m3})
-              for one in chain_.per_year or () if one.more_at_most > BEYOND * one.value)]
+              for one in chain_.per_year or () if is_more(one))]
 
 
 def format_chain_table(head: Sequence[str], rows: Iterable[Sequence[float]]) -> str:
@@ -174,9 +174,9 @@ def sentences(chain_: study_types.Chain) -> List[str]:
     """How often, or at which peaks, the road is blocked by more than each of the volumes."""
     sure = f"{100 * chain_.confidence:g} %"
     if chain_.per_year:
+        before = any(finding(one).kind == "before the curve" for one in chain_.doubts)
         return [f"the road is blocked by more than {one.more_than_m3:,.6g} m3 with " +
-                (f"{one.value:.2g} per year ({sure}: {one.low:.2g} to {one.high:.2g})" if one.value else
-                 f"at most {one.high:.2g} per year ({sure})") for one in chain_.per_year]
+                describe_yearly(one, sure, before) for one in chain_.per_year]
     words = []
     for one in chain_.curves:
         k = int(np.argmin(np.abs(np.array(one.probability) - 0.5)))
@@ -184,6 +184,20 @@ def sentences(chain_: study_types.Chain) -> List[str]:
         words.append(f"an earthquake of {chain_.peaks_gal[k]:.4g} gal blocks the road by more than "
                      f"{one.more_than_m3:,.6g} m3 with {value} ({sure}: {low} to {high})")
     return words
+
+
+def describe_yearly(rate: study_types.PerYear, sure: str, before: bool) -> str:
+    """How often; before: peaks below the hazard curve's first, which are not counted, make bodies fail, too."""
+    if not rate.value:
+        aside = ", but for peaks below the hazard curve's first" * before
+        return f"at most {rate.high + rate.more_at_most:.2g} per year ({sure}{aside})"
+    least = "at least " * (before or is_more(rate))
+    return f"{least}{rate.value:.2g} per year ({sure}: {rate.low:.2g} to {rate.high:.2g})"
+
+
+def is_more(rate: study_types.PerYear) -> bool:
+    """Whether peaks above the hazard curve's last may add much."""
+    return rate.more_at_most > BEYOND * rate.value
 
 
 def describe_chain(chain_: study_types.Chain, output: Path) -> List[str]:

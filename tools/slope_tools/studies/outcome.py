@@ -214,7 +214,7 @@ def collect_study_warnings(questions: Questions, read: Read) -> List[Finding]:
         plan = questions.order.sample
         others = (other_thickness(plan.balls_thick, read.balls_thick),
                   other_settings(plan.beside, read.finished[0].variables))
-        findings += [one for one in others if one]
+        findings += [*plan.doubts, *(one for one in others if one)]
     return findings
 
 

@@ -9,7 +9,8 @@ from ..deposits.passed import COUNT
 from ..digits import cents, percent
 from ..findings import Finding, texts
 from ..runs import again
-from ..statistics.withheld import BALLS, CONFIDENCE, Facts, Kind, exceeded_at_most, reasons
+from ..statistics.withheld import (BALLS, CONFIDENCE, Facts, Kind, exceeded_at_most, judge_lost_mass, reasons,
+                                   unfinished)
 from . import how_far, study_types
 from .how_far import EventsAtRoad
 from .rows import Finished, Row, finished_of
@@ -67,6 +68,12 @@ def reasons_of_sweep(best: study_types.Conservative, rows: Sequence[Row], events
     mine = [row.at_road.remove_on_road_m3 for row in finished_of(rows) if row.set == best.set]
     assert best.volume_m3 is not None        # until it is judged
     return with_remedies(reasons(facts(rows, best.volume_m3, sum(mine) / len(mine), events)), case)
+
+
+def doubts_of_shares(rows: Sequence[Row]) -> List[Finding]:
+    """Why more of the runs, of which one finished at least, may block a road than are seen to."""
+    known = facts(rows, 0.0, 0.0, None)
+    return [found for rule in (judge_lost_mass, unfinished) if (found := rule(known))]
 
 
 # --- what mends a reason ---
