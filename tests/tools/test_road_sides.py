@@ -103,7 +103,8 @@ def ground_of(thickness, known=None, lost=0.0, speed=20.0):
     volume = float(thickness.sum()) * CELL ** 2
     known = np.ones(thickness.shape, bool) if known is None else known
     summary = {"volume": {"released": volume + lost, "off_grid": lost, "lost": 0.0}, "travel": {"reach_angle": 20.0}}
-    return Ground(RASTER._replace(z=thickness), known, RELEASED, np.full(thickness.shape, speed), summary)
+    return Ground(RASTER._replace(z=thickness), np.where(known, 0.0, np.nan), RELEASED,
+                  np.full(thickness.shape, speed), summary)
 
 
 def balls(*rows, volume=2.0, within=0.0):
@@ -154,15 +155,21 @@ def test_the_numbers_of_a_road_that_ends_inside():
     assert {each["add"] for each in one["sides"]} == {10 * math.ceil(far / 10)}
 
 
-@pytest.mark.parametrize("lost, thick, where", [(405, 1.0, "on"), (411, 1.0, "close to it"), (413, 1.0, "past"),
-                                                (411, 0.0, "past")])
-def test_what_leaves_on_the_road_or_close_to_it_might_have_stayed_there(lost, thick, where):
-    """Up to where a deposit as thick as that on the road is cut: 1 m at 30 degrees, 1.7 m beyond it."""
+@pytest.mark.parametrize("lost, thick, volume, lower, where", [
+    (405, 0.0, 7.0, 0.0, "on"),
+    # as thick as on the road, 1 m at 30 degrees is cut 1.7 m beyond it
+    (411, 1.0, 1.0, 0.0, "close to it"), (412, 1.0, 1.0, 0.0, "past"), (411, 1.0, 1.0, 9.0, "close to it"),
+    # heaped where it left, 1,000 m3 are a cone of 11.8 m radius, 6.8 m high
+    (421, 0.0, 1000.0, 0.0, "close to it"), (422, 0.0, 1000.0, 0.0, "past"), (411, 0.0, 1000.0, 7.0, "past"),
+    (414, 0.0, 1000.0, 4.0, "close to it"), (415, 0.0, 1000.0, 4.0, "past"), (440, 0.0, 1000.0, -11.0, "close to it")])
+def test_what_leaves_on_the_road_or_close_to_it_might_have_stayed_there(lost, thick, volume, lower, where):
     thickness, rise = np.zeros((ROWS, COLUMNS)), math.tan(math.radians(30))
     thickness[30, 40] = thick
-    about = passed.of_mass(ground_of(thickness, lost=7.0), sides_of(box(400, 0, 410, 600)),
-                           balls((lost, 600, 100, 300), volume=7.0), rise)["left"]
-    assert about["road_ahead"] == (0.0 if where == "past" else 7.0)
+    ground = ground_of(thickness, lost=volume)
+    ground.base[:, 41:] = -lower        # beyond the road
+    about = passed.of_mass(ground, sides_of(box(400, 0, 410, 600)),
+                           balls((lost, 600, 100, 300), volume=volume), rise)["left"]
+    assert about["road_ahead"] == (0.0 if where == "past" else volume)
     assert [one["where"] for one in about["sides"]] == [where]
 
 

@@ -202,6 +202,7 @@ NUMBER, FLOOR, WITHHELD, NOTHING = Kind.NUMBER, Kind.FLOOR, Kind.WITHHELD, Kind.
 
 @pytest.mark.parametrize("several, order, words", [
     ([("a", NUMBER, 500.0, 450.0), ("b", FLOOR, 700.0, 650.0)], "ba", ["at least 700 m3", "500 m3"]),
+    ([("a", NUMBER, 500.0, 450.0), ("b", FLOOR, 450.0, 900.0)], "ba", ["at least 450 m3", "500 m3"]),
     ([("a", NUMBER, 500.0, 450.0), ("b", WITHHELD, None, 800.0)], "ba", ["not usable", "500 m3"]),
     ([("a", NUMBER, 500.0, 450.0), ("b", WITHHELD, 900.0, 300.0)], "ab", ["500 m3", "not usable"]),
     ([("a", NOTHING, 0.0, 0.0), ("b", FLOOR, 0.0, 0.0), ("c", NUMBER, 12.34, 12.0)], "cba",

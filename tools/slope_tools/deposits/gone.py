@@ -38,9 +38,9 @@ class Gone(NamedTuple):
 
 
 class Ground(NamedTuple):
-    """What is known of a run: thickness (m) on the raster, cells with ground, those that the mass came from."""
+    """What is known of a run: thickness (m) on the raster, height of the ground, cells that the mass came from."""
     raster: Raster
-    known: np.ndarray       # mask
+    base: np.ndarray        # m, NaN without ground
     released: np.ndarray    # mask
     max_speed: np.ndarray   # m/s
     summary: Mapping[str, Any]
@@ -54,7 +54,12 @@ class Ground(NamedTuple):
         arrival, speed = (run_folders.load_raster(run.prefix, kind, heights=False).z
                           for kind in ("arrival", "max_speed"))
         released = arrival == 0
-        return cls(run.raster, np.isfinite(run.base), released, speed, run.summary) if released.any() else None
+        return cls(run.raster, run.base, released, speed, run.summary) if released.any() else None
+
+    @property
+    def known(self) -> np.ndarray:
+        """Mask of the cells with ground."""
+        return np.isfinite(self.base)
 
     @property
     def cell(self) -> float:

@@ -1,7 +1,7 @@
 """What of a mass lies before a road, on it and beyond it, or left the terrain there."""
 import math
 from pathlib import Path
-from typing import Any, Dict, NamedTuple, Optional
+from typing import Any, Callable, Dict, NamedTuple, Optional
 
 import numpy as np
 from scipy import ndimage
@@ -20,7 +20,7 @@ AWAY = "away from it"        # before the road, which is behind
 CLOSE = "close to it"        # beyond the road, where what lies may have to be removed
 COUNT = BEFORE, ON, CLOSE    # what left there might lie on the road, or keep there what does
 PARTS = BEFORE, ON, PAST
-ROUNDING = 1e-9              # of the mass: less is what areas and sums round off
+ROUNDING = 1e-9              # of the mass, of a cell: less is what areas and sums round off
 
 
 class Left(NamedTuple):
@@ -60,7 +60,7 @@ def of_mass(ground: Ground, sides: Sides, left: Optional[Gone], rise: float = ma
     unknown = ground.gone
     numbers: Optional[Dict[str, Any]] = None
     if left is not None:
-        balls = sort_by_side(left, sides, thickest_on_road(ground, sides.road) / rise)
+        balls = sort_by_side(left, sides, lambda past: reach_of_heap(left, past, ground, sides.road, rise))
         numbers = of_balls(left, balls, ground)
         around += numbers["past_end"]
         over = ground.gone - numbers["volume"]      # halves of balls at the edge, above ground or not
@@ -90,15 +90,26 @@ def rim(known: np.ndarray) -> np.ndarray:
     return known & ~ndimage.binary_erosion(known, np.ones((3, 3)))
 
 
-def thickest_on_road(ground: Ground, road: BaseGeometry) -> float:
-    """m, of the cells that the road covers in part at least."""
+def reach_of_heap(left: Gone, past: np.ndarray, ground: Ground, road: BaseGeometry, rise: float) -> np.ndarray:
+    """m from the road, for each ball: had all that left beyond it (past) been stopped where this one left, it would lie
+    on the road.
+
+    As a cone as steep as the cut on the ground there, its foot as high as the road's lowest cell; or, since what leaves
+    flows, as a deposit as thick as that on the road.
+    """
     lines = (np.arange(size + 1.0) for size in ground.raster.z.shape[::-1])
-    covered = geometry.coverage(geometry.to_index(road, ground.raster), *lines)[0] > 0
-    return float(np.nan_to_num(ground.raster.z)[covered].max(initial=0.0))
+    covered = geometry.coverage(geometry.to_index(road, ground.raster), *lines)[0] > ROUNDING
+    thick = float(np.nan_to_num(ground.raster.z)[covered].max(initial=0.0))
+    nearest = ndimage.distance_transform_edt(~ground.known, return_distances=False, return_indices=True)
+    cells = np.floor(~ground.raster.transform @ left.place.T).astype(int)[::-1]
+    at = np.clip(cells.T, 0, np.array(ground.base.shape) - 1).T
+    drop = np.nanmin(ground.base[covered]) - ground.base[tuple(nearest[:, at[0], at[1]])]
+    cone = (3 * float(left.volume[past].sum()) / (math.pi * rise)) ** (1 / 3)
+    return np.maximum(cone - drop / rise, thick / rise)
 
 
-def sort_by_side(left: Gone, sides: Sides, reach: float = 0.0) -> Left:
-    """reach: m beyond the road, up to which a deposit as thick as that on the road is cut."""
+def sort_by_side(left: Gone, sides: Sides, reach: Callable[[np.ndarray], np.ndarray]) -> Left:
+    """reach: of the balls that left beyond the road (a mask), m up to which a ball is close to it, for each."""
     part = sides.of_places(left.place)
     road, before = prep(sides.road), sides.before
     points = [Point(place) for place in left.place]
@@ -109,7 +120,7 @@ def sort_by_side(left: Gone, sides: Sides, reach: float = 0.0) -> Left:
     around = np.array([one == PAST and not road.intersects(LineString([start, place]))
                        for one, start, place in zip(part, left.start, left.place)], bool)
     distance = np.array([sides.road.distance(point) for point in points])
-    close = (part == PAST) & (distance < reach)
+    close = (part == PAST) & (distance < reach(part == PAST))
     return Left(part, ahead | near | close | (part == ON), close, around, distance)
 
 

@@ -1,7 +1,7 @@
 """What the studies of the several roads of a site say: a number of each, the worst, and the table of all runs.
 
-The worst is the one with the largest volume; a floor counts as its volume, and a road without a usable number as the
-largest of its runs. Of equal ones that is worse whose number may be larger, then the one that more known events reach.
+The worst is the one with the largest volume; a road whose number is no upper one, or none, counts as the largest of
+its runs, if that is more. Of equal ones that is worse whose number may be larger, then the one that more known events reach.
 """
 from dataclasses import replace
 from pathlib import Path
@@ -50,7 +50,9 @@ class Number(NamedTuple):
 
     @property
     def counts_m3(self) -> float:
-        return self.most_m3 if self.volume_m3 is None or self.kind is Kind.WITHHELD else self.volume_m3
+        if self.volume_m3 is None or self.kind is Kind.WITHHELD:
+            return self.most_m3
+        return max(self.volume_m3, self.most_m3) if self.kind in (Kind.FLOOR, Kind.OPEN) else self.volume_m3
 
     @property
     def order(self) -> Tuple[float, int, float]:
