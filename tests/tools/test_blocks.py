@@ -21,7 +21,7 @@ from slope_tools import digits
 from slope_tools.blocks import ditch, edges, files, kinds, outcome, page, runs, study
 from slope_tools.case import decks
 from slope_tools.deposits import passed, road_sides
-from slope_tools.deposits.gone import Gone
+from slope_tools.deposits.gone import Gone, Ground
 from slope_tools.plots import site_map
 from slope_tools.sites import site_choices, site_deck
 from slope_tools.sites.site_sections import OfBlocks, OfMass
@@ -522,7 +522,8 @@ def test_a_road_is_ahead_of_a_block_that_leaves_unless_it_is_behind_or_was_passe
     start, end = np.full((len(ends), 2), (20.0, 30.0)), np.array(list(ends), float)
     assert sides.ahead_of(start, end, sides.of_places(end)).tolist() == list(ends.values())
     left = Gone(np.ones(len(ends)), end, start, np.zeros(len(ends)), "table")
-    assert passed.sort_by_side(left, sides).ahead.tolist() == list(ends.values())      # of a mass, too
+    ground = Ground(raster, raster.z, released, raster.z, {})
+    assert passed.sort_by_side(left, sides, ground, math.inf).ahead.tolist() == list(ends.values())      # of a mass, too
 
 
 def test_beyond_the_road():

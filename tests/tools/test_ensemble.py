@@ -1,6 +1,7 @@
 """tools/slope study --sample: distributions, designs, bounds, indices, and an ensemble of small collapses."""
 import csv
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +20,8 @@ from slope_tools.case import deck_ranges
 from slope_tools.ensembles import ensemble, sample
 from slope_tools.report import ensemble_part
 from slope_tools.statistics import designs, distributions, emulator, hazard
+from slope_tools.studies import letter
+from slope_tools.tables.study_file import load_study
 
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 COMMAND = "study case/in.tiny"
@@ -350,7 +353,15 @@ def test_an_ensemble_grows_and_its_tables_are_those_of_the_runs(slope, succeed, 
     about["ensemble"]["withheld"] = []
     Path("out/study.yaml").write_text(yaml.safe_dump(about))
     blank_pictures()
-    assert cli.main(["report", "out"]) == 0 and stays in Path("out/report.html").read_text()
+    assert cli.main(["report", "out"]) == 0 and stays in (page := Path("out/report.html").read_text())
+    assert ": 90 % of the 12 runs with drawn settings stay within " in page[:page.index('id="appendix"')]
+    told = letter.write_letter(letter.make_letter(load_study(Path("out/study.yaml"))))
+    assert re.match(f"{name[0].upper()}{name[1:]}: 90 % of the 12 runs with drawn settings stay within [0-9.,]+ m3, "
+                    "with 90 % confidence at least [0-9.,]+ m3", told.clear), told.clear
+    about["ensemble"]["design"]["kind"] = "calibrated"
+    Path("out/study.yaml").write_text(yaml.safe_dump(about))
+    told = letter.write_letter(letter.make_letter(load_study(Path("out/study.yaml"))))
+    assert "12 runs with calibrated settings" in told.clear and "12 runs with calibrated settings" in told.far
 
 
 def test_repeats_of_points_and_a_list(succeed):

@@ -1,7 +1,7 @@
 """What of a mass lies before a road, on it and beyond it, or left the terrain there."""
 import math
 from pathlib import Path
-from typing import Any, Callable, Dict, NamedTuple, Optional
+from typing import Any, Dict, NamedTuple, Optional
 
 import numpy as np
 from scipy import ndimage
@@ -60,7 +60,7 @@ def of_mass(ground: Ground, sides: Sides, left: Optional[Gone], rise: float = ma
     unknown = ground.gone
     numbers: Optional[Dict[str, Any]] = None
     if left is not None:
-        balls = sort_by_side(left, sides, lambda past: reach_of_heap(left, past, ground, sides.road, rise))
+        balls = sort_by_side(left, sides, ground, rise)
         numbers = of_balls(left, balls, ground)
         around += numbers["past_end"]
         over = ground.gone - numbers["volume"]      # halves of balls at the edge, above ground or not
@@ -108,8 +108,8 @@ def reach_of_heap(left: Gone, past: np.ndarray, ground: Ground, road: BaseGeomet
     return np.maximum(cone - drop / rise, thick / rise)
 
 
-def sort_by_side(left: Gone, sides: Sides, reach: Callable[[np.ndarray], np.ndarray]) -> Left:
-    """reach: of the balls that left beyond the road (a mask), m up to which a ball is close to it, for each."""
+def sort_by_side(left: Gone, sides: Sides, ground: Ground, rise: float) -> Left:
+    """rise: of the cut, m per m."""
     part = sides.of_places(left.place)
     road, before = prep(sides.road), sides.before
     points = [Point(place) for place in left.place]
@@ -120,7 +120,7 @@ def sort_by_side(left: Gone, sides: Sides, reach: Callable[[np.ndarray], np.ndar
     around = np.array([one == PAST and not road.intersects(LineString([start, place]))
                        for one, start, place in zip(part, left.start, left.place)], bool)
     distance = np.array([sides.road.distance(point) for point in points])
-    close = (part == PAST) & (distance < reach(part == PAST))
+    close = (part == PAST) & (distance < reach_of_heap(left, part == PAST, ground, sides.road, rise))
     return Left(part, ahead | near | close | (part == ON), close, around, distance)
 
 

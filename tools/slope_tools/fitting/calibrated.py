@@ -13,7 +13,6 @@ from ..statistics import distributions
 from ..tables import ensemble_types
 from .fit import ABOUT
 
-KIND = "calibrated"
 NUMBER = 32             # of the sets, unless --sample says otherwise
 WHAT = "what `slope calibrate` wrote, with its sets"
 TEXTS = dict_of(TEXT, 1)
@@ -75,5 +74,6 @@ def sample(folder: Path, number: Optional[int], deck: Path, fixed: Mapping[str, 
                          "which that many sets differ", number)
     made = calibration["calibration"]
     beside = {**made.get("model", {}), **made.get("set", {})}
-    return Calibrated(number or min(NUMBER, len(different)), KIND, made.get("seed", 1), tuple(variables),
-                      made.get("balls_thick"), beside, doubts_of(calibration), tuple(different), disk.sha256(path))
+    return Calibrated(number or min(NUMBER, len(different)), ensemble_types.CALIBRATED, made.get("seed", 1),
+                      tuple(variables), made.get("balls_thick"), beside, doubts_of(calibration), tuple(different),
+                      disk.sha256(path))

@@ -2,7 +2,7 @@
 
 No names of options, variables or files: these are in the appendix, and on the console.
 """
-from typing import Any, Dict, List, Optional, Sequence, Tuple
+from typing import Any, Dict, List, Tuple
 
 from .. import digits
 from ..statistics.entries import Kind
@@ -12,26 +12,20 @@ from ..tables import how_far, judged, next_step, sizes
 from ..tables.quantities import ALL
 from . import body, mobility_part, road_part, structures_part, warnings
 from .data import Data
-from .numbers import MainCard, Numbers
+from .numbers import Numbers
 from .sections import Pairs
 
 
-def make_client_content(data: Data, ground, numbers: Numbers, answers: Sequence[Optional[MainCard]], findings,
-                        listed: int) -> Dict[str, Any]:
-    """What the template takes; answers: those of the study, the first that there is counts where there is no headline;
-    findings: all findings; listed: how many warnings the appendix has.
-    """
+def make_client_content(data: Data, ground, numbers: Numbers, findings, listed: int) -> Dict[str, Any]:
+    """What the template takes; findings: all findings; listed: how many warnings the appendix has."""
     letter_ = letter_of(data, ground)
-    main = next((card for card in answers if card), None)
     paragraphs = letter.write_letter(letter_, numbers)
     if len(letter_.bodies) < 2:
         paragraphs = paragraphs._replace(down=body.sentence(body.of_data(data, ground)))
     step = data.study.next_step if data.study else None
     kind = letter_.number.kind if letter_.number else Kind.NUMBER
-    if not letter_.number and not letter_.chain and main:     # of an ensemble that no known events weigh
-        paragraphs = paragraphs._replace(clear=of_card(main))
-        if main.withheld:
-            kind, step = Kind.WITHHELD, next_step.first_remedy(next_step.Made(data.of_study, data.folder))
+    if letter_.drawn and letter_.drawn.withheld:
+        kind, step = Kind.WITHHELD, next_step.first_remedy(next_step.Made(data.of_study, data.folder))
     return {"letter": paragraphs, "kind": kind.value, "step": step,
             "table": tabulate_ranges(data, ground, numbers, kind),
             "rest": warnings.rest_of(listed), "caveats": warnings.first_page([
@@ -45,13 +39,6 @@ def letter_of(data: Data, ground) -> Letter:
     row = data.result.row
     return Letter(row.released_m3, None, None, how_far.reach([row], None, ground.known), [],
                   [one.kind for one in judged.limits(None, False)], sizes.alone(row.released_m3 / row.ball_m3))
-
-
-def of_card(main: MainCard) -> str:
-    """An answer as the appendix has it, in a sentence."""
-    if main.withheld:
-        return f"{main.title}: {' '.join(one.client() for one in main.withheld)}"
-    return f"{main.title}: {main.number} {main.unit}. {main.band or ''}".strip()
 
 
 # --- what else is found ---

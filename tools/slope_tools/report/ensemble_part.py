@@ -68,7 +68,7 @@ class Ensemble:
     def design(self):
         design = self.about.design
         distributions = "; ".join(f"{name} {text}" for name, text in design.variables.items())
-        if design.kind == "calibrated":
+        if design.kind == ensemble_types.CALIBRATED:
             return (f"An ensemble of {design.points} sets of values that a calibration found equally good, within "
                     f"{distributions}.")
         return (f"An ensemble of {design.points} points ({design.kind}, seed {design.seed}), "

@@ -69,7 +69,7 @@ class Page:
             run_part.for_offices(data, ground, numbers),
             run_part.what_was_run(data),
             run_part.origin(data, made)]
-        client = client_part.make_client_content(data, ground, numbers, answers, self.findings, len(self.warnings))
+        client = client_part.make_client_content(data, ground, numbers, self.findings, len(self.warnings))
         return {**top, "client": client, "sections": [one for one in sections if one]}
 
     def what(self):

@@ -10,7 +10,7 @@ from ..digits import percent, three
 from ..seismic import chain_files
 from ..sites.site_bodies import VARIABLE
 from ..statistics.entries import Cause, Code, Headline, Kind, PaperPart, Road, Source
-from ..tables import answer_words, ensemble_types, judged, sizes, study_types
+from ..tables import answer_words, ensemble_types, judged, sizes, study_types, usable
 from ..tables.how_far import TAIL, Reach
 from ..tables.rows import finished_of
 from .road_numbers import Number, read_road_numbers
@@ -27,6 +27,7 @@ LACKS = {"no repeats": "what chance changes, as no run was repeated",
          "slip assumed": "whether, and how likely, the slope fails, and with which slip surface",
          "road on body": "what it takes to build the road anew where it lies on the mass and goes with it"}
 DRY = "water in the mass or on its way, with which it would go farther"
+MOST = 0.9              # of the runs of an ensemble that nothing weighs
 TOLD = Code.NOT_REACHED,       # reasons that are said with the road
 VOLUME = "volume to remove from the road"
 
@@ -38,7 +39,8 @@ class Letter(NamedTuple):
     cut: degrees, of the road's edges, above which is removed; events: how many known events weigh the runs, None: none;
     reach: how far; roads: of a site with several, the worst first; lacks: kinds of findings, of what is not in it;
     size: what the size of the balls would change, a sentence without its full stop; chain: how often earthquakes block
-    the road, the same; bodies: volumes of several, one of which comes down in a run.
+    the road, the same; bodies: volumes of several, one of which comes down in a run; drawn: an ensemble that no known
+    events weigh, without a number.
     """
     released: float
     number: Optional[Headline]
@@ -51,6 +53,7 @@ class Letter(NamedTuple):
     events: Optional[int] = None
     chain: Sequence[str] = ()
     bodies: Sequence[float] = ()
+    drawn: Optional[ensemble_types.Ensemble] = None
 
 
 def make_letter(study: study_types.Study) -> Letter:
@@ -68,7 +71,8 @@ def make_letter(study: study_types.Study) -> Letter:
                   study.study.road["cut_angle"] if study.study.road else None, known.events if known else None,
                   chain_files.sentences(study.chain) if study.chain and not study.chain.withheld else (),
                   [one.volume_m3 for one in study.chain.bodies if one.volume_m3 is not None] if study.chain else
-                  list({row.variables.get(VARIABLE): row.released_m3 for row in rows}.values()))
+                  list({row.variables.get(VARIABLE): row.released_m3 for row in rows}.values()),
+                  None if number or study.chain else study.ensemble)
 
 
 class Sentences(NamedTuple):
@@ -90,9 +94,11 @@ def format_console_number(_: str, __: str, value: float) -> str:
 
 def write_letter(letter: Letter, write: Write = format_console_number) -> Sentences:
     number = letter.number
-    clear = describe_clearing(number, write) if number else " ".join(map(capital, letter.chain))
+    clear = " ".join(map(capital, letter.chain))
+    if number or letter.drawn:
+        clear = describe_clearing(number, write) if number else describe_drawn(letter.drawn, write)
     basis = f"{describe_cut(letter)} {describe_basis(number, letter, write)}".strip() if number else ""
-    far, roads = describe_reach(letter.reach, write), describe_roads(letter, write)
+    far, roads = describe_reach(letter.reach, write, settings_of(letter.drawn)), describe_roads(letter, write)
     lacks = "; ".join([DRY, *(text for kind, text in LACKS.items() if kind in letter.lacks
                               and not (letter.chain and kind == "slip assumed"))])
     down = f"{three(letter.released)} m3 of ground would come down."
@@ -118,7 +124,15 @@ def capital(text: str) -> str:
 
 def describe_alike_runs(study: study_types.Study) -> str:
     """The runs of a study, where each counts as much."""
-    return counted(study.study.finished, ALIKE[(Source.ENSEMBLE if study.ensemble else Source.PAPER).value])
+    return counted(study.study.finished, settings_of(study.ensemble) or ALIKE[Source.PAPER.value])
+
+
+def settings_of(ensemble: Optional[ensemble_types.Ensemble]) -> str:
+    """How the settings of its runs were chosen; empty without one."""
+    if not ensemble:
+        return ""
+    calibrated = ensemble.design.kind == ensemble_types.CALIBRATED
+    return "with calibrated settings" if calibrated else ALIKE[Source.ENSEMBLE.value]
 
 
 def count_runs_of(number: Headline, source: Source) -> str:
@@ -189,6 +203,25 @@ def describe_nothing(number: Headline, write: Write) -> str:
             "to lie on it.")
 
 
+def describe_drawn(ensemble: Optional[ensemble_types.Ensemble], write: Write) -> str:
+    """What most runs stay within, of the quantity that counts, or why that is not said."""
+    entry = ensemble.quantities.get(ensemble.of or "") if ensemble else None
+    if not ensemble or not entry:
+        return ""
+    if ensemble.withheld:
+        return f"{capital(usable.UNUSABLE).removesuffix('.')}: {' '.join(rule.client() for rule in ensemble.withheld)}"
+    most = next((each for each in entry.quantiles if each.share == MOST), entry.quantiles[-1])
+    which = f"{entry.name}, of {percent(most.share)} of the runs"
+    ends = " and ".join(f"{word} {write(f'{which}, {end} end', entry.unit, value)} {entry.unit}"
+                        for word, end, value in (("at least", "lower", most.low), ("at most", "upper", most.high))
+                        if value is not None)
+    return (f"{capital(entry.name).removesuffix('.')}: {percent(most.share)} of the "
+            f"{counted(ensemble.finished, settings_of(ensemble))} stay within "
+            f"{write(which, entry.unit, most.value)} {entry.unit}" +
+            (f", with {percent(ensemble.confidence)} confidence {ends}." if ends else
+             ": the runs are too few for its bounds."))
+
+
 def describe_basis(number: Headline, letter: Letter, write: Write) -> str:
     """Of which runs it is, what the others give, and what makes its band."""
     if not number.volume_m3 or not number.source:
@@ -240,11 +273,11 @@ def describe_change(number: Headline) -> str:
 
 # --- how far ---
 
-def describe_reach(reach: Optional[Reach], write: Write) -> str:
-    """One sentence on how far, and by what rule."""
+def describe_reach(reach: Optional[Reach], write: Write, settings: str = "") -> str:
+    """One sentence on how far, and by what rule; settings: of the runs, where not by their source."""
     if reach is None:
         return "How far it goes is not known: no run leaves a deposit."
-    runs = counted(reach.runs, ALIKE.get(reach.source or "", ""))
+    runs = counted(reach.runs, settings or ALIKE.get(reach.source or "", ""))
     rule = f"by {runs}"
     if reach.events:
         rule = f"{runs} and {EVENTS} count half each; {percent(TAIL)} end before these bounds, {percent(TAIL)} beyond"

@@ -1,7 +1,8 @@
 """What the studies of the several roads of a site say: a number of each, the worst, and the table of all runs.
 
 The worst is the one with the largest volume; a road whose number is no upper one, or none, counts as the largest of
-its runs, if that is more. Of equal ones that is worse whose number may be larger, then the one that more known events reach.
+its runs, if that is more. Of equal ones that is worse whose number may be larger, then the one that more known events
+reach.
 """
 from dataclasses import replace
 from pathlib import Path

@@ -5,6 +5,7 @@ from typing import Any, Dict, List, NamedTuple, Optional, Union
 from ..findings import Finding
 from ..statistics.entries import Analysis, KnownQuantile, Quantile, Reason
 
+CALIBRATED = "calibrated"           # a design: sets of values that a calibration found equally good
 MapEntry = Dict[str, Any]           # of a map over all runs: file, what it shows, and of which threshold or quantile
 
 
