@@ -523,7 +523,8 @@ def test_a_road_is_ahead_of_a_block_that_leaves_unless_it_is_behind_or_was_passe
     assert sides.ahead_of(start, end, sides.of_places(end)).tolist() == list(ends.values())
     left = Gone(np.ones(len(ends)), end, start, np.zeros(len(ends)), "table")
     ground = Ground(raster, raster.z, released, raster.z, {})
-    assert passed.sort_by_side(left, sides, ground, math.inf).ahead.tolist() == list(ends.values())      # of a mass, too
+    of_mass = passed.sort_by_side(left, sides, ground, np.inf)
+    assert of_mass.ahead.tolist() == list(ends.values())
 
 
 def test_beyond_the_road():
