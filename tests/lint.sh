@@ -43,12 +43,9 @@ if usable clang-format "layout of the C++"; then
   done
 fi
 
-# --- Python: .flake8 ---
+# --- Python: .flake8; types of the tools: mypy.ini ---
 
 if usable flake8 "style of the Python"; then flake8 || failed=1; fi
-
-# --- types of the tools: mypy.ini ---
-
 if usable mypy "types of the Python"; then mypy --no-error-summary || failed=1; fi
 
 # --- static analysis: what is known stands in cppcheck.txt ---
@@ -60,8 +57,7 @@ if usable cppcheck "static analysis of the C++"; then
     --suppressions-list=tests/cppcheck.txt --error-exitcode=1 -I src "${rooms[@]/#/-I}" --suppress=missingInclude
     --suppress=missingIncludeSystem --suppress=unmatchedSuppression
     --template='lint: {file}:{line}: {severity}: {message} ({id})')
-  # a header's lines for other processors and compilers once, in a source that uses all of it; what LAMMPS' lists of styles
-  # take of headers is no source
+  # lines for other processors once, in the source that has all of simd4.h; what LAMMPS' lists of styles take is no source
   others=src/contacts/contact_kernel_baseline.cpp
   "${check[@]}" --cppcheck-build-dir=build/cppcheck -i "$others" -U__clang__ -U__AVX__ -U__AVX512F__ -U__FAST_MATH__ \
     -U{FIX,PAIR,REGION,COMMAND}_CLASS src tools/dump2vtk || failed=1

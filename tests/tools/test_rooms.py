@@ -28,12 +28,7 @@ FILES = r"\*[\w/]+\.py\*(?: or \*[\w/]+\.py\*)?"       # that a README names; of
 # names that say nothing of a value: not of a parameter, nor of what is used on more than LIVES lines
 SAY_NOTHING = {"one", "found", "about", "said", "item", "it", "thing"}
 LIVES = 5
-
-
-@functools.lru_cache(None)
-def nodes(text):
-    """Of a module, which nearly every test looks through."""
-    return list(ast.walk(ast.parse(text)))
+nodes = functools.lru_cache(None)(lambda text: list(ast.walk(ast.parse(text))))     # nearly every test asks for all
 
 
 def imported(text, path):
@@ -81,8 +76,7 @@ def test_a_module(path):
     text = path.read_text(encoding="utf-8")
     assert text.count("\n") <= LONGEST
     assert upwards(text, path) == []
-    if path.parent.name == "commands":
-        assert other_commands(text, path) == []
+    assert path.parent.name != "commands" or other_commands(text, path) == []
 
 
 @pytest.mark.parametrize("room_", ROOMS[1:])
@@ -142,9 +136,7 @@ def test_a_command_of_developers_needs_a_checkout(name, tmp_path, monkeypatch, c
 
 def test_rooms_take_no_arguments_of_the_command_line():
     """Functions below commands/ have parameters of their own, not argparse's namespace."""
-    for path in MODULES:
-        if path.parent.name == "commands" or path.name in ("cli.py", "options.py"):
-            continue
+    for path in (one for one in MODULES if one.parent.name != "commands" and one.name not in ("cli.py", "options.py")):
         for node in nodes(path.read_text(encoding="utf-8")):
             if isinstance(node, (ast.FunctionDef, ast.Lambda)):
                 assert "args" not in [one.arg for one in (*node.args.args, *node.args.kwonlyargs)], f"{path}: {node}"
