@@ -1,4 +1,9 @@
 """Python reads this file first where its folder is on PYTHONPATH, as in the tests: lines that run are counted then."""
+import gc
+import os
+
+if os.environ.get("SLOPE_GARBAGE") == "stays":      # looking for it takes a quarter of a linter's time
+    gc.disable()
 try:
     import coverage
 except ImportError:

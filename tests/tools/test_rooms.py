@@ -2,6 +2,7 @@
 import ast
 import collections
 import contextlib
+import functools
 import importlib
 import os
 import re
@@ -27,13 +28,14 @@ FILES = r"\*[\w/]+\.py\*(?: or \*[\w/]+\.py\*)?"       # that a README names; of
 # names that say nothing of a value: not of a parameter, nor of what is used on more than LIVES lines
 SAY_NOTHING = {"one", "found", "about", "said", "item", "it", "thing"}
 LIVES = 5
+nodes = functools.lru_cache(None)(lambda text: list(ast.walk(ast.parse(text))))     # nearly every test asks for all
 
 
 def imported(text, path):
     """Modules of the package that a module imports, as tuples of words; a name in one of them counts as one, too."""
     here = path.relative_to(PACKAGE).parts[:-1]
     found = set()
-    for node in ast.walk(ast.parse(text)):
+    for node in nodes(text):
         if isinstance(node, ast.ImportFrom) and node.level:
             base = here[:len(here) - node.level + 1] + tuple(node.module.split(".") if node.module else ())
         elif isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "slope_tools":
@@ -74,8 +76,7 @@ def test_a_module(path):
     text = path.read_text(encoding="utf-8")
     assert text.count("\n") <= LONGEST
     assert upwards(text, path) == []
-    if path.parent.name == "commands":
-        assert other_commands(text, path) == []
+    assert path.parent.name != "commands" or other_commands(text, path) == []
 
 
 @pytest.mark.parametrize("room_", ROOMS[1:])
@@ -85,7 +86,7 @@ def test_a_room_tells_of_files_and_functions_that_are_there(room_):
     text = path.read_text(encoding="utf-8") if path.exists() else ""
     named = [name for name in re.findall(r"\*([\w/]+\.py)\*", text) if not (TOP / name).is_file()]
     assert [name for name in named if not any((place / name).is_file() for place in (path.parent, PACKAGE))] == []
-    there = {node.name for module in MODULES for node in ast.walk(ast.parse(module.read_text(encoding="utf-8")))
+    there = {node.name for module in MODULES for node in nodes(module.read_text(encoding="utf-8"))
              if isinstance(node, ast.FunctionDef)} if "()`" in text else set()
     assert set(re.findall(r"`(?:\w+\.)*(\w+)\(\)`", text)) <= there
 
@@ -135,10 +136,8 @@ def test_a_command_of_developers_needs_a_checkout(name, tmp_path, monkeypatch, c
 
 def test_rooms_take_no_arguments_of_the_command_line():
     """Functions below commands/ have parameters of their own, not argparse's namespace."""
-    for path in MODULES:
-        if path.parent.name == "commands" or path.name in ("cli.py", "options.py"):
-            continue
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for path in (one for one in MODULES if one.parent.name != "commands" and one.name not in ("cli.py", "options.py")):
+        for node in nodes(path.read_text(encoding="utf-8")):
             if isinstance(node, (ast.FunctionDef, ast.Lambda)):
                 assert "args" not in [one.arg for one in (*node.args.args, *node.args.kwonlyargs)], f"{path}: {node}"
             assert not (isinstance(node, ast.Attribute) and node.attr in ("parse_args", "ArgumentParser")), path
@@ -158,7 +157,7 @@ def test_public_functions_have_names_of_their_own():
 
 def say_nothing(text):
     """(line, name) of parameters, and of values that are used on more than LIVES lines, whose names say nothing."""
-    for function in ast.walk(ast.parse(text)):
+    for function in nodes(text):
         if not isinstance(function, (ast.FunctionDef, ast.Lambda)):
             continue
         given = function.args
@@ -203,7 +202,7 @@ PRINT = {"cli.py", "findings.py", "runs/job_display.py", "validation/verify.py",
 
 def prints(text):
     """Lines on which a module calls print()."""
-    return [node.lineno for node in ast.walk(ast.parse(text))
+    return [node.lineno for node in nodes(text)
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "print"]
 
 

@@ -59,7 +59,7 @@ def test_the_next_file_is_not_a_closed_stream():
         assert done.returncode == 0 and int(file.read()) > 2
 
 
-@pytest.mark.parametrize("words", [TERRAIN, "--version", "study --help", "terrain --describe"])
+@pytest.mark.parametrize("words", [TERRAIN, "--version", "stability --help", "terrain --describe"])
 def test_a_full_disk_is_named(words):
     status, out, err = shell(f"{words} > /dev/full")
     assert status == 2 and NO_SPACE in err and len(err.splitlines()) == 1 and out == ""
