@@ -161,12 +161,14 @@ def test_the_numbers_of_a_road_that_ends_inside():
     (411, 1.0, 1.0, 0.0, "close to it"), (412, 1.0, 1.0, 0.0, "past"), (411, 1.0, 1.0, 9.0, "close to it"),
     # heaped where it left, 1,000 m3 are a cone of 11.8 m radius, 6.8 m high
     (421, 0.0, 1000.0, 0.0, "close to it"), (422, 0.0, 1000.0, 0.0, "past"), (411, 0.0, 1000.0, 7.0, "past"),
+    (440, 0.0, 1.0, np.nan, "close to it"),     # a road without ground
     (414, 0.0, 1000.0, 4.0, "close to it"), (415, 0.0, 1000.0, 4.0, "past"), (440, 0.0, 1000.0, -11.0, "close to it")])
 def test_what_leaves_on_the_road_or_close_to_it_might_have_stayed_there(lost, thick, volume, lower, where):
     thickness, rise = np.zeros((ROWS, COLUMNS)), math.tan(math.radians(30))
     thickness[30, 40] = thick
     ground = ground_of(thickness, lost=volume)
-    ground.base[:, 41:] = -lower        # beyond the road
+    ground.base[:, 41:] = -np.nan_to_num(lower)     # beyond the road
+    ground.base[:, 40] += 0 * lower
     about = passed.of_mass(ground, sides_of(box(400, 0, 410, 600)),
                            balls((lost, 600, 100, 300), volume=volume), rise)["left"]
     assert about["road_ahead"] == (0.0 if where == "past" else volume)

@@ -20,6 +20,7 @@ AWAY = "away from it"        # before the road, which is behind
 CLOSE = "close to it"        # beyond the road, where what lies may have to be removed
 COUNT = BEFORE, ON, CLOSE    # what left there might lie on the road, or keep there what does
 PARTS = BEFORE, ON, PAST
+HIGHEST = 1e5                # m, no ground is as high: a road whose height nobody knows counts as the lowest
 ROUNDING = 1e-9              # of the mass, of a cell: less is what areas and sums round off
 
 
@@ -97,13 +98,16 @@ def reach_of_heap(left: Gone, past: np.ndarray, ground: Ground, road: BaseGeomet
     As a cone as steep as the cut on the ground there, its foot as high as the road's lowest cell; or, since what leaves
     flows, as a deposit as thick as that on the road.
     """
+    if not past.any():
+        return np.zeros(len(past))
     lines = (np.arange(size + 1.0) for size in ground.raster.z.shape[::-1])
     covered = geometry.coverage(geometry.to_index(road, ground.raster), *lines)[0] > ROUNDING
     thick = float(np.nan_to_num(ground.raster.z)[covered].max(initial=0.0))
     nearest = ndimage.distance_transform_edt(~ground.known, return_distances=False, return_indices=True)
     cells = np.floor(~ground.raster.transform @ left.place.T).astype(int)[::-1]
     at = np.clip(cells.T, 0, np.array(ground.base.shape) - 1).T
-    drop = np.nanmin(ground.base[covered]) - ground.base[tuple(nearest[:, at[0], at[1]])]
+    lowest = ground.base[covered & ground.known].min(initial=HIGHEST)
+    drop = (lowest if lowest < HIGHEST else -HIGHEST) - ground.base[tuple(nearest[:, at[0], at[1]])]
     cone = (3 * float(left.volume[past].sum()) / (math.pi * rise)) ** (1 / 3)
     return np.maximum(cone - drop / rise, thick / rise)
 
