@@ -175,17 +175,17 @@ def main(argv=None):
     asked = next((word for word in words if word in every), None)
     before = argv[:argv.index(asked)] if asked in argv else argv
     findings.as_json = "--progress=json" in before or ("--progress", "json") in zip(before, before[1:])
-    named = argv[:1] == [asked]     # first: parsers of the others would be half of what a call takes
-    for name, summary in ({asked: every[asked]} if named else every).items():
+    # named first: parsers of the others would be half of what a call takes
+    for name in [asked] if asked is not None and argv[:1] == [asked] else every:
         if name == asked:
             try:
                 module = module_of(name, parser)
             except ImportError as error:
                 say("error", name, not_imported(error))
                 return 2
-            add_command(commands, name, module, help=summary)
+            add_command(commands, name, module, help=every[name])
         else:
-            commands.add_parser(name, help=summary)
+            commands.add_parser(name, help=every[name])
     if completes:
         importlib.import_module("argcomplete").autocomplete(parser)     # ends here
     args = parser.parse_args(with_new_names(asked, argv))
