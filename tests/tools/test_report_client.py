@@ -214,6 +214,19 @@ def test_a_road_that_goes_with_the_mass_is_in_the_letter(warnings):
     assert ("; what it takes to build the road anew" in text) == bool(warnings)
 
 
+def test_what_known_events_weigh_is_not_said_of_drawn_settings():
+    """Without a road the letter says how far, by these events, and not what most of the runs stay within."""
+    quantities = {"length_m": {"name": "length", "unit": "m", "mean": 90.0, "standard_deviation": 1.0, "smallest": 80.0,
+                               "largest": 99.0, "quantiles": [
+                                   {"share": 0.9, "value": 95.0, "low": None, "high": 99.0}]}}
+    for reached in (0.95, None):
+        about = made_study.study(runs=[row()], ensemble=made_study.ensemble(
+            {"reached": reached}, of="length_m", quantities=quantities))
+        text = letter.write_letter(letter.make_letter(about)).clear
+        assert text == ("" if reached else "Length: 90 % of the 64 runs with drawn settings stay within 95.0 m, with "
+                        "90 % confidence at most 99.0 m."), text
+
+
 def test_the_next_step_and_its_time(tmp_path):
     """By the first reason that something can be done about; as long as the runs took, several at a time."""
     design = {"points": 64, "variables": {"friction": "2:30", "rolling": "uniform:0:0.15", "slip": "list:a,b"}}

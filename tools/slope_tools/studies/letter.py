@@ -39,8 +39,8 @@ class Letter(NamedTuple):
     cut: degrees, of the road's edges, above which is removed; events: how many known events weigh the runs, None: none;
     reach: how far; roads: of a site with several, the worst first; lacks: kinds of findings, of what is not in it;
     size: what the size of the balls would change, a sentence without its full stop; chain: how often earthquakes block
-    the road, the same; bodies: volumes of several, one of which comes down in a run; drawn: an ensemble that no known
-    events weigh, without a number.
+    the road, the same; bodies: volumes of several, one of which comes down in a run; drawn: an ensemble without a number
+    that no known events weigh, or that is withheld.
     """
     released: float
     number: Optional[Headline]
@@ -72,7 +72,8 @@ def make_letter(study: study_types.Study) -> Letter:
                   chain_files.sentences(study.chain) if study.chain and not study.chain.withheld else (),
                   [one.volume_m3 for one in study.chain.bodies if one.volume_m3 is not None] if study.chain else
                   list({row.variables.get(VARIABLE): row.released_m3 for row in rows}.values()),
-                  None if number or study.chain else study.ensemble)
+                  None if number or study.chain or known and study.ensemble and not study.ensemble.withheld
+                  else study.ensemble)
 
 
 class Sentences(NamedTuple):
