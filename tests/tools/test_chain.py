@@ -5,7 +5,11 @@ import numpy as np
 import pytest
 from scipy import stats
 
+import made_rows
+
 from slope_tools.seismic import chain, chain_files, fragility
+from slope_tools.sites.site_found import SlipBody
+from slope_tools.statistics import distributions
 from slope_tools.tables import study_types
 
 RATE = fragility.Hazard(np.array([50.0, 200.0, 800.0, 2000.0]), np.array([1e-2, 1e-3, 3e-5, 1e-6]))
@@ -132,6 +136,26 @@ def test_what_no_peak_of_the_curve_reaches_does_not_fail():
         both = [*bodies([[100.0, 200.0]]), chain.compute_left_volume([0.0], [0], 0.0)]
         found = chain.frequency(never, RATE, PEAKS, both, np.array([0.0, 150.0, 250.0]))
         assert found.beyond == pytest.approx(1e-6 * np.array(beyond))
+
+
+def test_a_body_that_fails_above_the_hazard_curve_counts_at_such_peaks():
+    """One fails at 300 gal, one of 5,000 m3 at 3,000, where the curve ends at 2,000: all of it is on the road there."""
+    capacity = np.full((fragility.REPLICATES * 4, 1, 2), 300.0)
+    capacity[..., 1] = 3000.0
+
+    class Given:
+        bodies, bases, folder, peaks, rate = ("1", "2"), ("a", "b"), "fragility", np.array([1000.0, 4000.0]), RATE
+
+    Given.capacity = capacity
+    site = {"1": SlipBody(100.0, None, "a"), "2": SlipBody(5000.0, None, "b")}
+    asked = chain_files.check_chain(Given, site, "site", [])
+    assert asked.weights == pytest.approx({"1": 1.0, "2": 1e-6})
+    _, [varied] = chain_files.options(asked)
+    assert distributions.distribution("body", varied.partition("=")[2], "--vary", varied).value(0.999) == "1"
+    left = chain_files.list_left_volumes(asked, [made_rows.row(set={"body": "1"}, remove_on_road_m3=50.0)], None)
+    found = chain.family(capacity, Given.peaks, left, np.array([0.0, 1000.0]))
+    assert found.value.tolist() == [[1, 0], [1, 1]]
+    assert chain.weights(capacity[..., 1:], Given.peaks, RATE).tolist() == [1.0]
 
 
 def test_a_peak_at_which_no_sample_fails_is_bounded():

@@ -319,6 +319,8 @@ WORDS: Dict[str, Union[str, Words]] = {
                  "terrain",
     "body without run": Words("body {body} has no finished run: all of it, {volume:,.0f} m3, counts as on the road; "
                               "more points (--sample)", NOTE),
+    "body beyond the curve": Words("body {body} has no run, as it hardly fails below the hazard curve's last peak: all "
+                                   "of it, {volume:,.0f} m3, counts as on the road; a curve with larger peaks", NOTE),
     "more per year": Words("peaks above the hazard curve's last may add up to {per_year:.2g} per year to more than "
                            "{volume:,.6g} m3", NOTE),
     "body size": Words("no run of body {body} has the finest balls: it is corrected by what other bodies tell; more "

@@ -17,6 +17,8 @@ from . import fragility, together
 from .fragility import Band, Frequency, Hazard
 from .together import Steps
 
+LEAST = 1e-6            # weight of a body, of which there is hardly a run then
+
 
 class Left(NamedTuple):
     """What a body leaves on the road: as its runs say, and the distributions of the bounds."""
@@ -138,10 +140,11 @@ def frequency(capacity: np.ndarray, rate: Hazard, peaks: np.ndarray, bodies: Seq
 def weights(capacity: np.ndarray, peaks: np.ndarray, rate: Optional[Hazard] = None) -> np.ndarray:
     """How likely each body fails, given that one does: with a hazard per year, else at peaks that are equally likely.
 
-    Bodies that fail together count each; the sum is 1. All are 0 if none ever fails.
+    Bodies that fail together count each; the sum is 1. All are 0 if none ever fails. One that fails at the peaks, but
+    at none of the hazard curve, has LEAST: the curves against the peak have it, too.
     """
-    if rate is not None:
-        each = rate.exceeds(capacity).mean(axis=(0, 1))
-    else:
-        each = np.array([(capacity < peak).mean(axis=(0, 1)) for peak in peaks]).mean(axis=0)
-    return each / each.sum() if each.sum() > 0 else each
+    each = at_peaks = np.array([(capacity < peak).mean(axis=(0, 1)) for peak in peaks]).mean(axis=0)
+    if rate is not None and (yearly := rate.exceeds(capacity).mean(axis=(0, 1))).any():
+        each = yearly
+    share = each / each.sum() if each.any() else each
+    return np.maximum(share, np.where(each + at_peaks > 0, LEAST, 0.0))

@@ -65,7 +65,7 @@ def options(asked: Chain) -> Tuple[List[str], List[str]]:
     """The bodies as values of a variable of the study: of --set if one alone may fail, else of --vary."""
     if len(asked.weights) == 1:
         return [f"{VARIABLE}={next(iter(asked.weights))}"], []
-    return [], [f"{VARIABLE}=list:" + ",".join(f"{name}@{max(one, 1e-9):.6f}" for name, one in asked.weights.items())]
+    return [], [f"{VARIABLE}=list:" + ",".join(f"{name}@{one:.6f}" for name, one in asked.weights.items())]
 
 
 # --- after them ---
@@ -158,7 +158,8 @@ def of_year(yearly: Frequency, volume: float, k: int) -> study_types.PerYear:
 def find_chain_caveats(chain_: study_types.Chain, warnings: Sequence[Any]) -> List[Finding]:
     """The caveats; warnings: of the fragility."""
     return [*(finding(one)._replace(part="fragility") for one in warnings),
-            *(Finding("body without run", {"body": one.body, "volume": one.volume_m3})
+            *(Finding("body without run" if one.weight > chain.LEAST else "body beyond the curve",
+                      {"body": one.body, "volume": one.volume_m3})
               for one in chain_.bodies if one.weight > 0 and not one.finished),
             *(Finding("more per year", {"per_year": one.more_at_most, "volume": one.more_than_m3})
               for one in chain_.per_year or () if is_more(one))]
