@@ -246,6 +246,12 @@ def test_mass_that_leaves_beside_the_road_is_said_with_what_is_blocked(two):
     assert said[0].startswith("body 1: 5 % of the released volume left the terrain before, beside or on the road")
     assert said[1].startswith("body 2: 1 of 4 runs failed or are not at rest"), said
     assert [row["left_share"] for row in rows_of(two[0] / results.BODIES)] == ["0.05", "0.0"]
+    # one that failed counts with the one that was cut
+    study["runs"][3] = {"run": "run_3", "set": {"rolling": "3"}, "repeat": {}, "batch": 0, "status": "failed",
+                        "error": "lost atoms"}
+    path.write_text(yaml.safe_dump(study))
+    said = list(route_page.list_route_caveats(choices.read_route_choices(two[0]), made(*two)[0]))
+    assert said[1].startswith("body 2: 2 of 4 runs failed or are not at rest"), said
 
 
 def test_who_hits_what(two):

@@ -17,7 +17,7 @@ from ..seismic import fragility_files
 from ..survey import geopackage, rasters
 from ..survey.geopackage import Layer
 from ..tables import road_runs, usable
-from ..tables.rows import Finished, finished_of
+from ..tables.rows import Finished, Row, finished_of
 from ..tables.study_file import load_study
 from . import reached, runs, search
 from .choices import Choices
@@ -33,15 +33,19 @@ NUMBERS = ("length", "passable_width", *road_runs.SUMS)
 
 
 class BodyRuns(NamedTuple):
-    """A body with its runs."""
+    """A body with its runs; rows: of those that failed, too."""
     about: Mapping[str, Any]
     runs: List[road_runs.Run]
     source: Source
-    rows: List[Finished]
+    rows: List[Row]
 
     @property
     def number(self) -> int:
         return self.about["body"]
+
+    @property
+    def finished(self) -> List[Finished]:
+        return finished_of(self.rows)
 
     def share(self, span: Optional[Span] = None) -> float:
         """Of the runs that block the road, or any of a range."""
@@ -60,7 +64,7 @@ def read_body(folder: Path, body: Mapping[str, Any]) -> BodyRuns:
     source = Source(body["body"], prefixes, np.full(len(done), 1 / len(done)), len(rows) - len(done),
                     rasters.read_place(place / "terrain.asc").offset)
     return BodyRuns(body, [road_runs.Run(1.0, row.at_road.stretches, row.at_road.clearing) for row in done], source,
-                    done)
+                    rows)
 
 
 def yearly_of(choices: Choices, folder: Path, bodies: Sequence[Mapping[str, Any]]) -> Optional[Yearly]:
@@ -87,7 +91,7 @@ def make_route_results(choices: Choices, corridor: Corridor, folder: Path, table
         "collected": provenance.now(), "chainage_m": [corridor.start, corridor.start + corridor.axis.length],
         "blocked_above_m": choices.blocked, "fragility": choices.fragility and Path(choices.fragility).name,
         "route": route(bodies, yearly), "pieces": pieces(bodies, yearly),
-        "along": road_runs.by_body({one.number: [(1.0, row.at_road.by_10_m) for row in one.rows] for one in bodies}),
+        "along": road_runs.by_body({one.number: [(1.0, row.at_road.by_10_m) for row in one.finished] for one in bodies}),
         "stretches": [stretch(number, span, bodies, yearly) for number, span in enumerate(spans, 1)],
         "bodies": [make_body_row(one, yearly) for one in bodies], "left_out": table["left_out"],
         "doubts": encode_findings(find_doubts(bodies)),
@@ -182,14 +186,14 @@ def make_body_row(body_runs: BodyRuns, yearly: Optional[Yearly]) -> Dict[str, An
     """A row of the table by body."""
     share = body_runs.share()
     low, high = body_runs.source.bounds(share)
-    on_road = np.array([row.at_road.remove_on_road_m3 for row in body_runs.rows])
+    on_road = np.array([row.at_road.remove_on_road_m3 for row in body_runs.finished])
     per_year = yearly and {"fails": yearly.of([body_runs.number], [1.0]).counts,
                            "blocks": yearly.of([body_runs.number], [share]).counts}
     keys = ("body", "name", "chainage_m", "x", "y", "factor", "volume_m3", "area_m2", "depth_m", "known_share",
             "known_law")
     return {**{key: body_runs.about[key] for key in keys}, "runs": len(body_runs.runs),
             "failed": body_runs.source.failed, "left_share": max(
-                usable.left_before(row) / row.released_m3 for row in body_runs.rows),
+                usable.left_before(row) / row.released_m3 for row in body_runs.finished),
             "share_blocked": share, "share_low": low, "share_high": high,
             "on_road_median_m3": float(np.median(on_road)), "on_road_most_m3": float(on_road.max()),
             "no_factor": body_runs.about.get("no_factor", ""), "per_year": per_year}
