@@ -15,7 +15,7 @@ import made_study
 from messages import is_one
 from tiny_collapse import loaded, read_asc, rows_of
 
-from slope_tools import cli
+from slope_tools import cli, digits
 from slope_tools.case import deck_ranges
 from slope_tools.ensembles import ensemble, sample
 from slope_tools.report import ensemble_part
@@ -356,12 +356,25 @@ def test_an_ensemble_grows_and_its_tables_are_those_of_the_runs(slope, succeed, 
     assert cli.main(["report", "out"]) == 0 and stays in (page := Path("out/report.html").read_text())
     assert ": 90 % of the 12 runs with drawn settings stay within " in page[:page.index('id="appendix"')]
     told = letter.write_letter(letter.make_letter(load_study(Path("out/study.yaml"))))
-    assert re.match(f"{name[0].upper()}{name[1:]}: 90 % of the 12 runs with drawn settings stay within [0-9.,]+ m3, "
-                    "with 90 % confidence at least [0-9.,]+ m3", told.clear), told.clear
+    # what lies on the road is less than what must be cleared
+    within = [digits.three(found["quantities"][key]["quantiles"][1]["value"]) for key in (found["of"], "remove_m3")]
+    assert within[0] != within[1] and [re.search(f"{what}: 90 % of the 12 runs with drawn settings stay within (.*?) "
+                                                 "m3, with 90 % confidence at least [0-9.,]+ m3", told.clear)[1]
+                                       for what in ("Volume on the road", "Volume to remove from the road")] == within
+    assert told.basis.startswith("That is what lies on it") and found["of"] == "remove_on_road_m3"
     about["ensemble"]["design"]["kind"] = "calibrated"
     Path("out/study.yaml").write_text(yaml.safe_dump(about))
     told = letter.write_letter(letter.make_letter(load_study(Path("out/study.yaml"))))
     assert "12 runs with calibrated settings" in told.clear and "12 runs with calibrated settings" in told.far
+
+
+def test_the_letter_of_an_angle_has_both_ends():
+    """Runs with the least angle go farthest, which no share that most stay within says."""
+    quantiles = [{"share": 0.9, "value": 30.0, "low": 29.0, "high": 31.0}]
+    about = made_study.ensemble(finished=40, of="reach_angle_deg", quantities={"reach_angle_deg": {
+        "name": "reach angle", "unit": "degrees", "smallest": 17.25, "largest": 31.0, "quantiles": quantiles}})
+    assert letter.describe_drawn(about, letter.format_console_number) == (
+        "Reach angle: 17.2 to 31.0 degrees in the 40 runs with drawn settings; the less, the farther the mass goes.")
 
 
 def test_repeats_of_points_and_a_list(succeed):

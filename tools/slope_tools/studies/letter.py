@@ -10,7 +10,7 @@ from ..digits import percent, three
 from ..seismic import chain_files
 from ..sites.site_bodies import VARIABLE
 from ..statistics.entries import Cause, Code, Headline, Kind, PaperPart, Road, Source
-from ..tables import answer_words, ensemble_types, judged, sizes, study_types, usable
+from ..tables import answer_words, ensemble_types, intensity, judged, quantities, sizes, study_types, usable
 from ..tables.how_far import TAIL, Reach
 from ..tables.rows import finished_of
 from .road_numbers import Number, read_road_numbers
@@ -98,7 +98,7 @@ def write_letter(letter: Letter, write: Write = format_console_number) -> Senten
     clear = " ".join(map(capital, letter.chain))
     if number or letter.drawn:
         clear = describe_clearing(number, write) if number else describe_drawn(letter.drawn, write)
-    basis = f"{describe_cut(letter)} {describe_basis(number, letter, write)}".strip() if number else ""
+    basis = f"{describe_cut(letter)} {describe_basis(number, letter, write) if number else ''}".strip()
     far, roads = describe_reach(letter.reach, write, settings_of(letter.drawn)), describe_roads(letter, write)
     lacks = "; ".join([DRY, *(text for kind, text in LACKS.items() if kind in letter.lacks
                               and not (letter.chain and kind == "slip assumed"))])
@@ -150,7 +150,8 @@ def counted(runs: int, which: str = "") -> str:
 
 def describe_cut(letter: Letter) -> str:
     """What to clear means."""
-    if letter.cut is None or not (letter.number and letter.number.volume_m3):
+    drawn = letter.drawn and not letter.drawn.withheld and quantities.REMOVE in drawn_of(letter.drawn)
+    if letter.cut is None or not (letter.number and letter.number.volume_m3 or drawn):
         return ""
     return ("That is what lies on it, and what beside it would slide onto it, "
             f"above {letter.cut:g} degrees from its edges.")
@@ -206,21 +207,35 @@ def describe_nothing(number: Headline, write: Write) -> str:
 
 def describe_drawn(ensemble: Optional[ensemble_types.Ensemble], write: Write) -> str:
     """What most runs stay within, of the quantity that counts, or why that is not said."""
-    entry = ensemble.quantities.get(ensemble.of or "") if ensemble else None
-    if not ensemble or not entry:
+    if not ensemble or ensemble.of not in ensemble.quantities:
         return ""
     if ensemble.withheld:
         return f"{capital(usable.UNUSABLE).removesuffix('.')}: {' '.join(rule.client() for rule in ensemble.withheld)}"
+    return " ".join(describe_most(ensemble, key, write) for key in drawn_of(ensemble))
+
+
+def drawn_of(ensemble: ensemble_types.Ensemble) -> List[str]:
+    """The quantity that counts; what lies on a road is less than what must be cleared, which follows it."""
+    return [key for key in (ensemble.of, quantities.REMOVE if ensemble.of == intensity.QUANTITY else None)
+            if key in ensemble.quantities]
+
+
+def describe_most(ensemble: ensemble_types.Ensemble, key: str, write: Write) -> str:
+    """What most runs stay within; of an angle, of which the least is the farthest, from where to where they are."""
+    entry, runs = ensemble.quantities[key], counted(ensemble.finished, settings_of(ensemble))
+    what = capital(quantities.ALL[key].title or entry.name).removesuffix(".")
+    if entry.unit == "degrees":
+        low, high = (write(f"{what}, {end}", entry.unit, value)
+                     for end, value in (("least", entry.smallest), ("most", entry.largest)))
+        return f"{what}: {low} to {high} degrees in the {runs}; the less, the farther the mass goes."
     most = next((each for each in entry.quantiles if each.share == MOST), entry.quantiles[-1])
-    which = f"{entry.name}, of {percent(most.share)} of the runs"
+    which = f"{what}, of {percent(most.share)} of the runs"
     ends = " and ".join(f"{word} {write(f'{which}, {end} end', entry.unit, value)} {entry.unit}"
                         for word, end, value in (("at least", "lower", most.low), ("at most", "upper", most.high))
                         if value is not None)
-    return (f"{capital(entry.name).removesuffix('.')}: {percent(most.share)} of the "
-            f"{counted(ensemble.finished, settings_of(ensemble))} stay within "
-            f"{write(which, entry.unit, most.value)} {entry.unit}" +
-            (f", with {percent(ensemble.confidence)} confidence {ends}." if ends else
-             ": the runs are too few for its bounds."))
+    return (f"{what}: {percent(most.share)} of the {runs} stay within {write(which, entry.unit, most.value)} "
+            f"{entry.unit}" + (f", with {percent(ensemble.confidence)} confidence {ends}." if ends else
+                               ": the runs are too few for its bounds."))
 
 
 def describe_basis(number: Headline, letter: Letter, write: Write) -> str:
