@@ -219,6 +219,25 @@ def test_the_ledger_keeps_what_was_decided(tmp_path):
         calibration.Ledger(tmp_path, {"seed": 2}, variables)
 
 
+def test_the_best_values_are_those_of_the_outputs_that_count(tmp_path):
+    """Of a folder that an older version made, whose runs told twice as much: the last run is decided on anew, once."""
+    made = []
+
+    def calibrated(factor):
+        ledger = calibration.Ledger(tmp_path, {"seed": 1}, [distributions.distribution("a", "0:10", "", "")])
+        plan = calibration.Calibration(ledger, tmp_path, {}, [], 1, 12, 4)
+        plan.do(lambda todo: made.append(len(todo)) or [np.array([factor * float(one.combination["a"])])
+                                                        for one in todo],
+                lambda: [backanalysis.Target("length", "m", 6.0, 0.1)], lambda text: None)
+        return float(ledger.points[-1]["a"])
+
+    assert calibrated(2.0) == pytest.approx(3.0, abs=0.1)
+    made.clear()
+    assert calibrated(1.0) == pytest.approx(6.0, abs=0.1) and made == [12, 1]
+    made.clear()
+    assert calibrated(1.0) == pytest.approx(6.0, abs=0.1) and made == [12]
+
+
 # --- small collapses ---
 
 @pytest.fixture

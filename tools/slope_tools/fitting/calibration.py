@@ -33,9 +33,20 @@ class Ledger:
             schemas.check_schema(before["points"], list_of(point), self.path, WHAT)
             self.points = before["points"]
 
+    def point(self, place: np.ndarray) -> Dict[str, str]:
+        """The values of a place in the unit cube."""
+        return {one.name: one.value(float(u)) for one, u in zip(self.variables, place)}
+
+    def ends_with(self, place: np.ndarray) -> bool:
+        return self.points[-1] == self.point(place)
+
+    def replace_last(self, place: np.ndarray) -> None:
+        self.points.pop()
+        self.add(place[None])
+
     def add(self, places: np.ndarray) -> None:
         """Decide on places in the unit cube; written before they are run."""
-        self.points += [{one.name: one.value(float(u)) for one, u in zip(self.variables, place)} for place in places]
+        self.points += map(self.point, places)
         self.path.parent.mkdir(parents=True, exist_ok=True)
         disk.write_file(self.path, f"# {WHAT}\n" + yaml.safe_dump({"about": self.about, "points": self.points},
                                                                   sort_keys=False))
@@ -86,10 +97,14 @@ class Calibration:
             todo = [i for i in range(len(self._known())) if i not in self.outputs]
             for i, outputs in zip(todo, evaluate([self.runs[i] for i in todo])):
                 self.outputs[i] = outputs
-            decided = len(self.ledger.points)
-            if decided == self.number:
-                return self.posterior(targets())
-            posterior = self.posterior(targets())
+            decided, posterior = len(self.ledger.points), self.posterior(targets())
+            if decided == self.number and self.ledger.ends_with(posterior.best):
+                return posterior
+            if decided == self.number:      # of other outputs, as of an older version whose runs were cut
+                self.runs.pop()
+                del self.outputs[decided - 1]
+                self.ledger.replace_last(posterior.best)
+                continue
             say(f"{decided} of {self.number} runs: " + "; ".join(
                 f"{one.name} {backanalysis.format_variable_value(one, low)} to "
                 f"{backanalysis.format_variable_value(one, high)}"
