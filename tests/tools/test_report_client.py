@@ -24,7 +24,7 @@ from slope_tools.report.numbers import Numbers
 from slope_tools.statistics.entries import Kind
 from slope_tools.statistics.withheld import Kind as Rule
 from slope_tools.studies import letter, outcome, size_runs
-from slope_tools.tables import answer_words, judged, next_step, study_file
+from slope_tools.tables import answer_words, how_far, judged, next_step, study_file
 
 made, here, slope = test_report.made, test_report.here, test_report.slope       # its fixtures
 # of options, files, runs and variables
@@ -206,6 +206,19 @@ def test_the_number_says_that_it_is_in_a_gap(gap, source, said):
         source=source, share=0.95, volume_m3=9e3, low_m3=1e3, high_m3=9e4))
     text = letter.write_letter(letter.make_letter(about)).basis
     assert ("between 2,000 and 9,000 m3" in text) == said and ("no run ends" in text) == said
+
+
+def test_an_ensemble_that_known_events_weigh_is_not_counted_alike():
+    """Page 1 of a site without a road: what most runs stay within is not what most known events do; and a length of the
+    runs with chosen settings is theirs."""
+    alike = made_study.ensemble(finished=20, of="front_m", quantities={"front_m": {
+        "name": "farthest ball", "unit": "m", "quantiles": [{"share": 0.9, "value": 50.0}]}})
+    known = replace(alike, known_events=weighted().study.ensemble.known_events)
+    reach = how_far.pool([60.0, 70.0], None, "paper")
+    for of, said in ((alike, "Distance of the farthest ball: 90 % of the 20 runs with drawn settings"), (known, "")):
+        found = letter.write_letter(letter.make_letter(made_study.study(runs=[row()], ensemble=of, reach=reach)))
+        assert found.clear.startswith(said) and bool(found.clear) == bool(said)
+        assert "By 2 runs with chosen settings" in found.far
 
 
 @pytest.mark.parametrize("warnings", [[], [{"kind": "road on body", "numbers": {"file": "a", "part": "", "Part": ""}}]])

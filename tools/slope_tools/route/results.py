@@ -91,7 +91,8 @@ def make_route_results(choices: Choices, corridor: Corridor, folder: Path, table
         "collected": provenance.now(), "chainage_m": [corridor.start, corridor.start + corridor.axis.length],
         "blocked_above_m": choices.blocked, "fragility": choices.fragility and Path(choices.fragility).name,
         "route": route(bodies, yearly), "pieces": pieces(bodies, yearly),
-        "along": road_runs.by_body({one.number: [(1.0, row.at_road.by_10_m) for row in one.finished] for one in bodies}),
+        "along": road_runs.by_body({one.number: [(1.0, row.at_road.by_10_m) for row in one.finished]
+                                    for one in bodies}),
         "stretches": [stretch(number, span, bodies, yearly) for number, span in enumerate(spans, 1)],
         "bodies": [make_body_row(one, yearly) for one in bodies], "left_out": table["left_out"],
         "doubts": encode_findings(find_doubts(bodies)),

@@ -89,7 +89,8 @@ def ground_of(name: str, warn) -> Ground:
         asked = choices.read_route_choices(folder)
         table = search.table_of(folder)
         bodies = [results.read_body(folder, about) for about in table["bodies"]]
-        gone = [one._replace(part=f"body {body.number}", runs=()) for body in bodies for one in lost_much(body.finished)]
+        gone = [one._replace(part=f"body {body.number}", runs=()) for body in bodies
+                for one in lost_much(body.finished)]
         return Ground(corridor.read_corridor(asked, folder).raster, [body.source for body in bodies],
                       results.yearly_of(asked, folder, table["bodies"]),
                       {about["body"]: about["known_law"] for about in table["bodies"]},

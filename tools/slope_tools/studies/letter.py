@@ -290,10 +290,11 @@ def describe_change(number: Headline) -> str:
 # --- how far ---
 
 def describe_reach(reach: Optional[Reach], write: Write, settings: str = "") -> str:
-    """One sentence on how far, and by what rule; settings: of the runs, where not by their source."""
+    """One sentence on how far, and by what rule; settings: of those of an ensemble, where not by their source."""
     if reach is None:
         return "How far it goes is not known: no run leaves a deposit."
-    runs = counted(reach.runs, settings or ALIKE.get(reach.source or "", ""))
+    of_ensemble = reach.source == Source.ENSEMBLE.value
+    runs = counted(reach.runs, settings if settings and of_ensemble else ALIKE.get(reach.source or "", ""))
     rule = f"by {runs}"
     if reach.events:
         rule = f"{runs} and {EVENTS} count half each; {percent(TAIL)} end before these bounds, {percent(TAIL)} beyond"
