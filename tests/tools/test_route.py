@@ -394,6 +394,13 @@ def test_zones_are_said_to_end_where_mass_left_the_terrain(two, capsys):
     assert status == 0 and "body 2: 300 m3 (30 % of the released volume) left the grid or the box" in err, err
     [doubt] = yaml.safe_load((two[0] / "zones/zones.yaml").read_text())["doubts"]
     assert doubt["kind"] == "lost much" and doubt["part"] == "body 2"
+    # and where runs were cut, of which the maps show the way until then
+    about["runs"][1].update(at_rest=False, moving=True, moves_share=0.6, stop_time_s=12.0, end="cut")
+    path.write_text(yaml.safe_dump(about))
+    status, _, err = zones_of(two[0], capsys, "--zones", "0.5", "--overwrite")
+    assert status == 0 and "body 2: not at rest at the end: cut, at 12.0 s" in err, err
+    doubts = yaml.safe_load((two[0] / "zones/zones.yaml").read_text())["doubts"]
+    assert [one["kind"] for one in doubts] == ["lost much", "in motion"]
 
 
 @pytest.mark.parametrize("words, got", [

@@ -31,13 +31,14 @@ ASKED = {"quantity": "str", "exceeds": "float", "unit": "str", "probability": "f
 PROPERTIES = {**ASKED, "class": "str", "cells": "int", "area_m2": "float"}
 LAYER, PROCESS = "zones", "governing_process"
 OF_PROCESS = {"process": "str", "body": "int", "known_events": "str", **ASKED, "area_m2": "float"}
+GRAVE = {"lost much": "percent", "in motion": "share"}      # findings, and by which number one is graver
 PROCESS_OF_MASS = "collapse of a slope"     # the only one that is modelled
 COLOURS = ("215,48,39", "252,141,89", "254,224,139", "217,239,139", "145,191,219")      # of the probabilities
 
 
 class Ground(NamedTuple):
     """Where the zones are; like: {body: the known events with which it is compared}; doubts: mass that left the terrain
-    of its runs, and what that did beyond it."""
+    of its runs, or was in motion at their end, and what that did then."""
     raster: Raster
     sources: Sequence[Source]
     yearly: Optional[Yearly]
@@ -89,12 +90,13 @@ def ground_of(name: str, warn) -> Ground:
         asked = choices.read_route_choices(folder)
         table = search.table_of(folder)
         bodies = [results.read_body(folder, about) for about in table["bodies"]]
-        gone = [one._replace(part=f"body {body.number}", runs=()) for body in bodies
-                for one in lost_much(body.finished)]
+        doubts = [one._replace(part=f"body {body.number}", runs=()) for body in bodies
+                  for one in find_zone_doubts(body.finished)]
         return Ground(corridor.read_corridor(asked, folder).raster, [body.source for body in bodies],
                       results.yearly_of(asked, folder, table["bodies"]),
                       {about["body"]: about["known_law"] for about in table["bodies"]},
-                      [results.gravest(gone, "percent")] if gone else [])
+                      [results.gravest(same, number) for kind, number in GRAVE.items()
+                       if (same := [one for one in doubts if one.kind == kind])])
     study = study_file.study_in(folder, weighted=True)
     if study is None and not (folder / "site.yaml").is_file():
         run = deposit.read_deposit(named_run.read_named_run(name).prefix, None, warn)
@@ -112,12 +114,12 @@ def ground_of(name: str, warn) -> Ground:
     failed = sum(isinstance(row, Failed) and bool(known or not row.batch) for row in study_.runs)
     effect = 1.0 if known else len(rows) / len({str(row.set) for row in rows})
     return Ground(run.raster, [Source(1, prefixes, weights / weights.sum(), failed, run.raster.offset, effect)], None,
-                  {1: weighted.set} if weighted else {}, lost_much(rows))
+                  {1: weighted.set} if weighted else {}, find_zone_doubts(rows))
 
 
-def lost_much(rows: Sequence[Finished]) -> List[Finding]:
-    """Of runs whose mass went where no map shows it."""
-    return [one for one in judged.lost(rows) if one.kind == "lost much"]
+def find_zone_doubts(rows: Sequence[Finished]) -> List[Finding]:
+    """Of runs whose mass went, or goes on, where no map shows it."""
+    return [one for one in (*judged.lost(rows), *judged.not_at_rest(rows)) if one.kind in GRAVE]
 
 
 def check_zones(ground: Ground, wanted: Sequence[float], name: object, text: str = "") -> None:
