@@ -250,7 +250,7 @@ def test_both_studies_give_one_number(done, tmp_path, monkeypatch, capsys):
             patch.setattr(study_command, "run_deck", how)
             assert cli.main(["study", "mine", "--levels", "1"]) == 2
         assert says in capsys.readouterr().err
-        for command in (["report", "mine"], ["export", "mine", "-o", "gis"]):
+        for command in (["report", "mine"], ["export", "mine", "-o", "gis"], ["export", "mine", "--zones", "0.5"]):
             assert cli.main(command) == 2
             assert "must hold the study of this site" in capsys.readouterr().err
         assert not list(mine.glob("*/study.yaml"))

@@ -98,10 +98,9 @@ def ground_of(name: str, warn) -> Ground:
                       [results.gravest(same, number) for kind, number in GRAVE.items()
                        if (same := [one for one in doubts if one.kind == kind])])
     study = study_file.study_in(folder, weighted=True)
-    if study is None and not (folder / "site.yaml").is_file():
+    if study is None:
         run = deposit.read_deposit(named_run.read_named_run(name).prefix, None, warn)
         return Ground(run.raster, [Source(1, [Path(run.prefix)], np.ones(1), 0, run.raster.offset)], None, {})
-    study = study or folder
     study_ = study_file.load_study(study / study_file.STUDY)
     weighted = ensemble_types.weighted(study_.ensemble)
     known = weighted.weights if weighted else None
