@@ -39,8 +39,8 @@ class Letter(NamedTuple):
     cut: degrees, of the road's edges, above which is removed; events: how many known events weigh the runs, None: none;
     reach: how far; roads: of a site with several, the worst first; lacks: kinds of findings, of what is not in it;
     size: what the size of the balls would change, a sentence without its full stop; chain: how often earthquakes block
-    the road, the same; bodies: volumes of several, one of which comes down in a run; drawn: an ensemble without a number
-    that no known events weigh, or that is withheld.
+    the road, the same; bodies: volumes of several, one of which comes down in a run; drawn: an ensemble without a
+    number that no known events weigh, or that is withheld.
     """
     released: float
     number: Optional[Headline]
