@@ -175,6 +175,16 @@ def test_what_leaves_on_the_road_or_close_to_it_might_have_stayed_there(lost, th
     assert [one["where"] for one in about["sides"]] == [where]
 
 
+@pytest.mark.parametrize("north, where", [(400, "close to it"), (200, "past")])
+def test_the_road_beside_a_heap_counts_and_not_its_lowest_end(north, where):
+    """It falls by 10 % to the north; the ground beyond it is level, and 1,000 m3 are 6.8 m high."""
+    ground = ground_of(np.zeros((ROWS, COLUMNS)), lost=1000.0)
+    ground.base[:, :41] = (40 - 0.1 * RASTER.transform.a * (ROWS - np.arange(ROWS)))[:, None]
+    left = balls((414, north, 100, 300), volume=1000.0)
+    about = passed.of_mass(ground, sides_of(box(400, 0, 410, 600)), left, math.tan(math.radians(30)))["left"]
+    assert [one["where"] for one in about["sides"]] == [where]
+
+
 def test_what_areas_and_sums_round_off_is_no_mass():
     """Where nothing lies, exactly nothing does; what is there counts, however little."""
     thickness, random = np.zeros((ROWS, COLUMNS)), np.random.default_rng(1)

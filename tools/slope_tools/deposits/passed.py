@@ -5,6 +5,7 @@ from typing import Any, Dict, NamedTuple, Optional
 
 import numpy as np
 from scipy import ndimage
+from scipy.spatial import cKDTree
 from shapely.geometry import LineString, Point
 from shapely.geometry.base import BaseGeometry
 from shapely.prepared import prep
@@ -20,7 +21,7 @@ AWAY = "away from it"        # before the road, which is behind
 CLOSE = "close to it"        # beyond the road, where what lies may have to be removed
 COUNT = BEFORE, ON, CLOSE    # what left there might lie on the road, or keep there what does
 PARTS = BEFORE, ON, PAST
-HIGHEST = 1e5                # m, no ground is as high: a road whose height nobody knows counts as the lowest
+HIGHEST = 1e5                # m, no ground is as high: a road whose height nobody knows counts as so far below
 ROUNDING = 1e-9              # of the mass, of a cell: less is what areas and sums round off
 
 
@@ -95,8 +96,8 @@ def reach_of_heap(left: Gone, past: np.ndarray, ground: Ground, road: BaseGeomet
     """m from the road, for each ball: had all that left beyond it (past) been stopped where this one left, it would lie
     on the road.
 
-    As a cone as steep as the cut on the ground there, its foot as high as the road's lowest cell; or, since what leaves
-    flows, as a deposit as thick as that on the road.
+    As a cone as steep as the cut on the ground there, which counts as far as it is higher than the road beside it; or,
+    since what leaves flows, as a deposit as thick as that on the road.
     """
     if not past.any():
         return np.zeros(len(past))
@@ -105,9 +106,10 @@ def reach_of_heap(left: Gone, past: np.ndarray, ground: Ground, road: BaseGeomet
     thick = float(np.nan_to_num(ground.raster.z)[covered].max(initial=0.0))
     nearest = ndimage.distance_transform_edt(~ground.known, return_distances=False, return_indices=True)
     cells = np.floor(~ground.raster.transform @ left.place.T).astype(int)[::-1]
-    at = np.clip(cells.T, 0, np.array(ground.base.shape) - 1).T
-    lowest = ground.base[covered & ground.known].min(initial=HIGHEST)
-    drop = (lowest if lowest < HIGHEST else -HIGHEST) - ground.base[tuple(nearest[:, at[0], at[1]])]
+    at = np.clip(cells.T, 0, np.array(ground.base.shape) - 1)
+    beside = np.argwhere(covered & ground.known)
+    height = ground.base[tuple(beside[cKDTree(beside).query(at)[1]].T)] if len(beside) else -HIGHEST
+    drop = height - ground.base[tuple(nearest[:, at[:, 0], at[:, 1]])]
     cone = (3 * float(left.volume[past].sum()) / (math.pi * rise)) ** (1 / 3)
     return np.maximum(cone - drop / rise, thick / rise)
 
