@@ -11,8 +11,6 @@ from ..digits import cents, rounded
 from ..errors import SlopeError
 from ..options import Overwrite, flag, option, positional, several, parse_whole_number
 
-BEFORE = 0.05       # of a frequency, what fails below the hazard curve's first peak: more is said
-BEYOND = 0.1        # of a frequency, what peaks above its last may add: the same
 DESCRIPTION = "How likely the bodies of find_slip fail at a peak acceleration."
 EPILOG = """\
 SLIPS: PREFIX.slips.csv of find_slip or slope stability, with its other files beside it, or the folder with it. Or the
@@ -213,11 +211,11 @@ def find_fragility_warnings(curves, peaks, bodies, pseudo_static, records, hazar
         if curve.fit and curve.fit.at_hclpf > 1.5 * curve.fit.at_hclpf_fitted:
             yield findings.Finding("HCLPF", {"which": curve.title, "percent": 100 * float(curve.fit.at_hclpf),
                                              "fitted": 100 * float(curve.fit.at_hclpf_fitted)})
-        if curve.frequency and curve.frequency.before > BEFORE * curve.frequency.total.value:
+        if curve.frequency and curve.frequency.begins_late:
             yield findings.Finding("before the curve", {
                 "which": curve.title, "percent": 100 * curve.frequency.before / float(curve.frequency.total.value),
                 "least": curve.frequency.least})
-        if curve.frequency and curve.frequency.beyond > BEYOND * curve.frequency.total.value:
+        if curve.frequency and curve.frequency.ends_early:
             yield findings.Finding("beyond the curve", {"which": curve.title,
                                                         "per_year": float(curve.frequency.beyond)})
 
@@ -234,8 +232,7 @@ def describe_fragility(curves, folder, files):
                      f"beta_r {curve.fit.beta_r:.2f}, beta_u {curve.fit.beta_u:.2f}, HCLPF {curve.fit.hclpf:.4g} gal")
         if curve.frequency:
             total = curve.frequency.total
-            least = "at least " * (curve.frequency.before > BEFORE * total.value
-                                   or curve.frequency.beyond > BEYOND * total.value)
+            least = "at least " * (curve.frequency.begins_late or curve.frequency.ends_early)
             line += (f"; fails {least}{float(total.value):.3g} times per year (90 %: {float(total.low):.3g} to "
                      f"{float(total.high):.3g})")
             if curve.name == ANY:

@@ -20,13 +20,12 @@ from ..tables import intensity, study_types
 from ..tables.rows import Row, finished_of
 from ..tables.sizes import VARIABLE as SIZE
 from . import chain
-from .fragility import Frequency
+from .fragility import BEYOND, Frequency
 from .fragility_files import Fragility
 
 CURVES, PER_YEAR = "chain.csv", "chain_per_year.csv"
 QUANTITY = intensity.QUANTITY
 LEVELS = 41             # volumes of the curves, beside those that are asked for
-BEYOND = 0.1            # of a frequency; if peaks above the curve's last may add more, it is said
 
 
 class Chain(NamedTuple):

@@ -23,6 +23,9 @@ REPLICATES = 16         # sequences
 RATIOS = np.concatenate([np.geomspace(1e-4, 0.1, 60, endpoint=False), np.linspace(0.1, 0.9, 100, endpoint=False),
                          1 - np.geomspace(0.1, 1e-4, 60)])
 LARGE = 1.645           # 95 % of a normal distribution
+# of a frequency, from which on it is a least one: what fails below the hazard curve's first peak, and what peaks above
+# its last may add
+BEFORE, BEYOND = 0.05, 0.1
 
 
 class Soil(NamedTuple):
@@ -213,6 +216,15 @@ class Frequency(NamedTuple):
     beyond: Any         # that the total can be larger by: peaks above the curve's last count as the last
     before: float = 0.0     # of the total, what fails below the curve's first peak, and counts as failing at it
     least: float = 0.0      # the smallest of these capacities, gal
+
+    @property
+    def begins_late(self) -> bool:
+        """Whether the hazard curve does, for a body."""
+        return bool(self.before > BEFORE * self.total.value)
+
+    @property
+    def ends_early(self) -> bool:
+        return bool(self.beyond > BEYOND * self.total.value)
 
 
 def frequency(capacity: np.ndarray, hazard: Hazard, peaks: np.ndarray) -> Frequency:
