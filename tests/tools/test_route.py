@@ -1172,3 +1172,14 @@ def test_whether_a_body_reaches_the_road(tmp_path, ends, reach, said):
     found = search.reaches(dataclasses.replace(given, reach=reach), mass, LineString(ends).buffer(4, cap_style=2))
     assert (said in found["why_not"]) and bool(said) == bool(found["why_not"])
     assert 0 < found["known_share"] <= 1
+
+
+def test_a_flank_of_a_wide_body_reaches_a_road_beside_the_path_of_its_middle(tmp_path):
+    mass, given = hill(tmp_path / "slips" / "1")
+    x, y = run_helpers.centres(60, 40, 5.0)
+    depth = 1.5 * ((abs(x - 100) <= 80) & (abs(y - 180) <= 10))
+    road, margin = LineString([(25, 20), (25, 280)]).buffer(4), mass.volume ** (1 / 3)
+    assert search.reaches(given, mass, road)["why_not"]
+    wide = mass._replace(depth=depth * mass.volume / (depth.sum() * 25))
+    assert wide.volume ** (1 / 3) == pytest.approx(margin) and margin < 100 - 29 and not search.reaches(
+        given, wide, road)["why_not"]
