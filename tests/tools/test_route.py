@@ -241,7 +241,11 @@ def test_mass_that_leaves_beside_the_road_is_said_with_what_is_blocked(two):
         study["runs"][2].update(about)
         path.write_text(yaml.safe_dump(study))
     found, _ = made(*two)
-    assert all("at least" in text for text in route_page.sentences(found))
+    *answer, size = route_page.sentences(found)
+    assert all("at least" in text for text in answer)
+    balls = min(row.released_m3 / row.ball_m3 for body in two[1]["bodies"] for row in
+                results.read_body(two[0], body).finished)
+    assert size.startswith(f"bodies are computed with {balls:,.0f} balls or more; what finer ones")
     said = list(route_page.list_route_caveats(choices.read_route_choices(two[0]), found))
     assert said[0].startswith("body 1: 5 % of the released volume left the terrain before, beside or on the road")
     assert said[1].startswith("body 2: 1 of 4 runs failed or are not at rest"), said
