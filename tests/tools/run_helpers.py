@@ -105,6 +105,17 @@ def examples(command, package="slope_tools.commands"):
     return found
 
 
+def blank_figures(patch):
+    """The maps and charts of reports, of which not even the figures are made up, are blank from now on."""
+    png, svg = "data:image/png;base64,AAAA", "data:image/svg+xml;base64,AAAA"
+    for name in ("value_map", "terrain_map", "small_maps", "road_map"):
+        patch.setattr(f"slope_tools.plots.figure_maps.{name}", lambda *_, **__: png)
+    patch.setattr("slope_tools.plots.figure_maps.mesh_map", lambda *_, **__: (png, False))
+    for name in ("chart", "bars", "convergence"):
+        patch.setattr(f"slope_tools.plots.figure_charts.{name}", lambda *_, **__: svg)
+    patch.setattr("slope_tools.plots.figure_charts.draw_section", lambda *_: (svg, 1, None))
+
+
 def run_command(command, arguments, capsys):
     """Run `slope COMMAND ARGUMENTS`; gives status, stdout, stderr."""
     return called(capsys, [command, *shlex.split(arguments)])
