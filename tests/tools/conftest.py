@@ -108,7 +108,7 @@ def pytest_configure(config):
 
 
 def blank(module, name, made):
-    """made(...) stands for module.name(...) of the tools, if that is imported, unless the test looks at its pictures."""
+    """made(...) stands for module.name(...) of the tools, if that is imported, unless a test looks at its pictures."""
     module = sys.modules.get(f"slope_tools.{module}")
     real = module and getattr(module, name)
     if module and not hasattr(real, "real"):

@@ -264,7 +264,8 @@ def fails(*_, **__):
     raise SlopeError("x", "must fail")
 
 
-def test_the_report_of_a_sites_folder(done, tmp_path):
+def test_the_report_of_a_sites_folder(done, tmp_path, blank_pictures):
+    blank_pictures()
     made = inside(done[0], "report", "mine", "--no-film", "-o", tmp_path / "again.html")
     assert made.returncode == 0 and (tmp_path / "again.html").stat().st_size > 0, made.stderr
     bare = tmp_path / "bare"
@@ -275,8 +276,9 @@ def test_the_report_of_a_sites_folder(done, tmp_path):
     assert "slope study bare" in found.stderr and [path.name for path in bare.iterdir()] == ["site.yaml"]
 
 
-def test_the_page_of_a_site_and_its_scenarios(done, tmp_path):
+def test_the_page_of_a_site_and_its_scenarios(done, tmp_path, blank_pictures):
     """Beside its report: what each releases and says, and the outlines; a file of the user's of that name stays."""
+    blank_pictures()
     mine = tmp_path / "mine"
     shutil.copytree(done[0] / "mine", mine)
     for name in ("dem.tif", "release.geojson", "road.geojson"):
