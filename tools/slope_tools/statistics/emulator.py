@@ -37,8 +37,8 @@ class Emulator:
         from sklearn.exceptions import ConvergenceWarning       # half a second to import
         from sklearn.gaussian_process import GaussianProcessRegressor
         from sklearn.gaussian_process.kernels import ConstantKernel, Matern, WhiteKernel
-        for one in (ConstantKernel, Matern, WhiteKernel):       # asked for in each step of a fit, a sixth of its time
-            one.__init__.__signature__ = inspect.signature(one.__init__)
+        for part in (ConstantKernel, Matern, WhiteKernel):      # asked for in each step of a fit, a quarter of its time
+            part.__init__.__signature__ = inspect.signature(part.__init__)
         points, values = np.asarray(points, float), np.asarray(values, float)
         self.mean, self.scale = float(values.mean()), float(values.std()) or 1.0
         kernels = [kernel] if kernel else [
