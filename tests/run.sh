@@ -64,8 +64,13 @@ if [[ $kind == changed ]]; then
 fi
 
 failed=0
+# in a fresh build: Python compiles the tests and the tools once, not in each of the workers
+if ((${#files[@]})) && [[ ! -d $top/build/tests/pycache ]]; then
+  sh "$top/build/tests/pytest.sh" --collect-only "${files[@]}" >/dev/null &
+fi
 ctest --test-dir "$top/build" -j "$jobs" --output-on-failure "${units[@]}" >"$work/ctest.log" || failed=1
 grep -v " Passed " "$work/ctest.log" | sed '/^ *Start /d' || true
+wait || true
 if ((${#files[@]})); then
   sh "$top/build/tests/pytest.sh" -n "$((jobs + 1))" --dist loadfile --basetemp "$work/pytest" "${mark[@]}" "${files[@]}" |
     tee "$work/pytest.log" || failed=1

@@ -106,6 +106,12 @@ def read_asc(path):
     return values[::-1], header
 
 
+def left_out(log):
+    """Share of the balls that delete_balls removed."""
+    gone, left = map(int, re.search(r"Delete_balls: (\d+) balls .* (\d+) balls left", log).groups())
+    return gone / (gone + left)
+
+
 def flat_numbers(summary, groups=("release", "volume", "travel", "largest")):
     """The numbers in some groups of a summary of fix deposit/grid, by their path: {"travel.top.0": 3.0}."""
     found = {}

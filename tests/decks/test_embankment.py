@@ -8,7 +8,7 @@ import numpy
 import pytest
 import yaml
 
-from deck_helpers import read_asc, run_deck
+from deck_helpers import left_out, read_asc, run_deck
 
 CASE = Path(__file__).resolve().parents[2] / "inputs" / "20_embankment"
 BODY = {"ours": 48858, "paper": 24628}    # m3, the slip sphere below the face, from columns every 0.125 m
@@ -77,12 +77,6 @@ def test_mass_leaves_the_face_for_the_road(smooth):
     _, (_, summary, thickness, header) = smooth
     assert beyond(thickness, header, 80.0) > 0.05 * summary["volume"]["released"]
     assert summary["travel"]["centroid"] > 10.0
-
-
-def left_out(log):
-    """Share of the balls that delete_balls removed."""
-    gone, left = map(int, re.search(r"Delete_balls: (\d+) balls .* (\d+) balls left", log).groups())
-    return gone / (gone + left)
 
 
 SETUP = "\n".join("run 0" if line.startswith("run ") else line for line in DECK.splitlines())

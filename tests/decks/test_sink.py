@@ -10,7 +10,7 @@ from matplotlib.path import Path
 from scipy.interpolate import RegularGridInterpolator
 from scipy.spatial import cKDTree
 
-from deck_helpers import run_deck, write_asc
+from deck_helpers import left_out, run_deck, write_asc
 
 SLOPE = math.tan(math.radians(28))      # of the ground, up along x; it is level beyond the toe at x = 14
 CENTRE, RADIUS = numpy.array([26.0, 20.0, 12.0]), 12.0
@@ -67,12 +67,6 @@ def read(path):
     return numpy.loadtxt(path, ndmin=2) if path.exists() else None
 
 
-def removed(log):
-    """Share of the soil that delete_balls left out."""
-    gone, left = map(int, re.search(r"Delete_balls: (\d+) balls .* (\d+) balls left", log).groups())
-    return gone / (gone + left)
-
-
 def on_nodes(log, balls):
     """The balls on the plan grid, which come first."""
     return balls[:int(re.search(r"balls slip: \d+ fixed balls of diameter \S+ \((\d+) on the plan grid", log)[1])]
@@ -114,7 +108,7 @@ def test_a_ground_that_is_sunk_moves_along_its_normal(tmp_path):
 @pytest.mark.parametrize("d", [3.0, 2.0, 1.3])
 def test_nothing_is_left_out_of_a_body_on_sunk_balls(tmp_path, d):
     log, slip, field = place(tmp_path, d=d)
-    assert removed(log) == 0
+    assert left_out(log) == 0
     assert f"sunk by {d:g} and continued up to region ground)" in log
     assert f"plan nodes not outside region slip sunk by {d:g})" in log
     assert closest(field) > 0.99 * d
@@ -203,17 +197,17 @@ def test_a_field_that_is_not_sunk_has_a_step(tmp_path):
 
 def test_on_the_surface_itself_many_are(tmp_path):
     log, slip, _ = place(tmp_path, sink=0)
-    assert removed(log) > 0.15
+    assert left_out(log) > 0.15
     assert "sunk" not in log
     first = slip
     log, slip, _ = place(tmp_path, (SLIP + FIELD + DELETE).replace(" sink {sink}", ""))
-    assert removed(log) > 0.15 and numpy.array_equal(first, slip)
+    assert left_out(log) > 0.15 and numpy.array_equal(first, slip)
 
 
 @pytest.mark.parametrize("field", [0.7, 3.0])
 def test_field_balls_of_another_size_leave_room_too(tmp_path, field):
     log, _, balls = place(tmp_path, field=field)
-    assert removed(log) < 0.03      # larger ones reach a few balls on the rim
+    assert left_out(log) < 0.03      # larger ones reach a few balls on the rim
     assert closest(balls) > 0.99 * 2.0
     assert ("tight for balls of diameter 2" in log) == (field > 2.0)
 
@@ -238,7 +232,7 @@ def test_a_pit_with_walls(tmp_path):
     fixes = SLIP.replace("surface slip", "surface pit") + FIELD + DELETE
     for d in (1.5, 1.0):
         log, bottom, field = place(tmp_path, fixes, body="pit", d=d, outside="pit")
-        assert removed(log) < 0.01
+        assert left_out(log) < 0.01
         inside = bottom[(bottom[:, 0] > 34) & (bottom[:, 0] < 38) & (bottom[:, 1] > 43) & (bottom[:, 1] < 46)]
         assert inside[:, 2] == pytest.approx(ground(inside[:, 0]) - 3.0 - d * math.sqrt(1 + SLOPE**2), abs=1e-3)
         # the walls are balls of the field, d outside of the polygon, from the ground to the bottom
@@ -251,7 +245,7 @@ def test_outside_may_name_more_than_the_body(tmp_path):
     """Two bodies and their union; a prism without a bottom around a body."""
     pit = SLIP.replace("fix slip", "fix bottom").replace("surface slip", "surface pit").replace("slip.xyz", "pit.xyz")
     log, _, field = place(tmp_path, SLIP + pit + FIELD + DELETE, body="both", outside="both")
-    assert removed(log) < 0.01
+    assert left_out(log) < 0.01
     assert "plan nodes not outside region both sunk by 2, sunk by 2)" in log
     assert closest(field) > 0.99 * 2.0
     around = "region around block 4 48 2 38 INF INF units box\n"

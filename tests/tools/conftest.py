@@ -107,25 +107,27 @@ def pytest_configure(config):
     config.addinivalue_line("markers", "drawn: the pictures of this test or file are rendered, as it looks at them")
 
 
+def blank(module, name, made):
+    """made(...) stands for module.name(...) of the tools, if that is imported, unless a test looks at its pictures."""
+    module = sys.modules.get(f"slope_tools.{module}")
+    real = module and getattr(module, name)
+    if module and not hasattr(real, "real"):
+        def save(*args, **options):
+            return real(*args, **options) if rendered else made(*args, **options)
+        save.real = real
+        setattr(module, name, save)
+
+
 def save_blank():
-    """Figures are made up, and saved blank: rendering takes most of the time of many commands.
+    """Figures are made up, and saved blank, films too: rendering takes most of the time of many commands.
 
     Not before something has imported matplotlib, which takes time, too: the first test that draws may be rendered.
     """
-    pictures, figures = (sys.modules.get(f"slope_tools.drawing.{name}") for name in ("pictures", "figures"))
-    if pictures and not hasattr(pictures.save, "real"):
-        def save(figure, path, **options):
-            if rendered:
-                return save.real(figure, path, **options)
-            return pictures.disk.write_file(path, BLANK["png"])
-        save.real, pictures.save = pictures.save, save
-    if figures and not hasattr(figures.data_uri, "real"):
-        def data_uri(figure, kind="png"):
-            if rendered:
-                return data_uri.real(figure, kind)
-            mime = {"png": "image/png", "svg": "image/svg+xml"}[kind]
-            return f"data:{mime};base64,{base64.b64encode(BLANK[kind]).decode('ascii')}"
-        data_uri.real, figures.data_uri = figures.data_uri, data_uri
+    blank("drawing.pictures", "save", lambda figure, path, **_: sys.modules["slope_tools.disk"].write_file(
+        path, BLANK["png"]))
+    blank("drawing.figures", "data_uri", lambda figure, kind="png": "data:image/{};base64,{}".format(
+        {"png": "png", "svg": "svg+xml"}[kind], base64.b64encode(BLANK[kind]).decode("ascii")))
+    blank("animation.film", "encode", lambda *_: b"film")
 
 
 def save_blank_unless_drawn(node):
@@ -148,12 +150,5 @@ def blank_in_tests(request):
 @pytest.fixture
 def blank_pictures(monkeypatch):
     """blank_pictures(): the maps and charts of a report are blank from now on, as drawing takes most of its time."""
-    def blank():
-        from slope_tools.plots import figure_charts, figure_maps
-        for name in ("value_map", "terrain_map", "small_maps", "road_map"):
-            monkeypatch.setattr(figure_maps, name, lambda *_, **__: "data:image/png;base64,AAAA")
-        monkeypatch.setattr(figure_maps, "mesh_map", lambda *_, **__: ("data:image/png;base64,AAAA", False))
-        for name in ("chart", "bars", "convergence"):
-            monkeypatch.setattr(figure_charts, name, lambda *_, **__: "data:image/svg+xml;base64,AAAA")
-        monkeypatch.setattr(figure_charts, "draw_section", lambda *_: ("data:image/svg+xml;base64,AAAA", 1, None))
-    return blank
+    from run_helpers import blank_figures
+    return lambda: blank_figures(monkeypatch)

@@ -1,18 +1,24 @@
 """Runs of fix deposit/grid made by hand, for the tests of the commands that evaluate them."""
+import contextlib
 import importlib
+import io
 import json
 import math
 import os
 import re
 import shlex
+import subprocess
 from pathlib import Path
 
 import numpy as np
+import pytest
 import rasterio
 import yaml
 from affine import Affine
 from rasterio.crs import CRS
 from shapely.geometry import mapping
+
+import tiny_collapse
 
 from slope_tools import cli
 
@@ -96,6 +102,27 @@ def called(capsys, words):
     return status, *capsys.readouterr()
 
 
+def inside(folder, *words):
+    """Run `slope WORDS` in a folder, in this process; gives what a finished one has."""
+    out, err, back = io.StringIO(), io.StringIO(), os.getcwd()
+    os.chdir(folder)
+    try:
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+            status = cli.main([str(word) for word in words])
+    except SystemExit as error:
+        status = error.code
+    finally:
+        os.chdir(back)
+    return subprocess.CompletedProcess(words, status, out.getvalue(), err.getvalue())
+
+
+def slope(folder, *words):
+    """The same with a LAMMPS program: half a second less than a process of its own."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("LMP", str(Path(tiny_collapse.LMP).absolute()))
+        return inside(folder, *words)
+
+
 def examples(command, package="slope_tools.commands"):
     """The examples on a command's page and in its help, without its name: not what has the syntax."""
     page = (TOP / "doc" / "src" / f"tool_{command}.rst").read_text(encoding="ascii")
@@ -103,6 +130,17 @@ def examples(command, package="slope_tools.commands"):
     found = [line for line in re.findall(rf"^ +tools/slope {command} (.*)", text, re.M) if "keyword" not in line]
     assert len(found) >= 4
     return found
+
+
+def blank_figures(patch):
+    """The maps and charts of reports, of which not even the figures are made up, are blank from now on."""
+    png, svg = "data:image/png;base64,AAAA", "data:image/svg+xml;base64,AAAA"
+    for name in ("value_map", "terrain_map", "small_maps", "road_map"):
+        patch.setattr(f"slope_tools.plots.figure_maps.{name}", lambda *_, **__: png)
+    patch.setattr("slope_tools.plots.figure_maps.mesh_map", lambda *_, **__: (png, False))
+    for name in ("chart", "bars", "convergence"):
+        patch.setattr(f"slope_tools.plots.figure_charts.{name}", lambda *_, **__: svg)
+    patch.setattr("slope_tools.plots.figure_charts.draw_section", lambda *_: (svg, 1, None))
 
 
 def run_command(command, arguments, capsys):

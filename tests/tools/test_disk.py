@@ -15,7 +15,6 @@ import re
 import resource
 import signal
 import subprocess
-import sys
 import time
 from pathlib import Path
 
@@ -25,7 +24,8 @@ import pytest
 import rasterio
 import yaml
 
-from tiny_collapse import DECK, LMP, TOP, read_asc, write_case
+import run_helpers
+from tiny_collapse import DECK, LMP, read_asc, write_case
 
 from slope_tools import cli, disk  # noqa: F401
 from slope_tools.case import restarts as files, run_folders  # noqa: F401
@@ -33,11 +33,11 @@ from slope_tools.errors import SlopeError
 from slope_tools.drawing import figures, maps  # noqa: F401
 from slope_tools.survey import rasters  # noqa: F401
 
-TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 WRITES = ("restart     50 ${out}.1.restart ${out}.2.restart\n"
           "dump all all custom 50 ${out}.dump id type diameter x y z\n"
           "run         ${steps}\n")
 KILLS = 8
+pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 MARKERS = "volume.yaml", "score.yaml", "travel.yaml", "export.yaml"     # of sets of files that belong together
 KEPT = {"study": "out", "sensitivity": "sensitivity", "calibrate": "calibrate"}     # commands with runs: their folders
 
@@ -49,10 +49,8 @@ def case(tmp_path_factory):
     deck = write_case(folder / "case")
     deck.write_text(DECK.replace("run         ${steps}\n", WRITES))
     (folder / "mapped.csv").write_text("5,2\n30,2\n30,20\n5,20\n")
-    environment = {**os.environ, "LMP": LMP}
     for name, kept in KEPT.items():
-        subprocess.run([sys.executable, TOOLS / "slope", *TOOLS_OUTPUTS[name][0].format(kept).split()], cwd=folder,
-                       env=environment, check=True, capture_output=True)
+        run_helpers.slope(folder, *TOOLS_OUTPUTS[name][0].format(kept).split()).check_returncode()
     return folder
 
 

@@ -187,11 +187,10 @@ def test_a_second_ensemble_fits_nothing_and_maps_nothing(again):
     assert made == everything and {"out/exceedance_0.1m.asc", "out/ensemble/thickness_q50.asc",
                                    "out/known_events/thickness.tif", "out/influence.csv"} <= set(before)
     assert again() == (set(), before)
-    for name in KEPT:
+    for k, name in enumerate(KEPT):      # gone, or no file of ours
         Path("out", name).unlink()
-    assert again() == (everything, before)
-    for name in KEPT:
-        shutil.copy("case/in.tiny", Path("out", name))
+        if k % 2:
+            shutil.copy("case/in.tiny", Path("out", name))
     assert again() == (everything, before)
 
     # files of the user's

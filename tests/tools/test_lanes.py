@@ -25,7 +25,7 @@ import test_site
 from tiny_collapse import LMP, write_case
 
 from slope_tools.deposits import clearing, volume_files
-from slope_tools.deposits.axis import Axis, Span, longest_gap, merged
+from slope_tools.deposits.axis import Axis, Span, longest_gap, merged, parts_of_mask
 from slope_tools.report import road_part
 from slope_tools.report.numbers import Numbers
 from slope_tools.statistics import rounding
@@ -187,6 +187,12 @@ def test_stretch_and_passable_width_beside_a_cone(way, cell):
     most = 0.005 if way == "curved" else 0.001
     assert one.passable == pytest.approx(4.25, rel=most)
     assert one.along == pytest.approx((30 - half, 30 + half), abs=most * half)
+
+
+@pytest.mark.parametrize("area", [box(1, 1, 5, 7), box(-3, -3, 5, 5), Polygon([(1, 1), (11, 2), (6, 7.5)])])
+def test_the_part_of_a_mask_that_is_all_true_is_the_area_in_it(area):
+    [part] = parts_of_mask(np.ones((4, 6), bool), Affine(2, 0, 0, 0, -2, 8), area)
+    assert part.symmetric_difference(area.intersection(box(0, 0, 12, 8))).area < 1e-4
 
 
 def test_the_closed_form_of_a_half_road():

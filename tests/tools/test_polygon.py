@@ -527,11 +527,7 @@ def test_all_of_several_well_known_texts_are_read(written, between):
 
 # --- bad input: what test_wrong_inputs.py does not have ---
 
-def wkt(text):
-    return lambda path: Path(path).write_text(text)
-
-
-def csv(text):
+def of(text):
     return lambda path: Path(path).write_text(text)
 
 
@@ -541,37 +537,37 @@ SQUARE = "10,10\n20,10\n20,20\n10,20\n"
 
 @pytest.mark.parametrize("name, make, options, message", [
     ("a.csv", lambda path: None, "", "a.csv: must be an existing file"),
-    ("a.csv", csv("# nothing\n"), "", "a.csv: must hold a polygon, it is empty"),
-    ("a.csv", csv("1,2\nx,y\n"), "", "a.csv: line 2: must be two numbers, x,y, got x,y"),
-    ("a.csv", csv("1,2,3\n"), "", "a.csv: line 1: must be two numbers, x,y, got 1,2,3"),
-    ("a.csv", csv("1,nan\n"), "", "a.csv: line 1: must be two finite numbers within +-1e+12, x,y, got 1,nan"),
-    ("a.csv", csv(SQUARE + "\n1,2\n3,4\n1,2\n"), "--local", "a.csv: line 6: a ring must have at least 3 points, got 2"),
-    ("a.csv", csv("1,1\n2,2\n4,4\n"), "--local", "a.csv: line 1: must have an area > 0"),
-    ("a.csv", csv(SQUARE + "\n30,30\n40,40\n40,30\n30,40\n"), "--local",
+    ("a.csv", of("# nothing\n"), "", "a.csv: must hold a polygon, it is empty"),
+    ("a.csv", of("1,2\nx,y\n"), "", "a.csv: line 2: must be two numbers, x,y, got x,y"),
+    ("a.csv", of("1,2,3\n"), "", "a.csv: line 1: must be two numbers, x,y, got 1,2,3"),
+    ("a.csv", of("1,nan\n"), "", "a.csv: line 1: must be two finite numbers within +-1e+12, x,y, got 1,nan"),
+    ("a.csv", of(SQUARE + "\n1,2\n3,4\n1,2\n"), "--local", "a.csv: line 6: a ring must have at least 3 points, got 2"),
+    ("a.csv", of("1,1\n2,2\n4,4\n"), "--local", "a.csv: line 1: must have an area > 0"),
+    ("a.csv", of(SQUARE + "\n30,30\n40,40\n40,30\n30,40\n"), "--local",
      "a.csv: line 6: must be polygons that do not cross or touch themselves, got Self-intersection at 35 35"),
-    ("a.csv", csv(SQUARE + "\n15,15\n25,15\n25,25\n15,25\n"), "--local",
+    ("a.csv", of(SQUARE + "\n15,15\n25,15\n25,25\n15,25\n"), "--local",
      "a.csv: line 6: a ring must not cross another one, line 1, got an overlap at 17.5 17.5"),
-    ("a.csv", csv(SQUARE + "\n" + SQUARE), "--local", "a.csv: must have an area > 0"),
-    ("a.csv", csv(SQUARE), "",
+    ("a.csv", of(SQUARE + "\n" + SQUARE), "--local", "a.csv: must have an area > 0"),
+    ("a.csv", of(SQUARE), "",
      "a.csv: must overlap the terrain (with --local it would), local x y 0 0 100 80, got 12010 "
      "-33990 12020 -33980"),
-    ("a.csv", csv(SQUARE.replace("0,", "000,")), "", "a.csv: must overlap the terrain, local x y 0 0 100 80, got "),
+    ("a.csv", of(SQUARE.replace("0,", "000,")), "", "a.csv: must overlap the terrain, local x y 0 0 100 80, got "),
     # degrees, by chance within the terrain's metres
     ("a.geojson", lambda path: geojson(path, box(39.0, 36.0, 39.1, 36.1)), "",
      "a.geojson: must overlap the terrain, local"),
-    ("a.wkt", wkt("POLYGON ((1 1, 2 2"), "", "a.wkt: line 1: must be WKT such as POLYGON"),
-    ("a.wkt", wkt("# road\nPOLYGON ((1 1, 2 1, 2 2, 1 1))\nPOLYGON ((1 1, x))"), "", "a.wkt: line 3: must be WKT"),
-    ("a.wkt", wkt("LINESTRING (1 1, 2 2)"), "", "a.wkt: line 1: must be a polygon, got LineString"),
-    ("a.wkt", wkt("POLYGON EMPTY"), "", "a.wkt: must hold a polygon, it is empty"),
-    ("a.wkt", wkt(BOW.wkt), "--local",
+    ("a.wkt", of("POLYGON ((1 1, 2 2"), "", "a.wkt: line 1: must be WKT such as POLYGON"),
+    ("a.wkt", of("# road\nPOLYGON ((1 1, 2 1, 2 2, 1 1))\nPOLYGON ((1 1, x))"), "", "a.wkt: line 3: must be WKT"),
+    ("a.wkt", of("LINESTRING (1 1, 2 2)"), "", "a.wkt: line 1: must be a polygon, got LineString"),
+    ("a.wkt", of("POLYGON EMPTY"), "", "a.wkt: must hold a polygon, it is empty"),
+    ("a.wkt", of(BOW.wkt), "--local",
      "a.wkt: line 1: must be polygons that do not cross or touch themselves, got Self-intersection at 15 15"),
     ("a.geojson", lambda path: geojson(path), "", "a.geojson: must hold a polygon, it is empty"),
     ("a.geojson", lambda path: geojson(path, moved(ROAD), moved(BOW), crs=CRS_M), "", "a.geojson: feature 1: must be "
      "polygons that do not cross or touch themselves, got Self-intersection at -11985 34015"),
-    ("a.geojson", wkt('{"type": "Polygon", "coordinates": [[[1'), "", "a.geojson: must be polygons that GDAL can read"),
-    ("a.shp", wkt("no shapes"), "", "a.shp: must be polygons that GDAL can read"),
-    ("a.wkt", wkt(moved(ROAD).wkt), "--assign-crs EPSG:1", "--assign-crs: must be a CRS such as EPSG:6677, got EPSG:1"),
-    ("a.wkt", wkt(moved(ROAD).wkt), "--assign-crs EPSG:6668", "a.wkt: coordinates in EPSG:6668 must be longitude and "
+    ("a.geojson", of('{"type": "Polygon", "coordinates": [[[1'), "", "a.geojson: must be polygons that GDAL can read"),
+    ("a.shp", of("no shapes"), "", "a.shp: must be polygons that GDAL can read"),
+    ("a.wkt", of(moved(ROAD).wkt), "--assign-crs EPSG:1", "--assign-crs: must be a CRS such as EPSG:6677, got EPSG:1"),
+    ("a.wkt", of(moved(ROAD).wkt), "--assign-crs EPSG:6668", "a.wkt: coordinates in EPSG:6668 must be longitude and "
      "latitude"),
 ])
 def test_bad_input_is_one_line_and_nothing_is_written(slope, here, name, make, options, message):

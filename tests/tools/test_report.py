@@ -8,7 +8,6 @@ import shlex
 import shutil
 import struct
 import subprocess
-import sys
 from html.parser import HTMLParser
 from pathlib import Path
 from types import SimpleNamespace
@@ -20,8 +19,8 @@ from rasterio.crs import CRS
 from rasterio.warp import transform
 
 import made_rows
-from run_helpers import called, examples
-from tiny_collapse import LMP, TOP, height, read_asc, rows_of, write_case
+from run_helpers import called, examples, slope as slope_in
+from tiny_collapse import LMP, height, read_asc, rows_of, write_case
 
 from slope_tools import records
 from slope_tools.findings import encode_findings
@@ -34,7 +33,6 @@ from slope_tools.studies import outcome
 from slope_tools.tables import headline, judged, quantities, rows, study_file
 from slope_tools.tables.rows import finished_of
 
-TOOLS = Path(os.environ.get("SLOPE_TOOLS", TOP / "tools"))
 pytestmark = pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 
 
@@ -54,9 +52,8 @@ def make_studies(folder):
                         "${seed} units box\"\nneighbor    0.2")
     deck.write_text(text)
     for name, more in (("out", []), ("repeated", ["--repeat", "seed=1,2"])):
-        done = subprocess.run([sys.executable, str(TOOLS / "slope"), "study", "case/in.tiny", "--set", "rolling=0,0.3",
-                               "--set", "steps=1200", "-o", name, "--road", "case/road.csv", "--mesh", "4", *more],
-                              cwd=folder, env={**os.environ, "LMP": LMP}, capture_output=True, text=True, check=False)
+        done = slope_in(folder, "study", "case/in.tiny", "--set", "rolling=0,0.3", "--set", "steps=1200", "-o", name,
+                        "--road", "case/road.csv", "--mesh", "4", *more)
         assert done.returncode == 0, done.stderr
 
 

@@ -456,6 +456,7 @@ def test_without_webgl_the_page_says_so_and_the_rest_is_there(page, browser):
 
 # --- film ---
 
+@pytest.mark.drawn
 @pytest.mark.skipif(not (shutil.which("ffmpeg") and shutil.which("ffprobe")), reason="ffmpeg is not installed")
 def test_the_film_shows_the_run(case, capsys):
     assert cli.main(["report", "case"]) == 0
@@ -495,6 +496,7 @@ def test_without_ffmpeg_a_note_and_no_film(case, monkeypatch, capsys):
     assert not (case / "report.mp4").exists() and "No film: it needs ffmpeg" in (case / "report.html").read_text()
 
 
+@pytest.mark.drawn
 def test_an_ffmpeg_that_fails_leaves_no_film(case, monkeypatch, capsys):
     bad = case / "ffmpeg"
     bad.write_text("#!/bin/sh\necho no such codec >&2\nexit 1\n")

@@ -10,6 +10,7 @@ import yaml
 from shapely.geometry import LineString
 from shapely.ops import substring
 
+from run_helpers import blank_figures
 from test_site import BALLS, EAST, NORTH, ROAD, gis, make, slope, told, write_files, write_layer  # noqa: F401
 
 from slope_tools import digits
@@ -57,9 +58,10 @@ def done(tmp_path_factory):
     assert made.returncode == 0, made.stderr
     site = folder / "mine" / "site.yaml"
     site.write_text(site.read_text().replace("rolling: [0.0, 0.05, 0.1]", "rolling: [0.05, 0.1]").replace(
-        "spacing: [0.5, 0.7]", "spacing: []"))
+        "spacing: [0.5, 0.7]", "spacing: []").replace("largest_restitution: 0.9", "largest_restitution: null"))
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(volume_files, "draw_removal", lambda path, *_: path.touch())
+        blank_figures(patch)
         study = slope(folder, "study", "mine", "--paper", "--levels", "1")
     assert study.returncode == 0, study.stderr
     return folder, made.stdout, study.stdout
@@ -152,8 +154,9 @@ def test_the_worst_stands_for_the_site(done):
     assert again.returncode == 0, again.stderr
 
 
-def test_a_study_of_other_roads_is_no_answer(done, tmp_path):
+def test_a_study_of_other_roads_is_no_answer(done, tmp_path, blank_pictures):
     """Of a site or of one of its roads, by whatever path, for page, rasters and zones; `study` makes it anew."""
+    blank_pictures()
     folder = tmp_path / "other"
     shutil.copytree(done[0], folder)
     for words in ("report mine --no-film", "export mine", "export mine --zones 0.9", "report mine/roads/far --no-film",

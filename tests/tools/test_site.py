@@ -1,7 +1,5 @@
 """tools/slope site and slope study FOLDER: from a GeoTIFF and two layers of a GIS to a report; what is refused."""
-import contextlib
 import csv
-import io
 import json
 import os
 import re
@@ -17,7 +15,7 @@ import yaml
 from rasterio.warp import transform as warp
 from shapely.geometry import LineString, Polygon, mapping
 
-from run_helpers import called, write_tif
+from run_helpers import called, inside, slope, write_tif
 from tiny_collapse import LMP, rows_of, TOP
 
 from slope_tools import cli, digits, programs
@@ -74,27 +72,6 @@ def write_wall(path, x=38.0, low=(30, 50)):
     records = b"".join(struct.pack("<12fH", 0, 0, 0, *one, *two, *three, 0)
                        for one, two, three in ((a, b, c), (a, c, d)))
     path.write_bytes(b"\0" * 80 + struct.pack("<I", 2) + records)
-
-
-def inside(folder, *words):
-    """Run `slope WORDS` in this process; gives what a finished one has."""
-    out, err, back = io.StringIO(), io.StringIO(), os.getcwd()
-    os.chdir(folder)
-    try:
-        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-            status = cli.main([str(word) for word in words])
-    except SystemExit as error:
-        status = error.code
-    finally:
-        os.chdir(back)
-    return subprocess.CompletedProcess(words, status, out.getvalue(), err.getvalue())
-
-
-def slope(folder, *words):
-    """The same with a LAMMPS program."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("LMP", str(Path(LMP).absolute()))
-        return inside(folder, *words)
 
 
 def work_in(folder, patch):
@@ -191,10 +168,7 @@ def test_two_commands_lead_from_gis_files_to_a_report(done):
 
 def test_both_studies_give_one_number(done, tmp_path, monkeypatch, capsys):
     """The sweep's runs are taken over; an ensemble of a few runs beside them; the larger number, in both study.yaml."""
-    mine = tmp_path / "mine"
-    shutil.copytree(done[0] / "mine", mine)
-    for name in ("dem.tif", "release.geojson", "road.geojson"):
-        shutil.copy(done[0] / name, tmp_path)
+    mine = shutil.copytree(done[0], tmp_path, dirs_exist_ok=True) / "mine"
     pages = []
     (mine / "site.yaml").write_text((mine / "site.yaml").read_text().replace("points: 64", "points: 8"))
     monkeypatch.setattr(farther, "MOST", 0.0)       # runs that are added are tested elsewhere
@@ -264,7 +238,8 @@ def fails(*_, **__):
     raise SlopeError("x", "must fail")
 
 
-def test_the_report_of_a_sites_folder(done, tmp_path):
+def test_the_report_of_a_sites_folder(done, tmp_path, blank_pictures):
+    blank_pictures()
     made = inside(done[0], "report", "mine", "--no-film", "-o", tmp_path / "again.html")
     assert made.returncode == 0 and (tmp_path / "again.html").stat().st_size > 0, made.stderr
     bare = tmp_path / "bare"
@@ -275,12 +250,10 @@ def test_the_report_of_a_sites_folder(done, tmp_path):
     assert "slope study bare" in found.stderr and [path.name for path in bare.iterdir()] == ["site.yaml"]
 
 
-def test_the_page_of_a_site_and_its_scenarios(done, tmp_path):
+def test_the_page_of_a_site_and_its_scenarios(done, tmp_path, blank_pictures):
     """Beside its report: what each releases and says, and the outlines; a file of the user's of that name stays."""
-    mine = tmp_path / "mine"
-    shutil.copytree(done[0] / "mine", mine)
-    for name in ("dem.tif", "release.geojson", "road.geojson"):
-        shutil.copy(done[0] / name, tmp_path)
+    blank_pictures()
+    mine = shutil.copytree(done[0], tmp_path, dirs_exist_ok=True) / "mine"
     assert not (mine / "scenarios.html").exists()
     made = inside(tmp_path, "site", "mine", "--scenario", "small", "--volume", "800")
     assert made.returncode == 0, made.stderr
@@ -414,10 +387,7 @@ def test_runs_of_an_older_version_are_taken_over(done, tmp_path, monkeypatch):
     """They were in the folders of the parts, and are left there."""
     monkeypatch.setattr(study_command, "write_site_report", lambda *_, **__: None)
     monkeypatch.setattr(volume_files, "draw_removal", lambda path, *_: path.touch())
-    mine = tmp_path / "mine"
-    shutil.copytree(done[0] / "mine", mine)
-    for name in ("dem.tif", "release.geojson", "road.geojson"):
-        shutil.copy(done[0] / name, tmp_path)
+    mine = shutil.copytree(done[0], tmp_path, dirs_exist_ok=True) / "mine"
     before = {name: (mine / name).read_text() for name in ("study/combinations.csv",)}
     (mine / "step").mkdir()
     for path in runs_in(mine / "runs"):

@@ -17,7 +17,7 @@ import rasterio
 import yaml
 from shapely.geometry import Polygon
 
-from run_helpers import called, examples
+from run_helpers import called, examples, slope as slope_in
 from tiny_collapse import LMP, TOP, edit, processes_in, read_asc, rows_of, serial, write_case
 
 from slope_tools.case import decks, logs, run_folders, settings
@@ -165,10 +165,8 @@ def finished(tmp_path_factory):
     rasters.write_asc_local(folder / "case" / "terrain.asc", terrain._replace(
         crs=rasterio.crs.CRS.from_epsg(6677), offset=(-12000.0, 34000.0)), {})
     (folder / "case" / "road.csv").write_text("-11987,34000\n-11983,34000\n-11983,34024\n-11987,34024\n")
-    done = subprocess.run([*PROGRAM, "study", "case/in.tiny", "--set", "rolling=0,0.3", "--set", "friction=10,30",
-                           "--set", "steps=900", "-o", "out", "--road", "case/road.csv", "--mesh", "4",
-                           "--exceed", "0.1,0.8,5"],
-                          cwd=folder, env={**os.environ, "LMP": LMP}, capture_output=True, text=True, check=False)
+    done = slope_in(folder, "study", "case/in.tiny", "--set", "rolling=0,0.3", "--set", "friction=10,30", "--set",
+                    "steps=900", "-o", "out", "--road", "case/road.csv", "--mesh", "4", "--exceed", "0.1,0.8,5")
     assert done.returncode == 0, done.stderr
     return folder / "out", done.stdout, done.stderr
 

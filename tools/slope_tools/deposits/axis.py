@@ -11,7 +11,7 @@ from typing import List, NamedTuple, Sequence, Tuple
 import numpy as np
 from affine import Affine
 from rasterio.features import shapes
-from shapely.geometry import LineString, Point, Polygon, shape
+from shapely.geometry import LineString, Point, Polygon, box, shape
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import substring, unary_union
 
@@ -165,9 +165,13 @@ def parts_of_mask(mask, transform, area: BaseGeometry) -> List[Polygon]:
     window = mask[top:max(0, math.ceil(bottom)), left:max(0, math.ceil(right))].astype(np.uint8)
     if not window.any():
         return []
-    found = shapes(window, window.astype(bool), connectivity=4, transform=transform @ Affine.translation(left, top))
+    place = transform @ Affine.translation(left, top)
+    if window.all():        # as most are on a road that a deposit covers: half as long
+        found = [box(*(place @ (0, len(window))), *(place @ (len(window[0]), 0)))]
+    else:
+        found = [shape(one) for one, _ in shapes(window, window.astype(bool), connectivity=4, transform=place)]
     # cells that end where the area does would, by rounding, be hairlines in it, which join what is apart
-    return [part for one, _ in found for part in polygons_of(opened(shape(one).intersection(area), -SAME))]
+    return [part for one in found for part in polygons_of(opened(one.intersection(area), -SAME))]
 
 
 def opened(area: BaseGeometry, by: float) -> BaseGeometry:

@@ -21,7 +21,7 @@ from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence
 
 import numpy as np
 import rasterio
-from scipy.optimize import minimize_scalar
+import scipy
 from shapely.geometry import LineString, box
 from shapely.geometry.base import BaseGeometry
 
@@ -129,8 +129,8 @@ def minimise_offset(volume: Callable[[float], float], most: float, step: float, 
 
     if count:
         between = max(-most, best() - most / count), min(most, best() + most / count)
-        minimize_scalar(lambda offset: known.setdefault(float(offset), volume(float(offset))), bounds=between,
-                        method="bounded", options={"xatol": fine})
+        scipy.optimize.minimize_scalar(lambda offset: known.setdefault(float(offset), volume(float(offset))),
+                                       bounds=between, method="bounded", options={"xatol": fine})
     return best()
 
 

@@ -138,8 +138,9 @@ def folded(piece: Polygon) -> Tuple[np.ndarray, float]:
     """The middle line of a strip, from end to end: its outline is folded where its two halves lie closest together;
     how far they are apart, m.
     """
-    outline, count = piece.exterior, np.arange(SAMPLES)
-    points = np.array([outline.interpolate(k / SAMPLES, normalized=True).coords[0][:2] for k in count])
+    outline = np.asarray(piece.exterior.coords)[:, :2]
+    at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(outline, axis=0).T))])
+    points = np.column_stack([np.interp(np.linspace(0, at[-1], SAMPLES, endpoint=False), at, one) for one in outline.T])
     steps = np.arange(1, SAMPLES // 2)
     apart = [np.hypot(*(points[(k + steps) % SAMPLES] - points[(k - steps) % SAMPLES]).T).sum()
              for k in range(SAMPLES // 2)]

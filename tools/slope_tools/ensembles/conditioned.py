@@ -36,7 +36,7 @@ from dataclasses import dataclass
 from typing import Callable, ClassVar, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
-from scipy import linalg, stats
+from scipy import linalg, special
 
 from ..quantiles import within
 from ..statistics import designs, hazard
@@ -50,7 +50,7 @@ SIMULATED = 100         # designs of either kind
 LEVELS = 25             # values at which designs are compared
 UNSEEN = 0.5            # pairs of neighbours that differ, beside those that are seen: a few, or none, say little
 MOST_EMULATED = 400     # runs; with more of them the evenness of a design counts for nothing
-NORMAL = float(stats.norm.ppf((1 + hazard.CONFIDENCE) / 2))
+NORMAL = float(special.ndtri((1 + hazard.CONFIDENCE) / 2))
 
 
 class Weights(NamedTuple):

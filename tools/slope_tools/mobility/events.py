@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import List, NamedTuple, Sequence, Tuple
 
 import numpy as np
-from scipy import stats
+from scipy import special
 
 from ..errors import SlopeError
 
@@ -141,12 +141,12 @@ class Relation(NamedTuple):
     def quantile(self, share: float, volume: float, fall: float, confined: bool = False) -> float:
         """Length (m) that one more event stays within with this probability."""
         centre, scale = self._centre_and_scale(volume, fall, confined)
-        return float(10 ** (centre + stats.t.ppf(share, self.free) * scale))
+        return float(10 ** (centre + special.stdtrit(self.free, share) * scale))
 
     def exceedance(self, length, volume: float, fall, confined: bool = False) -> np.ndarray:
         """Probability that one more event with this fall (m) runs farther than length (m); arrays or numbers, > 0."""
         centre, scale = self._centre_and_scale(volume, fall, confined)
-        return stats.t.sf((np.log10(length) - centre) / scale, self.free)
+        return special.stdtr(self.free, (centre - np.log10(length)) / scale)
 
 
 def fit_relation(events: Sequence[Event], where="the set of events") -> Relation:

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import List, NamedTuple, Tuple
 
 import numpy as np
-from scipy import stats
+from scipy import special
 
 from ..errors import SlopeError
 
@@ -73,13 +73,13 @@ class LandslideKind(NamedTuple):
 
     def farthest(self, share: float, volume: float, fall: float) -> float:
         """Length (m) that this share of the landslides stay within, as exceedance() says it."""
-        score = float(stats.norm.ppf(share))
+        score = float(special.ndtri(share))
         return fall / 10 ** (self.median(volume) - score * self.deviations[int(score > 0)])
 
     def beyond(self, kind: str, length, volume: float, fall) -> np.ndarray:
         """Share of the landslides of a volume (million m3) and fall (m) that run farther than a length (m); arrays."""
         above = np.log10(np.asarray(fall, float) / length) - self.median(volume)
-        narrow, wide = (stats.norm.cdf(above / one) for one in self.deviations)
+        narrow, wide = (special.ndtr(above / one) for one in self.deviations)
         return {"landslides": np.maximum(narrow, wide), "landslides_narrow": narrow, "landslides_wide": wide}[kind]
 
 

@@ -9,7 +9,7 @@ import math
 from typing import NamedTuple, Optional
 
 import numpy as np
-from scipy import stats
+from scipy import special
 
 from . import fall_path
 from .body import Body
@@ -44,7 +44,7 @@ class Band(NamedTuple):
 
 def friction(volume: float, share: float = 0.5) -> float:
     """The coefficient that this share of the landslides of a volume (m3) is below."""
-    return float(10 ** (EXPONENT * math.log10(volume) + stats.norm.ppf(share) * DEVIATION))
+    return float(10 ** (EXPONENT * math.log10(volume) + special.ndtri(share) * DEVIATION))
 
 
 def reach(path: FallPath, slope: float) -> Optional[float]:

@@ -6,7 +6,7 @@ intensity are exact integrals of that.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import signal
+import scipy
 
 from ..errors import SlopeError
 from .quake_records import G, GAL, UP
@@ -88,11 +88,11 @@ def band_pass(motion, low, high):
     if not 0 < low < high < top:
         raise SlopeError("--band", f"must be 0 < LOW < HIGH < {top:g} Hz, half of the sampling rate",
                          f"{low:g} {high:g}")
-    sos = signal.butter(ORDER, [low, high], "bandpass", fs=1 / motion.dt, output="sos")
+    sos = scipy.signal.butter(ORDER, [low, high], "bandpass", fs=1 / motion.dt, output="sos")
     n = len(motion.a)
     pad = min(n - 1, int(3 / low / motion.dt))
-    tapered = motion.a * signal.windows.tukey(n, 2 * TAPER)[:, None]
-    return Motion(motion.dt, signal.sosfiltfilt(sos, tapered, axis=0, padtype="constant", padlen=pad))
+    tapered = motion.a * scipy.signal.windows.tukey(n, 2 * TAPER)[:, None]
+    return Motion(motion.dt, scipy.signal.sosfiltfilt(sos, tapered, axis=0, padtype="constant", padlen=pad))
 
 
 def at_rest(motion):
@@ -155,8 +155,9 @@ def spectrum(motion, damping=DAMPING, periods=PERIODS):
         fine = np.arange((len(motion.a) - 1) * parts + 1) / parts
         a = np.column_stack([np.interp(fine, np.arange(len(motion.a)), values) for values in motion.a.T])
         quiet = np.zeros((int(np.ceil(0.5 * period / dt)), 3))       # or after the end
-        above, below, _ = signal.cont2discrete(([2 * damping * w, w * w], [1.0, 2 * damping * w, w * w]), dt, "foh")
-        responses[k] = np.abs(signal.lfilter(np.ravel(above), below, np.vstack([a, quiet]), axis=0)).max(axis=0)
+        above, below, _ = scipy.signal.cont2discrete(([2 * damping * w, w * w], [1.0, 2 * damping * w, w * w]), dt,
+                                                     "foh")
+        responses[k] = np.abs(scipy.signal.lfilter(np.ravel(above), below, np.vstack([a, quiet]), axis=0)).max(axis=0)
     return responses
 
 

@@ -9,8 +9,8 @@ from typing import Any, Dict, Mapping, NamedTuple, Optional, Union
 
 import numpy as np
 from rasterio.crs import CRS
+import scipy
 from scipy.ndimage import map_coordinates
-from scipy.optimize import brentq
 
 from ..digits import rounded
 from ..errors import SlopeError
@@ -62,7 +62,7 @@ def find_least_sagitta(area: Area, line: FallLine, below: Foundation) -> float:
     most = max(0.0, dip(smallest)) + EXACT * line.chord
     if dip(largest) <= most:
         return largest
-    return float(brentq(lambda sagitta: dip(sagitta) - most, smallest, largest, xtol=1e-12 * line.chord))
+    return float(scipy.optimize.brentq(lambda sagitta: dip(sagitta) - most, smallest, largest, xtol=1e-12 * line.chord))
 
 
 def dips(area: Area, slip: np.ndarray, below: Foundation) -> Dict[str, Union[str, float]]:

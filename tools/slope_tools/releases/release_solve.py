@@ -4,8 +4,8 @@ import math
 from typing import Callable, NamedTuple, Tuple
 
 import numpy as np
+import scipy
 from scipy.ndimage import binary_dilation, binary_erosion, generate_binary_structure, maximum_filter
-from scipy.optimize import brentq
 
 from ..digits import at_least, at_most
 from ..errors import SlopeError
@@ -77,7 +77,7 @@ def solved(area: Area, shape: Shape, wanted: float, measure: Callable[[np.ndarra
         raise SlopeError(called, f"must be at least {at_least(misses.min() + wanted)} {unit}, {why}", f"{wanted:.10g}")
     low, high = tried[rises[-1]], tried[rises[-1] + 1]
     close = EXACT * max(abs(low), abs(high))
-    number = float(brentq(miss, low, high, xtol=close, rtol=1e-14))
+    number = float(scipy.optimize.brentq(miss, low, high, xtol=close, rtol=1e-14))
     depth = find(number)
     while abs(measure(depth) - wanted) > MET * wanted:
         below, above = find(max(low, number - close)), find(min(high, number + close))
@@ -93,7 +93,7 @@ def part_way(below: np.ndarray, above: np.ndarray, wanted: float, measure: Calla
     A surface that ends in a wall, such as a sphere at its equator, takes up the next node with all of its depth, and
     jumps over the target. That node is then taken in part: the wall runs through its cell.
     """
-    share = brentq(lambda share: measure(below + share * (above - below)) - wanted, 0.0, 1.0)
+    share = scipy.optimize.brentq(lambda share: measure(below + share * (above - below)) - wanted, 0.0, 1.0)
     return below + share * (above - below)
 
 

@@ -7,7 +7,8 @@ Samples come as several scrambled Sobol sequences; between them is the scatter t
 from typing import Any, List, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
-from scipy import optimize, stats
+import scipy
+from scipy import special
 
 from ..quakes import motion_file
 from ..quakes.quake_records import GAL
@@ -76,8 +77,8 @@ def strengths_of(soil: Soil, number: int, seed: int) -> bishop.Strengths:
     u = np.concatenate([designs.points(designs.SOBOL, 3, number, seed + k) for k in range(REPLICATES)])
     if soil.correlation:
         r = soil.correlation
-        score = stats.norm.ppf(np.clip(u[:, :2], 1e-15, 1 - 1e-15))
-        u[:, 1] = stats.norm.cdf(r * score[:, 0] + np.sqrt(1 - r * r) * score[:, 1])
+        score = special.ndtri(np.clip(u[:, :2], 1e-15, 1 - 1e-15))
+        u[:, 1] = special.ndtr(r * score[:, 0] + np.sqrt(1 - r * r) * score[:, 1])
     friction = values_of(soil.friction, u[:, 1])
     tangent = friction if soil.is_tangent else np.tan(np.radians(friction))
     return bishop.Strengths(values_of(soil.cohesion, u[:, 0]), tangent, values_of(soil.water, u[:, 2]))
@@ -133,7 +134,7 @@ def replicates(capacity: np.ndarray) -> np.ndarray:
 def banded(means: np.ndarray) -> Band:
     """Mean and its bounds from one value per replicate, (replicates, ...)."""
     value = means.mean(axis=0)
-    half = stats.t.ppf((1 + CONFIDENCE) / 2, REPLICATES - 1) * means.std(axis=0, ddof=1) / np.sqrt(REPLICATES)
+    half = special.stdtrit(REPLICATES - 1, (1 + CONFIDENCE) / 2) * means.std(axis=0, ddof=1) / np.sqrt(REPLICATES)
     return Band(value, np.maximum(value - half, 0.0), value + half)
 
 
@@ -157,11 +158,11 @@ def lognormal(peaks: np.ndarray, share: np.ndarray) -> Optional[Tuple[float, flo
     inner = (share > 0) & (share < 1)
     if inner.sum() < 3:
         return None
-    line = np.polyfit(np.log(peaks[inner]), stats.norm.ppf(share[inner]), 1)
+    line = np.polyfit(np.log(peaks[inner]), special.ndtri(share[inner]), 1)
     if not line[0] > 0:
         return None
-    found = optimize.least_squares(
-        lambda p: stats.norm.cdf((np.log(peaks) - p[0]) * np.exp(p[1])) - share, [-line[1] / line[0], np.log(line[0])])
+    found = scipy.optimize.least_squares(
+        lambda p: special.ndtr((np.log(peaks) - p[0]) * np.exp(p[1])) - share, [-line[1] / line[0], np.log(line[0])])
     return float(np.exp(found.x[0])), float(np.exp(-found.x[1]))
 
 
@@ -184,10 +185,10 @@ def fit_lognormal(capacity: np.ndarray, peaks: np.ndarray) -> Optional[Fit]:
     median, beta = best
     beta_r = beta * np.sqrt(within / (within + between)) if within + between > 0 else 0.0
     beta_u = np.sqrt(max(beta ** 2 - beta_r ** 2, 0.0))
-    off = np.abs(stats.norm.cdf(np.log(peaks / median) / beta) - share).max()
+    off = np.abs(special.ndtr(np.log(peaks / median) / beta) - share).max()
     hclpf = median * np.exp(-LARGE * (beta_r + beta_u))
     return Fit(median, beta, float(beta_r), float(beta_u), float(hclpf), float(errors[0]), float(errors[1]), float(off),
-               float((capacity < hclpf).mean()), float(stats.norm.cdf(np.log(hclpf / median) / beta)))
+               float((capacity < hclpf).mean()), float(special.ndtr(np.log(hclpf / median) / beta)))
 
 
 class Hazard(NamedTuple):

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any, Dict, List, NamedTuple, Optional, Sequence
 
 import numpy as np
-from scipy import stats
+from scipy import special
 
 from .. import disk, schemas
 from ..errors import SlopeError
@@ -107,7 +107,7 @@ def write_fragility(folder: Path, peaks: np.ndarray, curves: Sequence[Curve], ca
 
 def fitted_at(fit: Optional[Fit], peaks: np.ndarray) -> Optional[np.ndarray]:
     """Probabilities of the lognormal fit."""
-    return None if fit is None else stats.norm.cdf(np.log(peaks / fit.median) / fit.beta)
+    return None if fit is None else special.ndtr(np.log(peaks / fit.median) / fit.beta)
 
 
 def draw_fragility(path: Path, peaks: np.ndarray, curves: Sequence[Curve]) -> None:

@@ -6,7 +6,7 @@ import math
 from typing import NamedTuple, Tuple
 
 import numpy as np
-from scipy import optimize
+import scipy
 
 from ..errors import SlopeError
 from ..survey.rasters import Raster
@@ -42,7 +42,7 @@ def line(body: Columns, horizontal: float = 0.0, vertical: float = 0.0, water: f
     below = np.flatnonzero(of(angles) <= 0)
     end = STEEPEST
     if len(below):
-        end = optimize.brentq(lambda angle: float(of(angle)[0]), angles[below[0] - 1], angles[below[0]], xtol=1e-9)
+        end = scipy.optimize.brentq(lambda angle: float(of(angle)[0]), *angles[below[0] - 1:below[0] + 1], xtol=1e-9)
     friction = np.linspace(0.0, end, POINTS)
     return Line(friction, np.maximum(of(friction), 0.0))
 

@@ -18,8 +18,8 @@ from dataclasses import dataclass
 from typing import List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
-from scipy import ndimage, stats
-from scipy.stats import qmc
+import scipy
+from scipy import ndimage, special
 
 from . import designs, tempering
 from .emulator import Emulator
@@ -61,7 +61,7 @@ def find_gaps(values: np.ndarray, emulator: Emulator) -> List[Gap]:
     if len(edges) < 2:
         return []
     mean, deviation = emulator.unseen(values)
-    below = stats.norm.cdf((edges[:, None] - mean) / deviation)     # (edges, runs)
+    below = special.ndtr((edges[:, None] - mean) / deviation)     # (edges, runs)
     inside = np.clip(np.diff(below, axis=0), 0, 1 - 1e-12)
     empty = np.log1p(-inside).sum(axis=1)                           # logarithm of the probability that no run is in it
     found = (empty < -np.log(CHANCES * len(inside)))
@@ -169,12 +169,12 @@ def posterior(points: np.ndarray, outputs: np.ndarray, targets: Sequence[Target]
     tolerance = np.array([one.deviation for one in targets]) ** 2
     goals = np.array([best_of(emulator) if one.value is None else one.value
                       for one, emulator in zip(targets, emulators)])
-    most = float(stats.chi2.ppf(0.95, max(1, len(targets) - dimensions)))
+    most = float(special.chdtri(max(1, len(targets) - dimensions), 0.05))
 
     def measured(cloud):
         return distance(cloud, emulators, goals, covariance, tolerance)
 
-    cloud = qmc.Sobol(dimensions, scramble=True, seed=SEED).random(CLOUD)
+    cloud = scipy.stats.qmc.Sobol(dimensions, scramble=True, seed=SEED).random(CLOUD)
     chi2, logdet = measured(cloud)
     misfit = tempering.minimise_function(lambda some: measured(some)[0], cloud, chi2, SEED) / most
 
@@ -214,7 +214,7 @@ def correlation_of(residuals: np.ndarray) -> np.ndarray:
 def best_of(emulator: Emulator) -> float:
     """The least that a model comes to by its emulator."""
     dimensions = emulator.process.X_train_.shape[1]
-    return float(emulator.at(qmc.Sobol(dimensions, scramble=True, seed=SEED).random(1024)).min())
+    return float(emulator.at(scipy.stats.qmc.Sobol(dimensions, scramble=True, seed=SEED).random(1024)).min())
 
 
 def distance(cloud, emulators, goals, covariance, tolerance):

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from typing import Any, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
-from scipy import stats
+from scipy import special
 
 COUNTED = 10.0          # balls: a volume of fewer has no ratio
 CONFIDENCE = 0.9        # of a band: 5 % beyond either end
@@ -33,7 +33,7 @@ ORDER = 1.0             # else
 @functools.lru_cache(maxsize=4096)
 def quantile_of_t(freedom: float) -> float:
     """Beyond which (1 - CONFIDENCE) / 2 of Student's t lies."""
-    return float(stats.t.ppf((1 + CONFIDENCE) / 2, freedom))
+    return float(special.stdtrit(freedom, (1 + CONFIDENCE) / 2))
 
 
 class Finest(NamedTuple):

@@ -13,7 +13,8 @@ import math
 from dataclasses import dataclass
 from typing import Dict, List, Optional, Sequence, Tuple
 
-from scipy import stats
+import scipy
+from scipy import special
 
 from . import rounding
 
@@ -59,7 +60,7 @@ class Scatter:
     @property
     def quantile(self) -> float:
         """t(0.975) of these degrees of freedom."""
-        return float(stats.t.ppf(CONFIDENCE, self.degrees_of_freedom))
+        return float(special.stdtrit(self.degrees_of_freedom, CONFIDENCE))
 
     def chance(self, runs: int) -> float:
         """How far (m3) the next run may lie above the mean of so many: t s sqrt(1 + 1/n), a prediction limit.
@@ -200,7 +201,7 @@ def odd_one(combinations: Sequence[Combination], name: str) -> Optional[Tuple[fl
     if mine.scatter is None or free == 0:
         return None
     others = math.sqrt(math.fsum(one.squares for one in rest) / free)
-    most = others * math.sqrt(float(stats.f.ppf(DIFFERENT, mine.runs - 1, free)))
+    most = others * math.sqrt(float(special.fdtri(mine.runs - 1, free, DIFFERENT)))
     return (mine.scatter, others) if mine.scatter > most else None
 
 
@@ -237,7 +238,7 @@ def difference(line: Sequence[Combination], scatter: Optional[Scatter]) -> Diffe
 @functools.lru_cache(maxsize=None)
 def range_quantile(means: int, degrees_of_freedom: float) -> float:
     """What the studentized range of so many means exceeds by chance in 5 of 100 cases: 0.2 s, the same for many."""
-    return float(stats.studentized_range.ppf(DIFFERENT, means, degrees_of_freedom))
+    return float(scipy.stats.studentized_range.ppf(DIFFERENT, means, degrees_of_freedom))
 
 
 def is_clear(line: Sequence[Combination], scatter: Scatter) -> bool:
@@ -246,8 +247,8 @@ def is_clear(line: Sequence[Combination], scatter: Scatter) -> bool:
     by = top.mean - low.mean
     if by == 0 or scatter.deviation == 0:
         return by > 0
-    return float(stats.studentized_range.cdf(by / (scatter.deviation * unit), len(line),
-                                             scatter.degrees_of_freedom)) > DIFFERENT
+    return float(scipy.stats.studentized_range.cdf(by / (scatter.deviation * unit), len(line),
+                                                   scatter.degrees_of_freedom)) > DIFFERENT
 
 
 def ends(line: Sequence[Combination]) -> Tuple[Combination, Combination, float]:

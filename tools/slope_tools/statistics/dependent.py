@@ -8,7 +8,7 @@ one of neither, so that a first index can be larger than the total one.
 from typing import Callable, List, NamedTuple
 
 import numpy as np
-from scipy.stats import qmc
+import scipy
 
 LEVELS = 32         # values of a variable for each place of the others
 SEED = 1
@@ -29,7 +29,7 @@ def indices(at: Callable, weight: Callable, dimensions: int, snap=lambda u: u, b
 
     base: places of the other variables; ValueError if none has a weight.
     """
-    places = qmc.Sobol(dimensions, scramble=True, seed=SEED).random(base)
+    places = scipy.stats.qmc.Sobol(dimensions, scramble=True, seed=SEED).random(base)
     first, total = np.zeros(dimensions), np.zeros(dimensions)
     for i in range(dimensions):
         grid = np.repeat(places[:, None, :], LEVELS, axis=1)

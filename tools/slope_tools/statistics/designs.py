@@ -3,7 +3,7 @@ import warnings
 from typing import Sequence
 
 import numpy as np
-from scipy.stats import qmc
+import scipy
 
 SOBOL, LHS = "sobol", "lhs"
 KINDS = (SOBOL, LHS)
@@ -17,10 +17,10 @@ def points(kind: str, dimensions: int, number: int, seed: int) -> np.ndarray:
     is a part of another.
     """
     if kind == LHS:
-        return qmc.LatinHypercube(dimensions, seed=seed).random(number)
+        return scipy.stats.qmc.LatinHypercube(dimensions, seed=seed).random(number)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)        # other numbers than powers of two
-        return qmc.Sobol(dimensions, scramble=True, seed=seed).random(number)
+        return scipy.stats.qmc.Sobol(dimensions, scramble=True, seed=seed).random(number)
 
 
 def snapped(variables: Sequence, u: np.ndarray) -> np.ndarray:

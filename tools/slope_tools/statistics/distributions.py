@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
-from scipy import stats
+import scipy
 
 from ..case import deck_ranges, settings
 from ..errors import SlopeError
@@ -181,15 +181,15 @@ def frozen(kind: str, numbers: Sequence[float], option: str, words: str):
     """The distribution of scipy."""
     low, high = numbers[0], numbers[-1]
     if kind == "uniform":
-        return stats.uniform(low, high - low)
+        return scipy.stats.uniform(low, high - low)
     if kind == "loguniform":
         if not low > 0:
             raise SlopeError(option, "loguniform must have LO > 0", words)
-        return stats.loguniform(low, high)
+        return scipy.stats.loguniform(low, high)
     if kind == "triangular":
         if not low <= numbers[1] <= high:
             raise SlopeError(option, "triangular must have LO <= MODE <= HI", words)
-        return stats.triang((numbers[1] - low) / (high - low), low, high - low)
+        return scipy.stats.triang((numbers[1] - low) / (high - low), low, high - low)
     mean, deviation, low, high = numbers
     if not deviation > 0:
         raise SlopeError(option, f"{kind} must have DEVIATION > 0", words)
@@ -197,10 +197,10 @@ def frozen(kind: str, numbers: Sequence[float], option: str, words: str):
         if not (mean > 0 and low > 0):
             raise SlopeError(option, "lognormal must have MEDIAN > 0 and LO > 0", words)
         mean, low, high = map(math.log, (mean, low, high))
-    between = stats.norm(mean, deviation)
+    between = scipy.stats.norm(mean, deviation)
     if between.cdf(high) - between.cdf(low) < LEAST_SHARE:
         raise SlopeError(option, f"{kind} must have a part of it between LO and HI", words)
-    drawn = stats.truncnorm((low - mean) / deviation, (high - mean) / deviation, mean, deviation)
+    drawn = scipy.stats.truncnorm((low - mean) / deviation, (high - mean) / deviation, mean, deviation)
     return Exponential(drawn) if kind == "lognormal" else drawn
 
 

@@ -5,13 +5,14 @@ or a Gaussian kernel, whichever the runs make likelier, and the noise of chance.
 cross-validation: runs of points that the process has not seen. What a bad fit says is withheld.
 """
 import functools
+import inspect
 import math
 import warnings
 from typing import List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
-from scipy import linalg, stats
-from scipy.stats import qmc
+import scipy
+from scipy import linalg
 
 from ..digits import format_measured_share
 from . import dependent
@@ -36,6 +37,8 @@ class Emulator:
         from sklearn.exceptions import ConvergenceWarning       # half a second to import
         from sklearn.gaussian_process import GaussianProcessRegressor
         from sklearn.gaussian_process.kernels import ConstantKernel, Matern, WhiteKernel
+        for part in (ConstantKernel, Matern, WhiteKernel):      # asked for in each step of a fit, a quarter of its time
+            part.__init__.__signature__ = inspect.signature(part.__init__)
         points, values = np.asarray(points, float), np.asarray(values, float)
         self.mean, self.scale = float(values.mean()), float(values.std()) or 1.0
         kernels = [kernel] if kernel else [
@@ -185,8 +188,8 @@ def rank(places: np.ndarray, values: np.ndarray, point: np.ndarray) -> Tuple[flo
         return 0.0, False
     _, index, sizes = np.unique(point, return_inverse=True, return_counts=True)
     of_points = [np.bincount(index, several) / sizes for several in (places, values)]
-    clear = all(np.ptp(several) > 0 for several in of_points) and stats.spearmanr(*of_points)[1] < 0.05
-    return float(stats.spearmanr(places, values)[0]), bool(clear)
+    clear = all(np.ptp(several) > 0 for several in of_points) and scipy.stats.spearmanr(*of_points)[1] < 0.05
+    return float(scipy.stats.spearmanr(places, values)[0]), bool(clear)
 
 
 def indices(emulator: Emulator, dimensions: int, snap=lambda u: u, base: int = BASE):
@@ -194,7 +197,7 @@ def indices(emulator: Emulator, dimensions: int, snap=lambda u: u, base: int = B
 
     Saltelli et al., Computer Physics Communications, 181, 259 (2010), with the estimators of Jansen.
     """
-    both = qmc.Sobol(2 * dimensions, scramble=True, seed=SEED).random(base)
+    both = scipy.stats.qmc.Sobol(2 * dimensions, scramble=True, seed=SEED).random(base)
     a, b = snap(both[:, :dimensions]), snap(both[:, dimensions:])
     of_a, of_b = emulator.at(a), emulator.at(b)
     variance = float(np.concatenate([of_a, of_b]).var())

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
-from scipy import stats
+from scipy import special
 
 from .. import disk
 from .entries import Quantile
@@ -56,8 +56,8 @@ def share_bounds(k, n: int, failed: int = 0, effect: Union[float, np.ndarray] = 
     total = (n + failed) / effect
     few, many = k / effect, (k + failed) / effect
     with np.errstate(invalid="ignore"):
-        low = np.where(k > 0, stats.beta.ppf(tail, np.maximum(few, 1e-9), total - few + 1), 0.0)
-        high = np.where(k < n, stats.beta.ppf(1 - tail, many + 1, np.maximum(total - many, 1e-9)), 1.0)
+        low = np.where(k > 0, special.betaincinv(np.maximum(few, 1e-9), total - few + 1, tail), 0.0)
+        high = np.where(k < n, special.betaincinv(many + 1, np.maximum(total - many, 1e-9), 1 - tail), 1.0)
     return low, high
 
 

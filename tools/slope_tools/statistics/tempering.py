@@ -9,7 +9,7 @@ import math
 from typing import Callable, Tuple
 
 import numpy as np
-from scipy import optimize
+import scipy
 
 Function = Callable[[np.ndarray], np.ndarray]   # of points (n, d): values (n)
 DRAWN = 2048            # points
@@ -82,7 +82,7 @@ def moved(log_likelihood: Function, points: np.ndarray, logs: np.ndarray, power:
 def minimise_function(function: Function, points: np.ndarray, values: np.ndarray, seed: int) -> float:
     """The least value of a function in the unit cube, looked for from the least of its values at points (SciPy)."""
     near = points[np.argsort(values)[:POPULATION]]
-    found = optimize.differential_evolution(lambda some: function(some.T), [(0, 1)] * points.shape[1], init=near,
-                                            seed=seed, maxiter=ROUNDS, polish=False, updating="deferred",
-                                            vectorized=True)
+    found = scipy.optimize.differential_evolution(lambda some: function(some.T), [(0, 1)] * points.shape[1], init=near,
+                                                  seed=seed, maxiter=ROUNDS, polish=False, updating="deferred",
+                                                  vectorized=True)
     return float(min(found.fun, values.min()))

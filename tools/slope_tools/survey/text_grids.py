@@ -77,9 +77,9 @@ def heights(path: str, driver: str, rows: int, columns: int, top: int = 0,
 def read_line_numbers(path: str, line: int, words: List[str], null: str = "") -> List[float]:
     """The numbers of a line, NaN for a mark of none; SlopeError where it holds something else."""
     try:
-        if any("_" in word for word in words):     # Python's float takes 1_5 for 15
+        if "_" in " ".join(words):     # Python's float takes 1_5 for 15
             raise ValueError(f"no number: {next(word for word in words if '_' in word)!r}")
-        return [math.nan if word == null else float(word) for word in words]
+        return [math.nan if word == null else float(word) for word in words] if null else [*map(float, words)]
     except ValueError as error:
         raise SlopeError(f"{path}: line {line}", "must hold numbers with a decimal point",
                          str(error).rsplit(":", 1)[1].strip()) from None
