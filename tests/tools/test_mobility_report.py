@@ -183,7 +183,7 @@ def test_of_which_runs_the_reach_is():
     """Not of those that were added for their length, nor of one without a deposit; one that lost mass goes beyond."""
     rows = [made_rows.row(length_m=60.0), made_rows.row(length_m=None), made_rows.row(length_m=99.0, batch=1),
             made_rows.row(length_m=70.0, released_m3=100.0, lost_m3=1.5)]
-    one = how_far.reach(rows, Source.PAPER, Known(None, "no path"))
+    one = how_far.reach(rows, Source.SWEEP, Known(None, "no path"))
     assert (one.runs, one.near_m, one.far_m, one.source, one.why) == (2, 60.0, None, "paper", "no path")
     assert how_far.reach(rows[1:3], None, Known(None, "")) is None
 

@@ -261,7 +261,7 @@ def shown_run(data: Data) -> str:
         return ""
     one, row = data.result, data.result.row
     number, of = data.number(one.name), values_of(data, row.set)
-    said, own = data.study.headline, Source.ENSEMBLE if data.study.ensemble else Source.PAPER
+    said, own = data.study.headline, Source.ENSEMBLE if data.study.ensemble else Source.SWEEP
     rests = said and said.volume_m3 and said.source is own and one.name == named_run.governing(data.study)
     text = f"A run that leaves about as much, {number} of the appendix" if rests else f"Run {number} of the appendix"
     return f" {text}{of and f': {of}'}."

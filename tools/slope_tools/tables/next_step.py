@@ -30,7 +30,7 @@ class Made(NamedTuple):
 
     @property
     def source(self) -> Source:
-        return Source.ENSEMBLE if self.study.ensemble else Source.PAPER
+        return Source.ENSEMBLE if self.study.ensemble else Source.SWEEP
 
     @property
     def whole(self) -> Optional[float]:
@@ -54,8 +54,8 @@ class Made(NamedTuple):
     @property
     def withheld(self) -> List[Finding]:
         """Why its numbers are."""
-        paper, ensemble_ = self.study.conservative, self.study.ensemble
-        return [*(paper.withheld if paper else ()), *(ensemble_.withheld if ensemble_ else ())]
+        sweep, ensemble_ = self.study.conservative, self.study.ensemble
+        return [*(sweep.withheld if sweep else ()), *(ensemble_.withheld if ensemble_ else ())]
 
 
 def of_studies(studies: Sequence[Made], headline: Optional[Headline]) -> Optional[NextStep]:
