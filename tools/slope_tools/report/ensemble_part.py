@@ -10,11 +10,12 @@ from ..drawing import figures, palettes
 from ..ensembles import ensemble, known_events
 from ..errors import SlopeError
 from ..findings import texts
+from ..heads import is_number
 from ..plots import ensemble_charts, figure_maps
 from ..statistics import entries
 from ..tables import ensemble_types, quantities, study_types, usable
 from .charts import AXIS
-from .data import Data, is_number_text
+from .data import Data
 from .numbers import CardPart, MainCard, Numbers
 from .sections import Cell, Figures, Picture, Section, Table, Text
 
@@ -115,7 +116,7 @@ class Ensemble:
         pictures = []
         for name in names[:MOST_SCATTER]:
             rows = self.data.finished
-            if not all(is_number_text(row.set[name]) for row in rows):
+            if not all(is_number(row.set[name]) for row in rows):
                 continue
             what = self.entry.name
             title = f"{what[0].upper()}{what[1:]} against {name}"
