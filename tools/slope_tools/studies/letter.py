@@ -159,8 +159,10 @@ def describe_cut(letter: Letter) -> str:
 
 def describe_clearing(number: Headline, write: Write) -> str:
     """The sentence with the number, or what stands in its place."""
+    if number.kind is Kind.WITHHELD:
+        return ""       # page 1 begins with what is known: see describe_change()
     return {Kind.NUMBER: describe_number, Kind.FLOOR: describe_floor, Kind.OPEN: describe_open,
-            Kind.WITHHELD: describe_withheld_number, Kind.NOTHING: describe_nothing}[number.kind](number, write)
+            Kind.NOTHING: describe_nothing}[number.kind](number, write)
 
 
 def describe_number(number: Headline, write: Write) -> str:
@@ -194,10 +196,6 @@ def describe_floor(number: Headline, write: Write) -> str:
 def describe_open(number: Headline, write: Write) -> str:
     return (f"{write(f'{VOLUME}, of these runs', 'm3', number.volume_m3 or 0.0)} m3 must be cleared from the road by "
             "these runs, which is neither an upper nor a lower bound: no number to design with.")
-
-
-def describe_withheld_number(_: Headline, __: Write) -> str:
-    return ""       # page 1 begins with what is known: see describe_change()
 
 
 def describe_nothing(number: Headline, write: Write) -> str:
