@@ -32,7 +32,8 @@ def write_study_files(outcome: Outcome, study: study_types.Study, output: Path,
             disk.write_file(output / name, text)
     write_or_remove(output / intensity.FILE, intensity.tabulate_intensity(study.intensity) if study.intensity else None)
     write_or_remove(output / elastic.FILE, read.elastic and elastic.tabulate_elastic(read.elastic))
-    structures.write_structures(output, read.finished)
+    for what, name in structures.FILES.items():
+        write_or_remove(output / name, structures.tabulate_structures(read.finished, what))
     disk.write_file(output / "study.csv", study_table.tabulate_study(asked.settings, asked.repeated, read.rows,
                                                                      read.defaults))
     disk.write_file(output / "combinations.csv", combinations.tabulate_combinations(outcome.groups, outcome.names,
