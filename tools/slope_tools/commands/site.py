@@ -28,20 +28,19 @@ from ..survey import roads
 from . import known_arguments, road_arguments
 from .release_arguments import Heights, degrees_or_least, level_or_file
 
-# of each section of site.yaml, the options that are called as its keys
-ALIKE = {"terrain": "crs assign_crs bounds z_unit nodata differ cell fill", "crs": "assigned",
-         "release": "shape depth volume curvature dip foundation direction scar scar_is least bodies",
-         "road": "cut_angle mesh", "structures": "height width", "motion": "peak_friction", "known": "confined",
-         "model": "friction slip_friction density spacing field_restitution", "study": "rolling largest_restitution",
-         "balls": "diameter minutes memory", "project": "name client author", "blocks": "size speed"}
-# option -> section and key
-OPTIONS = {**{name: (section, name) for section, names in ALIKE.items() for name in names.split()},
-           **{option: ("road", roads.KEYS[field]) for option, field in road_arguments.OPTIONS.items()},
-           "terrain": ("terrain", "files"), "release": ("release", "polygon"), "road": ("road", "file"),
-           "roads": ("road", "others"), "ground": ("ground", "file"), "ground_table": ("ground", "table"),
-           "structure": ("structures", "files"), "wall": ("structures", "walls"), "line": ("lines", "files"),
-           "motion": ("motion", "file"), "observed": ("observed", "file"), "known": ("known", "set"),
-           "balls": ("balls", "number"), "blocks": ("blocks", "number")}
+# of each section of site.yaml, the options, as option=key where they are not called alike, in the order of messages
+BY_SECTION = {
+    "terrain": "terrain=files crs assign_crs bounds z_unit nodata differ cell fill", "crs": "assigned",
+    "release": "release=polygon shape depth volume curvature dip foundation direction scar scar_is least bodies",
+    "road": " ".join(["road=file roads=others cut_angle mesh", *(f"{option}={roads.KEYS[field]}" for option, field
+                                                                 in road_arguments.OPTIONS.items())]),
+    "ground": "ground=file ground_table=table", "structures": "structure=files wall=walls height width",
+    "lines": "line=files", "motion": "motion=file peak_friction",
+    "model": "friction slip_friction density spacing field_restitution", "study": "rolling largest_restitution",
+    "observed": "observed=file", "known": "known=set confined", "balls": "diameter balls=number minutes memory",
+    "project": "name client author", "blocks": "blocks=number size speed"}
+OPTIONS = {option: (section, key or option) for section, words in BY_SECTION.items()
+           for option, _, key in (word.partition("=") for word in words.split())}
 # options that change neither the body nor its runs: what was determined for these is kept
 BESIDE = {"road", "roads", *road_arguments.OPTIONS, "cut_angle", "mesh", "line", "observed", "known", "confined",
           "rolling", "largest_restitution", "name", "client", "author"}
