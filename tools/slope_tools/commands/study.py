@@ -18,7 +18,7 @@ from ..sites import site_choices, site_deck, site_roads, site_scenarios
 from ..sites.site_bodies import VARIABLE
 from ..sites.site_choices import Site
 from ..sites.site_sections import OfMass
-from ..studies import (ahead, console, files, results, road_numbers, site_ground, site_study, size_runs, study)
+from ..studies import ahead, results, road_numbers, site_ground, site_study, size_runs, study
 from ..studies.road_numbers import Made
 from ..studies.study import OfAKind, RunsFailed, check_more_than, check_thresholds, perform
 from ..tables import headline, intensity, study_types
@@ -184,12 +184,12 @@ def run_both(args: Request, asked: Site, points: int) -> Made:
     failed = sweep.failed or failed
     assert sweep.about
     made = headline.conclude({site / site_study.STUDY: sweep.about, site / site_study.ENSEMBLE: weighted}, args.given)
-    files.write_abouts(made)
+    results.write_abouts(made)
     (governs, first), *others = made.items()
     for folder, study_ in others:
         write_site_report(folder, site / PAGES[folder.name], study_, asked, film=False, quiet=args.quiet)
     if not args.quiet:
-        print("\n".join(console.tell_letter(first)))
+        print("\n".join(results.tell_letter(first)))
     write_site_report(governs, site / road_numbers.PAGE, first, asked, quiet=args.quiet)
     return Made(list(made.values()), failed)
 
