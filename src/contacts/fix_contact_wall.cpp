@@ -18,7 +18,7 @@
 
 using namespace LAMMPS_NS;
 
-static constexpr int VERSION = 5;    // of what restart files hold of a wall
+static constexpr int VERSION = 6;    // of what restart files hold of a wall
 
 /* ---------------------------------------------------------------------- */
 

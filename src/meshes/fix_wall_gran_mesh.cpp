@@ -419,7 +419,10 @@ double FixWallGranMesh::elastic_energy() const
 void FixWallGranMesh::post_run()
 {
   FixContactWall::post_run();
-  if (recorder && update->whichflag == 1) recorder->write();
+  if (recorder && update->whichflag == 1) {
+    reduce();
+    recorder->write_end(clock.at(update->ntimestep), all);
+  }
   fast.report(pair->guards);
 }
 

@@ -63,10 +63,14 @@ SurfaceLoads::Values SurfaceLoads::values_of(const Load &load, const Triangle &t
 
 /* ---------------------------------------------------------------------- */
 
-std::string SurfaceLoads::series() const
+std::string SurfaceLoads::series(const Row *end) const
 {
-  std::string s = "step,time,fx,fy,fz,mx,my,mz,jx,jy,jz,contacts,largest_force\n";
-  for (const Row &row : rows) append(s, &row.step, sizeof(Row) / sizeof(double), ',', '\n');
+  std::string s = "step,time,fx,fy,fz,mx,my,mz,jx,jy,jz,contacts,largest_force,largest_moment\n";
+  const auto add = [&s](const Row &row) {
+    append(s, &row.step, sizeof(Row) / sizeof(double), ',', '\n');
+  };
+  for (const Row &row : rows) add(row);
+  if (end) add(*end);
   return s;
 }
 

@@ -30,7 +30,7 @@ class SurfaceLoads {
   struct Row {
     double step, time;
     double force[3], moment[3], impulse[3], contacts;
-    double largest;    // size of the force, in any step since the row before
+    double largest[2];    // sizes of force and moment, in any step since the row before
   };
 
   // of all ranks, whole steps, in any order; is sorted
@@ -39,7 +39,7 @@ class SurfaceLoads {
   void add_row(const Row &row) { rows.push_back(row); }
 
   // text of the files; the last pressure is that of a step
-  std::string series() const;                                                 // CSV
+  std::string series(const Row *end = nullptr) const;    // CSV; end: a row more
   std::string triangles(const TouchedSurface &surface, double step) const;    // CSV, loaded ones
   std::string polydata(const TouchedSurface &surface, double step) const;    // VTK XML; loaded ones
                                                                              // of a sparse surface

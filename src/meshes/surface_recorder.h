@@ -29,10 +29,11 @@ class SurfaceRecorder : protected Pointers {
 
   // of this rank in this step: N, N s
   void add(int triangle, double force, double impulse);
-  void end_step(const double *force);    // collective
+  void end_step(const double *force_moment);    // collective
 
   void add_row(double time, const double *force_moment_impulse_contacts);    // on all ranks
-  void write();                                                              // collective
+  // collective; with a row of what came after the last one, which a longer run does not have
+  void write_end(double time, const double *force_moment_impulse_contacts);
 
   std::vector<double> pack();    // collective; for rank 0
   void unpack(const std::vector<double> &numbers);
@@ -45,12 +46,15 @@ class SurfaceRecorder : protected Pointers {
   const Slope::TouchedSurface &surface;
   Slope::SurfaceLoads loads;                         // of all, on rank 0
   std::vector<Slope::SurfaceLoads::Record> fresh;    // of this rank, not sent yet
-  std::vector<double> forces;                        // three numbers for each step
-  double largest;                                    // size of the force since the last row
+  std::vector<double> forces;                        // force and moment of each step
+  double largest[2];                                 // their sizes since the last row
   double nrow, written;                              // rows
-  double steps;    // made so far: their number in LAMMPS may come again, by reset_timestep
+  double steps;     // made so far: their number in LAMMPS may come again, by reset_timestep
+  double at_row;    // of the last row
 
   void send();
+  Slope::SurfaceLoads::Row row_of(double time, const double *values) const;
+  void write(const Slope::SurfaceLoads::Row *end);
 };
 
 }    // namespace LAMMPS_NS

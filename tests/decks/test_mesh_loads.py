@@ -62,9 +62,26 @@ def test_step_numbers_that_recur_neither_lose_a_row_nor_bring_an_old_load(tmp_pa
     for step, steps in ((0, last), (50, 10)):    # the ball flies
         run_case(tmp_path, f"run 60\nundump path\nreset_timestep {step}\nrun {steps}", **case)
         series = np.genfromtxt(tmp_path / "out.csv", delimiter=",", names=True)
-        assert list(series["step"]) == [*range(10, 61, 10), *range(step // 10 * 10 + 10, step + steps + 1, 10)]
+        end = step + steps
+        assert list(series["step"]) == [*range(10, 61, 10), *range(step // 10 * 10 + 10, end, 10), end]
         triangles = np.genfromtxt(tmp_path / "out.triangles.csv", delimiter=",", names=True)
         assert (triangles["largest_pressure"] > 0) and (triangles["last_pressure"] == 0)
+
+
+@pytest.mark.parametrize("every", [7, 40, 1000])
+def test_what_comes_between_rows_and_after_the_last_one_is_in_the_series(tmp_path, every):
+    """Of each step and of many: the same largest force, largest moment and impulse."""
+    write_case(tmp_path, plane(5), (3.0, -1.0, 0.5), (0, 0, -1))
+    found = []
+    for n in (1, every):
+        run_case(tmp_path, "run 60", keywords=f"point 0.5 1 7 output out {n}")
+        series = np.atleast_1d(np.genfromtxt(tmp_path / "out.csv", delimiter=",", names=True))
+        assert series["step"][-1] == 60
+        found.append([series["largest_force"].max(), series["largest_moment"].max(),
+                      *(series[f"j{axis}"][-1] for axis in "xyz")])
+        if n == 1:
+            assert found[0][1] == pytest.approx(np.sqrt(sum(series[f"m{axis}"] ** 2 for axis in "xyz")).max(), rel=1e-9)
+    assert found[0][1] > found[0][0] > 0 and found[1] == found[0]
 
 
 def test_what_is_written_of_a_lower_surface_is_that_of_its_file(tmp_path):

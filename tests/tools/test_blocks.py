@@ -485,10 +485,31 @@ def test_the_ditch_is_as_wide_as_the_worst_of_all_rolling_resistances():
     """Blocks end 0 to 3 m beyond the foot with 0.2, 2 to 5 m with 0.1; of a third some left before a road."""
     several = [a_run(0, [0] * 4, rolling="0.2"), a_run(2, [0] * 4, rolling="0.1")]
     rows = page.widths(SimpleNamespace(outcome=outcome.evaluate_blocks(several))).rows
-    assert [row[1] for row in rows] == ["1 m", "3 m", "3 m"] and [row[-1] for row in rows] == ["3 m", "5 m", "5 m"]
+    assert [row[1] for row in rows] == ["1 m (0 m to ?)", "3 m (0 m to ?)", "3 m (0 m to ?)"]
+    assert [row[-1] for row in rows] == ["3 m (1 m to ?)", "5 m (3 m to ?)", "5 m (3 m to ?)"]
     several.append(a_run(0, [0] * 4, [1] * 4, rolling="0.3"))
     rows = page.widths(SimpleNamespace(outcome=outcome.evaluate_blocks(several))).rows
-    assert rows[-1][1:] == rows[-2][1:] == ["> 5 m"] * 5
+    assert [text.split(" (")[0] for row in rows[-2:] for text in row[1:]] == ["> 5 m"] * 10
+
+
+def test_a_ditch_is_wider_by_its_bound():
+    """Ten grounds with blocks that end 0 to 99 m beyond the foot, each farther by 0 to 27: 90 % are bounded."""
+    of = outcome.evaluate_blocks([a_run(3 * ground, [0] * 100) for ground in range(10)])
+    one, = of.results
+    at, low, high = (one.width(0.9, of.widths, side) for side in ("share", "high", "low"))
+    beyond = np.concatenate([np.arange(100) + 3 * ground for ground in range(10)])
+    assert np.mean(beyond <= at) >= 0.9 > np.mean(beyond <= at - 5) and low < at < high
+    assert page.widths(SimpleNamespace(outcome=of)).rows[0][3] == f"{at:g} m ({low:g} m to {high:g} m)"
+
+
+def test_the_largest_bound_is_said_of_grounds_that_differ_more():
+    """Half of the blocks of each ground reach the road with 0.2; with 0.1 all of four grounds of ten."""
+    of = outcome.evaluate_blocks([one for ground in range(10) for one in (
+        a_run(ground, [0, 1] * 10, rolling="0.2"), a_run(ground, [ground < 4] * 20, rolling="0.1"))])
+    high = max(one.reach.high for one in of.results)
+    assert of.worst["reach"].rolling == "0.2" and of.worst["reach"].value.high < 0.6 < high
+    assert f"up to {digits.percent(high)} may reach it (rolling resistance 0.1)" in " ".join(
+        page.sentences(SimpleNamespace(outcome=of)))
 
 
 def test_the_foot_is_above_the_road_and_below_benches():

@@ -17,9 +17,10 @@ from tiny_collapse import loaded, read_asc, rows_of
 
 from slope_tools import cli, digits
 from slope_tools.case import deck_ranges
-from slope_tools.ensembles import ensemble, sample
+from slope_tools.ensembles import ensemble, known_events, sample
 from slope_tools.report import ensemble_part
 from slope_tools.statistics import designs, distributions, emulator, hazard
+from slope_tools.statistics.entries import KnownQuantile
 from slope_tools.studies import letter
 from slope_tools.tables.study_file import load_study
 
@@ -348,9 +349,9 @@ def test_an_ensemble_grows_and_its_tables_are_those_of_the_runs(slope, succeed, 
     name = found["quantities"][found["of"]]["name"]
     stays = f"<b>{name[0].upper()}{name[1:]}: 90 % of the runs stay within</b>"
     assert [one["kind"] for one in found["withheld"]] == ["runs not at rest or failed"]
-    assert "<b>Not usable as a conservative volume:</b>" in page and stays not in page
+    assert "<b>Not usable as a number to design with:</b>" in page and stays not in page
     about = yaml.safe_load(Path("out/study.yaml").read_text())
-    about["ensemble"]["withheld"] = []
+    about["ensemble"]["withheld"], about["reach"]["cut"] = [], 0
     Path("out/study.yaml").write_text(yaml.safe_dump(about))
     blank_pictures()
     assert cli.main(["report", "out"]) == 0 and stays in (page := Path("out/report.html").read_text())
@@ -375,6 +376,11 @@ def test_the_letter_of_an_angle_has_both_ends():
         "name": "reach angle", "unit": "degrees", "smallest": 17.25, "largest": 31.0, "quantiles": quantiles}})
     assert letter.describe_drawn(about, letter.format_console_number) == (
         "Reach angle: 17.2 to 31.0 degrees in the 40 runs with drawn settings; the less, the farther the mass goes.")
+    entry = about.quantities[about.of]
+    assert known_events.quantile_text(KnownQuantile(*entry.quantiles[0]), entry.unit, "the runs") == (
+        "90 % of the runs have at most 30 degrees (29 to 31)")
+    shown = ensemble_part.card(entry, "the runs", 0.9, lambda _, __, value: f"{value:g}", "")
+    assert shown.title == "Reach angle: 90 % of the runs have at most" and shown.parts[0].what == shown.title[13:]
 
 
 def test_repeats_of_points_and_a_list(succeed):

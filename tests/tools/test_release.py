@@ -810,6 +810,26 @@ def test_nodata_beside_a_scar_of_coarse_cells_costs_no_volume(body, kind, sign, 
     assert found["volume"] == pytest.approx(abs(np.nansum(depth)) * 100, rel=1e-4)
 
 
+@pytest.mark.parametrize("kind", ["depth", "change", "surface"])
+@pytest.mark.parametrize("marked", [0.0, np.nan])
+def test_a_scar_without_a_value_inside_is_warned_of(body, kind, marked):
+    """A gap of 5 x 5 nodes in a bowl, not deep, near its rim; what marks the ground beside a scar is none."""
+    x, y, z = terrain(ramp(30))
+    depth = np.maximum(0, 9 * (1 - ((x - 120) / 50) ** 2 - ((y - 100) / 50) ** 2))
+    known = np.where(depth > 0, depth, marked)
+    gap = (abs(x - 163) < 5) & (abs(y - 101) < 5)
+    polygon(box(60, 40, 180, 160))
+    for missing in (gap, gap & False):
+        values = {"depth": known, "change": -known, "surface": z - depth}[kind]
+        write_tif("gap.tif", np.where(missing, np.nan, values), 2)
+        for asked in ("", "--polygon p.csv"):
+            _, about = body(f"t.asc --scar gap.tif --scar-is {kind} {asked}")
+            area = 4 * missing.sum()
+            assert warned(about).get("unknown inside") == ({"area": area, "file": "gap.tif"} if area else None)
+            assert "rim" not in warned(about)
+    assert gap.sum() == 25
+
+
 def test_a_scar_that_is_none(refused):
     terrain(ramp(30))
     terrain(lambda x, y: np.where(np.hypot(x - 120, y - 100) < 30, -3.0, 0.0), "change.asc")

@@ -63,7 +63,7 @@ def test_repeats_are_made_for_each_combination_and_the_headline_is_theirs(slope)
     # the runs are cut short: the number is withheld
     assert best.volume_m3 is None and best.rounded["volume_m3"] is None
     assert [one.kind for one in best.withheld] == ["runs not at rest or failed"]
-    assert "not usable as a conservative volume:\n  6 of 6 runs failed or are not at rest" in out
+    assert "not usable as a number to design with:\n  6 of 6 runs failed or are not at rest" in out
     assert "conservative volume to remove" not in out
 
     assert [entry["combination"] for entry in about["combinations"]] == ["rolling_0_steps_700", "rolling_0.3_steps_700"]

@@ -309,7 +309,7 @@ def test_a_number_that_is_withheld_is_not_in_the_answer(slope, here):
     assert slope("repeated")[0] == 0
     page = Path("repeated/report.html").read_text()
     top = page[page.index('<div class="card main'):page.index('<div class="card">')]
-    assert "Not usable as a conservative volume:" in top and "card main withheld" in top
+    assert "Not usable as a number to design with:" in top and "card main withheld" in top
     for one in best["withheld"]:
         assert html.escape(f"{one['text'][0].upper()}{one['text'][1:]}.") in top and html.escape(one["remedy"]) in top
     assert not re.search(r"[0-9] *(<small>)?m[3³]", top)

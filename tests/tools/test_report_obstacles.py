@@ -15,9 +15,10 @@ from slope_tools.drawing import figures, palettes
 from slope_tools.plots import (figure_charts, figure_maps, figure_structures, obstacles,
                                section as report_section)
 from slope_tools.plots.known_reach import KnownReach, Mark
-from slope_tools.report import charts, structures_part
+from slope_tools.report import charts
 from slope_tools.statistics import hazard
 from slope_tools.survey.rasters import Raster
+from slope_tools.tables import structures
 
 
 def box_of(low, high):
@@ -36,8 +37,8 @@ def test_what_a_structure_covers():
     assert obstacles.footprint(WALL).equals(box(12, 1, 13, 23))
     upright = np.array([[[5, 0, 0], [5, 8, 0], [5, 8, 3]]], float)
     assert obstacles.footprint(upright).bounds == (5, 0, 5, 8)
-    assert structures_part.longest_side(obstacles.footprint(WALL)) == pytest.approx(22)
-    assert structures_part.longest_side(obstacles.footprint(upright)) == pytest.approx(8)
+    assert structures.bearing_length(WALL, np.ones(12))[0] == pytest.approx(22)
+    assert structures.bearing_length(upright, np.ones(1))[0] == pytest.approx(8)
 
 
 def test_where_a_section_cuts_a_structure():

@@ -269,6 +269,9 @@ def test_what_left_by_dumps(tmp_path):
     assert found.place == pytest.approx(np.array([[800, 310], [800, 200], [300, 480]]), abs=1e-6)
     assert found.start == pytest.approx(np.array([[790, 300], [795, 200], [290, 480]]))
     assert found.within == pytest.approx([math.hypot(20, 20), 20, 20])
+    for released in (4, 6):     # fixed balls are among them, or some of the mass alone
+        ground.summary["balls"]["released"] = released
+        assert gone.read_balls_gone(tmp_path / "site", ground) is None
 
 
 def test_not_known_what_left(tmp_path):

@@ -241,7 +241,11 @@ def test_mass_that_leaves_beside_the_road_is_said_with_what_is_blocked(two):
         study["runs"][2].update(about)
         path.write_text(yaml.safe_dump(study))
     found, _ = made(*two)
-    assert all("at least" in text for text in route_page.sentences(found))
+    *answer, size = route_page.sentences(found)
+    assert all("at least" in text for text in answer)
+    balls = min(row.released_m3 / row.ball_m3 for body in two[1]["bodies"] for row in
+                results.read_body(two[0], body).finished)
+    assert size.startswith(f"bodies are computed with {balls:,.0f} balls or more; what finer ones")
     said = list(route_page.list_route_caveats(choices.read_route_choices(two[0]), found))
     assert said[0].startswith("body 1: 5 % of the released volume left the terrain before, beside or on the road")
     assert said[1].startswith("body 2: 1 of 4 runs failed or are not at rest"), said
@@ -1172,3 +1176,14 @@ def test_whether_a_body_reaches_the_road(tmp_path, ends, reach, said):
     found = search.reaches(dataclasses.replace(given, reach=reach), mass, LineString(ends).buffer(4, cap_style=2))
     assert (said in found["why_not"]) and bool(said) == bool(found["why_not"])
     assert 0 < found["known_share"] <= 1
+
+
+def test_a_flank_of_a_wide_body_reaches_a_road_beside_the_path_of_its_middle(tmp_path):
+    mass, given = hill(tmp_path / "slips" / "1")
+    x, y = run_helpers.centres(60, 40, 5.0)
+    depth = 1.5 * ((abs(x - 100) <= 80) & (abs(y - 180) <= 10))
+    road, margin = LineString([(25, 20), (25, 280)]).buffer(4), mass.volume ** (1 / 3)
+    assert search.reaches(given, mass, road)["why_not"]
+    wide = mass._replace(depth=depth * mass.volume / (depth.sum() * 25))
+    assert wide.volume ** (1 / 3) == pytest.approx(margin) and margin < 100 - 29 and not search.reaches(
+        given, wide, road)["why_not"]

@@ -67,6 +67,8 @@ def test_structures_of_each_run_are_those_of_its_files(studied):
     assert float(wall["largest_force_n"]) == series["largest_force"].max() > 0
     assert float(wall["at_s"]) == series["time"][series["largest_force"].argmax()]
     assert float(wall["impulse_ns"]) == pytest.approx(np.sqrt(sum(series[f"j{k}"][-1] ** 2 for k in "xyz")), rel=1e-12)
+    assert float(wall["moment_nm"]) == series["largest_moment"].max() > 0
+    assert 0 < float(wall["bearing_m"]) <= float(wall["length_m"]) == pytest.approx(22)
     assert int(wall["end_contacts"]) == series["contacts"][-1]
     assert float(wall["largest_pressure_pa"]) == pressure["largest_pressure"].max()
     assert 0 < float(wall["mean_force_n"]) < float(wall["largest_force_n"])
@@ -135,8 +137,8 @@ def series_of(time, force):
     time, force = np.asarray(time, float), np.asarray(force, float)
     impulse = np.concatenate([[0], np.cumsum(force[:-1] * np.diff(time))])
     triple = np.column_stack([force, 0 * force, 0 * force])
-    return structures.Series(time, triple, 0 * triple, np.column_stack([impulse, 0 * impulse, 0 * impulse]),
-                             np.zeros(len(time)), np.abs(force))
+    return structures.Series(time, triple, np.column_stack([impulse, 0 * impulse, 0 * impulse]),
+                             np.zeros(len(time)), np.abs(force), 0 * force)
 
 
 def test_mean_force_of_a_constant_force_and_of_a_pulse():
@@ -147,6 +149,44 @@ def test_mean_force_of_a_constant_force_and_of_a_pulse():
     time, mean = series_of(np.linspace(0, 4, 401), pulse).mean_force(0.5)
     assert mean.max() == pytest.approx(20.0, rel=1e-9)
     assert mean[(time < 2) | (time > 2.61)] == pytest.approx(0, abs=1e-9)
+
+
+def test_an_impulse_between_rows_that_are_far_apart_may_have_come_at_once():
+    time = np.array([0.8, 1.6, 2.4])
+    impulse = np.array([[0, 0, 0], [0, -50, 0], [0, -50, 0]], float)
+    one = structures.Series(time, 0 * impulse, impulse, *np.zeros((3, 3)))
+    assert one.mean_force(0.5)[1] == pytest.approx([0, 100, 0])
+
+
+def wall_of(length, panel, turn=0.0):
+    """A wall along x, 2 m high, of panels of two triangles; turned by an angle about z."""
+    x = np.arange(0, length, panel)
+    corners = np.array([[[a, 0, 0], [b, 0, 0], [b, 0, 2], [a, 0, 0], [b, 0, 2], [a, 0, 2]] for a, b in
+                        zip(x, x + panel)], float).reshape(-1, 3, 3)
+    cos, sin = np.cos(turn), np.sin(turn)
+    return corners @ np.array([[cos, sin, 0], [-sin, cos, 0], [0, 0, 1]])
+
+
+@pytest.mark.parametrize("panel", [0.5, 1.0, 4.0])
+@pytest.mark.parametrize("turn", [0.0, 0.4])
+def test_the_force_per_metre_does_not_depend_on_how_long_a_wall_is_drawn(panel, turn):
+    """An even load on 20 m, and a stray ball far beside it."""
+    bearing = {}
+    for length in (20, 60, 200):
+        corners = wall_of(length, panel, turn)
+        middle = wall_of(length, panel).mean(axis=1)[:, 0]
+        impulse = np.where(middle < 20, 7.0, 0.0)
+        impulse[-1] += 0.01 * (length > 20)
+        whole, bearing[length] = structures.bearing_length(corners, impulse)
+        assert whole == pytest.approx(length, rel=1e-6)
+    assert list(bearing.values()) == pytest.approx([20, 20, 20], rel=2e-3)
+
+
+def test_a_shorter_length_than_a_few_balls_bears_the_load_of_single_ones():
+    numbers = {"mean_force_n": 60.0, "length_m": 30.0, "bearing_m": 2.0}
+    assert structures.per_metre(numbers, 1.0) == 60 / 5 and structures.per_metre(numbers, 10.0) == 60 / 30
+    assert structures.per_metre({**numbers, "bearing_m": 20.0}, 1.0) == 3
+    assert structures.bearing_length(np.zeros((1, 3, 3)), np.ones(1)) == (0, 0)
 
 
 def test_a_map_is_seen_from_where_the_load_comes():
@@ -188,6 +228,7 @@ def test_a_series_of_a_run_without_output(tmp_path):
     (tmp_path / "a.triangles.csv").write_text("x,y,z,largest_pressure\n")
     numbers = structures.of_structure(tmp_path, "a")
     assert numbers["largest_force_n"] == numbers["mean_force_n"] == 0 and numbers["at_s"] is None
+    assert structures.per_metre(numbers, 1.0) is None
     assert numbers["end_contacts"] == 0
     (tmp_path / "a.vtp").write_text("<VTKFile><DataArray Name='corners'>0 0 0 0 2 0 0 0 1</DataArray>"
                                     "<DataArray Name='largest_pressure'>5</DataArray></VTKFile>")

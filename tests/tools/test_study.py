@@ -253,7 +253,7 @@ def test_without_repeats_the_largest_volume_is_called_that(finished):
     assert [line["run"] for line in table if float(line["remove_m3"]) == largest] == [best["run"]]
     # they are cut short: the number is withheld
     assert [one["kind"] for one in best["withheld"]] == ["runs not at rest or failed"]
-    assert "not usable as a conservative volume:\n  4 of 4 runs" in out and "m3 to remove" not in out
+    assert "not usable as a number to design with:\n  4 of 4 runs" in out and "m3 to remove" not in out
     assert [one["kind"] for one in best["doubts"]].count("no chance") == 1
     ends = {name for name in ("rolling", "friction") if best["set"][name] != "0" and all(
         float(line["remove_m3"]) <= largest for line in table)}

@@ -224,8 +224,16 @@ def test_a_number_that_is_withheld_is_nowhere():
     best = judged(rows(90.0, 100, 110), events(600.0, 0.6))
     assert best.volume_m3 is None and best.rounded["volume_m3"] is None
     lines = combinations.describe_combinations(best)
-    assert lines[0] == "not usable as a conservative volume:" and "no run reaches 600 m" in lines[1]
+    assert lines[0] == "not usable as a number to design with:" and "no run reaches 600 m" in lines[1]
     assert not any("m3" in line for line in lines)
+
+
+def test_lengths_of_runs_that_were_cut_short_are_withheld():
+    """Of an ensemble without a road."""
+    for short in (1, 2):
+        several = [row(at_rest=k >= short) for k in range(10)]
+        found = usable.reasons_of_ensemble(several, None, SITE)
+        assert [one.numbers["number"] for one in found] == [2] * (short == 2)
 
 
 def test_zero_has_a_probability():

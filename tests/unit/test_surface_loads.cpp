@@ -40,13 +40,14 @@ TEST(SurfaceLoads, GoesThroughARestartFile)
   SurfaceLoads loads, other;
   std::vector<SurfaceLoads::Record> records = {{7, 1, 3.0, 0.3}, {6, 0, 8.0, 0.8}};
   loads.take(records);
-  loads.add_row({7, 0.5, {1, 2, 3}, {4, 5, 6}, {7, 8, 9}, 2, 10});
-  other.add_row({1, 0.1, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, 0, 0});
+  loads.add_row({7, 0.5, {1, 2, 3}, {4, 5, 6}, {7, 8, 9}, 2, {10, 11}});
+  other.add_row({1, 0.1, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, 0, {0, 0}});
   const std::vector<double> numbers = loads.pack();
   other.unpack(numbers.data(), numbers.size(), 3.0);
   const TriangleMesh mesh = two();
-  EXPECT_EQ(loads.series(), "step,time,fx,fy,fz,mx,my,mz,jx,jy,jz,contacts,largest_force\n"
-                            "7,0.5,1,2,3,4,5,6,7,8,9,2,10\n");
+  EXPECT_EQ(loads.series(), "step,time,fx,fy,fz,mx,my,mz,jx,jy,jz,contacts,largest_force,"
+                            "largest_moment\n"
+                            "7,0.5,1,2,3,4,5,6,7,8,9,2,10,11\n");
   EXPECT_EQ(other.series(), loads.series());
 
   // of a damaged file: other numbers of loads or rows, a triangle that is not there, an end that is missing

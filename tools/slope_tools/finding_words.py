@@ -135,6 +135,8 @@ WORDS: Dict[str, Union[str, Words]] = {
              "({in_feet:.0f} degrees)? slope terrain and site have --z-unit",
     "few cells": "the body covers {cells} cells of {cell:g} m: use a finer terrain",
     "hollow": "the slip surface has a closed hollow, {depth:.3g} m deep, out of which the mass cannot slide: {remedy}",
+    "unknown inside": "{file} has no value on {area:,.0f} m2 inside the body: nothing is released there; fill them if "
+                      "this ground slid",
     "rim": "the body is {depth:.3g} m deep at the rim of its area, where it ends in a wall: {remedy}",
     "beyond toe": "the slip surface comes out beyond the toe: {area:,.0f} m2 of the body lie on level ground at its "
                   "foot, up to {depth:.3g} m deep, over which it slides without the ground's friction; is a shallower "

@@ -70,9 +70,9 @@ class Result:
     at: Dict[str, Dict[str, Optional[Quantity]]]        # of the lines and the road
     retained: Sequence[Share]                           # by ditches of Outcome.widths
 
-    def width(self, share: float, widths: Sequence[float]) -> Optional[float]:
-        """m, of the narrowest ditch that keeps a share; None: none does."""
-        return next((width for width, one in zip(widths, self.retained) if one.share >= share), None)
+    def width(self, share: float, widths: Sequence[float], side: str = "share") -> Optional[float]:
+        """m, of the narrowest ditch that keeps a share, or a bound of which (side low or high) does; None: none."""
+        return next((width for width, one in zip(widths, self.retained) if getattr(one, side) >= share), None)
 
     @property
     def at_least(self) -> str:

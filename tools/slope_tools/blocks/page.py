@@ -65,9 +65,10 @@ def sentences(known) -> Iterator[str]:
         yield say_worst(known, ("reach", "", "Of the blocks {} reach the road"),
                         ("past", "", " and {} pass it")) + f": {whose}"
         widest = max(of.results, key=lambda result: result.reach.high)
-        if widest.reach.open and widest.reach.high > reach.value.high:
+        if digits.percent(widest.reach.high) != digits.percent(reach.value.high):
             yield (f"up to {digits.percent(widest.reach.high)} may reach it (rolling resistance {widest.rolling}), as "
-                   "some left the terrain before, or still moved")
+                   + ("some left the terrain before, or still moved" if widest.reach.open else
+                      "the grounds differ more there"))
         yield say_worst(
             known, (f"{AT_ROAD}_energy_95", "J", "at its near edge 95 % of those that reach it have at most {}"),
             (f"{AT_ROAD}_energy_largest", "J", ", the hardest {}"),
@@ -159,13 +160,18 @@ def widths(known) -> Table:
     """How wide a ditch must be."""
     of = known.outcome
 
+    def widest(results: Sequence[Result], share: float, side: str, none: str) -> str:
+        wide = [width for result in results if (width := result.width(share, of.widths, side)) is not None]
+        return f"{max(wide):g} m" if len(wide) == len(results) else none
+
     def width_of(results: Sequence[Result], share: float) -> str:
-        wide = [width for result in results if (width := result.width(share, of.widths)) is not None]
-        return f"{max(wide):g} m" if len(wide) == len(results) else f"> {of.widths[-1]:g} m"
+        at = widest(results, share, "share", f"> {of.widths[-1]:g} m")
+        return f"{at} ({widest(results, share, 'high', '?')} to {widest(results, share, 'low', '?')})"
     several = [(one.rolling, [one]) for one in of.results]
     if len(several) > 1:
         several.append(("the worst", of.results))
-    return Table("Width of a ditch at the foot of the slope that retains so many blocks, to a step of the curve.",
+    return Table("Width of a ditch at the foot of the slope that retains so many blocks, to a step of the curve, with "
+                 "its bounds (?: so many grounds do not bound it).",
                  ["rolling resistance", *(f"{100 * share:g} %" for share in KEPT)],
                  [[name, *(width_of(results, share) for share in KEPT)] for name, results in several])
 

@@ -117,7 +117,7 @@ def of_file(path: Path) -> Gone:
 # --- of dumps ---
 
 def of_dumps(paths: List[Path], ground: Ground) -> Optional[Gone]:
-    """To within a frame; None where they are no dumps of the mass alone."""
+    """To within a frame; None where they are no dumps of all of the mass, and of it alone."""
     summary, seen = ground.summary, np.empty(0)
     start = last = beyond = speed = np.empty((0, 2))
     size, out, there, steps = np.empty(0), np.empty(0, bool), np.empty(0, bool), []
@@ -125,8 +125,6 @@ def of_dumps(paths: List[Path], ground: Ground) -> Optional[Gone]:
         try:
             shot = dumps.last(path, ("diameter", "radius", "vx", "vy"))
         except SlopeError:
-            return None
-        if len(shot.of["id"]) > summary["balls"]["released"]:
             return None
         ids, place = shot.of["id"], shot.place[:, :2]
         steps.append(shot.step)
@@ -152,6 +150,8 @@ def of_dumps(paths: List[Path], ground: Ground) -> Optional[Gone]:
         for key in ("diameter", "radius"):
             if key in shot.of:
                 size[at] = shot.of[key] ** 3
+    if len(seen) != summary["balls"]["released"]:
+        return None
     interval = np.diff(steps).max() * summary["dt"]
     unseen = ~there & ~out      # gone between two looks: as far as it was fast
     beyond[unseen] = last[unseen] + np.nan_to_num(speed[unseen]) * interval

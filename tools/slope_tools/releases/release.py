@@ -252,8 +252,10 @@ def from_scar(wanted: Wanted, scar: release_scar.Scar, geometry):
     area = release_area.area_of(raster, depth > 0, wanted.where, wanted.terrain, SCAR_REMEDY)
     row, column = area.corner
     part = depth[row:row + area.z.shape[0], column:column + area.z.shape[1]]
+    gaps = release_scar.is_unknown_inside(scar, inside)
     return area, area.z - part, {"shape": "scar", "scar": wanted.scar, "scar_is": scar.kind, "least": wanted.least,
-                                 "beside_m": release_scar.off_beside(scar, inside), ABOVE: above and above._asdict()}
+                                 "beside_m": release_scar.off_beside(scar, inside), ABOVE: above and above._asdict(),
+                                 "unknown_m2": float(gaps.sum()) * area.cell ** 2}
 
 
 def from_shape(wanted: Wanted, raster, geometry):
@@ -327,6 +329,8 @@ def warnings(choices, body, area, slip) -> List[Finding]:
             doubts.append(Finding("hollow", {"depth": hollow, "remedy": (
                 "are these metres? Is it the mass on top of the terrain? Then --scar-is height"
                 if choices["scar_is"] == "depth" else "a smaller body, or a survey without what came to rest there?")}))
+        if choices["unknown_m2"]:
+            doubts.append(Finding("unknown inside", {"area": choices["unknown_m2"], "file": choices["scar"]}))
     if level := release_toe.beyond_toe(area, slip):
         doubts.append(Finding("beyond toe", level._asdict()))
     if above := choices.get(ABOVE):

@@ -1,9 +1,10 @@
 """A body from a raster: a second survey of the surface, depths, the change between two, or what lies on the terrain."""
-from typing import NamedTuple, Optional
+from typing import NamedTuple, Optional, Tuple
 
 import numpy as np
 from affine import Affine
 from rasterio.crs import CRS
+from scipy import ndimage
 
 from ..errors import SlopeError
 from ..survey import beside
@@ -21,6 +22,7 @@ class Scar(NamedTuple):
     kind: str                   # of KINDS
     ground: Raster              # before the collapse: the terrain, with the mass on it where that is its height
     above: Optional[np.ndarray]     # m, of heights: the terrain's less the raster's, NaN where either has none
+    unknown: np.ndarray         # mask of the nodes where the raster has no value
 
 
 def read_scar(path: str, kind: Optional[str], raster: Raster, least: float, crs: Optional[CRS] = None) -> Scar:
@@ -33,7 +35,7 @@ def read_scar(path: str, kind: Optional[str], raster: Raster, least: float, crs:
     CRS is taken to be in the terrain's. Depths below a millimetre, to which a terrain's heights are rounded, are none.
     Raises SlopeError on a raster that is none, lies elsewhere, or holds no depth.
     """
-    values = on_nodes(path, raster, kind in (None, "surface"), crs)
+    values, unknown = on_nodes(path, raster, kind in (None, "surface"), crs)
     if kind is None:
         check_heights(path, values, raster)
         kind = "surface"
@@ -52,7 +54,7 @@ def read_scar(path: str, kind: Optional[str], raster: Raster, least: float, crs:
                 "depth": "hold a depth > 0", "change": "hold a change < 0", "height": "hold a height > 0"}
         raise SlopeError(path, f"must {must[kind]} somewhere" + (f", by --least {least:g} m" if least else ""))
     return Scar(depth, kind, raster._replace(z=raster.z + depth) if kind == "height" else raster,
-                raster.z - values if kind == "surface" else None)
+                raster.z - values if kind == "surface" else None, unknown)
 
 
 def check_heights(path: str, values: np.ndarray, raster: Raster) -> None:
@@ -82,13 +84,20 @@ def off_beside(scar: Scar, inside: Optional[np.ndarray]) -> Optional[float]:
     return float(np.median(scar.above[known])) if known.sum() >= FEW else None
 
 
-def on_nodes(path: str, raster: Raster, heights: bool, crs: Optional[CRS] = None) -> np.ndarray:
-    """Values of a raster file at the nodes of a terrain; bilinear, exact at its own centres.
+def is_unknown_inside(scar: Scar, inside: Optional[np.ndarray]) -> np.ndarray:
+    """Mask of the nodes without a value that a body encloses; of heights all in its polygon (inside), if it has one."""
+    body = scar.depth > 0
+    return scar.unknown & (ndimage.binary_fill_holes(body) & ~body if inside is None or scar.above is None else inside)
+
+
+def on_nodes(path: str, raster: Raster, heights: bool, crs: Optional[CRS] = None) -> Tuple[np.ndarray, np.ndarray]:
+    """Values of a raster file at the nodes of a terrain, bilinear, exact at its own centres; and where it has none.
 
     Heights are NaN where the raster has none. Depths and changes are 0 there, also between a cell that has one and a
     cell beyond the raster: what they sum up to does not depend on how the file marks the ground beside the scar.
     """
     scar = beside.read_raster_beside(path, raster, heights, crs)
+    unknown = np.isnan(beside.on_cells(path, scar, raster))
     if not heights:
         scar = scar._replace(z=np.pad(np.nan_to_num(scar.z), 1), transform=scar.transform @ Affine.translation(-1, -1))
-    return beside.on_cells(path, scar, raster)
+    return beside.on_cells(path, scar, raster), unknown

@@ -10,7 +10,8 @@ from ..studies import letter
 from ..studies.letter import Letter
 from ..tables import how_far, judged, next_step, sizes
 from ..tables.quantities import ALL
-from . import body, mobility_part, road_part, structures_part, warnings
+from ..tables.structures import per_metre
+from . import body, mobility_part, road_part, warnings
 from .data import Data
 from .numbers import Numbers
 from .sections import Pairs
@@ -27,7 +28,7 @@ def make_client_content(data: Data, ground, numbers: Numbers, findings, listed: 
     if letter_.drawn and letter_.drawn.withheld:
         kind, step = Kind.WITHHELD, next_step.first_remedy(next_step.Made(data.of_study, data.folder))
     return {"letter": paragraphs, "kind": kind.value, "step": step,
-            "table": tabulate_ranges(data, ground, numbers, kind),
+            "table": tabulate_ranges(data, numbers, kind),
             "rest": warnings.rest_of(listed), "caveats": warnings.first_page([
                 each for each in findings if each.kind not in letter_.lacks])[:warnings.MOST]}
 
@@ -43,11 +44,11 @@ def letter_of(data: Data, ground) -> Letter:
 
 # --- what else is found ---
 
-def tabulate_ranges(data: Data, ground, numbers: Numbers, kind: Kind) -> Pairs:
+def tabulate_ranges(data: Data, numbers: Numbers, kind: Kind) -> Pairs:
     """Of the runs of this page, the least and the most of all, each counted alike."""
     cleared = road_part.on_first_page(data, numbers, kind is Kind.WITHHELD)
     rows = [*on_road(data, numbers), *(("clearing", text) for text in cleared), *moving(data, numbers),
-            *structures(data, ground), *mapped(data, numbers)]
+            *structures(data), *mapped(data, numbers)]
     runs = letter.describe_alike_runs(data.study) if data.study else ""
     return Pairs(rows, caption=runs and f"From the least to the most of {runs}, each counted alike.")
 
@@ -80,16 +81,17 @@ def moving(data: Data, numbers: Numbers) -> List[Tuple[str, str]]:
         ("thickest deposit", "thickness_m"), ("fastest part of the mass", "max_speed_m_s"))]
 
 
-def structures(data: Data, ground) -> List[Tuple[str, str]]:
+def structures(data: Data) -> List[Tuple[str, str]]:
     """The largest lasting force on a structure."""
-    found = [(numbers["mean_force_n"], name) for row in data.finished for name, numbers in row.structures.items()]
-    if not found:
+    forces = [(numbers["mean_force_n"], name, per_metre(numbers, row.ball_m3 ** (1 / 3)) or 0.0)
+              for row in data.finished for name, numbers in row.structures.items()]
+    if not forces:
         return []
-    force, name = max(found)
+    force, name, _ = max(forces)
     if not force > 0:
         return [("force on structures", "nothing touches them")]
-    length = structures_part.lengths(ground.obstacles).get(name)
-    each = f", {digits.si(force / length, 'N')} per metre of its length" if length else ""
+    most = max(each for _, other, each in forces if other == name)
+    each = f", {digits.si(most, 'N')} per metre of the length that bears it" if most > 0 else ""
     return [("largest force that lasts half a second", f"{digits.si(force, 'N')}, on {name}{each}")]
 
 

@@ -12,8 +12,7 @@ from .data import Data
 from .numbers import Numbers
 from .sections import Cell, Figures, Picture, Section, Table, Text
 
-FEW = 5             # balls: a structure that is lower is hit by one after another, not by a mass
-LENGTHWISE = "mean_force_n_m"       # the largest lasting force per metre of the structure
+LENGTHWISE = "mean_force_n_m"       # the largest lasting force per metre of the structure that bears it
 COLUMNS = {
     "structures": (("largest force", "N", "largest_force_n"), ("at", "s", "at_s"),
                    (f"largest mean over {structures.WINDOW:g} s", "N", "mean_force_n"),
@@ -29,10 +28,12 @@ COLUMNS = {
 PREFIXED = ("N", "N/m", "N s", "N m", "Pa", "J")     # units that are written with a prefix, beside each number
 
 CAPTIONS = {
-    "structures": "Loads on the structures. A mean over time is that of the mass; the largest force and pressure come "
-                  "from single impacts of the model's balls. The force at the end depends on how the mass came to "
-                  "rest: about 0.5 times the pressure of a fluid of the same weight where it stood before most of its "
-                  "weight came or where the structure gives way, 0.7 to 0.9 where it sank or fell into place, near 3 "
+    "structures": "Loads on the structures. A mean over time is that of the mass, per metre of the length that bears "
+                  f"it ({100 * structures.BORNE:.0f} % of the impulse, evenly, {structures.FEW} balls at least); the "
+                  "largest force, moment and pressure come from single impacts of the model's balls. The force at the "
+                  "end depends on how the mass came to rest: about 0.5 times the pressure of a fluid of the same "
+                  "weight where it stood before most of its weight came or where the structure gives way, 0.7 to 0.9 "
+                  "where it sank or fell into place, near 3 "
                   "(the passive pressure) where the mass was stopped by it; it scatters by tens of per cent from run "
                   "to run where few balls touch.",
     "lines": "What crossed the lines, forward and back; volumes in m3 of ground. Times and quantiles are of the "
@@ -44,7 +45,6 @@ class Structures:
 
     def __init__(self, data: Data, numbers: Numbers, ground):
         self.data, self.numbers, self.ground = data, numbers, ground
-        self.lengths = lengths(ground.obstacles)
         self.runs = data.drawn
 
     def section(self):
@@ -92,14 +92,14 @@ class Structures:
     def table(self, what, more=""):
         """Over the runs; None where no run has any."""
         rows, study = [], self.data.study
-        each = [(self.data.number(row.run), self.data.label_of(row), row.value(what))
+        each = [(self.data.number(row.run), self.data.label_of(row), row.value(what), row.ball_m3)
                 for row in self.data.finished] or [
-            ("", "", structures.read_run_structures(self.data.result.folder, self.data.result.log.settings)[what])]
-        for number, label, found in each:
+            ("", "", structures.read_run_structures(self.data.result.folder, self.data.result.log.settings)[what],
+             ball_of(self.data))]
+        for number, label, found, ball in each:
             for name, numbers in found.items():
                 if what == "structures":
-                    length = self.lengths.get(name)
-                    numbers = {**numbers, LENGTHWISE: length and numbers["mean_force_n"] / length}
+                    numbers = {**numbers, LENGTHWISE: structures.per_metre(numbers, ball ** (1 / 3))}
                 cells = [self.cell(f"{name}: {head}", unit, numbers.get(key), label)
                          for head, unit, key in COLUMNS[what]]
                 rows.append([*([number] if study else []), name, *cells])
@@ -172,23 +172,17 @@ def coarse_walls(data: Data, ground) -> List[Finding]:
     A ball: the side of the cube of ground that it stands for. Not of structures below the ground or beside it.
     """
     findings = []
-    summary = data.result.summary
-    ball = (summary["volume"]["released"] / summary["balls"]["released"]) ** (1 / 3)
+    ball = ball_of(data) ** (1 / 3)
     for name, corners in ground.obstacles.walls.items():
         x, y, z = corners.reshape(-1, 3).T
         above = z - ground.along(ground.before, x, y)
         tall = float(above[np.isfinite(above)].max(initial=0.0))
-        if 0 < tall < FEW * ball:
+        if 0 < tall < structures.FEW * ball:
             findings.append(Finding("few balls high", {"name": name, "height": tall, "balls": tall / ball}))
     return sorted(findings, key=lambda finding: finding.numbers["balls"])
 
 
-def lengths(obstacles) -> Dict[str, float]:
-    """Of structures in plan, m."""
-    return {name: longest_side(shape) for name, shape in obstacles.footprints.items()}
-
-
-def longest_side(shape) -> float:
-    """Of the narrowest rectangle around a shape in plan, m."""
-    around = np.asarray(getattr(shape.minimum_rotated_rectangle, "exterior", shape.minimum_rotated_rectangle).coords)
-    return float(np.hypot(*np.diff(around, axis=0).T).max())
+def ball_of(data: Data) -> float:
+    """m3 of ground that a ball of the shown run stands for."""
+    summary = data.result.summary
+    return summary["volume"]["released"] / summary["balls"]["released"]

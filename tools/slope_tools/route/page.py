@@ -16,6 +16,7 @@ from ..report import document, road_part
 from ..report.sections import Figures, Picture, Section, Table
 from ..statistics import hazard
 from ..survey.rasters import crs_name
+from ..tables import sizes
 from .choices import Choices
 from .corridor import Corridor
 
@@ -37,14 +38,15 @@ def sentences(results: Mapping[str, Any]) -> List[str]:
     rate = "at least " * (bool(least) or any(finding(one).kind in OPEN for one in results["fragility_warnings"]))
     text = (f"{len(results['bodies'])} bodies can reach the road; their runs block {len(stretches)} stretches of it, "
             f"{least}{blocked:,.0f} m in all")
+    size = f"bodies are computed with {min(one['balls'] for one in results['bodies']):,} balls or more{sizes.UNKNOWN}"
     if route["per_year"] is None:
         return [text, "the largest chance that a body which fails blocks the road is "
                 f"{least}{100 * route['share']:.0f} % (body {route['body']}); how often they fail is not known "
-                "(--fragility)"]
+                "(--fragility)", size]
     one = route["per_year"]
     return [text, f"the route is blocked {rate}{one['counts']:.2g} times per year: {one['independent']:.2g} if the "
             f"bodies are independent, {one['dependent']:.2g} if all have the strength of one sample; the larger "
-            f"counts; bounds of the runs (90 %), for any dependence: {one['low']:.2g} to {one['high']:.2g}"]
+            f"counts; bounds of the runs (90 %), for any dependence: {one['low']:.2g} to {one['high']:.2g}", size]
 
 
 def write_route_page(choices: Choices, corridor: Corridor, folder: Path, results: Mapping[str, Any], warn) -> None:

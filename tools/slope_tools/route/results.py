@@ -193,8 +193,9 @@ def make_body_row(body_runs: BodyRuns, yearly: Optional[Yearly]) -> Dict[str, An
     keys = ("body", "name", "chainage_m", "x", "y", "factor", "volume_m3", "area_m2", "depth_m", "known_share",
             "known_law")
     return {**{key: body_runs.about[key] for key in keys}, "runs": len(body_runs.runs),
-            "failed": body_runs.source.failed, "left_share": max(
-                usable.left_before(row) / row.released_m3 for row in body_runs.finished),
+            "balls": min(round(row.released_m3 / row.ball_m3) for row in body_runs.finished),
+            "failed": body_runs.source.failed,
+            "left_share": max(usable.left_before(row) / row.released_m3 for row in body_runs.finished),
             "share_blocked": share, "share_low": low, "share_high": high,
             "on_road_median_m3": float(np.median(on_road)), "on_road_most_m3": float(on_road.max()),
             "no_factor": body_runs.about.get("no_factor", ""), "per_year": per_year}

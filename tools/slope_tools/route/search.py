@@ -11,6 +11,7 @@ from tempfile import TemporaryDirectory
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Tuple
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from .. import disk, schemas
 from ..case import slip_deck
@@ -23,7 +24,7 @@ from ..mobility import body as falling
 from ..mobility import fall_path, known
 from ..releases import release, release_files
 from ..runs import slip_run
-from ..slips import bishop, bodies, failed
+from ..slips import bishop, bodies, columns, failed
 from ..survey import polygons, rasters, vectors
 from ..survey.features import attribute, depth_of, size_of
 from .choices import TABLE, WHAT, Choices
@@ -266,7 +267,10 @@ def reaches(choices: Choices, mass: falling.Body, lane) -> Dict[str, Any]:
     met = fall_path.at_road(mobility.path, lane, mass.raster, mobility.width)
     share = float(mobility.exceedance(met.length))
     why = ""
-    if not met.met and met.beside > mass.volume ** (1 / 3):
+    x, y = columns.centres(mass.raster)         # a flank of a wide body falls beside the path of its middle
+    half = cKDTree(np.column_stack([mobility.path.x, mobility.path.y])).query(
+        np.column_stack([x[mass.depth > 0], y[mass.depth > 0]]))[0].max()
+    if not met.met and met.beside > mass.volume ** (1 / 3) + half:
         why = f"its fall path stays {met.beside:.0f} m away from the road"
     elif share < choices.reach:
         why = (f"{cents(share)} of known events of its volume and height go as far as the road, {met.length:.0f} "

@@ -29,7 +29,7 @@ MOST = 3                # warnings that are shown before the numbers
 HEAVIEST = ("in feet", "no ground's slope", "cliff", "picture", "pits", "no such cell", "swapped", "tiles differ",
             "step between tiles", "shift", "stretched", "CRS of terrain", "datums",
             "in a pit", "no way out", "hollow", "above ground", "no body", "little", "road on body", "under road",
-            "beyond toe", "bulges", "rim", "parts", "own depth", "shared", "unused depth",
+            "beyond toe", "bulges", "unknown inside", "rim", "parts", "own depth", "shared", "unused depth",
             "small angle", "large rolling", "narrow road", "high wall", "low wall", "left terrain", "outside",
             "not at rest",
             "zone covered", "zones overlap", "several bodies", "second opinion",

@@ -10,6 +10,7 @@ from ..digits import percent, three
 from ..seismic import chain_files
 from ..sites.site_bodies import VARIABLE
 from ..statistics.entries import Cause, Code, Headline, Kind, Road, Source, SweepPart
+from ..statistics.withheld import UNFINISHED
 from ..tables import answer_words, ensemble_types, intensity, judged, quantities, sizes, study_types, usable
 from ..tables.how_far import TAIL, Reach
 from ..tables.rows import finished_of
@@ -291,6 +292,8 @@ def describe_reach(reach: Optional[Reach], write: Write, settings: str = "") -> 
     """One sentence on how far, and by what rule; settings: of those of an ensemble, where not by their source."""
     if reach is None:
         return "How far it goes is not known: no run leaves a deposit."
+    if reach.cut > UNFINISHED * reach.runs:
+        return f"How far it goes is not known: {reach.cut} of {counted(reach.runs)} had not come to rest at their end."
     of_ensemble = reach.source == Source.ENSEMBLE.value
     runs = counted(reach.runs, settings if settings and of_ensemble else ALIKE.get(reach.source or "", ""))
     rule = f"by {runs}"

@@ -237,7 +237,7 @@ def other_settings(settings: Mapping[str, str], here: Mapping[str, str]) -> Opti
 def reasons(read: Read) -> List[Finding]:
     """Why the numbers of an ensemble are withheld."""
     assert read.case
-    return usable.reasons_of_ensemble(read.rows, read.events, read.case._replace(sampled=True)) if read.road else []
+    return usable.reasons_of_ensemble(read.rows, read.events, read.case._replace(sampled=True))
 
 
 def judge_conservative(questions: Questions, read: Read, groups: Sequence[combinations.Group]) -> Tuple[

@@ -4,7 +4,7 @@ Both count half (a linear pool; Stone, Annals of Mathematical Statistics, 32, 13
 between theirs. Lengths are along the fall path.
 """
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Mapping, NamedTuple, Optional, Sequence, Tuple
 
@@ -27,7 +27,7 @@ class Reach:
 
     runs: how many, of which study (entries.Source; None: a run alone); along: run_length.ON_PATH or STRAIGHT; events:
     whether known events count; why: not; farther: who goes farther, where the bands lie apart; least_m: nearer the
-    events tell nothing.
+    events tell nothing; cut: how many of the runs were not at rest when they ended, and may go farther.
     """
     near_m: Optional[float]
     middle_m: Optional[float]
@@ -40,6 +40,7 @@ class Reach:
     events: bool
     why: str
     farther: Optional[str]
+    cut: int = 0
 
 
 def known_of(prefix: Path, terrain: Optional[Path], choice: Mapping[str, Any],
@@ -54,8 +55,9 @@ def reach(rows: Sequence[Finished], source: Optional[entries.Source], among: kno
     """How far the mass of runs goes, without those that were added for their length; source: None of a run alone."""
     mine = [row for row in rows if row.length_m is not None and not row.batch]
     lengths = [math.inf if row.left_box else row.length_m or 0.0 for row in mine]
-    return pool(lengths, among.found and among.found.decides, source.value if source else None,
-                mine[0].length_is or ON_PATH if mine else ON_PATH, among.why)
+    pooled = pool(lengths, among.found and among.found.decides, source.value if source else None,
+                  mine[0].length_is or ON_PATH if mine else ON_PATH, among.why)
+    return pooled and replace(pooled, cut=sum(not row.at_rest for row in mine))
 
 
 def pool(lengths: Sequence[float], known: Optional[Mobility], source: Optional[str] = None, along: str = ON_PATH,

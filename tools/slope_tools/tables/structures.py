@@ -6,11 +6,12 @@ this one's. Forces in N, times in s, pressures in Pa, volumes in m3 of ground, e
 import csv
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Dict, Iterator, List, Mapping, Sequence, Tuple
+from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 from xml.etree import ElementTree
 
 import numpy as np
 from rich.table import Table
+from shapely.geometry import MultiPoint
 
 from .. import disk, schemas
 from ..errors import SlopeError
@@ -19,7 +20,9 @@ from .rows import Finished
 
 WINDOW = 0.5            # s, of the mean force: single impacts are those of the model's balls, what lasts is the mass's
 SHARES = (0.5, 0.9, 0.95, 0.99)
-SERIES = ("time", "fx", "fy", "fz", "mx", "my", "mz", "jx", "jy", "jz", "contacts", "largest_force")
+FEW = 5                 # balls: on a shorter length, or a lower structure, loads are those of one ball after another
+BORNE = 0.9             # of the impulse: what comes onto either end of a structure is of stray balls
+SERIES = ("time", "fx", "fy", "fz", "jx", "jy", "jz", "contacts", "largest_force", "largest_moment")
 FILES = {"structures": "structures.csv", "lines": "lines.csv"}
 SIDE = schemas.mapping(schemas.number_keys("volume", "crossings"))
 LINE = schemas.mapping({"forward": SIDE, "back": SIDE, "net_volume": schemas.NUMBER})
@@ -27,19 +30,23 @@ LINE = schemas.mapping({"forward": SIDE, "back": SIDE, "net_volume": schemas.NUM
 
 @dataclass(frozen=True)
 class Series:
-    """What acted on a structure at times (n): force, moment, impulse (n, 3), contacts, largest force since before."""
+    """What acted on a structure at times (n): force, impulse (n, 3), contacts, of force and moment the largest
+    since the time before."""
     time: np.ndarray
     force: np.ndarray
-    moment: np.ndarray
     impulse: np.ndarray
     contacts: np.ndarray
     largest: np.ndarray
+    largest_moment: np.ndarray
 
     def mean_force(self, window=WINDOW):
-        """Times, and size of the mean force over the window (s) that ends then: the change of the impulse over it."""
+        """Times, and size of the mean force over the window (s) that ends then: the change of the impulse over it.
+
+        All that came since the time before, where that is longer ago: it may have come within a window.
+        """
         if not len(self.time):      # a run that was stopped before its first output
             return self.time, np.zeros(0)
-        begin = self.time - window
+        begin = np.minimum(self.time - window, np.concatenate([[0.0], self.time[:-1]]))
         before = np.stack([np.interp(begin, self.time, column, left=0.0) for column in self.impulse.T], axis=-1)
         return self.time, np.linalg.norm(self.impulse - before, axis=1) / window
 
@@ -71,8 +78,8 @@ def table_of(path: Path, columns: Sequence[str]) -> Dict[str, np.ndarray]:
 
 def series(folder: Path, prefix: str) -> Series:
     found = table_of(folder / f"{prefix}.csv", SERIES)
-    force, moment, impulse = (np.stack([found[f"{letter}{axis}"] for axis in "xyz"], axis=-1) for letter in "fmj")
-    return Series(found["time"], force, moment, impulse, found["contacts"], found["largest_force"])
+    force, impulse = (np.stack([found[f"{letter}{axis}"] for axis in "xyz"], axis=-1) for letter in "fj")
+    return Series(found["time"], force, impulse, found["contacts"], found["largest_force"], found["largest_moment"])
 
 
 def pressures(folder: Path, prefix: str) -> Dict[str, np.ndarray]:
@@ -80,22 +87,46 @@ def pressures(folder: Path, prefix: str) -> Dict[str, np.ndarray]:
     return table_of(folder / f"{prefix}.triangles.csv", ("x", "y", "z", "largest_pressure"))
 
 
-def polydata(path: Path) -> Tuple[np.ndarray, np.ndarray]:
-    """Corners of the triangles (n, 3, 3), m, and their largest pressure (n), Pa, of the .vtp that the fix wrote."""
+def polydata(path: Path, what="largest_pressure") -> Tuple[np.ndarray, np.ndarray]:
+    """Corners of the triangles (n, 3, 3), m, and their largest pressure (n), Pa, of the .vtp that the fix wrote; or
+    what else it has of each."""
     try:
         arrays = {one.get("Name"): np.array(one.text.split(), float)
                   for one in ElementTree.parse(path).iter("DataArray") if one.text}
-        corners, pressure = arrays["corners"].reshape(-1, 3, 3), arrays["largest_pressure"]
-        if len(corners) != len(pressure):
-            raise ValueError(f"{len(corners)} triangles, {len(pressure)} pressures")
+        corners, values = arrays["corners"].reshape(-1, 3, 3), arrays[what]
+        if len(corners) != len(values):
+            raise ValueError(f"{len(corners)} triangles, {len(values)} values")
     except (OSError, ElementTree.ParseError, KeyError, ValueError) as error:
         raise SlopeError(path, f"must be what fix wall/gran/mesh wrote ({error})") from error
-    return corners, pressure
+    return corners, values
 
 
 def crossings(folder: Path, prefix: str) -> Dict[str, np.ndarray]:
     """Of all crossings of a line: time, direction (1 forward, -1 back), speed, height, energy, volume."""
     return table_of(folder / f"{prefix}.line.csv", ("time", "direction", "speed", "height", "energy", "volume"))
+
+
+def bearing_length(corners: np.ndarray, impulse: np.ndarray) -> Tuple[float, float]:
+    """m in plan: the length of a structure, and that of the part which bears its load.
+
+    The load: an impulse per area on each triangle (n, 3, 3), evenly. The part: as long as an even load is that has
+    BORNE of it, in the middle, on the same length.
+    """
+    outline = MultiPoint(corners[..., :2].reshape(-1, 2)).minimum_rotated_rectangle
+    sides = np.diff(np.asarray(getattr(outline, "exterior", outline).coords), axis=0)
+    length = float(np.hypot(*sides.T).max(initial=0.0))
+    if not length > 0:
+        return 0.0, 0.0
+    along = corners[..., :2] @ (sides[np.hypot(*sides.T).argmax()] / length)
+    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
+    load = np.maximum(impulse * area, 0.0)
+    low, high = along.min(axis=1), along.max(axis=1) + 1e-6 * length    # upright across it: no length
+    each = load / (high - low)
+    at, index = np.unique(np.concatenate([low, high]), return_inverse=True)
+    rate = np.cumsum(np.bincount(index, np.concatenate([each, -each])))[:-1]
+    before = np.concatenate([[0.0], np.cumsum(rate * np.diff(at))])
+    ends = np.interp(load.sum() * np.array([(1 - BORNE) / 2, (1 + BORNE) / 2]), before, at)
+    return length, float(min(length, (ends[1] - ends[0]) / BORNE))
 
 
 # --- a run ---
@@ -106,18 +137,27 @@ def of_structure(folder: Path, prefix: str) -> Dict[str, Any]:
     time, mean = forces.mean_force()
     numbers: Dict[str, Any] = {"largest_force_n": 0.0, "at_s": None, "mean_force_n": 0.0, "mean_at_s": None,
                                "end_force_n": 0.0, "end_contacts": 0, "impulse_ns": 0.0, "moment_nm": 0.0,
-                               "largest_pressure_pa": 0.0, "pressure_at": None}
+                               "length_m": None, "bearing_m": None, "largest_pressure_pa": 0.0, "pressure_at": None}
     if len(time) and forces.largest.max() > 0:
         numbers.update(largest_force_n=float(forces.largest.max()), at_s=float(time[forces.largest.argmax()]),
                        mean_force_n=float(mean.max()), mean_at_s=float(time[mean.argmax()]),
                        end_force_n=float(np.linalg.norm(forces.force[-1])), end_contacts=int(forces.contacts[-1]),
                        impulse_ns=float(np.linalg.norm(forces.impulse[-1])),
-                       moment_nm=float(np.linalg.norm(forces.moment, axis=1).max()))
+                       moment_nm=float(forces.largest_moment.max()))
     largest = pressure["largest_pressure"]
     if len(largest) and largest.max() > 0:
         k = int(largest.argmax())
-        numbers.update(largest_pressure_pa=float(largest[k]), pressure_at=[float(pressure[axis][k]) for axis in "xyz"])
+        length, bearing = bearing_length(*polydata(folder / f"{prefix}.vtp", "impulse"))
+        numbers.update(length_m=length, bearing_m=bearing, largest_pressure_pa=float(largest[k]),
+                       pressure_at=[float(pressure[axis][k]) for axis in "xyz"])
     return numbers
+
+
+def per_metre(numbers: Mapping[str, Any], ball: float) -> Optional[float]:
+    """N/m: the largest lasting force of a structure over the length that bears it, FEW balls (m) at least, if it is as
+    long; None where nothing touched it."""
+    length = numbers.get("length_m")
+    return numbers["mean_force_n"] / max(numbers["bearing_m"], min(FEW * ball, length)) if length else None
 
 
 def of_line(folder: Path, prefix: str) -> Dict[str, Any]:

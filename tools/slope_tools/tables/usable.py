@@ -15,7 +15,7 @@ from . import how_far, study_types
 from .how_far import EventsAtRoad
 from .rows import Finished, Row, finished_of
 
-UNUSABLE = "not usable as a conservative volume"
+UNUSABLE = "not usable as a number to design with"
 MARGIN = 1.1            # of the balls: chance
 LEAST = 2.0             # times the balls: fewer tell hardly more than the study that is there
 
@@ -52,11 +52,16 @@ def facts(rows: Sequence[Row], volume: float, on_road: float, events: Optional[E
 
 
 def reasons_of_ensemble(rows: Sequence[Row], events: Optional[EventsAtRoad], case: Case) -> List[Finding]:
-    """Why the quantiles of an ensemble with a road are withheld; empty: they may stand.
+    """Why the quantiles of an ensemble are withheld; empty: they may stand.
 
-    Of volumes the largest of all runs count: where even those govern nothing, no quantile does.
+    Of volumes the largest of all runs count: where even those govern nothing, no quantile does. Without a road lengths
+    count, which runs that were cut short do not tell.
     """
     finished = finished_of(rows)
+    if not all(row.road for row in finished):
+        cut = unfinished(Facts(0.0, 0.0, 1.0, len(rows), len(rows) - len(finished),
+                               sum(not row.at_rest for row in finished), 0.0, None, None))
+        return with_remedies([cut] if cut else [], case)
     largest = max(row.at_road.remove_m3 for row in finished)
     on_road = max(row.at_road.remove_on_road_m3 for row in finished)
     return with_remedies(reasons(facts(rows, largest, on_road, events)), case)
