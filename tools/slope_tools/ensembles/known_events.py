@@ -381,4 +381,5 @@ def quantile_text(quantile: KnownQuantile, unit: str, whose: str) -> str:
     if gap := quantile.gap:
         first, last = map(quantities.format_quantity, gap)
         return f"{share}: between {first} and {last} {unit}, as no run ends where they do ({low} to {high})"
-    return f"{quantities.within(share, unit)} {quantities.format_quantity(quantile.value)} {unit} ({low} to {high})"
+    at_most = quantities.share_within(share, unit)
+    return f"{at_most} {quantities.format_quantity(quantile.value)} {unit} ({low} to {high})"

@@ -227,7 +227,7 @@ def card(entry: Any, whose: str, confidence: float, number: Callable[[str, str, 
     """The card of the quantiles of a quantity; whose share stays within; number: writes and keeps one."""
     parts, unit = [], entry.unit
     for quantile in entry.quantiles:
-        share = quantities.within(f"{100 * quantile.share:g} % of {whose}", unit)
+        share = quantities.share_within(f"{100 * quantile.share:g} % of {whose}", unit)
         bounds = [None if side is None else number(f"{share}, {name}", unit, side)
                   for name, side in (("low", quantile.low), ("high", quantile.high))]
         gap = getattr(quantile, "gap", None)
@@ -236,7 +236,7 @@ def card(entry: Any, whose: str, confidence: float, number: Callable[[str, str, 
         parts.append(CardPart(value, share, f"{IN_GAP} " * bool(gap) + band(bounds, unit, confidence),
                               unit="" if quantile.value is None else unit))
     shown = next((part for part, one in zip(parts, entry.quantiles) if one.share == 0.9), parts[-1])
-    most = quantities.within(f"90 % of {whose}", unit)
+    most = quantities.share_within(f"90 % of {whose}", unit)
     return MainCard(f"{entry.name[0].upper()}{entry.name[1:]}: {most}", shown.number, shown.unit or "", parts,
                     band=shown.note, note=note)
 
