@@ -19,7 +19,7 @@ from slope_tools.statistics.withheld import Kind as Rule
 from slope_tools.studies import site_study
 from slope_tools.studies.letter import Letter, write_letter
 from slope_tools.tables import answer_words, headline, next_step, study_file
-from slope_tools.tables.headline import Ensemble, Paper, Size, combine_answers
+from slope_tools.tables.headline import Ensemble, Size, Sweep, combine_answers
 
 
 def sentences(headline, reach=None):
@@ -49,24 +49,24 @@ def codes(found):
 
 
 def test_the_larger_of_both():
-    found = combine_answers(Paper(700.0), ensemble(), road(0.5, 0.6))
+    found = combine_answers(Sweep(700.0), ensemble(), road(0.5, 0.6))
     assert (found.kind, found.volume_m3, found.source, found.share) == (Kind.NUMBER, 950.0, Source.ENSEMBLE, 0.95)
     assert (found.low_m3, found.high_m3, found.reasons) == (pytest.approx(855), pytest.approx(1045), [])
-    found = combine_answers(Paper(1200.0), ensemble(), road(0.5, 0.6))
+    found = combine_answers(Sweep(1200.0), ensemble(), road(0.5, 0.6))
     assert (found.kind, found.volume_m3, found.source, found.share, found.high_m3) == (
-        Kind.NUMBER, 1200.0, Source.PAPER, None, 1200.0)
+        Kind.NUMBER, 1200.0, Source.SWEEP, None, 1200.0)
     # what the other one may be the number may be, too
-    found = combine_answers(Paper(1000.0, transfer=(0.0, 20.0)), ensemble(), road(0.5, 0.6))
-    assert (found.volume_m3, found.source, found.high_m3) == (1000.0, Source.PAPER, pytest.approx(1045))
+    found = combine_answers(Sweep(1000.0, transfer=(0.0, 20.0)), ensemble(), road(0.5, 0.6))
+    assert (found.volume_m3, found.source, found.high_m3) == (1000.0, Source.SWEEP, pytest.approx(1045))
     assert found.band[-1] == (Cause.OTHER.value, 0.0, pytest.approx((45 ** 2 - 20 ** 2) ** 0.5))
-    assert combine_answers(Paper(5.0), None, None)[:2] == (Kind.NUMBER, 5.0)
+    assert combine_answers(Sweep(5.0), None, None)[:2] == (Kind.NUMBER, 5.0)
     assert combine_answers(None, ensemble(), None)[:2] == (Kind.NUMBER, 950.0)
     assert combine_answers(None, None, None) is None
 
 
 def test_a_band_has_shares_that_add_as_squares():
     """By hand: chance, transfer and finer balls, on either side."""
-    found = combine_answers(Paper(1000.0, least=940.0, transfer=(80.0, 40.0), size=Size(-0.04, 0.03)), None,
+    found = combine_answers(Sweep(1000.0, least=940.0, transfer=(80.0, 40.0), size=Size(-0.04, 0.03)), None,
                             None)
     assert [tuple(one) for one in found.band] == [
         (Cause.RUNS.value, 60.0, 0.0), (Cause.TRANSFER.value, 80.0, 40.0), (Cause.SIZE.value, 40.0, 30.0)]
@@ -80,7 +80,7 @@ def test_a_band_has_shares_that_add_as_squares():
     assert "between 843 and 1,100 m3" in said.clear and "90 %" in said.clear
     assert "detailed" in said.basis and "-50.0 +60.0" in said.basis and "--" not in said.basis
     # without repeats nobody knows what chance adds: no confidence is named
-    said = sentences(combine_answers(Paper(1000.0, transfer=(80.0, 40.0)), None, None))
+    said = sentences(combine_answers(Sweep(1000.0, transfer=(80.0, 40.0)), None, None))
     assert "between 920 and 1,040 m3" in said.clear and "90 %" not in said.clear and \
         "without what chance changes" in said.clear
 
@@ -88,36 +88,36 @@ def test_a_band_has_shares_that_add_as_squares():
 def test_a_floor_is_the_lower_end_rounded_down():
     """Of either study, where sizes of balls are too few; nothing stays nothing, and what is withheld stays so."""
     few = Size(floor=Reason(Code.SIZE, {"sizes": 3, "grown": 0.3}))
-    for paper, other, low in ((Paper(1200.0, least=1177.0, size=few), ensemble(), 1170.0),
-                              (Paper(700.0), ensemble(size=few), 855.0)):
-        found = combine_answers(paper, other, road(0.5, 0.6))
+    for sweep, other, low in ((Sweep(1200.0, least=1177.0, size=few), ensemble(), 1170.0),
+                              (Sweep(700.0), ensemble(size=few), 855.0)):
+        found = combine_answers(sweep, other, road(0.5, 0.6))
         assert (found.kind, found.volume_m3, found.low_m3, found.high_m3) == (Kind.FLOOR, low, low, None)
         assert codes(found) == [Code.SIZE]
     # of two lower bounds the larger counts, whoever has the larger number
-    found = combine_answers(Paper(900.0, least=890.0, size=few), ensemble(size=few), road(0.5, 0.6))
-    assert (found.volume_m3, found.source) == (890.0, Source.PAPER)
+    found = combine_answers(Sweep(900.0, least=890.0, size=few), ensemble(size=few), road(0.5, 0.6))
+    assert (found.volume_m3, found.source) == (890.0, Source.SWEEP)
     # what makes it one comes first, and its remedy with it: the terrain ends behind the road
     found = combine_answers(None, ensemble(0.08, stopped=STOPPED, size=few), road(0.5, 0.6))
     assert (found.kind, codes(found)) == (Kind.FLOOR, [Code.SIZE, Code.BEYOND, Code.TERRAIN])
-    assert combine_answers(Paper(0.0, size=few), None, None).kind is Kind.NOTHING
-    assert combine_answers(Paper(1200.0, size=few), None, None).kind is Kind.OPEN         # chance may be less
-    assert combine_answers(Paper(1200.0, least=0.0, size=few), None, None).kind is Kind.OPEN      # 0 is no bound
+    assert combine_answers(Sweep(0.0, size=few), None, None).kind is Kind.NOTHING
+    assert combine_answers(Sweep(1200.0, size=few), None, None).kind is Kind.OPEN         # chance may be less
+    assert combine_answers(Sweep(1200.0, least=0.0, size=few), None, None).kind is Kind.OPEN      # 0 is no bound
 
 
 def test_what_finer_balls_may_undercut_is_no_lower_bound():
     """Of one size or two nobody knows what finer ones bring: the number stands, without a bound on either side."""
     for sizes in (1, 2):
         few = Size(floor=Reason(Code.SIZE, {"sizes": sizes, "grown": None}))
-        for paper, other, of, volume in ((Paper(1200.0, least=1177.0, size=few), None, None, 1200.0),
-                                         (Paper(700.0), ensemble(size=few), road(0.5, 0.6), 950.0),
-                                         (Paper(0.0), ensemble(0.08, stopped=STOPPED, size=few),
+        for sweep, other, of, volume in ((Sweep(1200.0, least=1177.0, size=few), None, None, 1200.0),
+                                         (Sweep(700.0), ensemble(size=few), road(0.5, 0.6), 950.0),
+                                         (Sweep(0.0), ensemble(0.08, stopped=STOPPED, size=few),
                                           replace(road(0.5, 0.6), far_m=901.0), 920.0)):
-            found = combine_answers(paper, other, of)
+            found = combine_answers(sweep, other, of)
             assert (found.kind, found.volume_m3, found.low_m3, found.high_m3) == (Kind.OPEN, volume, None, None)
             said = sentences(found)
             assert "neither" in said.clear and "least" not in said.clear and "90 %" not in said.clear
             assert answer_words.describe_volume(found.kind, volume, "m3").endswith("m3 (no bound)")
-    assert combine_answers(Paper(None, [Finding(Rule.LEFT.value)], size=few), None, None).kind is Kind.WITHHELD
+    assert combine_answers(Sweep(None, [Finding(Rule.LEFT.value)], size=few), None, None).kind is Kind.WITHHELD
 
 
 STEP = {"finer": 2.0, "pairs": 8, "factor": 1.0, "deviation": 0.03, "on_parameters": False}
@@ -139,7 +139,7 @@ def test_fewer_than_two_halvings_make_no_bound_and_one_that_grows_a_floor(size, 
     quantile = {"share": 0.95, "value": 1200.0, "low": 1000.0, "high": 1400.0}
     about = made_study.study(conservative=made_study.conservative(1200.0, chance_m3=50.0), size=size)
     other = made_study.study(ensemble=made_study.ensemble({"to_remove": [quantile]}), size=size)
-    for found in (combine_answers(headline.paper_of(about), None, None),
+    for found in (combine_answers(headline.sweep_of(about), None, None),
                   combine_answers(None, headline.ensemble_of(other), None)):
         assert found.kind is kind and [one.code for one in found.reasons] == [Code.SIZE] * (kind is not Kind.NUMBER)
         assert all(words in text(one) for one in found.reasons for text
@@ -152,19 +152,19 @@ def test_fewer_than_two_halvings_make_no_bound_and_one_that_grows_a_floor(size, 
 
 def test_where_known_events_lie_beyond_the_runs_the_number_is_of_those_within():
     """A floor only where the terrain ends before the road does: the lower end."""
-    found = combine_answers(Paper(0.0), ensemble(0.08, stopped=STOPPED), road(0.5, 0.6))
+    found = combine_answers(Sweep(0.0), ensemble(0.08, stopped=STOPPED), road(0.5, 0.6))
     assert (found.kind, found.volume_m3, codes(found)) == (Kind.NUMBER, 920.0, [Code.BEYOND, Code.TERRAIN])
-    found = combine_answers(Paper(0.0), ensemble(0.08, stopped=STOPPED), replace(road(0.5, 0.6), far_m=901.0))
+    found = combine_answers(Sweep(0.0), ensemble(0.08, stopped=STOPPED), replace(road(0.5, 0.6), far_m=901.0))
     assert (found.kind, found.volume_m3, found.share, found.high_m3) == (Kind.FLOOR, 828.0, 0.92, None)
     assert codes(found) == [Code.BEYOND, Code.TERRAIN]
     assert found.reasons[0].numbers == {"far": 0.08, "longest_m": 800.0, "most_m3": 0.0, "runs": 0}
     other = Reason(Code.RUNS, {"points": 8})
-    found = combine_answers(Paper(0.0), ensemble(0.08, stopped=other), road(0.5, 0.6))
+    found = combine_answers(Sweep(0.0), ensemble(0.08, stopped=other), road(0.5, 0.6))
     assert (found.kind, found.volume_m3, found.share, found.high_m3) == (Kind.NUMBER, 920.0, 0.92, pytest.approx(1012))
     assert codes(found) == [Code.BEYOND, Code.RUNS]
-    found = combine_answers(Paper(0.0), ensemble(0.7), road(0.5, 0.6))
+    found = combine_answers(Sweep(0.0), ensemble(0.7), road(0.5, 0.6))
     assert (found.kind, found.volume_m3, found.share) == (Kind.NUMBER, 300.0, 0.3)
-    [reason] = combine_answers(Paper(0.0), ensemble(0.3, path_end=161.2, most=77.0, runs=24),
+    [reason] = combine_answers(Sweep(0.0), ensemble(0.3, path_end=161.2, most=77.0, runs=24),
                                road(0.5, 0.6)).reasons
     assert reason.numbers["path_end_m"] == 161.2
     # only of its own runs is known what they leave, and how far others go is said once, by one ruler
@@ -174,9 +174,9 @@ def test_where_known_events_lie_beyond_the_runs_the_number_is_of_those_within():
     several = [KnownQuantile(0.95, None, 9.0, None), KnownQuantile(0.9, 7.0, 5.0, None)]
     found = combine_answers(None, Ensemble(several, 0.08, 800.0, most=11.0), None)
     assert (found.kind, found.volume_m3, found.share, found.low_m3, found.high_m3) == (Kind.NUMBER, 7.0, 0.9, 5.0, 11.0)
-    # the paper's more is a number, too
-    found = combine_answers(Paper(5000.0), ensemble(0.7), road(0.5, 0.6))
-    assert (found.kind, found.volume_m3, found.source) == (Kind.NUMBER, 5000.0, Source.PAPER)
+    # the sweep's more is a number, too
+    found = combine_answers(Sweep(5000.0), ensemble(0.7), road(0.5, 0.6))
+    assert (found.kind, found.volume_m3, found.source) == (Kind.NUMBER, 5000.0, Source.SWEEP)
     # nor is nothing known at all
     found = combine_answers(None, ensemble(1.0, [Rule.MOBILITY]), road(0.5, 0.6))
     assert (found.kind, found.volume_m3, found.share) == (Kind.FLOOR, 0.0, 0.0)
@@ -194,15 +194,15 @@ def test_the_number_is_of_all_that_the_runs_reach(far, shares):
     (0.11, 0.2, Kind.FLOOR, [Code.NOT_REACHED])])
 def test_a_road_that_no_run_reaches(low, high, kind, said):
     """The near edge decides: both scatters, one, or none says that more than a tenth of the known events reach it."""
-    found = combine_answers(Paper(0.0), ensemble(values=0.0), road(low, high, 399.0))
+    found = combine_answers(Sweep(0.0), ensemble(values=0.0), road(low, high, 399.0))
     assert (found.kind, found.volume_m3, codes(found)) == (kind, 0.0, said)
     assert all(one.numbers == {"low": low, "high": high, "near_m": 400.0, "longest_m": 399.0} for one in found.reasons)
-    assert combine_answers(Paper(0.0), ensemble(values=0.0), road(low, high, None)).kind is kind
+    assert combine_answers(Sweep(0.0), ensemble(values=0.0), road(low, high, None)).kind is kind
 
 
-@pytest.mark.parametrize("reached, paper, rules, kind, said", [
-    (far, paper, rules, kind, said)
-    for paper, rules, near, beyond in [
+@pytest.mark.parametrize("reached, sweep, rules, kind, said", [
+    (far, sweep, rules, kind, said)
+    for sweep, rules, near, beyond in [
         (0.0, None, (Kind.NOTHING, []), (Kind.FLOOR, [Code.NOT_REACHED])),
         (0.0, [Rule.BALLS], (Kind.NOTHING, [Code.RULE]), (Kind.FLOOR, [Code.NOT_REACHED, Code.RULE])),
         (0.0, [Rule.LEFT], (Kind.FLOOR, [Code.RULE]), (Kind.FLOOR, [Code.NOT_REACHED, Code.RULE])),
@@ -211,12 +211,12 @@ def test_a_road_that_no_run_reaches(low, high, kind, said):
         (70.0, [Rule.BALLS], (Kind.NUMBER, [Code.RULE]), (Kind.NUMBER, [Code.RULE])),
         (70.0, [], (Kind.NUMBER, []), (Kind.FLOOR, [Code.NOT_REACHED]))]
     for far, (kind, said) in (((0.02, 0.05), near), ((0.3, 0.4), beyond))])
-def test_a_road_that_known_events_reach_and_no_run_does(reached, paper, rules, kind, said):
+def test_a_road_that_known_events_reach_and_no_run_does(reached, sweep, rules, kind, said):
     """0 m3 is nothing only where few known events reach it, whatever study stands beside it; rules: of an ensemble."""
     beside = None if rules is None else ensemble(values=0.0, rules=rules)
-    found = combine_answers(Paper(paper, [Finding(Rule.LEFT.value)] * (paper is None), paper), beside,
+    found = combine_answers(Sweep(sweep, [Finding(Rule.LEFT.value)] * (sweep is None), sweep), beside,
                             road(*reached, 0.0))
-    assert (found.kind, found.volume_m3, codes(found)) == (kind, paper or 0.0, said)
+    assert (found.kind, found.volume_m3, codes(found)) == (kind, sweep or 0.0, said)
 
 
 @pytest.mark.parametrize("rules", [[], [Rule.BALLS], [Rule.LEFT]])
@@ -225,13 +225,13 @@ def test_nothing_is_said_only_where_no_run_brings_a_ball(rules, reached):
     """Of either study, whatever governs: 2 of 26 runs leave 530 and 614 m3."""
     beside = Brought(26, 2, 1, 1621.0, 5.8, 530.0, 614.0).and_of(Brought(6, 0, 0, 9.0, 0.1))
     for mass in (ensemble(values=0.0, rules=rules), ensemble(0.7, rules, 0.0), None):
-        found = combine_answers(Paper(0.0), mass, Road(151.0, 158.0, reached, reached, 165.0, beside))
+        found = combine_answers(Sweep(0.0), mass, Road(151.0, 158.0, reached, reached, 165.0, beside))
         assert (found.kind, found.volume_m3, found.high_m3) == (Kind.FLOOR, 0.0, None)
         assert found.reasons[0] == (Code.SOME, {"runs": 32, "reach": 2, "least_m3": 530.0, "most_m3": 614.0})
         first = sentences(found)
         assert first.clear.startswith("More than 0 m3") and "no run" not in (first.clear + first.basis).lower()
         assert "2 of 32" in first.change and "530 to 614" in first.change and "2 of 32 runs" in first.roads
-    found = combine_answers(Paper(0.0), ensemble(values=0.0),
+    found = combine_answers(Sweep(0.0), ensemble(values=0.0),
                             Road(151.0, 158.0, (0.0, 0.05), (0.0, 0.0), 120.0, Brought(26, 0, 0, 3.0, 0.4)))
     assert found.kind is Kind.NOTHING
 
@@ -239,26 +239,26 @@ def test_nothing_is_said_only_where_no_run_brings_a_ball(rules, reached):
 def test_rules_that_withhold_one_of_both():
     mobility, balls, left = (Finding(rule.value) for rule in (Rule.MOBILITY, Rule.BALLS, Rule.LEFT))
     for harmless in (mobility, balls):      # which the ensemble makes up for
-        found = combine_answers(Paper(None, [harmless]), ensemble(), road(0.5, 0.6))
+        found = combine_answers(Sweep(None, [harmless]), ensemble(), road(0.5, 0.6))
         assert (found.kind, found.volume_m3, found.reasons) == (Kind.NUMBER, 950.0, [])
-        assert combine_answers(Paper(None, [harmless]), None, None).kind is Kind.WITHHELD     # alone it stands
-    found = combine_answers(Paper(None, [left]), ensemble(), road(0.5, 0.6))
+        assert combine_answers(Sweep(None, [harmless]), None, None).kind is Kind.WITHHELD     # alone it stands
+    found = combine_answers(Sweep(None, [left]), ensemble(), road(0.5, 0.6))
     assert (found.kind, found.volume_m3, found.high_m3, codes(found)) == (Kind.FLOOR, 855.0, None, [Code.RULE])
     assert found.reasons[0].numbers["source"] == "paper" and found.reasons[0].numbers["rule"] == Rule.LEFT.value
-    found = combine_answers(Paper(70.0, least=65.0), ensemble(rules=[Rule.LEFT]), road(0.5, 0.6))
-    assert (found.kind, found.volume_m3, found.source) == (Kind.FLOOR, 65.0, Source.PAPER)
-    assert combine_answers(Paper(70.0), ensemble(rules=[Rule.LEFT]), road(0.5, 0.6)).kind is Kind.OPEN
-    found = combine_answers(Paper(70.0), ensemble(rules=[Rule.BALLS]),
+    found = combine_answers(Sweep(70.0, least=65.0), ensemble(rules=[Rule.LEFT]), road(0.5, 0.6))
+    assert (found.kind, found.volume_m3, found.source) == (Kind.FLOOR, 65.0, Source.SWEEP)
+    assert combine_answers(Sweep(70.0), ensemble(rules=[Rule.LEFT]), road(0.5, 0.6)).kind is Kind.OPEN
+    found = combine_answers(Sweep(70.0), ensemble(rules=[Rule.BALLS]),
                             road(0.5, 0.6))     # its largest is less than balls
     assert (found.kind, found.volume_m3) == (Kind.NUMBER, 70.0)
     # but a narrow road, or one below a steep hillside, has few balls on it and much to remove
     for volume, kind in ((1045.0, Kind.NUMBER), (1046.0, Kind.FLOOR)):
         large = [Finding(Rule.BALLS.value, {"number": 1.5, "bound": 10, "volume": volume})]
-        found = combine_answers(Paper(None, large), ensemble(), road(0.5, 0.6))
+        found = combine_answers(Sweep(None, large), ensemble(), road(0.5, 0.6))
         assert (found.kind, codes(found)) == (kind, [Code.RULE] * (kind is Kind.FLOOR)), volume
-        found = combine_answers(Paper(1045.0, least=1000.0), ensemble()._replace(withheld=large), road(0.5, 0.6))
-        assert (found.kind, found.source) == (kind, Source.PAPER), volume
-    found = combine_answers(Paper(None, [left]), ensemble(rules=[Rule.RUNS]), road(0.5, 0.6))
+        found = combine_answers(Sweep(1045.0, least=1000.0), ensemble()._replace(withheld=large), road(0.5, 0.6))
+        assert (found.kind, found.source) == (kind, Source.SWEEP), volume
+    found = combine_answers(Sweep(None, [left]), ensemble(rules=[Rule.RUNS]), road(0.5, 0.6))
     assert (found.kind, found.volume_m3, found.source) == (Kind.WITHHELD, None, None)
     assert codes(found) == [Code.RULE, Code.RULE]
 
@@ -275,9 +275,9 @@ def test_what_only_runs_bound_is_said_so():
 
 def test_what_study_yaml_says():
     """What is read from it is what was evaluated."""
-    said = combine_answers(Paper(700.0), ensemble(0.08, stopped=STOPPED), road(0.5, 0.6))
+    said = combine_answers(Sweep(700.0), ensemble(0.08, stopped=STOPPED), road(0.5, 0.6))
     about = records.encode_record(said)
-    for each in (said, combine_answers(Paper(None, [Finding(Rule.LEFT.value)]), ensemble(rules=[Rule.RUNS]), None)):
+    for each in (said, combine_answers(Sweep(None, [Finding(Rule.LEFT.value)]), ensemble(rules=[Rule.RUNS]), None)):
         assert records.read_record(Headline, yaml.safe_load(yaml.safe_dump(records.encode_record(each)))) == each
     with pytest.raises(records.NoRecord, match="kind: must be one of number, floor, open, withheld, nothing, got 'x'"):
         records.read_record(Headline, {**about, "kind": "x"})
@@ -292,7 +292,7 @@ def test_what_study_yaml_says():
 
 def test_the_volume_is_the_one_that_the_study_shows():
     best = made_study.conservative(21700.6, rounded={"volume_m3": 21710.0})
-    assert headline.paper_of(made_study.study(conservative=best))[:2] == (21710.0, [])
+    assert headline.sweep_of(made_study.study(conservative=best))[:2] == (21710.0, [])
 
 
 # --- which study governs ---
@@ -308,16 +308,16 @@ def written(folder, governs, made, at=0):
 @pytest.mark.parametrize("last", ["study", "ensemble"])
 def test_which_study_governs_is_what_the_files_say(tmp_path, last):
     """Of both, of one command; else the one that was made last: never that whose file is the newer one."""
-    paper, other = tmp_path / "study", tmp_path / "ensemble"
-    for newer in (paper, other):
-        for folder in (paper, other):
+    sweep, other = tmp_path / "study", tmp_path / "ensemble"
+    for newer in (sweep, other):
+        for folder in (sweep, other):
             written(folder, last, 10, 200 if folder == newer else 100)
-        assert study_file.find_governing_study(paper, other).name == last
-        for folder in (paper, other):       # the last one alone since, as study --paper
+        assert study_file.find_governing_study(sweep, other).name == last
+        for folder in (sweep, other):       # the last one alone since, as study --paper
             written(folder, folder.name, 12 if folder.name == last else 10, 200 if folder == newer else 100)
-        assert study_file.find_governing_study(paper, other).name == last
+        assert study_file.find_governing_study(sweep, other).name == last
         (tmp_path / last / "study.yaml").unlink()
-        assert study_file.find_governing_study(paper, other).name != last
+        assert study_file.find_governing_study(sweep, other).name != last
 
 
 @pytest.mark.parametrize("fails, merged", [(True, 0), (False, 1)])
@@ -354,7 +354,7 @@ def test_an_older_result_is_not_merged_where_all_runs_failed(tmp_path, monkeypat
 
 def test_no_number_exceeds_what_was_released():
     """Neither its upper end, where chance or finer balls would take it there."""
-    found = combine_answers(Paper(900.0, least=850.0, size=Size(0.0, 0.5), released=1000.0), None, None)
+    found = combine_answers(Sweep(900.0, least=850.0, size=Size(0.0, 0.5), released=1000.0), None, None)
     assert (found.kind, found.volume_m3, found.high_m3) == (Kind.NUMBER, 900.0, 1000.0)
-    found = combine_answers(Paper(1200.0, least=1100.0, size=Size(0.0, 0.1), released=1000.0), None, None)
+    found = combine_answers(Sweep(1200.0, least=1100.0, size=Size(0.0, 0.1), released=1000.0), None, None)
     assert (found.volume_m3, found.high_m3) == (1000.0, 1000.0) and found.low_m3 <= 1000

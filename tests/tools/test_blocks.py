@@ -76,8 +76,7 @@ def made(gis):
     assert cli.main(["study", "tmp", "--jobs", "2"]) == 0
     patch.undo()
     found = site_choices.load_kind(gis / "tmp", OfBlocks)
-    return SimpleNamespace(folder=gis / "tmp", site=found, known=study.read_block_runs(found,
-                                                                                       study.plan_block_runs(found)))
+    return SimpleNamespace(folder=gis / "tmp", site=found, known=study.read_block_runs(found))
 
 
 # --- the folder ---

@@ -114,9 +114,7 @@ def zoned(tmp_path_factory):
     assert cli.main(["site", "mine"]) == 0 and cli.main(["study", "mine", "--jobs", "2"]) == 0
     patch.undo()
     found = site_choices.load_kind(folder / "mine", OfBlocks)
-    return SimpleNamespace(folder=folder / "mine", site=found, known=study.read_block_runs(found,
-                                                                                           study.plan_block_runs(
-                                                                                               found)))
+    return SimpleNamespace(folder=folder / "mine", site=found, known=study.read_block_runs(found))
 
 
 def test_the_deck_has_the_coefficients_of_the_zones(zoned):

@@ -8,7 +8,7 @@ from scipy import stats
 import known_twins as twins
 from made_rows import row
 
-from slope_tools.ensembles import known_events, known_influence
+from slope_tools.ensembles import known_events
 from slope_tools.ensembles.sample import Sample
 from slope_tools.statistics import dependent, distributions
 from slope_tools.statistics.entries import Analysis
@@ -59,7 +59,7 @@ def test_weighted_runs_have_the_indices_of_their_response():
     order = many.mass.order
     by_length = np.log(many.lengths[order]), many.mass.share[order]
     exact = dependent.indices(speed, lambda u: np.interp(np.log(twins.response(u)[0]), *by_length), 3)
-    found = known_influence.evaluate_influence(runs_of(64, 3, np.random.default_rng(3)), "max_speed_m_s")
+    found = known_events.evaluate_influence(runs_of(64, 3, np.random.default_rng(3)), "max_speed_m_s")
     variables = found.variables
     plain = dependent.indices(speed, lambda u: np.ones(len(u)), 3)
     assert plain[0][0] - exact[0][0] > 0.15 and exact[1][1] - plain[1][1] > 0.1   # weights matter
@@ -70,5 +70,5 @@ def test_weighted_runs_have_the_indices_of_their_response():
 
 
 def test_few_runs_have_none():
-    found = known_influence.evaluate_influence(runs_of(6, 3), "max_speed_m_s")
+    found = known_events.evaluate_influence(runs_of(6, 3), "max_speed_m_s")
     assert found == Analysis("no indices: the runs are too few for an emulator of their lengths", None, {})

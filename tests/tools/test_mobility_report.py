@@ -183,13 +183,13 @@ def test_of_which_runs_the_reach_is():
     """Not of those that were added for their length, nor of one without a deposit; one that lost mass goes beyond."""
     rows = [made_rows.row(length_m=60.0), made_rows.row(length_m=None), made_rows.row(length_m=99.0, batch=1),
             made_rows.row(length_m=70.0, released_m3=100.0, lost_m3=1.5)]
-    one = how_far.reach(rows, Source.PAPER, Known(None, "no path"))
+    one = how_far.reach(rows, Source.SWEEP, Known(None, "no path"))
     assert (one.runs, one.near_m, one.far_m, one.source, one.why) == (2, 60.0, None, "paper", "no path")
     assert how_far.reach(rows[1:3], None, Known(None, "")) is None
     # of more than a tenth that were cut short nobody knows
     for short, known_ in ((1, True), (2, False)):
         rows = [made_rows.row(length_m=60.0 + k, at_rest=k >= short) for k in range(10)]
-        text = letter.describe_reach(how_far.reach(rows, Source.PAPER, Known(None, "")), letter.format_console_number)
+        text = letter.describe_reach(how_far.reach(rows, Source.SWEEP, Known(None, "")), letter.format_console_number)
         assert text.startswith("It goes about") == known_ and (f"{short} of 10 runs had not come" in text) != known_
 
 

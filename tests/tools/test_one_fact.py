@@ -76,7 +76,7 @@ def test_what_is_changed_while_the_runs_are_made_does_not_count(mine, monkeypatc
     for place in (study, study_command):
         monkeypatch.setattr(place, "perform", perform)
     monkeypatch.setattr(study_command, "write_site_report", lambda *_, **__: None)
-    monkeypatch.setattr(study_command.files, "write_abouts", lambda *_: None)
+    monkeypatch.setattr(study_command.results, "write_abouts", lambda *_: None)
     monkeypatch.setenv("LMP", LMP)
     study_command.run_study(study_command.Request(deck=mine))
     assert [angle for angle, _ in seen] == [30, 30, 30] and seen[1][1] == [{"set": None, "confined": "unknown"}]
@@ -107,7 +107,7 @@ def test_the_site_is_one_commands_from_end_to_end(mine, monkeypatch):  # noqa: F
     monkeypatch.setattr(study_command.site_study, "collect_site_results", lambda *_,
                         **__: site_study.Done(mine, others(), None))
     monkeypatch.setattr(study_command, "run_deck", others)
-    monkeypatch.setattr(study_command.files, "write_abouts", lambda *_: None)
+    monkeypatch.setattr(study_command.results, "write_abouts", lambda *_: None)
     monkeypatch.setattr(study_command, "write_site_report", others)
     study_command.run_study(study_command.Request(deck=mine))
     assert len(tried) == 5

@@ -10,7 +10,7 @@ from test_site import BODY, CELL, COLUMNS, EAST, ROWS, gis, height, told, write_
 from test_site_anew import inside, mine, once  # noqa: F401
 
 from slope_tools.commands import site as site_command
-from slope_tools.sites import site_choices, site_disk, site_warnings
+from slope_tools.sites import site_choices, site_warnings
 from slope_tools.studies import outlook
 
 STANDARD = " ".join(["--release release.geojson", *BODY, "--road road.geojson"])
@@ -117,9 +117,9 @@ def test_a_coarse_elevation_model(inside, gis):  # noqa: F811
 
 def test_the_disk_of_a_study_grows_with_balls_and_runs(mine):  # noqa: F811
     choices, found = site_choices.load_site(mine).choices, site_choices.found(mine)
-    whole = site_disk.study(mine, choices, found, [8, 4])
+    whole = outlook.disk_of_study(mine, choices, found, [8, 4])
     choices = choices.changed({("study", "points"): 0})
-    paper, without = (site_disk.study(mine, choices, found, numbers) for numbers in ([8, 4], []))
+    paper, without = (outlook.disk_of_study(mine, choices, found, numbers) for numbers in ([8, 4], []))
     assert whole > 1.1 * paper > 1.2 * without
     choices = choices.changed({("balls", "diameter"): choices.balls.diameter / 2})
-    assert 3 < (site_disk.study(mine, choices, found, []) - site_disk.PAGES) / (without - site_disk.PAGES) < 8
+    assert 3 < (outlook.disk_of_study(mine, choices, found, []) - outlook.PAGES) / (without - outlook.PAGES) < 8

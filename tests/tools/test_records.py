@@ -15,7 +15,7 @@ from tiny_collapse import edit
 from slope_tools import disk, records
 from slope_tools.errors import SlopeError
 from slope_tools.findings import Finding
-from slope_tools.studies import files
+from slope_tools.studies import results
 from slope_tools.tables import ensemble_types, quantities, rows, study_file
 from slope_tools.tables.rows import Failed, Finished, Mapped, OnRoad
 
@@ -187,8 +187,8 @@ def test_what_is_none_by_default_is_not_written():
 @pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 def test_a_study_is_read_as_it_was_written(tiny_case, monkeypatch, capsys):
     """The rows of runs, one of which failed, before they are written, and after."""
-    made, write = [], files.write_abouts
-    monkeypatch.setattr(files, "write_abouts", lambda abouts: made.extend(abouts.values()) or write(abouts))
+    made, write = [], results.write_abouts
+    monkeypatch.setattr(results, "write_abouts", lambda abouts: made.extend(abouts.values()) or write(abouts))
     Path("case/road.csv").write_text("13,0\n18,0\n18,24\n13,24\n")
     edit("case/in.tiny", "group       soil", 'if "${rolling} == 0.5" then "nonsense"\ngroup       soil')
     status, _, err = called(capsys, ["study", "case/in.tiny", "--set", "rolling=0,0.3,0.5", "--set", "steps=300",

@@ -295,7 +295,7 @@ def stands(name):
     for parts in (best, best["rounded"]):
         parts["volume_m3"] = parts["mean_m3"] + (parts["chance_m3"] or 0)
     path.write_text(yaml.safe_dump(about))
-    said = headline.combine_answers(headline.paper_of(study_file.load_study(path)), None, None)
+    said = headline.combine_answers(headline.sweep_of(study_file.load_study(path)), None, None)
     path.write_text(yaml.safe_dump({**about, "headline": records.encode_record(said)}))
     return best
 

@@ -81,8 +81,8 @@ def test_every_map_has_them(drawn):
                                 {"wall": obstacles.footprint(WALL)}, {"fence": np.array([[11.0, 23], [11, 1]])}, REACH)
     values, mesh = z / 10, raster._replace(z=np.full((3, 5), 10.0), transform=Affine(8, 0, 0, 0, -8, 24))
     figure_maps.value_map(layers, values, "title", "(m)", [0.0, 1.0, 7.0], palettes.THICKNESS)
-    figure_maps.mesh_map(layers, values, mesh, "title", "")
-    figure_maps.terrain_map(layers, layers.shown, "")
+    figure_maps.mesh_map(layers, values, mesh, "title")
+    figure_maps.terrain_map(layers, layers.shown)
     figure_maps.small_maps(layers, [("one", values)], "(m)", [0.0, 1.0, 7.0], palettes.THICKNESS)
     assert len(drawn) == 4
     for figure in drawn:

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from rasterio.crs import CRS
 from shapely.geometry import box
 
-from slope_tools.drawing import figures
+from slope_tools.drawing import figures, maps
 from slope_tools.plots import figure_charts, figure_maps, sheets
 from slope_tools.plots.figure_charts import Convergence, Series
 from slope_tools.survey.rasters import Raster
@@ -105,7 +105,7 @@ def the_only(drawn):
 def test_a_map_has_a_place_for_everything(drawn, name, width):
     layers, thickness = site(name)
     figure_maps.value_map(layers, thickness, LONG, "thickness of what lies there (m)", figures.classes_of(thickness),
-                          "YlOrBr", width, CRS_OF[name] or "")
+                          "YlOrBr", width)
     figure = the_only(drawn)
     check_layout(figure)
     # the map keeps its shape
@@ -120,10 +120,10 @@ def test_the_terrain_and_the_mesh(drawn, name):
     layers, thickness = site(name)
     xlo, ylo, xhi, yhi = layers.shown
     inner = (xlo, ylo, xlo + (xhi - xlo) / 2, yhi)
-    figure_maps.terrain_map(layers, inner, CRS_OF[name] or "")
+    figure_maps.terrain_map(layers, inner)
     side = max(xhi - xlo, yhi - ylo) / 8
     mesh = Raster(np.full((3, 4), 1234.0), Affine(side, 0, xlo, 0, -side, yhi), None)
-    figure_maps.mesh_map(layers, thickness, mesh, LONG, CRS_OF[name] or "")
+    figure_maps.mesh_map(layers, thickness, mesh, LONG)
     for figure in drawn:
         check_layout(figure)
 
@@ -134,7 +134,7 @@ def test_the_numbers_of_a_mesh_are_drawn_where_they_can_be_read(drawn):
     for parts, read in ((12, True), (80, False)):
         side = (xhi - xlo) / parts
         mesh = Raster(np.full((3, 4), 1234.0), Affine(side, 0, xlo, 0, -side, yhi), None)
-        assert figure_maps.mesh_map(layers, thickness, mesh, LONG, "")[1] == read
+        assert figure_maps.mesh_map(layers, thickness, mesh, LONG)[1] == read
         texts = [text.get_text() for axes in drawn[-1].axes for text in axes.texts]
         assert texts.count("1,234") == (12 if read else 0)
 
@@ -175,7 +175,7 @@ def test_outlines_of_an_ensemble(drawn, name, most, far, shares):
     exceeded = figure_maps.Exceeded(most * thickness / thickness.max(), "known events", 0.1, far)
     for each in (layers, layers._replace(exceeded=exceeded)):
         figure_maps.value_map(each, thickness, LONG, "thickness (m)", figures.classes_of(thickness), "YlOrBr",
-                              figures.FULL, CRS_OF[name] or "")
+                              figures.FULL)
         check_layout(drawn[-1])
     before, after = (len(one.axes[0].collections) for one in drawn)
     texts = [text for text, _ in texts_of(drawn[-1]) if "of known events" in text]
@@ -328,10 +328,10 @@ def test_text_is_wrapped_and_cut_to_its_room():
 
 def test_shade_of_planes():
     x, y = np.meshgrid(np.arange(9.0), np.arange(9.0))      # y to the south
-    flat = figure_maps.shade(0 * x, 1.0)
+    flat = maps.shade(0 * x, 1.0)
     assert flat == pytest.approx(np.sqrt(0.5))
-    to_the_light = figure_maps.shade(0.3 * (x + y), 1.0)        # falls to the north-west
-    away = figure_maps.shade(-0.3 * (x + y), 1.0)
+    to_the_light = maps.shade(0.3 * (x + y), 1.0)        # falls to the north-west
+    away = maps.shade(-0.3 * (x + y), 1.0)
     assert to_the_light.min() > flat.max() > away.max()
 
 

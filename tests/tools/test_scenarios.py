@@ -240,7 +240,7 @@ def test_numbers_side_by_side_are_of_the_studies_that_all_have(tmp_path):
     assert names == ["study"] and "half" in said and "slope study mine/scenarios/half" in said and "mine," not in said
     # that of the sweep alone is what it says itself: of one size, no bound
     found = method.headline_of(BOTH, names)
-    assert (found.source, found.kind, found.volume_m3) == (Source.PAPER, Kind.OPEN, 1000)
+    assert (found.source, found.kind, found.volume_m3) == (Source.SWEEP, Kind.OPEN, 1000)
     assert (method.find_farthest_reach(BOTH, names), method.find_farthest_reach(BOTH, ["study", "ensemble"])) == (100,
                                                                                                                   300)
     assert len(method.list_finished_rows(BOTH, names)) == 2 and len(method.list_finished_rows(BOTH,

@@ -155,6 +155,16 @@ def printer(command: str) -> Callable[[Said], None]:
     return tell
 
 
+def keeper(tell: Callable[[Said], Any]) -> Tuple[Callable[[Said], None], List[Finding]]:
+    """A function that keeps findings and tells them, and the list of those that it kept."""
+    kept: List[Finding] = []
+
+    def keep(entry: Said) -> None:
+        kept.append(finding(entry))
+        tell(entry)
+    return keep, kept
+
+
 def warner(command: str) -> Tuple[Callable[[Said], None], List[Dict[str, Any]]]:
     """The same, and the list of what a file has of those that it printed."""
     tell, kept = printer(command), []

@@ -43,6 +43,12 @@ def to_index(geometry, raster):
     return affine_transform(geometry, [t.a, t.b, t.d, t.e, t.c, t.f])
 
 
+def shares_of_cells(geometry, raster):
+    """What polygons, in local metres, cover of each cell of a raster."""
+    rows, columns = raster.z.shape
+    return coverage(to_index(geometry, raster), np.arange(columns + 1.0), np.arange(rows + 1.0))[0]
+
+
 def polygons_of(geometry):
     """The polygons in a geometry, as a list; lines and points in it are dropped."""
     if geometry.geom_type == "Polygon":

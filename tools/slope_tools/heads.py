@@ -43,3 +43,8 @@ def parse_cell(word: str) -> float:
         return float(word) if "_" not in word else math.nan
     except ValueError:
         return math.nan
+
+
+def is_number(word: str) -> bool:
+    """Whether it is a finite one."""
+    return math.isfinite(parse_cell(word))

@@ -4,7 +4,6 @@ Heights and places are 16-bit shares of the box that they lie in, in base64: a s
 """
 import base64
 import math
-from pathlib import Path
 from typing import Any, Dict
 
 import contourpy
@@ -16,7 +15,6 @@ from ..drawing import figures, palettes
 from ..geometry import extent_of, polygons_of
 from ..survey import rasters
 from ..survey.resampling import sample
-from ..tables import structures
 from .frames import Frames
 
 MOST_NODES = 60_000     # of the ground
@@ -32,7 +30,7 @@ MOVES = 0.1             # m/s
 
 def scene(data, ground, section, frames: Frames) -> Dict[str, Any]:
     """What the viewer takes, ready for JSON; lengths in m, relative to x y of `centre` and to height 0."""
-    walls = structures_of(data.result)
+    walls = ground.obstacles.walls
     box = frame_scene(ground, walls)
     places, low, span = quantised(frames.place)
     top = fastest(frames.speed)
@@ -91,12 +89,6 @@ def packed(values, kind):
 
 
 # --- structures ---
-
-def structures_of(run) -> Dict[str, np.ndarray]:
-    """Corners of the triangles (n, 3, 3) of each structure, by its name."""
-    return {name: structures.polydata(Path(run.folder) / f"{prefix}.vtp")[0]
-            for name, prefix in structures.outputs(run.log.settings, "wall/gran/mesh").items()}
-
 
 def meets(corners, box):
     """Whether a structure reaches into the box."""

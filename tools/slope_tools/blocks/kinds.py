@@ -33,9 +33,8 @@ def run_by_kind(command: str, module: Any, request: Any, tell: Any) -> None:
         from . import study
         return study.run_block_study(site_folder, module.setup_of(request))
     if command == "vtk":
-        from . import runs, study as of_blocks
-        shown = runs.find_farthest_run(of_blocks.read_block_runs(
-            site_folder, of_blocks.plan_block_runs(site_folder)).runs)
+        from . import runs, study
+        shown = runs.find_farthest_run(study.read_block_runs(site_folder).runs)
         tell(f"{shown.name}, the run with the farthest block: {shown.folder}")
         return module.convert(str(shown.folder / runs.PREFIX), request.output, site_folder.folder, request.single)
     return (export if command == "export" else report)(site_folder, request.output, request.overwrite, tell)
@@ -43,10 +42,10 @@ def run_by_kind(command: str, module: Any, request: Any, tell: Any) -> None:
 
 def export(site_folder: site_choices.Folder[OfBlocks], output, overwrite: bool, tell) -> None:
     """The files for a GIS."""
-    from . import files, study as of_blocks
+    from . import files, study
     folder = output or site_folder.folder / "export"
     disk.check_folder(folder, [*files.NAMES, "export.yaml"], [site_folder.folder], overwrite)
-    known = of_blocks.read_block_runs(site_folder, of_blocks.plan_block_runs(site_folder))
+    known = study.read_block_runs(site_folder)
     with disk.complete(folder, "export.yaml") as new:
         files.write_gis(new, known)
         disk.write_yaml(new / "export.yaml", {"of": site_folder.folder, "files": files.NAMES}, "slope export: m/s, J")
@@ -56,11 +55,11 @@ def export(site_folder: site_choices.Folder[OfBlocks], output, overwrite: bool, 
 def report(site_folder: site_choices.Folder[OfBlocks], output, overwrite: bool, tell) -> None:
     """The page once more."""
     from ..report import document
-    from . import page, study as of_blocks
+    from . import page, study
     path = output or site_folder.folder / page.NAME
     disk.check_file(path, ".html")
     document.check_standing(path, site_folder.folder, overwrite, path.resolve().parent == site_folder.folder.resolve())
-    tell(page.write_block_page(of_blocks.read_block_runs(site_folder, of_blocks.plan_block_runs(site_folder)), path))
+    tell(page.write_block_page(study.read_block_runs(site_folder), path))
 
 
 # --- slope site ---

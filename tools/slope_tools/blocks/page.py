@@ -21,7 +21,6 @@ from ..sites.site_choices import Folder
 from ..sites.site_folder import BODY
 from ..sites.site_sections import OfBlocks
 from ..survey import polygons
-from ..survey.rasters import crs_name
 from . import files
 from .outcome import DITCH, Quantity, Result
 from .runs import AT_ROAD, QUANTITIES, find_farthest_run
@@ -179,7 +178,7 @@ def widths(known) -> Table:
 
 def maps(known, data: Data, ground: Ground) -> Dict[str, Picture]:
     """The largest energy and speed over all runs."""
-    raster, crs, drawings = ground.raster, ground.raster.crs, {}
+    raster, drawings = ground.raster, {}
     several = {name: files.combine_largest(known.runs, name, raster).z for name in files.LARGEST}
     shown = ground.window(extent_of(raster.transform, several["max_speed"] > 0),
                           *([data.road.bounds] if data.road else []))
@@ -195,7 +194,7 @@ def maps(known, data: Data, ground: Ground) -> Dict[str, Picture]:
         drawings[what] = Picture(figure_maps.value_map(
             layers, values, f"Largest {what} of a block", f"{what} ({prefix}{unit})",
             figures.even_to_most(values[values > 0]), palettes.PATH if unit == "J" else palettes.SPEED, figures.FULL,
-            crs_name(crs) if crs is not None else "", values > 0), f"Map of the largest {what}",
+            values > 0), f"Map of the largest {what}",
             f"Largest {what} of a block over all {len(known.runs)} runs, as sampled, not smoothed.")
     return drawings
 

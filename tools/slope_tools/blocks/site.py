@@ -14,7 +14,7 @@ from shapely.prepared import prep
 from .. import disk
 from ..digits import metres
 from ..errors import SlopeError
-from ..findings import Finding, finding
+from ..findings import Finding, keeper
 from ..geometry import box_of, extent, polygons_of
 from ..heads import GRAVITY
 from ..releases.release_area import FLAT
@@ -68,11 +68,7 @@ class Start(NamedTuple):
 def build(given: OfBlocks, known: Derived, new: Path, folder: Path, machine: site.Machine, tell, warn,
           draw: site.Draw) -> site.Made:
     """Everything, into the folder `new`, which will be `folder`: as site.build() of a mass."""
-    warnings: List[Finding] = []
-
-    def keep(entry) -> None:
-        warnings.append(finding(entry))
-        warn(entry)
+    keep, warnings = keeper(warn)
     site_choices.check_assigned(given)
     several, grounds = given.study.rolling, given.blocks.grounds
     runs = len(several) * grounds

@@ -1,5 +1,5 @@
 """The study of a site of blocks: its runs, their outcome, files and page."""
-from typing import Any, List, NamedTuple, Sequence
+from typing import Any, List, NamedTuple, Optional, Sequence
 
 from ..case import decks
 from ..errors import SlopeError
@@ -67,9 +67,9 @@ def follow_road(site: Folder[OfBlocks], planned: Sequence[repeats.Repeat], setup
     return setup._replace(anew=setup.anew or others > 0)
 
 
-def read_block_runs(site: Folder[OfBlocks], todo: Sequence[Any]) -> Known:
-    """What those of these runs say that finished; SlopeError if none did."""
-    terrain = runs.terrain_of(site)
+def read_block_runs(site: Folder[OfBlocks], todo: Optional[Sequence[Any]] = None) -> Known:
+    """What those of these runs, or of all, say that finished; SlopeError if none did."""
+    todo, terrain = todo or plan_block_runs(site), runs.terrain_of(site)
     if not all(edges.has_edges(one.folder, terrain.edges) for one in todo if one.finished):
         raise SlopeError(site.folder / ROAD, "must be the road at which the runs counted: `slope study "
                          f"{site.folder}` makes them again")

@@ -28,32 +28,19 @@ from ..survey import roads
 from . import known_arguments, road_arguments
 from .release_arguments import Heights, degrees_or_least, level_or_file
 
-# option -> section and key of site.yaml
-OPTIONS = {"terrain": ("terrain", "files"), "crs": ("terrain", "crs"),
-           "assign_crs": ("terrain", "assign_crs"), "assigned": ("crs", "assigned"), "bounds": ("terrain", "bounds"),
-           "z_unit": ("terrain", "z_unit"), "nodata": ("terrain", "nodata"), "differ": ("terrain", "differ"),
-           "cell": ("terrain", "cell"), "fill": ("terrain", "fill"), "release": ("release", "polygon"),
-           "shape": ("release", "shape"), "depth": ("release", "depth"), "volume": ("release", "volume"),
-           "curvature": ("release", "curvature"), "dip": ("release", "dip"),
-           "foundation": ("release", "foundation"), "direction": ("release", "direction"),
-           "scar": ("release", "scar"), "scar_is": ("release", "scar_is"), "least": ("release", "least"),
-           "bodies": ("release", "bodies"),
-           "road": ("road", "file"), "roads": ("road", "others"), "cut_angle": ("road", "cut_angle"),
-           "mesh": ("road", "mesh"),
-           **{option: ("road", roads.KEYS[field]) for option, field in road_arguments.OPTIONS.items()},
-           "ground": ("ground", "file"), "ground_table": ("ground", "table"),
-           "structure": ("structures", "files"), "wall": ("structures", "walls"), "height": ("structures", "height"),
-           "width": ("structures", "width"), "line": ("lines", "files"), "motion": ("motion", "file"),
-           "peak_friction": ("motion", "peak_friction"), "friction": ("model", "friction"),
-           "rolling": ("study", "rolling"), "slip_friction": ("model", "slip_friction"),
-           "density": ("model", "density"), "spacing": ("model", "spacing"),
-           "field_restitution": ("model", "field_restitution"),
-           "largest_restitution": ("study", "largest_restitution"),
-           "observed": ("observed", "file"), "known": ("known", "set"),
-           "confined": ("known", "confined"), "diameter": ("balls", "diameter"), "balls": ("balls", "number"),
-           "minutes": ("balls", "minutes"), "memory": ("balls", "memory"), "name": ("project", "name"),
-           "client": ("project", "client"), "author": ("project", "author"), "blocks": ("blocks", "number"),
-           "size": ("blocks", "size"), "speed": ("blocks", "speed")}
+# of each section of site.yaml, the options, as option=key where they are not called alike, in the order of messages
+BY_SECTION = {
+    "terrain": "terrain=files crs assign_crs bounds z_unit nodata differ cell fill", "crs": "assigned",
+    "release": "release=polygon shape depth volume curvature dip foundation direction scar scar_is least bodies",
+    "road": " ".join(["road=file roads=others cut_angle mesh", *(f"{option}={roads.KEYS[field]}" for option, field
+                                                                 in road_arguments.OPTIONS.items())]),
+    "ground": "ground=file ground_table=table", "structures": "structure=files wall=walls height width",
+    "lines": "line=files", "motion": "motion=file peak_friction",
+    "model": "friction slip_friction density spacing field_restitution", "study": "rolling largest_restitution",
+    "observed": "observed=file", "known": "known=set confined", "balls": "diameter balls=number minutes memory",
+    "project": "name client author", "blocks": "blocks=number size speed"}
+OPTIONS = {option: (section, key or option) for section, words in BY_SECTION.items()
+           for option, _, key in (word.partition("=") for word in words.split())}
 # options that change neither the body nor its runs: what was determined for these is kept
 BESIDE = {"road", "roads", *road_arguments.OPTIONS, "cut_angle", "mesh", "line", "observed", "known", "confined",
           "rolling", "largest_restitution", "name", "client", "author"}

@@ -18,7 +18,7 @@ from ..sites import site_choices, site_deck, site_roads, site_scenarios
 from ..sites.site_bodies import VARIABLE
 from ..sites.site_choices import Site
 from ..sites.site_sections import OfMass
-from ..studies import (ahead, console, files, results, road_numbers, site_ground, site_study, size_runs, study)
+from ..studies import ahead, results, road_numbers, site_ground, site_study, size_runs, study
 from ..studies.road_numbers import Made
 from ..studies.study import OfAKind, RunsFailed, check_more_than, check_thresholds, perform
 from ..tables import headline, intensity, study_types
@@ -147,7 +147,7 @@ def run_site_of(args: Request, site: Site) -> Made:
     why = "" if args.paper else known_study.why_not(args.deck) if site.choices.study.points else known_study.NONE
     if args.paper or why:
         condition_of(replace(args, around=site))        # has no meaning here
-        method = f"{known_study.PAPER}; {why}" if why else known_study.ASKED
+        method = f"{known_study.SWEEP}; {why}" if why else known_study.ASKED
         say(args, site, method, 0)
         return make_site_study(args, site, method)
     points = ahead.choose_points(site, setup_of(args), sizes_of(args))
@@ -179,17 +179,17 @@ def run_both(args: Request, asked: Site, points: int) -> Made:
         failed, weighted = error, error.found
     if args.dry_run or weighted is None:
         return Made((), None)
-    paper = site_study.collect_site_results(asked, planned, known_study.BESIDE, lambda _: beside.found, args.roads,
+    sweep = site_study.collect_site_results(asked, planned, known_study.BESIDE, lambda _: beside.found, args.roads,
                                             alone=False, made=True)
-    failed = paper.failed or failed
-    assert paper.about
-    made = headline.conclude({site / site_study.STUDY: paper.about, site / site_study.ENSEMBLE: weighted}, args.given)
-    files.write_abouts(made)
+    failed = sweep.failed or failed
+    assert sweep.about
+    made = headline.conclude({site / site_study.STUDY: sweep.about, site / site_study.ENSEMBLE: weighted}, args.given)
+    results.write_abouts(made)
     (governs, first), *others = made.items()
     for folder, study_ in others:
         write_site_report(folder, site / PAGES[folder.name], study_, asked, film=False, quiet=args.quiet)
     if not args.quiet:
-        print("\n".join(console.tell_letter(first)))
+        print("\n".join(results.tell_letter(first)))
     write_site_report(governs, site / road_numbers.PAGE, first, asked, quiet=args.quiet)
     return Made(list(made.values()), failed)
 

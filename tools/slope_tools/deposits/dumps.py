@@ -10,6 +10,7 @@ import numpy as np
 
 from ..digits import rounded
 from ..errors import SlopeError
+from ..heads import parse_cell
 
 CHUNK = 1 << 24         # bytes
 MEMORY = 10             # bytes of memory per byte of the last snapshot, measured 9 for eight columns
@@ -117,15 +118,8 @@ def read_dump_numbers(rows, column, where, first, name):
     try:
         values = np.array(words, float)
     except ValueError:
-        values = np.array([parse_dump_number(word) for word in words])
+        values = np.array([parse_cell(word) for word in words])
     wrong = np.flatnonzero(~np.isfinite(values))
     if len(wrong):
         raise SlopeError(f"{where} {first + wrong[0]}", f"{name} must be a finite number", words[wrong[0]])
     return values
-
-
-def parse_dump_number(word):
-    try:
-        return float(word)
-    except ValueError:
-        return np.nan

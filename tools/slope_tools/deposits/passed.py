@@ -81,10 +81,7 @@ def per_part(values: np.ndarray, ground: Ground, sides: Sides) -> Dict[str, floa
 
 
 def on_cells(values: np.ndarray, area: BaseGeometry, ground: Ground) -> float:
-    rows, columns = values.shape
-    lines = np.arange(columns + 1.0), np.arange(rows + 1.0)
-    share = geometry.coverage(geometry.to_index(area, ground.raster), *lines)[0]
-    return float((share * values).sum() * ground.cell ** 2)
+    return float((geometry.shares_of_cells(area, ground.raster) * values).sum() * ground.cell ** 2)
 
 
 def rim(known: np.ndarray) -> np.ndarray:
@@ -101,8 +98,7 @@ def reach_of_heap(left: Gone, past: np.ndarray, ground: Ground, road: BaseGeomet
     """
     if not past.any():
         return np.zeros(len(past))
-    lines = (np.arange(size + 1.0) for size in ground.raster.z.shape[::-1])
-    covered = geometry.coverage(geometry.to_index(road, ground.raster), *lines)[0] > ROUNDING
+    covered = geometry.shares_of_cells(road, ground.raster) > ROUNDING
     thick = float(np.nan_to_num(ground.raster.z)[covered].max(initial=0.0))
     nearest = ndimage.distance_transform_edt(~ground.known, return_distances=False, return_indices=True)
     cells = np.floor(~ground.raster.transform @ left.place.T).astype(int)[::-1]

@@ -161,8 +161,7 @@ def by_chainage(run_, road, axes):
     road: polygons in the grid; axes: of axes_of().
     """
     raster = run_.raster
-    lines = (np.arange(number + 1.0) for number in raster.z.shape[::-1])
-    volume = geometry.coverage(geometry.to_index(road, raster), *lines)[0] * raster.z * run_.cell ** 2
+    volume = geometry.shares_of_cells(road, raster) * raster.z * run_.cell ** 2
     row, column = np.nonzero(volume > 0)
     if not len(row):
         return []

@@ -196,9 +196,7 @@ def passed(whole: Polygon, barrier: Barrier, raster: Raster, released: np.ndarra
     inside = prep(barrier.road)
     faces = [face for face in polygonize(unary_union(lines))
              if whole.contains(face.representative_point()) and not inside.contains(face.representative_point())]
-    rows, columns = released.shape
-    grid = np.arange(columns + 1.0), np.arange(rows + 1.0)
-    mass = [float((geometry.coverage(geometry.to_index(face, raster), *grid)[0] * released).sum()) for face in faces]
+    mass = [float((geometry.shares_of_cells(face, raster) * released).sum()) for face in faces]
     start = int(np.argmax(mass)) if faces and max(mass) > 0 else None     # None: all of it is on the road
     return unary_union([face for number, face in enumerate(faces) if number != start])
 

@@ -7,7 +7,7 @@ from scipy import ndimage
 
 from .. import disk, geometry
 from ..errors import SlopeError
-from ..geometry import coverage, extent
+from ..geometry import extent
 from ..quantiles import within
 from ..survey import beside, polygons
 from ..survey.crs import same_crs
@@ -46,8 +46,7 @@ def read_observed(path, raster, threshold, local, warn=None):
 def from_polygon(polygon, raster):
     grid = geometry.box_of(raster)
     inside = polygon if grid.covers(polygon) else geometry.as_multi(polygon.intersection(grid))
-    rows, columns = raster.z.shape
-    share = coverage(geometry.to_index(inside, raster), np.arange(columns + 1.0), np.arange(rows + 1.0))[0]
+    share = geometry.shares_of_cells(inside, raster)
     share = np.clip(np.where(share > FULL, share, 0), 0, 1)
     points = np.concatenate([np.asarray(part.exterior.coords)[:, :2] for part in geometry.polygons_of(polygon)])
     return Observed(share, None, points, polygon, max(0, polygon.area - inside.area), 0.0)

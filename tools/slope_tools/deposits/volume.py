@@ -10,7 +10,7 @@ import numpy as np
 
 from .. import disk, geometry
 from ..errors import SlopeError
-from ..findings import Finding, encode_findings, finding
+from ..findings import Finding, encode_findings, keeper
 from ..geometry import Mesh
 from ..sites.site_warnings import of_angles
 from ..survey import rasters, roads
@@ -57,18 +57,13 @@ class Removal(NamedTuple):
     warnings: List[Finding]
 
 
-def compute_removal(prefix, wanted: Wanted, terrain=None, tell: Callable[[str], None] = lambda text: None) -> Removal:
+def compute_removal(prefix, wanted: Wanted, terrain=None, tell: Callable[[Any], None] = lambda text: None) -> Removal:
     """The volume to remove of the run whose fix deposit/grid wrote PREFIX; tell: what gets the warnings.
 
     terrain: the run's, whose sidecar has the CRS (default: terrain.asc beside PREFIX). Raises SlopeError on bad input.
     """
     check_wanted_volume(wanted)
-    warnings: List[Finding] = []
-
-    def warn(entry):
-        warnings.append(finding(entry))
-        tell(entry)
-
+    warn, warnings = keeper(tell)
     for one in of_angles({"--cut-angle": wanted.cut_angle}):
         warn(one)
     run = deposit.read_deposit(prefix, terrain, warn)

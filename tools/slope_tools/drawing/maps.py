@@ -70,15 +70,21 @@ def scheme(name, bounds, low=0.15, high=1.0):
     return ListedColormap(colours), BoundaryNorm(bounds, len(bounds) - 1)
 
 
+def draw_relief(axes, raster, ground, shown, **style):
+    """The shaded relief of the ground; its heights in the window `shown`, and imshow's extent of them."""
+    z, where = part(raster, ground, shown)
+    known = np.isfinite(z)
+    if min(z.shape) >= 2 and known.any():
+        light = shade(np.where(known, z, np.nanmean(z)), (where[1] - where[0]) / z.shape[1])
+        axes.imshow(np.where(known, light, np.nan), extent=where, **RELIEF, **style)
+    return z, where
+
+
 def relief(raster, base, shown, title):
     """A figure with the shaded relief of the ground and axes in local metres: figure, axes."""
     width, height = shown[2] - shown[0], shown[3] - shown[1]
     figure, axes = pictures.subplots(figsize=(SIDE, min(max(SIDE * height / width, SIDE / 3), 1.5 * SIDE)), dpi=130)
-    z, where = part(raster, base, shown)
-    step = (where[1] - where[0]) / z.shape[1]
-    if min(z.shape) >= 2:
-        filled = np.where(np.isfinite(z), z, np.nanmean(z) if np.isfinite(z).any() else 0)
-        axes.imshow(np.where(np.isfinite(z), shade(filled, step), np.nan), extent=where, **RELIEF)
+    draw_relief(axes, raster, base, shown)
     axes.set(xlim=(shown[0], shown[2]), ylim=(shown[1], shown[3]), xlabel="x (m)", ylabel="y (m)", aspect="equal")
     axes.set_title(title, fontsize=10)
     axes.ticklabel_format(useOffset=False, style="plain")

@@ -7,7 +7,7 @@ curves and quantiles of the weighted runs (conditioned), the parameters that the
 import functools
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence
+from typing import Callable, Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence
 
 import numpy as np
 
@@ -19,13 +19,13 @@ from ..findings import Finding, texts
 from ..mobility import body, known, run_length
 from ..mobility.known import WORDS, Mobility
 from ..quantiles import within
-from ..statistics import emulator, hazard
+from ..statistics import dependent, emulator, hazard
 from ..statistics.entries import Analysis, KnownQuantile
 from ..survey.rasters import Place
 from ..tables import answer_words, combinations, ensemble_types, headline, how_far, quantities, sizes
 from ..tables.quantities import REMOVE
 from ..tables.rows import Row, finished_of
-from . import conditioned, ensemble_maps, farther, known_influence
+from . import conditioned, ensemble_maps, farther
 from .sample import Sample
 
 FOLDER, HAZARD, WEIGHTS = "known_events", "hazard_known_events.csv", "weights.csv"
@@ -156,7 +156,7 @@ def emulate(sample: Sample, added: farther.Added, rows: Sequence[Row], mobility:
     design = runs.design() if comparable else None
     effects = {name: design.effect(runs.column(name)) for name in comparable} if design else {}
     return Emulated(comparable, {name: [np.asarray(side).tolist() for side in both] for name, both in effects.items()},
-                    {name: known_influence.evaluate_influence(runs, name) for name in comparable[:1]})
+                    {name: evaluate_influence(runs, name) for name in comparable[:1]})
 
 
 def select_planned_rows(rows: Sequence[Row]) -> List[Row]:
@@ -297,6 +297,37 @@ def find_known_caveats(weighted: ensemble_types.Weighted, runs: Runs) -> List[Fi
     return caveats
 
 
+# --- on which variables a quantity depends ---
+
+def evaluate_influence(runs: Runs, quantity: str) -> Analysis:
+    """What study.yaml says of the quantity that counts: Sobol indices on emulators.
+
+    The weight of a place in the unit cube is that of the runs of its length, which an emulator of log10 L gives: share
+    of the known events over the density of the distributions. So the variables depend on each other.
+    """
+    values = runs.column(quantity)
+    _, point = np.unique(np.array(runs.point), axis=0, return_inverse=True)
+    names = runs.sample.names
+    weighting, text = None, "the runs are too few for an emulator of their lengths"
+    if emulator.enough(int(point.max()) + 1, len(names)) and np.ptp(runs.lengths) > 0:
+        length = emulator.validated(runs.places, np.log10(runs.lengths), point)
+        text = f"the emulator of the length explains {percent(length.check.explained)} of the variance of unseen runs"
+        if length.check.verdict != "bad":
+            weighting = dependent.Weighting(weight(runs, length.whole), [weight(runs, one) for one in length.parts],
+                                            length.check.unseen)
+    if weighting is None:
+        return Analysis(f"no indices: {text}", None, {})
+    return emulator.analyse(names, runs.places, values, point, runs.sample.snap, weighting)
+
+
+def weight(runs: Runs, length: emulator.Emulator) -> Callable[[np.ndarray], np.ndarray]:
+    """The weight of places (n, d): that of the runs of this length, without what their batch makes of it."""
+    order = runs.mass.order
+    lengths = np.log10(runs.lengths)[order]
+    each = (runs.mass.share / runs.weights.ratio)[order]
+    return lambda places: np.interp(length.at(places), lengths, each)
+
+
 # --- tables ---
 
 def weights_table(runs: Runs) -> str:
@@ -350,4 +381,5 @@ def quantile_text(quantile: KnownQuantile, unit: str, whose: str) -> str:
     if gap := quantile.gap:
         first, last = map(quantities.format_quantity, gap)
         return f"{share}: between {first} and {last} {unit}, as no run ends where they do ({low} to {high})"
-    return f"{quantities.within(share, unit)} {quantities.format_quantity(quantile.value)} {unit} ({low} to {high})"
+    at_most = quantities.share_within(share, unit)
+    return f"{at_most} {quantities.format_quantity(quantile.value)} {unit} ({low} to {high})"

@@ -8,9 +8,9 @@ from pathlib import Path
 from ..errors import SlopeError
 from ..mobility import body
 
-PAPER = "by a sweep"
-ASKED = f"{PAPER}, as asked for"
-BESIDE = f"{PAPER}, beside runs that are weighted by known events"
+SWEEP = "by a sweep"
+ASKED = f"{SWEEP}, as asked for"
+BESIDE = f"{SWEEP}, beside runs that are weighted by known events"
 NONE = "site.yaml asks for no runs that are weighted by known events (study.points)"
 WEIGHTED = "weighted by known events of this volume and height, beside a sweep"
 OF_BOTH = (BESIDE, WEIGHTED)        # methods of the two studies that give one number together

@@ -17,6 +17,7 @@ import numpy as np
 from scipy import special
 
 from ..errors import SlopeError
+from ..heads import parse_cell
 
 OWN = Path(__file__).parent / "rock_avalanches.csv"
 CONFINEMENTS = ("frontal", "lateral", "unconfined")
@@ -85,10 +86,7 @@ def event(row, where, names) -> Event:
 
 
 def positive(text, where) -> float:
-    try:
-        value = float(text) if "_" not in text else math.nan     # Python takes 1_5 for 15
-    except (TypeError, ValueError):
-        value = math.nan
+    value = parse_cell(text or "")
     if not (math.isfinite(value) and value > 0):
         raise SlopeError(where, "must be a number above 0", repr(text))
     return value

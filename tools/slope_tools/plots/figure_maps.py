@@ -9,8 +9,9 @@ from matplotlib.patches import Rectangle
 
 from ..drawing import figures, palettes, pictures
 from ..drawing.figures import FULL, HALF, RELEASE, ROAD, SECTION, STYLE, TITLE, classes_of, text_width, wrapped
-from ..drawing.maps import RELIEF, contours, outline, part, scheme, shade
+from ..drawing.maps import contours, draw_relief, outline, part, scheme
 from ..geometry import parts_of, polygons_of
+from ..survey.rasters import crs_name
 from . import sheets
 from .known_reach import NOTHING, SHARES, KnownReach
 from .sheets import Box, Entry, Frame
@@ -73,20 +74,12 @@ class Layers(NamedTuple):
 
 def base_map(axes, layers, labels=True):
     """Shaded relief, contours, zones of the ground, release, road, structures, control lines, reach of known events."""
-    raster, shown = layers.raster, layers.shown
-    z, where = part(raster, layers.ground, shown)
-    step = (where[1] - where[0]) / z.shape[1]
-    known = np.isfinite(z)
-    if min(z.shape) >= 2 and known.any():
-        relief = shade(np.where(known, z, np.nanmean(z)), step)
-        axes.imshow(np.where(known, relief, np.nan), extent=where, interpolation="bilinear", zorder=1, **RELIEF)
-        if np.ptp(z[known]) > layers.interval / 2:
-            contours(axes, z, where, layers.interval, labels, alpha=0.6, zorder=3)
-    if layers.release is not None and layers.release.any():
-        mask, where = part(raster, layers.release.astype(float), shown)
-        if min(mask.shape) >= 2 and np.ptp(mask) > 0:
-            axes.contour(mask, [0.5], extent=where, origin="upper", colors=RELEASE_LINE["color"],
-                         linewidths=RELEASE_LINE["lw"], linestyles=RELEASE_LINE["ls"], zorder=5)
+    z, where = draw_relief(axes, layers.raster, layers.ground, layers.shown, interpolation="bilinear", zorder=1)
+    known = z[np.isfinite(z)]
+    if min(z.shape) >= 2 and known.size and np.ptp(known) > layers.interval / 2:
+        contours(axes, z, where, layers.interval, labels, alpha=0.6, zorder=3)
+    if layers.release is not None:
+        draw_edge(axes, layers, layers.release, 0.5, RELEASE_LINE, 5)
     if layers.road is not None:
         outline(axes, layers.road, color=ROAD, linewidth=1.1, zorder=6)
         for polygon in polygons_of(layers.road):
@@ -97,16 +90,20 @@ def base_map(axes, layers, labels=True):
         axes.annotate(name, (place.x, place.y), fontsize=6, color=ZONE["color"], annotation_clip=True, zorder=8)
     draw_obstacles(axes, layers)
     draw_mapped(axes, layers)
-    if layers.exceeded:
-        share, where = part(raster, layers.exceeded.share, shown)
-        for one in layers.exceeded.drawn:
-            style = OUTLINES[one]
-            axes.contour(share, [one], extent=where, origin="upper", colors=style["color"], linewidths=style["lw"],
-                         linestyles=[style.get("ls", "-")], zorder=6)
+    for share in layers.exceeded.drawn if layers.exceeded else ():
+        draw_edge(axes, layers, layers.exceeded.share, share, OUTLINES[share], 6)
     if len(layers.reach.path):
         axes.plot(*layers.reach.path.T, zorder=6, **PATH)
     for mark in layers.reach.marks:
         axes.plot(*mark.ends.T, zorder=6.5, **MARKS[mark.share])
+
+
+def draw_edge(axes, layers, values, level, style, zorder):
+    """A line around where a raster is above a level."""
+    z, where = part(layers.raster, values.astype(float), layers.shown)
+    if min(z.shape) >= 2 and np.ptp(z) > 0:
+        axes.contour(z, [level], extent=where, origin="upper", colors=style["color"], linewidths=style["lw"],
+                     linestyles=[style.get("ls", "-")], zorder=zorder)
 
 
 def draw_obstacles(axes, layers):
@@ -124,10 +121,7 @@ def draw_obstacles(axes, layers):
 def draw_mapped(axes, layers):
     """The outline of a mapped deposit."""
     if isinstance(layers.mapped, np.ndarray):
-        mask, where = part(layers.raster, layers.mapped.astype(float), layers.shown)
-        if min(mask.shape) >= 2 and np.ptp(mask) > 0:
-            axes.contour(mask, [0.5], extent=where, origin="upper", colors=MAPPED["color"], linewidths=MAPPED["lw"],
-                         zorder=6)
+        draw_edge(axes, layers, layers.mapped, 0.5, MAPPED, 6)
     elif layers.mapped is not None:
         outline(axes, layers.mapped, zorder=6, **MAPPED)
 
@@ -189,94 +183,92 @@ def entries_of_marks(shares):
     return [Entry(f"{SHARES[share]} of known events go farther", MARKS[share]) for share in SHARES if share in shares]
 
 
-def frame_of(layers, names, crs_name=""):
-    offset = layers.raster.offset if names and layers.raster.crs is not None else None
-    return Frame(layers.shown, names, offset, crs_name)
+def frame_of(layers, names):
+    crs = layers.raster.crs if names else None
+    return Frame(layers.shown, names, *(() if crs is None else (layers.raster.offset, crs_name(crs))))
 
 
-def finish(sheet, layers, size, left):
+def finish(sheet, layers, size, left, legend=None):
     """The scale, the legend and the data URI of a sheet whose maps have that size."""
     width = layers.shown[2] - layers.shown[0]
     sheets.scale_and_legend(sheet, left, size[0] / width, min(width, 2.5 / (size[0] / width)),
-                            list_legend_entries(layers), layers.raster.crs is not None)
+                            legend or list_legend_entries(layers), layers.raster.crs is not None)
     return figures.data_uri(sheet.finish())
 
 
 # --- maps ---
 
-def value_map(layers, values, title, bar, bounds, colours, width=HALF, crs_name="", mask=None):
-    """A map of a raster in classes; values below the first bound, and where mask is False, are not drawn."""
+def compose_map(layers, title, bar, bounds, draw, width=FULL, labels=True, classed=True, legend=None):
+    """A map with one colour bar.
+
+    draw(axes, inches per metre) draws what it is of, and gives the image that the bar is of, or None; bar: its name;
+    bounds: its numbers, of classes or of a range; legend: entries, those of the layers if None, which draw may add to.
+    """
     with pictures.settings(STYLE):
-        frame = frame_of(layers, width == FULL, crs_name)
+        frame = frame_of(layers, width == FULL)
         sheet, axes, size, beside, below = sheets.single(width, frame, title, TALL[width], bounds)
-        base_map(axes, layers, labels=width == FULL)
-        image = draw_values(axes, layers, values, bounds, colours, mask)
+        base_map(axes, layers, labels)
+        image = draw(axes, size[0] / frame.width)
         draw_section_line(axes, layers, size)
         sheets.draw_axes(axes, frame, size)
-        sheets.colour_bar(sheet, image, bounds, bar, beside, below)
-        return finish(sheet, layers, size, sheets.margins(frame)[0])
+        if image is not None:
+            sheets.colour_bar(sheet, image, bounds if classed else None, bar, beside, below)
+        return finish(sheet, layers, size, sheets.margins(frame)[0], legend)
 
 
-def mesh_map(layers, removed, mesh, title, crs_name):
+def value_map(layers, values, title, bar, bounds, colours, width=HALF, mask=None):
+    """A map of a raster in classes; values below the first bound, and where mask is False, are not drawn."""
+    return compose_map(layers, title, bar, bounds, lambda axes, _: draw_values(
+        axes, layers, values, bounds, colours, mask), width, width == FULL)
+
+
+def mesh_map(layers, removed, mesh, title):
     """What must be removed: its thickness, and its volume (m3) in the cells of a mesh, a Raster in local metres.
 
     The data URI, and whether the mesh is drawn: only where its numbers can be read.
     """
-    layers = layers._replace(section=None)
-    with pictures.settings(STYLE):
-        frame, bounds = frame_of(layers, True, crs_name), classes_of(removed)
-        sheet, axes, size, beside, below = sheets.single(FULL, frame, title, TALL[FULL], bounds)
-        base_map(axes, layers, labels=False)
+    bounds, side, font = classes_of(removed), mesh.transform.a, 0.0
+
+    def draw(axes, scale):
+        nonlocal font
         image = draw_values(axes, layers, removed, bounds, palettes.THICKNESS, alpha=0.75)
-        side = mesh.transform.a
-        inches = side * size[0] / frame.width
         widest = max((text_width(f"{value:,.0f}", MESH_FONT) for value in mesh.z[mesh.z >= 0.5]), default=0)
-        font = MESH_FONT * min(1, 0.9 * inches / max(widest, 1e-9))
-        if font < LEAST_FONT:
-            mesh = mesh._replace(z=np.zeros_like(mesh.z))
-        for row, column in np.argwhere(mesh.z >= 0.5):
+        font = MESH_FONT * min(1, 0.9 * side * scale / max(widest, 1e-9))
+        for row, column in np.argwhere(mesh.z >= (0.5 if font >= LEAST_FONT else np.inf)):
             x, y = mesh.transform @ (column, row + 1)
             axes.add_patch(Rectangle((x, y), side, side, fill=False, lw=0.35, edgecolor="#222222", zorder=6))
             axes.text(x + side / 2, y + side / 2, f"{mesh.z[row, column]:,.0f}", fontsize=font, ha="center",
                       va="center", zorder=7, clip_on=True)
-        sheets.draw_axes(axes, frame, size)
-        sheets.colour_bar(sheet, image, bounds, "thickness to remove (m)", beside, below)
-        return finish(sheet, layers, size, sheets.margins(frame)[0]), font >= LEAST_FONT
+        return image
+    uri = compose_map(layers._replace(section=None), title, "thickness to remove (m)", bounds, draw, labels=False)
+    return uri, font >= LEAST_FONT
 
 
-def road_map(layers, parts, bounds, title, bar, crs_name):
+def road_map(layers, parts, bounds, title, bar):
     """Parts of the road, areas in local metres, by a value in classes; parts: list of (area, value)."""
-    with pictures.settings(STYLE):
-        frame = frame_of(layers, True, crs_name)
-        sheet, axes, size, beside, below = sheets.single(FULL, frame, title, TALL[FULL], bounds)
-        base_map(axes, layers)
-        cmap, norm = scheme(palettes.SHARE, bounds)
+    cmap, norm = scheme(palettes.SHARE, bounds)
+
+    def draw(axes, _):
         for area, value in parts:
             for polygon in polygons_of(area):
                 axes.fill(*np.asarray(polygon.exterior.coords).T, color=cmap(norm(value)), lw=0, zorder=6.2)
-        sheets.draw_axes(axes, frame, size)
-        sheets.colour_bar(sheet, ScalarMappable(norm, cmap), bounds, bar, beside, below)
-        return finish(sheet, layers, size, sheets.margins(frame)[0])
+        return ScalarMappable(norm, cmap)
+    return compose_map(layers, title, bar, bounds, draw)
 
 
-def terrain_map(layers, detail, crs_name):
+def terrain_map(layers, detail):
     """The whole terrain, tinted by height; detail: the part that the other maps show."""
-    with pictures.settings(STYLE):
-        frame = frame_of(layers, True, crs_name)
-        z, where = part(layers.raster, layers.ground, layers.shown)
-        numbers = [np.nanmin(z), np.nanmax(z)] if np.isfinite(z).any() else [0]
-        sheet, axes, size, beside, below = sheets.single(FULL, frame, "Terrain before the collapse", TALL[FULL],
-                                                         [round(float(value)) for value in numbers])
-        base_map(axes, layers)
-        image = axes.imshow(np.ma.masked_invalid(z), extent=where, cmap=TINTS, alpha=0.45, zorder=2,
-                            interpolation="bilinear")
+    z, where = part(layers.raster, layers.ground, layers.shown)
+    numbers = [np.nanmin(z), np.nanmax(z)] if np.isfinite(z).any() else [0]
+
+    def draw(axes, _):
         if tuple(detail) != tuple(layers.shown):
             axes.add_patch(Rectangle(detail[:2], detail[2] - detail[0], detail[3] - detail[1], fill=False, lw=0.9,
                                      edgecolor="black", zorder=6))
-        draw_section_line(axes, layers, size)
-        sheets.draw_axes(axes, frame, size)
-        sheets.colour_bar(sheet, image, None, "height (m)", beside, below)
-        return finish(sheet, layers, size, sheets.margins(frame)[0])
+        return axes.imshow(np.ma.masked_invalid(z), extent=where, cmap=TINTS, alpha=0.45, zorder=2,
+                           interpolation="bilinear")
+    return compose_map(layers, "Terrain before the collapse", "height (m)", [round(float(value)) for value in numbers],
+                       draw, classed=False)
 
 
 def small_maps(layers, panels, bar, bounds, colours):

@@ -5,13 +5,12 @@ from typing import List
 
 import numpy as np
 
-from ..drawing import figures, palettes, pictures
+from ..drawing import figures, palettes
 from ..drawing.maps import outline, window
 from ..geometry import extent, extent_of
 from ..mobility import known
 from ..sites.site_layers import Shown
-from ..survey.rasters import crs_name
-from . import figure_maps, known_reach, sheets
+from . import figure_maps, known_reach
 from .figure_maps import LINE, WALL
 from .sheets import Entry
 
@@ -23,25 +22,16 @@ REACHED = 0.1       # m of thickness
 
 def draw_site_map(path: Path, layers: Shown, title: str) -> None:
     """Write the map as a PNG."""
-    raster, crs = layers.raster, crs_name(layers.raster.crs) if layers.raster.crs is not None else ""
-    shown = window(raster, *boxes(layers))
+    raster, shown = layers.raster, window(layers.raster, *boxes(layers))
     base = figure_maps.Layers(raster, raster.z, shown, None, layers.road, None, figures.contour_interval(raster.z),
                               reach=reach_of(layers), zones={zone.name: zone.geometry for zone in layers.zones})
-    bounds = figures.even(float(layers.depth.max()))
-    with pictures.settings(figures.STYLE):
-        frame = figure_maps.frame_of(base, True, crs)
-        sheet, axes, size, beside, below = sheets.single(figures.FULL, frame, title,
-                                                         figure_maps.TALL[figures.FULL], bounds)
-        figure_maps.base_map(axes, base)
+    bounds, legend = figures.even(float(layers.depth.max())), figure_maps.list_legend_entries(base)
+
+    def draw(axes, _):
         image = figure_maps.draw_values(axes, base, layers.depth, bounds, palettes.DEPTH, layers.depth > 0)
-        entries = draw_outlines(axes, layers)
-        sheets.draw_axes(axes, frame, size)
-        if layers.depth.any():
-            sheets.colour_bar(sheet, image, bounds, "depth of the body (m)", beside, below)
-        scale = size[0] / (shown[2] - shown[0])
-        sheets.scale_and_legend(sheet, sheets.margins(frame)[0], scale, min(shown[2] - shown[0], 2.5 / scale),
-                                [*figure_maps.list_legend_entries(base), *entries], raster.crs is not None)
-        uri = figures.data_uri(sheet.finish())
+        legend.extend(draw_outlines(axes, layers))
+        return image if layers.depth.any() else None
+    uri = figure_maps.compose_map(base, title, "depth of the body (m)", bounds, draw, legend=legend)
     path.write_bytes(base64.b64decode(uri.partition(",")[2]))
 
 

@@ -4,7 +4,7 @@ from scipy.ndimage import label
 
 from ..drawing import figures, palettes, pictures
 from ..drawing.figures import FULL, RELEASE, SECTION, STYLE
-from ..drawing.maps import RELIEF, contours, outline, part, scheme, shade, window
+from ..drawing.maps import contours, draw_relief, outline, part, scheme, window
 from ..survey.rasters import Raster
 from ..survey.resampling import sample
 from .release_area import Area, fall
@@ -71,11 +71,7 @@ def section_line(area: Area, body: np.ndarray):
 
 def draw_map(figure, axes, raster: Raster, depth: np.ndarray, shown, geometry) -> None:
     """Shaded relief, contours, depths of the body in classes, the polygon."""
-    z, where = part(raster, raster.z, shown)
-    known = np.isfinite(z)
-    step = (where[1] - where[0]) / z.shape[1]
-    axes.imshow(np.where(known, shade(np.where(known, z, np.nanmean(z)), step), np.nan), extent=where,
-                interpolation="bilinear", **RELIEF)
+    z, where = draw_relief(axes, raster, raster.z, shown, interpolation="bilinear")
     axes.set(xlim=(shown[0], shown[2]), ylim=(shown[1], shown[3]))
     contours(axes, z, where, figures.contour_interval(z), alpha=0.7)
     values, _ = part(raster, depth, shown)

@@ -64,11 +64,8 @@ def on_body(body: np.ndarray, raster: Raster, road, rim: int) -> Optional[OnBody
 
     body: mask of the cells of the raster, whose values do not count.
     """
-    rows, columns = body.shape
-    lines, grid = (np.arange(columns + 1.0), np.arange(rows + 1.0)), geometry.box_of(raster)
-    inside = road.intersection(grid)
-    share = sum(geometry.coverage(part, *lines)[0]
-                for part in geometry.polygons_of(geometry.to_index(inside, raster)))
+    inside = road.intersection(geometry.box_of(raster))
+    share = sum(geometry.shares_of_cells(part, raster) for part in geometry.polygons_of(inside))
     if not (share * binary_erosion(body, iterations=rim) > ROUNDING).any():
         return None
     area = float((share * body).sum() * raster.transform.a ** 2)

@@ -3,12 +3,13 @@ from typing import Any, Dict, Mapping, Optional
 
 from ..deposits import travel_shares
 from ..drawing.figures import FULL, HALF, WIDE
+from ..heads import is_number
 from ..plots import figure_charts
 from ..plots.figure_charts import Series
 from ..runs.repeats import key_of
 from ..statistics import conservative_volume, rounding
 from ..tables.quantities import ALL, REMOVE, name_quantity
-from .data import Data, is_number_text
+from .data import Data
 from .numbers import Numbers
 from .sections import Picture
 
@@ -37,7 +38,7 @@ class Charts:
     def variable(self):
         """The first variable with several values, rolling if it has; None if they are no numbers."""
         varied = [name for name, several in self.data.settings.items()
-                  if len(several) > 1 and all(is_number_text(value) for value in several)]
+                  if len(several) > 1 and all(is_number(value) for value in several)]
         return "rolling" if "rolling" in varied else varied[0] if varied else None
 
     def has_removal(self) -> bool:

@@ -1,6 +1,5 @@
 """What a report is made of: the finished runs of a study, or one run, read back."""
 import functools
-import math
 from pathlib import Path
 from typing import Any, Dict, List, Optional
 
@@ -250,10 +249,3 @@ class Data:
 
     def varied(self, row):
         return [f"{name} {value}" for name, value in row.set.items() if len(self.settings.get(name) or ()) > 1]
-
-
-def is_number_text(text):
-    try:
-        return math.isfinite(float(text))
-    except ValueError:
-        return False

@@ -10,11 +10,12 @@ from ..drawing import figures, palettes
 from ..ensembles import ensemble, known_events
 from ..errors import SlopeError
 from ..findings import texts
+from ..heads import is_number
 from ..plots import ensemble_charts, figure_maps
 from ..statistics import entries
 from ..tables import ensemble_types, quantities, study_types, usable
 from .charts import AXIS
-from .data import Data, is_number_text
+from .data import Data
 from .numbers import CardPart, MainCard, Numbers
 from .sections import Cell, Figures, Picture, Section, Table, Text
 
@@ -115,7 +116,7 @@ class Ensemble:
         pictures = []
         for name in names[:MOST_SCATTER]:
             rows = self.data.finished
-            if not all(is_number_text(row.set[name]) for row in rows):
+            if not all(is_number(row.set[name]) for row in rows):
                 continue
             what = self.entry.name
             title = f"{what[0].upper()}{what[1:]} against {name}"
@@ -226,7 +227,7 @@ def card(entry: Any, whose: str, confidence: float, number: Callable[[str, str, 
     """The card of the quantiles of a quantity; whose share stays within; number: writes and keeps one."""
     parts, unit = [], entry.unit
     for quantile in entry.quantiles:
-        share = quantities.within(f"{100 * quantile.share:g} % of {whose}", unit)
+        share = quantities.share_within(f"{100 * quantile.share:g} % of {whose}", unit)
         bounds = [None if side is None else number(f"{share}, {name}", unit, side)
                   for name, side in (("low", quantile.low), ("high", quantile.high))]
         gap = getattr(quantile, "gap", None)
@@ -235,7 +236,7 @@ def card(entry: Any, whose: str, confidence: float, number: Callable[[str, str, 
         parts.append(CardPart(value, share, f"{IN_GAP} " * bool(gap) + band(bounds, unit, confidence),
                               unit="" if quantile.value is None else unit))
     shown = next((part for part, one in zip(parts, entry.quantiles) if one.share == 0.9), parts[-1])
-    most = quantities.within(f"90 % of {whose}", unit)
+    most = quantities.share_within(f"90 % of {whose}", unit)
     return MainCard(f"{entry.name[0].upper()}{entry.name[1:]}: {most}", shown.number, shown.unit or "", parts,
                     band=shown.note, note=note)
 

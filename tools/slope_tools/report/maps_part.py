@@ -34,8 +34,6 @@ class Maps:
 
     def __init__(self, data: Data, ground, section):
         self.data, self.ground = data, ground
-        crs = ground.raster.crs
-        self.crs = crs_name(crs) if crs is not None else ""
         line = section.points
         self.layers = figure_maps.Layers(
             ground.raster, ground.before,
@@ -52,7 +50,7 @@ class Maps:
             more += OPEN
         return Picture(
             figure_maps.value_map(layers or self.layers, values, title, "thickness (m)", bounds, palettes.THICKNESS,
-                                  width, self.crs), alt, caption + more)
+                                  width), alt, caption + more)
 
     def classes(self, values):
         return figures.classes_of(values, self.ground.source)
@@ -68,7 +66,7 @@ class Maps:
             + shown_run(data) + known_reach.describe_known_reach(ground.reach) + self.outlines(), figures.FULL,
             self.with_outlines())
         pictures["terrain"] = Picture(
-            figure_maps.terrain_map(layers._replace(shown=whole), layers.shown, self.crs), "Map of the terrain before",
+            figure_maps.terrain_map(layers._replace(shown=whole), layers.shown), "Map of the terrain before",
             "Terrain before the collapse, light from the north-west"
             + ("; the black frame is the part that the other maps show." if layers.shown != whole else "."))
         if ground.slip_depth.max() > 0:
@@ -128,7 +126,7 @@ class Maps:
             Figures([of_run["terrain"]], "tall"),
             Figures([of_run[name] for name in ("slip", "max_thickness", "speed", "arrival")], "columns"),
             Text("The terrain has no coordinate reference system: coordinates are the local metres of the run."
-                 if crs is None else f"Coordinate system {self.crs}: east = {east}, north = {north}.", "soft")])
+                 if crs is None else f"Coordinate system {crs_name(crs)}: east = {east}, north = {north}.", "soft")])
 
     def removal(self, volume):
         """Map of what `slope volume` says is to be removed; None if that is nothing. volume: of the run, as text."""
@@ -139,7 +137,7 @@ class Maps:
         shown = self.ground.window(geometry.extent_of(self.layers.raster.transform, removed > 0))
         layers = self.layers._replace(shown=shown, reach=known_reach.NOTHING)
         road = data.of_study.study.the_road
-        uri, numbered = figure_maps.mesh_map(layers, removed, mesh, "Volume to remove", self.crs)
+        uri, numbered = figure_maps.mesh_map(layers, removed, mesh, "Volume to remove")
         squares = f", and its volume in m3 in squares of {mesh.transform.a:g} m" if numbered else ""
         more = "" if numbered else (f" The volumes in squares of {mesh.transform.a:g} m are too many to be read here: "
                                     "they are in volume/volume.csv and volume.geojson of the run.")

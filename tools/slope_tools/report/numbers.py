@@ -8,13 +8,14 @@ from .. import disk
 from ..deposits import rest, travel_shares
 from ..digits import format_measured_share, rounded
 from ..findings import Finding
+from ..heads import is_number
 from ..mobility.run_length import ON_PATH
 from ..statistics import rounding
 from ..statistics.entries import Source
 from ..tables import named_run, usable
 from ..tables.quantities import ALL, KNOWN, LENGTH, REACH, written
 from ..tables.released import over_runs
-from .data import Data, is_number_text
+from .data import Data
 
 UNKNOWN = "unknown"
 
@@ -176,36 +177,25 @@ LOST = "from which more than 1 % of the volume left the terrain, farther than an
 
 
 def travel_card(data: Data, numbers: Numbers):
-    key, unit = travel_shares.DISTANCE, "m"
+    key, row, name = travel_shares.DISTANCE, data.compared[0], ""
     what = f"{travel_shares.HEADLINE} % of the volume stays within"
     if data.study:
-        largest = data.study.largest
-        far = largest["front_m"]
-        names = {row.run: row for row in data.finished}
-        who = data.label_of(names[far.run])
+        largest, rows = data.study.largest, {row.run: row for row in data.finished}
+        far, row = largest["front_m"], rows[largest[key].run] if key in largest else row
+        who, name = data.label_of(rows[far.run]), data.label_of(row)
         farthest = f"; farthest ball {numbers.quantity('front_m', far.value, who)} m, {who}"
-        if key not in largest:
-            left = any(row.left_box for row in data.finished)
-            return {"what": what, "number": UNKNOWN, "unit": "", "note": f"a run {LOST if left else OLD}{farthest}"}
-        row = names[largest[key].run]
-        value, angle, name = row.value(key), row.value(REACH), data.label_of(row)
-        length = row.value(LENGTH)
     else:
-        row = data.compared[0]
-        value, angle, name = row.value(key), row.value(REACH), ""
         farthest = f"; farthest ball {numbers.quantity('front_m', farthest_of(data.result.summary)[0])} m"
-        length = row.value(LENGTH)
-        if value is None:
-            volume = data.result.summary["volume"]
-            left = volume["lost"] > travel_shares.BEYOND * volume["released"]
-            return {"what": what, "number": UNKNOWN, "unit": "", "note": f"a run {LOST if left else OLD}{farthest}"}
+    if any(one.value(key) is None for one in data.compared):
+        left = any(one.left_box for one in data.compared)
+        return {"what": what, "number": UNKNOWN, "unit": "", "note": f"a run {LOST if left else OLD}{farthest}"}
     note = ("in plan from the highest released ball, reach angle "
-            f"{numbers.quantity(REACH, angle, name)} degrees")
-    if length is not None:
+            f"{numbers.quantity(REACH, row.value(REACH), name)} degrees")
+    if (length := row.value(LENGTH)) is not None:
         kind = row.length_is or ON_PATH      # none in older files
-        note += f"; {numbers(f'length, {kind}', unit, length, name)} m {kind}"
-    return {"what": what, "number": numbers.quantity(key, value, name), "unit": unit,
-            "note": note + farthest + (f". Run: {name}" if name and data.study else "")}
+        note += f"; {numbers(f'length, {kind}', 'm', length, name)} m {kind}"
+    return {"what": what, "number": numbers.quantity(key, row.value(key), name), "unit": "m",
+            "note": note + farthest + (f". Run: {name}" if name else "")}
 
 
 def farthest_of(summary):
@@ -261,7 +251,7 @@ def shown_run(data: Data) -> str:
         return ""
     one, row = data.result, data.result.row
     number, of = data.number(one.name), values_of(data, row.set)
-    said, own = data.study.headline, Source.ENSEMBLE if data.study.ensemble else Source.PAPER
+    said, own = data.study.headline, Source.ENSEMBLE if data.study.ensemble else Source.SWEEP
     rests = said and said.volume_m3 and said.source is own and one.name == named_run.governing(data.study)
     text = f"A run that leaves about as much, {number} of the appendix" if rests else f"Run {number} of the appendix"
     return f" {text}{of and f': {of}'}."
@@ -272,7 +262,7 @@ def values_of(data: Data, of: Mapping[str, Any]) -> str:
     found: Dict[str, str] = {}
     for name, value in of.items():
         if len(data.settings.get(name) or ()) > 1 and WORDS.get(name, CHANCE) != CHANCE:
-            text = rounded(float(value), 3) if is_number_text(value) else str(value)
+            text = rounded(float(value), 3) if is_number(value) else str(value)
             found.setdefault(WORDS[name].removeprefix("the "), text)
     return join_words([f"{name} {text}" for name, text in found.items()])
 

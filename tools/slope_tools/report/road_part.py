@@ -106,7 +106,7 @@ def draw_road_shares(data: Data, asked: Asked, stretches: study_types.Stretches,
              for low, high, share in stretches.shares for one in axes]
     layers = maps.layers._replace(section=None, reach=known_reach.NOTHING)
     title = "Where the road is blocked"
-    return Picture(figure_maps.road_map(layers, parts, ODDS, title, f"share of the {runs}", maps.crs), title,
+    return Picture(figure_maps.road_map(layers, parts, ODDS, title, f"share of the {runs}"), title,
                    f"Share of the {runs} in which the road is blocked, at each of its places.")
 
 

@@ -7,6 +7,7 @@ from typing import Any, Iterator, List, Mapping, NamedTuple, Optional, Sequence
 
 from .. import disk
 from ..case import decks, run_folders
+from ..case.settings import normalise_value
 from ..digits import metres
 from ..errors import SlopeError
 from ..sites import site_choices, site_deck, site_folder, site_scenarios
@@ -116,7 +117,7 @@ def differences(mine: One, other: One) -> Iterator[str]:
     for which in (BALLS, STIFFNESS, GROUND):
         for name, (what, unit) in which.items():
             was, now = (each.variables.get(name) for each in (mine, other))
-            if was is not None and now is not None and not is_same_value(was, now):
+            if was is not None and now is not None and normalise_value(was) != normalise_value(now):
                 yield f"{what} {now}{unit and f' {unit}'} instead of {was}"
     if (digests := [terrain(each.site.folder) for each in (mine, other)])[0] != digests[1]:
         yield "another terrain"
@@ -126,13 +127,6 @@ def differences(mine: One, other: One) -> Iterator[str]:
     angles = [site_ground.stop_angles(each.site) for each in (mine, other)]
     if angles[0] != angles[1]:
         yield f"stop angles {degrees(angles[1])} instead of {degrees(angles[0])} degrees"
-
-
-def is_same_value(one_: str, other: str) -> bool:
-    try:
-        return float(one_) == float(other)
-    except ValueError:
-        return one_ == other
 
 
 def terrain(folder: Path) -> Optional[str]:

@@ -7,7 +7,7 @@ import numpy as np
 
 from .. import digits, disk, provenance
 from ..case import run_folders
-from ..drawing import figures, maps, pictures
+from ..drawing import figures, maps
 from ..errors import SlopeError
 from ..plots import figure_maps, sheets
 from ..report import document
@@ -16,7 +16,7 @@ from ..sites.site_folder import BODY as NAME_OF_BODY, TERRAIN
 from ..sites.site_roads import ROAD
 from ..statistics.entries import Headline
 from ..survey import rasters, roads
-from ..survey.rasters import Raster, crs_name
+from ..survey.rasters import Raster
 from ..tables import answer_words, how_far
 from . import method
 from .compare import One, choices_that_differ, different_sizes, differences, read_scenarios, run_of
@@ -157,20 +157,14 @@ def outline(raster: Raster, by: np.ndarray) -> Optional[Outline]:
 
 
 def map_of(layers: figure_maps.Layers, shown: Sequence[Shown], title: str) -> str:
-    raster, entries = layers.raster, []
-    with pictures.settings(figures.STYLE):
-        frame = figure_maps.frame_of(layers, True, crs_name(raster.crs) if raster.crs is not None else "")
-        sheet, axes, size, *_ = sheets.single(figures.FULL, frame, title, figure_maps.TALL[figures.FULL])
-        figure_maps.base_map(axes, layers)
+    legend = figure_maps.list_legend_entries(layers)
+
+    def draw(axes, _):
         for k, scenario in enumerate(shown):
             colour = COLOURS[k % len(COLOURS)]
             for each, style, wide in ((scenario.deposit, "-", 1.4), (scenario.body, "--", 0.8)):
                 if each:
                     axes.contour(each.x, each.y, each.thickness, [THICK], colors=colour, linewidths=wide,
                                  linestyles=style, zorder=6)
-            entries.append(sheets.Entry(scenario.name, {"color": colour, "lw": 1.4}))
-        sheets.draw_axes(axes, frame, size)
-        scale = size[0] / frame.width
-        sheets.scale_and_legend(sheet, sheets.margins(frame)[0], scale, min(frame.width, 2.5 / scale),
-                                [*entries, *figure_maps.list_legend_entries(layers)], raster.crs is not None)
-        return figures.data_uri(sheet.finish())
+            legend.insert(k, sheets.Entry(scenario.name, {"color": colour, "lw": 1.4}))
+    return figure_maps.compose_map(layers, title, "", None, draw, legend=legend)

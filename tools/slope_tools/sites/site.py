@@ -18,7 +18,7 @@ from .. import disk, geometry, provenance
 from ..case import decks, settings
 from ..digits import rounded
 from ..errors import SlopeError
-from ..findings import Finding, finding
+from ..findings import Finding, keeper
 from ..releases import release, release_files, release_toe
 from ..survey import local_terrain, polygons, rasters
 from ..survey.rasters import Raster, crs_name
@@ -114,11 +114,7 @@ def built(how: Build, choices: Choices, known: Derived, new: Path, folder: Path,
 
 def build(given: OfMass, known: Derived, new: Path, folder: Path, machine: Machine, tell, warn, draw: Draw) -> Made:
     """Everything, into the folder `new`, which will be `folder`."""
-    warnings: List[Finding] = []
-
-    def keep(entry) -> None:
-        warnings.append(finding(entry))
-        warn(entry)
+    keep, warnings = keeper(warn)
     wanted = site_layers.with_missing(given, lambda: wanted_body(given, new))
     raster, terrain_entries = terrain(given, new, tell, keep)
     surveyed = terrain_entries["surveyed_cell"]

@@ -130,21 +130,21 @@ def three_digits(value: float) -> float:
 
 class Plan(NamedTuple):
     """The runs that `slope study` makes of a site."""
-    paper: int                          # runs of the sweep, on which its number rests
+    sweep: int                          # runs of the sweep, on which its number rests
     elastic: int                        # those with the largest restitution
     half_step: bool                     # and one with half the time step, which is compared by the volume to remove
     points: int                         # of the ensemble, which may become twice as many
-    sweep: str                          # its runs in words
+    words: str                          # of the sweep
 
     @property
     def text(self) -> str:
         """All runs in words."""
-        return self.sweep + (f"; {self.points} runs weighted by known events, and up to as many more where these go "
+        return self.words + (f"; {self.points} runs weighted by known events, and up to as many more where these go "
                              "farther (study --paper leaves them out)") * bool(self.points)
 
     @property
     def runs(self) -> int:
-        return self.paper + self.elastic + self.points
+        return self.sweep + self.elastic + self.points
 
 
 def plan_budget(choices: OfMass) -> Plan:
@@ -152,13 +152,13 @@ def plan_budget(choices: OfMass) -> Plan:
     study, points, grounds = choices.study, choices.study.points, choices.other_grounds
     each = 1 + len(study.packing)
     elastic = each if study.largest_restitution else 0
-    paper = each * len(study.rolling) + len(grounds)
-    text = f"{paper + elastic} runs: {len(study.rolling)} rolling resistances x {each} packings"
+    sweep = each * len(study.rolling) + len(grounds)
+    text = f"{sweep + elastic} runs: {len(study.rolling)} rolling resistances x {each} packings"
     if grounds:
         text += f", {len(grounds)} on other grounds"
     if elastic:
         text += f", {elastic} with the largest restitution"
-    return Plan(paper, elastic, bool(choices.road.file), points, text)
+    return Plan(sweep, elastic, bool(choices.road.file), points, text)
 
 
 # --- finer balls ---
@@ -213,7 +213,7 @@ def time_of(d: float, volume: float, trial: Trial, soil: Soil, wanted: Plan, job
         return one(k, trial.finer(k))
 
     enough = sum(each * seconds(k) for k, each in enumerate(
-        within(wanted.paper + wanted.points, seconds, 0.0, SIZES), 1))
+        within(wanted.sweep + wanted.points, seconds, 0.0, SIZES), 1))
     least = SIZES if not minutes and enough <= left(HOUR) else 1
     return Time(one, trial.finer, left(minutes or (MINUTES if least > 1 else HOUR)), least)
 
@@ -246,7 +246,7 @@ def study_seconds(d: float, volume: float, trial: Trial, soil: Soil, wanted: Pla
     def run(size: float, rest: float) -> float:
         return trial.run(size, packing.count_balls(volume, size), soil, rest)
 
-    total = (wanted.paper + wanted.elastic) * run(d, trial.finer(0))
+    total = (wanted.sweep + wanted.elastic) * run(d, trial.finer(0))
     total += sum(number * run(d / 2 ** k, trial.finer(k)) for k, number in enumerate(numbers, 1))
     if wanted.half_step:
         total += run(d, 2 * LEDGER * trial.typical)
@@ -311,7 +311,7 @@ def size(choices: OfMass, volume: float, depth: float, soil: Soil, trial: Option
         d = three_digits(d)
     wanted = wanted_of(d)
     time = time_of(d, volume, trial, soil, wanted, jobs, balls.minutes) if trial else None
-    numbers = finer(wanted.paper + wanted.points, time, levels)
+    numbers = finer(wanted.sweep + wanted.points, time, levels)
     seconds = study_seconds(d, volume, trial, soil, wanted, jobs, numbers) if trial else (None, None)
     return Size(d, number_of(balls, volume, d), wanted.runs, *seconds,
                 gigabytes(d, volume, cells, jobs, 1 + len(numbers)), wanted.text + finer_text(numbers),

@@ -8,6 +8,7 @@ from typing import Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple
 import numpy as np
 
 from ..errors import SlopeError
+from ..heads import parse_cell
 from ..survey import rasters
 from . import columns
 
@@ -51,10 +52,7 @@ def read_body_rows(path: Path, names: Sequence[str] = NUMBERS, unknown: Sequence
     for place, row in enumerate(rows, 2):
         numbers = {}
         for name in ("rank", *names, *unknown):
-            try:
-                numbers[name] = float(row.get(name) or "")
-            except ValueError:
-                numbers[name] = math.nan
+            numbers[name] = parse_cell(row.get(name) or "")
             if name not in unknown and not math.isfinite(numbers[name]):
                 raise SlopeError(f"{path}: line {place}", f"must have a number in the column {name}", row.get(name))
         for name, default in columns.SPHERE._asdict().items():

@@ -9,7 +9,7 @@ from matplotlib.colors import BoundaryNorm
 
 from ..drawing import figures, palettes, pictures
 from ..drawing.figures import COLOURS, FULL, STYLE
-from ..drawing.maps import RELIEF, contours, part, shade, window
+from ..drawing.maps import contours, draw_relief, part, window
 from ..geometry import extent, extent_of
 from ..survey.rasters import Raster
 from ..survey.resampling import sample
@@ -56,10 +56,7 @@ def middle_of(raster: Raster, mask: np.ndarray) -> np.ndarray:
 
 def draw_map(axes, raster: Raster, factor: np.ndarray, shown) -> None:
     """Shaded relief, contours, least factor of safety in classes."""
-    z, where = part(raster, raster.z, shown)
-    known = np.isfinite(z)
-    axes.imshow(np.where(known, shade(np.where(known, z, np.nanmean(z)), (where[1] - where[0]) / z.shape[1]), np.nan),
-                extent=where, interpolation="bilinear", **RELIEF)
+    z, where = draw_relief(axes, raster, raster.z, shown, interpolation="bilinear")
     contours(axes, z, where, figures.contour_interval(z), alpha=0.7)
     values, _ = part(raster, factor, shown)
     image = axes.imshow(np.ma.masked_invalid(values), cmap=palettes.SAFETY, extent=where, alpha=0.75,

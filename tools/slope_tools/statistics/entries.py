@@ -95,14 +95,14 @@ class Brought(NamedTuple):
 
 
 @dataclass(frozen=True)
-class PaperPart:
+class SweepPart:
     volume_m3: Optional[float]
     withheld: List[Rule]
     runs: int
 
 
 @dataclass(frozen=True)
-class EnsemblePart(PaperPart):
+class EnsemblePart(SweepPart):
     far: float
 
 
@@ -154,7 +154,7 @@ class Kind(Enum):
 
 class Source(Enum):
     """Which study it is of."""
-    PAPER = "paper"
+    SWEEP = "paper"             # a parametric study, as --paper makes it alone
     ENSEMBLE = "ensemble"
 
 
@@ -194,7 +194,7 @@ class Headline(NamedTuple):
     low_m3: Optional[float]
     high_m3: Optional[float]
     source: Optional[Source]
-    paper: Optional[PaperPart]
+    paper: Optional[SweepPart]
     ensemble: Optional[EnsemblePart]
     road: Optional[Road]
     reasons: List[Reason]

@@ -102,13 +102,13 @@ def plan_weighted_points(planned: site_study.Planned, points: int):
     return todo, int(farther.MOST * points) - added.number
 
 
-def seconds(site: Site, planned: site_study.Planned, paper: int, half: bool, points: int,
+def seconds(site: Site, planned: site_study.Planned, sweep: int, half: bool, points: int,
             numbers: Sequence[int]) -> Optional[float]:
-    """What runs take on this machine; paper, half, points: as of site_budget.Plan; numbers: with finer balls."""
+    """What runs take on this machine; sweep, half, points: as of site_budget.Plan; numbers: with finer balls."""
     found = site.found
     if found.trial is None or found.body is None:
         return None
-    wanted = site_budget.plan_budget(planned.choices)._replace(paper=paper, elastic=0, half_step=half, points=points)
+    wanted = site_budget.plan_budget(planned.choices)._replace(sweep=sweep, elastic=0, half_step=half, points=points)
     return site_budget.study_seconds(float(planned.variables[VARIABLE]), found.body.volume, found.trial,
                                      site_study.soil_of(site, planned), wanted, site_study.jobs_of(planned.setup),
                                      numbers)[0]

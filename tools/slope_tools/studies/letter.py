@@ -9,7 +9,7 @@ from typing import Callable, List, NamedTuple, Optional, Sequence
 from ..digits import percent, three
 from ..seismic import chain_files
 from ..sites.site_bodies import VARIABLE
-from ..statistics.entries import Cause, Code, Headline, Kind, PaperPart, Road, Source
+from ..statistics.entries import Cause, Code, Headline, Kind, Road, Source, SweepPart
 from ..statistics.withheld import UNFINISHED
 from ..tables import answer_words, ensemble_types, intensity, judged, quantities, sizes, study_types, usable
 from ..tables.how_far import TAIL, Reach
@@ -17,7 +17,7 @@ from ..tables.rows import finished_of
 from .road_numbers import Number, read_road_numbers
 
 Write = Callable[[str, str, float], str]        # a number of what, in which unit, as text
-ALIKE = {Source.PAPER.value: "with chosen settings", Source.ENSEMBLE.value: "with drawn settings"}
+ALIKE = {Source.SWEEP.value: "with chosen settings", Source.ENSEMBLE.value: "with drawn settings"}
 OF = {**ALIKE, Source.ENSEMBLE.value: "weighted by known events"}
 EVENTS = "known events of this volume and height"
 CAUSES = {Cause.RUNS.value: "chance and parameters", Cause.TRANSFER.value: "from the coarse to the detailed model",
@@ -126,7 +126,7 @@ def capital(text: str) -> str:
 
 def describe_alike_runs(study: study_types.Study) -> str:
     """The runs of a study, where each counts as much."""
-    return counted(study.study.finished, settings_of(study.ensemble) or ALIKE[Source.PAPER.value])
+    return counted(study.study.finished, settings_of(study.ensemble) or ALIKE[Source.SWEEP.value])
 
 
 def settings_of(ensemble: Optional[ensemble_types.Ensemble]) -> str:
@@ -139,7 +139,7 @@ def settings_of(ensemble: Optional[ensemble_types.Ensemble]) -> str:
 
 def count_runs_of(number: Headline, source: Source) -> str:
     """How many runs of a study there are, and what kind of them."""
-    part = number.paper if source is Source.PAPER else number.ensemble
+    part = number.paper if source is Source.SWEEP else number.ensemble
     return counted(part.runs if part else 0, OF[source.value])
 
 
@@ -160,8 +160,10 @@ def describe_cut(letter: Letter) -> str:
 
 def describe_clearing(number: Headline, write: Write) -> str:
     """The sentence with the number, or what stands in its place."""
+    if number.kind is Kind.WITHHELD:
+        return ""       # page 1 begins with what is known: see describe_change()
     return {Kind.NUMBER: describe_number, Kind.FLOOR: describe_floor, Kind.OPEN: describe_open,
-            Kind.WITHHELD: describe_withheld_number, Kind.NOTHING: describe_nothing}[number.kind](number, write)
+            Kind.NOTHING: describe_nothing}[number.kind](number, write)
 
 
 def describe_number(number: Headline, write: Write) -> str:
@@ -195,10 +197,6 @@ def describe_floor(number: Headline, write: Write) -> str:
 def describe_open(number: Headline, write: Write) -> str:
     return (f"{write(f'{VOLUME}, of these runs', 'm3', number.volume_m3 or 0.0)} m3 must be cleared from the road by "
             "these runs, which is neither an upper nor a lower bound: no number to design with.")
-
-
-def describe_withheld_number(_: Headline, __: Write) -> str:
-    return ""       # page 1 begins with what is known: see describe_change()
 
 
 def describe_nothing(number: Headline, write: Write) -> str:
@@ -245,7 +243,7 @@ def describe_basis(number: Headline, letter: Letter, write: Write) -> str:
         return ""
     source, lower = number.source, "It is the lower end, with 90 % confidence, of what"
     runs, floor = count_runs_of(number, source), number.kind is Kind.FLOOR
-    beside: Optional[PaperPart]
+    beside: Optional[SweepPart]
     if source is Source.ENSEMBLE:
         many = "" if letter.events is None else f"{letter.events} recorded landslides, "
         events = f"{percent(number.share or 0.0)} of {many}{EVENTS}" + "," * bool(many)
@@ -253,7 +251,7 @@ def describe_basis(number: Headline, letter: Letter, write: Write) -> str:
         if number.ensemble and number.ensemble.far and all(
                 reason.code is not Code.BEYOND for reason in answer_words.told(number)):
             text += f"; {percent(number.ensemble.far)} go beyond all runs and may leave more than any of these"
-        other, beside = Source.PAPER, number.paper
+        other, beside = Source.SWEEP, number.paper
     else:
         text = f"{lower} those of {runs} leave that leave most" if floor else \
             f"By those of {runs} that leave most" + ", with what chance may add" * has_chance(number)
@@ -365,4 +363,4 @@ def title_runs(study: study_types.Study) -> str:
     if not number:
         return describe_alike_runs(study)
     return " and ".join(count_runs_of(number, source) for source in Source
-                        if (number.paper if source is Source.PAPER else number.ensemble))
+                        if (number.paper if source is Source.SWEEP else number.ensemble))

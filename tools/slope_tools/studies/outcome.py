@@ -182,7 +182,7 @@ def evaluate_study(questions: Questions, read: Read, header: study_types.Header)
     chain = chain_files.evaluate_chain(questions.chain, rows, reasons(read), effect.left if effect else None) \
         if questions.chain and several and finished else None
     weighted = several.about if several else None
-    source = Source.ENSEMBLE if order else Source.PAPER
+    source = Source.ENSEMBLE if order else Source.SWEEP
     study = study_types.Study(
         study=header, largest={key: find_largest_row(finished, key) for key in keys if finished},
         farthest=find_farthest_run(finished).run if finished else None, conservative=best, size=read.size,

@@ -1,9 +1,10 @@
 """What the study of a site can say, before it takes its time: by fall path, known events, road, balls and disk."""
 from pathlib import Path
-from typing import List, Optional
+from typing import List, Optional, Sequence
 
 import numpy as np
 
+from ..case.data_files import OUTPUTS
 from ..deposits import gone
 from ..digits import metres, three
 from ..ensembles.farther import REACHED
@@ -12,14 +13,26 @@ from ..geometry import extent
 from ..mobility import body, fall_path, known, results
 from ..mobility.known import Mobility
 from ..mobility.fall_path import TERRAIN, FallPath
-from ..sites import site_budget, site_choices, site_disk, site_roads
-from ..survey import roads
+from ..releases import packing
+from ..sites import site_budget, site_choices, site_roads, site_trial
+from ..sites.site_found import Found
+from ..sites.site_sections import OfMass
+from ..survey import rasters, roads
 from ..survey.rasters import Raster
 from . import site_study
 from .setup import Setup
 
 SIDES = (("west", "east"), ("south", "north"))
 FARTHEST = 20.0         # times as far as the path may the end of known events be looked for
+# on the disk
+FRAME = 100.0           # bytes of a ball in a snapshot
+RESTART = 1000.0        # of a ball in a restart file, with its contacts
+BASE = 45e3             # of a restart file without balls
+FILES = 2               # restart files, written in turn
+CELL = 60.0             # of a cell in all rasters of a run
+ROOM = 1.5              # times as many cells have a run's rasters as those that the trial run reached
+RUN = 200e3             # of logs, and the volume on the road, with its map
+PAGES = 12e6            # of maps, reports and film
 
 
 def describe_outlook(folder: Path) -> List[str]:
@@ -52,7 +65,7 @@ def describe_outlook(folder: Path) -> List[str]:
     numbers = site_study.wanted(site, site_study.plan_site_study(site, engine), site_study.Asked(),
                                 site_study.points_of(site, engine)).points
     lines.append("the study takes about "
-                 f"{site_disk.format_disk_size(site_disk.study(folder, choices, site_found, numbers))} " "of disk")
+                 f"{format_disk_size(disk_of_study(folder, choices, site_found, numbers))} of disk")
     if why := coarse(1 + len(numbers)):
         lines.append(f"the number will have neither a lower nor an upper bound, because {why}")
     elif floors:
@@ -114,3 +127,42 @@ def coarse(number: int) -> Optional[str]:
         return None
     return (f"balls of {number} size{'s' * (number > 1)} are run, {site_budget.SIZES} show what finer ones bring "
             f"(study --levels {site_budget.SIZES}, or more --minutes)")
+
+
+# --- disk ---
+
+def disk_of_study(folder: Path, choices: OfMass, site_found: Found, numbers: Sequence[int]) -> float:
+    """Bytes of all runs of a study, without those that may be added, and of its pages; of a site that is made.
+
+    numbers: of points with each of the finer balls.
+    """
+    d, body, plan = choices.balls.diameter, site_found.body, site_budget.plan_budget(choices)
+    assert d and body and choices.model.duration and choices.model.film and choices.model.cell
+    of_site = packing.count_balls(body.volume, d)
+    inputs = sum(path.stat().st_size for path in folder.iterdir() if path.is_file() and not OUTPUTS.search(path.name))
+    rest = site_found.trial and site_found.trial.rest or choices.model.duration / site_budget.PATIENCE
+    frames = 1 + rest / choices.model.film
+    cells = covered(folder) / choices.model.cell ** 2
+
+    def run(factor: float) -> float:
+        balls = of_site / factor ** 3
+        return inputs + RUN + CELL * cells + FILES * (BASE + RESTART * balls) + FRAME * balls * frames
+    return PAGES + (plan.runs + plan.half_step) * run(1.0) + sum(
+        number * run(0.5 ** k) for k, number in enumerate(numbers, 1))
+
+
+def covered(folder: Path) -> float:
+    """Area (m2) of the rectangle that a run's rasters cover."""
+    try:
+        raster = rasters.read_raster(folder / site_trial.REACHED, heights=False)
+    except SlopeError:
+        return 0.0
+    rows, columns = np.nonzero(np.nan_to_num(raster.z) > 0)
+    if not len(rows):
+        return 0.0
+    return ROOM * float(np.ptp(rows) + 1) * float(np.ptp(columns) + 1) * raster.transform.a ** 2
+
+
+def format_disk_size(size: float) -> str:
+    """In words."""
+    return f"{three(size / 1e9)} GB" if size >= 1e9 else f"{three(size / 1e6)} MB"

@@ -124,12 +124,12 @@ def wanted(site: Site, planned: Planned, asked: Asked, points=0, alone=False) ->
     site_found, levels = site.found, asked.levels or planned.choices.study.levels
     plan_ = site_budget.plan_budget(planned.choices)._replace(points=points)
     if alone:
-        plan_ = plan_._replace(paper=0, elastic=0, half_step=False)
+        plan_ = plan_._replace(sweep=0, elastic=0, half_step=False)
     time = None
     if site_found.body and site_found.trial:
         time = site_budget.time_of(float(planned.variables[VARIABLE]), site_found.body.volume, site_found.trial,
                                    soil_of(site, planned), plan_, jobs_of(planned.setup), minutes_of(site, asked))
-    numbers = site_budget.finer(plan_.paper + plan_.points, time, levels)
+    numbers = site_budget.finer(plan_.sweep + plan_.points, time, levels)
     return size_runs.halved(planned.variables[VARIABLE], numbers, time, more=levels is None)
 
 

@@ -8,6 +8,7 @@ from typing import Callable, Iterator, NamedTuple, Optional, Sequence, Set
 from .. import disk, kept
 from ..case import decks
 from ..case.data_files import data_files
+from ..deposits import volume
 from ..ensembles import known_events
 from ..errors import SlopeError
 from ..findings import Finding
@@ -184,14 +185,10 @@ def check_thresholds(text, option="--exceed", what="thicknesses"):
 
 def check_deck_road(road: Road, deck: Path, settings) -> None:
     """Raise SlopeError now if the road cannot be used after the runs, as far as the deck names its terrain."""
-    from ..survey import roads, vectors
-    roads.check_road(road.asked)
+    from ..survey import vectors
+    volume.check_wanted_volume(volume.Wanted(road.file, road.mesh, road.cut_angle, asked=road.asked))
     if not vectors.is_there(road.file):
         raise SlopeError("--road", "must be an existing file", road.file)
-    if not 0 < road.cut_angle < 90:
-        raise SlopeError("--cut-angle", "must be > 0 and < 90 degrees", f"{road.cut_angle:g}")
-    if road.mesh <= 0:
-        raise SlopeError("--mesh", "must be > 0", f"{road.mesh:g}")
     path = terrain_of(deck, {name: several[0] for name, several in settings.items()})
     if path:
         road.read(rasters.read_place(path))

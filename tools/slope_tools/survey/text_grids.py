@@ -159,6 +159,6 @@ def suggest_grid_remedy(path: str) -> str:
     except (OSError, UnicodeDecodeError):
         return ""
     turned = [f"{TURNED[words[1].lower()]} {words[0]}" for words in head
-              if len(words) == 2 and words[1].lower() in TURNED and math.isfinite(heads.parse_cell(words[0]))]
+              if len(words) == 2 and words[1].lower() in TURNED and heads.is_number(words[0])]
     return f"; its head has the values before the keys, as GeoClaw: write {', '.join(turned)}, a line each" * (
         len(turned) >= 4)

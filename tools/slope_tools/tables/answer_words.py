@@ -6,8 +6,8 @@ from ..findings import Finding
 from ..statistics.entries import Code, Headline, Kind, Reason, Source
 from . import quantities
 
-STUDY = {Source.PAPER.value: "the sweep", Source.ENSEMBLE.value: "the runs weighted by known events"}
-CLIENT = {Source.PAPER.value: "runs with chosen settings", Source.ENSEMBLE.value: "runs weighted by known events"}
+STUDY = {Source.SWEEP.value: "the sweep", Source.ENSEMBLE.value: "the runs weighted by known events"}
+CLIENT = {Source.SWEEP.value: "runs with chosen settings", Source.ENSEMBLE.value: "runs weighted by known events"}
 
 
 def describe_volume(kind: Optional[Kind], value: Optional[float], unit: str = "") -> str:

@@ -12,8 +12,8 @@ from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tup
 
 from ..findings import Finding
 from ..statistics import rounding
-from ..statistics.entries import (Cause, Code, EnsemblePart, Headline, Kind, KnownQuantile, PaperPart, Reason, Road,
-                                  Share, Source)
+from ..statistics.entries import (Cause, Code, EnsemblePart, Headline, Kind, KnownQuantile, Reason, Road, Share,
+                                  Source, SweepPart)
 from ..statistics.withheld import Kind as Rule
 from . import ensemble_types, next_step, study_types
 from .quantities import REMOVE
@@ -44,7 +44,7 @@ class Size(NamedTuple):
         return Share(Cause.SIZE.value, -self.low * value, self.high * value)
 
 
-class Paper(NamedTuple):
+class Sweep(NamedTuple):
     """The conservative volume (m3) of a sweep; None where it is withheld.
 
     least: m3, what runs lie above as well; None: chance is not known; transfer: m3 below and above; released: m3, of
@@ -63,7 +63,7 @@ class Ensemble(NamedTuple):
     """A weighted ensemble: quantiles (m3) of choose_known_shares().
 
     far: share of the known events beyond all runs; longest: m; stopped: why no more runs were added, None: enough were.
-    most: m3, of a run; size, released, runs: as of Paper; path_end: m, of a fall path that ends before the longest run:
+    most: m3, of a run; size, released, runs: as of Sweep; path_end: m, of a fall path that ends before the longest run:
     far is the share beyond it.
     """
     quantiles: Sequence[KnownQuantile]
@@ -110,19 +110,19 @@ def conclude(studies: Mapping[Path, study_types.Study], given: Any = None) -> Di
 
 def make_headline(studies: Sequence[study_types.Study]) -> Optional[Headline]:
     """Of one study, or of both of a site; None without a road, and of an ensemble alone that no known events weigh."""
-    paper = next(filter(None, map(paper_of, studies)), None)
+    sweep = next(filter(None, map(sweep_of, studies)), None)
     ensemble = next(filter(None, map(ensemble_of, studies)), None)
     roads = [study.at_road for study in studies if study.at_road and (study.conservative or ensemble_of(study))]
-    return combine_answers(paper, ensemble, functools.reduce(Road.and_of, roads) if roads else None)
+    return combine_answers(sweep, ensemble, functools.reduce(Road.and_of, roads) if roads else None)
 
 
-def paper_of(study: study_types.Study) -> Optional[Paper]:
+def sweep_of(study: study_types.Study) -> Optional[Sweep]:
     """Its conservative volume, if it has one, rounded up as it is shown."""
     best = study.conservative
     if not best:
         return None
     least = None if best.chance_m3 is None else best.mean_m3 - best.chance_m3
-    return Paper(best.rounded["volume_m3"], best.withheld, least, best.transfer_m3 or (0.0, 0.0), size_of(study),
+    return Sweep(best.rounded["volume_m3"], best.withheld, least, best.transfer_m3 or (0.0, 0.0), size_of(study),
                  released_of(study), len(finished_of(study.runs)))
 
 
@@ -178,18 +178,18 @@ def choose_known_shares(far: float) -> List[float]:
     return [SHARE] if within >= SHARE else [SHARE, within]
 
 
-def judge_paper(paper: Paper, beside: Optional[Part]) -> Optional[Part]:
+def judge_sweep(sweep: Sweep, beside: Optional[Part]) -> Optional[Part]:
     """beside: of an ensemble, which makes up for HARMLESS rules; None: those alone withhold it."""
-    if paper.volume is not None:
-        known = paper.least is not None       # chance
-        band = [Share(Cause.RUNS.value, max(0.0, paper.volume - paper.least), 0.0)] if paper.least is not None else []
-        return correct_part(Part(Kind.NUMBER, paper.volume, None, [*band, Share(Cause.TRANSFER.value, *paper.transfer)],
-                                 bound=known), paper.size)
-    grave = [rule for rule in paper.withheld if not (
+    if sweep.volume is not None:
+        known = sweep.least is not None       # chance
+        band = [Share(Cause.RUNS.value, max(0.0, sweep.volume - sweep.least), 0.0)] if sweep.least is not None else []
+        return correct_part(Part(Kind.NUMBER, sweep.volume, None, [*band, Share(Cause.TRANSFER.value, *sweep.transfer)],
+                                 bound=known), sweep.size)
+    grave = [rule for rule in sweep.withheld if not (
         beside and rule.kind in HARMLESS and is_within(rule.numbers.get("volume"), beside))]
     if not grave:
         return None
-    return Part(Kind.WITHHELD, None, reasons=[explain_rule(rule, Source.PAPER) for rule in grave])
+    return Part(Kind.WITHHELD, None, reasons=[explain_rule(rule, Source.SWEEP) for rule in grave])
 
 
 def is_within(volume: Optional[float], part: Part) -> bool:
@@ -259,7 +259,7 @@ def correct_part(part: Part, size: Size) -> Part:
     return part._replace(kind=Kind.FLOOR, reasons=reasons)
 
 
-def combine_answers(paper: Optional[Paper], ensemble: Optional[Ensemble], road: Optional[Road]) -> Optional[Headline]:
+def combine_answers(sweep: Optional[Sweep], ensemble: Optional[Ensemble], road: Optional[Road]) -> Optional[Headline]:
     """The larger of both, with the higher of their upper ends; None without either.
 
     Where one of them is withheld for a reason that the other does not make up for, the other is a floor; so is 0 where
@@ -268,14 +268,14 @@ def combine_answers(paper: Optional[Paper], ensemble: Optional[Ensemble], road: 
     """
     parts: List[Tuple[Source, Part]] = []
     weighted = judge_ensemble(ensemble, road) if ensemble else None
-    if paper and (mine := judge_paper(paper, weighted)):
-        parts.append((Source.PAPER, mine))
+    if sweep and (mine := judge_sweep(sweep, weighted)):
+        parts.append((Source.SWEEP, mine))
     if weighted:
         parts.append((Source.ENSEMBLE, weighted))
     if not parts:
         return None
-    broken = [[Rule(rule.kind) for rule in study.withheld] if study else [] for study in (paper, ensemble)]
-    beside = (PaperPart(paper.volume, broken[0], paper.runs) if paper else None,
+    broken = [[Rule(rule.kind) for rule in study.withheld] if study else [] for study in (sweep, ensemble)]
+    beside = (SweepPart(sweep.volume, broken[0], sweep.runs) if sweep else None,
               EnsemblePart(at.value if (at := ensemble.at(SHARE)) else None, broken[1], ensemble.runs,
                            ensemble.far) if ensemble else None, road)
     reasons = [reason for _, part in parts[::-1] for reason in part.reasons]
@@ -303,7 +303,7 @@ def combine_answers(paper: Optional[Paper], ensemble: Optional[Ensemble], road: 
     if most > high and not open_:
         band = [*band, Share(Cause.OTHER.value, 0.0, math.sqrt((most - volume) ** 2 - (high - volume) ** 2))]
         high = most
-    released = min(one.released for one in (paper, ensemble) if one)
+    released = min(one.released for one in (sweep, ensemble) if one)
     volume, low, high = (min(one, released) for one in (volume, low, high))
     if kind is Kind.OPEN:
         return Headline(kind, volume, best.share, None, None, source, *beside, reasons, [*band])

@@ -1,11 +1,10 @@
 """What makes a number of a floor, or of one that is withheld: the next step, its command, and how long it takes."""
-import math
 from pathlib import Path
 from shlex import quote
 from typing import Any, Collection, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
-from .. import heads
 from ..findings import Finding
+from ..heads import is_number
 from ..mobility import events
 from ..runs import again
 from ..sites import site_choices, site_roads
@@ -30,7 +29,7 @@ class Made(NamedTuple):
 
     @property
     def source(self) -> Source:
-        return Source.ENSEMBLE if self.study.ensemble else Source.PAPER
+        return Source.ENSEMBLE if self.study.ensemble else Source.SWEEP
 
     @property
     def whole(self) -> Optional[float]:
@@ -54,8 +53,8 @@ class Made(NamedTuple):
     @property
     def withheld(self) -> List[Finding]:
         """Why its numbers are."""
-        paper, ensemble_ = self.study.conservative, self.study.ensemble
-        return [*(paper.withheld if paper else ()), *(ensemble_.withheld if ensemble_ else ())]
+        sweep, ensemble_ = self.study.conservative, self.study.ensemble
+        return [*(sweep.withheld if sweep else ()), *(ensemble_.withheld if ensemble_ else ())]
 
 
 def of_studies(studies: Sequence[Made], headline: Optional[Headline]) -> Optional[NextStep]:
@@ -146,7 +145,7 @@ def more_sizes(made: Made, sizes: int) -> NextStep:
     levels, rows = str(max(3, sizes + 1)), finished_of(made.study.runs)
     if made.site is None:
         d = rows[0].variables.get(VARIABLE, "") if rows else ""
-        if not is_number_word(d):
+        if not is_number(d):
             return NextStep("a finer model", f"a deck whose variable {VARIABLE} is the diameter of the balls, "
                             f"and the same command with --levels {VARIABLE}=5,2.5,1.25", None)
         coarsest = made.study.size.sizes[0].d if made.study.size else float(d)
@@ -207,10 +206,6 @@ def ranges_of(made: Made) -> Mapping[str, str]:
 def widened(text: str, least: float) -> str:
     """A range with half its least value, or down to a least one."""
     low, colon, high = text.removeprefix("uniform:").partition(":")
-    if not (colon and is_number_word(low) and is_number_word(high)):
+    if not (colon and is_number(low) and is_number(high)):
         return text
     return f"{max(float(low) / 2, min(least, float(low))):.10g}:{float(high):.10g}"
-
-
-def is_number_word(text: str) -> bool:
-    return math.isfinite(heads.parse_cell(text))

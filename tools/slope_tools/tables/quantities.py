@@ -175,7 +175,7 @@ def of_summary(summary: Mapping[str, Any]) -> Dict[str, Any]:
     return {**{one.key: value(one.at.split()) for one in OF_RUN if one.at}, **travel_shares.read_share_columns(summary)}
 
 
-def within(share: str, unit: str) -> str:
+def share_within(share: str, unit: str) -> str:
     """A share of runs or events that has a value or less: of angles, of which the least go farthest, no one stays
     within it."""
     return f"{share} {'have at most' if unit == 'degrees' else 'stay within'}"

@@ -242,19 +242,6 @@ def format_structure_cell(value, unit):
     return "-" if value is None else f"{value / unit:,.3g}" if abs(value) < 999.5 * unit else f"{value / unit:,.0f}"
 
 
-def write_structures(output: Path, rows: Sequence[Finished]) -> List[Path]:
-    """structures.csv and lines.csv, where there is something; the files."""
-    written = []
-    for what, file in FILES.items():
-        text = tabulate_structures(rows, what)
-        if not text:
-            (output / file).unlink(missing_ok=True)     # of an earlier collection
-            continue
-        disk.write_file(output / file, text)
-        written.append(output / file)
-    return written
-
-
 def list_structure_tables(rows: Sequence[Finished]) -> Iterator[Table]:
     """The tables on the screen."""
     for what, heads in SHOWN.items():

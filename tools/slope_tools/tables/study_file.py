@@ -23,14 +23,14 @@ SCHEMA = mapping({"runs": list_of(mapping({"run": TEXT, "status": TEXT}))})
 ANY = mapping({}, ensemble=mapping({}, null=True), study=OBJECT)
 
 
-def find_governing_study(paper: Path, ensemble: Path) -> Path:
+def find_governing_study(sweep: Path, ensemble: Path) -> Path:
     """Of the folders of both studies of a site that whose number it is; the one that there is, if it is one.
 
     What both files say of it where one command made them; else the study that was made last, as the files say.
     """
-    there = [one for one in (ensemble, paper) if (one / STUDY).is_file()]
+    there = [one for one in (ensemble, sweep) if (one / STUDY).is_file()]
     if len(there) < 2:
-        return there[0] if there else paper
+        return there[0] if there else sweep
     studies = {one: schemas.load_checked(one / STUDY, "what `slope study` wrote", ANY) for one in there}
     names = {(about.get("study") or {}).get("governs") for about in studies.values()}
     if len(names) == 1 and (named := [one for one in there if one.name in names]):
@@ -45,8 +45,8 @@ def study_in(folder: Path, weighted: bool = False) -> Optional[Path]:
     """
     if (folder / STUDY).is_file():
         return folder
-    paper, ensemble = (folder / name for name in INSIDE)
-    found = ensemble if weighted and weighs(ensemble) else find_governing_study(paper, ensemble)
+    sweep, ensemble = (folder / name for name in INSIDE)
+    found = ensemble if weighted and weighs(ensemble) else find_governing_study(sweep, ensemble)
     return found if (found / STUDY).is_file() else None
 
 
