@@ -5,7 +5,6 @@ or a Gaussian kernel, whichever the runs make likelier, and the noise of chance.
 cross-validation: runs of points that the process has not seen. What a bad fit says is withheld.
 """
 import functools
-import inspect
 import math
 import warnings
 from typing import List, NamedTuple, Optional, Sequence, Tuple
@@ -37,8 +36,6 @@ class Emulator:
         from sklearn.exceptions import ConvergenceWarning       # half a second to import
         from sklearn.gaussian_process import GaussianProcessRegressor
         from sklearn.gaussian_process.kernels import ConstantKernel, Matern, WhiteKernel
-        for part in (ConstantKernel, Matern, WhiteKernel):      # asked for in each step of a fit, a quarter of its time
-            part.__init__.__signature__ = inspect.signature(part.__init__)
         points, values = np.asarray(points, float), np.asarray(values, float)
         self.mean, self.scale = float(values.mean()), float(values.std()) or 1.0
         kernels = [kernel] if kernel else [
